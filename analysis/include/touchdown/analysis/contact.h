@@ -1,0 +1,2 @@
+// Contact theory of one corner: Eqs. (1)-(9).
+#pragma once

@@ -1,0 +1,22 @@
+// How a command joins the program.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace touchdown::cli {
+
+// What main runs after the command line has been read; returns the exit status:
+// 0 done; 5 a batch finished with some clips failed. Trouble is thrown:
+// std::invalid_argument (exit 2), core::InputError (3), core::StoreError (4).
+using Action = std::function<int()>;
+
+// Each Add...() adds one command with its flags to `app`, and sets `action` when
+// that command is the one called.
+void AddRig(CLI::App& app, Action& action);
+void AddTheory(CLI::App& app, Action& action);
+
+}  // namespace touchdown::cli

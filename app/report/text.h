@@ -1,0 +1,17 @@
+// Small text helpers of every report: escaping.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace touchdown::report {
+
+// Text that is safe inside HTML elements and quoted attributes.
+std::string HtmlEscape(std::string_view text);
+
+// One CSV cell (RFC 4180): quoted where it must be. A cell that a spreadsheet
+// would run as a formula (it starts with = + - @ or a tab, and is not a plain
+// number) is prefixed with an apostrophe.
+std::string CsvCell(std::string_view text);
+
+}  // namespace touchdown::report

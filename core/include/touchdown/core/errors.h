@@ -1,0 +1,28 @@
+// The third error lane: the outside world failed. Thrown, caught once in main,
+// printed as one line: what, where, what was expected, what to do.
+//
+// (The first lane, an impossible argument, is std::invalid_argument, which names
+// the field, its value and its allowed range. The second, "science says no", is
+// a value: expected.h.)
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace touchdown::core {
+
+// A file that cannot be read, is damaged or is of an unsupported kind, or an
+// output that cannot be written. The message names file and frame, byte or row.
+// Exit status 3.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Trouble with the trial store. Exit status 4.
+class StoreError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace touchdown::core

@@ -1,0 +1,94 @@
+#include "touchdown/core/words.h"
+
+#include <array>
+#include <utility>
+
+namespace touchdown::core {
+namespace {
+
+template <class T, std::size_t N>
+using Table = std::array<std::pair<T, std::string_view>, N>;
+
+constexpr Table<BodyKind, 2> kBodyKinds{{
+    {BodyKind::kSphere, "sphere"},
+    {BodyKind::kRectangle, "rectangle"},
+}};
+constexpr Table<AngleKind, 3> kAngleKinds{{
+    {AngleKind::kApproach, "approach"},
+    {AngleKind::kRadius, "radius"},
+    {AngleKind::kFace, "face"},
+}};
+constexpr Table<Corner, 3> kCorners{{
+    {Corner::kLeading, "leading"},
+    {Corner::kTrailing, "trailing"},
+    {Corner::kFlush, "flush"},
+}};
+constexpr Table<MotionState, 7> kMotionStates{{
+    {MotionState::kBounce, "bounce"},
+    {MotionState::kSlide, "slide"},
+    {MotionState::kRollSlide, "roll-slide"},
+    {MotionState::kRoll, "roll"},
+    {MotionState::kStick, "stick"},
+    {MotionState::kStaysDown, "stays-down"},
+    {MotionState::kUndecided, "undecided"},
+}};
+constexpr Table<Origin, 3> kOrigins{{
+    {Origin::kRecorded, "recorded"},
+    {Origin::kSimulated, "simulated"},
+    {Origin::kManual, "manual"},
+}};
+constexpr Table<Verdict, 3> kVerdicts{{
+    {Verdict::kConfirmed, "confirmed"},
+    {Verdict::kContradicted, "contradicted"},
+    {Verdict::kInconclusive, "inconclusive"},
+}};
+
+template <class T, std::size_t N>
+std::string_view NameIn(const Table<T, N>& table, T value) {
+  for (const auto& [key, name] : table) {
+    if (key == value) return name;
+  }
+  return "?";
+}
+
+template <class T, std::size_t N>
+std::optional<T> ParseIn(const Table<T, N>& table, std::string_view word) {
+  for (const auto& [key, name] : table) {
+    if (name == word) return key;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view Name(BodyKind kind) { return NameIn(kBodyKinds, kind); }
+std::string_view Name(AngleKind kind) { return NameIn(kAngleKinds, kind); }
+std::string_view Name(Corner corner) { return NameIn(kCorners, corner); }
+std::string_view Name(MotionState s) { return NameIn(kMotionStates, s); }
+std::string_view Name(Origin origin) { return NameIn(kOrigins, origin); }
+std::string_view Name(Verdict verdict) { return NameIn(kVerdicts, verdict); }
+
+std::optional<BodyKind> ParseBodyKind(std::string_view word) {
+  return ParseIn(kBodyKinds, word);
+}
+std::optional<AngleKind> ParseAngleKind(std::string_view word) {
+  return ParseIn(kAngleKinds, word);
+}
+std::optional<Corner> ParseCorner(std::string_view word) {
+  return ParseIn(kCorners, word);
+}
+std::optional<MotionState> ParseMotionState(std::string_view word) {
+  return ParseIn(kMotionStates, word);
+}
+std::optional<Origin> ParseOrigin(std::string_view word) {
+  return ParseIn(kOrigins, word);
+}
+std::optional<Verdict> ParseVerdict(std::string_view word) {
+  return ParseIn(kVerdicts, word);
+}
+
+bool IsNotBounce(MotionState state) {
+  return state != MotionState::kBounce && state != MotionState::kUndecided;
+}
+
+}  // namespace touchdown::core

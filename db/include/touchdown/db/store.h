@@ -1,0 +1,2 @@
+// The trial store.
+#pragma once

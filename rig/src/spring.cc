@@ -1,0 +1,1 @@
+#include "touchdown/rig/spring.h"

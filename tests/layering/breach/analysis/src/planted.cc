@@ -1,0 +1,2 @@
+// A planted breach: includes.cmake must refuse this tree.
+#include <sqlite3.h>
