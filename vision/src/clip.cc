@@ -25,9 +25,8 @@ core::Frame Clip::Read(std::int64_t index) {
 core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
   const ClipInfo& clip = info();
   if (index < 0 || index >= clip.frames) {
-    throw std::invalid_argument(
-        fmt::format("frame is {}, must be within 0 .. {}", index,
-                    clip.frames - 1));
+    throw std::invalid_argument(fmt::format(
+        "frame is {}, must be within 0 .. {}", index, clip.frames - 1));
   }
   if (window.x < 0 || window.y < 0 || window.width < 1 || window.height < 1 ||
       window.width > clip.width_px - window.x ||

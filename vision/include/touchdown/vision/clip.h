@@ -40,8 +40,8 @@ struct ClipInfo {
   std::string format;  // "mraw", "avi", "mp4", "png-folder", ...
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
-  std::int32_t bit_depth = 8;  // significant bits of a sample, 1..16
-  std::int64_t frames = 0;     // that can be read
+  std::int32_t bit_depth = 8;           // significant bits of a sample, 1..16
+  std::int64_t frames = 0;              // that can be read
   std::int64_t first_camera_frame = 0;  // the camera's own number of frame 0
   TimeBase time_base;
   std::vector<std::string> warnings;  // one sentence each, for the user
