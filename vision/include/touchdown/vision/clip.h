@@ -59,7 +59,7 @@ struct ClipInfo {
 
 struct ClipOptions {
   // Recorded frame rate, in frames per second; overrides the file's.
-  std::optional<double> fps;
+  std::optional<double> fps = std::nullopt;
   // Threads of a video decoder; 0: one for each core. Affects speed only.
   std::int32_t decoder_threads = 0;
 };
