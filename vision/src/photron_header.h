@@ -20,8 +20,8 @@ struct PhotronHeader {
   std::int32_t effective_bits = 0;  // that carry signal, <= 16
   bool effective_higher = false;    // they are the upper ones of the container
   double record_rate_hz = 0.0;      // of the camera, before save_step
-  std::int64_t save_step = 1;       // every n-th recorded frame was saved; 0: odd
-  std::int64_t start_frame = 0;     // camera's number of the first; may be < 0
+  std::int64_t save_step = 1;    // every n-th recorded frame was saved; 0: odd
+  std::int64_t start_frame = 0;  // camera's number of the first; may be < 0
   std::optional<SensorOrigin> sensor_origin;
 };
 
