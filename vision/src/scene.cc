@@ -1,0 +1,168 @@
+#include "touchdown/vision/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace touchdown::vision {
+namespace {
+
+void Require(bool holds, const char* field, double value, const char* range) {
+  if (holds) return;
+  throw std::invalid_argument(
+      fmt::format("scene: {} is {}, must be {}", field, value, range));
+}
+
+void RequireSize(const core::Measured& size, const char* field) {
+  if (!size) {
+    throw std::invalid_argument(
+        fmt::format("scene: {} is absent ({}), a size is needed to draw the "
+                    "body",
+                    field, size.error().reason));
+  }
+  Require(std::isfinite(size->value) && size->value > 0.0, field, size->value,
+          "positive and finite");
+}
+
+bool IsLevel(double value) { return value >= 0.0 && value <= 1.0; }
+
+}  // namespace
+
+void Validate(const Scene& scene) {
+  const SceneCamera& camera = scene.camera;
+  Require(camera.width_px >= 1 && camera.width_px <= 65536, "camera.width_px",
+          camera.width_px, "1 .. 65536");
+  Require(camera.height_px >= 1 && camera.height_px <= 65536,
+          "camera.height_px", camera.height_px, "1 .. 65536");
+  Require(camera.px_per_m > 0.0 && std::isfinite(camera.px_per_m),
+          "camera.px_per_m", camera.px_per_m, "positive and finite");
+  Require(std::isfinite(camera.ground_point.x_px), "camera.ground_point.x_px",
+          camera.ground_point.x_px, "finite");
+  Require(std::isfinite(camera.ground_point.y_px), "camera.ground_point.y_px",
+          camera.ground_point.y_px, "finite");
+  Require(std::abs(camera.roll_rad) < 0.5 * std::numbers::pi, "camera.roll_rad",
+          camera.roll_rad, "within -pi/2 .. pi/2");
+  Require(camera.fps > 0.0 && std::isfinite(camera.fps), "camera.fps",
+          camera.fps, "positive and finite");
+  Require(camera.exposure_s >= 0.0 && camera.exposure_s * camera.fps <= 1.0,
+          "camera.exposure_s", camera.exposure_s, "0 .. 1/fps");
+  Require(camera.psf_sigma_px == 0.0 ||
+              (camera.psf_sigma_px >= 0.1 && camera.psf_sigma_px <= 10.0),
+          "camera.psf_sigma_px", camera.psf_sigma_px, "0, or 0.1 .. 10");
+  Require(camera.bit_depth >= 1 && camera.bit_depth <= 16, "camera.bit_depth",
+          camera.bit_depth, "1 .. 16");
+
+  const SceneLook& look = scene.look;
+  Require(IsLevel(look.body_level), "look.body_level", look.body_level,
+          "0 .. 1");
+  Require(IsLevel(look.background_level), "look.background_level",
+          look.background_level, "0 .. 1");
+  Require(IsLevel(look.ground_level), "look.ground_level", look.ground_level,
+          "0 .. 1");
+  Require(std::abs(look.gradient_x) <= 2.0, "look.gradient_x", look.gradient_x,
+          "-2 .. 2");
+  Require(std::abs(look.gradient_y) <= 2.0, "look.gradient_y", look.gradient_y,
+          "-2 .. 2");
+  Require(look.texture_amplitude >= 0.0 && look.texture_amplitude <= 10.0,
+          "look.texture_amplitude", look.texture_amplitude, "0 .. 10");
+  Require(
+      look.texture_correlation_px >= 0.0 && look.texture_correlation_px <= 1e3,
+      "look.texture_correlation_px", look.texture_correlation_px, "0 .. 1000");
+
+  Require(scene.noise.read_dn >= 0.0 && std::isfinite(scene.noise.read_dn),
+          "noise.read_dn", scene.noise.read_dn, "at least 0 and finite");
+  Require(scene.noise.shot_dn2_per_dn >= 0.0 &&
+              std::isfinite(scene.noise.shot_dn2_per_dn),
+          "noise.shot_dn2_per_dn", scene.noise.shot_dn2_per_dn,
+          "at least 0 and finite");
+  Require(scene.frames >= 1, "frames", static_cast<double>(scene.frames),
+          "at least 1");
+  if (!scene.pose) {
+    throw std::invalid_argument("scene: pose is empty, must be a function");
+  }
+  if (scene.body.kind == core::BodyKind::kSphere) {
+    RequireSize(scene.body.diameter_m, "body.diameter_m");
+  } else {
+    RequireSize(scene.body.long_m, "body.long_m");
+    RequireSize(scene.body.short_m, "body.short_m");
+  }
+}
+
+core::PixelPoint ToImage(const SceneCamera& camera, core::PlanePoint point) {
+  const double c = std::cos(camera.roll_rad);
+  const double s = std::sin(camera.roll_rad);
+  const double x =
+      camera.px_per_m * (camera.travels_left ? -point.x_m : point.x_m);
+  const double y = camera.px_per_m * point.y_m;
+  // Along the ground (c, s), up its normal (s, -c): image y points down.
+  return {camera.ground_point.x_px + x * c + y * s,
+          camera.ground_point.y_px + x * s - y * c};
+}
+
+std::array<core::PlanePoint, 4> Corners(const core::Body& body,
+                                        const ScenePose& pose) {
+  if (body.kind != core::BodyKind::kRectangle) {
+    throw std::invalid_argument("body.kind is sphere, must be rectangle");
+  }
+  RequireSize(body.long_m, "body.long_m");
+  RequireSize(body.short_m, "body.short_m");
+  const double a = 0.5 * body.long_m->value;
+  const double b = 0.5 * body.short_m->value;
+  const double c = std::cos(pose.angle_rad);
+  const double s = std::sin(pose.angle_rad);
+  std::array<core::PlanePoint, 4> corners{{{a, b}, {-a, b}, {-a, -b}, {a, -b}}};
+  for (core::PlanePoint& p : corners) {
+    p = {pose.centre.x_m + c * p.x_m - s * p.y_m,
+         pose.centre.y_m + s * p.x_m + c * p.y_m};
+  }
+  return corners;
+}
+
+double Gap(const core::Body& body, const ScenePose& pose) {
+  if (body.kind == core::BodyKind::kSphere) {
+    RequireSize(body.diameter_m, "body.diameter_m");
+    return pose.centre.y_m - 0.5 * body.diameter_m->value;
+  }
+  const auto corners = Corners(body, pose);
+  return std::min_element(corners.begin(), corners.end(),
+                          [](core::PlanePoint p, core::PlanePoint q) {
+                            return p.y_m < q.y_m;
+                          })
+      ->y_m;
+}
+
+SceneTruth TruthOf(const Scene& scene, std::int64_t index) {
+  SceneTruth truth;
+  truth.index = index;
+  truth.time_s = static_cast<double>(index) / scene.camera.fps;
+  truth.pose = scene.pose(truth.time_s);
+  truth.centre = ToImage(scene.camera, truth.pose.centre);
+  // The angle turns the other way in the image (y points down), and back again
+  // where the plane is seen mirrored.
+  truth.image_angle_rad = scene.camera.roll_rad + (scene.camera.travels_left
+                                                       ? truth.pose.angle_rad
+                                                       : -truth.pose.angle_rad);
+  const double radius_m = scene.body.kind == core::BodyKind::kSphere
+                              ? 0.5 * scene.body.diameter_m->value
+                              : 0.5 * std::hypot(scene.body.long_m->value,
+                                                 scene.body.short_m->value);
+  truth.radius_px = scene.camera.px_per_m * radius_m;
+  truth.gap_px = scene.camera.px_per_m * Gap(scene.body, truth.pose);
+  return truth;
+}
+
+calib::GroundLine GroundOf(const SceneCamera& camera) {
+  const double slope = std::tan(camera.roll_rad);
+  const auto at = [&](double x) {
+    return core::PixelPoint{
+        x, camera.ground_point.y_px + slope * (x - camera.ground_point.x_px)};
+  };
+  // Two points even of a picture one pixel wide.
+  return calib::GroundThrough(at(0.0), at(std::max(1, camera.width_px - 1)),
+                              0.0);
+}
+
+}  // namespace touchdown::vision
