@@ -11,7 +11,6 @@
 #include "app/cli/values.h"
 #include "app/pipeline/analysis_text.h"
 #include "app/pipeline/analyze.h"
-#include "app/pipeline/evidence.h"
 #include "app/pipeline/log_analysis.h"
 #include "touchdown/core/units.h"
 
@@ -68,8 +67,8 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
   if (!flags.ground.empty()) {
     const auto n = ParseNumbers("--ground", flags.ground, 4,
                                 "two points X1,Y1,X2,Y2 in pixels");
-    options.ground = calib::GroundThrough({n[0], n[1]}, {n[2], n[3]},
-                                          flags.ground_u_px);
+    options.ground =
+        calib::GroundThrough({n[0], n[1]}, {n[2], n[3]}, flags.ground_u_px);
   }
   if (!flags.frames.empty()) {
     std::tie(options.first_frame, options.last_frame) =
@@ -78,10 +77,9 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
   if (!flags.region.empty()) {
     const auto n = ParseNumbers("--region", flags.region, 4,
                                 "X,Y,W,H in whole pixels, W and H positive");
-    options.region = {static_cast<std::int32_t>(n[0]),
-                      static_cast<std::int32_t>(n[1]),
-                      static_cast<std::int32_t>(n[2]),
-                      static_cast<std::int32_t>(n[3])};
+    options.region = {
+        static_cast<std::int32_t>(n[0]), static_cast<std::int32_t>(n[1]),
+        static_cast<std::int32_t>(n[2]), static_cast<std::int32_t>(n[3])};
     if (options.region.width < 1 || options.region.height < 1) {
       throw std::invalid_argument("--region is '" + flags.region +
                                   "', its width and height must be positive");
@@ -106,7 +104,6 @@ int Run(const Flags& flags) {
   options.progress = [&bar](double share) { bar.Show(share); };
   const pipeline::Analysis analysis = pipeline::Analyze(flags.clip, options);
   bar.Finish();
-  if (!flags.out.empty()) pipeline::WriteEvidence(analysis, flags.out);
   std::optional<pipeline::Logged> logged;
   if (!flags.db.empty()) {
     logged = pipeline::LogAnalysis(analysis, flags.db, flags.campaign);
@@ -128,10 +125,12 @@ int Run(const Flags& flags) {
 void AddAnalyze(CLI::App& app, Action& action) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = app.add_subcommand(
-      "analyze", "At what angle did it touch down, and did it slide or bounce?");
-  command->add_option("CLIP", flags->clip,
-                      "a video, an .mraw (or its .cih/.cihx), or a folder of "
-                      "PNG, TIFF or JPEG images")
+      "analyze",
+      "At what angle did it touch down, and did it slide or bounce?");
+  command
+      ->add_option("CLIP", flags->clip,
+                   "a video, an .mraw (or its .cih/.cihx), or a folder of "
+                   "PNG, TIFF or JPEG images")
       ->required();
   command->add_option("--scale-px-per-m", flags->scale,
                       "pixels per metre in the plane of travel, e.g. 1000 or "
@@ -146,8 +145,9 @@ void AddAnalyze(CLI::App& app, Action& action) {
                       "frames per second of the recording, not of playback");
   command->add_option("--ground", flags->ground,
                       "ground line through two points, X1,Y1,X2,Y2 in pixels");
-  command->add_option("--ground-u-px", flags->ground_u_px,
-                      "standard uncertainty of each of these points, px")
+  command
+      ->add_option("--ground-u-px", flags->ground_u_px,
+                   "standard uncertainty of each of these points, px")
       ->capture_default_str();
   command->add_option("--frames", flags->frames,
                       "only frames A up to but not including B, as A:B");
@@ -165,7 +165,8 @@ void AddAnalyze(CLI::App& app, Action& action) {
   command->add_option("--campaign", flags->campaign,
                       "the campaign the trial belongs to (with --db)");
   command->add_flag("--json", flags->json, "one JSON document on stdout");
-  command->callback([flags, &action] { action = [flags] { return Run(*flags); }; });
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
 }
 
 }  // namespace touchdown::cli

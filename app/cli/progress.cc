@@ -27,8 +27,8 @@ void ProgressBar::Show(double share) {
   const int full = static_cast<int>(share * kWidth);
   const double gone = std::chrono::duration<double>(now - start_).count();
   const double left = share > 0.0 ? gone * (1.0 - share) / share : 0.0;
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s left ", what_, "",
-             full, "", kWidth - full, 100.0 * share, left);
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s left ", what_,
+             "", full, "", kWidth - full, 100.0 * share, left);
   std::fflush(stderr);
 }
 

@@ -1,5 +1,5 @@
-// A progress bar with an estimate of the time left, on stderr and only where that
-// is a terminal.
+// A progress bar with an estimate of the time left, on stderr and only where
+// that is a terminal.
 #pragma once
 
 #include <chrono>

@@ -41,8 +41,9 @@ std::vector<std::string_view> Split(std::string_view text, char at) {
 
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
                              double relative_u) {
-  const std::string form = "a positive number, or one with its standard "
-                           "uncertainty as in 40+-0.02";
+  const std::string form =
+      "a positive number, or one with its standard "
+      "uncertainty as in 40+-0.02";
   const std::size_t sign = text.find("+-");
   const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
   if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
@@ -65,8 +66,9 @@ std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
           ParseEstimate(flag, text.substr(times + 1), relative_u)};
 }
 
-std::vector<double> ParseNumbers(const std::string& flag, const std::string& text,
-                                 std::size_t count, const std::string& form) {
+std::vector<double> ParseNumbers(const std::string& flag,
+                                 const std::string& text, std::size_t count,
+                                 const std::string& form) {
   std::vector<double> numbers;
   for (const std::string_view part : Split(text, ',')) {
     const auto number = ReadNumber<double>(part);

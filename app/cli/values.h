@@ -1,5 +1,6 @@
-// Values as they are typed at the command line. Each throws std::invalid_argument
-// with the flag's name, what was given and what is expected.
+// Values as they are typed at the command line. Each throws
+// std::invalid_argument with the flag's name, what was given and what is
+// expected.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,9 @@ std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      double relative_u);
 
 // Exactly `count` numbers separated by commas.
-std::vector<double> ParseNumbers(const std::string& flag, const std::string& text,
-                                 std::size_t count, const std::string& form);
+std::vector<double> ParseNumbers(const std::string& flag,
+                                 const std::string& text, std::size_t count,
+                                 const std::string& form);
 
 // "A:B", "A:" or ":B": frames A, A+1, ... B-1; an open end is -1.
 std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,

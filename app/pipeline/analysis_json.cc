@@ -74,15 +74,15 @@ Json ContactOf(Writer& writer, const std::string& at,
   json["angle_deg"] = writer.Number(at + "angle_deg", angle, kToDegrees);
   json["approach_angle_deg"] = writer.Number(
       at + "approach_angle_deg", contact.approach_angle_rad, kToDegrees);
-  json["radius_angle_deg"] = writer.Number(at + "radius_angle_deg",
-                                           contact.radius_angle_rad, kToDegrees);
-  json["face_angle_deg"] = writer.Number(at + "face_angle_deg",
-                                         contact.face_angle_rad, kToDegrees);
+  json["radius_angle_deg"] = writer.Number(
+      at + "radius_angle_deg", contact.radius_angle_rad, kToDegrees);
+  json["face_angle_deg"] =
+      writer.Number(at + "face_angle_deg", contact.face_angle_rad, kToDegrees);
   if (contact.corner) {
     json["corner"] = Name(*contact.corner);
   } else {
-    json["corner"] = writer.Missing(
-        at + "corner", contact.found ? "sphere" : contact.reason);
+    json["corner"] = writer.Missing(at + "corner",
+                                    contact.found ? "sphere" : contact.reason);
   }
   json["duration_s"] = writer.Number(at + "duration_s", contact.duration_s);
   json["budget"] = BudgetOf(contact, kind);
@@ -131,7 +131,8 @@ Json MotionOf(Writer& writer, const std::string& at, const core::Motion& m) {
        number("before.omega_rad_per_s", m.before_omega_rad_per_s)}};
   json["after"] = {
       {"normal_mps", number("after.normal_mps", m.after_normal_mps)},
-      {"tangential_mps", number("after.tangential_mps", m.after_tangential_mps)},
+      {"tangential_mps",
+       number("after.tangential_mps", m.after_tangential_mps)},
       {"omega_rad_per_s",
        number("after.omega_rad_per_s", m.after_omega_rad_per_s)}};
   json["restitution"] = number("restitution", m.restitution);

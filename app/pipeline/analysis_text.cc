@@ -18,7 +18,8 @@ std::string Number(const core::Measured& m, double factor, const char* unit) {
     digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(e.u))));
   }
   digits = std::min(digits, 9);
-  return fmt::format("{:.{}f} +- {:.{}f} {}", e.value, digits, e.u, digits, unit);
+  return fmt::format("{:.{}f} +- {:.{}f} {}", e.value, digits, e.u, digits,
+                     unit);
 }
 
 void Line(std::string& out, const char* name, const std::string& text) {
@@ -54,10 +55,11 @@ std::string ToText(const Analysis& a) {
   }
   if (a.ground) {
     Line(out, "ground",
-         fmt::format("({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) px, +- {:.3f} deg, {}",
-                     a.ground->p1.x_px, a.ground->p1.y_px, a.ground->p2.x_px,
-                     a.ground->p2.y_px, a.ground->u_angle_rad * kDeg,
-                     calib::Name(a.ground->source)));
+         fmt::format(
+             "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) px, +- {:.3f} deg, {}",
+             a.ground->p1.x_px, a.ground->p1.y_px, a.ground->p2.x_px,
+             a.ground->p2.y_px, a.ground->u_angle_rad * kDeg,
+             calib::Name(a.ground->source)));
   }
   if (!contact.found) {
     Line(out, "contact", "none: " + contact.reason);
@@ -65,8 +67,8 @@ std::string ToText(const Analysis& a) {
     Line(out, "contact", "from the start");
   } else {
     Line(out, "contact",
-         fmt::format("at {}, frame {:.3f}",
-                     Number(contact.time_s, 1e3, "ms"), contact.frame->value));
+         fmt::format("at {}, frame {:.3f}", Number(contact.time_s, 1e3, "ms"),
+                     contact.frame->value));
   }
   if (contact.found) {
     core::Measured angle = Angle(contact, a.angle_kind);

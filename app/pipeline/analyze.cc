@@ -35,7 +35,8 @@ void RequirePositive(const char* field, const std::optional<double>& value) {
 std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
   if (options.diameter_m && (options.long_m || options.short_m)) {
     throw std::invalid_argument(
-        "both a diameter and sides are given; a body is a sphere or a rectangle");
+        "both a diameter and sides are given; a body is a sphere or a "
+        "rectangle");
   }
   if (options.long_m.has_value() != options.short_m.has_value()) {
     throw std::invalid_argument("a rectangle needs both sides");
@@ -52,10 +53,10 @@ std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
 }
 
 // px per metre from a length known in both.
-core::Estimate ScaleFrom(const core::Estimate& px, const core::Estimate& metres) {
+core::Estimate ScaleFrom(const core::Estimate& px,
+                         const core::Estimate& metres) {
   const double value = px.value / metres.value;
-  return {value,
-          value * std::hypot(px.u / px.value, metres.u / metres.value),
+  return {value, value * std::hypot(px.u / px.value, metres.u / metres.value),
           std::nullopt};
 }
 
@@ -156,12 +157,11 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   } else {
     // The background's own noise: that of a frame over the square root of the
     // frames averaged.
-    const calib::StillImage still{background_.level.data(),
-                                  background_.width_px, background_.height_px,
-                                  std::sqrt(background_.Variance(
-                                      static_cast<double>(background_.level[
-                                          background_.level.size() / 2])) /
-                                            8.0)};
+    const calib::StillImage still{
+        background_.level.data(), background_.width_px, background_.height_px,
+        std::sqrt(background_.Variance(static_cast<double>(
+                      background_.level[background_.level.size() / 2])) /
+                  8.0)};
     candidates = calib::FindGroundLines(still);
   }
   std::optional<Judged> best;
@@ -214,8 +214,8 @@ void Analyzer::DescribeScene() {
   const vision::Track& track = *result_.track;
   scene.used.push_back(track.known_background ? "static background"
                                               : "two levels of the frame");
-  scene.used.push_back(track.body.kind == core::BodyKind::kSphere ? "circle"
-                                                                  : "rectangle");
+  scene.used.push_back(
+      track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
   scene.used.push_back("quadratic shading");
   if (result_.plane) {
     scene.used.push_back(result_.scale ? "free flight with known gravity"

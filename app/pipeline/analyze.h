@@ -23,17 +23,17 @@ namespace touchdown::pipeline {
 struct AnalyzeOptions {
   std::optional<double> fps;
   std::optional<core::Estimate> scale_px_per_m;
-  std::optional<core::BodyKind> body_kind;         // nothing: whichever fits
-  std::optional<core::Estimate> diameter_m;        // makes the kind sphere
-  std::optional<core::Estimate> long_m;            // both make it rectangle
-  std::optional<core::Estimate> short_m;           //
-  std::optional<calib::GroundLine> ground;         // nothing: found
-  std::int64_t first_frame = 0;                    // [first, last) is looked at
-  std::int64_t last_frame = -1;                    // -1: to the end
-  core::PixelRect region;                          // width 0: whole picture
-  std::optional<core::AngleKind> angle_kind;       // nothing: the body's default
-  std::optional<double> bounce_height_m;           // nothing: default convention
-  std::function<void(double share)> progress;      // may be empty
+  std::optional<core::BodyKind> body_kind;     // nothing: whichever fits
+  std::optional<core::Estimate> diameter_m;    // makes the kind sphere
+  std::optional<core::Estimate> long_m;        // both make it rectangle
+  std::optional<core::Estimate> short_m;       //
+  std::optional<calib::GroundLine> ground;     // nothing: found
+  std::int64_t first_frame = 0;                // [first, last) is looked at
+  std::int64_t last_frame = -1;                // -1: to the end
+  core::PixelRect region;                      // width 0: whole picture
+  std::optional<core::AngleKind> angle_kind;   // nothing: the body's default
+  std::optional<double> bounce_height_m;       // nothing: default convention
+  std::function<void(double share)> progress;  // may be empty
 };
 
 // What was modelled, and what was left out and why.
@@ -46,7 +46,7 @@ struct Timing {
   double total_s = 0.0;
   double open_s = 0.0;
   double background_s = 0.0;
-  double track_s = 0.0;    // reading and fitting
+  double track_s = 0.0;  // reading and fitting
   double contact_s = 0.0;
   double frames_per_s = 0.0;
 };
@@ -77,8 +77,8 @@ struct Analysis {
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options = {});
 
-// The trial that an analysis makes: for the store and the report. id, revision and
-// time stamps are the store's.
+// The trial that an analysis makes: for the store and the report. id, revision
+// and time stamps are the store's.
 core::Trial ToTrial(const Analysis& analysis);
 
 // The touchdown.analysis/1 document.

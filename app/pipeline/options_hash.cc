@@ -26,9 +26,10 @@ std::string OptionsHash(const AnalyzeOptions& o) {
       o.region.y, o.region.width, o.region.height,
       o.angle_kind ? Name(*o.angle_kind) : "default", Text(o.bounce_height_m));
   if (o.ground) {
-    text += fmt::format("ground={:a},{:a},{:a},{:a},{:a},{:a}", o.ground->p1.x_px,
-                        o.ground->p1.y_px, o.ground->p2.x_px, o.ground->p2.y_px,
-                        o.ground->u_offset_px, o.ground->u_angle_rad);
+    text +=
+        fmt::format("ground={:a},{:a},{:a},{:a},{:a},{:a}", o.ground->p1.x_px,
+                    o.ground->p1.y_px, o.ground->p2.x_px, o.ground->p2.y_px,
+                    o.ground->u_offset_px, o.ground->u_angle_rad);
   }
   std::uint64_t hash = 14695981039346656037ull;
   for (const char c : text) {

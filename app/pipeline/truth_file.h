@@ -1,5 +1,5 @@
-// The truth that `simulate` writes beside its clips, by which simulated footage is
-// known: <clip without extension>.truth.json.
+// The truth that `simulate` writes beside its clips, by which simulated footage
+// is known: <clip without extension>.truth.json.
 #pragma once
 
 #include <filesystem>

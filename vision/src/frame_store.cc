@@ -27,16 +27,17 @@ class FrameStore : public Clip {
     Kept& kept = kept_[static_cast<std::size_t>(index)];
     if (kept.pixels.empty()) {
       const core::Frame frame = clip_->Read(index);
-      const std::size_t row_bytes =
-          static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
+      const std::size_t row_bytes = static_cast<std::size_t>(frame.width_px) *
+                                    (frame.is_16_bit() ? 2 : 1);
       const std::size_t bytes =
           row_bytes * static_cast<std::size_t>(frame.height_px);
       if (bytes > left_bytes_) return clip_->Read(index, window);
       left_bytes_ -= bytes;
       kept.pixels.resize(bytes);
       for (std::int32_t y = 0; y < frame.height_px; ++y) {
-        std::memcpy(kept.pixels.data() + static_cast<std::size_t>(y) * row_bytes,
-                    frame.row<std::byte>(0) + y * frame.stride_bytes, row_bytes);
+        std::memcpy(
+            kept.pixels.data() + static_cast<std::size_t>(y) * row_bytes,
+            frame.row<std::byte>(0) + y * frame.stride_bytes, row_bytes);
       }
       kept.frame = frame;
       kept.frame.stride_bytes = static_cast<std::ptrdiff_t>(row_bytes);
