@@ -53,8 +53,9 @@ struct OutlineOptions {
   double ground_margin_px = 2.0;
 
   int max_iterations = 30;
-  // Converged when no geometric parameter moves by more than this, px.
-  double tolerance_px = 1e-5;
+  // Converged when no geometric parameter moves by more than this, px: a
+  // twentieth of the best uncertainty that pixels give.
+  double tolerance_px = 1e-4;
 };
 
 struct OutlineFit {
