@@ -122,8 +122,8 @@ int Merit(const vision::ContactResult& result) {
 
 class Analyzer {
  public:
-  Analyzer(const std::filesystem::path& path, const AnalyzeOptions& options)
-      : path_(path), options_(options) {}
+  Analyzer(std::unique_ptr<vision::Clip> clip, const AnalyzeOptions& options)
+      : options_(options), clip_(vision::KeepFrames(std::move(clip))) {}
 
   Analysis Run();
 
@@ -132,10 +132,9 @@ class Analyzer {
   void FindGroundAndContacts(const vision::Track& track);
   void DescribeScene();
 
-  const std::filesystem::path& path_;
   const AnalyzeOptions& options_;
-  Analysis result_;
   std::unique_ptr<vision::Clip> clip_;
+  Analysis result_;
   vision::Background background_;
   vision::ContactOptions contact_options_;
 };
@@ -239,13 +238,8 @@ Analysis Analyzer::Run() {
   const std::optional<core::BodyKind> kind = KindOf(options_);
 
   result_.options_hash = OptionsHash(options_);
-  vision::ClipOptions clip_options;
-  clip_options.fps = options_.fps;
-  clip_ = vision::KeepFrames(vision::OpenClip(path_, clip_options));
   result_.clip = clip_->info();
   result_.warnings = result_.clip.warnings;
-  result_.clip_id = vision::ClipId(path_);
-  result_.simulated = HasTruthFile(path_);
   const std::int64_t frames = result_.clip.frames;
   const std::int64_t last =
       options_.last_frame < 0 ? frames : options_.last_frame;
@@ -255,7 +249,6 @@ Analysis Analyzer::Run() {
         fmt::format("frames is {}:{}, must be a range within 0:{}",
                     options_.first_frame, last, frames));
   }
-  result_.timing.open_s = Since(start);
 
   auto lap = Clock::now();
   background_ = vision::EstimateBackground(*clip_, options_.first_frame, last);
@@ -320,7 +313,23 @@ Analysis Analyzer::Run() {
 
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
-  return Analyzer(path, options).Run();
+  const auto start = Clock::now();
+  vision::ClipOptions clip_options;
+  clip_options.fps = options.fps;
+  auto clip = vision::OpenClip(path, clip_options);
+  const std::string id = vision::ClipId(path);
+  const double open_s = Since(start);
+  Analysis analysis = AnalyzeClip(std::move(clip), options);
+  analysis.clip_id = id;
+  analysis.simulated = HasTruthFile(path);
+  analysis.timing.open_s = open_s;
+  analysis.timing.total_s += open_s;
+  return analysis;
+}
+
+Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
+                     const AnalyzeOptions& options) {
+  return Analyzer(std::move(clip), options).Run();
 }
 
 core::Trial ToTrial(const Analysis& analysis) {

@@ -122,33 +122,6 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
   return best;
 }
 
-// Which of the chains is the body: the strongest, unless an outline fits a
-// weaker one much better. Puts it first.
-Choice ChooseBody(Clip& clip, const Background& background,
-                  std::vector<Chain>& chains, const TrackOptions& options,
-                  OutlineOptions::Surround surround) {
-  constexpr std::size_t kTried = 3;
-  constexpr double kStrongEnough = 0.15;  // of the strongest
-  Choice best;
-  std::size_t best_at = 0;
-  double best_worth = -1.0;
-  const double strongest = chains.empty() ? 0.0 : chains.front().Strength();
-  for (std::size_t i = 0; i < std::min(kTried, chains.size()); ++i) {
-    const double strength = chains[i].Strength() / strongest;
-    if (strength < kStrongEnough) break;
-    const Choice choice =
-        ChooseKind(clip, background, chains[i], options, surround);
-    const double worth = strength / (choice.badness * choice.badness);
-    if (worth > best_worth) {
-      best_worth = worth;
-      best = choice;
-      best_at = i;
-    }
-  }
-  if (best_at != 0) std::swap(chains[0], chains[best_at]);
-  return best;
-}
-
 struct Fitted {
   std::int64_t frame = 0;
   double time_s = 0.0;
@@ -352,7 +325,8 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const Background& background,
   Choice choice;
   Surround surround = Surround::kBackground;
   if (!found.chains.empty()) {
-    choice = ChooseBody(clip, background, found.chains, options, surround);
+    choice =
+        ChooseKind(clip, background, found.chains.front(), options, surround);
   }
   // Where the body never leaves some of its pixels, the background holds its
   // ghost and the outlines fit badly: look at the frame's own two levels.
@@ -360,7 +334,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const Background& background,
   if (choice.badness > kWellFitted) {
     Found by_level = Detect(clip, background, options, Detector::kLevels, last);
     if (!by_level.chains.empty()) {
-      const Choice other = ChooseBody(clip, background, by_level.chains,
+      const Choice other = ChooseKind(clip, background, by_level.chains.front(),
                                       options, Surround::kPolynomial);
       if (other.badness < choice.badness) {
         found = std::move(by_level);
