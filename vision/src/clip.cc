@@ -2,7 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <system_error>
+
+#include "clip_formats.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/vision/image_file.h"
 
 namespace touchdown::vision {
 
@@ -18,6 +25,15 @@ std::string_view Name(FpsSource source) {
   return "?";
 }
 
+std::string LowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(
+      extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      });
+  return extension;
+}
+
 core::Frame Clip::Read(std::int64_t index) {
   return Read(index, {0, 0, info().width_px, info().height_px});
 }
@@ -25,9 +41,8 @@ core::Frame Clip::Read(std::int64_t index) {
 core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
   const ClipInfo& clip = info();
   if (index < 0 || index >= clip.frames) {
-    throw std::invalid_argument(
-        fmt::format("frame is {}, must be within 0 .. {}", index,
-                    clip.frames - 1));
+    throw std::invalid_argument(fmt::format(
+        "frame is {}, must be within 0 .. {}", index, clip.frames - 1));
   }
   if (window.x < 0 || window.y < 0 || window.width < 1 || window.height < 1 ||
       window.width > clip.width_px - window.x ||
@@ -37,6 +52,44 @@ core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
         window.y, window.width, window.height, clip.width_px, clip.height_px));
   }
   return ReadWindow(index, window);
+}
+
+std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
+                               const ClipOptions& options) {
+  if (options.fps && !(std::isfinite(*options.fps) && *options.fps > 0.0)) {
+    throw std::invalid_argument(fmt::format(
+        "fps is {}, must be positive and finite (frames per second)",
+        *options.fps));
+  }
+  if (options.decoder_threads < 0) {
+    throw std::invalid_argument(
+        fmt::format("decoder_threads is {}, must be 0 (one for each core) or "
+                    "more",
+                    options.decoder_threads));
+  }
+  std::error_code trouble;
+  const auto status = std::filesystem::status(path, trouble);
+  if (!std::filesystem::exists(status)) {
+    throw core::InputError(
+        trouble && trouble != std::errc::no_such_file_or_directory
+            ? fmt::format("{}: {}", path.string(), trouble.message())
+            : fmt::format("{}: no such file or folder", path.string()));
+  }
+  if (std::filesystem::is_directory(status)) {
+    return OpenImageFolder(path, options);
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw core::InputError(
+        fmt::format("{}: neither a file nor a folder", path.string()));
+  }
+  if (IsMrawOrHeader(path)) return OpenMraw(path, options);
+  if (IsImageName(path)) {
+    throw core::InputError(
+        fmt::format("{}: a single picture is no recording; give the folder "
+                    "that holds its pictures",
+                    path.string()));
+  }
+  return OpenVideo(path, options);
 }
 
 }  // namespace touchdown::vision

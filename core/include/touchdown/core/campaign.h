@@ -12,9 +12,9 @@
 namespace touchdown::core {
 
 struct Campaign {
-  std::string name;           // unique within a store
-  Body body;                  //
-  std::string surface;        // free text, e.g. "asphalt, dry"
+  std::string name;     // unique within a store
+  Body body;            //
+  std::string surface;  // free text, e.g. "asphalt, dry"
   AngleKind angle_kind = AngleKind::kApproach;
   double bounce_height_m = 0.0;  // rising above it is what `bounce` means
   double speed_min_mps = 0.0;    // speed band at touchdown; 0..0 = not declared

@@ -1,9 +1,9 @@
 // The third error lane: the outside world failed. Thrown, caught once in main,
 // printed as one line: what, where, what was expected, what to do.
 //
-// (The first lane, an impossible argument, is std::invalid_argument, which names
-// the field, its value and its allowed range. The second, "science says no", is
-// a value: expected.h.)
+// (The first lane, an impossible argument, is std::invalid_argument, which
+// names the field, its value and its allowed range. The second, "science says
+// no", is a value: expected.h.)
 #pragma once
 
 #include <stdexcept>

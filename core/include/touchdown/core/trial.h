@@ -28,7 +28,7 @@ struct Contact {
   Measured approach_angle_rad = AbsentBecause("no contact");
   Measured radius_angle_rad = AbsentBecause("no contact");
   Measured face_angle_rad = AbsentBecause("no contact");
-  std::optional<Corner> corner;  // nothing for a sphere
+  std::optional<Corner> corner;                       // nothing for a sphere
   Measured duration_s = AbsentBecause("no contact");  // touchdown to release
   Budget approach_budget;  // of approach_angle_rad, in radians
   Budget attitude_budget;  // of radius and face angle, in radians
@@ -62,8 +62,9 @@ struct StateDecision {
   friend bool operator==(const StateDecision&, const StateDecision&) = default;
 };
 
-// Velocities in the plane frame, of the centre unless said otherwise. `omega` is
-// positive counter-clockwise in the plane frame (x in the direction of travel).
+// Velocities in the plane frame, of the centre unless said otherwise. `omega`
+// is positive counter-clockwise in the plane frame (x in the direction of
+// travel).
 struct Motion {
   Measured before_speed_mps = AbsentBecause("no contact");
   Measured before_normal_mps = AbsentBecause("no contact");  // < 0: downward
@@ -130,7 +131,8 @@ struct Trial {
   std::string exclusion_reason;
 };
 
-// The trial's contact angle: the angle its protocol names, with its kind beside.
+// The trial's contact angle: the angle its protocol names, with its kind
+// beside.
 inline const Measured& ContactAngle(const Trial& trial) {
   return Angle(trial.first.contact, trial.angle_kind);
 }

@@ -13,9 +13,9 @@
 
 namespace touchdown::core {
 
-inline constexpr double kMillimetre = 1e-3;                     // m
-inline constexpr double kDegree = std::numbers::pi / 180.0;     // rad
-inline constexpr double kMillisecond = 1e-3;                    // s
+inline constexpr double kMillimetre = 1e-3;                  // m
+inline constexpr double kDegree = std::numbers::pi / 180.0;  // rad
+inline constexpr double kMillisecond = 1e-3;                 // s
 
 // Standard acceleration of free fall, m/s^2 (CGPM 1901, exact by definition).
 // Local gravity differs by up to 0.3 %; commands accept --gravity.

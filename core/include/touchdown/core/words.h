@@ -1,6 +1,6 @@
 // The words of the field, with the spelling used in commands, JSON, columns and
-// reports. Each enumeration has Name() and a Parse...() that returns nothing for
-// an unknown word.
+// reports. Each enumeration has Name() and a Parse...() that returns nothing
+// for an unknown word.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@ enum class BodyKind { kSphere, kRectangle };
 //   approach  between the ground and the centre's velocity at touchdown, 0..90
 //   radius    acute, between the ground and the line from the centre to the
 //             contact point: the paper's alpha (Fig. 1)
-//   face      inclination of a rectangle's long side to the ground at touchdown,
+//   face      inclination of a rectangle's long side to the ground at
+//   touchdown,
 //             positive with the leading end up
 enum class AngleKind { kApproach, kRadius, kFace };
 
@@ -23,9 +24,9 @@ enum class AngleKind { kApproach, kRadius, kFace };
 // (leading: the contact point is ahead of the centre).
 enum class Corner { kLeading, kTrailing, kFlush };
 
-// What the body did after touchdown. `bounce`: the 95 % interval of the greatest
-// gap between release and the end of what was filmed lies above the bounce
-// height; the others: it lies below; `undecided`: neither.
+// What the body did after touchdown. `bounce`: the 95 % interval of the
+// greatest gap between release and the end of what was filmed lies above the
+// bounce height; the others: it lies below; `undecided`: neither.
 enum class MotionState {
   kBounce,
   kSlide,

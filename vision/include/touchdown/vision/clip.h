@@ -9,7 +9,8 @@
 // Formats: video through libav (avi, mp4, mkv, mov, cine: MJPEG, H.264, FFV1,
 // raw; 8 to 16 bit; gray and colour, of which the luma is read), Photron
 // .mraw with its .cih or .cihx beside it (8, 12 packed, 16 bit), folders of
-// PNG, TIFF or JPEG (8 and 16 bit) in natural order of their names.
+// PNG, TIFF or JPEG (8 and 16 bit) in natural order of their names. What each
+// does with depth, range, rotation and time: vision/README.md, "Clips".
 #pragma once
 
 #include <cstdint>
@@ -35,21 +36,32 @@ struct TimeBase {
   bool trusted = false;  // false: a playback rate may have been mistaken for it
 };
 
+// Where the recorded picture lies on the camera's sensor.
+struct SensorOrigin {
+  std::int32_t x_px = 0;
+  std::int32_t y_px = 0;
+
+  friend bool operator==(const SensorOrigin&, const SensorOrigin&) = default;
+};
+
 struct ClipInfo {
   std::filesystem::path path;
   std::string format;  // "mraw", "avi", "mp4", "png-folder", ...
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
-  std::int32_t bit_depth = 8;  // significant bits of a sample, 1..16
-  std::int64_t frames = 0;     // that can be read
+  std::int32_t bit_depth = 8;           // significant bits of a sample, 1..16
+  std::int64_t frames = 0;              // that can be read
   std::int64_t first_camera_frame = 0;  // the camera's own number of frame 0
+  std::optional<SensorOrigin> sensor_origin;  // absent: the file does not say
   TimeBase time_base;
   std::vector<std::string> warnings;  // one sentence each, for the user
 };
 
 struct ClipOptions {
   // Recorded frame rate, in frames per second; overrides the file's.
-  std::optional<double> fps;
+  std::optional<double> fps = std::nullopt;
+  // Threads of a video decoder; 0: one for each core. Affects speed only.
+  std::int32_t decoder_threads = 0;
 };
 
 // An open recording. Not safe to share between threads.
@@ -65,7 +77,8 @@ class Clip {
   // A view of `window` of frame `index`, valid until the next Read of this
   // clip. The default window is the whole picture; raw formats touch only the
   // bytes of the window. Reading in order is fast in every format; reading
-  // backwards in a compressed one starts over from the nearest key frame.
+  // backwards in a compressed one starts over from the nearest key frame. Rows
+  // run downwards: stride_bytes of the view is positive in every format.
   //
   // Throws std::invalid_argument if `index` or `window` lies outside the clip,
   // core::InputError (file, frame) if the frame's data are damaged or missing.
@@ -80,7 +93,12 @@ class Clip {
 // Opens a recording: a video file, an .mraw (or its .cih/.cihx), or a folder of
 // images. Throws core::InputError naming the file, and what to do, if it does
 // not exist, is damaged before its first frame, or is of an unknown kind;
-// std::invalid_argument if options.fps is not positive and finite.
+// std::invalid_argument if options.fps is not positive and finite or
+// options.decoder_threads is negative.
+//
+// A clip that ends early but whose first frames are whole opens with the frames
+// that are there and a warning. A folder of images has no frame rate: without
+// options.fps it is refused with an InputError that says so.
 std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
                                const ClipOptions& options = {});
 

@@ -1,0 +1,42 @@
+#include "app/cli/progress.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace touchdown::cli {
+
+ProgressBar::ProgressBar(std::string what)
+    : what_(std::move(what)),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
+
+void ProgressBar::Show(double share) {
+  if (!terminal_) return;
+  const auto now = std::chrono::steady_clock::now();
+  constexpr auto kRedraw = std::chrono::milliseconds(100);
+  if (now - last_ < kRedraw) return;
+  last_ = now;
+  drawn_ = true;
+  share = std::clamp(share, 0.0, 1.0);
+  constexpr int kWidth = 30;
+  const int full = static_cast<int>(share * kWidth);
+  const double gone = std::chrono::duration<double>(now - start_).count();
+  const double left = share > 0.0 ? gone * (1.0 - share) / share : 0.0;
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s left ", what_,
+             "", full, "", kWidth - full, 100.0 * share, left);
+  std::fflush(stderr);
+}
+
+void ProgressBar::Finish() {
+  if (!drawn_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,101 @@
+#include "app/cli/values.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+namespace touchdown::cli {
+namespace {
+
+[[noreturn]] void Refuse(const std::string& flag, const std::string& text,
+                         const std::string& form) {
+  throw std::invalid_argument(
+      fmt::format("{} is '{}', must be {}", flag, text, form));
+}
+
+template <class T>
+std::optional<T> ReadNumber(std::string_view text) {
+  T value{};
+  const auto result =
+      std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::vector<std::string_view> Split(std::string_view text, char at) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(at);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
+                             double relative_u) {
+  const std::string form =
+      "a positive number, or one with its standard "
+      "uncertainty as in 40+-0.02";
+  const std::size_t sign = text.find("+-");
+  const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
+  if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
+    Refuse(flag, text, form);
+  }
+  if (sign == std::string::npos) return {*value, relative_u * *value};
+  const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
+  if (!u || !(*u >= 0.0) || !std::isfinite(*u)) Refuse(flag, text, form);
+  return {*value, *u};
+}
+
+std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
+                                                     const std::string& text,
+                                                     double relative_u) {
+  const std::size_t times = text.find('x');
+  if (times == std::string::npos) {
+    Refuse(flag, text, "two lengths as in 60x20");
+  }
+  return {ParseEstimate(flag, text.substr(0, times), relative_u),
+          ParseEstimate(flag, text.substr(times + 1), relative_u)};
+}
+
+std::vector<double> ParseNumbers(const std::string& flag,
+                                 const std::string& text, std::size_t count,
+                                 const std::string& form) {
+  std::vector<double> numbers;
+  for (const std::string_view part : Split(text, ',')) {
+    const auto number = ReadNumber<double>(part);
+    if (!number || !std::isfinite(*number)) Refuse(flag, text, form);
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != count) Refuse(flag, text, form);
+  return numbers;
+}
+
+std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,
+                                                  const std::string& text) {
+  const std::string form = "first and one past the last frame, as in 18:33";
+  const auto parts = Split(text, ':');
+  if (parts.size() != 2) Refuse(flag, text, form);
+  std::pair<std::int64_t, std::int64_t> range{0, -1};
+  if (!parts[0].empty()) {
+    const auto first = ReadNumber<std::int64_t>(parts[0]);
+    if (!first || *first < 0) Refuse(flag, text, form);
+    range.first = *first;
+  }
+  if (!parts[1].empty()) {
+    const auto last = ReadNumber<std::int64_t>(parts[1]);
+    if (!last || *last <= range.first) Refuse(flag, text, form);
+    range.second = *last;
+  }
+  return range;
+}
+
+}  // namespace touchdown::cli

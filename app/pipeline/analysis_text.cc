@@ -1,0 +1,109 @@
+#include "app/pipeline/analysis_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "touchdown/core/units.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+// Two digits of uncertainty, the value to the same place.
+std::string Number(const core::Measured& m, double factor, const char* unit) {
+  if (!m) return fmt::format("absent: {}", m.error().reason);
+  const core::Estimate e = core::Scaled(*m, factor);
+  int digits = 3;
+  if (e.u > 0.0) {
+    digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(e.u))));
+  }
+  digits = std::min(digits, 9);
+  return fmt::format("{:.{}f} +- {:.{}f} {}", e.value, digits, e.u, digits,
+                     unit);
+}
+
+void Line(std::string& out, const char* name, const std::string& text) {
+  out += fmt::format("{:<10} {}\n", name, text);
+}
+
+}  // namespace
+
+std::string ToText(const Analysis& a) {
+  constexpr double kDeg = 1.0 / core::kDegree;
+  constexpr double kMm = 1.0 / core::kMillimetre;
+  const core::ContactRecord& first = a.contacts.first;
+  const core::Contact& contact = first.contact;
+  std::string out;
+  Line(out, "clip",
+       fmt::format("{}  {}x{} px, {} bit, {} frames at {:.6g} fps ({}{})",
+                   a.clip.path.string(), a.clip.width_px, a.clip.height_px,
+                   a.clip.bit_depth, a.clip.frames, a.clip.time_base.fps,
+                   vision::Name(a.clip.time_base.source),
+                   a.clip.time_base.trusted ? "" : ", not trusted"));
+  if (a.simulated) Line(out, "origin", "SIMULATED");
+  if (a.body) {
+    std::string text(core::Name(a.body->kind));
+    if (a.body->kind == core::BodyKind::kSphere) {
+      text += ", diameter " + Number(a.body->diameter_m, kMm, "mm");
+    } else {
+      text += ", " + Number(a.body->long_m, kMm, "mm") + " by " +
+              Number(a.body->short_m, kMm, "mm");
+    }
+    Line(out, "body", text);
+  } else {
+    Line(out, "body", "none: " + a.no_body_reason);
+  }
+  if (a.ground) {
+    Line(out, "ground",
+         fmt::format(
+             "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) px, +- {:.3f} deg, {}",
+             a.ground->p1.x_px, a.ground->p1.y_px, a.ground->p2.x_px,
+             a.ground->p2.y_px, a.ground->u_angle_rad * kDeg,
+             calib::Name(a.ground->source)));
+  }
+  if (!contact.found) {
+    Line(out, "contact", "none: " + contact.reason);
+  } else if (contact.from_start) {
+    Line(out, "contact", "from the start");
+  } else {
+    Line(out, "contact",
+         fmt::format("at {}, frame {:.3f}", Number(contact.time_s, 1e3, "ms"),
+                     contact.frame->value));
+  }
+  if (contact.found) {
+    core::Measured angle = Angle(contact, a.angle_kind);
+    if (angle && a.angle_kind == core::AngleKind::kFace) {
+      angle->value = std::abs(angle->value);
+    }
+    Line(out, "angle",
+         Number(angle, kDeg, "deg") +
+             fmt::format(" ({} angle)", core::Name(a.angle_kind)));
+    if (a.angle_kind != core::AngleKind::kApproach) {
+      Line(out, "approach", Number(contact.approach_angle_rad, kDeg, "deg"));
+    }
+    if (contact.corner) Line(out, "corner", std::string(Name(*contact.corner)));
+  }
+  std::string state(core::Name(first.state.label));
+  if (first.state.p_bounce) {
+    state += fmt::format(", P(bounce) = {:.4f}", *first.state.p_bounce);
+  }
+  if (first.state.micro_bounce) state += ", micro-bounce";
+  Line(out, "state", state);
+  Line(out, "", first.state.reason);
+  if (contact.found && !contact.from_start) {
+    Line(out, "speed", Number(first.motion.before_speed_mps, 1.0, "m/s"));
+    Line(out, "restitut.", Number(first.motion.restitution, 1.0, ""));
+    Line(out, "gravity", Number(first.motion.gravity_check_mps2, 1.0, "m/s2"));
+  }
+  if (!a.contacts.later.empty()) {
+    Line(out, "later",
+         fmt::format("{} more contacts (see --json)", a.contacts.later.size()));
+  }
+  for (const std::string& warning : a.warnings) Line(out, "warning", warning);
+  Line(out, "time",
+       fmt::format("{:.3f} s, {:.0f} frames/s", a.timing.total_s,
+                   a.timing.frames_per_s));
+  return out;
+}
+
+}  // namespace touchdown::pipeline

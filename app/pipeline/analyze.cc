@@ -1,0 +1,343 @@
+#include "app/pipeline/analyze.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "app/pipeline/options_hash.h"
+#include "app/pipeline/truth_file.h"
+#include "app/pipeline/version.h"
+#include "touchdown/calib/ground_lines.h"
+#include "touchdown/vision/background.h"
+#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/frame_store.h"
+#include "touchdown/vision/tracker.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double Since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void RequirePositive(const char* field, const std::optional<double>& value) {
+  if (value && !(*value > 0.0 && std::isfinite(*value))) {
+    throw std::invalid_argument(
+        fmt::format("{} is {}, must be positive and finite", field, *value));
+  }
+}
+
+std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
+  if (options.diameter_m && (options.long_m || options.short_m)) {
+    throw std::invalid_argument(
+        "both a diameter and sides are given; a body is a sphere or a "
+        "rectangle");
+  }
+  if (options.long_m.has_value() != options.short_m.has_value()) {
+    throw std::invalid_argument("a rectangle needs both sides");
+  }
+  std::optional<core::BodyKind> kind = options.body_kind;
+  if (options.diameter_m) kind = core::BodyKind::kSphere;
+  if (options.long_m) kind = core::BodyKind::kRectangle;
+  if (kind && options.body_kind && *kind != *options.body_kind) {
+    throw std::invalid_argument(
+        fmt::format("body is {}, but the size given is that of a {}",
+                    Name(*options.body_kind), Name(*kind)));
+  }
+  return kind;
+}
+
+// px per metre from a length known in both.
+core::Estimate ScaleFrom(const core::Estimate& px,
+                         const core::Estimate& metres) {
+  const double value = px.value / metres.value;
+  return {value, value * std::hypot(px.u / px.value, metres.u / metres.value),
+          std::nullopt};
+}
+
+std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
+                                      const vision::BodyImage& image) {
+  if (options.scale_px_per_m) {
+    return calib::Scale{*options.scale_px_per_m, calib::ScaleSource::kUser};
+  }
+  if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
+    return calib::Scale{
+        ScaleFrom(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
+        calib::ScaleSource::kBodySize};
+  }
+  if (options.long_m && image.kind == core::BodyKind::kRectangle) {
+    // The long side is the better known one, relative to its length.
+    const core::Estimate& a = *options.long_m;
+    const core::Estimate& b = *options.short_m;
+    return calib::Scale{ScaleFrom(core::Scaled(image.half_long_px, 2.0),
+                                  a.value >= b.value ? a : b),
+                        calib::ScaleSource::kBodySize};
+  }
+  return std::nullopt;
+}
+
+// The body's size: as given, or from the image and the scale.
+core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,
+                  const std::optional<calib::Scale>& scale) {
+  const auto metres = [&](const core::Estimate& half_px) -> core::Measured {
+    if (!scale) return core::AbsentBecause("no scale");
+    const core::Estimate& s = scale->px_per_m;
+    const double value = 2.0 * half_px.value / s.value;
+    return core::Estimate{
+        value, std::hypot(2.0 * half_px.u / s.value, value * s.u / s.value),
+        std::nullopt};
+  };
+  core::Body body;
+  body.kind = image.kind;
+  if (image.kind == core::BodyKind::kSphere) {
+    body.diameter_m = options.diameter_m ? core::Measured(*options.diameter_m)
+                                         : metres(image.radius_px);
+  } else if (options.long_m) {
+    body = core::Rectangle(*options.long_m, *options.short_m);
+  } else {
+    body.long_m = metres(image.half_long_px);
+    body.short_m = metres(image.half_short_px);
+  }
+  return body;
+}
+
+struct Judged {
+  calib::GroundLine ground;
+  vision::Track track;  // refined with this ground
+  vision::PlaneTrack plane;
+  vision::ContactResult contacts;
+};
+
+// How well a line serves as the ground of this track; more is better.
+int Merit(const vision::ContactResult& result) {
+  if (!result.ground_refuted.empty()) return 0;
+  if (!result.first.contact.found) return 1;
+  return 2;
+}
+
+class Analyzer {
+ public:
+  Analyzer(const std::filesystem::path& path, const AnalyzeOptions& options)
+      : path_(path), options_(options) {}
+
+  Analysis Run();
+
+ private:
+  Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
+  void FindGroundAndContacts(const vision::Track& track);
+  void DescribeScene();
+
+  const std::filesystem::path& path_;
+  const AnalyzeOptions& options_;
+  Analysis result_;
+  std::unique_ptr<vision::Clip> clip_;
+  vision::Background background_;
+  vision::ContactOptions contact_options_;
+};
+
+Judged Analyzer::Judge(const calib::GroundLine& ground,
+                       const vision::Track& track) {
+  Judged judged;
+  judged.ground = ground;
+  judged.track = vision::Refine(*clip_, background_, track, ground);
+  judged.plane = vision::SeenFromGround(judged.track, ground);
+  judged.contacts = vision::FindContacts(judged.plane, contact_options_);
+  return judged;
+}
+
+void Analyzer::FindGroundAndContacts(const vision::Track& track) {
+  std::vector<calib::GroundLine> candidates;
+  if (options_.ground) {
+    candidates.push_back(*options_.ground);
+  } else {
+    // The background's own noise: that of a frame over the square root of the
+    // frames averaged.
+    const calib::StillImage still{
+        background_.level.data(), background_.width_px, background_.height_px,
+        std::sqrt(background_.Variance(static_cast<double>(
+                      background_.level[background_.level.size() / 2])) /
+                  8.0)};
+    candidates = calib::FindGroundLines(still);
+  }
+  std::optional<Judged> best;
+  int best_merit = -1;
+  for (const calib::GroundLine& candidate : candidates) {
+    Judged judged = Judge(candidate, track);
+    const int merit = Merit(judged.contacts);
+    if (merit > best_merit) {
+      best_merit = merit;
+      best = std::move(judged);
+    }
+    if (merit == 2) break;
+  }
+  // A visible edge need not be the contact line: where none agrees with the
+  // track, the lowest points at the contacts tell.
+  if (!options_.ground && best_merit < 2) {
+    if (const auto from_contacts = vision::GroundFromContacts(track)) {
+      Judged judged = Judge(*from_contacts, track);
+      if (judged.contacts.first.contact.found) {
+        best = std::move(judged);
+        best_merit = 2;
+      }
+    }
+  }
+  if (!best) {
+    result_.no_ground_reason =
+        "no straight edge was found, and the body shows no rebound; give "
+        "--ground X1,Y1,X2,Y2";
+    result_.contacts.first.contact.reason = "the ground is not known";
+    result_.contacts.first.state.reason = "the ground is not known";
+    result_.plane = std::nullopt;
+    result_.track = track;
+    return;
+  }
+  if (best_merit == 0 && options_.ground) {
+    result_.warnings.push_back("ground: " + best->contacts.ground_refuted +
+                               "; check --ground");
+  } else if (best_merit == 0) {
+    result_.no_ground_reason = best->contacts.ground_refuted;
+  }
+  result_.ground = best->ground;
+  result_.track = std::move(best->track);
+  result_.plane = std::move(best->plane);
+  result_.contacts = std::move(best->contacts);
+}
+
+void Analyzer::DescribeScene() {
+  SceneModel& scene = result_.scene_model;
+  if (!result_.track) return;
+  const vision::Track& track = *result_.track;
+  scene.used.push_back(track.known_background ? "static background"
+                                              : "two levels of the frame");
+  scene.used.push_back(
+      track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
+  scene.used.push_back("quadratic shading");
+  if (result_.plane) {
+    scene.used.push_back(result_.scale ? "free flight with known gravity"
+                                       : "free flight with gravity fitted");
+  }
+  scene.left_out["lens distortion"] = "no calibration";
+  scene.left_out["perspective"] = "no calibration";
+  scene.left_out["drag"] = "below what the frames show";
+  if (track.body.kind == core::BodyKind::kSphere) {
+    scene.left_out["spin"] = "no mark on the sphere";
+  }
+}
+
+Analysis Analyzer::Run() {
+  const auto start = Clock::now();
+  RequirePositive("fps", options_.fps);
+  RequirePositive("bounce height", options_.bounce_height_m);
+  if (options_.scale_px_per_m) {
+    RequirePositive("scale_px_per_m", options_.scale_px_per_m->value);
+  }
+  const std::optional<core::BodyKind> kind = KindOf(options_);
+
+  result_.options_hash = OptionsHash(options_);
+  vision::ClipOptions clip_options;
+  clip_options.fps = options_.fps;
+  clip_ = vision::KeepFrames(vision::OpenClip(path_, clip_options));
+  result_.clip = clip_->info();
+  result_.warnings = result_.clip.warnings;
+  result_.clip_id = vision::ClipId(path_);
+  result_.simulated = HasTruthFile(path_);
+  const std::int64_t frames = result_.clip.frames;
+  const std::int64_t last =
+      options_.last_frame < 0 ? frames : options_.last_frame;
+  if (options_.first_frame < 0 || options_.first_frame >= last ||
+      last > frames) {
+    throw std::invalid_argument(
+        fmt::format("frames is {}:{}, must be a range within 0:{}",
+                    options_.first_frame, last, frames));
+  }
+  result_.timing.open_s = Since(start);
+
+  auto lap = Clock::now();
+  background_ = vision::EstimateBackground(*clip_, options_.first_frame, last);
+  result_.timing.background_s = Since(lap);
+
+  lap = Clock::now();
+  vision::TrackOptions track_options;
+  track_options.first = options_.first_frame;
+  track_options.last = last;
+  track_options.region = options_.region;
+  track_options.kind = kind;
+  track_options.ground = options_.ground;
+  track_options.progress = options_.progress;
+  const auto tracked = vision::TrackBody(*clip_, background_, track_options);
+  result_.timing.track_s = Since(lap);
+
+  lap = Clock::now();
+  if (!tracked) {
+    result_.no_body_reason = tracked.error().reason;
+    result_.no_ground_reason = "no body was found";
+    result_.no_scale_reason = "no body was found";
+    result_.contacts.first.contact.reason = tracked.error().reason;
+    result_.contacts.first.state.reason = tracked.error().reason;
+  } else {
+    const vision::Track& track = tracked->track;
+    result_.scale = FindScale(options_, track.body);
+    if (!result_.scale) {
+      result_.no_scale_reason =
+          "give --calibration, --scale-px-per-m, --diameter-mm or --sides-mm";
+    }
+    result_.body = BodyOf(options_, track.body, result_.scale);
+    contact_options_.scale = result_.scale;
+    contact_options_.bounce_height_m = options_.bounce_height_m;
+    FindGroundAndContacts(track);
+    result_.warnings.insert(result_.warnings.end(), track.warnings.begin(),
+                            track.warnings.end());
+    result_.warnings.insert(result_.warnings.end(),
+                            result_.contacts.warnings.begin(),
+                            result_.contacts.warnings.end());
+    if (track.several_bodies) {
+      const std::string reason = "several bodies move; give --region X,Y,W,H";
+      result_.warnings.push_back(reason);
+      result_.contacts = {};
+      result_.contacts.first.contact.reason = reason;
+      result_.contacts.first.state.reason = reason;
+    }
+  }
+  result_.angle_kind =
+      options_.angle_kind
+          ? *options_.angle_kind
+          : core::DefaultAngleKind(result_.body ? result_.body->kind
+                                                : core::BodyKind::kSphere);
+  DescribeScene();
+  result_.timing.contact_s = Since(lap);
+  result_.timing.total_s = Since(start);
+  result_.timing.frames_per_s =
+      static_cast<double>(last - options_.first_frame) / result_.timing.total_s;
+  return result_;
+}
+
+}  // namespace
+
+Analysis Analyze(const std::filesystem::path& path,
+                 const AnalyzeOptions& options) {
+  return Analyzer(path, options).Run();
+}
+
+core::Trial ToTrial(const Analysis& analysis) {
+  core::Trial trial;
+  trial.origin =
+      analysis.simulated ? core::Origin::kSimulated : core::Origin::kRecorded;
+  trial.clip.path = analysis.clip.path.string();
+  trial.clip.id = analysis.clip_id;
+  if (analysis.body) trial.body = *analysis.body;
+  trial.angle_kind = analysis.angle_kind;
+  trial.first = analysis.contacts.first;
+  trial.later = analysis.contacts.later;
+  trial.author = "touchdown";
+  trial.software_version = std::string(Version());
+  trial.options_hash = analysis.options_hash;
+  trial.document_json = ToJson(analysis);
+  return trial;
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,87 @@
+// One clip to one trial: composes the modules.
+//   Clip -> Frame -> Outline -> Pose(t) -> Trajectory -> Contact -> MotionState
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "touchdown/calib/plane.h"
+#include "touchdown/core/body.h"
+#include "touchdown/core/trial.h"
+#include "touchdown/vision/clip.h"
+#include "touchdown/vision/contact.h"
+#include "touchdown/vision/plane_track.h"
+#include "touchdown/vision/track.h"
+
+namespace touchdown::pipeline {
+
+struct AnalyzeOptions {
+  std::optional<double> fps;
+  std::optional<core::Estimate> scale_px_per_m;
+  std::optional<core::BodyKind> body_kind;     // nothing: whichever fits
+  std::optional<core::Estimate> diameter_m;    // makes the kind sphere
+  std::optional<core::Estimate> long_m;        // both make it rectangle
+  std::optional<core::Estimate> short_m;       //
+  std::optional<calib::GroundLine> ground;     // nothing: found
+  std::int64_t first_frame = 0;                // [first, last) is looked at
+  std::int64_t last_frame = -1;                // -1: to the end
+  core::PixelRect region;                      // width 0: whole picture
+  std::optional<core::AngleKind> angle_kind;   // nothing: the body's default
+  std::optional<double> bounce_height_m;       // nothing: default convention
+  std::function<void(double share)> progress;  // may be empty
+};
+
+// What was modelled, and what was left out and why.
+struct SceneModel {
+  std::vector<std::string> used;
+  std::map<std::string, std::string> left_out;
+};
+
+struct Timing {
+  double total_s = 0.0;
+  double open_s = 0.0;
+  double background_s = 0.0;
+  double track_s = 0.0;  // reading and fitting
+  double contact_s = 0.0;
+  double frames_per_s = 0.0;
+};
+
+struct Analysis {
+  vision::ClipInfo clip;
+  std::string clip_id;
+  bool simulated = false;  // a truth file lies beside the clip
+  std::optional<calib::Scale> scale;
+  std::string no_scale_reason;
+  std::optional<calib::GroundLine> ground;
+  std::string no_ground_reason;
+  std::optional<core::Body> body;  // nothing where none was found
+  std::string no_body_reason;
+  core::AngleKind angle_kind = core::AngleKind::kApproach;
+  vision::ContactResult contacts;
+  std::optional<vision::Track> track;
+  std::optional<vision::PlaneTrack> plane;
+  SceneModel scene_model;
+  std::vector<std::string> warnings;
+  Timing timing;
+  std::string options_hash;
+};
+
+// Analyses the clip at `path`. What science cannot say is in the result, with
+// reasons; throws std::invalid_argument for impossible options and
+// core::InputError for unreadable clips.
+Analysis Analyze(const std::filesystem::path& path,
+                 const AnalyzeOptions& options = {});
+
+// The trial that an analysis makes: for the store and the report. id, revision
+// and time stamps are the store's.
+core::Trial ToTrial(const Analysis& analysis);
+
+// The touchdown.analysis/1 document.
+std::string ToJson(const Analysis& analysis);
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,24 @@
+// From an analysis into the trial store.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "app/pipeline/analyze.h"
+
+namespace touchdown::pipeline {
+
+struct Logged {
+  std::string trial_id;
+  std::int64_t revision = 0;
+};
+
+// Logs the trial that `analysis` makes, with the clip's full SHA-256, in the
+// store at `db` (made where there is none): a new trial, or a further revision
+// where the campaign has one of the same clip. On the disk on return. Throws
+// core::StoreError; core::InputError if the clip cannot be read.
+Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
+                   const std::string& campaign);
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,20 @@
+// The truth that `simulate` writes beside its clips, by which simulated footage
+// is known: <clip without extension>.truth.json.
+#pragma once
+
+#include <filesystem>
+
+namespace touchdown::pipeline {
+
+inline std::filesystem::path TruthFileOf(const std::filesystem::path& clip) {
+  std::filesystem::path base = clip;
+  if (!base.has_filename()) base = base.parent_path();  // folder with a slash
+  return base.replace_extension(".truth.json");
+}
+
+inline bool HasTruthFile(const std::filesystem::path& clip) {
+  std::error_code ignored;
+  return std::filesystem::exists(TruthFileOf(clip), ignored);
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,327 @@
+#include "touchdown/calib/ground_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace touchdown::calib {
+namespace {
+
+// y = offset + slope * (x - middle)
+struct Line {
+  double offset = 0.0;
+  double slope = 0.0;
+};
+
+struct EdgePoint {
+  double x = 0.0;
+  double y = 0.0;
+  double strength = 0.0;  // step in DN, signed downwards
+};
+
+float At(const StillImage& image, std::int32_t x, std::int32_t y) {
+  return image.level[static_cast<std::size_t>(y) *
+                         static_cast<std::size_t>(image.width_px) +
+                     static_cast<std::size_t>(x)];
+}
+
+// Step across y: mean of 3 rows below minus mean of 3 rows above.
+double StepAt(const StillImage& image, std::int32_t x, std::int32_t y) {
+  double below = 0.0;
+  double above = 0.0;
+  for (std::int32_t k = 1; k <= 3; ++k) {
+    below += static_cast<double>(At(image, x, y + k));
+    above += static_cast<double>(At(image, x, y - k));
+  }
+  return (below - above) / 3.0;
+}
+
+std::vector<EdgePoint> EdgePoints(const StillImage& image, double least) {
+  std::vector<EdgePoint> points;
+  const std::int32_t step = std::max<std::int32_t>(1, image.width_px / 640);
+  std::vector<double> profile(static_cast<std::size_t>(image.height_px), 0.0);
+  for (std::int32_t x = 0; x < image.width_px; x += step) {
+    for (std::int32_t y = 4; y + 4 < image.height_px; ++y) {
+      profile[static_cast<std::size_t>(y)] = StepAt(image, x, y);
+    }
+    for (std::int32_t y = 5; y + 5 < image.height_px; ++y) {
+      const auto i = static_cast<std::size_t>(y);
+      const double here = std::abs(profile[i]);
+      if (here < least) continue;
+      if (here > std::abs(profile[i - 1]) && here >= std::abs(profile[i + 1])) {
+        points.push_back(
+            {static_cast<double>(x), static_cast<double>(y), profile[i]});
+      }
+    }
+  }
+  return points;
+}
+
+// Best-supported line among `points` of one sign (Hough transform: votes over
+// tilt and height, one per column).
+bool Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
+          int sign, const StillImage& image, double most_tilt, Line& line,
+          double& votes) {
+  constexpr int kTilts = 121;
+  constexpr double kBin_px = 2.0;
+  const double middle = 0.5 * (image.width_px - 1);
+  const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
+  std::vector<float> count(static_cast<std::size_t>(bins));
+  votes = 0.0;
+  for (int k = 0; k < kTilts; ++k) {
+    const double slope = std::tan(most_tilt * (2.0 * k / (kTilts - 1.0) - 1.0));
+    std::fill(count.begin(), count.end(), 0.0f);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (used[i] || points[i].strength * sign <= 0.0) continue;
+      const double y = points[i].y - slope * (points[i].x - middle);
+      const double at = y / kBin_px;
+      if (at < 0.0 || at >= bins - 1) continue;
+      // Between two bins, so that a line on their border loses no votes.
+      const auto low = static_cast<std::size_t>(at);
+      const auto share = static_cast<float>(at - std::floor(at));
+      count[low] += 1.0f - share;
+      count[low + 1] += share;
+    }
+    for (int b = 0; b + 1 < bins; ++b) {
+      const auto i = static_cast<std::size_t>(b);
+      const double sum = static_cast<double>(count[i] + count[i + 1]);
+      if (sum > votes) {
+        votes = sum;
+        const double weight = static_cast<double>(count[i + 1]) / sum;
+        line = {(b + weight) * kBin_px, slope};
+      }
+    }
+  }
+  return votes > 0.0;
+}
+
+// Straight line through points by iteratively re-weighted least squares
+// (Tukey); returns the robust scatter.
+double FitLine(const std::vector<EdgePoint>& points, double middle, Line& line,
+               std::vector<double>& weights) {
+  double scatter = 2.0;
+  weights.assign(points.size(), 0.0);
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    std::vector<double> off;
+    double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    const double cut = 4.685 * std::max(scatter, 1e-4);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double x = points[i].x - middle;
+      const double r = points[i].y - line.offset - line.slope * x;
+      const double t = r / cut;
+      weights[i] = std::abs(t) < 1.0 ? (1 - t * t) * (1 - t * t) : 0.0;
+      if (weights[i] > 0.0) off.push_back(std::abs(r));
+      sw += weights[i];
+      sx += weights[i] * x;
+      sy += weights[i] * points[i].y;
+      sxx += weights[i] * x * x;
+      sxy += weights[i] * x * points[i].y;
+    }
+    const double determinant = sw * sxx - sx * sx;
+    if (off.size() < 8 || !(determinant > 0.0)) return -1.0;
+    line.slope = (sw * sxy - sx * sy) / determinant;
+    line.offset = (sy - line.slope * sx) / sw;
+    const auto at = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+    std::nth_element(off.begin(), at, off.end());
+    scatter = 1.4826 * *at;
+  }
+  return std::max(scatter, 1e-4);
+}
+
+double NormalCdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+// Position of a blurred step of width `blur` in one column near y0:
+// Gauss-Newton in position with the two levels solved exactly. Negative
+// strength of success (points.strength = 0) means no edge.
+EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
+                     double blur, double& residual2) {
+  const double reach = 3.0 * blur + 2.0;
+  EdgePoint edge{static_cast<double>(x), y0, 0.0};
+  residual2 = 0.0;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    const auto from = static_cast<std::int32_t>(std::ceil(edge.y - reach));
+    const auto to = static_cast<std::int32_t>(std::floor(edge.y + reach));
+    if (from < 0 || to >= image.height_px) {
+      edge.strength = 0.0;
+      return edge;
+    }
+    // Levels: value = a + b Phi((y - y_edge) / blur).
+    double n = 0, sp = 0, spp = 0, sv = 0, spv = 0;
+    for (std::int32_t y = from; y <= to; ++y) {
+      const double p = NormalCdf((y - edge.y) / blur);
+      const auto v = static_cast<double>(At(image, x, y));
+      n += 1;
+      sp += p;
+      spp += p * p;
+      sv += v;
+      spv += p * v;
+    }
+    const double determinant = n * spp - sp * sp;
+    if (!(determinant > 1e-9)) {
+      edge.strength = 0.0;
+      return edge;
+    }
+    const double b = (n * spv - sp * sv) / determinant;
+    const double a = (sv - b * sp) / n;
+    edge.strength = b;
+    if (b == 0.0) return edge;
+    double num = 0.0;
+    double den = 0.0;
+    residual2 = 0.0;
+    for (std::int32_t y = from; y <= to; ++y) {
+      const double z = (y - edge.y) / blur;
+      const double r =
+          static_cast<double>(At(image, x, y)) - a - b * NormalCdf(z);
+      const double slope =
+          -b * 0.3989422804014327 * std::exp(-0.5 * z * z) / blur;
+      num += r * slope;
+      den += slope * slope;
+      residual2 += r * r;
+    }
+    residual2 /= std::max(1.0, n - 3.0);
+    const double step = std::clamp(num / den, -1.0, 1.0);
+    edge.y += step;
+    if (std::abs(edge.y - y0) > reach) {
+      edge.strength = 0.0;
+      return edge;
+    }
+    if (std::abs(step) < 1e-5) break;
+  }
+  return edge;
+}
+
+// The edge's blur: the one that explains a sample of columns best.
+double EstimateBlur(const StillImage& image, const Line& line, double middle) {
+  constexpr std::array<double, 12> kTried = {0.4, 0.5, 0.6, 0.7, 0.85, 1.0,
+                                             1.2, 1.5, 1.9, 2.4, 3.0,  4.0};
+  double best = kTried[0];
+  double least = 0.0;
+  bool any = false;
+  for (const double blur : kTried) {
+    std::vector<double> residuals;
+    for (std::int32_t x = 2; x < image.width_px;
+         x += 1 + image.width_px / 120) {
+      double r2 = 0.0;
+      const EdgePoint edge = ColumnEdge(
+          image, x, line.offset + line.slope * (x - middle), blur, r2);
+      if (edge.strength != 0.0) residuals.push_back(r2);
+    }
+    if (residuals.size() < 8) continue;
+    const auto at =
+        residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), at, residuals.end());
+    if (!any || *at < least) {
+      any = true;
+      least = *at;
+      best = blur;
+    }
+  }
+  return best;
+}
+
+// How many times fewer columns are independent: 1 + 2 sum of the residuals'
+// autocorrelation, as far as it is positive.
+double CorrelationLength(const std::vector<EdgePoint>& points,
+                         const std::vector<double>& weights, const Line& line,
+                         double middle) {
+  std::vector<double> r;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (weights[i] > 0.0) {
+      r.push_back(points[i].y - line.offset -
+                  line.slope * (points[i].x - middle));
+    }
+  }
+  double variance = 0.0;
+  for (const double v : r) variance += v * v;
+  double sum = 1.0;
+  for (std::size_t lag = 1; lag < std::min<std::size_t>(60, r.size() / 4);
+       ++lag) {
+    double c = 0.0;
+    for (std::size_t i = lag; i < r.size(); ++i) c += r[i] * r[i - lag];
+    c /= std::max(variance, 1e-300);
+    if (c < 0.05) break;
+    sum += 2.0 * c;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<GroundLine> FindGroundLines(const StillImage& image,
+                                        const GroundLineOptions& options) {
+  std::vector<GroundLine> lines;
+  constexpr std::int32_t kLeastSide_px = 16;
+  if (image.width_px < kLeastSide_px || image.height_px < kLeastSide_px) {
+    return lines;
+  }
+  const double middle = 0.5 * (image.width_px - 1);
+  // A mean of three rows on each side has noise sqrt(2/3) sigma.
+  const double least = options.least_contrast_sigmas * image.noise_dn;
+  const std::vector<EdgePoint> points = EdgePoints(image, least);
+  std::vector<bool> used(points.size(), false);
+  const double step = std::max<std::int32_t>(1, image.width_px / 640);
+  for (int found = 0; found < options.most_lines; ++found) {
+    Line best;
+    double votes = 0.0;
+    for (const int sign : {1, -1}) {
+      Line line;
+      double v = 0.0;
+      if (Vote(points, used, sign, image, options.most_tilt_rad, line, v) &&
+          v > votes) {
+        votes = v;
+        best = line;
+      }
+    }
+    if (votes * step < options.least_share * image.width_px) break;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double off =
+          points[i].y - best.offset - best.slope * (points[i].x - middle);
+      constexpr double kSameLine_px = 4.0;
+      if (std::abs(off) < kSameLine_px) used[i] = true;
+    }
+    // To sub-pixel, from every column.
+    const double blur = EstimateBlur(image, best, middle);
+    std::vector<EdgePoint> edge;
+    for (std::int32_t x = 0; x < image.width_px; ++x) {
+      double r2 = 0.0;
+      const EdgePoint p = ColumnEdge(
+          image, x, best.offset + best.slope * (x - middle), blur, r2);
+      if (std::abs(p.strength) > least) edge.push_back(p);
+    }
+    if (static_cast<double>(edge.size()) <
+        options.least_share * image.width_px) {
+      continue;
+    }
+    std::vector<double> weights;
+    const double scatter = FitLine(edge, middle, best, weights);
+    if (scatter < 0.0) continue;
+    double sw = 0, sx = 0;
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      sw += weights[i];
+      sx += weights[i] * edge[i].x;
+    }
+    const double centre = sx / sw;
+    double sxx = 0.0;
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      sxx += weights[i] * (edge[i].x - centre) * (edge[i].x - centre);
+    }
+    const double correlation = CorrelationLength(edge, weights, best, middle);
+    const double cosine = 1.0 / std::hypot(1.0, best.slope);
+    const auto y_at = [&](double x) {
+      return best.offset + best.slope * (x - middle);
+    };
+    GroundLine line;
+    line.p1 = {0.0, y_at(0.0)};
+    line.p2 = {static_cast<double>(image.width_px - 1),
+               y_at(image.width_px - 1.0)};
+    line.reference = {centre, y_at(centre)};
+    line.u_offset_px = cosine * scatter * std::sqrt(correlation / sw);
+    line.u_angle_rad = cosine * cosine * scatter * std::sqrt(correlation / sxx);
+    line.source = GroundSource::kDetected;
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace touchdown::calib

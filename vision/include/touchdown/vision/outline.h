@@ -1,0 +1,92 @@
+// The body's outline in one frame, to sub-pixel: its image is fitted itself.
+//
+// Model of a pixel at p:   I(p) = (1 - c(p)) out(p) + c(p) in(p)
+//   c     coverage of the pixel by the body, blurred by a Gaussian of standard
+//         deviation w (optics, pixel, focus): for a disc of radius R at
+//         distance r from its centre  Phi((R - w^2/(2 R) - r) / w)  (the second
+//         term: the half-level contour of a blurred disc lies inside it); for a
+//         rectangle the product of two slabs, exact for a Gaussian blur
+//   out   the known background, or a quadratic polynomial where the body never
+//         leaves it uncovered
+//   in    a quadratic polynomial over the body (shading)
+// Gauss-Newton on all parameters with the clip's own noise as weights, and
+// robust (Tukey) weights against spots, shadows and other things that move. The
+// covariance is that of the normal equations: at the Cramer-Rao bound where the
+// model holds, widened by the residuals' excess where it does not.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "touchdown/calib/plane.h"
+#include "touchdown/core/expected.h"
+#include "touchdown/core/frame.h"
+#include "touchdown/core/words.h"
+#include "touchdown/vision/background.h"
+
+namespace touchdown::vision {
+
+// Geometry of the outline in the image.
+struct Outline {
+  core::BodyKind kind = core::BodyKind::kSphere;
+  core::PixelPoint centre;
+  double radius_px = 0.0;      // sphere
+  double half_long_px = 0.0;   // rectangle
+  double half_short_px = 0.0;  //
+  double angle_rad = 0.0;      // of the long side, +x towards +y (image)
+};
+
+struct OutlineOptions {
+  // What lies around the body: the known background, or, where the body never
+  // left it uncovered, a polynomial of its own.
+  enum class Surround { kBackground, kPolynomial };
+  Surround surround = Surround::kBackground;
+
+  bool fit_size = true;  // false: radius or sides are held as given
+  double blur_px = 0.8;  // start value of w, px
+  bool fit_blur = true;
+
+  // Pixels lower than this above the ground line are left out: there the body
+  // hides its own shadow and the ground's edge. 2 px: beyond the blur of both
+  // (without it angles were off by two to five standard uncertainties).
+  std::optional<calib::GroundLine> ground;
+  double ground_margin_px = 2.0;
+
+  int max_iterations = 30;
+  // Converged when no geometric parameter moves by more than this, px.
+  double tolerance_px = 1e-5;
+};
+
+struct OutlineFit {
+  Outline outline;
+  double blur_px = 0.0;
+  double u_x_px = 0.0;
+  double u_y_px = 0.0;
+  double correlation_xy = 0.0;
+  double u_size_px = 0.0;        // radius, or half the long side
+  double u_size_short_px = 0.0;  // half the short side
+  double u_angle_rad = 0.0;
+  double contrast_dn = 0.0;  // mean of in - out along the outline
+  double misfit = 0.0;       // rms residual over expected noise
+  double inliers = 0.0;      // share of pixels with more than half weight
+  double visible = 1.0;  // share of the outline inside the picture and above
+                         // the ground's margin
+  int pixels = 0;
+  int iterations = 0;
+};
+
+// Fits the outline to `frame` from `start`, which must be within about a
+// quarter of the body's size. Absent, with the reason, where there is no such
+// outline: too little contrast, no convergence, less than a third of the
+// outline visible.
+core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
+                                      const Background& background,
+                                      const Outline& start,
+                                      const OutlineOptions& options = {});
+
+// Height of the centre above the lowest point of the outline, measured along
+// the normal of a ground line at `ground_angle_rad` in the image: R for a
+// sphere, a |sin| + b |cos| for a rectangle of half sides a, b.
+double SupportHeight(const Outline& outline, double ground_angle_rad);
+
+}  // namespace touchdown::vision

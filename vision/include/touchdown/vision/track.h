@@ -1,0 +1,62 @@
+// The body's pose over time, as measured in the image: what the tracker hands
+// on. From here on no pixel is needed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "touchdown/core/estimate.h"
+#include "touchdown/core/points.h"
+#include "touchdown/core/words.h"
+
+namespace touchdown::vision {
+
+// The body in one frame.
+struct Pose {
+  std::int64_t frame = 0;  // index in the file
+  double time_s = 0.0;     // middle of the exposure
+  core::PixelPoint centre;
+
+  // Direction of the long side in the image, from +x towards +y (image y points
+  // down), continuous over the track; 0 for a sphere. Rectangles only.
+  double angle_rad = 0.0;
+
+  // Standard uncertainties and correlation from the fit: the image noise
+  // through the normal equations, widened where residuals exceed the noise.
+  double u_x_px = 0.0;
+  double u_y_px = 0.0;
+  double correlation_xy = 0.0;
+  double u_angle_rad = 0.0;
+
+  // Size in this frame over BodyImage's: 1 unless the body moves towards or
+  // away from the camera.
+  double relative_size = 1.0;
+
+  // Root mean square of the fit's residuals over the expected noise; about 1.
+  double misfit = 0.0;
+};
+
+// The body's shape in the image, common to all frames.
+struct BodyImage {
+  core::BodyKind kind = core::BodyKind::kSphere;
+  core::Estimate radius_px;      // sphere
+  core::Estimate half_long_px;   // rectangle, half sides
+  core::Estimate half_short_px;  //
+  double blur_px = 0.0;          // standard deviation of the edge's blur
+  double contrast_dn = 0.0;      // body minus background, median over frames
+};
+
+struct Track {
+  BodyImage body;
+  std::vector<Pose> poses;  // by frame; frames without a good fit are missing
+  std::int64_t first_frame = 0;  // range searched: [first, last)
+  std::int64_t last_frame = 0;
+  double frame_interval_s = 0.0;
+  bool known_background = true;  // false: the body never left it uncovered
+  bool several_bodies = false;   // another one of like size and contrast moves
+  std::vector<std::string> warnings;
+};
+
+}  // namespace touchdown::vision

@@ -1,0 +1,54 @@
+// From frames to the body's pose over time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "touchdown/calib/plane.h"
+#include "touchdown/core/expected.h"
+#include "touchdown/core/words.h"
+#include "touchdown/vision/background.h"
+#include "touchdown/vision/clip.h"
+#include "touchdown/vision/outline.h"
+#include "touchdown/vision/track.h"
+
+namespace touchdown::vision {
+
+struct TrackOptions {
+  // Frames [first, last) to search; last < 0: to the end.
+  std::int64_t first = 0;
+  std::int64_t last = -1;
+
+  core::PixelRect region;  // searched; width 0: the whole picture
+
+  // Nothing: sphere or rectangle, whichever outline fits the pixels better.
+  std::optional<core::BodyKind> kind;
+
+  // Pixels below it are left out of the outline's fit.
+  std::optional<calib::GroundLine> ground;
+
+  // Called now and then with the share done, 0..1; may be empty.
+  std::function<void(double)> progress;
+};
+
+struct TrackResult {
+  Track track;
+  std::int64_t frames_read = 0;
+  double fit_s = 0.0;  // wall time spent fitting outlines
+};
+
+// Follows the one moving body of a clip. Absent, with the reason, where nothing
+// moves or no outline fits. Frames from the first unreadable one on are left
+// out, with a warning in the track. Throws what Clip::Read throws for the first
+// frame.
+core::Expected<TrackResult> TrackBody(Clip& clip, const Background& background,
+                                      const TrackOptions& options = {});
+
+// Fits the outlines again with the ground line known and the body's size held
+// at the track's, from the track's own poses: pixels of the ground leave the
+// fit, and the lowest point no longer depends on a free size.
+Track Refine(Clip& clip, const Background& background, const Track& track,
+             const calib::GroundLine& ground);
+
+}  // namespace touchdown::vision

@@ -1,0 +1,184 @@
+#include "chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchdown::vision {
+namespace {
+
+double Median(std::vector<double> values) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+template <class Get>
+double MedianOf(const Chain& chain, Get get) {
+  std::vector<double> values;
+  values.reserve(chain.links.size());
+  for (const Link& link : chain.links) values.push_back(get(link));
+  return Median(std::move(values));
+}
+
+bool Alike(double area1, double contrast1, double area2, double contrast2,
+           double ratio) {
+  return contrast1 * contrast2 > 0.0 && area1 < ratio * area2 &&
+         area2 < ratio * area1 &&
+         std::abs(contrast1) < ratio * std::abs(contrast2) &&
+         std::abs(contrast2) < ratio * std::abs(contrast1);
+}
+
+double Distance(const core::PixelPoint& a, const core::PixelPoint& b) {
+  return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
+}
+
+// How well `blob` continues `chain`: distance from the prediction over the
+// reach; 1 or more: not at all.
+double Misfit(const Chain& chain, std::int64_t frame, const Blob& blob) {
+  const Link& last = chain.links.back();
+  const auto dt = static_cast<double>(frame - last.frame);
+  double vx = 0.0;
+  double vy = 0.0;
+  const double size = std::sqrt(std::max(last.blob.area_px2, blob.area_px2));
+  double reach =
+      3.0 * size + 5.0;  // without a velocity yet: three sizes a frame
+  if (chain.links.size() >= 2) {
+    const Link& before = chain.links[chain.links.size() - 2];
+    const auto gone = static_cast<double>(last.frame - before.frame);
+    vx = (last.blob.centre.x_px - before.blob.centre.x_px) / gone;
+    vy = (last.blob.centre.y_px - before.blob.centre.y_px) / gone;
+    // A bounce turns the velocity round between two frames: twice its length.
+    reach = size + 2.0 * std::hypot(vx, vy) * dt + 3.0;
+  }
+  constexpr double kAlike = 4.0;  // blur and shadow change a blob that much
+  if (!blob.at_border && !last.blob.at_border &&
+      !Alike(last.blob.area_px2, last.blob.contrast_dn, blob.area_px2,
+             blob.contrast_dn, kAlike)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const core::PixelPoint predicted{last.blob.centre.x_px + vx * dt,
+                                   last.blob.centre.y_px + vy * dt};
+  return Distance(predicted, blob.centre) / reach;
+}
+
+double Score(const Chain& chain) {
+  double sum = 0.0;
+  for (const Link& link : chain.links) {
+    sum += link.blob.area_px2 * std::abs(link.blob.contrast_dn);
+  }
+  return sum;
+}
+
+}  // namespace
+
+double Chain::Area() const {
+  return MedianOf(*this, [](const Link& l) { return l.blob.area_px2; });
+}
+double Chain::Contrast() const {
+  return MedianOf(*this, [](const Link& l) { return l.blob.contrast_dn; });
+}
+double Chain::Extent() const {
+  double extent = 0.0;
+  for (const Link& link : links) {
+    extent =
+        std::max(extent, Distance(links.front().blob.centre, link.blob.centre));
+  }
+  return extent;
+}
+
+void ChainBuilder::Add(std::int64_t frame, double time_s,
+                       const std::vector<Blob>& blobs) {
+  struct Pair {
+    double misfit;
+    std::size_t chain;
+    std::size_t blob;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t c = 0; c < open_.size(); ++c) {
+    for (std::size_t b = 0; b < blobs.size(); ++b) {
+      const double misfit = Misfit(open_[c], frame, blobs[b]);
+      // A long chain is the better home of two equally near ones.
+      const double lead =
+          0.02 *
+          std::min<double>(10.0, static_cast<double>(open_[c].links.size()));
+      if (misfit < 1.0) pairs.push_back({misfit - lead, c, b});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& a, const Pair& b) { return a.misfit < b.misfit; });
+  std::vector<bool> chain_taken(open_.size(), false);
+  std::vector<bool> blob_taken(blobs.size(), false);
+  for (const Pair& pair : pairs) {
+    if (chain_taken[pair.chain] || blob_taken[pair.blob]) continue;
+    chain_taken[pair.chain] = blob_taken[pair.blob] = true;
+    open_[pair.chain].links.push_back({frame, time_s, blobs[pair.blob]});
+  }
+  for (std::size_t b = 0; b < blobs.size(); ++b) {
+    if (!blob_taken[b]) open_.push_back({{{frame, time_s, blobs[b]}}});
+  }
+  for (std::size_t c = open_.size(); c-- > 0;) {
+    if (frame - open_[c].links.back().frame > options_.most_missing) {
+      closed_.push_back(std::move(open_[c]));
+      open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(c));
+    }
+  }
+}
+
+std::vector<Chain> ChainBuilder::Finish() {
+  std::vector<Chain> chains = std::move(closed_);
+  for (Chain& chain : open_) chains.push_back(std::move(chain));
+  open_.clear();
+  closed_.clear();
+  std::erase_if(chains, [](const Chain& c) { return c.links.size() < 3; });
+  std::sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
+    return a.links.front().frame < b.links.front().frame;
+  });
+  // One body, interrupted: the next chain starts after the last has ended.
+  constexpr double kSameBody = 1.8;  // ratio of areas and of contrasts
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    for (std::size_t j = i + 1; j < chains.size();) {
+      if (chains[j].links.front().frame > chains[i].links.back().frame &&
+          Alike(chains[i].Area(), chains[i].Contrast(), chains[j].Area(),
+                chains[j].Contrast(), kSameBody)) {
+        chains[i].links.insert(chains[i].links.end(), chains[j].links.begin(),
+                               chains[j].links.end());
+        chains.erase(chains.begin() + static_cast<std::ptrdiff_t>(j));
+      } else {
+        ++j;
+      }
+    }
+  }
+  std::erase_if(chains, [](const Chain& c) {
+    constexpr double kLeastMotion_px = 2.0;
+    constexpr double kLeastShareOfSize = 0.1;
+    return c.Extent() <
+           std::max(kLeastMotion_px, kLeastShareOfSize * std::sqrt(c.Area()));
+  });
+  std::stable_sort(
+      chains.begin(), chains.end(),
+      [](const Chain& a, const Chain& b) { return Score(a) > Score(b); });
+  return chains;
+}
+
+bool IsAnotherBody(const Chain& best, const Chain& other) {
+  const std::int64_t from =
+      std::max(best.links.front().frame, other.links.front().frame);
+  const std::int64_t to =
+      std::min(best.links.back().frame, other.links.back().frame);
+  const auto shorter =
+      static_cast<double>(std::min(best.links.size(), other.links.size()));
+  constexpr double kOverlap = 0.3;
+  constexpr double kLeastContrast = 0.7;
+  constexpr double kAreaRatio = 2.5;
+  return static_cast<double>(to - from + 1) > kOverlap * shorter &&
+         other.links.size() >= 5 &&
+         std::abs(other.Contrast()) >
+             kLeastContrast * std::abs(best.Contrast()) &&
+         other.Area() * kAreaRatio > best.Area() &&
+         other.Area() < kAreaRatio * best.Area() &&
+         other.Extent() > std::sqrt(other.Area());
+}
+
+}  // namespace touchdown::vision

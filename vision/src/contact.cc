@@ -1,0 +1,295 @@
+#include "touchdown/vision/contact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contact_event.h"
+#include "contact_record.h"
+#include "kinks.h"
+#include "touchdown/vision/state.h"
+
+namespace touchdown::vision {
+namespace {
+
+using core::AbsentBecause;
+
+double MedianGap(std::span<const PlaneSample> samples) {
+  std::vector<double> gaps;
+  for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
+  const auto middle =
+      gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
+double UncertaintyOfLine(const PlaneTrack& track, const PlaneSample& s) {
+  return std::hypot(track.ground.u_offset_px,
+                    track.ground.u_angle_rad * s.along_px);
+}
+
+FlightOptions FlightFor(const ContactOptions& options) {
+  FlightOptions flight;
+  if (options.scale) {
+    const core::Estimate& scale = options.scale->px_per_m;
+    const core::Estimate& g = options.gravity_mps2;
+    core::Estimate px;
+    px.value = g.value * scale.value;
+    px.u = std::max(std::hypot(g.u * scale.value, g.value * scale.u),
+                    1e-9 * px.value);
+    flight.gravity_px_per_s2 = px;
+  }
+  return flight;
+}
+
+// Kinks that can be contacts: near the line. Those far above refute it.
+struct Blows {
+  std::vector<Kink> kinks;
+  std::string refuted;
+};
+
+Blows FindBlows(const PlaneTrack& track) {
+  const std::span<const PlaneSample> samples(track.samples);
+  Blows blows;
+  double lowest = samples.front().gap_px;
+  for (const PlaneSample& s : samples) lowest = std::min(lowest, s.gap_px);
+  for (const Kink& kink : FindKinks(samples)) {
+    const PlaneSample& a = samples[kink.after];
+    const PlaneSample& b = samples[kink.after + 1];
+    // Between two frames the body can come lower than in either by what the
+    // blow's velocity covers.
+    const double dip = std::abs(kink.jump) * (b.time_s - a.time_s);
+    constexpr double kNear_px = 2.0;
+    const double near = std::max({kNear_px, 4.0 * UncertaintyOfLine(track, a),
+                                  0.05 * track.half_short_px});
+    const double gap = std::min(a.gap_px, b.gap_px);
+    if (gap > near + dip || gap < -near - dip) {
+      constexpr double kClear = 15.0;
+      if (kink.significance > kClear && blows.refuted.empty() &&
+          dip > 0.5 + near * 0.0) {
+        blows.refuted = fmt::format(
+            "the body rebounds {:.1f} px {} the ground line at frame {}",
+            std::abs(gap), gap > 0 ? "above" : "below", a.frame);
+      }
+      continue;
+    }
+    blows.kinks.push_back(kink);
+  }
+  return blows;
+}
+
+// The body is on the ground in the first frames and does not come down to it.
+bool OnGroundFromStart(const PlaneTrack& track,
+                       const std::vector<Kink>& blows) {
+  const std::span<const PlaneSample> samples(track.samples);
+  const std::size_t n = samples.size();
+  const std::size_t m = std::min<std::size_t>(8, n);
+  const double first = MedianGap(samples.first(m));
+  constexpr double kNear_px = 2.0;
+  const double near =
+      std::max({kNear_px, 4.0 * UncertaintyOfLine(track, samples[0]),
+                0.3 * track.half_short_px});
+  if (std::abs(first) > near) return false;
+  const double noise = samples[n / 2].u_gap_px;
+  if (blows.empty()) {
+    // No blow: it is down all the time, or never: it must also stay near.
+    double highest = first;
+    for (const PlaneSample& s : samples) highest = std::max(highest, s.gap_px);
+    (void)highest;
+    const double later = MedianGap(samples.subspan(n / 2));
+    return first - later <
+           std::max(0.5, 5.0 * noise) + 0.1 * track.half_short_px;
+  }
+  // It came down if the first frames are clearly higher than the first blow.
+  const Kink& blow = blows.front();
+  const double at_blow =
+      std::min(samples[blow.after].gap_px, samples[blow.after + 1].gap_px);
+  if (blow.after < 3) return false;
+  const double needed =
+      std::max(0.1, 5.0 * noise / std::sqrt(static_cast<double>(m)));
+  return first - at_blow < needed;
+}
+
+core::ContactRecord NoContact(std::string reason) {
+  core::ContactRecord record;
+  record.contact.reason = reason;
+  record.state.reason = "no contact: " + reason;
+  return record;
+}
+
+core::PixelPoint InImage(const PlaneTrack& track, double along_px,
+                         double height_px) {
+  const double angle = calib::ImageAngle(track.ground);
+  const double along = track.direction * along_px;
+  return {track.ground.reference.x_px + along * std::cos(angle) +
+              height_px * std::sin(angle),
+          track.ground.reference.y_px + along * std::sin(angle) -
+              height_px * std::cos(angle)};
+}
+
+ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
+  ContactEvidence e;
+  e.before = event.before;
+  e.after = event.after;
+  e.time_s = event.time_s.value;
+  e.release_s = event.after ? event.release_s.value : event.time_s.value;
+  e.ground_px = event.ground_px.value;
+  e.u_ground_px = event.ground_px.u;
+  const FlightState s = event.before->At(event.time_s.value);
+  e.centre = InImage(track, s.along_px, s.height_px);
+  e.touching = InImage(track, s.along_px + LowestPointAlong(track, s.face_rad),
+                       s.height_px - SupportHeight(track, s.face_rad));
+  return e;
+}
+
+// The clip ends with the body in the air, and it meets the ground within one
+// frame of the last.
+std::optional<Event> ContactAtEnd(const PlaneTrack& track,
+                                  const EventOptions& options,
+                                  std::string& reason) {
+  const std::span<const PlaneSample> samples(track.samples);
+  Event event;
+  event.begin = 0;
+  event.end = samples.size();
+  // The last frames may already be down: the flight before ends where the gap
+  // first vanishes.
+  std::size_t down = samples.size();
+  while (down > 0 &&
+         samples[down - 1].gap_px < 3.0 * samples[down - 1].u_gap_px) {
+    --down;
+  }
+  constexpr std::size_t kFewFrames = 3;
+  if (samples.size() - down > kFewFrames) down = samples.size();
+  event.first_after = down;
+  const double lowest =
+      std::min_element(samples.begin(), samples.end(),
+                       [](const PlaneSample& a, const PlaneSample& b) {
+                         return a.gap_px < b.gap_px;
+                       })
+          ->gap_px;
+  reason =
+      fmt::format("the gap never reaches zero: its least is {:.1f} px", lowest);
+  if (!MeasureEvent(track, event, options)) return std::nullopt;
+  const double dt = track.frame_interval_s;
+  const double late = event.time_s.value - samples.back().time_s;
+  const FlightGap g = GapOf(track, *event.before, event.time_s.value);
+  if (g.rate >= 0.0) return std::nullopt;
+  if (late > dt) {
+    reason += fmt::format(
+        "; the path would meet the ground {:.1f} frames after the last",
+        late / dt);
+    return std::nullopt;
+  }
+  return event;
+}
+
+}  // namespace
+
+ContactResult FindContacts(const PlaneTrack& given,
+                           const ContactOptions& options) {
+  ContactResult result;
+  constexpr std::size_t kLeastSamples = 5;
+  if (given.samples.size() < kLeastSamples) {
+    result.first = NoContact(
+        fmt::format("the body is seen in {} frames only, {} are needed",
+                    given.samples.size(), kLeastSamples));
+    return result;
+  }
+  PlaneTrack track = given;
+  WidenToScatter(track);
+  const std::span<const PlaneSample> samples(track.samples);
+
+  Blows blows = FindBlows(track);
+  RecordContext context{track, options, FlightFor(options), {}};
+  for (const Kink& kink : blows.kinks) context.breaks.push_back(kink.after + 1);
+
+  const bool from_start = OnGroundFromStart(track, blows.kinks);
+  result.ground_refuted = blows.refuted;
+  if (from_start) {
+    result.first = RecordFromStart(context);
+    result.ground_refuted.clear();
+  }
+
+  EventOptions event_options;
+  event_options.flight = context.flight;
+  event_options.flight_sigmas = options.flight_sigmas;
+  bool first_done = from_start;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < blows.kinks.size(); ++k) {
+    Event event;
+    event.begin = begin;
+    event.first_after = blows.kinks[k].after + 1;
+    event.end = k + 1 < blows.kinks.size() ? blows.kinks[k + 1].after + 1
+                                           : samples.size();
+    begin = event.first_after;
+    event_options.u_line_px =
+        UncertaintyOfLine(track, samples[event.first_after]);
+    if (!MeasureEvent(track, event, event_options)) continue;
+    if (GapOf(track, *event.before, event.time_s.value).rate >= 0.0) continue;
+    if (from_start) continue;  // hops of a body that slides
+    if (!first_done) {
+      result.first = RecordOf(context, event, result.warnings);
+      first_done = true;
+    } else {
+      result.later.push_back(RecordOf(context, event, result.warnings));
+    }
+    result.evidence.push_back(EvidenceOf(track, event));
+  }
+  if (!first_done) {
+    std::string reason;
+    event_options.u_line_px = UncertaintyOfLine(track, samples.back());
+    if (const auto event = ContactAtEnd(track, event_options, reason)) {
+      result.first = RecordOf(context, *event, result.warnings);
+      result.evidence.push_back(EvidenceOf(track, *event));
+    } else {
+      result.first = NoContact(reason);
+    }
+  }
+  return result;
+}
+
+std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
+                                                    double u_level_rad) {
+  if (track.poses.size() < 6) return std::nullopt;
+  // A level line far below: heights are what matters, not gaps.
+  double lowest = track.poses.front().centre.y_px;
+  double left = track.poses.front().centre.x_px;
+  double right = left;
+  for (const Pose& pose : track.poses) {
+    lowest = std::max(lowest, pose.centre.y_px);
+    left = std::min(left, pose.centre.x_px);
+    right = std::max(right, pose.centre.x_px);
+  }
+  calib::GroundLine level = calib::GroundThrough(
+      {left, lowest}, {std::max(right, left + 1.0), lowest});
+  level.u_angle_rad = u_level_rad;
+  PlaneTrack plane = SeenFromGround(track, level);
+  WidenToScatter(plane);
+  const std::vector<Kink> kinks = FindKinks(plane.samples);
+  EventOptions options;
+  options.u_line_px = 1e3;  // nothing is known of the line yet
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < kinks.size(); ++k) {
+    Event event;
+    event.begin = begin;
+    event.first_after = kinks[k].after + 1;
+    event.end =
+        k + 1 < kinks.size() ? kinks[k + 1].after + 1 : plane.samples.size();
+    begin = event.first_after;
+    if (!MeasureEvent(plane, event, options)) continue;
+    const ContactEvidence at = EvidenceOf(plane, event);
+    calib::GroundLine ground;
+    ground.p1 = {left, at.touching.y_px};
+    ground.p2 = {std::max(right, left + 1.0), at.touching.y_px};
+    ground.reference = at.touching;
+    ground.u_offset_px = std::min(event.ground_px.u, 5.0);
+    ground.u_angle_rad = u_level_rad;
+    ground.source = calib::GroundSource::kContactPoints;
+    return ground;
+  }
+  return std::nullopt;
+}
+
+}  // namespace touchdown::vision

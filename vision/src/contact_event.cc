@@ -1,0 +1,334 @@
+#include "contact_event.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::vision {
+namespace {
+
+std::size_t Least(const EventOptions& options) {
+  return options.flight.gravity_px_per_s2 ? 3 : 4;
+}
+
+bool Deviates(const PlaneSample& s, const Flight& flight, double sigmas) {
+  const FlightState at = flight.At(s.time_s);
+  const double h = std::hypot(at.u_height_px, s.u_height_px);
+  const double a = std::hypot(at.u_along_px, s.u_along_px);
+  return std::abs(s.height_px - at.height_px) > sigmas * h ||
+         std::abs(s.along_px - at.along_px) > sigmas * a;
+}
+
+// The frames next to the blow may be in contact: fit those further off, and
+// keep of the nearest only what the fit predicts. `towards_end`: the blow
+// follows the samples. Returns the trimmed range.
+void TrimAtBlow(std::span<const PlaneSample> samples, std::size_t& begin,
+                std::size_t& end, bool blow_at_end,
+                const EventOptions& options) {
+  constexpr std::size_t kDoubtful = 3;  // frames looked at next to the blow
+  constexpr std::size_t kTrusted = 8;   // frames that judge them
+  const std::size_t count = end - begin;
+  if (count < kDoubtful + Least(options) + 2) return;
+  const std::size_t trusted = std::min(kTrusted, count - kDoubtful);
+  const double sigmas = options.flight_sigmas;
+  if (blow_at_end) {
+    const std::size_t last = end - kDoubtful;
+    const Flight flight =
+        FitFlight(samples.subspan(last - trusted, trusted), options.flight);
+    for (std::size_t i = last; i < end; ++i) {
+      if (Deviates(samples[i], flight, sigmas)) {
+        end = i;
+        return;
+      }
+    }
+  } else {
+    const std::size_t first = begin + kDoubtful;
+    const Flight flight =
+        FitFlight(samples.subspan(first, trusted), options.flight);
+    for (std::size_t i = first; i-- > begin;) {
+      if (Deviates(samples[i], flight, sigmas)) {
+        begin = i + 1;
+        return;
+      }
+    }
+  }
+}
+
+// From a few frames at the blow outwards, as long as the flight explains them.
+Flight Grow(std::span<const PlaneSample> samples, std::size_t& begin,
+            std::size_t& end, bool outwards_is_back,
+            const EventOptions& options) {
+  constexpr std::size_t kStart = 8;
+  const std::size_t low = begin;
+  const std::size_t high = end;
+  const std::size_t count = std::min(kStart, high - low);
+  if (outwards_is_back) {
+    begin = high - count;
+  } else {
+    end = low + count;
+  }
+  Flight flight =
+      FitFlight(samples.subspan(begin, end - begin), options.flight);
+  std::size_t fitted = end - begin;
+  int strikes = 0;
+  while (true) {
+    const bool more = outwards_is_back ? begin > low : end < high;
+    if (!more) break;
+    const std::size_t next = outwards_is_back ? begin - 1 : end;
+    strikes = Deviates(samples[next], flight, options.flight_sigmas)
+                  ? strikes + 1
+                  : 0;
+    if (outwards_is_back) {
+      --begin;
+    } else {
+      ++end;
+    }
+    if (strikes == 2) {
+      // The two that no longer belong, and two that may have begun to leave.
+      const std::size_t drop =
+          std::min<std::size_t>(4, end - begin - std::min(count, end - begin));
+      const std::size_t cut = std::max<std::size_t>(2, drop);
+      if (outwards_is_back) {
+        begin += cut;
+      } else {
+        end -= cut;
+      }
+      break;
+    }
+    // Again when a tenth was added: predictions far out need a fresh fit.
+    if (end - begin >= fitted + std::max<std::size_t>(1, fitted / 10)) {
+      fitted = end - begin;
+      flight = FitFlight(samples.subspan(begin, fitted), options.flight);
+    }
+  }
+  return FitFlight(samples.subspan(begin, end - begin), options.flight);
+}
+
+// Where the gap of a flight is `level`, near `start_s` (Newton; the gap of a
+// turning rectangle is not a parabola).
+std::optional<double> TimeOfGap(const PlaneTrack& track, const Flight& flight,
+                                double start_s, double level) {
+  double t = start_s;
+  constexpr int kIterations = 40;
+  for (int i = 0; i < kIterations; ++i) {
+    const FlightGap g = GapOf(track, flight, t);
+    if (g.rate == 0.0 || !std::isfinite(g.gap_px)) return std::nullopt;
+    double step = -(g.gap_px - level) / g.rate;
+    const double limit = 20.0 * track.frame_interval_s;
+    step = std::clamp(step, -limit, limit);
+    t += step;
+    if (std::abs(step) < 1e-9 * track.frame_interval_s) return t;
+  }
+  return std::nullopt;
+}
+
+// Weighted mean gap of samples in contact; nothing if they do not agree.
+std::optional<core::Estimate> LevelOf(std::span<const PlaneSample> samples) {
+  if (samples.size() < 2) return std::nullopt;
+  double sw = 0.0;
+  double swx = 0.0;
+  for (const PlaneSample& s : samples) {
+    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
+    sw += w;
+    swx += w * s.gap_px;
+  }
+  const double mean = swx / sw;
+  double chi2 = 0.0;
+  for (const PlaneSample& s : samples) {
+    const double r = (s.gap_px - mean) / s.u_gap_px;
+    chi2 += r * r;
+  }
+  const double widen =
+      std::max(1.0, chi2 / static_cast<double>(samples.size() - 1));
+  return core::Estimate{mean, std::sqrt(widen / sw), std::nullopt};
+}
+
+// The flight after a blow, if there is one: its greatest height must stand out
+// of the ground, and its frames must follow free flight better than rest.
+bool FindFlightAfter(const PlaneTrack& track, Event& event,
+                     const EventOptions& options) {
+  const std::span<const PlaneSample> samples(track.samples);
+  std::size_t begin = event.first_after;
+  std::size_t end = event.end;
+  if (end - begin < Least(options)) return false;
+  TrimAtBlow(samples, begin, end, false, options);
+  if (end - begin < Least(options)) return false;
+  const Flight flight = Grow(samples, begin, end, false, options);
+  if (end - begin < Least(options)) return false;
+  // Rest explains the same frames as well?
+  const auto rest = LevelOf(samples.subspan(begin, end - begin));
+  double chi2_rest = 0.0;
+  double chi2_flight = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const PlaneSample& s = samples[i];
+    const double at_rest = (s.gap_px - rest->value) / s.u_gap_px;
+    const double flying =
+        (s.gap_px - GapOf(track, flight, s.time_s).gap_px) / s.u_gap_px;
+    chi2_rest += at_rest * at_rest;
+    chi2_flight += flying * flying;
+  }
+  // 2 more parameters; 16: odds of 3000 to 1 (e^8).
+  constexpr double kFlightMustWinBy = 16.0;
+  if (chi2_rest - chi2_flight < kFlightMustWinBy) return false;
+  const double n = static_cast<double>(end - begin);
+  // Sliding with gravity pulling and nothing falling fits no flight.
+  constexpr double kTolerable = 9.0;
+  if (flight.reduced_chi2 > kTolerable && chi2_flight / n > kTolerable) {
+    return false;
+  }
+  event.after = flight;
+  event.after_begin = begin;
+  event.after_end = end;
+  return true;
+}
+
+}  // namespace
+
+FlightGap GapOf(const PlaneTrack& track, const Flight& flight, double time_s) {
+  const FlightState s = flight.At(time_s);
+  const double arm = LowestPointAlong(track, s.face_rad);
+  FlightGap g;
+  g.gap_px = s.height_px - SupportHeight(track, s.face_rad);
+  g.rate = s.v_n + arm * s.omega;
+  g.u_px = std::hypot(s.u_height_px, arm * s.u_face_rad);
+  return g;
+}
+
+bool MeasureEvent(const PlaneTrack& track, Event& event,
+                  const EventOptions& options) {
+  const std::span<const PlaneSample> samples(track.samples);
+  event.before_begin = event.begin;
+  event.before_end = event.first_after;
+  if (event.before_end - event.before_begin < Least(options)) return false;
+  TrimAtBlow(samples, event.before_begin, event.before_end, true, options);
+  if (event.before_end - event.before_begin < Least(options)) return false;
+  event.before =
+      Grow(samples, event.before_begin, event.before_end, true, options);
+  if (event.before->frames < static_cast<int>(Least(options))) return false;
+  const bool flies = FindFlightAfter(track, event, options);
+
+  // What is known of the ground's height: the line, and the body's size.
+  const double u_line = std::hypot(options.u_line_px, track.u_half_px);
+  core::Estimate ground{0.0, std::max(u_line, 1e-6), std::nullopt};
+  const double start_s = samples[event.before_end - 1].time_s;
+
+  if (flies) {
+    const auto t1 = TimeOfGap(track, *event.before, start_s, 0.0);
+    const auto t2 =
+        TimeOfGap(track, *event.after, samples[event.after_begin].time_s, 0.0);
+    if (!t1 || !t2) return false;
+    const FlightGap g1 = GapOf(track, *event.before, *t1);
+    const FlightGap g2 = GapOf(track, *event.after, *t2);
+    // Linear in (t, d): rate_k (t - t_k) - d = 0 +- u_k, d = 0 +- u.
+    Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    const double origin = *t1;
+    const auto add = [&](const FlightGap& g, double at) {
+      const double w = 1.0 / (g.u_px * g.u_px);
+      const Eigen::Vector2d row(g.rate, -1.0);
+      a.noalias() += w * row * row.transpose();
+      b.noalias() += w * (g.rate * (at - origin)) * row;
+    };
+    add(g1, *t1);
+    add(g2, *t2);
+    // How far apart the two fits and the line are, before the line is used.
+    const Eigen::Vector2d free = a.ldlt().solve(b);
+    const Eigen::Matrix2d free_cov = a.inverse();
+    event.disagreement =
+        free[1] / std::sqrt(free_cov(1, 1) + ground.u * ground.u);
+    const bool in_contact = event.before_end < event.first_after ||
+                            event.after_begin > event.first_after;
+    constexpr double kDisagree = 3.0;
+    if (std::abs(event.disagreement) > kDisagree && in_contact) {
+      // Frames in contact were seen: the body stayed down for a while, and the
+      // line is the ground.
+      event.ground_px = ground;
+      event.time_s = {*t1, std::hypot(g1.u_px, ground.u) / std::abs(g1.rate),
+                      std::nullopt};
+      event.release_s = {*t2, std::hypot(g2.u_px, ground.u) / std::abs(g2.rate),
+                         std::nullopt};
+      return true;
+    }
+    if (std::abs(event.disagreement) > kDisagree) {
+      // No frame in contact: the fits know the ground better than the line.
+      ground.u = std::abs(free[1]);
+    }
+    a(1, 1) += 1.0 / (ground.u * ground.u);
+    const Eigen::Vector2d x = a.ldlt().solve(b);
+    const Eigen::Matrix2d cov = a.inverse();
+    event.time_s = {origin + x[0], std::sqrt(cov(0, 0)), std::nullopt};
+    event.release_s = event.time_s;
+    event.ground_px = {x[1], std::sqrt(cov(1, 1)), std::nullopt};
+    return true;
+  }
+
+  // It stays down: the frames in contact tell the ground's height.
+  const std::size_t from = event.first_after;
+  const std::size_t to = std::min(event.end, from + 40);
+  std::optional<core::Estimate> level;
+  if (to > from) {
+    level = LevelOf(samples.subspan(from, to - from));
+  }
+  if (level) {
+    const double w0 = 1.0 / (ground.u * ground.u);
+    const double w1 = 1.0 / (level->u * level->u);
+    event.disagreement = level->value / std::hypot(ground.u, level->u);
+    constexpr double kDisagree = 3.0;
+    if (std::abs(event.disagreement) > kDisagree) {
+      ground = *level;
+    } else {
+      ground = {level->value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
+                std::nullopt};
+    }
+  }
+  const auto t = TimeOfGap(track, *event.before, start_s, ground.value);
+  if (!t) return false;
+  const FlightGap g = GapOf(track, *event.before, *t);
+  event.ground_px = ground;
+  event.time_s = {*t, std::hypot(g.u_px, ground.u) / std::abs(g.rate),
+                  std::nullopt};
+  return true;
+}
+
+double WidenToScatter(PlaneTrack& track) {
+  auto& samples = track.samples;
+  if (samples.size() < 8) return 1.0;
+  // Third differences of consecutive frames: blind to any parabola.
+  const auto scatter = [&](double PlaneSample::*value) {
+    std::vector<double> d;
+    for (std::size_t i = 3; i < samples.size(); ++i) {
+      if (samples[i].frame - samples[i - 3].frame != 3) continue;
+      d.push_back(std::abs(samples[i].*value - 3.0 * samples[i - 1].*value +
+                           3.0 * samples[i - 2].*value -
+                           samples[i - 3].*value));
+    }
+    if (d.size() < 5) return 0.0;
+    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
+    std::nth_element(d.begin(), middle, d.end());
+    return 1.4826 * *middle / std::sqrt(20.0);
+  };
+  const auto typical = [&](double PlaneSample::*u) {
+    std::vector<double> all;
+    for (const PlaneSample& s : samples) all.push_back(s.*u);
+    const auto middle =
+        all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    return std::max(*middle, 1e-9);
+  };
+  const auto widen = [&](double PlaneSample::*value, double PlaneSample::*u) {
+    const double factor = std::max(1.0, scatter(value) / typical(u));
+    for (PlaneSample& s : samples) s.*u *= factor;
+    return factor;
+  };
+  widen(&PlaneSample::along_px, &PlaneSample::u_along_px);
+  const double heights =
+      widen(&PlaneSample::height_px, &PlaneSample::u_height_px);
+  if (track.kind == core::BodyKind::kRectangle) {
+    widen(&PlaneSample::face_rad, &PlaneSample::u_face_rad);
+  }
+  widen(&PlaneSample::gap_px, &PlaneSample::u_gap_px);
+  return heights;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,414 @@
+#include "contact_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "touchdown/vision/state.h"
+
+namespace touchdown::vision {
+namespace {
+
+using core::AbsentBecause;
+using core::Estimate;
+using core::Measured;
+
+const char kNoScale[] =
+    "no scale: give a calibration, a scale or the body's size";
+
+// px (or px/s) to metres (or m/s), with the scale's uncertainty.
+Measured InMetres(const RecordContext& context, const Estimate& px) {
+  if (!context.options.scale) return AbsentBecause(kNoScale);
+  const Estimate& s = context.options.scale->px_per_m;
+  const double value = px.value / s.value;
+  return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value),
+                  std::nullopt};
+}
+
+Estimate QuotientOf(const Estimate& a, const Estimate& b) {
+  const double q = a.value / b.value;
+  return {q, std::hypot(a.u / b.value, q * b.u / b.value), std::nullopt};
+}
+
+// Normal velocity of the contact point: v_n + omega x.
+Estimate PointVelocity(const FlightState& s, double arm) {
+  return {s.v_n + s.omega * arm, std::hypot(s.u_v_n, arm * s.u_omega),
+          std::nullopt};
+}
+
+void FillAngles(const RecordContext& context, const Event& event,
+                core::Contact& contact) {
+  const PlaneTrack& track = context.track;
+  const FlightState s = event.before->At(event.time_s.value);
+  const double g = event.before->height[2];
+  const double speed2 = s.v_t * s.v_t + s.v_n * s.v_n;
+  // From the fit: v_n and v_t are uncorrelated but for the instant, which moves
+  // v_n by g u(t).
+  const double u_vn = std::hypot(s.u_v_n, 0.0);
+  const double localisation =
+      std::hypot(s.v_t * u_vn, s.v_n * s.u_v_t) / speed2;
+  const double timing = std::abs(s.v_t * g * event.time_s.u) / speed2;
+  const double ground = track.ground.u_angle_rad;
+  const double approach = std::atan2(-s.v_n, std::abs(s.v_t));
+  contact.approach_angle_rad =
+      Estimate{std::clamp(approach, 0.0, 0.5 * std::numbers::pi),
+               std::sqrt(localisation * localisation + timing * timing +
+                         ground * ground),
+               std::nullopt};
+  contact.approach_budget = {
+      {"localisation", localisation}, {"ground", ground}, {"time", timing}};
+  if (track.kind == core::BodyKind::kSphere) {
+    contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
+    contact.face_angle_rad = AbsentBecause("sphere");
+    return;
+  }
+  const double pi = std::numbers::pi;
+  double face = std::remainder(s.face_rad, pi);
+  if (face <= -0.5 * pi) face += pi;
+  const double turning = std::abs(s.omega) * event.time_s.u;
+  const double u_face = std::hypot(s.u_face_rad, turning);
+  contact.face_angle_rad =
+      Estimate{face, std::hypot(u_face, ground), std::nullopt};
+  contact.attitude_budget = {
+      {"localisation", s.u_face_rad}, {"ground", ground}, {"time", turning}};
+  // Flush where the second lowest corner is as low as the lowest within what
+  // the attitude is known to (2 u), or within the outline's own resolution.
+  const double tilt = std::abs(std::remainder(face, 0.5 * pi));
+  constexpr double kResolution_px = 0.05;
+  const double flush_within =
+      std::max(2.0 * std::hypot(u_face, ground),
+               kResolution_px / (2.0 * track.half_long_px));
+  const double arm = LowestPointAlong(track, face);
+  if (tilt < flush_within) {
+    contact.corner = core::Corner::kFlush;
+  } else {
+    contact.corner =
+        arm > 0.0 ? core::Corner::kLeading : core::Corner::kTrailing;
+  }
+  const double reach = SupportHeight(track, face);
+  contact.radius_angle_rad = Estimate{std::atan2(reach, std::abs(arm)),
+                                      std::hypot(u_face, ground), std::nullopt};
+}
+
+void FillMotion(const RecordContext& context, const Event& event,
+                core::ContactRecord& record) {
+  const PlaneTrack& track = context.track;
+  core::Motion& m = record.motion;
+  const FlightState before = event.before->At(event.time_s.value);
+  const double g = event.before->height[2];
+  const double u_vn = std::hypot(before.u_v_n, g * event.time_s.u);
+  const Estimate vn{before.v_n, u_vn, std::nullopt};
+  const Estimate vt{before.v_t, before.u_v_t, std::nullopt};
+  const double speed = std::hypot(vn.value, vt.value);
+  const Estimate v{speed, std::hypot(vn.value * vn.u, vt.value * vt.u) / speed,
+                   std::nullopt};
+  m.before_speed_mps = InMetres(context, v);
+  m.before_normal_mps = InMetres(context, vn);
+  m.before_tangential_mps = InMetres(context, vt);
+  const bool turns = track.kind == core::BodyKind::kRectangle;
+  const auto omega = [&](const FlightState& s) -> Measured {
+    if (!turns) return AbsentBecause("no mark on the sphere");
+    // face grows as the leading end rises: counter-clockwise with x' ahead.
+    return Estimate{s.omega, s.u_omega, std::nullopt};
+  };
+  m.before_omega_rad_per_s = omega(before);
+  if (!event.after) {
+    const char reason[] = "no release from the ground was seen";
+    m.after_normal_mps = AbsentBecause(reason);
+    m.after_tangential_mps = AbsentBecause(reason);
+    m.after_omega_rad_per_s = AbsentBecause(reason);
+    m.restitution = AbsentBecause(reason);
+    m.centre_rebound_ratio = AbsentBecause(reason);
+    m.impulse_ratio = AbsentBecause(reason);
+  } else {
+    const FlightState after = event.after->At(event.release_s.value);
+    const double g2 = event.after->height[2];
+    const Estimate vn2{after.v_n,
+                       std::hypot(after.u_v_n, g2 * event.release_s.u),
+                       std::nullopt};
+    const Estimate vt2{after.v_t, after.u_v_t, std::nullopt};
+    m.after_normal_mps = InMetres(context, vn2);
+    m.after_tangential_mps = InMetres(context, vt2);
+    m.after_omega_rad_per_s = omega(after);
+    const double arm = LowestPointAlong(track, before.face_rad);
+    Estimate p1 = PointVelocity(before, arm);
+    Estimate p2 = PointVelocity(after, arm);
+    constexpr double kMeasurable = 5.0;  // below, a quotient means nothing
+    if (std::abs(p1.value) > kMeasurable * p1.u) {
+      Estimate e = QuotientOf(p2, p1);
+      e.value = -e.value;
+      m.restitution = e;
+    } else {
+      m.restitution = AbsentBecause(
+          "the normal velocity before is below five times its "
+          "uncertainty");
+    }
+    if (std::abs(vn.value) > kMeasurable * vn.u) {
+      Estimate e = QuotientOf(vn2, vn);
+      e.value = -e.value;
+      m.centre_rebound_ratio = e;
+    } else {
+      m.centre_rebound_ratio = m.restitution;
+    }
+    const Estimate dn{vn2.value - vn.value, std::hypot(vn2.u, vn.u),
+                      std::nullopt};
+    const Estimate dt{std::abs(vt2.value - vt.value), std::hypot(vt2.u, vt.u),
+                      std::nullopt};
+    if (std::abs(dn.value) > kMeasurable * dn.u) {
+      m.impulse_ratio = QuotientOf(dt, dn);
+    } else {
+      m.impulse_ratio = AbsentBecause(
+          "the change of normal velocity is below five times its uncertainty");
+    }
+  }
+
+  // Gravity free, as a check of scale and frame rate.
+  m.gravity_check_mps2 = AbsentBecause(kNoScale);
+  if (context.options.scale) {
+    m.gravity_check_mps2 =
+        AbsentBecause("uninformative: its uncertainty exceeds 3 %");
+    double sw = 0.0;
+    double swx = 0.0;
+    const std::span<const PlaneSample> samples(track.samples);
+    const auto add = [&](std::size_t begin, std::size_t end) {
+      if (end - begin < 6) return;
+      const Flight free = FitFlight(samples.subspan(begin, end - begin));
+      const double w = 1.0 / free.height_cov(2, 2);
+      sw += w;
+      swx += w * free.height[2];
+    };
+    add(event.before_begin, event.before_end);
+    if (event.after) add(event.after_begin, event.after_end);
+    if (sw > 0.0) {
+      const Measured g_si =
+          InMetres(context, {swx / sw, 1.0 / std::sqrt(sw), std::nullopt});
+      constexpr double kInformative = 0.03;
+      if (g_si->u < kInformative * std::abs(g_si->value)) {
+        m.gravity_check_mps2 = g_si;
+      }
+    }
+  }
+}
+
+// The bounce height in px, and in metres where there is a scale.
+double BounceHeight(const RecordContext& context, core::StateDecision& state) {
+  const PlaneTrack& track = context.track;
+  const double size_px = 2.0 * track.half_long_px;
+  if (!context.options.scale) {
+    state.bounce_height_m = AbsentBecause(kNoScale);
+    constexpr double kShareOfSize = 0.02;
+    return kShareOfSize * size_px;
+  }
+  const double px_per_m = context.options.scale->px_per_m.value;
+  const double height_m = context.options.bounce_height_m
+                              ? *context.options.bounce_height_m
+                              : core::DefaultBounceHeight(size_px / px_per_m);
+  state.bounce_height_m = Estimate{height_m, 0.0, std::nullopt};
+  return height_m * px_per_m;
+}
+
+std::string LengthText(const RecordContext& context, double px, double u_px) {
+  if (context.options.scale) {
+    const double mm = 1e3 / context.options.scale->px_per_m.value;
+    return fmt::format("{:.3f} +- {:.3f} mm", px * mm, u_px * mm);
+  }
+  return fmt::format("{:.2f} +- {:.2f} px", px, u_px);
+}
+
+// Fills the state from the greatest gap after sample `from`.
+void FillState(const RecordContext& context, std::size_t from, double ground_px,
+               double u_ground_px, bool released, core::StateDecision& state) {
+  const PlaneTrack& track = context.track;
+  const std::span<const PlaneSample> samples(track.samples);
+  const double height_px = BounceHeight(context, state);
+  const double noise_px = samples[samples.size() / 2].u_gap_px;
+  if (context.options.scale) {
+    const double s = context.options.scale->px_per_m.value;
+    state.detectable_gap_m = Estimate{
+        DetectableGap(noise_px / s, 1.0 / track.frame_interval_s,
+                      u_ground_px / s, context.options.gravity_mps2.value),
+        0.0, std::nullopt};
+  } else {
+    state.detectable_gap_m = AbsentBecause(kNoScale);
+  }
+  std::vector<std::size_t> breaks;
+  for (const std::size_t b : context.breaks) {
+    if (b > from && b < samples.size()) breaks.push_back(b - from);
+  }
+  const auto greatest =
+      FindGreatestGap(samples.subspan(from), breaks, ground_px);
+  constexpr std::size_t kLeastAfter = 3;
+  if (!greatest || samples.size() - from < kLeastAfter) {
+    state.label = core::MotionState::kUndecided;
+    state.max_gap_m = AbsentBecause("no rebound was filmed");
+    state.reason = fmt::format(
+        "no rebound was filmed: {} frames after touchdown, {} are needed",
+        samples.size() - from, kLeastAfter);
+    return;
+  }
+  Estimate gap = greatest->gap_px;
+  gap.u = std::hypot(gap.u, u_ground_px);
+  // A gap is not negative; what is below is noise of pose and ground.
+  state.max_gap_m = InMetres(context, gap);
+  const StateEvidence evidence = DecideBounce(gap, height_px);
+  state.label = evidence.label;
+  state.p_bounce = evidence.p_bounce;
+  const std::string text = fmt::format(
+      "greatest gap {} at frame {}, bounce height {}",
+      LengthText(context, gap.value, gap.u), samples[from + greatest->at].frame,
+      LengthText(context, height_px, 0.0));
+  if (state.label == core::MotionState::kStaysDown && greatest->still_rising) {
+    state.label = core::MotionState::kUndecided;
+    state.reason = text + "; the clip ends while the body still rises";
+    return;
+  }
+  state.micro_bounce = state.label == core::MotionState::kStaysDown &&
+                       released && gap.value > core::kNormal975 * gap.u;
+  state.reason = text;
+}
+
+// Of what stays down: did it slide, or stick? Where that can be seen.
+void NameWhatStaysDown(const RecordContext& context, std::size_t from,
+                       core::StateDecision& state) {
+  if (state.label != core::MotionState::kStaysDown) return;
+  const PlaneTrack& track = context.track;
+  if (track.kind == core::BodyKind::kSphere) {
+    state.reason += "; without a mark slip and roll look alike";
+    return;
+  }
+  const std::span<const PlaneSample> samples(track.samples);
+  const PlaneSample& a = samples[from];
+  const PlaneSample& b = samples.back();
+  double path = 0.0;
+  for (std::size_t i = from; i < samples.size(); ++i) {
+    path = std::max(path, std::abs(samples[i].along_px - a.along_px));
+  }
+  const double turned = std::abs(b.face_rad - a.face_rad);
+  const double u_turned = std::hypot(a.u_face_rad, b.u_face_rad);
+  constexpr double kClear = 3.0;
+  constexpr double kQuarterTurn = 0.25 * std::numbers::pi;
+  const double u_path = std::hypot(a.u_along_px, b.u_along_px);
+  if (turned > kQuarterTurn && turned > kClear * u_turned) {
+    state.label = core::MotionState::kRollSlide;
+    state.reason += "; it turns over along the ground";
+  } else if (path > std::max(1.0, kClear * u_path)) {
+    state.label = core::MotionState::kSlide;
+    state.reason += "; it moves along the ground without turning over";
+  } else {
+    state.label = core::MotionState::kStick;
+    state.reason += "; it stays where it touched down";
+  }
+}
+
+}  // namespace
+
+core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
+                             std::vector<std::string>& warnings) {
+  const PlaneTrack& track = context.track;
+  core::ContactRecord record;
+  core::Contact& contact = record.contact;
+  contact.found = true;
+  contact.time_s = event.time_s;
+  // Frame numbers follow the time: exact where frames are equally spaced.
+  const double dt = track.frame_interval_s;
+  const PlaneSample& near =
+      track.samples[std::min(event.before_end - 1, track.samples.size() - 1)];
+  contact.frame = Estimate{
+      static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
+      event.time_s.u / dt, std::nullopt};
+  FillAngles(context, event, contact);
+  if (event.after) {
+    contact.duration_s =
+        Estimate{std::max(0.0, event.release_s.value - event.time_s.value),
+                 std::hypot(event.time_s.u, event.release_s.u), std::nullopt};
+  } else {
+    contact.duration_s = AbsentBecause("no release from the ground was seen");
+  }
+  FillMotion(context, event, record);
+  constexpr double kDisagree = 3.0;
+  if (std::abs(event.disagreement) > kDisagree && !event.after) {
+    warnings.push_back(
+        fmt::format("the body comes to rest {:.2f} px {} the ground line",
+                    std::abs(event.ground_px.value),
+                    event.ground_px.value > 0 ? "above" : "below"));
+  } else if (std::abs(event.disagreement) > kDisagree) {
+    warnings.push_back(fmt::format(
+        "touchdown lies {:.1f} standard deviations {} the ground line",
+        std::abs(event.disagreement),
+        event.disagreement > 0 ? "above" : "below"));
+  }
+  FillState(context, event.first_after, event.ground_px.value,
+            event.ground_px.u, event.after.has_value(), record.state);
+  NameWhatStaysDown(context, event.first_after, record.state);
+  return record;
+}
+
+core::ContactRecord RecordFromStart(const RecordContext& context) {
+  const PlaneTrack& track = context.track;
+  const std::span<const PlaneSample> samples(track.samples);
+  core::ContactRecord record;
+  core::Contact& contact = record.contact;
+  contact.found = true;
+  contact.from_start = true;
+  contact.time_s = AbsentBecause("on the ground from the start");
+  contact.frame = AbsentBecause("on the ground from the start");
+  contact.duration_s = AbsentBecause("on the ground from the start");
+  contact.approach_angle_rad =
+      Estimate{0.0, track.ground.u_angle_rad, std::nullopt};
+  contact.approach_budget = {{"ground", track.ground.u_angle_rad}};
+
+  // The ground's height is that of the body's lowest point, half of the time.
+  std::vector<double> gaps;
+  for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
+  const auto middle =
+      gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  const double level = *middle;
+  const double u_level = samples[samples.size() / 2].u_gap_px /
+                         std::sqrt(static_cast<double>(samples.size()));
+
+  const char reason[] = "on the ground from the start";
+  core::Motion& m = record.motion;
+  m = core::Motion{};
+  for (Measured* absent :
+       {&m.before_normal_mps, &m.before_omega_rad_per_s, &m.after_normal_mps,
+        &m.after_tangential_mps, &m.after_omega_rad_per_s, &m.restitution,
+        &m.centre_rebound_ratio, &m.impulse_ratio, &m.gravity_check_mps2}) {
+    *absent = AbsentBecause(reason);
+  }
+  const std::size_t n = std::min<std::size_t>(samples.size(), 12);
+  const Flight start = FitFlight(samples.first(n), context.flight);
+  const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1)),
+                    std::nullopt};
+  m.before_tangential_mps = InMetres(context, vt);
+  m.before_speed_mps = InMetres(context, vt);
+  if (track.kind == core::BodyKind::kSphere) {
+    contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
+    contact.face_angle_rad = AbsentBecause("sphere");
+  } else {
+    const PlaneSample& s = samples.front();
+    double face = std::remainder(s.face_rad, std::numbers::pi);
+    const double u =
+        std::hypot(start.At(s.time_s).u_face_rad, track.ground.u_angle_rad);
+    contact.face_angle_rad = Estimate{face, u, std::nullopt};
+    contact.attitude_budget = {{"localisation", start.At(s.time_s).u_face_rad},
+                               {"ground", track.ground.u_angle_rad}};
+    const double arm = LowestPointAlong(track, face);
+    constexpr double kResolution_rad = 0.05;  // lying on a face
+    const double tilt = std::abs(std::remainder(face, 0.5 * std::numbers::pi));
+    contact.corner = tilt < std::max(2.0 * u, kResolution_rad)
+                         ? core::Corner::kFlush
+                     : arm > 0.0 ? core::Corner::kLeading
+                                 : core::Corner::kTrailing;
+    contact.radius_angle_rad = Estimate{
+        std::atan2(SupportHeight(track, face), std::abs(arm)), u, std::nullopt};
+  }
+  FillState(context, 0, level, u_level, false, record.state);
+  record.state.reason = "on the ground from the start; " + record.state.reason;
+  NameWhatStaysDown(context, 0, record.state);
+  return record;
+}
+
+}  // namespace touchdown::vision

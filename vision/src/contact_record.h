@@ -1,0 +1,27 @@
+// From a measured contact, in pixels, to the record of a trial, in SI units.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "contact_event.h"
+#include "touchdown/core/trial.h"
+#include "touchdown/vision/contact.h"
+
+namespace touchdown::vision {
+
+struct RecordContext {
+  const PlaneTrack& track;
+  const ContactOptions& options;
+  FlightOptions flight;
+  std::vector<std::size_t> breaks;  // samples that follow a blow
+};
+
+core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
+                             std::vector<std::string>& warnings);
+
+// A body that is on the ground from the first frame: approach angle 0.
+core::ContactRecord RecordFromStart(const RecordContext& context);
+
+}  // namespace touchdown::vision

@@ -1,0 +1,212 @@
+#include "detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "opencv_bridge.h"
+
+namespace touchdown::vision {
+namespace {
+
+cv::Rect SearchRegion(const core::Frame& frame, const core::PixelRect& wanted) {
+  const cv::Rect all(0, 0, frame.width_px, frame.height_px);
+  if (wanted.width <= 0 || wanted.height <= 0) return all;
+  return all & cv::Rect(wanted.x - frame.origin_x_px,
+                        wanted.y - frame.origin_y_px, wanted.width,
+                        wanted.height);
+}
+
+// Standard deviation of the smoothed difference: at least what the noise of
+// single pixels gives after a 3 x 3 mean, more where noise is correlated
+// (compression): the median absolute value of the picture itself.
+double SmoothedSigma(const cv::Mat& smooth, const Background& background) {
+  std::vector<float> sample;
+  for (int y = 0; y < smooth.rows; y += 5) {
+    const float* row = smooth.ptr<float>(y);
+    for (int x = y % 7; x < smooth.cols; x += 7) {
+      sample.push_back(std::abs(row[x]));
+    }
+  }
+  const auto middle =
+      sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(sample.begin(), middle, sample.end());
+  const double typical = std::sqrt(background.Variance(static_cast<double>(
+                             background.level[background.level.size() / 2]))) /
+                         3.0;
+  return std::max(typical, 1.4826 * static_cast<double>(*middle));
+}
+
+// A blob from one outer contour; holes (specular spots) count as body.
+Blob FromContour(const std::vector<cv::Point>& contour,
+                 const cv::Mat& difference, const cv::Rect& region,
+                 const core::Frame& frame) {
+  Blob blob;
+  const cv::Moments m = cv::moments(contour);
+  // A contour runs through pixel centres: the region reaches half a pixel
+  // further.
+  const double perimeter = cv::arcLength(contour, true);
+  blob.area_px2 = m.m00 + 0.5 * perimeter + 1.0;
+  const cv::Rect box = cv::boundingRect(contour);
+  const double cx = m.m00 > 0.0 ? m.m10 / m.m00 : box.x + 0.5 * (box.width - 1);
+  const double cy =
+      m.m00 > 0.0 ? m.m01 / m.m00 : box.y + 0.5 * (box.height - 1);
+  const double to_x = region.x + frame.origin_x_px;
+  const double to_y = region.y + frame.origin_y_px;
+  blob.centre = {cx + to_x, cy + to_y};
+  const cv::RotatedRect tight = cv::minAreaRect(contour);
+  double angle = tight.angle * std::numbers::pi / 180.0;
+  double width = static_cast<double>(tight.size.width) + 1.0;
+  double height = static_cast<double>(tight.size.height) + 1.0;
+  if (height > width) {
+    std::swap(width, height);
+    angle += 0.5 * std::numbers::pi;
+  }
+  blob.long_px = width;
+  blob.short_px = height;
+  blob.angle_rad = std::remainder(angle, std::numbers::pi);
+  blob.fill = blob.area_px2 / (width * height);
+  blob.at_border = box.x <= 0 || box.y <= 0 ||
+                   box.x + box.width >= difference.cols ||
+                   box.y + box.height >= difference.rows;
+  // Mean difference over the filled contour.
+  cv::Mat mask = cv::Mat::zeros(box.size(), CV_8UC1);
+  cv::drawContours(mask, std::vector<std::vector<cv::Point>>{contour}, 0, 255,
+                   cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
+  blob.contrast_dn = cv::mean(difference(box), mask)[0];
+  return blob;
+}
+
+void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
+  std::sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
+    return a.area_px2 * std::abs(a.contrast_dn) >
+           b.area_px2 * std::abs(b.contrast_dn);
+  });
+  if (blobs.size() > static_cast<std::size_t>(options.most_blobs)) {
+    blobs.resize(static_cast<std::size_t>(options.most_blobs));
+  }
+}
+
+std::vector<Blob> FromDifference(const core::Frame& frame,
+                                 const Background& background,
+                                 const DetectOptions& options) {
+  const cv::Rect region = SearchRegion(frame, options.region);
+  std::vector<Blob> blobs;
+  if (region.empty()) return blobs;
+  cv::Mat value;
+  AsMat(frame)(region).convertTo(value, CV_32F);
+  const cv::Mat whole(background.height_px, background.width_px, CV_32FC1,
+                      const_cast<float*>(background.level.data()));
+  const cv::Mat still =
+      whole(region + cv::Point(frame.origin_x_px, frame.origin_y_px));
+  cv::Mat difference = value - still;
+  cv::Mat smooth;
+  cv::blur(difference, smooth, {3, 3});
+  const double threshold =
+      options.threshold_sigmas * SmoothedSigma(smooth, background);
+  cv::Mat magnitude = cv::abs(smooth);
+  cv::Mat mask = magnitude > threshold;
+  std::vector<std::vector<cv::Point>> regions;
+  cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
+                   cv::CHAIN_APPROX_NONE);
+  for (const auto& outer : regions) {
+    const cv::Rect box = cv::boundingRect(outer);
+    if (box.area() < options.least_area_px2) continue;
+    cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
+    cv::drawContours(own, std::vector<std::vector<cv::Point>>{outer}, 0, 255,
+                     cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
+    // The region's strong part: the 95th percentile of its difference.
+    std::vector<float> inside;
+    for (int y = 0; y < box.height; ++y) {
+      const float* row = magnitude.ptr<float>(box.y + y) + box.x;
+      const auto* in = own.ptr<std::uint8_t>(y);
+      for (int x = 0; x < box.width; ++x) {
+        if (in[x] != 0) inside.push_back(row[x]);
+      }
+    }
+    if (static_cast<double>(inside.size()) < options.least_area_px2) continue;
+    const auto high =
+        inside.begin() + static_cast<std::ptrdiff_t>(inside.size() * 95 / 100);
+    std::nth_element(inside.begin(), high, inside.end());
+    const double cut =
+        std::max(threshold, options.share_of_peak * static_cast<double>(*high));
+    cv::Mat strong = (magnitude(box) > cut) & own;
+    std::vector<std::vector<cv::Point>> parts;
+    cv::findContours(strong, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
+                     box.tl());
+    for (const auto& part : parts) {
+      Blob blob = FromContour(part, difference, region, frame);
+      if (blob.area_px2 >= options.least_area_px2) blobs.push_back(blob);
+    }
+  }
+  KeepLargest(blobs, options);
+  return blobs;
+}
+
+std::vector<Blob> FromLevels(const core::Frame& frame,
+                             const DetectOptions& options) {
+  const cv::Rect region = SearchRegion(frame, options.region);
+  std::vector<Blob> blobs;
+  if (region.empty()) return blobs;
+  cv::Mat value;
+  AsMat(frame)(region).convertTo(value, CV_32F);
+  cv::blur(value, value, {3, 3});
+  double low = 0.0;
+  double high = 0.0;
+  cv::minMaxLoc(value, &low, &high);
+  if (!(high > low)) return blobs;
+  // Otsu's threshold between the two levels.
+  cv::Mat eight;
+  value.convertTo(eight, CV_8U, 255.0 / (high - low),
+                  -255.0 * low / (high - low));
+  cv::Mat bright;
+  cv::threshold(eight, bright, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
+  const double mean = cv::mean(value)[0];
+  const cv::Mat difference = value - mean;
+  for (const cv::Mat& mask : {bright, cv::Mat(~bright)}) {
+    std::vector<std::vector<cv::Point>> regions;
+    cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
+                     cv::CHAIN_APPROX_NONE);
+    for (const auto& outer : regions) {
+      Blob blob = FromContour(outer, difference, region, frame);
+      // What spans most of the picture is background.
+      const double share = blob.area_px2 / static_cast<double>(region.area());
+      constexpr double kMostOfPicture = 0.5;
+      if (blob.area_px2 >= options.least_area_px2 && share < kMostOfPicture) {
+        blobs.push_back(blob);
+      }
+    }
+  }
+  KeepLargest(blobs, options);
+  return blobs;
+}
+
+}  // namespace
+
+std::vector<Blob> DetectBlobs(const core::Frame& frame,
+                              const Background& background,
+                              const DetectOptions& options) {
+  return options.detector == Detector::kDifference
+             ? FromDifference(frame, background, options)
+             : FromLevels(frame, options);
+}
+
+Outline StartFrom(const Blob& blob, core::BodyKind kind) {
+  Outline start;
+  start.kind = kind;
+  start.centre = blob.centre;
+  if (kind == core::BodyKind::kSphere) {
+    start.radius_px = std::sqrt(blob.area_px2 / std::numbers::pi);
+    return start;
+  }
+  // The box around a blurred rectangle is a little larger than it: keep its
+  // proportions and take the size from the area.
+  const double shrink = std::sqrt(std::min(1.0, blob.fill));
+  start.half_long_px = 0.5 * blob.long_px * shrink;
+  start.half_short_px = 0.5 * blob.short_px * shrink;
+  start.angle_rad = blob.angle_rad;
+  return start;
+}
+
+}  // namespace touchdown::vision

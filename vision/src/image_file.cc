@@ -1,0 +1,87 @@
+#include "touchdown/vision/image_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "clip_formats.h"
+#include "image_codecs.h"
+#include "mapped_file.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::vision {
+namespace {
+
+// Beyond any camera; a damaged header cannot make us allocate more than 512
+// MiB.
+constexpr std::int64_t kMaxSidePx = 1 << 16;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
+
+bool StartsWith(FileBytes file, std::initializer_list<std::uint8_t> magic) {
+  return file.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), file.begin());
+}
+
+}  // namespace
+
+core::Frame Image::View() const {
+  core::Frame frame;
+  frame.data = pixels.data();
+  frame.width_px = width_px;
+  frame.height_px = height_px;
+  frame.bit_depth = bit_depth;
+  frame.stride_bytes = std::ptrdiff_t{width_px} * (bit_depth > 8 ? 2 : 1);
+  return frame;
+}
+
+bool IsImageName(const std::filesystem::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".png" || extension == ".tif" || extension == ".tiff" ||
+         extension == ".jpg" || extension == ".jpeg";
+}
+
+void Allocate(std::int64_t width_px, std::int64_t height_px,
+              std::int32_t bit_depth, const std::string& name, Image& image) {
+  if (width_px < 1 || height_px < 1 || width_px > kMaxSidePx ||
+      height_px > kMaxSidePx || width_px * height_px > kMaxPixels) {
+    throw core::InputError(fmt::format(
+        "{}: {}x{} pixels, expected 1 .. {} a side and at most {} in all", name,
+        width_px, height_px, kMaxSidePx, kMaxPixels));
+  }
+  image.width_px = static_cast<std::int32_t>(width_px);
+  image.height_px = static_cast<std::int32_t>(height_px);
+  image.bit_depth = bit_depth;
+  image.pixels.resize(static_cast<std::size_t>(width_px * height_px) *
+                      (bit_depth > 8 ? 2 : 1));
+}
+
+void ReadImage(const std::filesystem::path& path, Image& image) {
+  const MappedFile map(path);
+  const FileBytes file(reinterpret_cast<const std::uint8_t*>(map.data()),
+                       static_cast<std::size_t>(map.size_bytes()));
+  const std::string name = path.string();
+  if (StartsWith(file, {0x89, 'P', 'N', 'G'})) {
+    DecodePng(file, name, image);
+  } else if (StartsWith(file, {0xFF, 0xD8, 0xFF})) {
+    DecodeJpeg(file, name, image);
+  } else if (StartsWith(file, {'I', 'I', 42, 0}) ||
+             StartsWith(file, {'M', 'M', 0, 42}) ||
+             StartsWith(file, {'I', 'I', 43, 0}) ||
+             StartsWith(file, {'M', 'M', 0, 43})) {
+    DecodeTiff(file, name, image);
+  } else {
+    throw core::InputError(fmt::format(
+        "{}: {}", name,
+        file.empty() ? "is empty, expected PNG, TIFF or JPEG"
+                     : "not a PNG, TIFF or JPEG picture, whatever its name"));
+  }
+}
+
+Image ReadImage(const std::filesystem::path& path) {
+  Image image;
+  ReadImage(path, image);
+  return image;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,35 @@
+// Instants at which the centre's normal velocity jumps upward: what a blow from
+// the ground leaves in a track. Needs no ground line.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "touchdown/vision/plane_track.h"
+
+namespace touchdown::vision {
+
+struct Kink {
+  std::size_t after = 0;      // the last sample before the jump
+  double jump = 0.0;          // upward change of normal velocity, px/s
+  double significance = 0.0;  // jump over its standard uncertainty
+  double time_s = 0.0;        // where the two sides meet
+};
+
+struct KinkOptions {
+  // Jumps less significant than this are noise: with a few hundred instants and
+  // scales tried, 6 lets one false jump pass in 1e6 clips of normal noise.
+  double least_significance = 6.0;
+
+  // A jump must also move the body by this much within one frame interval or
+  // within the window: slower ones are drift. In px.
+  double least_effect_px = 0.05;
+};
+
+// All kinks by time. Windows of several lengths on both sides are tried, each
+// side a parabola where frames allow, else lines with one curvature.
+std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
+                            const KinkOptions& options = {});
+
+}  // namespace touchdown::vision

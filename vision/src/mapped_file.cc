@@ -1,0 +1,58 @@
+#include "mapped_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "touchdown/core/errors.h"
+
+namespace touchdown::vision {
+namespace {
+
+[[noreturn]] void Fail(const std::filesystem::path& path, int error) {
+  throw core::InputError(fmt::format("{}: {}", path.string(),
+                                     std::generic_category().message(error)));
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) Fail(path, errno);
+  struct stat status {};
+  if (::fstat(file, &status) != 0) {
+    const int error = errno;
+    ::close(file);
+    Fail(path, error);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    ::close(file);
+    Fail(path, EISDIR);
+  }
+  size_bytes_ = status.st_size;
+  if (size_bytes_ > 0) {
+    void* const map = ::mmap(nullptr, static_cast<std::size_t>(size_bytes_),
+                             PROT_READ, MAP_SHARED, file, 0);
+    const int error = errno;
+    if (map == MAP_FAILED) {
+      ::close(file);
+      Fail(path, error);
+    }
+    data_ = static_cast<const std::byte*>(map);
+  }
+  ::close(file);
+}
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) {
+    ::munmap(const_cast<std::byte*>(data_),
+             static_cast<std::size_t>(size_bytes_));
+  }
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,30 @@
+// A whole file in memory, read-only, without reading it: pages come in as they
+// are touched, so that a clip may be larger than memory.
+//
+// A file that another program shortens while it is mapped ends this program
+// (SIGBUS) when the lost part is touched: recordings are not edited in place.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+namespace touchdown::vision {
+
+class MappedFile {
+ public:
+  // Throws core::InputError if the file cannot be opened or mapped.
+  explicit MappedFile(const std::filesystem::path& path);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  const std::byte* data() const { return data_; }
+  std::int64_t size_bytes() const { return size_bytes_; }
+
+ private:
+  const std::byte* data_ = nullptr;  // null if the file is empty
+  std::int64_t size_bytes_ = 0;
+};
+
+}  // namespace touchdown::vision

@@ -1,0 +1,513 @@
+#include "touchdown/vision/outline.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace touchdown::vision {
+namespace {
+
+// Geometry (x, y, size, size, angle), blur, six interior and six outer
+// polynomial terms.
+constexpr int kMaxParameters = 5 + 1 + 6 + 6;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                             kMaxParameters, kMaxParameters>;
+
+double NormalCdf(double z) {
+  return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0);
+}
+double NormalPdf(double z) {
+  constexpr double kInverseSqrt2Pi = 0.3989422804014327;
+  return kInverseSqrt2Pi * std::exp(-0.5 * z * z);
+}
+
+// Coverage of one pixel and its derivatives by (x, y, size1, size2, angle, w).
+struct Coverage {
+  double value = 0.0;
+  double d[6] = {0, 0, 0, 0, 0, 0};
+  double xi = 0.0;  // position in the body, in units of its size
+  double eta = 0.0;
+  double depth_px = 0.0;  // signed distance inside the outline
+};
+
+Coverage DiscCoverage(const Outline& o, double w, double px, double py) {
+  Coverage c;
+  const double dx = px - o.centre.x_px;
+  const double dy = py - o.centre.y_px;
+  const double r = std::hypot(dx, dy);
+  const double radius = o.radius_px;
+  const double edge = radius - w * w / (2.0 * radius);
+  const double z = (edge - r) / w;
+  const double density = NormalPdf(z) / w;
+  c.value = NormalCdf(z);
+  if (r > 1e-9) {
+    c.d[0] = density * dx / r;
+    c.d[1] = density * dy / r;
+  }
+  c.d[2] = density * (1.0 + w * w / (2.0 * radius * radius));
+  c.d[5] = density * (-w / radius) - NormalPdf(z) * z / w;
+  c.xi = dx / radius;
+  c.eta = dy / radius;
+  c.depth_px = radius - r;
+  return c;
+}
+
+Coverage RectangleCoverage(const Outline& o, double w, double px, double py,
+                           double cosine, double sine) {
+  Coverage c;
+  const double dx = px - o.centre.x_px;
+  const double dy = py - o.centre.y_px;
+  const double u = dx * cosine + dy * sine;
+  const double v = -dx * sine + dy * cosine;
+  const double a = o.half_long_px;
+  const double b = o.half_short_px;
+  const double up = (u + a) / w, um = (u - a) / w;
+  const double vp = (v + b) / w, vm = (v - b) / w;
+  const double pup = NormalPdf(up), pum = NormalPdf(um);
+  const double pvp = NormalPdf(vp), pvm = NormalPdf(vm);
+  const double along = NormalCdf(up) - NormalCdf(um);
+  const double across = NormalCdf(vp) - NormalCdf(vm);
+  const double d_u = (pup - pum) / w * across;
+  const double d_v = (pvp - pvm) / w * along;
+  c.value = along * across;
+  c.d[0] = -d_u * cosine + d_v * sine;
+  c.d[1] = -d_u * sine - d_v * cosine;
+  c.d[2] = (pup + pum) / w * across;
+  c.d[3] = (pvp + pvm) / w * along;
+  c.d[4] = d_u * v - d_v * u;
+  c.d[5] =
+      -((up * pup - um * pum) * across + (vp * pvp - vm * pvm) * along) / w;
+  c.xi = u / a;
+  c.eta = v / b;
+  const double out_u = std::abs(u) - a;
+  const double out_v = std::abs(v) - b;
+  if (out_u > 0.0 && out_v > 0.0) {
+    c.depth_px = -std::hypot(out_u, out_v);
+  } else {
+    c.depth_px = -std::max(out_u, out_v);
+  }
+  return c;
+}
+
+void Polynomial(double xi, double eta, int terms, double* f) {
+  const double all[6] = {1.0, xi, eta, xi * xi, xi * eta, eta * eta};
+  std::copy(all, all + terms, f);
+}
+
+// One pixel of the neighbourhood of the outline.
+struct Pixel {
+  double x = 0.0;
+  double y = 0.0;
+  double value = 0.0;       // DN
+  double background = 0.0;  // DN
+  double variance = 1.0;    // DN^2
+};
+
+double Extent(const Outline& o) {
+  return o.kind == core::BodyKind::kSphere
+             ? o.radius_px
+             : std::hypot(o.half_long_px, o.half_short_px);
+}
+double SmallestHalf(const Outline& o) {
+  return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_short_px;
+}
+
+class Fitter {
+ public:
+  Fitter(const core::Frame& frame, const Background& background,
+         const Outline& start, const OutlineOptions& options)
+      : frame_(frame),
+        background_(background),
+        options_(options),
+        outline_(start),
+        blur_(options.blur_px) {
+    geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
+    // A body of a few pixels cannot tell shading from shape.
+    constexpr double kSmallBody_px = 5.0;
+    interior_ = SmallestHalf(start) < kSmallBody_px ? 1 : 6;
+    outer_ = options.surround == OutlineOptions::Surround::kPolynomial ? 6 : 0;
+  }
+
+  core::Expected<OutlineFit> Run();
+
+ private:
+  void CollectPixels();
+  Coverage CoverageAt(const Pixel& p) const {
+    return outline_.kind == core::BodyKind::kSphere
+               ? DiscCoverage(outline_, blur_, p.x, p.y)
+               : RectangleCoverage(outline_, blur_, p.x, p.y, cosine_, sine_);
+  }
+  bool Usable(double x, double y) const {
+    return !options_.ground || calib::HeightAbove(*options_.ground, {x, y}) >=
+                                   options_.ground_margin_px;
+  }
+  double VisibleShare() const;
+  void SolveLevels();
+  double Accumulate(bool robust);
+  bool Step(double& geometric_step);
+  int LevelsBegin() const { return geometry_ + 1; }
+  int Parameters() const { return LevelsBegin() + interior_ + outer_; }
+  bool Free(int k) const;
+
+  const core::Frame& frame_;
+  const Background& background_;
+  const OutlineOptions& options_;
+  Outline outline_;
+  double blur_;
+  int geometry_ = 3;
+  int interior_ = 6;
+  int outer_ = 0;
+  double cosine_ = 1.0;
+  double sine_ = 0.0;
+  Vector levels_;  // interior then outer polynomial coefficients, DN
+  std::vector<Pixel> pixels_;
+  std::vector<double> residuals_;  // in units of the expected noise
+  double robust_scale_ = 0.0;      // 0: plain least squares
+  Matrix normal_;
+  Vector gradient_;
+  double contrast_ = 0.0;
+  double misfit_ = 0.0;
+  double inliers_ = 0.0;
+};
+
+void Fitter::CollectPixels() {
+  // The body and a band around it that holds the blurred edge and some of what
+  // lies outside; of a large body only a band inside the edge, wide enough to
+  // tell the interior's level.
+  constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
+  const double margin = kBand * std::max(blur_, 0.5) + 2.0;
+  const double inner = std::max(12.0, 6.0 * blur_);
+  const double reach = Extent(outline_) + margin;
+  const auto x0 = std::max<std::int32_t>(
+      frame_.origin_x_px,
+      static_cast<std::int32_t>(std::ceil(outline_.centre.x_px - reach)));
+  const auto y0 = std::max<std::int32_t>(
+      frame_.origin_y_px,
+      static_cast<std::int32_t>(std::ceil(outline_.centre.y_px - reach)));
+  const auto x1 = std::min<std::int32_t>(
+      frame_.origin_x_px + frame_.width_px - 1,
+      static_cast<std::int32_t>(std::floor(outline_.centre.x_px + reach)));
+  const auto y1 = std::min<std::int32_t>(
+      frame_.origin_y_px + frame_.height_px - 1,
+      static_cast<std::int32_t>(std::floor(outline_.centre.y_px + reach)));
+  pixels_.clear();
+  for (std::int32_t y = y0; y <= y1; ++y) {
+    for (std::int32_t x = x0; x <= x1; ++x) {
+      if (!Usable(x, y)) continue;
+      Pixel p;
+      p.x = x;
+      p.y = y;
+      const double depth = CoverageAt(p).depth_px;
+      if (depth < -margin || depth > inner) continue;
+      p.value = frame_.at(x - frame_.origin_x_px, y - frame_.origin_y_px);
+      p.background = static_cast<double>(background_.at(x, y));
+      p.variance = background_.Variance(p.value);
+      pixels_.push_back(p);
+    }
+  }
+}
+
+double Fitter::VisibleShare() const {
+  constexpr int kProbes = 72;
+  int seen = 0;
+  for (int i = 0; i < kProbes; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / kProbes;
+    double x = 0.0;
+    double y = 0.0;
+    if (outline_.kind == core::BodyKind::kSphere) {
+      x = outline_.radius_px * std::cos(phi);
+      y = outline_.radius_px * std::sin(phi);
+    } else {
+      // Where the ray at phi leaves the rectangle.
+      const double c = std::cos(phi);
+      const double s = std::sin(phi);
+      const double t =
+          std::min(outline_.half_long_px / std::max(std::abs(c), 1e-9),
+                   outline_.half_short_px / std::max(std::abs(s), 1e-9));
+      x = t * (c * cosine_ - s * sine_);
+      y = t * (c * sine_ + s * cosine_);
+    }
+    x += outline_.centre.x_px;
+    y += outline_.centre.y_px;
+    seen += x >= frame_.origin_x_px && y >= frame_.origin_y_px &&
+            x <= frame_.origin_x_px + frame_.width_px - 1 &&
+            y <= frame_.origin_y_px + frame_.height_px - 1 && Usable(x, y);
+  }
+  return static_cast<double>(seen) / kProbes;
+}
+
+bool Fitter::Free(int k) const {
+  if (k == geometry_) return options_.fit_blur;
+  if (options_.fit_size) return true;
+  return !(k == 2 || (geometry_ == 5 && k == 3));
+}
+
+// The levels that fit best at the present geometry: linear least squares, for a
+// start from which the joint iteration is tame.
+void Fitter::SolveLevels() {
+  const int n = interior_ + outer_;
+  Matrix a = Matrix::Zero(n, n);
+  Vector b = Vector::Zero(n);
+  Vector row(n);
+  double f[6];
+  for (const Pixel& p : pixels_) {
+    const Coverage c = CoverageAt(p);
+    Polynomial(c.xi, c.eta, interior_, f);
+    for (int k = 0; k < interior_; ++k) row[k] = c.value * f[k];
+    double known = 0.0;
+    if (outer_ > 0) {
+      Polynomial(c.xi, c.eta, outer_, f);
+      for (int k = 0; k < outer_; ++k)
+        row[interior_ + k] = (1 - c.value) * f[k];
+    } else {
+      known = (1 - c.value) * p.background;
+    }
+    a.noalias() += row * row.transpose() / p.variance;
+    b.noalias() += row * ((p.value - known) / p.variance);
+  }
+  // A trace of ridge keeps an unseen polynomial term at zero.
+  a.diagonal().array() += 1e-9 * (1e-12 + a.diagonal().maxCoeff());
+  levels_ = a.ldlt().solve(b);
+}
+
+// Builds the normal equations; returns the (robust) cost per pixel.
+double Fitter::Accumulate(bool robust) {
+  const int n = Parameters();
+  normal_ = Matrix::Zero(n, n);
+  gradient_ = Vector::Zero(n);
+  residuals_.clear();
+  Vector row(n);
+  double fi[6];
+  double fo[6];
+  double cost = 0.0;
+  double weight_sum = 0.0;
+  double contrast = 0.0;
+  double contrast_weight = 0.0;
+  double square = 0.0;
+  double in_count = 0.0;
+  const double cut = 4.685 * robust_scale_;  // Tukey: 95 % efficient
+  for (const Pixel& p : pixels_) {
+    const Coverage c = CoverageAt(p);
+    Polynomial(c.xi, c.eta, interior_, fi);
+    double in = 0.0;
+    for (int k = 0; k < interior_; ++k) in += levels_[k] * fi[k];
+    double out = p.background;
+    if (outer_ > 0) {
+      Polynomial(c.xi, c.eta, outer_, fo);
+      out = 0.0;
+      for (int k = 0; k < outer_; ++k) out += levels_[interior_ + k] * fo[k];
+    }
+    const double sigma = std::sqrt(p.variance);
+    const double residual = (p.value - out - c.value * (in - out)) / sigma;
+    residuals_.push_back(residual);
+    double weight = 1.0;
+    if (robust && cut > 0.0) {
+      const double t = residual / cut;
+      weight = std::abs(t) < 1.0 ? (1 - t * t) * (1 - t * t) : 0.0;
+    }
+    const double step = (in - out) / sigma;
+    // d[0..4] are x, y, size(s), angle; a sphere uses the first three.
+    for (int k = 0; k < geometry_; ++k) row[k] = step * c.d[k];
+    row[geometry_] = step * c.d[5];
+    for (int k = 0; k < interior_; ++k) {
+      row[LevelsBegin() + k] = c.value * fi[k] / sigma;
+    }
+    for (int k = 0; k < outer_; ++k) {
+      row[LevelsBegin() + interior_ + k] = (1 - c.value) * fo[k] / sigma;
+    }
+    for (int k = 0; k <= geometry_; ++k) {
+      if (!Free(k)) row[k] = 0.0;
+    }
+    normal_.noalias() += weight * row * row.transpose();
+    gradient_.noalias() += (weight * residual) * row;
+    cost += weight * residual * residual;
+    weight_sum += weight;
+    if (weight > 0.5) {
+      square += residual * residual;
+      in_count += 1.0;
+    }
+    const double edge = c.value * (1 - c.value);
+    contrast += edge * (in - out);
+    contrast_weight += edge;
+  }
+  contrast_ = contrast_weight > 0.0 ? contrast / contrast_weight : 0.0;
+  inliers_ = in_count / static_cast<double>(pixels_.size());
+  misfit_ = in_count > n ? std::sqrt(square / (in_count - n)) : 0.0;
+  return weight_sum > 0.0 ? cost / weight_sum
+                          : std::numeric_limits<double>::infinity();
+}
+
+bool Fitter::Step(double& geometric_step) {
+  const int n = Parameters();
+  Matrix a = normal_;
+  for (int k = 0; k < n; ++k) {
+    if (k <= geometry_ && !Free(k)) {
+      a(k, k) = 1.0;
+    } else {
+      a(k, k) *= 1.0 + 1e-9;
+      a(k, k) += 1e-12;
+    }
+  }
+  const Eigen::LDLT<Matrix> factor(a);
+  if (factor.info() != Eigen::Success) return false;
+  Vector step = factor.solve(gradient_);
+  if (!step.allFinite()) return false;
+  // No parameter may jump further than the linearisation holds.
+  const double size = SmallestHalf(outline_);
+  const double limit = std::max(0.5, 0.25 * size);
+  double shrink = 1.0;
+  for (int k = 0; k < geometry_; ++k) {
+    const double reach =
+        k == 4 ? limit / std::max(outline_.half_long_px, 1.0) : limit;
+    shrink = std::min(shrink, reach / std::max(std::abs(step[k]), 1e-300));
+  }
+  step.head(geometry_ + 1) *= std::min(1.0, shrink);
+  outline_.centre.x_px += step[0];
+  outline_.centre.y_px += step[1];
+  geometric_step = std::hypot(step[0], step[1]);
+  if (outline_.kind == core::BodyKind::kSphere) {
+    outline_.radius_px += step[2];
+    geometric_step = std::max(geometric_step, std::abs(step[2]));
+    if (!(outline_.radius_px > 0.7)) return false;
+  } else {
+    outline_.half_long_px += step[2];
+    outline_.half_short_px += step[3];
+    outline_.angle_rad += step[4];
+    geometric_step =
+        std::max({geometric_step, std::abs(step[2]), std::abs(step[3]),
+                  std::abs(step[4]) * outline_.half_long_px});
+    if (!(outline_.half_short_px > 0.7)) return false;
+    cosine_ = std::cos(outline_.angle_rad);
+    sine_ = std::sin(outline_.angle_rad);
+  }
+  // A pixel is a box of variance 1/12, so that no image is sharper than 0.29
+  // px.
+  constexpr double kSharpest_px = 0.25;
+  blur_ = std::clamp(blur_ + step[geometry_], kSharpest_px,
+                     std::max(2.0 * options_.blur_px, 0.5 * size));
+  levels_ += step.tail(interior_ + outer_);
+  return true;
+}
+
+core::Expected<OutlineFit> Fitter::Run() {
+  cosine_ = std::cos(outline_.angle_rad);
+  sine_ = std::sin(outline_.angle_rad);
+  constexpr double kLeastVisible = 1.0 / 3.0;
+  if (VisibleShare() < kLeastVisible) {
+    return core::AbsentBecause("less than a third of the outline is visible");
+  }
+  CollectPixels();
+  if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
+    return core::AbsentBecause("too few pixels of the outline are visible");
+  }
+  SolveLevels();
+  double step = 0.0;
+  bool converged = false;
+  int iteration = 0;
+  core::PixelPoint collected = outline_.centre;
+  for (; iteration < options_.max_iterations; ++iteration) {
+    Accumulate(iteration >= 2);
+    // Robust scale: at least the expected noise, more where the model is crude.
+    std::vector<double> sizes(residuals_.size());
+    std::transform(residuals_.begin(), residuals_.end(), sizes.begin(),
+                   [](double r) { return std::abs(r); });
+    const auto middle =
+        sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    robust_scale_ = std::max(1.0, 1.4826 * *middle);
+    if (!Step(step)) {
+      return core::AbsentBecause("the outline's fit is degenerate");
+    }
+    if (step < options_.tolerance_px && iteration >= 3) {
+      converged = true;
+      break;
+    }
+    // Follow the body with the set of pixels while it still moves.
+    if (std::hypot(outline_.centre.x_px - collected.x_px,
+                   outline_.centre.y_px - collected.y_px) > 0.5 ||
+        iteration < 3) {
+      if (VisibleShare() < kLeastVisible) {
+        return core::AbsentBecause(
+            "less than a third of the outline is visible");
+      }
+      CollectPixels();
+      collected = outline_.centre;
+      if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
+        return core::AbsentBecause("too few pixels of the outline are visible");
+      }
+    }
+  }
+  // Oscillation of a hundredth of a pixel comes from robust weights; more is no
+  // outline.
+  constexpr double kUsableStep_px = 0.02;
+  if (!converged && !(step < kUsableStep_px)) {
+    return core::AbsentBecause("the outline's fit does not converge");
+  }
+  Accumulate(true);
+  const double noise =
+      std::sqrt(background_.Variance(pixels_[pixels_.size() / 2].background));
+  constexpr double kLeastContrast = 3.0;  // in noise of one pixel
+  if (!(std::abs(contrast_) > kLeastContrast * noise)) {
+    return core::AbsentBecause(
+        fmt::format("contrast {:.1f} DN is below {:.0f} times the noise {:.1f}",
+                    std::abs(contrast_), kLeastContrast, noise));
+  }
+
+  Matrix a = normal_;
+  for (int k = 0; k < Parameters(); ++k) {
+    a(k, k) = (k <= geometry_ && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
+  }
+  const Matrix covariance =
+      a.ldlt().solve(Matrix::Identity(Parameters(), Parameters()));
+  const double widen = std::max(1.0, misfit_);
+  const auto u = [&](int k) {
+    return Free(k) ? widen * std::sqrt(std::max(0.0, covariance(k, k))) : 0.0;
+  };
+  OutlineFit fit;
+  fit.outline = outline_;
+  fit.blur_px = blur_;
+  fit.u_x_px = u(0);
+  fit.u_y_px = u(1);
+  fit.correlation_xy =
+      covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1));
+  fit.u_size_px = u(2);
+  if (geometry_ == 5) {
+    fit.u_size_short_px = u(3);
+    fit.u_angle_rad = u(4);
+  }
+  fit.contrast_dn = contrast_;
+  fit.misfit = misfit_;
+  fit.inliers = inliers_;
+  fit.visible = VisibleShare();
+  fit.pixels = static_cast<int>(pixels_.size());
+  fit.iterations = iteration + 1;
+  if (!std::isfinite(fit.u_x_px + fit.u_y_px + fit.u_angle_rad)) {
+    return core::AbsentBecause("the outline's covariance is degenerate");
+  }
+  return fit;
+}
+
+}  // namespace
+
+core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
+                                      const Background& background,
+                                      const Outline& start,
+                                      const OutlineOptions& options) {
+  return Fitter(frame, background, start, options).Run();
+}
+
+double SupportHeight(const Outline& outline, double ground_angle_rad) {
+  if (outline.kind == core::BodyKind::kSphere) return outline.radius_px;
+  const double tilt = outline.angle_rad - ground_angle_rad;
+  return outline.half_long_px * std::abs(std::sin(tilt)) +
+         outline.half_short_px * std::abs(std::cos(tilt));
+}
+
+}  // namespace touchdown::vision

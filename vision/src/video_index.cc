@@ -1,0 +1,136 @@
+#include "video_index.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::vision {
+namespace {
+
+// Timestamps that leave the even grid by less than this part of a frame period
+// count as rounded by the container (1 ms ticks at 20 to 30 fps reach 1.5 %);
+// cameras that vary their rate leave it by far more.
+constexpr double kRoundingPeriods = 0.02;
+
+// Largest deviation of `pts` from an even grid of `fps`, in ticks, at most the
+// allowed one?
+bool FitsGrid(const std::vector<std::int64_t>& pts, double fps, double tick_s) {
+  if (!(fps > 0.0) || !std::isfinite(fps)) return false;
+  const double period_ticks = 1.0 / (fps * tick_s);
+  const double allowed = std::max(1.0, kRoundingPeriods * period_ticks);
+  for (std::size_t i = 0; i < pts.size(); ++i) {
+    const double grid = static_cast<double>(i) * period_ticks;
+    if (std::abs(static_cast<double>(pts[i] - pts[0]) - grid) > allowed) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The frame rate: what the container says if the timestamps agree with it, else
+// what they say themselves.
+void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
+              VideoIndex& index) {
+  const double tick_s = av_q2d(stream.time_base);
+  const auto rate = [](AVRational r) {
+    return r.num > 0 && r.den > 0 ? av_q2d(r) : 0.0;
+  };
+  const double average = rate(stream.avg_frame_rate);
+  const double base = rate(stream.r_frame_rate);
+  for (const double fps : {average, base}) {
+    if (fps > 0.0 && (pts.empty() || FitsGrid(pts, fps, tick_s))) {
+      index.fps = fps;
+      return;
+    }
+  }
+  if (pts.size() < 2 || pts.back() <= pts.front()) return;
+  index.fps = static_cast<double>(pts.size() - 1) /
+              (static_cast<double>(pts.back() - pts.front()) * tick_s);
+  index.uniform = FitsGrid(pts, index.fps, tick_s);
+}
+
+}  // namespace
+
+VideoPacket Describe(const AVPacket& packet) {
+  return {packet.pts, packet.dts, packet.pos,
+          (packet.flags & AV_PKT_FLAG_KEY) != 0};
+}
+
+std::optional<std::int64_t> VideoIndex::FrameAt(std::int64_t time) const {
+  const auto found = std::lower_bound(pts.begin(), pts.end(), time);
+  if (found == pts.end() || *found != time) return std::nullopt;
+  return found - pts.begin();
+}
+
+std::size_t VideoIndex::KeyPacketFor(std::int64_t index) const {
+  // Frames before a key frame in time may follow it in the file (open groups);
+  // they need the one before. So the key frame itself must not be later.
+  const std::int64_t time = pts[static_cast<std::size_t>(index)];
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    if (packets[i].dts != AV_NOPTS_VALUE && packets[i].dts > time) break;
+    if (packets[i].key && packets[i].pts <= time) best = i;
+  }
+  return best;
+}
+
+VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream) {
+  VideoIndex index;
+  const LibavPtr<AVPacket> packet(av_packet_alloc());
+  std::vector<std::int64_t> pts;
+  std::int64_t last_dts = AV_NOPTS_VALUE;
+  bool timed = true;
+  int result = 0;
+  while ((result = av_read_frame(&format, packet.get())) >= 0) {
+    const bool whole = (packet->flags & AV_PKT_FLAG_CORRUPT) == 0;
+    if (packet->stream_index == stream.index && packet->size > 0) {
+      if (!whole) {
+        // The file ends within this frame.
+        index.ended_early = "the last frame is cut";
+        av_packet_unref(packet.get());
+        break;
+      }
+      index.packets.push_back(Describe(*packet));
+      // Frames before the start of an edit list are decoded but not shown.
+      if ((packet->flags & AV_PKT_FLAG_DISCARD) == 0) {
+        ++index.frames;
+        timed = timed && packet->pts != AV_NOPTS_VALUE;
+        pts.push_back(packet->pts);
+      }
+      last_dts = packet->dts;
+    }
+    av_packet_unref(packet.get());
+  }
+  if (result < 0 && result != AVERROR_EOF) {
+    index.ended_early = LibavError(result);
+  } else if (format.pb != nullptr && format.pb->error < 0) {
+    index.ended_early = LibavError(format.pb->error);
+  } else if (index.ended_early.empty() &&
+             stream.nb_frames >
+                 static_cast<std::int64_t>(index.packets.size())) {
+    index.ended_early = "its own list names more frames";
+  }
+  if (!timed) pts.clear();
+  std::sort(pts.begin(), pts.end());
+  if (!index.ended_early.empty() && last_dts != AV_NOPTS_VALUE) {
+    // A later packet, had it been there, would have been decoded after last_dts
+    // and shown no earlier: up to there nothing is missing.
+    std::erase_if(pts, [&](std::int64_t t) { return t > last_dts; });
+    if (timed) index.frames = static_cast<std::int64_t>(pts.size());
+  }
+  FindRate(pts, stream, index);
+  const bool distinct = std::adjacent_find(pts.begin(), pts.end()) == pts.end();
+  if (timed && distinct) index.pts = std::move(pts);
+  return index;
+}
+
+bool IsPlaybackRate(double fps) {
+  constexpr double kRates[] = {24000.0 / 1001.0, 24.0, 25.0,
+                               30000.0 / 1001.0, 30.0, 50.0,
+                               60000.0 / 1001.0, 60.0};
+  constexpr double kTolerance = 1e-3;
+  return std::any_of(std::begin(kRates), std::end(kRates), [&](double rate) {
+    return std::abs(fps / rate - 1.0) <= kTolerance;
+  });
+}
+
+}  // namespace touchdown::vision

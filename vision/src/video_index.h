@@ -1,0 +1,55 @@
+// Every packet of a video stream, so that frames have exact numbers and times:
+// made by demuxing the whole file once, without decoding.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libav.h"
+#include "touchdown/vision/clip.h"
+
+namespace touchdown::vision {
+
+struct VideoPacket {
+  std::int64_t pts = AV_NOPTS_VALUE;
+  std::int64_t dts = AV_NOPTS_VALUE;
+  std::int64_t pos = -1;
+  bool key = false;
+
+  // Whether a packet read again is this one. Not by dts: some demuxers guess it
+  // from what they read before.
+  bool Is(const VideoPacket& other) const {
+    return pts == other.pts && pos == other.pos && key == other.key &&
+           (pts != AV_NOPTS_VALUE || pos >= 0);
+  }
+};
+VideoPacket Describe(const AVPacket& packet);
+
+struct VideoIndex {
+  std::vector<VideoPacket> packets;  // in the order of the file
+  // Presentation times of the frames, ascending, in units of the stream's time
+  // base. Empty where the container does not tell them apart (no timestamps, or
+  // coarser than the frames): frames are then numbered by counting from the
+  // beginning.
+  std::vector<std::int64_t> pts;
+  std::int64_t frames = 0;
+  bool uniform = true;
+  double fps = 0.0;         // mean rate if not uniform; 0: the file tells none
+  std::string ended_early;  // why demuxing stopped before the end, or empty
+
+  // Number of the frame shown at `pts`, if there is one.
+  std::optional<std::int64_t> FrameAt(std::int64_t pts) const;
+  // The last key packet from which frame `index` can be decoded.
+  std::size_t KeyPacketFor(std::int64_t index) const;
+};
+
+// Reads on from the beginning to the end of the file.
+VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream);
+
+// Whether the rate is one that players use (23.976, 24, 25, 29.97, 30, 50,
+// 59.94, 60 within 0.1 %): high-speed recordings are saved with such rates.
+bool IsPlaybackRate(double fps);
+
+}  // namespace touchdown::vision
