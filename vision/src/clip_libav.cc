@@ -41,7 +41,7 @@ class VideoClip final : public Clip {
     info_.path = path;
     Open();
     info_.format = FormatName();
-    index_ = IndexVideo(*format_, *stream_);
+    index_ = IndexVideo(*format_, *stream_, declared_rate_);
     if (index_.frames < 1) {
       Fail(index_.ended_early.empty()
                ? "there is no whole frame in it"
@@ -111,6 +111,11 @@ class VideoClip final : public Clip {
                       "video, an .mraw with its header, or a folder of images",
                       LibavError(opened)));
     }
+    // What the container itself says, before it is overridden by guesses.
+    std::vector<AVRational> declared;
+    for (unsigned i = 0; i < format_->nb_streams; ++i) {
+      declared.push_back(format_->streams[i]->avg_frame_rate);
+    }
     if (const int found = avformat_find_stream_info(format_.get(), nullptr);
         found < 0) {
       Fail(fmt::format("damaged before its first frame ({})",
@@ -124,11 +129,20 @@ class VideoClip final : public Clip {
       if (static_cast<int>(i) == best &&
           (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0) {
         stream_ = stream;
+        declared_rate_ = i < declared.size() ? declared[i] : AVRational{0, 1};
       } else {
         stream->discard = AVDISCARD_ALL;  // sound, subtitles, cover pictures
       }
     }
     if (stream_ == nullptr) Fail("there is no video in it");
+    if (stream_->codecpar->codec_id == AV_CODEC_ID_NONE &&
+        stream_->codecpar->codec_tag == MKTAG('Y', '1', '6', ' ')) {
+      // 16-bit gray of machine-vision cameras, which libav does not know in
+      // .avi.
+      stream_->codecpar->codec_id = AV_CODEC_ID_RAWVIDEO;
+      stream_->codecpar->codec_tag =
+          avcodec_pix_fmt_to_codec_tag(AV_PIX_FMT_GRAY16LE);
+    }
     OpenDecoder();
   }
 
@@ -363,8 +377,16 @@ class VideoClip final : public Clip {
     time.fps = index_.fps;
     time.source = cine ? FpsSource::kHeader : FpsSource::kContainer;
     time.uniform = index_.uniform;
-    time.trusted = cine || !IsPlaybackRate(time.fps);
-    if (!time.trusted) {
+    const bool playback = !cine && IsPlaybackRate(time.fps);
+    time.trusted = !playback && !index_.coarse;
+    if (index_.coarse) {
+      info_.warnings.push_back(
+          fmt::format("the file's timestamps are too coarse to tell its frames "
+                      "apart (about "
+                      "{:.6g} fps); give the camera's rate with --fps",
+                      time.fps));
+    }
+    if (playback) {
       info_.warnings.push_back(
           fmt::format("{:.6g} fps is a rate of playback; if the camera "
                       "recorded at another, "
@@ -389,6 +411,7 @@ class VideoClip final : public Clip {
   LibavPtr<AVPacket> packet_;
   LibavPtr<AVFrame> frame_;
   AVStream* stream_ = nullptr;  // of format_
+  AVRational declared_rate_{0, 1};
   VideoIndex index_;
   ClipInfo info_;
   std::optional<LumaReader> reader_;

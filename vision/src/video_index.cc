@@ -29,14 +29,14 @@ bool FitsGrid(const std::vector<std::int64_t>& pts, double fps, double tick_s) {
 // The frame rate: what the container says if the timestamps agree with it, else
 // what they say themselves.
 void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
-              VideoIndex& index) {
+              AVRational declared, VideoIndex& index) {
   const double tick_s = av_q2d(stream.time_base);
   const auto rate = [](AVRational r) {
     return r.num > 0 && r.den > 0 ? av_q2d(r) : 0.0;
   };
   const double average = rate(stream.avg_frame_rate);
   const double base = rate(stream.r_frame_rate);
-  for (const double fps : {average, base}) {
+  for (const double fps : {rate(declared), average, base}) {
     if (fps > 0.0 && (pts.empty() || FitsGrid(pts, fps, tick_s))) {
       index.fps = fps;
       return;
@@ -73,7 +73,8 @@ std::size_t VideoIndex::KeyPacketFor(std::int64_t index) const {
   return best;
 }
 
-VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream) {
+VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
+                      AVRational declared) {
   VideoIndex index;
   const LibavPtr<AVPacket> packet(av_packet_alloc());
   std::vector<std::int64_t> pts;
@@ -117,8 +118,9 @@ VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream) {
     std::erase_if(pts, [&](std::int64_t t) { return t > last_dts; });
     if (timed) index.frames = static_cast<std::int64_t>(pts.size());
   }
-  FindRate(pts, stream, index);
+  FindRate(pts, stream, declared, index);
   const bool distinct = std::adjacent_find(pts.begin(), pts.end()) == pts.end();
+  index.coarse = !distinct;
   if (timed && distinct) index.pts = std::move(pts);
   return index;
 }

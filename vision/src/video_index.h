@@ -36,6 +36,7 @@ struct VideoIndex {
   std::vector<std::int64_t> pts;
   std::int64_t frames = 0;
   bool uniform = true;
+  bool coarse = false;      // timestamps that several frames share
   double fps = 0.0;         // mean rate if not uniform; 0: the file tells none
   std::string ended_early;  // why demuxing stopped before the end, or empty
 
@@ -45,8 +46,10 @@ struct VideoIndex {
   std::size_t KeyPacketFor(std::int64_t index) const;
 };
 
-// Reads on from the beginning to the end of the file.
-VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream);
+// Reads on from the beginning to the end of the file. `declared` is the rate
+// that the container states, or 0/1.
+VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
+                      AVRational declared);
 
 // Whether the rate is one that players use (23.976, 24, 25, 29.97, 30, 50,
 // 59.94, 60 within 0.1 %): high-speed recordings are saved with such rates.
