@@ -251,10 +251,6 @@ Analysis Analyzer::Run() {
   }
 
   auto lap = Clock::now();
-  background_ = vision::EstimateBackground(*clip_, options_.first_frame, last);
-  result_.timing.background_s = Since(lap);
-
-  lap = Clock::now();
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;
@@ -262,7 +258,7 @@ Analysis Analyzer::Run() {
   track_options.kind = kind;
   track_options.ground = options_.ground;
   track_options.progress = options_.progress;
-  const auto tracked = vision::TrackBody(*clip_, background_, track_options);
+  auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
 
   lap = Clock::now();
@@ -274,6 +270,7 @@ Analysis Analyzer::Run() {
     result_.contacts.first.state.reason = tracked.error().reason;
   } else {
     const vision::Track& track = tracked->track;
+    background_ = std::move(tracked->background);
     result_.scale = FindScale(options_, track.body);
     if (!result_.scale) {
       result_.no_scale_reason =
@@ -303,6 +300,7 @@ Analysis Analyzer::Run() {
                                                 : core::BodyKind::kSphere);
   DescribeScene();
   result_.timing.contact_s = Since(lap);
+  result_.timing.decode_s = clip_->reading_s();
   result_.timing.total_s = Since(start);
   result_.timing.frames_per_s =
       static_cast<double>(last - options_.first_frame) / result_.timing.total_s;

@@ -205,7 +205,7 @@ bool IsAnotherBody(const Chain& best, const Chain& other) {
   constexpr double kLeastContrast = 0.7;
   constexpr double kAreaRatio = 2.5;
   return static_cast<double>(to - from + 1) > kOverlap * shorter &&
-         other.links.size() >= 5 &&
+         other.links.size() >= 5 && other.Contrast() * best.Contrast() > 0.0 &&
          std::abs(other.Contrast()) >
              kLeastContrast * std::abs(best.Contrast()) &&
          other.Area() * kAreaRatio > best.Area() &&

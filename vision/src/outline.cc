@@ -218,6 +218,7 @@ void Fitter::CollectPixels() {
   for (std::int32_t y = y0; y <= y1; ++y) {
     for (std::int32_t x = x0; x <= x1; ++x) {
       if (!Usable(x, y)) continue;
+      if (outer_ == 0 && !background_.known_at(x, y)) continue;
       Pixel p;
       p.x = x;
       p.y = y;
@@ -530,6 +531,20 @@ core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
                                       const Outline& start,
                                       const OutlineOptions& options) {
   return Fitter(frame, background, start, options).Run();
+}
+
+double DepthInside(const Outline& outline, double x_px, double y_px) {
+  const double dx = x_px - outline.centre.x_px;
+  const double dy = y_px - outline.centre.y_px;
+  if (outline.kind == core::BodyKind::kSphere) {
+    return outline.radius_px - std::hypot(dx, dy);
+  }
+  const double c = std::cos(outline.angle_rad);
+  const double s = std::sin(outline.angle_rad);
+  const double out_u = std::abs(dx * c + dy * s) - outline.half_long_px;
+  const double out_v = std::abs(-dx * s + dy * c) - outline.half_short_px;
+  return out_u > 0.0 && out_v > 0.0 ? -std::hypot(out_u, out_v)
+                                    : -std::max(out_u, out_v);
 }
 
 double SupportHeight(const Outline& outline, double ground_angle_rad) {
