@@ -46,8 +46,8 @@ struct SceneModel {
 struct Timing {
   double total_s = 0.0;
   double open_s = 0.0;
-  double decode_s = 0.0;   // inside Clip::Read
-  double track_s = 0.0;  // reading and fitting
+  double decode_s = 0.0;  // inside Clip::Read
+  double track_s = 0.0;   // reading and fitting
   double contact_s = 0.0;
   double frames_per_s = 0.0;
 };
