@@ -73,6 +73,23 @@ std::size_t VideoIndex::KeyPacketFor(std::int64_t index) const {
   return best;
 }
 
+std::int64_t VideoIndex::KeyFrameAfter(std::int64_t index) const {
+  std::int64_t after = frames;
+  if (pts.empty()) {
+    // Without timestamps, frames are in the order of their packets.
+    const auto begin = packets.begin() + static_cast<std::ptrdiff_t>(index) + 1;
+    const auto key = std::find_if(begin, packets.end(),
+                                  [](const VideoPacket& p) { return p.key; });
+    return std::min<std::int64_t>(key - packets.begin(), frames);
+  }
+  const std::int64_t time = pts[static_cast<std::size_t>(index)];
+  for (const VideoPacket& packet : packets) {
+    if (!packet.key || packet.pts <= time) continue;
+    if (const auto frame = FrameAt(packet.pts)) after = std::min(after, *frame);
+  }
+  return after;
+}
+
 VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
                       AVRational declared) {
   VideoIndex index;

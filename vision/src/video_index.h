@@ -44,6 +44,8 @@ struct VideoIndex {
   std::optional<std::int64_t> FrameAt(std::int64_t pts) const;
   // The last key packet from which frame `index` can be decoded.
   std::size_t KeyPacketFor(std::int64_t index) const;
+  // The first key frame after frame `index`, or the number of frames.
+  std::int64_t KeyFrameAfter(std::int64_t index) const;
 };
 
 // Reads on from the beginning to the end of the file. `declared` is the rate
