@@ -212,7 +212,9 @@ class VideoClip final : public Clip {
       // A lost frame spoils those that are predicted from it: none is believed
       // up to the next key frame.
       const bool damaged = (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0 ||
-                           frame_->decode_error_flags != 0;
+                           frame_->decode_error_flags != 0 ||
+                           std::binary_search(index_.damaged.begin(),
+                                              index_.damaged.end(), current_);
       if (current_ > expected_ || damaged) {
         bad_from_ = expected_;
         bad_to_ = index_.KeyFrameAfter(expected_);

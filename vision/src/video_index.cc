@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "ffv1_check.h"
 
 namespace touchdown::vision {
 namespace {
@@ -95,6 +98,9 @@ VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
   VideoIndex index;
   const LibavPtr<AVPacket> packet(av_packet_alloc());
   std::vector<std::int64_t> pts;
+  std::vector<std::int64_t> damaged;  // their presentation times
+  std::vector<std::int64_t> damaged_numbers;
+  bool has_sums = stream.codecpar->codec_id == AV_CODEC_ID_FFV1;
   std::int64_t last_dts = AV_NOPTS_VALUE;
   bool timed = true;
   int result = 0;
@@ -110,6 +116,16 @@ VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
       index.packets.push_back(Describe(*packet));
       // Frames before the start of an edit list are decoded but not shown.
       if ((packet->flags & AV_PKT_FLAG_DISCARD) == 0) {
+        const std::span<const std::uint8_t> bytes(
+            packet->data, static_cast<std::size_t>(packet->size));
+        if (has_sums && !Ffv1SumsHold(bytes)) {
+          if (index.frames == 0) {
+            has_sums = false;  // written without them
+          } else {
+            damaged.push_back(packet->pts);
+            damaged_numbers.push_back(index.frames);
+          }
+        }
         ++index.frames;
         timed = timed && packet->pts != AV_NOPTS_VALUE;
         pts.push_back(packet->pts);
@@ -139,6 +155,15 @@ VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
   const bool distinct = std::adjacent_find(pts.begin(), pts.end()) == pts.end();
   index.coarse = !distinct;
   if (timed && distinct) index.pts = std::move(pts);
+  if (index.pts.empty()) {
+    index.damaged = std::move(damaged_numbers);
+  } else {
+    for (const std::int64_t time : damaged) {
+      if (const auto frame = index.FrameAt(time)) {
+        index.damaged.push_back(*frame);
+      }
+    }
+  }
   return index;
 }
 

@@ -36,8 +36,9 @@ struct VideoIndex {
   std::vector<std::int64_t> pts;
   std::int64_t frames = 0;
   bool uniform = true;
-  bool coarse = false;      // timestamps that several frames share
-  double fps = 0.0;         // mean rate if not uniform; 0: the file tells none
+  bool coarse = false;  // timestamps that several frames share
+  double fps = 0.0;     // mean rate if not uniform; 0: the file tells none
+  std::vector<std::int64_t> damaged;  // frames known to be, ascending
   std::string ended_early;  // why demuxing stopped before the end, or empty
 
   // Number of the frame shown at `pts`, if there is one.
