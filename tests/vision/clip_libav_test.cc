@@ -326,7 +326,8 @@ TEST_P(VideoDamageIn, ABadFrameIsNamedAndTheOthersStay) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Kinds, VideoDamageIn,
-    ::testing::Values(DamageCase{"a.avi", VideoCodec::kFfv1},
+    ::testing::Values(DamageCase{"a.avi", VideoCodec::kRaw},
+                      DamageCase{"a.avi", VideoCodec::kFfv1},
                       DamageCase{"a.mkv", VideoCodec::kFfv1},
                       DamageCase{"a.avi", VideoCodec::kH264},
                       DamageCase{"a.mkv", VideoCodec::kH264},

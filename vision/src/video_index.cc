@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string_view>
 
 #include "ffv1_check.h"
 
@@ -51,6 +52,41 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   index.uniform = FitsGrid(pts, index.fps, tick_s);
 }
 
+// The container's own list of an uncompressed stream, if it names every frame
+// and the file has room for the last.
+std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
+                                      AVRational declared) {
+  const int count = avformat_index_get_entries_count(&stream);
+  const std::int64_t frames =
+      stream.nb_frames > 0 ? stream.nb_frames : stream.duration;
+  if (stream.codecpar->codec_id != AV_CODEC_ID_RAWVIDEO || count < 2 ||
+      count != frames) {
+    return std::nullopt;
+  }
+  VideoIndex index;
+  std::int64_t before = 0;
+  std::int64_t end = 0;
+  for (int i = 0; i < count; ++i) {
+    const AVIndexEntry* const entry = avformat_index_get_entry(&stream, i);
+    // .cine lists no sizes; elsewhere an empty chunk stands for a lost frame.
+    const bool sizes = std::string_view(format.iformat->name) != "cine";
+    const bool in_order =
+        i == 0 || (entry->timestamp > index.pts.back() && entry->pos > before);
+    if (!in_order || (sizes && entry->size <= 0) ||
+        (entry->flags & AVINDEX_KEYFRAME) == 0) {
+      return std::nullopt;
+    }
+    end = entry->pos + (sizes ? entry->size : entry->pos - before);
+    before = entry->pos;
+    index.packets.push_back({entry->timestamp, entry->timestamp, -1, true});
+    index.pts.push_back(entry->timestamp);
+  }
+  if (format.pb == nullptr || end > avio_size(format.pb)) return std::nullopt;
+  index.frames = count;
+  FindRate(index.pts, stream, declared, index);
+  return index;
+}
+
 }  // namespace
 
 VideoPacket Describe(const AVPacket& packet) {
@@ -93,8 +129,9 @@ std::int64_t VideoIndex::KeyFrameAfter(std::int64_t index) const {
   return after;
 }
 
-VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
+VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
                       AVRational declared) {
+  if (auto listed = IndexByList(format, stream, declared)) return *listed;
   VideoIndex index;
   const LibavPtr<AVPacket> packet(av_packet_alloc());
   std::vector<std::int64_t> pts;
