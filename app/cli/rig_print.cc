@@ -147,7 +147,7 @@ std::string Line(std::string_view name, const rig::Predicted& value,
         fmt::format("  Monte Carlo {}, 95 %: {:.5g} .. {:.5g}{}",
                     Rounded({mc.mean * per_si, mc.u * per_si, {}}),
                     mc.interval95.low * per_si, mc.interval95.high * per_si,
-                    value.first_order_valid ? "" : "  (first order invalid)");
+                    value.first_order_valid ? "" : "  (not normal: use this)");
   }
   while (out.back() == ' ') out.pop_back();
   return out + '\n';

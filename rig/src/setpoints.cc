@@ -110,7 +110,7 @@ Expected<Throw> ApproachThrow(const Description& rig, const ContactWish& wish,
   up_squared = std::fmax(0.0, up_squared);
   // A level shot, but for the rounding of the difference above.
   if (up_squared < 1e-12 * wish.speed_mps * wish.speed_mps) up_squared = 0.0;
-  const double up = sign * std::sqrt(up_squared);
+  const double up = up_squared > 0.0 ? sign * std::sqrt(up_squared) : 0.0;
   if (up < 0.0 && drop <= kLengthSlack_m) {
     return AbsentBecause("fired downward at ground height there is no flight");
   }

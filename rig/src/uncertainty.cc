@@ -180,7 +180,12 @@ bool FirstOrderIsValid(const core::Estimate& first_order,
   if (digits < 1) Refuse("digits", digits, "at least 1");
   const double u = monte_carlo.u;
   if (u == 0.0) return first_order.u == 0.0;
-  const double unit = std::pow(10.0, std::floor(std::log10(u)) - digits + 1);
+  // u rounded to `digits` digits is c 10^l with c a whole number; 9.6 rounds to
+  // 10, one decade up.
+  double l = std::floor(std::log10(u)) - digits + 1;
+  const double c = std::round(u / std::pow(10.0, l));
+  if (c >= std::pow(10.0, digits)) l += 1.0;
+  const double unit = std::pow(10.0, l);
   const core::Interval interval = core::Interval95(first_order);
   return std::abs(interval.low - monte_carlo.interval95.low) <= 0.5 * unit &&
          std::abs(interval.high - monte_carlo.interval95.high) <= 0.5 * unit;
