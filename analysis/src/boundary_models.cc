@@ -150,11 +150,55 @@ constexpr std::array<Uncertain, 8> kUncertain = {{
     {"bounce_height_m", &BoundaryInputs::bounce_height_m, kTiny, kHuge},
 }};
 
+// Whether the model's boundary depends on the input at all.
+bool Uses(BoundaryModel model, const BoundaryInputs& in,
+          const Uncertain& what) {
+  using Field = core::Estimate BoundaryInputs::*;
+  const Field f = what.field;
+  const bool of_spin = f == &BoundaryInputs::radius_m ||
+                       f == &BoundaryInputs::omega_rad_per_s ||
+                       f == &BoundaryInputs::gravity_mps2;
+  const bool of_corner =
+      f == &BoundaryInputs::kappa || f == &BoundaryInputs::mu;
+  switch (model) {
+    case BoundaryModel::kPublished:
+    case BoundaryModel::kPaperReplication:
+      return false;
+    case BoundaryModel::kPrintedEquations:
+      return of_spin;
+    case BoundaryModel::kCorrectedLcp:
+      return !IsSphere(in) &&
+             (of_spin || (of_corner && in.slip == Slip::kLeading));
+    case BoundaryModel::kDetectableBounce:
+      break;
+  }
+  const bool of_rectangle = of_corner || f == &BoundaryInputs::radius_m;
+  return f != &BoundaryInputs::omega_rad_per_s &&
+         !(IsSphere(in) && of_rectangle);
+}
+
 core::Expected<double> WithShift(BoundaryModel model, BoundaryInputs in,
                                  const Uncertain& what, double shift) {
   double& value = (in.*what.field).value;
   value = std::clamp(value + shift, what.low, what.high);
   return BoundaryAngle(model, in);
+}
+
+// A boundary of spin goes as the square root of w - 1, w = R omega^2/g: first
+// order needs w - 1 > 10 u(w).
+bool IsFarFromThreshold(BoundaryModel model, const BoundaryInputs& in,
+                        double boundary_rad) {
+  if (model == BoundaryModel::kDetectableBounce) return true;
+  const auto spin = Spin(in);
+  if (!spin || *spin != boundary_rad) return true;
+  const auto relative = [](const core::Estimate& e) { return e.u / e.value; };
+  const double w = in.radius_m.value * in.omega_rad_per_s.value *
+                   in.omega_rad_per_s.value / in.gravity_mps2.value;
+  const double u_w =
+      w * std::hypot(relative(in.radius_m), 2.0 * relative(in.omega_rad_per_s),
+                     relative(in.gravity_mps2));
+  constexpr double kSafety = 10.0;
+  return w - 1.0 > kSafety * u_w;
 }
 
 // First order by central differences over u/10, which is as far from rounding
@@ -165,7 +209,7 @@ void PropagateFirstOrder(BoundaryModel model, const BoundaryInputs& in,
   bool valid = true;
   for (const Uncertain& what : kUncertain) {
     const double u = (in.*what.field).u;
-    if (u == 0.0) continue;
+    if (u == 0.0 || !Uses(model, in, what)) continue;
     const double step = 0.1 * u;
     const auto up = WithShift(model, in, what, step);
     const auto down = WithShift(model, in, what, -step);
@@ -184,7 +228,8 @@ void PropagateFirstOrder(BoundaryModel model, const BoundaryInputs& in,
     }
   }
   out.uncertainty.first_order_u_rad = std::sqrt(variance);
-  out.uncertainty.first_order_is_valid = valid;
+  out.uncertainty.first_order_is_valid =
+      valid && IsFarFromThreshold(model, in, *out.boundary_rad);
 }
 
 void PropagateByDraws(BoundaryModel model, const BoundaryInputs& in,
@@ -197,7 +242,7 @@ void PropagateByDraws(BoundaryModel model, const BoundaryInputs& in,
     BoundaryInputs drawn = in;
     for (const Uncertain& what : kUncertain) {
       core::Estimate& e = drawn.*what.field;
-      if (e.u == 0.0) continue;
+      if (e.u == 0.0 || !Uses(model, in, what)) continue;
       // What cannot be (a negative friction) is drawn again.
       double value = 0.0;
       do {
@@ -232,12 +277,12 @@ void PropagateByDraws(BoundaryModel model, const BoundaryInputs& in,
   out.high_rad = quantile(0.975);
 }
 
-bool HasUncertainty(const BoundaryInputs& in) {
+bool HasUncertainty(BoundaryModel model, const BoundaryInputs& in) {
   bool any = false;
   for (const Uncertain& what : kUncertain) {
     const double u = (in.*what.field).u;
     RequireNotNegative(std::string("u of ") + what.name, u);
-    any = any || u > 0.0;
+    any = any || (u > 0.0 && Uses(model, in, what));
   }
   return any;
 }
@@ -432,7 +477,7 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
     out.uncertainty.first_order_is_valid = true;
     return out;
   }
-  if (!HasUncertainty(inputs)) {
+  if (!HasUncertainty(model, inputs)) {
     out.uncertainty.first_order_is_valid = out.boundary_rad.has_value();
     return out;
   }

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
                        std::string(touchdown::pipeline::Version()));
   app.require_subcommand(1);
   touchdown::cli::Action action;
+  touchdown::cli::AddTheory(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

@@ -92,7 +92,8 @@ struct Sensitivity {
 struct BoundaryUncertainty {
   // First order (JCGM 100), and whether it may be used: alpha_b exists, and
   // still exists with each input moved by 3 u towards losing it, without
-  // changing its slope by more than a half.
+  // departing from the straight line by more than a half; for a boundary of
+  // spin also R omega^2/g - 1 > 10 u of it.
   double first_order_u_rad = 0.0;
   bool first_order_is_valid = false;
   // Monte Carlo (JCGM 101); nothing where no input has u > 0.
@@ -109,7 +110,7 @@ struct BoundaryAnswer {
   core::AngleKind angle_kind = core::AngleKind::kRadius;
   core::Expected<double> boundary_rad = core::AbsentBecause("not evaluated");
   std::vector<AngleRange> ranges;
-  std::vector<Sensitivity> sensitivities;  // of the inputs with u > 0
+  std::vector<Sensitivity> sensitivities;  // of what has u > 0 and matters
   BoundaryUncertainty uncertainty;
   std::vector<std::string> notes;  // what a reader must know of this answer
 
