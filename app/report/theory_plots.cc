@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/report/gnuplot.h"
+#include "app/report/plot_style.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {
@@ -94,7 +95,7 @@ std::string Edges(const analysis::RegimeMap& map) {
 std::string DrawRegimeMap(const analysis::RegimeMap& map,
                           const std::string& title) {
   const bool over_mu = map.axis == analysis::MapAxis::kMu;
-  std::string script = GnuplotSvg(760, 560);
+  std::string script = PlotHead(760, 560);
   script += "set samples 400\n";
   script += fmt::format("set title {}\n", GnuplotQuote(title));
   script += "set xlabel 'radius angle α / deg'\n";
@@ -169,7 +170,7 @@ std::string DrawComplementarityCases() {
       {-1.0, 1.0, "A < 0, B > 0", "two solutions: indeterminate"},
       {-1.0, -1.0, "A < 0, B < 0", "no solution: inconsistent"},
   }};
-  std::string script = GnuplotSvg(860, 700);
+  std::string script = PlotHead(860, 700);
   script +=
       "unset key\nset xrange [-0.35:2.4]\nset yrange [-2:2]\n"
       "set xzeroaxis lw 1 lc rgb '#404040'\n"
@@ -214,7 +215,7 @@ std::string DrawComplementarityLines(
     const double force = -line.intercept / line.slope;
     if (force < kMostShown) reach = std::max(reach, 1.15 * force);
   }
-  std::string script = GnuplotSvg(820, 520);
+  std::string script = PlotHead(820, 520);
   script += fmt::format("set title {}\n", GnuplotQuote(title));
   script +=
       "set xlabel 'normal force F_{n} / (m g)'\n"
