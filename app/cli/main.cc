@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   touchdown::cli::Action action;
   touchdown::cli::AddAnalyze(app, action);
   touchdown::cli::AddRig(app, action);
+  touchdown::cli::AddTheory(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;
