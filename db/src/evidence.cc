@@ -178,4 +178,27 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   return number;
 }
 
+std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid) {
+  static const std::string sql =
+      SelectRevisions(true) + "WHERE t.uuid = ? ORDER BY r.number";
+  Statement row(connection, sql);
+  row.Add(uuid);
+  std::vector<Revision> history;
+  while (row.Step()) {
+    RevisionRow one = TakeRevision(connection, row);
+    history.push_back(
+        {std::move(one.uuid),
+         ParseRevisionKind(one.kind).value_or(RevisionKind::kLogged),
+         std::move(one.trial)});
+  }
+  return history;
+}
+
+void VisitHistories(
+    Connection& connection,
+    const std::function<void(const std::vector<Revision>&)>& visit) {
+  Statement trials(connection, "SELECT uuid FROM trials ORDER BY id");
+  while (trials.Step()) visit(HistoryOf(connection, trials.TakeText()));
+}
+
 }  // namespace touchdown::db

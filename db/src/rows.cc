@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "quantities.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
 namespace {

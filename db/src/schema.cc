@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "quantities.h"
+#include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
 namespace {
@@ -344,6 +344,15 @@ std::string Triggers() {
       "             AND revision_id = NEW.revision_id)\n"
       "BEGIN SELECT raise(ABORT, 'contacts is append-only: add a revision');\n"
       "END;\n";
+  sql +=
+      "CREATE TRIGGER budget_lines_refuse_REPLACE BEFORE INSERT ON "
+      "budget_lines\n"
+      "WHEN EXISTS (SELECT 1 FROM budget_lines\n"
+      "             WHERE revision_id = NEW.revision_id\n"
+      "             AND ordinal = NEW.ordinal AND budget = NEW.budget\n"
+      "             AND line = NEW.line)\n"
+      "BEGIN SELECT raise(ABORT, 'budget_lines is append-only: add a "
+      "revision');\nEND;\n";
   // A clip's digest, once computed, stays.
   sql +=
       "CREATE TRIGGER clips_keep_digest BEFORE UPDATE ON clips\n"

@@ -387,26 +387,6 @@ std::optional<core::Trial> Store::Find(std::string_view id_or_prefix) const {
   return TakeRevision(connection, row).trial;
 }
 
-namespace {
-
-std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid) {
-  static const std::string sql =
-      SelectRevisions(true) + "WHERE t.uuid = ? ORDER BY r.number";
-  Statement row(connection, sql);
-  row.Add(uuid);
-  std::vector<Revision> history;
-  while (row.Step()) {
-    RevisionRow one = TakeRevision(connection, row);
-    history.push_back(
-        {std::move(one.uuid),
-         ParseRevisionKind(one.kind).value_or(RevisionKind::kLogged),
-         std::move(one.trial)});
-  }
-  return history;
-}
-
-}  // namespace
-
 std::vector<Revision> Store::History(std::string_view id) const {
   Transaction snapshot(impl_->connection, Transaction::Kind::kRead);
   return HistoryOf(impl_->connection, id);
@@ -414,10 +394,8 @@ std::vector<Revision> Store::History(std::string_view id) const {
 
 void Store::ForEachHistory(
     const std::function<void(const std::vector<Revision>&)>& visit) const {
-  Connection& connection = impl_->connection;
-  Transaction snapshot(connection, Transaction::Kind::kRead);
-  Statement trials(connection, "SELECT uuid FROM trials ORDER BY id");
-  while (trials.Step()) visit(HistoryOf(connection, trials.TakeText()));
+  Transaction snapshot(impl_->connection, Transaction::Kind::kRead);
+  VisitHistories(impl_->connection, visit);
 }
 
 }  // namespace touchdown::db
