@@ -76,6 +76,8 @@ void UseWriteAheadLog(Connection& connection, double patience_s) {
 }
 
 void RequireOurs(Connection& connection, const fs::path& path) {
+  // One snapshot: another process may be making the store right now.
+  Transaction snapshot(connection, Transaction::Kind::kRead);
   const std::int64_t id = connection.Integer("PRAGMA application_id");
   const std::int64_t version = connection.Integer("PRAGMA user_version");
   if (id != kApplicationId) {
