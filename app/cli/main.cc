@@ -38,6 +38,14 @@ int main(int argc, char** argv) {
                        std::string(touchdown::pipeline::Version()));
   app.require_subcommand(1);
   touchdown::cli::Action action;
+  touchdown::cli::AddList(app, action);
+  touchdown::cli::AddShow(app, action);
+  touchdown::cli::AddLog(app, action);
+  touchdown::cli::AddCorrect(app, action);
+  touchdown::cli::AddCampaign(app, action);
+  touchdown::cli::AddExport(app, action);
+  touchdown::cli::AddImport(app, action);
+  touchdown::cli::AddDb(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

@@ -151,9 +151,8 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   }
   Statement(connection,
             "INSERT INTO revisions (id, uuid, trial_id, number, kind, "
-            "statement_id, exclusion_id, author, reason, software_version, "
-            "options_hash, recorded_at_utc) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+            "statement_id, exclusion_id, author, reason, recorded_at_utc) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .Add(row)
       .Add(revision.uuid)
       .Add(trial_row)
@@ -163,8 +162,6 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
       .Add(exclusion)
       .Add(trial.author)
       .Add(trial.reason)
-      .Add(trial.software_version)
-      .Add(trial.options_hash)
       .Add(revision.recorded_at_utc)
       .Run();
   if (own_statement) InsertStatement(connection, row, trial);

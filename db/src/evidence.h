@@ -61,7 +61,7 @@ struct NewRevision {
   bool own_exclusion = true;
 };
 
-// Adds the next revision; author, reason, software and options are `trial`'s.
+// Adds the next revision; author and reason are `trial`'s.
 // Returns its number.
 std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
                          const std::optional<Head>& head,

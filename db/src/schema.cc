@@ -160,8 +160,6 @@ std::string Evidence() {
       "    DEFERRABLE INITIALLY DEFERRED,\n"
       "  author TEXT NOT NULL CHECK (author <> ''),\n"
       "  reason TEXT NOT NULL,\n"
-      "  software_version TEXT NOT NULL,\n"
-      "  options_hash TEXT NOT NULL,\n"
       "  {},\n"
       "  UNIQUE (trial_id, number)\n) STRICT;\n",
       kUuid,
@@ -179,6 +177,8 @@ std::string Evidence() {
       "  {},\n"
       "  {},\n  {},\n"
       "  contacts INTEGER NOT NULL CHECK (contacts >= 1),\n"
+      "  software_version TEXT NOT NULL,\n"
+      "  options_hash TEXT NOT NULL,\n"
       "  document_json TEXT NOT NULL,\n"
       "{}\n) STRICT;\n",
       angle_kind, body.columns, OptionalReal("set_angle_rad"),

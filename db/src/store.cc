@@ -217,14 +217,23 @@ Logged Store::Impl::Log(const core::Trial& trial) {
 }
 
 Logged Store::LogTrial(const core::Trial& trial) {
-  return LogTrials({&trial, 1}).front();
+  Transaction transaction(impl_->connection, Transaction::Kind::kWrite);
+  Logged logged = impl_->Log(trial);
+  transaction.Commit();
+  return logged;
 }
 
 std::vector<Logged> Store::LogTrials(std::span<const core::Trial> trials) {
   std::vector<Logged> logged;
   logged.reserve(trials.size());
   Transaction transaction(impl_->connection, Transaction::Kind::kWrite);
-  for (const auto& trial : trials) logged.push_back(impl_->Log(trial));
+  for (const auto& trial : trials) {
+    try {
+      logged.push_back(impl_->Log(trial));
+    } catch (const std::invalid_argument& error) {
+      throw TrialRefused(logged.size(), error.what());
+    }
+  }
   transaction.Commit();
   return logged;
 }
