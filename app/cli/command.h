@@ -19,5 +19,13 @@ using Action = std::function<int()>;
 void AddAnalyze(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddTheory(CLI::App& app, Action& action);
+void AddList(CLI::App& app, Action& action);
+void AddShow(CLI::App& app, Action& action);
+void AddLog(CLI::App& app, Action& action);
+void AddCorrect(CLI::App& app, Action& action);
+void AddCampaign(CLI::App& app, Action& action);
+void AddExport(CLI::App& app, Action& action);
+void AddImport(CLI::App& app, Action& action);
+void AddDb(CLI::App& app, Action& action);
 
 }  // namespace touchdown::cli

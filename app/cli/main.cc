@@ -41,6 +41,14 @@ int main(int argc, char** argv) {
   touchdown::cli::AddAnalyze(app, action);
   touchdown::cli::AddRig(app, action);
   touchdown::cli::AddTheory(app, action);
+  touchdown::cli::AddList(app, action);
+  touchdown::cli::AddShow(app, action);
+  touchdown::cli::AddLog(app, action);
+  touchdown::cli::AddCorrect(app, action);
+  touchdown::cli::AddCampaign(app, action);
+  touchdown::cli::AddExport(app, action);
+  touchdown::cli::AddImport(app, action);
+  touchdown::cli::AddDb(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;
