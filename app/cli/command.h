@@ -18,6 +18,7 @@ using Action = std::function<int()>;
 // when that command is the one called.
 void AddAnalyze(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
+void AddSimulate(CLI::App& app, Action& action);
 void AddTheory(CLI::App& app, Action& action);
 void AddList(CLI::App& app, Action& action);
 void AddShow(CLI::App& app, Action& action);

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   touchdown::cli::AddExport(app, action);
   touchdown::cli::AddImport(app, action);
   touchdown::cli::AddDb(app, action);
+  touchdown::cli::AddSimulate(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

@@ -1,0 +1,127 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/command.h"
+#include "app/cli/progress.h"
+#include "app/pipeline/scene_file.h"
+#include "app/pipeline/simulate.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct Flags {
+  std::string scene;
+  bool table1 = false;
+  bool example = false;
+  std::string out;
+  std::string format = "mraw";
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+std::string Line(const pipeline::SimulatedClip& made) {
+  const auto& truth = made.truth;
+  if (!truth.touchdown) {
+    return fmt::format("{}  no contact", made.clip.string());
+  }
+  const auto& t = *truth.touchdown;
+  std::string angles =
+      fmt::format("approach {:.2f} deg", t.approach_angle_rad / core::kDegree);
+  if (t.face_angle_rad) {
+    angles +=
+        fmt::format(", face {:.2f} deg, radius {:.2f} deg {}",
+                    *t.face_angle_rad / core::kDegree,
+                    *t.radius_angle_rad / core::kDegree, core::Name(*t.corner));
+  }
+  return fmt::format(
+      "{}  {}  {}  greatest gap {:.3f} mm, bounce height {:.3f} mm",
+      made.clip.string(), angles, core::Name(truth.state),
+      truth.greatest.gap_m / core::kMillimetre,
+      truth.bounce_height_m / core::kMillimetre);
+}
+
+int Run(const Flags& flags) {
+  if (flags.example) {
+    fmt::print("{}", pipeline::SceneText(pipeline::ExampleShot()));
+    return 0;
+  }
+  if (flags.table1 == !flags.scene.empty()) {
+    throw std::invalid_argument(
+        "simulate: give either a SCENE.json or --table1 (--example prints a "
+        "scene)");
+  }
+  if (flags.out.empty()) {
+    throw std::invalid_argument(
+        "simulate: --out is missing, must be the folder for the clips");
+  }
+  const auto format = pipeline::ParseClipFormat(flags.format);
+  if (!format) {
+    throw std::invalid_argument("--format is '" + flags.format +
+                                "', must be mraw, png, tiff or mp4");
+  }
+  const std::vector<pipeline::Shot> shots =
+      flags.table1
+          ? pipeline::Table1Shots()
+          : std::vector<pipeline::Shot>{pipeline::ReadSceneFile(flags.scene)};
+  ProgressBar bar("simulate");
+  nlohmann::ordered_json clips = nlohmann::ordered_json::array();
+  std::string lines;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    pipeline::SimulateOptions options;
+    options.folder = flags.out;
+    options.format = *format;
+    options.seed = flags.seed;
+    options.progress = [&](double share) {
+      bar.Show((static_cast<double>(i) + share) /
+               static_cast<double>(shots.size()));
+    };
+    const pipeline::SimulatedClip made = pipeline::WriteShot(shots[i], options);
+    clips.push_back(
+        {{"clip", made.clip.string()}, {"truth", made.truth_file.string()}});
+    lines += Line(made) + "\n";
+  }
+  bar.Finish();
+  if (flags.json) {
+    const nlohmann::ordered_json document{{"schema", "touchdown.simulate/1"},
+                                          {"clips", clips}};
+    fmt::print("{}\n", document.dump(1));
+  } else {
+    fmt::print("{}", lines);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "Footage with known truth");
+  command->add_option("SCENE", flags->scene,
+                      "a scene, JSON of schema touchdown.scene/1");
+  command->add_flag("--table1", flags->table1,
+                    "the 18 clips of the paper's Table 1");
+  command->add_flag("--example", flags->example, "print a scene and end");
+  command->add_option("--out", flags->out,
+                      "folder for the clips and, beside each, its "
+                      "NAME.truth.json");
+  command
+      ->add_option("--format", flags->format,
+                   "mraw, png, tiff (folders of images) or mp4 (8 bit, lossy)")
+      ->capture_default_str();
+  command->add_option("--seed", flags->seed, "of the sensor noise")
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "one JSON document on stdout");
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
+}
+
+}  // namespace touchdown::cli
