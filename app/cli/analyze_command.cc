@@ -45,7 +45,7 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
   options.fps = flags.fps;
   if (!flags.scale.empty()) {
     options.scale_px_per_m =
-        ParseEstimate("--scale-px-per-m", flags.scale, kDefaultRelativeU);
+        ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kDefaultRelativeU);
   }
   if (flags.body != "auto") {
     options.body_kind = core::ParseBodyKind(flags.body);
@@ -55,15 +55,12 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
     }
   }
   if (!flags.diameter.empty()) {
-    options.diameter_m = core::Scaled(
-        ParseEstimate("--diameter-mm", flags.diameter, kDefaultRelativeU),
-        core::kMillimetre);
+    options.diameter_m = ParseEstimate("--diameter-mm", flags.diameter,
+                                       core::kMillimetre, kDefaultRelativeU);
   }
   if (!flags.sides.empty()) {
-    const auto [a, b] =
-        ParseSides("--sides-mm", flags.sides, kDefaultRelativeU);
-    options.long_m = core::Scaled(a, core::kMillimetre);
-    options.short_m = core::Scaled(b, core::kMillimetre);
+    std::tie(options.long_m, options.short_m) = ParseSides(
+        "--sides-mm", flags.sides, core::kMillimetre, kDefaultRelativeU);
   }
   if (!flags.ground.empty()) {
     const auto n = ParseNumbers("--ground", flags.ground, 4,

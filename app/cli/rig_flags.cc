@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "app/cli/values.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -15,20 +16,6 @@ namespace {
 constexpr double kGram = 1e-3;  // kg
 constexpr double kGiga = 1e9;
 constexpr double kMega = 1e6;
-
-double ParseNumber(const std::string& flag, const std::string& text,
-                   const std::string& whole) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || end != text.c_str() + text.size() ||
-      !std::isfinite(value)) {
-    throw std::invalid_argument(
-        fmt::format("{} is \"{}\", expected a number, or VALUE+-U such as "
-                    "2.0+-0.01",
-                    flag, whole));
-  }
-  return value;
-}
 
 // Overwrites `to` where the flag was given.
 template <class To>
@@ -84,21 +71,6 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
 }
 
 }  // namespace
-
-core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double unit) {
-  const std::size_t at = text.find("+-");
-  const double value = ParseNumber(flag, text.substr(0, at), text);
-  double u = 0.0;
-  if (at != std::string::npos) {
-    u = ParseNumber(flag, text.substr(at + 2), text);
-    if (u < 0.0) {
-      throw std::invalid_argument(fmt::format(
-          "{} is \"{}\", its uncertainty must be at least 0", flag, text));
-    }
-  }
-  return {value * unit, u * unit, std::nullopt};
-}
 
 void AddSpringFlags(CLI::App& app, RigFlags& flags) {
   app.add_option("--rig", flags.rig,

@@ -38,9 +38,4 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags);
 // flag that is missing or impossible, core::InputError for the file.
 rig::Description DescriptionFrom(const RigFlags& flags);
 
-// "2.0" or "2.0+-0.01", in SI by `unit`. Throws std::invalid_argument naming
-// `flag`.
-core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double unit);
-
 }  // namespace touchdown::cli

@@ -32,6 +32,11 @@ void RequirePositive(const char* field, const std::optional<double>& value) {
   }
 }
 
+void RequirePositive(const char* field,
+                     const std::optional<core::Estimate>& value) {
+  if (value) RequirePositive(field, std::optional<double>(value->value));
+}
+
 std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
   if (options.diameter_m && (options.long_m || options.short_m)) {
     throw std::invalid_argument(
@@ -232,9 +237,10 @@ Analysis Analyzer::Run() {
   const auto start = Clock::now();
   RequirePositive("fps", options_.fps);
   RequirePositive("bounce height", options_.bounce_height_m);
-  if (options_.scale_px_per_m) {
-    RequirePositive("scale_px_per_m", options_.scale_px_per_m->value);
-  }
+  RequirePositive("scale_px_per_m", options_.scale_px_per_m);
+  RequirePositive("diameter", options_.diameter_m);
+  RequirePositive("first side", options_.long_m);
+  RequirePositive("second side", options_.short_m);
   const std::optional<core::BodyKind> kind = KindOf(options_);
 
   result_.options_hash = OptionsHash(options_);
