@@ -63,14 +63,13 @@ class VideoClip final : public Clip {
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
     if (index != current_ || (index >= bad_from_ && index < bad_to_)) {
-      if (index < current_ || current_ < 0) {
-        StartFrom(index);
-      } else if (index > current_ + threads_ && !index_.pts.empty() &&
-                 index_.KeyPacketFor(index) >
-                     sent_ + static_cast<std::size_t>(threads_)) {
-        // Skipping saves more decoding than it throws away.
-        StartFrom(index);
-      }
+      // Forwards, skipping must save more decoding than it throws away.
+      const bool back = index < current_ || current_ < 0;
+      const bool far = !back && index > current_ + threads_ &&
+                       !index_.pts.empty() &&
+                       index_.KeyPacketFor(index) >
+                           sent_ + static_cast<std::size_t>(threads_);
+      if (back || far) StartFrom(index);
       DecodeUpTo(index);
     }
     if (frame_->width != stored_width_ || frame_->height != stored_height_ ||
