@@ -315,6 +315,14 @@ Analysis Analyzer::Run() {
 
 }  // namespace
 
+namespace {
+
+bool OneBody(const Analysis& analysis) {
+  return analysis.body && !analysis.track->several_bodies;
+}
+
+}  // namespace
+
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
   const auto start = Clock::now();
@@ -324,10 +332,26 @@ Analysis Analyze(const std::filesystem::path& path,
   const std::string id = vision::ClipId(path);
   const double open_s = Since(start);
   Analysis analysis = AnalyzeClip(std::move(clip), options);
+  if (analysis.clip.has_colour && !OneBody(analysis)) {
+    for (const vision::Channel channel :
+         {vision::Channel::kRedDifference, vision::Channel::kBlueDifference}) {
+      clip_options.channel = channel;
+      Analysis other =
+          AnalyzeClip(vision::OpenClip(path, clip_options), options);
+      if (!OneBody(other)) continue;
+      other.channel = channel;
+      other.scene_model.used.push_back(std::string(vision::Name(channel)));
+      other.warnings.push_back(
+          fmt::format("in luma no single body stands out; the {} was used",
+                      vision::Name(channel)));
+      analysis = std::move(other);
+      break;
+    }
+  }
   analysis.clip_id = id;
   analysis.simulated = HasTruthFile(path);
   analysis.timing.open_s = open_s;
-  analysis.timing.total_s += open_s;
+  analysis.timing.total_s = Since(start);
   return analysis;
 }
 

@@ -12,6 +12,7 @@ extern "C" {
 #include <algorithm>
 #include <thread>
 
+#include "chroma.h"
 #include "clip_formats.h"
 #include "libav.h"
 #include "luma.h"
@@ -53,7 +54,7 @@ class VideoClip final : public Clip {
     }
     StartFrom(0);
     DecodeUpTo(0);
-    LookAtFirstFrame();
+    LookAtFirstFrame(options.channel);
     SetTimeBase(options);
   }
 
@@ -79,7 +80,8 @@ class VideoClip final : public Clip {
                       "first",
                       index));
     }
-    core::Frame view = reader_->View(*frame_, window);
+    core::Frame view = chroma_ ? chroma_->View(*frame_, window)
+                               : reader_->View(*frame_, window);
     view.index = index;
     view.time_s = TimeOf(index);
     return view;
@@ -231,7 +233,7 @@ class VideoClip final : public Clip {
     }
   }
 
-  void LookAtFirstFrame() {
+  void LookAtFirstFrame(Channel channel) {
     const auto pixel_format = static_cast<AVPixelFormat>(frame_->format);
     if (!LumaReader::Reads(pixel_format)) {
       const char* const name = av_get_pix_fmt_name(pixel_format);
@@ -268,6 +270,16 @@ class VideoClip final : public Clip {
     info_.width_px = orientation.transposed ? stored_height_ : stored_width_;
     info_.height_px = orientation.transposed ? stored_width_ : stored_height_;
     info_.bit_depth = reader_->bit_depth();
+    info_.has_colour = ChromaReader::Reads(pixel_format);
+    if (channel != Channel::kLuma) {
+      if (!info_.has_colour) {
+        throw std::invalid_argument(
+            fmt::format("channel is {}, but {} has no colour that is read",
+                        Name(channel), path_.string()));
+      }
+      chroma_.emplace(pixel_format, orientation, channel);
+      info_.bit_depth = 8;
+    }
     if (cine) info_.first_camera_frame = CineFirstFrame(path_);
     const AVRational aspect = av_guess_sample_aspect_ratio(
         source_.format.get(), source_.stream, frame_.get());
@@ -337,6 +349,8 @@ class VideoClip final : public Clip {
   VideoIndex index_;
   ClipInfo info_;
   std::optional<LumaReader> reader_;
+  std::optional<ChromaReader>
+      chroma_;  // where a colour difference is asked for
   std::int32_t stored_width_ = 0;
   std::int32_t stored_height_ = 0;
 
