@@ -6,12 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "app/cli/command.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/rig/description.h"
-
-namespace CLI {
-class App;
-}
 
 namespace touchdown::cli {
 

@@ -227,7 +227,7 @@ Expected<Setting> FirstPossible(const Description& rig,
                                 const std::vector<Expected<Throw>>& throws) {
   std::vector<std::string> reasons;
   for (const auto& t : throws) {
-    const Expected<Setting> setting =
+    Expected<Setting> setting =
         t ? WithCompression(rig, *t)
           : Expected<Setting>(AbsentBecause(t.error().reason));
     if (setting) return setting;

@@ -44,7 +44,7 @@ core::Expected<std::vector<double>> Contribution(
     }
     return model(at);
   };
-  const auto high = evaluate(above);
+  auto high = evaluate(above);
   const auto low = evaluate(below);
   if (!high && !low) return high;
   const std::vector<double>& y1 = high ? *high : centre;

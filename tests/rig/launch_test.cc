@@ -204,7 +204,9 @@ TEST(Launch, ScalesWithUnits) {
     launch.loss_j *= 1024.0;
     const auto other = LaunchSpeed(launch, 0.05);
     ASSERT_EQ(one.has_value(), other.has_value());
-    if (one) ASSERT_EQ(one->speed_mps, other->speed_mps);
+    if (one) {
+      ASSERT_EQ(one->speed_mps, other->speed_mps);
+    }
   }
 }
 
