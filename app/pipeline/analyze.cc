@@ -70,6 +70,8 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
   if (options.scale_px_per_m) {
     return calib::Scale{*options.scale_px_per_m, calib::ScaleSource::kUser};
   }
+  // The size of a part is not that of the body.
+  if (image.whole_px > 0.0) return std::nullopt;
   if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
     return calib::Scale{
         ScaleFrom(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
@@ -280,7 +282,10 @@ Analysis Analyzer::Run() {
     result_.scale = FindScale(options_, track.body);
     if (!result_.scale) {
       result_.no_scale_reason =
-          "give --calibration, --scale-px-per-m, --diameter-mm or --sides-mm";
+          track.body.whole_px > 0.0
+              ? "the body shows in parts; give --scale-px-per-m"
+              : "give --calibration, --scale-px-per-m, --diameter-mm or "
+                "--sides-mm";
     }
     result_.body = BodyOf(options_, track.body, result_.scale);
     contact_options_.scale = result_.scale;

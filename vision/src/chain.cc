@@ -194,7 +194,10 @@ bool MoveAsOne(const Chain& a, const Chain& b) {
          offset < kShareOfPath * path;
 }
 
-bool IsAnotherBody(const Chain& best, const Chain& other) {
+namespace {
+
+// Seen at the same time, alike in size and contrast, and moving.
+bool IsLike(const Chain& best, const Chain& other) {
   const std::int64_t from =
       std::max(best.links.front().frame, other.links.front().frame);
   const std::int64_t to =
@@ -210,7 +213,29 @@ bool IsAnotherBody(const Chain& best, const Chain& other) {
              kLeastContrast * std::abs(best.Contrast()) &&
          other.Area() * kAreaRatio > best.Area() &&
          other.Area() < kAreaRatio * best.Area() &&
-         other.Extent() > std::sqrt(other.Area()) && !MoveAsOne(best, other);
+         other.Extent() > std::sqrt(other.Area());
+}
+
+}  // namespace
+
+double LengthTogether(const Chain& best, const Chain& other) {
+  if (!IsLike(best, other) || !MoveAsOne(best, other)) return 0.0;
+  std::vector<double> distance;
+  std::size_t j = 0;
+  for (const Link& link : best.links) {
+    while (j < other.links.size() && other.links[j].frame < link.frame) ++j;
+    if (j == other.links.size()) break;
+    if (other.links[j].frame != link.frame) continue;
+    distance.push_back(Distance(link.blob.centre, other.links[j].blob.centre));
+  }
+  const auto half = [](const Chain& chain) {
+    return 0.5 * MedianOf(chain, [](const Link& l) { return l.blob.long_px; });
+  };
+  return Median(std::move(distance)) + half(best) + half(other);
+}
+
+bool IsAnotherBody(const Chain& best, const Chain& other) {
+  return IsLike(best, other) && !MoveAsOne(best, other);
 }
 
 }  // namespace touchdown::vision

@@ -53,6 +53,10 @@ class ChainBuilder {
 // body and the shadow beside it).
 bool MoveAsOne(const Chain& a, const Chain& b);
 
+// If `other` is as strong as `best` and moves as one with it, the length of the
+// two together, px; else 0.
+double LengthTogether(const Chain& best, const Chain& other);
+
 // True if `other` is a second body beside `best`: seen at the same time, alike
 // in size and contrast, and moving. (A shadow has less contrast.)
 bool IsAnotherBody(const Chain& best, const Chain& other);

@@ -53,8 +53,21 @@ struct Blows {
 Blows FindBlows(const PlaneTrack& track) {
   const std::span<const PlaneSample> samples(track.samples);
   Blows blows;
-  double lowest = samples.front().gap_px;
-  for (const PlaneSample& s : samples) lowest = std::min(lowest, s.gap_px);
+  // No body sinks into the ground by more than what it yields and what the line
+  // may be off.
+  constexpr double kYield = 0.1;  // of half the body's size
+  const auto lowest =
+      std::min_element(samples.begin(), samples.end(),
+                       [](const PlaneSample& a, const PlaneSample& b) {
+                         return a.gap_px < b.gap_px;
+                       });
+  const double sunk = -lowest->gap_px;
+  if (sunk > std::max({2.0, 4.0 * UncertaintyOfLine(track, *lowest),
+                       kYield * track.half_short_px})) {
+    blows.refuted = fmt::format(
+        "the body passes {:.1f} px below the ground line at frame {}", sunk,
+        lowest->frame);
+  }
   for (const Kink& kink : FindKinks(samples)) {
     const PlaneSample& a = samples[kink.after];
     const PlaneSample& b = samples[kink.after + 1];
@@ -67,8 +80,7 @@ Blows FindBlows(const PlaneTrack& track) {
     const double gap = std::min(a.gap_px, b.gap_px);
     if (gap > near + dip || gap < -near - dip) {
       constexpr double kClear = 15.0;
-      if (kink.significance > kClear && blows.refuted.empty() &&
-          dip > 0.5 + near * 0.0) {
+      if (kink.significance > kClear && blows.refuted.empty()) {
         blows.refuted = fmt::format(
             "the body rebounds {:.1f} px {} the ground line at frame {}",
             std::abs(gap), gap > 0 ? "above" : "below", a.frame);
@@ -95,9 +107,6 @@ bool OnGroundFromStart(const PlaneTrack& track,
   const double noise = samples[n / 2].u_gap_px;
   if (blows.empty()) {
     // No blow: it is down all the time, or never: it must also stay near.
-    double highest = first;
-    for (const PlaneSample& s : samples) highest = std::max(highest, s.gap_px);
-    (void)highest;
     const double later = MedianGap(samples.subspan(n / 2));
     return first - later <
            std::max(0.5, 5.0 * noise) + 0.1 * track.half_short_px;

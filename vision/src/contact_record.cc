@@ -195,7 +195,7 @@ void FillMotion(const RecordContext& context, const Event& event,
 // The bounce height in px, and in metres where there is a scale.
 double BounceHeight(const RecordContext& context, core::StateDecision& state) {
   const PlaneTrack& track = context.track;
-  const double size_px = 2.0 * track.half_long_px;
+  const double size_px = track.size_px;
   if (!context.options.scale) {
     state.bounce_height_m = AbsentBecause(kNoScale);
     constexpr double kShareOfSize = 0.02;

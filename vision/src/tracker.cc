@@ -331,6 +331,13 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   FillTrack(all, first->choice.kind, track);
 
   // Now that the body's place is known, the background without it.
+  double whole_px = 0.0;
+  if (first->choice.kind == core::BodyKind::kRectangle) {
+    for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
+      whole_px =
+          std::max(whole_px, LengthTogether(chain, first->found.chains[i]));
+    }
+  }
   double most_covered = 0.0;
   const Absence absence(clip, track);
   Background behind = EstimateBackgroundBehind(
@@ -362,6 +369,13 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
         FillTrack(better, again.kind, track);
       }
     }
+  }
+  track.body.whole_px = whole_px;
+  if (whole_px > 0.0) {
+    track.warnings.push_back(fmt::format(
+        "the body shows as parts that move as one ({:.0f} px together); the "
+        "strongest part was followed",
+        whole_px));
   }
   return result;
 }

@@ -44,8 +44,11 @@ struct BodyImage {
   core::Estimate radius_px;      // sphere
   core::Estimate half_long_px;   // rectangle, half sides
   core::Estimate half_short_px;  //
-  double blur_px = 0.0;          // standard deviation of the edge's blur
-  double contrast_dn = 0.0;      // body minus background, median over frames
+  // Where the body shows as several parts that move as one, the outline is that
+  // of the strongest part, and this is the length of the whole; else 0.
+  double whole_px = 0.0;
+  double blur_px = 0.0;      // standard deviation of the edge's blur
+  double contrast_dn = 0.0;  // body minus background, median over frames
 };
 
 struct Track {
