@@ -1,6 +1,7 @@
 # Every @cite key in a module's headers and sources stands in that module's
 # references.bib.
 # Usage: cmake -D ROOT=<source tree> -P citations.cmake
+cmake_minimum_required(VERSION 3.25)
 set(missing "")
 set(n_citations 0)
 foreach(module core rig calib vision analysis db)
