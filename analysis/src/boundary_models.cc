@@ -50,7 +50,7 @@ core::Expected<double> Spin(const BoundaryInputs& in) {
 
 core::Expected<double> CorrectedLcp(const BoundaryInputs& in) {
   if (IsSphere(in)) return AbsentBecause(kSphereNeverDetaches);
-  const auto spin = Spin(in);
+  auto spin = Spin(in);
   const double kappa = in.kappa.value;
   // On the trailing corner A_hat > 0 for every angle.
   if (in.slip != Slip::kLeading || kappa == 0.0) return spin;

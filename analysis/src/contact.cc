@@ -133,6 +133,19 @@ ContactResult Report(const ContactCore<T>& core, const ContactProblem& p) {
 
 }  // namespace
 
+ContactProblem SphereContact(double mass_kg, double radius_m, double kappa,
+                             double mu, Slip slip, double gravity_mps2) {
+  ContactProblem p;
+  p.alpha = SinCosOfDegrees(90.0);
+  p.mu = mu;
+  p.slip = slip;
+  p.mass_kg = mass_kg;
+  p.radius_m = radius_m;
+  p.kappa = kappa;
+  p.gravity_mps2 = gravity_mps2;
+  return p;
+}
+
 ContactResult SolveContact(const ContactProblem& problem) {
   Check(problem);
   if (FitsDouble(problem)) {

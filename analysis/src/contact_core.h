@@ -31,10 +31,10 @@ class ContactCore {
   // `ulp`: the unit roundoff that the tolerances are made of.
   ContactCore(const ContactProblem& p, T ulp)
       : tolerance_(8 * ulp),
-        sign_(Sign(p.slip)),
         mu_(static_cast<T>(p.mu)),
         kappa_(KappaOf(p)),
-        g_(static_cast<T>(p.gravity_mps2)) {
+        g_(static_cast<T>(p.gravity_mps2)),
+        sign_(Sign(p.slip)) {
     s_ = static_cast<T>(p.alpha.sin);
     c_ = static_cast<T>(p.alpha.cos);
     if constexpr (!std::is_same_v<T, double>) {
@@ -144,7 +144,6 @@ class ContactCore {
 
   // Results, read by contact.cc.
   T tolerance_;
-  int sign_;
   T s_ = 0, c_ = 1;
   T mu_ = 0, kappa_ = 0, g_ = 0;
   T centripetal_ = 0;
@@ -152,10 +151,11 @@ class ContactCore {
   T a_ = 0, a_size_ = 0;
   T b_ = 0, b_size_ = 0;
   T stick_n_ = 0, stick_t_ = 0;
-  bool within_ = false;
-  Regime regime_ = Regime::kSlide;
   std::array<CoreSolution<T>, 4> solution_{};
+  int sign_;
   int n_ = 0;
+  Regime regime_ = Regime::kSlide;
+  bool within_ = false;
 
  private:
   static T KappaOf(const ContactProblem& p) {

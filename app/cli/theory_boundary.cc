@@ -21,8 +21,9 @@ using analysis::BoundaryModel;
 using Json = nlohmann::ordered_json;
 using core::kDegree;
 
-bool IsSphere(const CornerFlags& f) {
-  return f.body == "hoop" || f.body == "shell" || f.body == "solid-sphere";
+// In the paper's words its hoop is a sphere too.
+bool CountsAsSphere(const CornerFlags& f) {
+  return IsSphere(f) || f.body == "hoop";
 }
 
 // The flags that a model cannot do without and that were not given.
@@ -178,7 +179,7 @@ int RunBoundary(const TheoryFlags& flags) {
     WriteResult(BoundaryCases(flags.result.cases), flags.result.out);
     return 0;
   }
-  const bool sphere = IsSphere(flags.corner);
+  const bool sphere = CountsAsSphere(flags.corner);
   const BoundaryInputs inputs = InputsOf(flags, sphere);
   Json json = {{"schema", "touchdown.theory.boundary/1"},
                {"seed", flags.boundary.seed},

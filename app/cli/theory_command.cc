@@ -205,7 +205,20 @@ double Need(const std::optional<double>& value, const char* flag) {
       fmt::format("{} is missing; give it a value, or --cases a file", flag));
 }
 
+bool IsSphere(const CornerFlags& flags) {
+  return flags.body == "shell" || flags.body == "solid-sphere";
+}
+
 analysis::SinCos NeedAlpha(const CornerFlags& flags) {
+  if (IsSphere(flags)) {
+    if (flags.alpha_deg || flags.alpha_rad) {
+      throw std::invalid_argument(
+          "--alpha-deg with a sphere: it touches below its centre, at 90 deg "
+          "always; leave it away, or give --kappa for a point fixed to the "
+          "body");
+    }
+    return analysis::SinCosOfDegrees(90.0);
+  }
   if (flags.alpha_rad) return analysis::SinCosOfRadians(*flags.alpha_rad);
   return analysis::SinCosOfDegrees(Need(flags.alpha_deg, "--alpha-deg"));
 }

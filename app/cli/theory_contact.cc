@@ -64,6 +64,10 @@ int RunRegime(const TheoryFlags& flags) {
   p.radius_m = p.omega_rad_per_s == 0.0 ? f.radius_m.value_or(1.0)
                                         : Need(f.radius_m, "--radius-m");
   p.gravity_mps2 = f.gravity_mps2;
+  if (IsSphere(f)) {
+    p = analysis::SphereContact(p.mass_kg, p.radius_m, p.kappa, p.mu, p.slip,
+                                p.gravity_mps2);
+  }
   const analysis::ContactResult r = analysis::SolveContact(p);
 
   Json json = {{"schema", "touchdown.theory.regime/1"},
@@ -90,6 +94,11 @@ int RunRegime(const TheoryFlags& flags) {
     text +=
         "         no finite force keeps the contact: see `touchdown theory "
         "impact --normal-mps 0`\n";
+  }
+  if (IsSphere(f)) {
+    text +=
+        "         a sphere touches below its centre: spin and angle play no "
+        "part in its normal force\n";
   }
   if (r.within_tolerance) {
     text += fmt::format(

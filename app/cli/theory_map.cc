@@ -64,6 +64,11 @@ int RunMap(const TheoryFlags& flags) {
   options.alpha_points = m.alpha_points;
   options.axis_points = m.axis_points;
   analysis::ContactProblem& p = options.problem;
+  if (IsSphere(f)) {
+    throw std::invalid_argument(
+        "--body is a sphere, must be rectangle or hoop for a map: a sphere's "
+        "contact has no angle");
+  }
   p.kappa = NeedKappa(f);
   p.slip = NeedSlip(f);
   p.gravity_mps2 = f.gravity_mps2;

@@ -87,7 +87,10 @@ struct TheoryFlags {
 
 // What a command needs, or std::invalid_argument that names the missing flag.
 double Need(const std::optional<double>& value, const char* flag);
+// A sphere (shell, solid-sphere) touches below its centre: 90 deg, and any
+// other angle is refused.
 analysis::SinCos NeedAlpha(const CornerFlags& flags);
+bool IsSphere(const CornerFlags& flags);
 double NeedKappa(const CornerFlags& flags);
 analysis::Slip NeedSlip(const CornerFlags& flags);
 

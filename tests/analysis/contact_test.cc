@@ -190,6 +190,22 @@ TEST(SolveContact, RodAtRest) {
   EXPECT_NEAR(r.solution[0].normal_n, 10.0 / 13.0, 1e-15);
 }
 
+TEST(SphereContact, CarriesItsWeightAndSlidesOrRolls) {
+  for (const Slip slip : {Slip::kLeading, Slip::kTrailing}) {
+    const ContactResult r =
+        SolveContact(SphereContact(0.2, 0.02, 2.5, 0.4, slip, 10.0));
+    EXPECT_EQ(r.regime, Regime::kSlide);
+    ASSERT_EQ(r.n_solutions, 1);
+    EXPECT_DOUBLE_EQ(r.solution[0].normal_n, 2.0);
+    // The contact point is braked by (1 + kappa) mu g.
+    EXPECT_DOUBLE_EQ(r.solution[0].tangential_mps2, -Sign(slip) * 14.0);
+  }
+  const ContactResult rest =
+      SolveContact(SphereContact(0.2, 0.02, 2.5, 0.4, Slip::kNone, 10.0));
+  EXPECT_EQ(rest.regime, Regime::kStick);
+  EXPECT_EQ(rest.solution[0].tangential_n, 0.0);
+}
+
 TEST(SolveContact, NothingPushesWithoutGravityAndSpin) {
   const ContactProblem p{.alpha = SinCosOfDegrees(30.0),
                          .mu = 0.5,

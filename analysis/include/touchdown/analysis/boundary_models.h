@@ -90,13 +90,13 @@ struct Sensitivity {
 };
 
 struct BoundaryUncertainty {
-  // First order (JCGM 100), and whether it may be used: alpha_b exists, and
-  // still exists with each input moved by 3 u towards losing it, without
+  // First order (@cite JCGM100), and whether it may be used: alpha_b exists,
+  // and still exists with each input moved by 3 u towards losing it, without
   // departing from the straight line by more than a half; for a boundary of
   // spin also R omega^2/g - 1 > 10 u of it.
   double first_order_u_rad = 0.0;
   bool first_order_is_valid = false;
-  // Monte Carlo (JCGM 101); nothing where no input has u > 0.
+  // Monte Carlo (@cite JCGM101); nothing where no input has u > 0.
   int n_draws = 0;
   double p_none = 0.0;             // share of draws without a boundary
   std::optional<double> mean_rad;  // of the draws with one

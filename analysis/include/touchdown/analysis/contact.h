@@ -131,6 +131,12 @@ struct ContactResult {
   }
 };
 
+// A true sphere in these words. Its contact point is not fixed to the body: it
+// stays below the centre, so g_N'' = F_n/m - g whatever angle, friction and
+// spin (errata E5). Hence alpha = 90 deg and, in b, no omega.
+ContactProblem SphereContact(double mass_kg, double radius_m, double kappa,
+                             double mu, Slip slip, double gravity_mps2);
+
 // All solutions, with conditions and margins. Throws std::invalid_argument for
 // an argument outside its range.
 ContactResult SolveContact(const ContactProblem& problem);

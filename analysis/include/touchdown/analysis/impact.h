@@ -2,8 +2,8 @@
 // restitution: the states before and after, marched in impulse.
 //
 // With P the normal impulse so far divided by the mass (m/s) and r the ratio of
-// tangential to normal impulse (Routh 1905, ch. 4; Poisson's restitution;
-// theory of the single contact in corner.h):
+// tangential to normal impulse (@cite Routh1905; Poisson's restitution; the
+// frame is that of corner.h):
 //   d v_N / dP = G_NN + G_NT r        d v_T / dP = G_NT + G_TT r
 //   r = -slip mu          while P slides;
 //   r = -G_NT / G_TT      when slip has stopped, if |G_NT / G_TT| <= mu
@@ -75,7 +75,7 @@ struct ImpactResult {
 };
 
 // Throws std::invalid_argument for an argument outside its range. Allocates
-// nothing; about 30 ns.
+// nothing.
 ImpactResult Impact(const ImpactProblem& problem);
 
 // The same in the plane frame, for simulators: contact point at `offset` from

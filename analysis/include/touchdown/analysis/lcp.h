@@ -2,11 +2,11 @@
 //   find z >= 0 with w = M z + q >= 0 and z_i w_i = 0 for all i.
 //
 // A pivoting or iterative solver returns one solution or fails for reasons of
-// its own; here none, one, several and a continuum are told apart, which is
-// what contact with friction needs: there M is neither symmetric nor definite,
-// and 0 or 2 solutions are physics. Up to 8 unknowns: 2^n bases (@cite
-// Cottle2009, sec. 1.3 and 4.1). Used where no closed form serves (contact.h
-// and flat_contact.h have one).
+// its own; here none, one, several and a continuum are told apart. Contact with
+// friction needs that: its M is neither symmetric nor definite, and 0 or 2
+// solutions are physics. Up to 8 unknowns, by 2^n bases
+// (@cite Cottle2009, sec. 1.3 and 4.1). Used where no closed form serves
+// (contact.h and flat_contact.h have one).
 //
 // Arithmetic is in long double on the rows and columns of M scaled by powers of
 // two. M and q count as known to rounding of double: z_i or w_i within 64 u of

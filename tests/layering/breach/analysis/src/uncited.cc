@@ -1,0 +1,1 @@
+// A formula from nowhere (@cite Nobody1900).
