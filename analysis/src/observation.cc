@@ -45,7 +45,9 @@ std::optional<Observation> ObserveTrial(const core::Trial& trial,
     return std::nullopt;
   }
   Observation out;
-  out.angle_rad = std::abs(angle->value);  // only a face angle has a sign
+  out.angle_rad = trial.angle_kind == core::AngleKind::kFace
+                      ? std::abs(angle->value)
+                      : angle->value;
   out.u_rad = angle->u;
   out.set_angle_rad = trial.set_angle_rad;
   const core::StateDecision& state = trial.first.state;

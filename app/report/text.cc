@@ -58,4 +58,23 @@ std::string CsvCell(std::string_view text) {
   return quoted;
 }
 
+std::string MarkdownEscape(std::string_view text) {
+  constexpr std::string_view kMarkup = "\\`*_[]|#~$";
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += ' ';
+      continue;
+    }
+    if (c == '<' || c == '>' || c == '&') {
+      out += HtmlEscape(std::string_view(&c, 1));
+      continue;
+    }
+    if (kMarkup.find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 }  // namespace touchdown::report
