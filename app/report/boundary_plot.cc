@@ -82,14 +82,15 @@ bool Any(const BoundaryPlot& plot, Outcome outcome) {
 std::string Script(const BoundaryPlot& plot) {
   const Range range = RangeOf(plot);
   std::string s = fmt::format(
-      "set terminal svg size 940,300 dynamic noenhanced "
+      "set terminal svg size 940,232 dynamic noenhanced "
       "font 'Arial,14' name '{}'\n"
-      "set lmargin 12\nset rmargin 3\nset tmargin 3.2\nset bmargin 3.4\n"
+      "set lmargin 12\nset rmargin 3\nset tmargin 2.2\nset bmargin 3.4\n"
       "set border 3 lc rgb '#1c2126'\nset tics nomirror\n"
       "set xrange [{:.1f}:{:.1f}]\nset yrange [-0.16:1.16]\n"
       "set ytics ('slide' 0, 'bounce' 1)\n"
       "set ylabel 'what was seen'\nset xlabel {}\n"
-      "set key above right horizontal samplen 2 spacing 1 width 1 font ',13'\n",
+      "set key outside top right horizontal maxrows 1 samplen 1.6 width 0 font "
+      "',13'\n",
       plot.id, range.low_deg, range.high_deg,
       GnuplotQuote(plot.angle_name + " (deg)"));
   s += range.high_deg - range.low_deg > 50 ? "set xtics 10\nset mxtics 2\n"

@@ -166,17 +166,17 @@ std::string BracketText(const analysis::Bracket& bracket) {
 
 std::string AgreementText(const Compared& compared) {
   const analysis::Agreement& a = compared.agreement;
-  std::string text = fmt::format(
-      "{} of {} decided trials agree with the {} boundary, {} deg (at the "
-      "boundary itself: slide)",
-      a.all.right(), a.all.total(), compared.theory.boundary.name,
-      Plain(compared.theory.boundary.boundary_rad / kDegree));
-  text += fmt::format("; {} of them decide nothing, being within 2 u of it",
-                      a.decides_nothing);
-  if (a.undecided > 0) text += fmt::format("; {} undecided", a.undecided);
+  std::string text =
+      fmt::format("{} of {} agree with the {} boundary, {} deg", a.all.right(),
+                  a.all.total(), compared.theory.boundary.name,
+                  Plain(compared.theory.boundary.boundary_rad / kDegree));
+  if (a.decides_nothing > 0) {
+    text += fmt::format(", but {} of them decide{} nothing (within 2 u of it)",
+                        a.decides_nothing, a.decides_nothing == 1 ? "s" : "");
+  }
   if (a.all.total() > 0) {
     text += fmt::format(
-        "; every boundary {} deg would agree as well",
+        "; every boundary {} deg agrees as well",
         a.same_low_rad && a.same_high_rad
             ? "in " + HalfOpen(a.same_low_rad, a.same_high_rad, kDegree)
             : HalfOpen(a.same_low_rad, a.same_high_rad, kDegree));

@@ -32,8 +32,11 @@ caption { text-align: left; font-weight: bold; padding: 0 0 5px; }
 th { text-align: left; vertical-align: bottom; border-bottom: 1.5px solid
   var(--ink); padding: 3px 12px 3px 0; font-size: 12.5px; }
 td { border-bottom: 1px solid var(--line); padding: 3px 12px 3px 0;
-  vertical-align: top; overflow-wrap: anywhere; }
-th.num, td.num { text-align: right; white-space: nowrap; }
+  vertical-align: top; }
+th.num { text-align: right; }
+td.num { text-align: right; white-space: nowrap; }
+td.muted { overflow-wrap: anywhere; min-width: 8ch; }
+td.muted:last-child { min-width: 16ch; }
 .slide { color: var(--slide); }
 .bounce { color: var(--bounce); font-weight: bold; }
 .undecided { font-style: italic; }
@@ -63,7 +66,10 @@ summary { cursor: pointer; color: var(--soft); }
   body { max-width: none; padding: 0; font-size: 10pt; line-height: 1.38; }
   h1 { font-size: 17pt; } h2 { font-size: 13pt; } h3 { font-size: 11pt; }
   h2, h3 { break-after: avoid; }
-  table { font-size: 8.8pt; } th { font-size: 8.2pt; }
+  table { font-size: 8.6pt; margin: 6px 0 10px; } th { font-size: 8pt; }
+  th, td { padding: 1.5px 10px 1.5px 0; }
+  p, .callout, .banner, figure { margin: 5px 0 6px; }
+  .callout { font-size: 9.4pt; padding: 6px 11px; }
   thead { display: table-header-group; }
   tr, .callout, .banner, figure { break-inside: avoid; }
   caption { break-after: avoid; }
