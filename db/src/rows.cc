@@ -1,0 +1,391 @@
+#include "rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "touchdown/core/errors.h"
+#include "touchdown/db/quantities.h"
+
+namespace touchdown::db {
+namespace {
+
+using core::AbsentBecause;
+using core::Budget;
+using core::ContactRecord;
+using core::Estimate;
+using core::Interval;
+using core::Measured;
+
+void AddMeasured(Statement& statement, const Measured& measured) {
+  if (!measured) {
+    statement.Add(std::nullopt)
+        .Add(std::nullopt)
+        .Add(std::nullopt)
+        .Add(std::nullopt)
+        .Add(measured.error().reason);
+    return;
+  }
+  statement.Add(measured->value).Add(measured->u);
+  if (measured->interval95) {
+    statement.Add(measured->interval95->low).Add(measured->interval95->high);
+  } else {
+    statement.Add(std::nullopt).Add(std::nullopt);
+  }
+  statement.Add(std::nullopt);
+}
+
+Measured TakeMeasured(Statement& statement) {
+  if (statement.NextIsNull()) {
+    statement.Skip(4);
+    return AbsentBecause(statement.TakeText());
+  }
+  Estimate estimate;
+  estimate.value = statement.TakeReal();
+  estimate.u = statement.TakeReal();
+  const auto low = statement.TakeOptionalReal();
+  const auto high = statement.TakeOptionalReal();
+  if (low && high) estimate.interval95 = Interval{*low, *high};
+  statement.Skip(1);
+  return estimate;
+}
+
+std::string Placeholders(std::size_t count) {
+  std::string text = "?";
+  for (std::size_t i = 1; i < count; ++i) text += ", ?";
+  return text;
+}
+
+// A word of a coded column; the file's CHECK lets no other in.
+template <class T>
+T Word(std::optional<T> parsed, const Connection& connection) {
+  if (!parsed) {
+    throw core::StoreError(fmt::format(
+        "{}: the trial store holds a word this program does not know; see "
+        "`touchdown db check`",
+        connection.path().string()));
+  }
+  return *parsed;
+}
+
+const std::string& ContactNames() {
+  static const std::string names = [] {
+    std::string text =
+        "found, not_found_because, from_start, corner, state, p_bounce, "
+        "state_because, micro_bounce";
+    for (const auto& quantity : kContactQuantities) {
+      text += ", " + MeasuredNames(quantity.name);
+    }
+    return text;
+  }();
+  return names;
+}
+constexpr std::size_t kContactColumns = 8 + 5 * kContactQuantities.size();
+
+void InsertContact(Connection& connection, std::int64_t revision_id,
+                   std::int64_t ordinal, const ContactRecord& record) {
+  static const std::string sql =
+      fmt::format("INSERT INTO contacts (revision_id, ordinal, {}) VALUES ({})",
+                  ContactNames(), Placeholders(2 + kContactColumns));
+  Statement insert(connection, sql);
+  insert.Add(revision_id)
+      .Add(ordinal)
+      .Add(record.contact.found)
+      .Add(record.contact.reason)
+      .Add(record.contact.from_start);
+  if (record.contact.corner) {
+    insert.Add(core::Name(*record.contact.corner));
+  } else {
+    insert.Add(std::nullopt);
+  }
+  insert.Add(core::Name(record.state.label))
+      .Add(record.state.p_bounce)
+      .Add(record.state.reason)
+      .Add(record.state.micro_bounce);
+  for (const auto& quantity : kContactQuantities) {
+    AddMeasured(insert, At(record, quantity));
+  }
+  insert.Run();
+  for (const auto& budget : kBudgets) {
+    const Budget& lines = record.contact.*budget.member;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      Statement(connection,
+                "INSERT INTO budget_lines (revision_id, ordinal, budget, line, "
+                "source, u_rad) VALUES (?, ?, ?, ?, ?, ?)")
+          .Add(revision_id)
+          .Add(ordinal)
+          .Add(budget.name)
+          .Add(static_cast<std::int64_t>(i))
+          .Add(lines[i].source)
+          .Add(lines[i].u)
+          .Run();
+    }
+  }
+}
+
+ContactRecord TakeContact(Connection& connection, Statement& row) {
+  ContactRecord record;
+  record.contact.found = row.TakeBool();
+  record.contact.reason = row.TakeText();
+  record.contact.from_start = row.TakeBool();
+  if (const auto corner = row.TakeOptionalText()) {
+    record.contact.corner = Word(core::ParseCorner(*corner), connection);
+  }
+  record.state.label = Word(core::ParseMotionState(row.TakeText()), connection);
+  record.state.p_bounce = row.TakeOptionalReal();
+  record.state.reason = row.TakeText();
+  record.state.micro_bounce = row.TakeBool();
+  for (const auto& quantity : kContactQuantities) {
+    At(record, quantity) = TakeMeasured(row);
+  }
+  return record;
+}
+
+// --- what may not enter ------------------------------------------------------
+
+[[noreturn]] void Refuse(std::string_view field, double value,
+                         std::string_view must) {
+  throw std::invalid_argument(
+      fmt::format("{} is {}, must be {}", field, value, must));
+}
+
+void RequireNumber(std::string_view field, double value) {
+  if (std::isnan(value)) {
+    Refuse(field, value, "a number, or absent with a reason");
+  }
+}
+
+void RequireMeasured(std::string_view field, const Measured& measured) {
+  if (!measured) return;
+  RequireNumber(field, measured->value);
+  if (!(measured->u >= 0.0)) {
+    Refuse(fmt::format("u of {}", field), measured->u, "at least 0");
+  }
+  if (measured->interval95 &&
+      !(measured->interval95->low <= measured->interval95->high)) {
+    Refuse(fmt::format("lower end of the interval of {}", field),
+           measured->interval95->low,
+           fmt::format("at most its upper end {}", measured->interval95->high));
+  }
+}
+
+void RequireBody(const core::Body& body) {
+  for (const auto& quantity : kBodyQuantities) {
+    RequireMeasured(fmt::format("body.{}", quantity.name),
+                    body.*quantity.member);
+  }
+}
+
+void RequireContact(const ContactRecord& record) {
+  for (const auto& quantity : kContactQuantities) {
+    RequireMeasured(quantity.name, At(record, quantity));
+  }
+  if (record.state.p_bounce) {
+    const double p = *record.state.p_bounce;
+    if (!(p >= 0.0 && p <= 1.0)) Refuse("p_bounce", p, "in [0, 1]");
+  }
+  for (const auto& budget : kBudgets) {
+    for (const auto& line : record.contact.*budget.member) {
+      if (!(line.u >= 0.0)) {
+        Refuse(fmt::format("u of the {} budget's line '{}'", budget.name,
+                           line.source),
+               line.u, "at least 0");
+      }
+    }
+  }
+}
+
+void RequireRange(std::string_view field, double value, double low,
+                  std::string_view must) {
+  if (!(value >= low) || !std::isfinite(value)) Refuse(field, value, must);
+}
+
+}  // namespace
+
+void RequireStorable(const core::Trial& trial) {
+  RequireBody(trial.body);
+  RequireContact(trial.first);
+  for (const auto& record : trial.later) RequireContact(record);
+  if (trial.set_angle_rad) RequireNumber("set_angle_rad", *trial.set_angle_rad);
+  if (trial.set_speed_mps) RequireNumber("set_speed_mps", *trial.set_speed_mps);
+  if (trial.clip.size_bytes < 0) {
+    throw std::invalid_argument(fmt::format(
+        "clip.size_bytes is {}, must be at least 0", trial.clip.size_bytes));
+  }
+  if (trial.clip.id.empty() &&
+      !(trial.clip.path.empty() && trial.clip.sha256.empty() &&
+        trial.clip.size_bytes == 0)) {
+    throw std::invalid_argument(fmt::format(
+        "clip.id is empty, but the trial has a clip ('{}'): a clip is known by "
+        "its id",
+        trial.clip.path));
+  }
+  if (trial.author.empty()) {
+    throw std::invalid_argument(
+        "author is empty, must say which program or person states this");
+  }
+}
+
+void RequireStorable(const core::Campaign& campaign) {
+  if (campaign.name.empty()) {
+    throw std::invalid_argument("campaign name is empty, must be a name");
+  }
+  RequireBody(campaign.body);
+  if (!(campaign.bounce_height_m > 0.0)) {
+    Refuse("bounce_height_m", campaign.bounce_height_m,
+           "above 0 and finite: rising above it is what bounce means");
+  }
+  RequireRange("bounce_height_m", campaign.bounce_height_m, 0.0, "finite");
+  RequireRange("speed_min_mps", campaign.speed_min_mps, 0.0,
+               "at least 0 and finite");
+  RequireRange("speed_max_mps", campaign.speed_max_mps, campaign.speed_min_mps,
+               "at least speed_min_mps and finite");
+  if (!(campaign.margin_rad > 0.0)) {
+    Refuse("margin_rad", campaign.margin_rad, "above 0");
+  }
+  RequireRange("margin_rad", campaign.margin_rad, 0.0, "finite");
+  RequireRange("theory_u_rad", campaign.theory_u_rad, 0.0,
+               "at least 0 and finite");
+  if (campaign.theory_boundary_rad) {
+    RequireRange("theory_boundary_rad", *campaign.theory_boundary_rad, 0.0,
+                 "at least 0 and finite");
+    if (campaign.theory_name.empty()) {
+      throw std::invalid_argument(
+          "theory_name is empty, but a boundary was given: the theory needs a "
+          "name");
+    }
+  }
+}
+
+std::string MeasuredNames(std::string_view name) {
+  return fmt::format("{0}, {0}_u, {0}_low, {0}_high, {0}_absent", name);
+}
+
+std::string BodyNames(std::string_view prefix) {
+  std::string text = fmt::format("{}body_kind", prefix);
+  for (const auto& quantity : kBodyQuantities) {
+    text += ", " + MeasuredNames(fmt::format("{}{}", prefix, quantity.name));
+  }
+  return text;
+}
+
+void AddBody(Statement& statement, const core::Body& body) {
+  statement.Add(core::Name(body.kind));
+  for (const auto& quantity : kBodyQuantities) {
+    AddMeasured(statement, body.*quantity.member);
+  }
+}
+
+core::Body TakeBody(Statement& statement) {
+  core::Body body;
+  // The column's CHECK allows these two words only.
+  body.kind = core::ParseBodyKind(statement.TakeText())
+                  .value_or(core::BodyKind::kSphere);
+  for (const auto& quantity : kBodyQuantities) {
+    body.*quantity.member = TakeMeasured(statement);
+  }
+  return body;
+}
+
+void InsertStatement(Connection& connection, std::int64_t revision_id,
+                     const core::Trial& trial) {
+  static const std::string sql = fmt::format(
+      "INSERT INTO statements (revision_id, clip_path, angle_kind, {}, "
+      "set_angle_rad, set_speed_mps, contacts, document_json) VALUES ({})",
+      BodyNames(""), Placeholders(8 + 5 * kBodyQuantities.size()));
+  Statement insert(connection, sql);
+  insert.Add(revision_id)
+      .Add(trial.clip.path)
+      .Add(core::Name(trial.angle_kind));
+  AddBody(insert, trial.body);
+  insert.Add(trial.set_angle_rad)
+      .Add(trial.set_speed_mps)
+      .Add(static_cast<std::int64_t>(1 + trial.later.size()))
+      .Add(trial.document_json);
+  insert.Run();
+  InsertContact(connection, revision_id, 0, trial.first);
+  for (std::size_t i = 0; i < trial.later.size(); ++i) {
+    InsertContact(connection, revision_id, static_cast<std::int64_t>(i + 1),
+                  trial.later[i]);
+  }
+}
+
+std::string SelectRevisions(bool with_documents) {
+  return fmt::format(
+      "SELECT r.uuid, r.kind, r.statement_id, t.uuid, ifnull(c.name, ''), "
+      "t.origin, s.clip_path, ifnull(k.clip_id, ''), ifnull(k.sha256, ''), "
+      "ifnull(k.size_bytes, 0), s.angle_kind, {}, s.set_angle_rad, "
+      "s.set_speed_mps, r.number, r.author, r.reason, r.recorded_at_utc, "
+      "r.software_version, r.options_hash, r.exclusion_id IS NOT NULL, "
+      "ifnull(x.reason, ''), {} "
+      "FROM trials t "
+      "JOIN revisions r ON r.trial_id = t.id "
+      "JOIN statements s ON s.revision_id = r.statement_id "
+      "LEFT JOIN campaigns c ON c.id = t.campaign_id "
+      "LEFT JOIN clips k ON k.id = t.clip_id "
+      "LEFT JOIN exclusions x ON x.revision_id = r.exclusion_id ",
+      BodyNames("s."), with_documents ? "s.document_json" : "''");
+}
+
+RevisionRow TakeRevision(Connection& connection, Statement& row) {
+  RevisionRow out;
+  core::Trial& trial = out.trial;
+  out.uuid = row.TakeText();
+  out.kind = row.TakeText();
+  const std::int64_t statement_id = row.TakeInteger();
+  trial.id = row.TakeText();
+  trial.campaign = row.TakeText();
+  trial.origin = Word(core::ParseOrigin(row.TakeText()), connection);
+  trial.clip.path = row.TakeText();
+  trial.clip.id = row.TakeText();
+  trial.clip.sha256 = row.TakeText();
+  trial.clip.size_bytes = row.TakeInteger();
+  trial.angle_kind = Word(core::ParseAngleKind(row.TakeText()), connection);
+  trial.body = TakeBody(row);
+  trial.set_angle_rad = row.TakeOptionalReal();
+  trial.set_speed_mps = row.TakeOptionalReal();
+  trial.revision = row.TakeInteger();
+  trial.author = row.TakeText();
+  trial.reason = row.TakeText();
+  trial.recorded_at_utc = row.TakeText();
+  trial.software_version = row.TakeText();
+  trial.options_hash = row.TakeText();
+  trial.excluded = row.TakeBool();
+  trial.exclusion_reason = row.TakeText();
+  trial.document_json = row.TakeText();
+
+  static const std::string contacts_sql = fmt::format(
+      "SELECT {} FROM contacts WHERE revision_id = ? ORDER BY ordinal",
+      ContactNames());
+  Statement contacts(connection, contacts_sql);
+  contacts.Add(statement_id);
+  if (contacts.Step()) trial.first = TakeContact(connection, contacts);
+  while (contacts.Step()) {
+    trial.later.push_back(TakeContact(connection, contacts));
+  }
+  Statement lines(connection,
+                  "SELECT ordinal, budget, source, u_rad FROM budget_lines "
+                  "WHERE revision_id = ? ORDER BY ordinal, budget, line");
+  lines.Add(statement_id);
+  while (lines.Step()) {
+    const auto ordinal = static_cast<std::size_t>(lines.TakeInteger());
+    if (ordinal > trial.later.size()) continue;
+    core::Contact& contact =
+        ordinal == 0 ? trial.first.contact : trial.later[ordinal - 1].contact;
+    const std::string which = lines.TakeText();
+    core::BudgetLine line;
+    line.source = lines.TakeText();
+    line.u = lines.TakeReal();
+    for (const auto& budget : kBudgets) {
+      if (budget.name == which) {
+        (contact.*budget.member).push_back(std::move(line));
+        break;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace touchdown::db

@@ -1,0 +1,44 @@
+// Core structs to rows and back.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "statement.h"
+#include "touchdown/core/campaign.h"
+#include "touchdown/core/trial.h"
+
+namespace touchdown::db {
+
+// Throws std::invalid_argument naming the field if a number is NaN, a u is
+// negative, an interval is upside down, or the clip has a path but no id.
+void RequireStorable(const core::Trial& trial);
+void RequireStorable(const core::Campaign& campaign);
+
+// The statement of a revision: body, set-points, contacts, budgets, document.
+void InsertStatement(Connection& connection, std::int64_t revision_id,
+                     const core::Trial& trial);
+
+// The five columns of a measured number: value, _u, _low, _high, _absent.
+std::string MeasuredNames(std::string_view name);
+
+// Columns of a body, in the order in which AddBody and TakeBody go.
+std::string BodyNames(std::string_view prefix);
+void AddBody(Statement& statement, const core::Body& body);
+core::Body TakeBody(Statement& statement);
+
+// A query of trials: "SELECT <these> FROM <these>"; append WHERE and ORDER BY.
+// t = trials, c = campaigns, k = clips, r = revisions (any number of a trial),
+// s = statements in force, x = exclusions in force.
+std::string SelectRevisions(bool with_documents);
+
+// One row of SelectRevisions; contacts and budgets are fetched beside it.
+struct RevisionRow {
+  std::string uuid;
+  std::string kind;
+  core::Trial trial;
+};
+RevisionRow TakeRevision(Connection& connection, Statement& row);
+
+}  // namespace touchdown::db
