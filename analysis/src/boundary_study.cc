@@ -6,7 +6,25 @@
 namespace touchdown::analysis {
 namespace {
 
-constexpr double kTheoryCoverage = 2.0;  // U = 2 u
+constexpr double kTheoryCoverage = 2.0;           // U = 2 u
+constexpr double kNormal95 = 1.6448536269514722;  // half of the 90 % interval
+
+// The half-width at which the rule decides: the 90 % interval inside the
+// margin, or the 95 % interval outside margin + U.
+int TrialsToDecide(const BoundaryPosterior& posterior,
+                   const TheoryComparison& comparison,
+                   const StudyOptions& options) {
+  const double off = std::abs(comparison.difference_rad);
+  const double far =
+      options.margin_rad + kTheoryCoverage * comparison.theory.u_rad;
+  const double to_confirm =
+      (options.margin_rad - off) * core::kNormal975 / kNormal95;
+  // On the edge between the two no number of trials decides: a hundredth of the
+  // margin stands for that.
+  const double target =
+      std::max({to_confirm, off - far, options.margin_rad / 100});
+  return ForecastTrials(posterior, target, options.next.set_u_rad);
+}
 
 TheoryComparison Compare(std::span<const Observation> observations,
                          const BoundaryPosterior& posterior,
@@ -40,6 +58,10 @@ TheoryComparison Compare(std::span<const Observation> observations,
   }
   if (!out.judgement.verdict) {
     out.judgement.reason = out.judgement.verdict.error().reason;
+  }
+
+  if (out.judgement.verdict == core::Verdict::kInconclusive) {
+    out.trials_to_decide = TrialsToDecide(posterior, out, options);
   }
 
   const ConfusionMatrix& m = out.agreement.deciding;

@@ -79,10 +79,15 @@ double FastLogNormalCdf(double z) {
   return z < kLow ? LogNormalCdf(z) : table(z);
 }
 
-// log(p P + (1 - p)(1 - P)) with P = lapse + (1 - 2 lapse) Phi(z).
+// log(p P + (1 - p)(1 - P)) with P = lapse + (1 - 2 lapse) Phi(z). Near the
+// ends of Phi, where a label of probability 1e-9 matters, Phi must be exact.
 double LogSoft(double z, double p_bounce, double lapse) {
-  const double bounce = lapse + (1.0 - 2.0 * lapse) * NormalCdf(z);
-  return std::log(p_bounce * bounce + (1.0 - p_bounce) * (1.0 - bounce));
+  constexpr double kEnds = 3.5;
+  const double phi = std::abs(z) < kEnds ? FastNormalCdf(z) : NormalCdf(z);
+  const double not_phi = std::abs(z) < kEnds ? 1.0 - phi : NormalCdf(-z);
+  const double bounce = lapse + (1.0 - 2.0 * lapse) * phi;
+  const double not_bounce = lapse + (1.0 - 2.0 * lapse) * not_phi;
+  return std::log(p_bounce * bounce + (1.0 - p_bounce) * not_bounce);
 }
 
 }  // namespace

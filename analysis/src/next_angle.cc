@@ -75,26 +75,6 @@ double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
   return expected;
 }
 
-// Further trials until the half-width of the 95 % interval is the target. A
-// trial at the boundary brings the information 2 / (pi s_eff^2) at most, and
-// while outcomes are still separated it at best halves the interval.
-int Forecast(const BoundaryPosterior& posterior, double half_width,
-             const NextAngleOptions& options) {
-  if (half_width <= options.target_half_width_rad) return 0;
-  const double s_eff =
-      std::hypot(posterior.scatter_median_rad, options.set_u_rad);
-  const double target_sd = options.target_half_width_rad / core::kNormal975;
-  const double now_sd = half_width / core::kNormal975;
-  const double by_information =
-      (1 / (target_sd * target_sd) - 1 / (now_sd * now_sd)) * std::numbers::pi *
-      s_eff * s_eff / 2;
-  const double by_halving =
-      std::log2(half_width / options.target_half_width_rad);
-  constexpr double kMost = 1e6;  // beyond, the number says "never"
-  return static_cast<int>(
-      std::ceil(std::min(std::max(by_information, by_halving), kMost)));
-}
-
 // The golden ratio's multiples fill an interval evenly, however many there are.
 double Spread(int trial, double spread_rad) {
   const double turn = trial * (std::numbers::phi - 1.0);
@@ -258,7 +238,29 @@ double NeyerLevel(std::span<const Observation> trials,
                   std::min(scatter, all.high - all.low));
 }
 
+double HalfWidth(const BoundaryPosterior& posterior) {
+  return (posterior.interval95_rad.high - posterior.interval95_rad.low) / 2;
+}
+
 }  // namespace
+
+int ForecastTrials(const BoundaryPosterior& posterior,
+                   double target_half_width_rad, double set_u_rad) {
+  Require(target_half_width_rad > 0.0, "target_half_width_rad",
+          target_half_width_rad, "positive");
+  const double half_width = HalfWidth(posterior);
+  if (half_width <= target_half_width_rad) return 0;
+  const double s_eff = std::hypot(posterior.scatter_median_rad, set_u_rad);
+  const double target_sd = target_half_width_rad / core::kNormal975;
+  const double now_sd = half_width / core::kNormal975;
+  const double by_information =
+      (1 / (target_sd * target_sd) - 1 / (now_sd * now_sd)) * std::numbers::pi *
+      s_eff * s_eff / 2;
+  const double by_halving = std::log2(half_width / target_half_width_rad);
+  constexpr double kMost = 1e6;  // beyond, the number says "never"
+  return static_cast<int>(
+      std::ceil(std::min(std::max(by_information, by_halving), kMost)));
+}
 
 NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
                           const NextAngleOptions& options) {
@@ -305,14 +307,14 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
   NextAngle out = Clipped(best + Spread(trials_so_far, options.spread_rad),
                           options.feasible_rad);
   out.expected_sd_rad = std::sqrt(std::max(best_variance, 0.0));
-  out.half_width_rad =
-      (posterior.interval95_rad.high - posterior.interval95_rad.low) / 2;
+  out.half_width_rad = HalfWidth(posterior);
   if (out.half_width_rad <= options.target_half_width_rad) {
     out.stop = StopReason::kTargetReached;
   } else if (trials_so_far >= options.max_trials) {
     out.stop = StopReason::kMaxTrials;
   }
-  out.trials_to_target = Forecast(posterior, out.half_width_rad, options);
+  out.trials_to_target = ForecastTrials(
+      posterior, options.target_half_width_rad, options.set_u_rad);
   return out;
 }
 

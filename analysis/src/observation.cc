@@ -26,6 +26,15 @@ Outcome OutcomeOf(double p_bounce) {
   return Outcome::kUndecided;
 }
 
+// What was measured where it says the same as the label; a label corrected by
+// hand may stand beside the old probability, and then counts alone.
+double DecidedProbability(const core::StateDecision& state, bool bounced) {
+  const double p = state.p_bounce.value_or(bounced ? 1.0 : 0.0);
+  const bool same =
+      bounced ? p >= kDecidedProbability : p <= 1.0 - kDecidedProbability;
+  return same ? std::clamp(p, 0.0, 1.0) : bounced ? 1.0 : 0.0;
+}
+
 // Nothing where the trial cannot enter; then `why` says why.
 std::optional<Observation> ObserveTrial(const core::Trial& trial,
                                         std::string& why) {
@@ -53,10 +62,10 @@ std::optional<Observation> ObserveTrial(const core::Trial& trial,
   const core::StateDecision& state = trial.first.state;
   if (state.label == core::MotionState::kBounce) {
     out.outcome = Outcome::kBounce;
-    out.p_bounce = 1.0;
+    out.p_bounce = DecidedProbability(state, true);
   } else if (core::IsNotBounce(state.label)) {
     out.outcome = Outcome::kNotBounce;
-    out.p_bounce = 0.0;
+    out.p_bounce = DecidedProbability(state, false);
   } else {
     out.p_bounce = std::clamp(state.p_bounce.value_or(0.5), 0.0, 1.0);
   }

@@ -88,6 +88,15 @@ TEST(GroupTrials, EveryNotBounceIsOneOutcome) {
   }
 }
 
+TEST(GroupTrials, ADecidedTrialKeepsAProbabilityThatAgrees) {
+  std::vector trials(2, ATrial(10, core::MotionState::kBounce));
+  trials[0].first.state.p_bounce = 0.999;
+  trials[1].first.state.p_bounce = 0.4;  // the label was corrected by hand
+  const auto groups = GroupTrials(trials);
+  EXPECT_EQ(groups[0].observations[0].p_bounce, 0.999);
+  EXPECT_EQ(groups[0].observations[1].p_bounce, 1.0);
+}
+
 TEST(GroupTrials, AnUndecidedTrialKeepsItsProbability) {
   std::vector trials(2, ATrial(10, core::MotionState::kUndecided));
   trials[0].first.state.p_bounce = 0.8;

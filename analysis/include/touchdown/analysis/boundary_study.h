@@ -49,6 +49,10 @@ struct TheoryComparison {
   Agreement agreement;
   // Absent with the reason where there is no verdict to give.
   Judgement judgement;
+  // Forecast: further trials until the verdict would no longer be inconclusive,
+  // if the boundary is where it is believed to be now; nothing where it is not
+  // inconclusive.
+  std::optional<int> trials_to_decide;
   // Of the confusion matrix, without trials that decide nothing; absent where
   // none is left.
   std::optional<core::Interval> wilson95;

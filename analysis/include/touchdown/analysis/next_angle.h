@@ -37,9 +37,7 @@ struct NextAngle {
   double expected_sd_rad = 0.0;
   double half_width_rad = 0.0;  // of the 95 % interval now
   StopReason stop = StopReason::kNone;
-  // Forecast: further trials until the target, at the scatter as it is believed
-  // now (its posterior median). A rough number until some ten trials are in.
-  int trials_to_target = 0;
+  int trials_to_target = 0;  // ForecastTrials() for the target half-width
 };
 
 // The primary rule: the candidate with the least expected variance of the
@@ -48,6 +46,14 @@ struct NextAngle {
 // Throws std::invalid_argument naming the option that is out of its range.
 NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
                           const NextAngleOptions& options = {});
+
+// Forecast: how many further trials near the boundary until the 95 % interval
+// is no wider than +- target, if the scatter is what it is believed to be now
+// (its posterior median). Each brings the information 2 / (pi (s^2 + set_u^2))
+// at most and, while the outcomes are separated, at best halves the interval.
+// Rough until some ten trials are in. `target` > 0.
+int ForecastTrials(const BoundaryPosterior& posterior,
+                   double target_half_width_rad, double set_u_rad);
 
 // Neyer's D-optimal test (Technometrics 36, 61-70, 1994; MIL-STD-331): what the
 // operator believes before the first trial.

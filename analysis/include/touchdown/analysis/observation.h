@@ -20,7 +20,7 @@ enum class Outcome { kNotBounce, kBounce, kUndecided };
 struct Observation {
   double angle_rad = 0.0;
   double u_rad = 0.0;  // standard uncertainty of angle_rad, >= 0
-  // P(the body bounced | what was filmed): 1 and 0 for decided trials.
+  // P(the body bounced | what was filmed): near 1 or 0 for decided trials.
   double p_bounce = 0.5;
   Outcome outcome = Outcome::kUndecided;
   std::optional<double> set_angle_rad;  // set-point, where there was one
@@ -55,9 +55,9 @@ struct TrialGroup {
 
 // Splits trials into groups, in the order of (campaign, body, kind of angle,
 // origin). A trial is left out, with the reason, where it is excluded or where
-// its contact angle is absent. A decided state becomes p_bounce 1 or 0; an
-// undecided one keeps its P(bounce), or 0.5 (which says nothing) where the
-// rebound was not filmed.
+// its contact angle is absent. A decided state keeps its P(bounce) where that
+// says the same as the label, else it becomes 1 or 0; an undecided one keeps
+// its P(bounce), or 0.5 (which says nothing) where the rebound was not filmed.
 std::vector<TrialGroup> GroupTrials(std::span<const core::Trial> trials);
 
 }  // namespace touchdown::analysis
