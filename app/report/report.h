@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "touchdown/analysis/agreement.h"
+#include "touchdown/analysis/boundary_study.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/trial.h"
 
@@ -26,17 +27,22 @@ struct ReportInput {
   std::vector<core::Trial> trials;  // in any order; last revisions only
   std::vector<core::Campaign> campaigns;
   std::vector<ReportTheory> theories = PublishedTheories();
+  // How boundaries are estimated; what depends on the campaign (theory, margin,
+  // origin) is filled in.
+  analysis::StudyOptions study;
   std::string title = "Table 1: slide or bounce at touchdown";
   std::string software_version;
-  std::string options;       // how the report was asked for
-  std::string store_digest;  // of the store the trials come from
+  std::string options;  // how the report was asked for
+  std::string source;   // where the trials come from
 };
 
 // Every text is a whole file.
 struct Report {
   std::string markdown;
-  std::string csv;
+  std::string csv;  // one line a trial
   std::string html;
+  std::string latex;  // Table 1 alone, to \input into a paper
+  std::string json;   // touchdown.report/1: every number
 };
 
 // Makes the report. The same input gives the same bytes: no clock, everything
@@ -44,7 +50,7 @@ struct Report {
 // core::InputError where a plot cannot be drawn.
 Report MakeReport(const ReportInput& input);
 
-// Writes table1.md, table1.csv and table1.html into `folder` (made where it is
+// Writes table1.md, .csv, .html, .tex and .json into `folder` (made where it is
 // missing), each under a temporary name first. Throws core::InputError.
 void WriteReport(const Report& report, const std::filesystem::path& folder);
 

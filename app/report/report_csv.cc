@@ -1,7 +1,8 @@
 // table1.csv: one line a trial, units in the heading.
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <map>
+#include <optional>
 
 #include "app/report/content.h"
 #include "app/report/text.h"
@@ -25,11 +26,12 @@ std::string U(const core::Measured& m, double unit) {
   return m ? fmt::format("{:.3g}", m->u / unit) : "";
 }
 
-std::string ReasonLeftOut(const Group& group, std::size_t trial) {
+std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group) {
+  std::map<std::size_t, std::string> out;
   for (const auto& left : group.trials.left_out) {
-    if (left.trial == trial) return left.reason;
+    out[left.trial] = left.reason;
   }
-  return "";
+  return out;
 }
 
 }  // namespace
@@ -42,7 +44,9 @@ std::string MakeCsv(std::span<const Group> groups,
       "u_max_gap_mm,bounce_height_mm,micro_bounce,left_out,clip,trial,"
       "revision\r\n";
   for (const Group& group : groups) {
+    const auto left_out = ReasonsLeftOut(group);
     for (const std::size_t t : group.members) {
+      const auto why = left_out.find(t);
       const core::Trial& trial = trials[t];
       const core::StateDecision& state = trial.first.state;
       const core::Measured& angle = core::ContactAngle(trial);
@@ -64,7 +68,7 @@ std::string MakeCsv(std::span<const Group> groups,
                                    U(state.max_gap_m, kMillimetre),
                                    Value(state.bounce_height_m, kMillimetre),
                                    state.micro_bounce ? "1" : "0",
-                                   ReasonLeftOut(group, t),
+                                   why == left_out.end() ? "" : why->second,
                                    trial.clip.path,
                                    trial.id,
                                    fmt::format("{}", trial.revision)};

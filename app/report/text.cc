@@ -77,4 +77,31 @@ std::string MarkdownEscape(std::string_view text) {
   return out;
 }
 
+std::string LatexEscape(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    // The two signs beyond ASCII that our tables use.
+    if (text.substr(i).starts_with("\u00b1")) {
+      out += "$\\pm$";
+      i += 1;
+    } else if (text.substr(i).starts_with("\u2013")) {
+      out += "--";
+      i += 2;
+    } else if (c == '\\') {
+      out += "\\textbackslash{}";
+    } else if (c == '~') {
+      out += "\\textasciitilde{}";
+    } else if (c == '^') {
+      out += "\\textasciicircum{}";
+    } else if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) {
+      out += '\\';
+      out += c;
+    } else {
+      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
 }  // namespace touchdown::report

@@ -18,4 +18,7 @@ std::string CsvCell(std::string_view text);
 // escaped, line breaks become spaces.
 std::string MarkdownEscape(std::string_view text);
 
+// Text that is safe in LaTeX.
+std::string LatexEscape(std::string_view text);
+
 }  // namespace touchdown::report

@@ -142,6 +142,8 @@ TEST(MakeReport, SameTrialsInAnyOrderGiveTheSameBytes) {
   EXPECT_EQ(first.markdown, second.markdown);
   EXPECT_EQ(first.csv, second.csv);
   EXPECT_EQ(first.html, second.html);
+  EXPECT_EQ(first.latex, second.latex);
+  EXPECT_EQ(first.json, second.json);
 }
 
 TEST(MakeReport, TheHtmlAsksForNothingOutsideItself) {
@@ -225,22 +227,22 @@ TEST(MakeReport, ManyTrialsAreBinned) {
               HasSubstr("set angle, bins of 1 deg"));
 }
 
-TEST(WriteReport, WritesThreeFilesAndNothingElse) {
+TEST(WriteReport, WritesFiveFilesAndNothingElse) {
   const auto folder = std::filesystem::temp_directory_path() /
                       ("touchdown-report-test-" + std::to_string(getpid()));
-  WriteReport({"m", "c", "h"}, folder);
+  WriteReport({"m", "c", "h", "t", "j"}, folder);
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     names.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(names, ::testing::UnorderedElementsAre("table1.md", "table1.csv",
-                                                     "table1.html"));
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre(
+                         "table1.md", "table1.csv", "table1.html", "table1.tex",
+                         "table1.json"));
   std::filesystem::remove_all(folder);
 }
 
 TEST(WriteReport, AFolderThatCannotBeMadeIsAnInputError) {
-  EXPECT_THROW(WriteReport({"m", "c", "h"}, "/proc/none/here"),
-               core::InputError);
+  EXPECT_THROW(WriteReport({}, "/proc/none/here"), core::InputError);
 }
 
 TEST(RunGnuplot, MissingIsSaidWithWhatToDo) {

@@ -1,4 +1,4 @@
-#include "app/report/content.h"
+#include "app/report/group.h"
 
 #include <fmt/core.h>
 
@@ -8,13 +8,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "app/report/format.h"
-#include "touchdown/core/units.h"
-
 namespace touchdown::report {
 namespace {
-
-using core::kDegree;
 
 double OrLast(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::infinity());
@@ -38,42 +33,45 @@ std::map<std::string, const core::Campaign*> ByName(
   return out;
 }
 
-void Compare(const ReportInput& input, Group& group) {
-  const auto add = [&](const ReportTheory& theory, bool declared) {
-    group.compared.push_back({theory, declared,
-                              analysis::CompareWithTheory(
-                                  group.trials.observations, theory.boundary)});
-  };
+// The study of a group, with the theories that speak of it.
+void Study(const ReportInput& input, Group& group) {
+  analysis::StudyOptions options = input.study;
   const core::Campaign& campaign = group.campaign;
+  options.origin = group.trials.origin;
+  options.margin_rad = campaign.margin_rad;
+  options.declared.reset();
+  options.others.clear();
+  // A theory declared for another body or another kind of angle says nothing
+  // here.
   const bool speaks_of_these = campaign.body.kind == group.trials.body &&
                                campaign.angle_kind == group.trials.angle_kind;
   if (campaign.theory_boundary_rad && speaks_of_these) {
-    const analysis::TheoryBoundary declared{campaign.theory_name,
-                                            *campaign.theory_boundary_rad,
-                                            campaign.theory_u_rad};
-    add({group.trials.body, declared, "declared before the first trial"}, true);
-    analysis::BoundaryIntervals intervals;
-    if (group.bracket.closed()) {
-      intervals.interval90_rad =
-          core::Interval{*group.bracket.low_rad, *group.bracket.high_rad};
-    }
-    group.judgement = analysis::Judge(intervals, declared, campaign.margin_rad,
-                                      group.trials.origin);
+    options.declared = analysis::TheoryBoundary{campaign.theory_name,
+                                                *campaign.theory_boundary_rad,
+                                                campaign.theory_u_rad};
+    group.notes.emplace_back("declared before the first trial");
   }
   for (const ReportTheory& theory : input.theories) {
     if (theory.body != group.trials.body) continue;
-    const bool same =
-        group.judgement && campaign.theory_name == theory.boundary.name &&
-        *campaign.theory_boundary_rad == theory.boundary.boundary_rad;
-    if (same) {
-      group.compared.front().theory.note += "; " + theory.note;
+    if (options.declared && options.declared->name == theory.boundary.name &&
+        options.declared->boundary_rad == theory.boundary.boundary_rad) {
+      group.notes.front() += "; " + theory.note;
     } else {
-      add(theory, false);
+      options.others.push_back(theory.boundary);
+      group.notes.push_back(theory.note);
     }
   }
+  group.prior = options.fit.scatter;
+  group.study = analysis::StudyBoundary(group.trials.observations, options);
 }
 
 }  // namespace
+
+const analysis::TheoryComparison* Group::declared() const {
+  return !study.theories.empty() && study.theories.front().declared
+             ? &study.theories.front()
+             : nullptr;
+}
 
 void SortTrials(std::vector<core::Trial>& trials) {
   const auto key = [](const core::Trial& t) {
@@ -110,12 +108,18 @@ std::vector<Group> MakeGroups(const ReportInput& input,
       group.campaign.angle_kind = trial_group.angle_kind;
     }
     group.trials = std::move(trial_group);
-    group.counts = analysis::Count(group.trials.observations);
-    group.bracket = analysis::FindBracket(group.trials.observations);
-    Compare(input, group);
+    Study(input, group);
     out.push_back(std::move(group));
   }
   return out;
+}
+
+std::string FullName(const Group& group) {
+  return fmt::format(
+      "{}: {}, {}, {}",
+      group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,
+      core::Name(group.trials.body), AngleName(group),
+      core::Name(group.trials.origin));
 }
 
 std::string ShortName(const Group& group, std::span<const Group> groups) {
@@ -139,49 +143,6 @@ std::string AngleName(const Group& group) {
 std::string PaperWord(core::MotionState state) {
   if (state == core::MotionState::kBounce) return "bounce";
   return core::IsNotBounce(state) ? "slide" : "undecided";
-}
-
-std::string BracketText(const analysis::Bracket& bracket) {
-  if (bracket.overlap) {
-    return fmt::format(
-        "no bracket: a body stayed down at {} deg and another bounced at {} "
-        "deg",
-        Plain(*bracket.low_rad / kDegree), Plain(*bracket.high_rad / kDegree));
-  }
-  if (bracket.closed()) {
-    return fmt::format("bracket {} deg, {} deg wide",
-                       HalfOpen(bracket.low_rad, bracket.high_rad, kDegree),
-                       Plain((*bracket.high_rad - *bracket.low_rad) / kDegree));
-  }
-  if (bracket.low_rad) {
-    return fmt::format("boundary {} deg (no bounce was seen)",
-                       HalfOpen(bracket.low_rad, {}, kDegree));
-  }
-  if (bracket.high_rad) {
-    return fmt::format("boundary {} deg (every body bounced)",
-                       HalfOpen({}, bracket.high_rad, kDegree));
-  }
-  return "no decided trial";
-}
-
-std::string AgreementText(const Compared& compared) {
-  const analysis::Agreement& a = compared.agreement;
-  std::string text =
-      fmt::format("{} of {} agree with the {} boundary, {} deg", a.all.right(),
-                  a.all.total(), compared.theory.boundary.name,
-                  Plain(compared.theory.boundary.boundary_rad / kDegree));
-  if (a.decides_nothing > 0) {
-    text += fmt::format(", but {} of them decide{} nothing (within 2 u of it)",
-                        a.decides_nothing, a.decides_nothing == 1 ? "s" : "");
-  }
-  if (a.all.total() > 0) {
-    text += fmt::format(
-        "; every boundary {} deg agrees as well",
-        a.same_low_rad && a.same_high_rad
-            ? "in " + HalfOpen(a.same_low_rad, a.same_high_rad, kDegree)
-            : HalfOpen(a.same_low_rad, a.same_high_rad, kDegree));
-  }
-  return text + ".";
 }
 
 }  // namespace touchdown::report
