@@ -244,6 +244,18 @@ double HalfWidth(const BoundaryPosterior& posterior) {
 
 }  // namespace
 
+double ExpectedSd(const BoundaryPosterior& posterior, double angle_rad,
+                  const NextAngleOptions& options) {
+  std::vector<double> inverse_scatter;
+  for (const double s : posterior.grid.scatter_rad) {
+    inverse_scatter.push_back(1.0 / std::hypot(s, options.set_u_rad));
+  }
+  return std::sqrt(std::max(
+      ExpectedVariance(posterior.grid, angle_rad, inverse_scatter,
+                       posterior.mean_rad, posterior.sd_rad * posterior.sd_rad),
+      0.0));
+}
+
 int ForecastTrials(const BoundaryPosterior& posterior,
                    double target_half_width_rad, double set_u_rad) {
   Require(target_half_width_rad > 0.0, "target_half_width_rad",
@@ -256,10 +268,16 @@ int ForecastTrials(const BoundaryPosterior& posterior,
   const double by_information =
       (1 / (target_sd * target_sd) - 1 / (now_sd * now_sd)) * std::numbers::pi *
       s_eff * s_eff / 2;
-  const double by_halving = std::log2(half_width / target_half_width_rad);
+  // What the next trial is expected to bring, kept up: nothing later is faster.
+  NextAngleOptions options;
+  options.set_u_rad = set_u_rad;
+  const double rate =
+      posterior.sd_rad / ExpectedSd(posterior, posterior.mean_rad, options);
+  const double by_rate =
+      std::log(half_width / target_half_width_rad) / std::log(rate);
   constexpr double kMost = 1e6;  // beyond, the number says "never"
   return static_cast<int>(
-      std::ceil(std::min(std::max(by_information, by_halving), kMost)));
+      std::ceil(std::min(std::max(by_information, by_rate), kMost)));
 }
 
 NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,

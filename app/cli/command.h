@@ -14,8 +14,11 @@ namespace touchdown::cli {
 // std::invalid_argument (exit 2), core::InputError (3), core::StoreError (4).
 using Action = std::function<int()>;
 
-// Each Add...() adds one command with its flags to `app`, and sets `action` when
-// that command is the one called.
+// Each Add...() adds one command with its flags to `app`, and sets `action`
+// when that command is the one called.
+void AddBoundary(CLI::App& app, Action& action);
+void AddNext(CLI::App& app, Action& action);
+void AddReport(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddTheory(CLI::App& app, Action& action);
 

@@ -38,6 +38,9 @@ int main(int argc, char** argv) {
                        std::string(touchdown::pipeline::Version()));
   app.require_subcommand(1);
   touchdown::cli::Action action;
+  touchdown::cli::AddBoundary(app, action);
+  touchdown::cli::AddNext(app, action);
+  touchdown::cli::AddReport(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

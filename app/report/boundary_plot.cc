@@ -160,8 +160,7 @@ std::string Script(const BoundaryPlot& plot) {
   };
   marks(Outcome::kNotBounce, "slides", 7, "#17548f", "slide");
   marks(Outcome::kBounce, "bounces", 9, "#b3430f", "bounce");
-  marks(Outcome::kUndecided, "undecided", 4, "#40505c",
-        "undecided, at P(bounce)");
+  marks(Outcome::kUndecided, "undecided", 4, "#40505c", "undecided");
   if (parts.empty()) parts.push_back("NaN notitle");
   s += "plot ";
   for (std::size_t i = 0; i < parts.size(); ++i) {

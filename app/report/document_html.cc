@@ -43,7 +43,7 @@ td.muted:last-child { min-width: 16ch; }
 .good { color: var(--good); }
 .bad { color: var(--bad); font-weight: bold; }
 .callout { border-left: 5px solid var(--soft); background: #f3f5f7cc;
-  padding: 9px 14px; margin: 10px 0; max-width: 92ch; }
+  padding: 9px 14px; margin: 10px 0; }
 .callout.good { border-color: var(--good); color: inherit; }
 .callout.bad { border-color: var(--bad); color: inherit; font-weight: normal; }
 .callout b { margin-right: 4px; }
@@ -71,14 +71,18 @@ summary { cursor: pointer; color: var(--soft); }
   p, .callout, .banner, figure { margin: 5px 0 6px; }
   .callout { font-size: 9.4pt; padding: 6px 11px; }
   thead { display: table-header-group; }
-  tr, .callout, .banner, figure { break-inside: avoid; }
+  tr, .keep, .callout, .banner, figure { break-inside: avoid; }
   caption { break-after: avoid; }
   .muted, figcaption { font-size: 8.8pt; }
+  p, ul, figcaption { max-width: none; }
   .page-break { break-before: page; }
   .page-break + h2 { border-top: 0; margin-top: 0; }
   details { display: none; }
 }
 )css";
+
+// Tables of so few rows are not split between pages.
+constexpr std::size_t kKeepTogether = 12;
 
 std::string_view ClassOf(Tone tone) {
   switch (tone) {
@@ -126,7 +130,8 @@ class Writer {
                         HtmlEscape(callout.text));
   }
   void operator()(const Table& table) {
-    out_ += "<table>\n";
+    out_ += table.rows.size() <= kKeepTogether ? "<table class=\"keep\">\n"
+                                               : "<table>\n";
     if (!table.caption.empty()) {
       out_ +=
           fmt::format("<caption>{}{}</caption>\n", HtmlEscape(table.caption),

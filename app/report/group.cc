@@ -111,6 +111,10 @@ std::vector<Group> MakeGroups(const ReportInput& input,
     Study(input, group);
     out.push_back(std::move(group));
   }
+  // As in the paper: the sphere first.
+  std::stable_sort(out.begin(), out.end(), [](const Group& a, const Group& b) {
+    return a.trials.body < b.trials.body;
+  });
   return out;
 }
 

@@ -33,8 +33,9 @@ struct Group {
 // which a store gives its trials.
 void SortTrials(std::vector<core::Trial>& trials);
 
-// All groups of `trials`, which SortTrials() has sorted. Throws
-// std::invalid_argument where two campaigns have one name.
+// All groups of `trials`, which SortTrials() has sorted; spheres first, as in
+// the paper, then by campaign. Throws std::invalid_argument where two campaigns
+// have one name.
 std::vector<Group> MakeGroups(const ReportInput& input,
                               std::span<const core::Trial> trials);
 

@@ -49,7 +49,7 @@ Figure MakeFigure(const Group& group, std::size_t index) {
          theory.theory.boundary_rad, theory.theory.u_rad});
   }
   if (study.counts.decided() > 0) {
-    plot.density = {"posterior of the boundary", study.posterior.angle_rad,
+    plot.density = {"posterior", study.posterior.angle_rad,
                     study.posterior.density_per_rad};
   }
 

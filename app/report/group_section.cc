@@ -16,13 +16,17 @@ using core::kDegree;
 using core::kMillimetre;
 
 std::string SizeText(const core::Body& body) {
+  const auto with_unit = [](const core::Measured& size) {
+    return WithU(*size, kMillimetre) + " mm";
+  };
   if (body.kind == core::BodyKind::kSphere) {
-    return "diameter " + WithUOrReason(body.diameter_m, kMillimetre) +
-           (body.diameter_m ? " mm" : "");
+    return body.diameter_m
+               ? "diameter " + with_unit(body.diameter_m)
+               : "diameter absent: " + body.diameter_m.error().reason;
   }
-  return "sides " + WithUOrReason(body.long_m, kMillimetre) +
-         (body.long_m ? " mm" : "") + " and " +
-         WithUOrReason(body.short_m, kMillimetre) + (body.short_m ? " mm" : "");
+  if (!body.long_m) return "sides absent: " + body.long_m.error().reason;
+  if (!body.short_m) return "short side absent: " + body.short_m.error().reason;
+  return "sides " + with_unit(body.long_m) + " and " + with_unit(body.short_m);
 }
 
 // The one bounce height of the trials, or that they differ.
@@ -112,16 +116,13 @@ Callout MakeVerdict(const Group& group, std::span<const Group> groups) {
                                           : Tone::kPlain;
   callout.title = fmt::format("{}: {}.", ShortName(group, groups), word);
   const analysis::Counts& counts = group.study.counts;
-  callout.text = VerdictSentence(group);
+  callout.text = fmt::format(
+      "{} slide, {} bounce, {} undecided; {}. The boundary is {}. {}",
+      counts.not_bounce, counts.bounce, counts.undecided,
+      BracketSentence(group.study.bracket), BoundarySentence(group.study),
+      VerdictSentence(group));
   const std::string outlook = OutlookSentence(group);
   if (!outlook.empty()) callout.text += " " + outlook;
-  callout.text += fmt::format(
-      " Boundary {}; {} slide, {} bounce, {} undecided; {}. ",
-      BoundarySentence(group.study), counts.not_bounce, counts.bounce,
-      counts.undecided, BracketSentence(group.study.bracket));
-  if (!group.study.theories.empty()) {
-    callout.text += AgreementSentence(group.study.theories.front());
-  }
   return callout;
 }
 

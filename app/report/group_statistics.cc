@@ -148,14 +148,6 @@ std::string AgreementNumbers(const analysis::TheoryComparison& t) {
     }
     text += ".";
   }
-  if (t.agreement.same_low_rad || t.agreement.same_high_rad) {
-    const bool both = t.agreement.same_low_rad && t.agreement.same_high_rad;
-    text += fmt::format(
-        " Every boundary {}{} deg has the same agreement, so it supports no "
-        "value more than another among these.",
-        both ? "in " : "",
-        HalfOpen(t.agreement.same_low_rad, t.agreement.same_high_rad, kDegree));
-  }
   return text;
 }
 
@@ -185,7 +177,8 @@ std::vector<Block> MakeStatistics(const Group& group) {
         true});
   }
   out.push_back(MakeConfusion(group, first));
-  out.push_back(Paragraph{AgreementNumbers(first)});
+  out.push_back(Paragraph{AgreementSentence(first)});
+  out.push_back(Paragraph{AgreementNumbers(first), true});
   return out;
 }
 

@@ -147,11 +147,6 @@ Report MakeReport(const ReportInput& input) {
         groups.begin(), groups.end(), std::back_inserter(same),
         [origin](const Group& g) { return g.trials.origin == origin; });
     if (same.empty()) continue;
-    // As in the paper: the sphere first.
-    std::stable_sort(same.begin(), same.end(),
-                     [](const Group& a, const Group& b) {
-                       return a.trials.body < b.trials.body;
-                     });
     document.sections.push_back(MakeFront(same, trials, figures));
   }
   for (const Group& group : groups) {

@@ -79,16 +79,22 @@ std::string VerdictSentence(const Group& group) {
            "gets a verdict.";
   }
   if (!theory->judgement.verdict) return theory->judgement.reason + ".";
-  std::string text = fmt::format(
-      "The {} boundary, {} deg, is {} with a margin of {} deg: {}.",
-      theory->theory.name, Plain(theory->theory.boundary_rad / kDegree),
-      VerdictWord(group), Plain(group.study.margin_rad / kDegree),
-      theory->judgement.reason);
+  const std::string boundary =
+      fmt::format("the {} boundary, {} deg,", theory->theory.name,
+                  Plain(theory->theory.boundary_rad / kDegree));
+  const std::string margin = Plain(group.study.margin_rad / kDegree);
   if (theory->judgement.verdict == core::Verdict::kInconclusive) {
-    text += fmt::format(" The smallest margin that would pass is {:.1f} deg.",
-                        theory->smallest_margin_rad / kDegree);
+    return fmt::format(
+        "These trials neither confirm nor contradict {} with a margin of {} "
+        "deg: {}. The smallest margin that would pass is {:.1f} deg.",
+        boundary, margin, theory->judgement.reason,
+        theory->smallest_margin_rad / kDegree);
   }
-  return text;
+  return fmt::format("These trials {} {} with a margin of {} deg: {}.",
+                     theory->judgement.verdict == core::Verdict::kConfirmed
+                         ? "confirm"
+                         : "contradict",
+                     boundary, margin, theory->judgement.reason);
 }
 
 std::string OutlookSentence(const Group& group) {
@@ -101,9 +107,12 @@ std::string OutlookSentence(const Group& group) {
            "boundary is too large for the margin.";
   }
   return fmt::format(
-      "About {} more trials near {:.0f} deg would decide, if boundary and "
-      "scatter are what they now seem.",
-      *theory->trials_to_decide, group.study.posterior.median_rad / kDegree);
+      "About {} near {:.0f} deg would decide, if boundary and scatter are what "
+      "they now seem.",
+      *theory->trials_to_decide == 1
+          ? std::string("one more trial")
+          : fmt::format("{} more trials", *theory->trials_to_decide),
+      group.study.posterior.median_rad / kDegree);
 }
 
 std::string StatusSentence(const analysis::BoundaryStudy& study) {

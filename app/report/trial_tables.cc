@@ -1,6 +1,7 @@
 // Every trial of a group, with its set-points, and those left out.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -77,7 +78,7 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials) {
     row.push_back({WithUOrReason(core::ContactAngle(trial), kDegree)});
     row.push_back(StateCell(state));
     row.push_back({PaperWord(state.label)});
-    row.push_back({state.p_bounce ? fmt::format("{:.4f}", *state.p_bounce)
+    row.push_back({state.p_bounce ? Plain(*state.p_bounce, 4)
                                   : std::string("not filmed")});
     row.push_back({WithUOrReason(state.max_gap_m, kMillimetre)});
     if (theory != nullptr) {
@@ -93,18 +94,24 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials) {
 // Set-points beside measurement. E_n = (measured - set) / U with U = 2 u of the
 // measurement: the setting's own uncertainty is the rig's, and not in a trial.
 Table MakeSetPoints(const Group& group, std::span<const core::Trial> trials) {
+  const bool with_speed = std::any_of(
+      group.members.begin(), group.members.end(),
+      [&](std::size_t t) { return trials[t].set_speed_mps.has_value(); });
   Table table{"Set-points beside measurement",
               {{"set angle (deg)", true},
                {"measured - set (deg)", true},
-               {"E_n of the angle", true},
-               {"set speed (m/s)", true},
-               {fmt::format("speed at touchdown {} u (m/s)", kPlusMinus), true},
-               {"clip or trial"}},
+               {"E_n of the angle", true}},
               {}};
+  if (with_speed) {
+    table.columns.push_back({"set speed (m/s)", true});
+    table.columns.push_back(
+        {fmt::format("speed at touchdown {} u (m/s)", kPlusMinus), true});
+  }
+  table.columns.push_back({"clip or trial"});
   for (const std::size_t t : group.members) {
     const core::Trial& trial = trials[t];
     if (!trial.set_angle_rad && !trial.set_speed_mps) continue;
-    std::vector<Cell> row(5);
+    std::vector<Cell> row(3);
     const core::Measured& angle = core::ContactAngle(trial);
     if (trial.set_angle_rad) {
       row[0].text = Plain(*trial.set_angle_rad / kDegree);
@@ -116,8 +123,11 @@ Table MakeSetPoints(const Group& group, std::span<const core::Trial> trials) {
                           : "u = 0";
       }
     }
-    if (trial.set_speed_mps) row[3].text = Plain(*trial.set_speed_mps, 3);
-    row[4].text = WithUOrReason(trial.first.motion.before_speed_mps, 1.0);
+    if (with_speed) {
+      row.push_back({trial.set_speed_mps ? Plain(*trial.set_speed_mps, 3)
+                                         : std::string()});
+      row.push_back({WithUOrReason(trial.first.motion.before_speed_mps, 1.0)});
+    }
     row.push_back(TrialCell(trial));
     table.rows.push_back(std::move(row));
   }

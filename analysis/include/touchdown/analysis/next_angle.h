@@ -47,6 +47,10 @@ struct NextAngle {
 NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
                           const NextAngleOptions& options = {});
 
+// Standard deviation of the boundary to expect after a trial at `angle`.
+double ExpectedSd(const BoundaryPosterior& posterior, double angle_rad,
+                  const NextAngleOptions& options = {});
+
 // Forecast: how many further trials near the boundary until the 95 % interval
 // is no wider than +- target, if the scatter is what it is believed to be now
 // (its posterior median). Each brings the information 2 / (pi (s^2 + set_u^2))
