@@ -20,6 +20,8 @@ constexpr double kNegligible = 1e-7;
 constexpr int kEnoughLevels = 14;
 // The last halving reaches steps with this share of the greatest allowed mass.
 constexpr double kTailMass = 1.0 / 64;
+// Enough to find the greatest likelihood.
+constexpr double kCoarseCellMass = 1.0 / 16;
 // Splitting stops at this many angles: far beyond what any posterior needed.
 constexpr std::size_t kMaxAngles = 20000;
 
@@ -389,13 +391,15 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   Table table = MakeTable(cells, start, options, always ? options.lapse : 0.0,
                           options.max_cell_mass);
   out.lapse = always ? options.lapse : 0.0;
-  // Without lapses the data cannot gain more than -Max(): most never ask.
+  // Without lapses the data cannot gain more than -Max(): most never ask. A
+  // coarse table tells the gain.
   if (options.lapse_rule == LapseRule::kWhenTheDataAsk &&
       -table.Max() > options.lapse_gain) {
     Table with =
-        MakeTable(cells, start, options, options.lapse, options.max_cell_mass);
+        MakeTable(cells, start, options, options.lapse, kCoarseCellMass);
     out.lapse_gain = with.Max() - table.Max();
     if (out.lapse_gain > options.lapse_gain) {
+      with.Refine(options.scatter, options.max_cell_mass);
       table = std::move(with);
       out.lapse = options.lapse;
     }

@@ -14,6 +14,8 @@ namespace {
 // A probability closer to 1 than this adds nothing to a sum of logarithms that
 // is known to 1e-14.
 constexpr double kCertain = 8.3;
+// Ends of the table with lapses: Phi is 0 or 1 to rounding beyond.
+constexpr int kLapseEnd = 9;
 // Probabilities are multiplied before the one logarithm is taken, as long as
 // their product stays a normal number.
 constexpr double kSmallestProduct = 1e-200;
@@ -22,51 +24,14 @@ constexpr double kSafeZ = -20.0;  // Phi(-20) = 3e-89
 struct Key {
   double bin;
   double p_bounce;
-  double u_rad;
+  double u_bin;
   bool operator<(const Key& o) const {
-    return std::tie(p_bounce, u_rad, bin) <
-           std::tie(o.p_bounce, o.u_rad, o.bin);
+    return std::tie(p_bounce, u_bin, bin) <
+           std::tie(o.p_bounce, o.u_bin, o.bin);
   }
   bool operator==(const Key& o) const {
-    return bin == o.bin && p_bounce == o.p_bounce && u_rad == o.u_rad;
+    return bin == o.bin && p_bounce == o.p_bounce && u_bin == o.u_bin;
   }
-};
-
-// A smooth function by cubic Hermite pieces on an even grid: 4 ns instead
-// of 25. With steps of 1/64 the error is h^4 / 384 times the fourth derivative,
-// which is below 1 for Phi and log Phi: less than 2e-10.
-class HermiteTable {
- public:
-  // `Value` and `Slope` on [low, high], whole numbers.
-  template <class Value, class Slope>
-  HermiteTable(int low, int high, Value value, Slope slope)
-      : low_(low), nodes_(static_cast<std::size_t>(high - low) * kPerUnit + 1) {
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const double z = low_ + static_cast<double>(i) / kPerUnit;
-      nodes_[i] = {value(z), slope(z) / kPerUnit};
-    }
-  }
-  // z from low to below high.
-  double operator()(double z) const {
-    const double at = (z - low_) * kPerUnit;
-    const auto i = static_cast<std::size_t>(at);
-    const double t = at - static_cast<double>(i);
-    const Node& a = nodes_[i];
-    const Node& b = nodes_[i + 1];
-    const double rise = b.value - a.value;
-    const double c2 = 3 * rise - 2 * a.slope - b.slope;
-    const double c3 = a.slope + b.slope - 2 * rise;
-    return a.value + t * (a.slope + t * (c2 + t * c3));
-  }
-
- private:
-  static constexpr int kPerUnit = 64;
-  struct Node {
-    double value = 0.0;
-    double slope = 0.0;  // times the step
-  };
-  double low_;
-  std::vector<Node> nodes_;
 };
 
 // log Phi: 0 above kCertain, the exact function below the table.
@@ -77,6 +42,16 @@ double FastLogNormalCdf(double z) {
   });
   if (z >= kCertain) return 0.0;
   return z < kLow ? LogNormalCdf(z) : table(z);
+}
+
+// log(lapse + (1 - 2 lapse) Phi(z)) over the range in which it changes.
+HermiteTable LapseTable(double lapse) {
+  const double span = 1.0 - 2.0 * lapse;
+  return {-kLapseEnd, kLapseEnd,
+          [=](double z) { return std::log(lapse + span * NormalCdf(z)); },
+          [=](double z) {
+            return span * NormalDensity(z) / (lapse + span * NormalCdf(z));
+          }};
 }
 
 // log(p P + (1 - p)(1 - P)) with P = lapse + (1 - 2 lapse) Phi(z). Near the
@@ -97,22 +72,24 @@ std::vector<Cell> MakeCells(std::span<const Observation> observations,
   struct Member {
     Key key;
     double angle_rad;
+    double u_rad;
   };
   std::vector<Member> members;
   members.reserve(observations.size());
+  const bool binned = bin_width_rad > 0.0;
   for (const Observation& o : observations) {
     if (o.p_bounce == 0.5) continue;
-    // Binned trials differ in u; u is binned too, to 5 %, by its logarithm.
-    const double bin = bin_width_rad > 0.0
-                           ? std::floor(o.angle_rad / bin_width_rad)
-                           : o.angle_rad;
-    const double u = bin_width_rad > 0.0 && o.u_rad > 0.0
-                         ? std::exp(std::round(std::log(o.u_rad) * 20.0) / 20.0)
-                         : o.u_rad;
-    members.push_back({{bin, o.p_bounce, u}, o.angle_rad});
+    // Uncertainties within a factor sqrt(2) share a bin, and it has their mean
+    // square.
+    const double bin =
+        binned ? std::floor(o.angle_rad / bin_width_rad) : o.angle_rad;
+    const double u_bin =
+        binned && o.u_rad > 0.0 ? std::round(2 * std::log2(o.u_rad)) : o.u_rad;
+    members.push_back({{bin, o.p_bounce, u_bin}, o.angle_rad, o.u_rad});
   }
   std::sort(members.begin(), members.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.key, a.angle_rad) < std::tie(b.key, b.angle_rad);
+    return std::tie(a.key, a.angle_rad, a.u_rad) <
+           std::tie(b.key, b.angle_rad, b.u_rad);
   });
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < members.size();) {
@@ -129,10 +106,9 @@ std::vector<Cell> MakeCells(std::span<const Observation> observations,
     double squares = 0.0;
     for (; i < end; ++i) {
       const double d = members[i].angle_rad - cell.angle_rad;
-      squares += d * d;
+      squares += d * d + members[i].u_rad * members[i].u_rad;
     }
-    const double u = members[end - 1].key.u_rad;
-    cell.variance_rad2 = u * u + squares / n;
+    cell.variance_rad2 = squares / n;
     cells.push_back(cell);
   }
   return cells;
@@ -186,6 +162,7 @@ GridLikelihood::GridLikelihood(std::span<const Cell> cells,
                                std::span<const double> scatter_rad,
                                double lapse)
     : cells_(cells), lapse_(lapse), levels_(scatter_rad.size()) {
+  if (lapse > 0.0) with_lapse_.push_back(LapseTable(lapse));
   std::map<double, std::size_t> rows;
   row_.reserve(cells.size());
   for (const Cell& cell : cells) {
@@ -205,10 +182,17 @@ void GridLikelihood::At(double angle_rad, std::span<double> out) const {
     const double* inverse = inverse_.data() + row_[i] * levels_;
     const double distance = cell.angle_rad - angle_rad;
     const bool hard = cell.p_bounce == 1.0 || cell.p_bounce == 0.0;
+    const double toward = cell.p_bounce == 1.0 ? distance : -distance;
     if (hard && lapse_ == 0.0) {
-      const double toward = cell.p_bounce == 1.0 ? distance : -distance;
       for (std::size_t j = 0; j < levels_; ++j) {
         out[j] += cell.count * FastLogNormalCdf(toward * inverse[j]);
+      }
+    } else if (hard) {
+      const HermiteTable& table = with_lapse_.front();
+      constexpr double kEnd = kCertain;
+      for (std::size_t j = 0; j < levels_; ++j) {
+        out[j] +=
+            cell.count * table(std::clamp(toward * inverse[j], -kEnd, kEnd));
       }
     } else {
       for (std::size_t j = 0; j < levels_; ++j) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "hermite_table.h"
 #include "touchdown/analysis/observation.h"
 
 namespace touchdown::analysis {
@@ -49,7 +50,8 @@ class GridLikelihood {
   std::size_t levels_;
   // 1 / sqrt(s^2 + variance) for each distinct variance and each scatter.
   std::vector<double> inverse_;
-  std::vector<std::size_t> row_;  // of a cell in `inverse_`
+  std::vector<std::size_t> row_;          // of a cell in `inverse_`
+  std::vector<HermiteTable> with_lapse_;  // one where lapse > 0
 };
 
 }  // namespace touchdown::analysis

@@ -22,7 +22,7 @@ constexpr int kScatterStarts = 12;
 constexpr double kFlat = 1e-6;
 // More trials than this are binned, as in boundary_fit.h.
 constexpr std::size_t kBinAbove = 2000;
-constexpr double kBinWidth_rad = 0.02 * core::kDegree;
+constexpr double kBinWidth_rad = 0.05 * core::kDegree;
 
 const double kGolden = (std::sqrt(5.0) - 1.0) / 2.0;
 

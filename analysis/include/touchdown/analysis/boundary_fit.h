@@ -65,7 +65,7 @@ struct BoundaryFitOptions {
   // More trials than this are put into bins of `bin_width_rad`, each with the
   // mean angle and the spread of its members.
   std::size_t bin_above = 2000;
-  double bin_width_rad = 0.02 * core::kDegree;
+  double bin_width_rad = 0.05 * core::kDegree;
 };
 
 // What kind of data these are.
