@@ -33,6 +33,8 @@ PaperTrials PaperTable1Trials(double u_rad) {
     campaign.body = BodyOf(kind);
     campaign.surface = "not in the paper";
     campaign.angle_kind = core::DefaultAngleKind(kind);
+    // A campaign must have one; the paper gives none, and its trials say so.
+    campaign.bounce_height_m = 0.5 * core::kMillimetre;
     const auto theory = analysis::PaperTable1Boundary(kind);
     campaign.theory_name = theory.name;
     campaign.theory_boundary_rad = theory.boundary_rad;
