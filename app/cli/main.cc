@@ -50,6 +50,9 @@ int main(int argc, char** argv) {
   touchdown::cli::AddImport(app, action);
   touchdown::cli::AddDb(app, action);
   touchdown::cli::AddSimulate(app, action);
+  touchdown::cli::AddBoundary(app, action);
+  touchdown::cli::AddNext(app, action);
+  touchdown::cli::AddReport(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

@@ -58,4 +58,50 @@ std::string CsvCell(std::string_view text) {
   return quoted;
 }
 
+std::string MarkdownEscape(std::string_view text) {
+  constexpr std::string_view kMarkup = "\\`*_[]|#~$";
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += ' ';
+      continue;
+    }
+    if (c == '<' || c == '>' || c == '&') {
+      out += HtmlEscape(std::string_view(&c, 1));
+      continue;
+    }
+    if (kMarkup.find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string LatexEscape(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    // The two signs beyond ASCII that our tables use.
+    if (text.substr(i).starts_with("\u00b1")) {
+      out += "$\\pm$";
+      i += 1;
+    } else if (text.substr(i).starts_with("\u2013")) {
+      out += "--";
+      i += 2;
+    } else if (c == '\\') {
+      out += "\\textbackslash{}";
+    } else if (c == '~') {
+      out += "\\textasciitilde{}";
+    } else if (c == '^') {
+      out += "\\textasciicircum{}";
+    } else if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) {
+      out += '\\';
+      out += c;
+    } else {
+      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
 }  // namespace touchdown::report

@@ -14,4 +14,11 @@ std::string HtmlEscape(std::string_view text);
 // number) is prefixed with an apostrophe.
 std::string CsvCell(std::string_view text);
 
+// Text that is safe in Markdown, table cells included: markup characters are
+// escaped, line breaks become spaces.
+std::string MarkdownEscape(std::string_view text);
+
+// Text that is safe in LaTeX.
+std::string LatexEscape(std::string_view text);
+
 }  // namespace touchdown::report

@@ -1,0 +1,140 @@
+// The boundary angle from trials: a posterior on a grid.
+//
+// Trial i touched down at x_i, known to u_i, and bounced with probability
+//   P_i = lapse + (1 - 2 lapse) Phi((x_i - theta) / sqrt(s^2 + u_i^2)),
+// theta the boundary angle, s its intrinsic scatter from trial to trial. The
+// Gaussian error of x_i goes into Phi exactly: that is why the link is probit.
+// With p_i = P(bounce | what was filmed),
+//   l(theta, s) = sum_i log(p_i P_i + (1 - p_i)(1 - P_i)).
+// Prior: theta uniform, ln s normal. The posterior exists whatever the outcomes
+// are, separated or one-sided; that is why it comes first.
+#pragma once
+
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "touchdown/analysis/agreement.h"
+#include "touchdown/analysis/observation.h"
+#include "touchdown/core/estimate.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::analysis {
+
+// ln s ~ N(ln median, log_sd^2). The default says: a few tenths of a degree to
+// ten degrees. It regularises the scatter, in degrees, and nothing else; of the
+// priors compared its intervals cover best.
+struct ScatterPrior {
+  double median_rad = 2.0 * core::kDegree;
+  double log_sd = 1.5;
+};
+
+// When to allow for trials that went wrong (P never below `lapse`).
+enum class LapseRule { kWhenTheDataAsk, kNever, kAlways };
+
+struct BoundaryFitOptions {
+  double low_rad = 0.0;  // theta is uniform from low to high
+  double high_rad = std::numbers::pi / 2;
+  ScatterPrior scatter;
+  // The same posterior under other priors: how much of it is prior.
+  std::vector<ScatterPrior> sensitivity = {{1.0 * core::kDegree, 1.0},
+                                           {0.5 * core::kDegree, 1.0}};
+
+  LapseRule lapse_rule = LapseRule::kWhenTheDataAsk;
+  double lapse = 0.02;  // one trial in fifty, on either side
+  // The data ask when the greatest log likelihood gains more than this: a Bayes
+  // factor of about ten.
+  double lapse_gain = 3.0;
+
+  // Scatter grid: `scatter_levels` values, equally spaced in ln s. Below the
+  // lowest no rig can tell a scatter from the error of the angle; the highest
+  // is nearly half of all angles.
+  double scatter_low_rad = 0.05 * core::kDegree;
+  double scatter_high_rad = 40.5 * core::kDegree;
+  int scatter_levels = 30;
+  // Angle grid: begins with this many equal steps and halves every one that
+  // holds more than `max_cell_mass` of the posterior. Smaller is slower and
+  // finer: 1/128 leaves medians and limits right to 0.003 of the posterior's
+  // sd.
+  int start_steps = 90;
+  double max_cell_mass = 1.0 / 128;
+
+  // More trials than this are put into bins of `bin_width_rad`, each with the
+  // mean angle and the spread of its members.
+  std::size_t bin_above = 2000;
+  double bin_width_rad = 0.05 * core::kDegree;
+};
+
+// What kind of data these are.
+enum class DataStatus {
+  kNoTrials,     // none decided: the posterior is the prior
+  kOnlySlides,   // open above
+  kOnlyBounces,  // open below
+  kSeparated,    // a bracket; the scatter cannot be told from 0
+  kTouching,     // separated but for a shared angle
+  kOverlap,      // slides above bounces: scatter is seen
+  kReversed      // bounces on the whole below slides: inconsistent
+};
+std::string_view Name(DataStatus status);
+
+DataStatus Classify(std::span<const Observation> observations);
+
+// So few decided trials cannot be expected to find a boundary.
+inline constexpr int kFewTrials = 10;
+
+// One line of the sensitivity table.
+struct SensitivityLine {
+  ScatterPrior prior;
+  double median_rad = 0.0;
+  core::Interval interval95_rad;
+};
+
+// The joint posterior on its grid, for those who predict from it.
+struct BoundaryGrid {
+  std::vector<double> angle_rad;
+  std::vector<double> scatter_rad;
+  std::vector<double> weight;  // [angle * scatter_rad.size() + scatter], sum 1
+};
+
+struct BoundaryPosterior {
+  DataStatus status = DataStatus::kNoTrials;
+  bool few_trials = true;
+  double median_rad = 0.0;
+  double mean_rad = 0.0;
+  double sd_rad = 0.0;
+  core::Interval interval90_rad;  // equal tails
+  core::Interval interval95_rad;
+  double scatter_median_rad = 0.0;
+  core::Interval scatter95_rad;
+  double lapse = 0.0;       // used
+  double lapse_gain = 0.0;  // of the greatest log likelihood, where looked at
+  double max_log_likelihood = 0.0;  // on the grid, with the lapse used
+  bool binned = false;
+  std::vector<SensitivityLine> sensitivity;
+  // Marginal of theta: density and distribution function at increasing angles.
+  std::vector<double> angle_rad;
+  std::vector<double> density_per_rad;
+  std::vector<double> cumulative;
+  BoundaryGrid grid;
+};
+
+// Throws std::invalid_argument naming the option that is out of its range.
+BoundaryPosterior FitBoundary(std::span<const Observation> observations,
+                              const BoundaryFitOptions& options = {});
+
+// P(theta < angle) and the angle below which theta lies with probability p.
+double ProbabilityBelow(const BoundaryPosterior& posterior, double angle_rad);
+double Quantile(const BoundaryPosterior& posterior, double p);
+
+// P(|theta - value| <= margin), and the least margin for which the equal-tail
+// 90 % interval lies within value +- margin: the smallest one that would be
+// confirmed. That number says how strong a validation is.
+double ProbabilityWithin(const BoundaryPosterior& posterior, double value_rad,
+                         double margin_rad);
+double SmallestPassingMargin(const BoundaryPosterior& posterior,
+                             double value_rad);
+
+}  // namespace touchdown::analysis

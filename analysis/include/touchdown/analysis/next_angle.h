@@ -1,0 +1,102 @@
+// At which angle to throw next, and when to stop.
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "touchdown/analysis/boundary_fit.h"
+#include "touchdown/analysis/observation.h"
+#include "touchdown/core/estimate.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::analysis {
+
+struct NextAngleOptions {
+  // What the rig can throw. The caller computes it; an angle outside is moved
+  // to the nearer end and says so.
+  core::Interval feasible_rad{0.0, std::numbers::pi / 2};
+  // Repeatability of the ejector: the body will not touch down at exactly the
+  // angle that was set.
+  double set_u_rad = 0.5 * core::kDegree;
+  double candidate_step_rad = 0.5 * core::kDegree;
+  // Successive angles are spread over +- this much, evenly and reproducibly, so
+  // that trials do not sit on two levels. 0: no spread.
+  double spread_rad = 0.25 * core::kDegree;
+  // Enough when the 95 % interval is no wider than +- this.
+  double target_half_width_rad = 0.5 * core::kDegree;
+  int max_trials = 60;  // or when so many have been thrown
+};
+
+enum class StopReason { kNone, kTargetReached, kMaxTrials };
+
+struct NextAngle {
+  double angle_rad = 0.0;
+  bool clipped = false;  // the rule asked for an angle the rig cannot throw
+  // Standard deviation of the boundary to expect after that trial.
+  double expected_sd_rad = 0.0;
+  double half_width_rad = 0.0;  // of the 95 % interval now
+  StopReason stop = StopReason::kNone;
+  int trials_to_target = 0;  // ForecastTrials() for the target half-width
+};
+
+// The primary rule: the candidate with the least expected variance of the
+// boundary angle after one more trial, p v1 + (1 - p) v0 (one step ahead, ties
+// to the lower angle). `trials_so_far` counts all trials, decided or not.
+// Throws std::invalid_argument naming the option that is out of its range.
+NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
+                          const NextAngleOptions& options = {});
+
+// Standard deviation of the boundary to expect after a trial at `angle`.
+double ExpectedSd(const BoundaryPosterior& posterior, double angle_rad,
+                  const NextAngleOptions& options = {});
+
+// Forecast: how many further trials near the boundary until the 95 % interval
+// is no wider than +- target, if the scatter is what it is believed to be now
+// (its posterior median). Each brings the information 2 / (pi (s^2 + set_u^2))
+// at most and, while the outcomes are separated, at best halves the interval.
+// Rough until some ten trials are in. `target` > 0.
+int ForecastTrials(const BoundaryPosterior& posterior,
+                   double target_half_width_rad, double set_u_rad);
+
+// Neyer's D-optimal test (Technometrics 36, 61-70, 1994; MIL-STD-331): what the
+// operator believes before the first trial.
+struct NeyerOptions {
+  double guess_low_rad = 0.0;   // the boundary lies between these two
+  double guess_high_rad = 0.0;  //
+  double guess_scatter_rad = 0.0;
+  core::Interval feasible_rad{0.0, std::numbers::pi / 2};
+};
+
+// The next level after `trials`, in the order in which they were thrown;
+// undecided ones are passed over. The published example of 20 levels comes out
+// exactly. Throws std::invalid_argument unless low < high and scatter > 0.
+NextAngle NextNeyer(std::span<const Observation> trials,
+                    const NeyerOptions& options);
+
+// Up and down (Dixon and Mood 1948), for an operator without a computer: one
+// step down after a bounce, one step up after a slide, the same again after an
+// undecided trial.
+struct UpDownOptions {
+  double start_rad = 20.0 * core::kDegree;
+  double step_rad = 1.0 * core::kDegree;  // half to one and a half scatters
+  core::Interval feasible_rad{0.0, std::numbers::pi / 2};
+};
+NextAngle NextUpDown(std::span<const Observation> trials,
+                     const UpDownOptions& options = {});
+
+// Dixon and Mood's estimate from an up-and-down run with steps of `step`; a
+// historical check, spoilt by a long run-up. Nothing where one outcome is
+// missing.
+struct DixonMood {
+  int n = 0;  // trials of the rarer outcome
+  int a = 0;  // sum of i, levels above the lowest of that outcome
+  int b = 0;  // sum of i^2
+  double mean_rad = 0.0;
+  double m = 0.0;                     // (n b - a^2) / n^2
+  std::optional<double> scatter_rad;  // 1.62 step (m + 0.029), where m > 0.3
+};
+std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
+                                           double step_rad);
+
+}  // namespace touchdown::analysis

@@ -1,0 +1,126 @@
+#include "app/pipeline/trial_selection.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "app/pipeline/paper_trials.h"
+#include "app/pipeline/trials_csv.h"
+#include "touchdown/core/body.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+const core::Campaign* Find(const std::vector<core::Campaign>& campaigns,
+                           const std::string& name) {
+  const auto found =
+      std::find_if(campaigns.begin(), campaigns.end(),
+                   [&](const core::Campaign& c) { return c.name == name; });
+  return found == campaigns.end() ? nullptr : &*found;
+}
+
+bool IsReviewed(const db::Store& store, const std::string& id) {
+  const auto history = store.History(id);
+  return std::any_of(history.begin(), history.end(), [](const auto& revision) {
+    return revision.kind == db::RevisionKind::kCorrected;
+  });
+}
+
+Selection FromStore(const SelectionOptions& options) {
+  const db::Store store = db::Store::Open(options.store, db::OpenMode::kRead);
+  db::TrialFilter filter;
+  filter.campaign = options.campaign;
+  filter.origin = options.origin;
+  filter.body = options.body;
+  filter.from_utc = options.from_utc;
+  filter.until_utc = options.until_utc;
+  filter.with_documents = false;
+  Selection out;
+  out.campaigns = store.Campaigns();
+  if (options.campaign && !options.campaign->empty() &&
+      Find(out.campaigns, *options.campaign) == nullptr) {
+    throw std::invalid_argument(
+        fmt::format("--campaign: there is no campaign '{}' in {}",
+                    *options.campaign, options.store.string()));
+  }
+  out.trials = store.Trials(filter);
+  if (options.reviewed_only) {
+    std::erase_if(out.trials, [&](const core::Trial& trial) {
+      return !IsReviewed(store, trial.id);
+    });
+  }
+  out.source = fmt::format("store {} ({})", options.store.filename().string(),
+                           store.uuid());
+  return out;
+}
+
+Selection FromCsv(const SelectionOptions& options) {
+  CsvTrials what;
+  what.campaign = options.campaign.value_or(options.csv.stem().string());
+  what.body = options.body.value_or(core::BodyKind::kSphere);
+  what.angle_kind =
+      options.angle_kind.value_or(core::DefaultAngleKind(what.body));
+  what.origin = options.origin.value_or(core::Origin::kManual);
+  Selection out;
+  out.trials = ReadTrialsCsv(options.csv, what);
+  core::Campaign campaign;
+  campaign.name = what.campaign;
+  campaign.body.kind = what.body;
+  campaign.angle_kind = what.angle_kind;
+  campaign.surface = options.surface.value_or("");
+  if (options.theory_rad) {
+    campaign.theory_name =
+        options.theory_name.empty() ? "theory" : options.theory_name;
+    campaign.theory_boundary_rad = options.theory_rad;
+    campaign.theory_u_rad = options.theory_u_rad;
+  }
+  if (options.margin_rad > 0.0) campaign.margin_rad = options.margin_rad;
+  out.campaigns.push_back(campaign);
+  out.source = "file " + options.csv.filename().string();
+  return out;
+}
+
+Selection FromPaper(const SelectionOptions& options) {
+  PaperTrials paper = PaperTable1Trials(options.paper_u_rad);
+  return {std::move(paper.trials), std::move(paper.campaigns),
+          "the paper's Table 1"};
+}
+
+}  // namespace
+
+Selection SelectTrials(const SelectionOptions& options) {
+  const int sources = (options.store.empty() ? 0 : 1) +
+                      (options.csv.empty() ? 0 : 1) +
+                      (options.paper_table1 ? 1 : 0);
+  if (sources != 1) {
+    throw std::invalid_argument(
+        fmt::format("{} sources of trials were given; expected exactly one of "
+                    "--db, --trials and --paper-table1",
+                    sources));
+  }
+  if (!options.csv.empty() &&
+      (options.from_utc || options.until_utc || options.reviewed_only)) {
+    throw std::invalid_argument(
+        "--from, --until and --reviewed need --db: a CSV file knows neither "
+        "dates nor reviews");
+  }
+  const bool from_csv = !options.csv.empty();
+  Selection out = from_csv               ? FromCsv(options)
+                  : options.paper_table1 ? FromPaper(options)
+                                         : FromStore(options);
+  if (from_csv) return out;
+  std::erase_if(out.trials, [&](const core::Trial& trial) {
+    const core::Campaign* campaign = Find(out.campaigns, trial.campaign);
+    return (options.campaign && trial.campaign != *options.campaign) ||
+           (options.body && trial.body.kind != *options.body) ||
+           (options.angle_kind && trial.angle_kind != *options.angle_kind) ||
+           (options.origin && trial.origin != *options.origin) ||
+           (options.surface &&
+            (campaign == nullptr || campaign->surface != *options.surface));
+  });
+  return out;
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,50 @@
+// Which trials a statistic or a report is made of, and where they come from.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "touchdown/core/campaign.h"
+#include "touchdown/core/trial.h"
+#include "touchdown/core/words.h"
+
+namespace touchdown::pipeline {
+
+// Exactly one of `store`, `csv` and `paper_table1` is the source.
+struct SelectionOptions {
+  std::filesystem::path store;
+  std::filesystem::path csv;
+  bool paper_table1 = false;
+  double paper_u_rad = 0.0;  // assumed u of the paper's angles
+
+  // Filters; each that is set must hold. Excluded trials are always selected:
+  // a report lists them with their reasons.
+  std::optional<std::string> campaign;
+  std::optional<std::string> surface;
+  std::optional<core::BodyKind> body;  // of a CSV file: what was thrown
+  std::optional<core::AngleKind> angle_kind;
+  std::optional<core::Origin> origin;
+  std::optional<std::string> from_utc;  // first logged from <= t < until
+  std::optional<std::string> until_utc;
+  bool reviewed_only = false;  // only trials that a person has corrected
+
+  // The theory and margin of a CSV file, which has no campaign to declare one.
+  std::string theory_name;
+  std::optional<double> theory_rad;
+  double theory_u_rad = 0.0;
+  double margin_rad = 0.0;  // 0: the default of a campaign
+};
+
+struct Selection {
+  std::vector<core::Trial> trials;
+  std::vector<core::Campaign> campaigns;
+  std::string source;  // in words: file and filters
+};
+
+// Throws std::invalid_argument unless there is exactly one source,
+// core::InputError and core::StoreError where it cannot be read.
+Selection SelectTrials(const SelectionOptions& options);
+
+}  // namespace touchdown::pipeline

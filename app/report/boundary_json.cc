@@ -1,0 +1,220 @@
+#include "app/report/boundary_json.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "app/report/document.h"
+#include "app/report/sentences.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+using core::kMillimetre;
+using Json = nlohmann::ordered_json;
+
+Json Degrees(const std::optional<double>& angle_rad) {
+  return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
+}
+
+Json Optional(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json Pair(const std::optional<core::Interval>& interval) {
+  if (!interval) return nullptr;
+  return Json::array({interval->low, interval->high});
+}
+
+Json Quantity(const core::Measured& m, double unit) {
+  if (!m) return nullptr;
+  return {{"value", m->value / unit}, {"u", m->u / unit}};
+}
+
+Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
+  const auto& a = t.agreement;
+  const auto& verdict = t.judgement.verdict;
+  return {{"name", t.theory.name},
+          {"boundary_deg", t.theory.boundary_rad / kDegree},
+          {"u_deg", t.theory.u_rad / kDegree},
+          {"declared", t.declared},
+          {"note", note},
+          {"difference_deg", t.difference_rad / kDegree},
+          {"p_below", t.p_below},
+          {"p_within_margin", t.p_within},
+          {"p_too_low", t.p_too_low},
+          {"p_too_high", t.p_too_high},
+          {"e_n", t.e_n},
+          {"smallest_margin_deg", t.smallest_margin_rad / kDegree},
+          {"verdict",
+           verdict ? Json(std::string(core::Name(*verdict))) : Json(nullptr)},
+          {"verdict_reason", t.judgement.reason},
+          {"trials_to_decide",
+           t.trials_to_decide ? Json(*t.trials_to_decide) : Json(nullptr)},
+          {"agreement",
+           {{"right", a.all.right()},
+            {"decided", a.all.total()},
+            {"right_deciding", a.deciding.right()},
+            {"deciding", a.deciding.total()},
+            {"decides_nothing", a.decides_nothing},
+            {"slide_slide", a.deciding.slide_slide},
+            {"slide_bounce", a.deciding.slide_bounce},
+            {"bounce_slide", a.deciding.bounce_slide},
+            {"bounce_bounce", a.deciding.bounce_bounce},
+            {"same_low_deg", Degrees(a.same_low_rad)},
+            {"same_high_deg", Degrees(a.same_high_rad)},
+            {"wilson95", Pair(t.wilson95)},
+            {"clopper_pearson95", Pair(t.clopper_pearson95)},
+            {"kappa", t.kappa ? Json(t.kappa->kappa) : Json(nullptr)},
+            {"kappa_ase", t.kappa ? Json(t.kappa->ase) : Json(nullptr)},
+            {"mcc", Optional(t.matthews)}}}};
+}
+
+Json PosteriorJson(const Group& group) {
+  const auto& p = group.study.posterior;
+  Json out = {{"median_deg", p.median_rad / kDegree},
+              {"low95_deg", p.interval95_rad.low / kDegree},
+              {"high95_deg", p.interval95_rad.high / kDegree},
+              {"low90_deg", p.interval90_rad.low / kDegree},
+              {"high90_deg", p.interval90_rad.high / kDegree},
+              {"mean_deg", p.mean_rad / kDegree},
+              {"sd_deg", p.sd_rad / kDegree},
+              {"scatter_median_deg", p.scatter_median_rad / kDegree},
+              {"scatter_low95_deg", p.scatter95_rad.low / kDegree},
+              {"scatter_high95_deg", p.scatter95_rad.high / kDegree},
+              {"lapse", p.lapse},
+              {"binned", p.binned},
+              {"method", "grid posterior, probit link, errors in the angle"},
+              {"prior",
+               {{"scatter_median_deg", group.prior.median_rad / kDegree},
+                {"scatter_log_sd", group.prior.log_sd}}}};
+  Json sensitivity = Json::array();
+  for (const auto& line : p.sensitivity) {
+    sensitivity.push_back(
+        {{"scatter_median_deg", line.prior.median_rad / kDegree},
+         {"scatter_log_sd", line.prior.log_sd},
+         {"median_deg", line.median_rad / kDegree},
+         {"low95_deg", line.interval95_rad.low / kDegree},
+         {"high95_deg", line.interval95_rad.high / kDegree}});
+  }
+  out["sensitivity"] = std::move(sensitivity);
+  return out;
+}
+
+std::string StopWord(analysis::StopReason stop) {
+  switch (stop) {
+    case analysis::StopReason::kTargetReached:
+      return "target-reached";
+    case analysis::StopReason::kMaxTrials:
+      return "max-trials";
+    case analysis::StopReason::kNone:
+      break;
+  }
+  return "go-on";
+}
+
+Json TrialJson(const core::Trial& trial, const std::string* left_out) {
+  const core::StateDecision& state = trial.first.state;
+  return {{"id", trial.id},
+          {"revision", trial.revision},
+          {"clip", trial.clip.path},
+          {"set_angle_deg", Degrees(trial.set_angle_rad)},
+          {"angle_deg", Quantity(core::ContactAngle(trial), kDegree)},
+          {"state", std::string(core::Name(state.label))},
+          {"paper_word", PaperWord(state.label)},
+          {"p_bounce", Optional(state.p_bounce)},
+          {"max_gap_mm", Quantity(state.max_gap_m, kMillimetre)},
+          {"bounce_height_mm", Quantity(state.bounce_height_m, kMillimetre)},
+          {"micro_bounce", state.micro_bounce},
+          {"left_out", left_out != nullptr ? Json(*left_out) : Json(nullptr)}};
+}
+
+}  // namespace
+
+Json BoundaryJson(const Group& group) {
+  const auto& study = group.study;
+  const auto& l = study.likelihood;
+  const auto& bracket = study.bracket;
+  Json out = {{"campaign", group.trials.campaign},
+              {"body", std::string(core::Name(group.trials.body))},
+              {"angle_kind", std::string(core::Name(group.trials.angle_kind))},
+              {"origin", std::string(core::Name(group.trials.origin))},
+              {"simulated", group.simulated()},
+              {"counts",
+               {{"slide", study.counts.not_bounce},
+                {"bounce", study.counts.bounce},
+                {"undecided", study.counts.undecided},
+                {"left_out", group.trials.left_out.size()}}},
+              {"status", std::string(analysis::Name(study.posterior.status))},
+              {"status_text", StatusSentence(study)},
+              {"few_trials", study.posterior.few_trials},
+              {"bracket",
+               {{"low_deg", Degrees(bracket.low_rad)},
+                {"high_deg", Degrees(bracket.high_rad)},
+                {"separated", bracket.closed()}}},
+              {"posterior", PosteriorJson(group)},
+              {"likelihood",
+               {{"estimate_deg", l.has_estimate ? Json(l.estimate_rad / kDegree)
+                                                : Json(nullptr)},
+                {"low95_deg", l.interval95_rad.low / kDegree},
+                {"high95_deg", l.interval95_rad.high / kDegree},
+                {"open_low", l.open_low},
+                {"open_high", l.open_high},
+                {"scatter_deg", l.has_estimate ? Json(l.scatter_rad / kDegree)
+                                               : Json(nullptr)}}},
+              {"margin_deg", study.margin_rad / kDegree}};
+  Json theories = Json::array();
+  for (std::size_t i = 0; i < study.theories.size(); ++i) {
+    theories.push_back(TheoryJson(study.theories[i], group.notes[i]));
+  }
+  out["theory"] = std::move(theories);
+  out["next"] = {{"angle_deg", study.next.angle_rad / kDegree},
+                 {"expected_sd_deg", study.next.expected_sd_rad / kDegree},
+                 {"trials_to_target", study.next.trials_to_target},
+                 {"half_width_deg", study.next.half_width_rad / kDegree},
+                 {"clipped", study.next.clipped},
+                 {"stop", StopWord(study.next.stop)}};
+  return out;
+}
+
+Json BoundaryDocument(std::span<const Group> groups) {
+  Json out = {{"schema", "touchdown.boundary/1"}};
+  if (groups.size() == 1) {
+    out.update(BoundaryJson(groups.front()));
+    return out;
+  }
+  out["groups"] = Json::array();
+  for (const Group& group : groups)
+    out["groups"].push_back(BoundaryJson(group));
+  return out;
+}
+
+Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
+                    std::span<const core::Trial> trials) {
+  Json out = {{"schema", "touchdown.report/1"},
+              {"software", {{"version", input.software_version}}},
+              {"source", input.source},
+              {"options", input.options},
+              {"groups", Json::array()}};
+  for (const Group& group : groups) {
+    Json entry = BoundaryJson(group);
+    if (group.simulated()) entry["watermark"] = kWatermark;
+    std::map<std::size_t, const std::string*> left_out;
+    for (const auto& left : group.trials.left_out) {
+      left_out[left.trial] = &left.reason;
+    }
+    entry["trials"] = Json::array();
+    for (const std::size_t t : group.members) {
+      const auto why = left_out.find(t);
+      entry["trials"].push_back(
+          TrialJson(trials[t], why == left_out.end() ? nullptr : why->second));
+    }
+    out["groups"].push_back(std::move(entry));
+  }
+  return out;
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,217 @@
+#include "app/report/boundary_plot.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "app/report/gnuplot.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using analysis::Observation;
+using analysis::Outcome;
+using core::kDegree;
+
+// Above so many trials marks of one outcome are spread over a few rows, so that
+// they do not hide each other.
+constexpr std::size_t kSpreadAbove = 40;
+// Half-height of that spread, in units of P(bounce).
+constexpr double kSpread = 0.06;
+
+double Spread(std::size_t i, std::size_t n) {
+  if (n <= kSpreadAbove) return 0.0;
+  constexpr int kRows = 7;
+  return kSpread * (2.0 * static_cast<double>(i * 3 % kRows) / (kRows - 1) - 1);
+}
+
+struct Range {
+  double low_deg = 0.0;
+  double high_deg = 90.0;
+};
+
+// All of 0..90 where the trials need most of it, else what they and the lines
+// occupy, to whole 5 degrees.
+Range RangeOf(const BoundaryPlot& plot) {
+  double low = 90.0;
+  double high = 0.0;
+  const auto include = [&](double a, double b) {
+    low = std::min(low, a / kDegree);
+    high = std::max(high, b / kDegree);
+  };
+  for (const Observation& o : plot.observations) {
+    include(o.angle_rad - 2 * o.u_rad, o.angle_rad + 2 * o.u_rad);
+  }
+  for (const PlotLine& line : plot.lines) {
+    include(line.angle_rad, line.angle_rad);
+  }
+  if (low > high) return {};
+  Range range{std::floor((low - 2) / 5) * 5, std::ceil((high + 2) / 5) * 5};
+  range.low_deg = std::max(range.low_deg, -2.0);
+  range.high_deg = std::min(range.high_deg, 92.0);
+  return range;
+}
+
+std::string DataBlock(const BoundaryPlot& plot, Outcome outcome,
+                      std::string_view name) {
+  std::string block = fmt::format("${} << EOD\n", name);
+  for (std::size_t i = 0; i < plot.observations.size(); ++i) {
+    const Observation& o = plot.observations[i];
+    if (o.outcome != outcome) continue;
+    const double level = outcome == Outcome::kBounce      ? 1.0
+                         : outcome == Outcome::kNotBounce ? 0.0
+                                                          : o.p_bounce;
+    block += fmt::format("{:.6f} {:.6f} {:.6f}\n", o.angle_rad / kDegree,
+                         level + Spread(i, plot.observations.size()),
+                         2 * o.u_rad / kDegree);
+  }
+  return block + "EOD\n";
+}
+
+bool Any(const BoundaryPlot& plot, Outcome outcome) {
+  return std::any_of(
+      plot.observations.begin(), plot.observations.end(),
+      [outcome](const Observation& o) { return o.outcome == outcome; });
+}
+
+std::string Script(const BoundaryPlot& plot) {
+  const Range range = RangeOf(plot);
+  std::string s = fmt::format(
+      "set terminal svg size 940,232 dynamic noenhanced "
+      "font 'Arial,14' name '{}'\n"
+      "set lmargin 12\nset rmargin 3\nset tmargin 2.2\nset bmargin 3.4\n"
+      "set border 3 lc rgb '#1c2126'\nset tics nomirror\n"
+      "set xrange [{:.1f}:{:.1f}]\nset yrange [-0.16:1.16]\n"
+      "set ytics ('slide' 0, 'bounce' 1)\n"
+      "set ylabel 'what was seen'\nset xlabel {}\n"
+      "set key outside top right horizontal maxrows 1 samplen 1.6 width 0 font "
+      "',13'\n",
+      plot.id, range.low_deg, range.high_deg,
+      GnuplotQuote(plot.angle_name + " (deg)"));
+  s += range.high_deg - range.low_deg > 50 ? "set xtics 10\nset mxtics 2\n"
+                                           : "set xtics 5\nset mxtics 5\n";
+  if (plot.simulated) {
+    s += "set label 'SIMULATED' at graph 0.5,0.5 center rotate by 12 font "
+         "',60' tc rgb '#e9cfce' back\n";
+  }
+  if (plot.bracket.closed()) {
+    s += fmt::format(
+        "set object rectangle from {:.6f},graph 0 to {:.6f},graph 1 fc rgb "
+        "'#dfe6ec' fs solid 0.75 noborder behind\n",
+        *plot.bracket.low_rad / kDegree, *plot.bracket.high_rad / kDegree);
+  }
+  for (const PlotLine& line : plot.lines) {
+    if (line.u_rad <= 0.0) continue;
+    s += fmt::format(
+        "set object rectangle from {:.6f},graph 0 to {:.6f},graph 1 fc rgb "
+        "'#1f6f3f' fs transparent solid 0.12 noborder behind\n",
+        (line.angle_rad - 2 * line.u_rad) / kDegree,
+        (line.angle_rad + 2 * line.u_rad) / kDegree);
+  }
+  s += DataBlock(plot, Outcome::kNotBounce, "slides");
+  s += DataBlock(plot, Outcome::kBounce, "bounces");
+  s += DataBlock(plot, Outcome::kUndecided, "undecided");
+
+  std::vector<std::string> parts;
+  if (!plot.density.angle_rad.empty()) {
+    const double peak = *std::max_element(plot.density.height.begin(),
+                                          plot.density.height.end());
+    s += "$density << EOD\n";
+    for (std::size_t i = 0; i < plot.density.angle_rad.size(); ++i) {
+      s += fmt::format("{:.5f} {:.5f}\n", plot.density.angle_rad[i] / kDegree,
+                       peak > 0.0 ? 0.9 * plot.density.height[i] / peak : 0.0);
+    }
+    s += "EOD\n";
+    parts.push_back(fmt::format(
+        "$density using 1:2 with filledcurves y=0 fc rgb '#8a6fb0' fs "
+        "transparent solid 0.3 title {}",
+        GnuplotQuote(plot.density.name)));
+  }
+  static constexpr std::string_view kDash[] = {"(10,5)", "(3,4)", "(12,4,3,4)",
+                                               "(6,3)"};
+  static constexpr std::string_view kLineColour[] = {"#1f6f3f", "#7a4a00",
+                                                     "#5b2a86", "#40505c"};
+  for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+    s += fmt::format("$line{} << EOD\n{:.6f} -0.16\n{:.6f} 1.16\nEOD\n", i,
+                     plot.lines[i].angle_rad / kDegree,
+                     plot.lines[i].angle_rad / kDegree);
+    parts.push_back(fmt::format(
+        "$line{} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", i,
+        kDash[i % std::size(kDash)], kLineColour[i % std::size(kLineColour)],
+        GnuplotQuote(plot.lines[i].name)));
+  }
+  if (plot.bracket.closed()) {
+    parts.push_back(
+        "NaN with boxes fc rgb '#dfe6ec' fs solid 0.75 noborder title "
+        "'bracket'");
+  }
+  const auto marks = [&](Outcome outcome, std::string_view block, int mark,
+                         std::string_view colour, std::string_view title) {
+    if (!Any(plot, outcome)) return;
+    parts.push_back(fmt::format(
+        "${0} using 1:2:3 with xerrorbars pt {1} ps 0.8 lw 1.2 lc rgb '{2}' "
+        "title '{3}'",
+        block, mark, colour, title));
+  };
+  marks(Outcome::kNotBounce, "slides", 7, "#17548f", "slide");
+  marks(Outcome::kBounce, "bounces", 9, "#b3430f", "bounce");
+  marks(Outcome::kUndecided, "undecided", 4, "#40505c", "undecided");
+  if (parts.empty()) parts.push_back("NaN notitle");
+  s += "plot ";
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    s += (i == 0 ? "" : ", \\\n  ") + parts[i];
+  }
+  return s + "\n";
+}
+
+void ReplaceAll(std::string& text, const std::string& what,
+                const std::string& with) {
+  for (std::size_t at = text.find(what); at != std::string::npos;
+       at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+}
+
+std::set<std::string> Identifiers(const std::string& svg) {
+  std::set<std::string> out;
+  for (std::size_t at = svg.find(" id="); at != std::string::npos;
+       at = svg.find(" id=", at + 4)) {
+    const std::size_t end = svg.find(svg[at + 4], at + 5);
+    if (end != std::string::npos) out.insert(svg.substr(at + 5, end - at - 5));
+  }
+  return out;
+}
+
+// gnuplot writes a whole XML file and gives its parts the same identifiers in
+// each; inside a page they must be an element with identifiers of its own.
+std::string ToInline(std::string svg, const std::string& id) {
+  const std::size_t start = svg.find("<svg");
+  if (start != std::string::npos) svg.erase(0, start);
+  for (const std::string& name : Identifiers(svg)) {
+    for (const char end : {'\'', '"', ')'}) {
+      const std::string own = name + end;
+      for (const char* before : {"id='", "id=\"", "'#", "\"#", "(#"}) {
+        ReplaceAll(svg, before + own, before + (id + own));
+      }
+    }
+  }
+  const std::size_t title = svg.find("<title>");
+  const std::size_t title_end = svg.find("</title>");
+  if (title != std::string::npos && title_end != std::string::npos) {
+    svg.erase(title, title_end + 8 - title);
+  }
+  return svg;
+}
+
+}  // namespace
+
+std::string DrawBoundaryPlot(const BoundaryPlot& plot) {
+  return ToInline(RunGnuplot(Script(plot)), plot.id);
+}
+
+}  // namespace touchdown::report

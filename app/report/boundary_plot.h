@@ -1,0 +1,41 @@
+// The plot of one group of trials: what was seen at which angle.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "touchdown/analysis/agreement.h"
+#include "touchdown/analysis/observation.h"
+
+namespace touchdown::report {
+
+// A vertical line at an angle.
+struct PlotLine {
+  std::string name;
+  double angle_rad = 0.0;
+  double u_rad = 0.0;  // a band of +- 2 u is drawn where it is not 0
+};
+
+// A curve over the angle, drawn to its own height.
+struct PlotCurve {
+  std::string name;
+  std::vector<double> angle_rad;
+  std::vector<double> height;
+};
+
+struct BoundaryPlot {
+  std::string angle_name;  // of the horizontal axis, e.g. "approach angle"
+  std::vector<analysis::Observation> observations;
+  analysis::Bracket bracket;
+  std::vector<PlotLine> lines;
+  PlotCurve density;  // of the boundary angle; empty: none
+  bool simulated = false;
+  std::string id;  // prefix of the identifiers inside the SVG: unique in a
+                   // document, letters and digits
+};
+
+// Draws it as an SVG element to stand inside an HTML page, by gnuplot. The same
+// input gives the same bytes. Throws like RunGnuplot().
+std::string DrawBoundaryPlot(const BoundaryPlot& plot);
+
+}  // namespace touchdown::report

@@ -1,0 +1,49 @@
+// The parts of the report. Internal to app/report.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/report/document.h"
+#include "app/report/group.h"
+#include "app/report/report.h"
+
+namespace touchdown::report {
+
+// The Table 1 of groups that share an origin (paper_table.cc).
+std::vector<Table> MakeTable1(std::span<const Group> groups,
+                              std::span<const core::Trial> trials);
+
+// The group's own pages (group_section.cc).
+Section MakeGroupSection(const Group& group, std::span<const Group> groups,
+                         std::span<const core::Trial> trials);
+
+// The numbers of a group, in the order in which they should be read
+// (group_statistics.cc).
+std::vector<Block> MakeStatistics(const Group& group);
+
+// Every trial of the group, its set-points, and what was left out
+// (trial_tables.cc).
+std::vector<Block> MakeTrialTables(const Group& group,
+                                   std::span<const core::Trial> trials);
+
+// The group's plot with its text (group_figure.cc). `index` makes identifiers
+// unique.
+Figure MakeFigure(const Group& group, std::size_t index);
+
+// The group's verdict in a box, for page 1 (group_section.cc).
+Callout MakeVerdict(const Group& group, std::span<const Group> groups);
+
+// What the paper's own Table 1 supports, and its errata (paper_section.cc).
+Section MakePaperSection();
+
+// table1.csv (report_csv.cc).
+std::string MakeCsv(std::span<const Group> groups,
+                    std::span<const core::Trial> trials);
+
+// table1.tex (report_latex.cc).
+std::string MakeLatex(std::span<const Group> groups,
+                      std::span<const core::Trial> trials);
+
+}  // namespace touchdown::report

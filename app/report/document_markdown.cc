@@ -1,0 +1,82 @@
+#include <fmt/core.h>
+
+#include <string>
+
+#include "app/report/document.h"
+#include "app/report/text.h"
+
+namespace touchdown::report {
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(bool simulated) : simulated_(simulated) {}
+
+  void operator()(const Heading& heading) {
+    out_ += std::string(static_cast<std::size_t>(heading.level), '#') + " " +
+            MarkdownEscape(heading.text) + (simulated_ ? " (SIMULATED)" : "") +
+            "\n\n";
+  }
+  void operator()(const Paragraph& paragraph) {
+    out_ += MarkdownEscape(paragraph.text) + "\n\n";
+  }
+  void operator()(const List& list) {
+    for (const std::string& item : list.items) {
+      out_ += "- " + MarkdownEscape(item) + "\n";
+    }
+    out_ += "\n";
+  }
+  void operator()(const Callout& callout) {
+    out_ += "> **" + MarkdownEscape(callout.title) + "** " +
+            MarkdownEscape(callout.text) + "\n\n";
+  }
+  void operator()(const Table& table) {
+    if (!table.caption.empty()) {
+      out_ += "**" + MarkdownEscape(table.caption) +
+              (simulated_ ? " (SIMULATED)" : "") + "**\n\n";
+    }
+    for (const Column& column : table.columns) {
+      out_ += "| " + MarkdownEscape(column.heading) + " ";
+    }
+    out_ += "|\n";
+    for (const Column& column : table.columns) {
+      out_ += column.numeric ? "|---:" : "|---";
+    }
+    out_ += "|\n";
+    for (const auto& row : table.rows) {
+      for (const Cell& cell : row) {
+        out_ += "| " + MarkdownEscape(cell.text) + " ";
+      }
+      out_ += "|\n";
+    }
+    out_ += "\n";
+  }
+  void operator()(const Figure& figure) {
+    out_ += "*Figure" + std::string(simulated_ ? " (SIMULATED)" : "") + ": " +
+            MarkdownEscape(figure.caption) + "* " + MarkdownEscape(figure.alt) +
+            "\n\n";
+  }
+  void operator()(const PageBreak&) { out_ += "---\n\n"; }
+
+  const std::string& text() const { return out_; }
+
+ private:
+  bool simulated_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string ToMarkdown(const Document& document) {
+  std::string out = "# " + MarkdownEscape(document.title) + "\n\n";
+  for (const Section& section : document.sections) {
+    if (section.simulated) out += fmt::format("> **{}**\n\n", kWatermark);
+    Writer writer(section.simulated);
+    for (const Block& block : section.blocks) std::visit(writer, block);
+    out += writer.text();
+  }
+  while (out.size() > 1 && out[out.size() - 2] == '\n') out.pop_back();
+  return out;
+}
+
+}  // namespace touchdown::report

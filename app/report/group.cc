@@ -1,0 +1,152 @@
+#include "app/report/group.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+namespace touchdown::report {
+namespace {
+
+double OrLast(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::infinity());
+}
+
+double AngleOrLast(const core::Trial& trial) {
+  const core::Measured& angle = core::ContactAngle(trial);
+  return angle ? angle->value : std::numeric_limits<double>::infinity();
+}
+
+std::map<std::string, const core::Campaign*> ByName(
+    const std::vector<core::Campaign>& campaigns) {
+  std::map<std::string, const core::Campaign*> out;
+  for (const core::Campaign& campaign : campaigns) {
+    if (!out.emplace(campaign.name, &campaign).second) {
+      throw std::invalid_argument(fmt::format(
+          "campaigns: the name '{}' is given twice; names must be unique",
+          campaign.name));
+    }
+  }
+  return out;
+}
+
+// The study of a group, with the theories that speak of it.
+void Study(const ReportInput& input, Group& group) {
+  analysis::StudyOptions options = input.study;
+  const core::Campaign& campaign = group.campaign;
+  options.origin = group.trials.origin;
+  options.margin_rad = campaign.margin_rad;
+  options.declared.reset();
+  options.others.clear();
+  // A theory declared for another body or another kind of angle says nothing
+  // here.
+  const bool speaks_of_these = campaign.body.kind == group.trials.body &&
+                               campaign.angle_kind == group.trials.angle_kind;
+  if (campaign.theory_boundary_rad && speaks_of_these) {
+    options.declared = analysis::TheoryBoundary{campaign.theory_name,
+                                                *campaign.theory_boundary_rad,
+                                                campaign.theory_u_rad};
+    group.notes.emplace_back("declared before the first trial");
+  }
+  for (const ReportTheory& theory : input.theories) {
+    if (theory.body != group.trials.body) continue;
+    if (options.declared && options.declared->name == theory.boundary.name &&
+        options.declared->boundary_rad == theory.boundary.boundary_rad) {
+      group.notes.front() += "; " + theory.note;
+    } else {
+      options.others.push_back(theory.boundary);
+      group.notes.push_back(theory.note);
+    }
+  }
+  group.prior = options.fit.scatter;
+  group.study = analysis::StudyBoundary(group.trials.observations, options);
+}
+
+}  // namespace
+
+const analysis::TheoryComparison* Group::declared() const {
+  return !study.theories.empty() && study.theories.front().declared
+             ? &study.theories.front()
+             : nullptr;
+}
+
+void SortTrials(std::vector<core::Trial>& trials) {
+  const auto key = [](const core::Trial& t) {
+    return std::tuple(t.campaign, t.body.kind, t.angle_kind, t.origin,
+                      OrLast(t.set_angle_rad), AngleOrLast(t), t.clip.path,
+                      t.id, t.revision);
+  };
+  std::stable_sort(trials.begin(), trials.end(),
+                   [&](const core::Trial& a, const core::Trial& b) {
+                     return key(a) < key(b);
+                   });
+}
+
+std::vector<Group> MakeGroups(const ReportInput& input,
+                              std::span<const core::Trial> trials) {
+  const auto campaigns = ByName(input.campaigns);
+  std::vector<Group> out;
+  for (analysis::TrialGroup& trial_group : analysis::GroupTrials(trials)) {
+    Group group;
+    for (const auto& o : trial_group.observations) {
+      group.members.push_back(o.trial);
+    }
+    for (const auto& left : trial_group.left_out) {
+      group.members.push_back(left.trial);
+    }
+    std::sort(group.members.begin(), group.members.end());
+    const auto known = campaigns.find(trial_group.campaign);
+    group.registered = known != campaigns.end();
+    if (group.registered) {
+      group.campaign = *known->second;
+    } else {
+      group.campaign.name = trial_group.campaign;
+      group.campaign.body = trials[group.members.front()].body;
+      group.campaign.angle_kind = trial_group.angle_kind;
+    }
+    group.trials = std::move(trial_group);
+    Study(input, group);
+    out.push_back(std::move(group));
+  }
+  // As in the paper: the sphere first.
+  std::stable_sort(out.begin(), out.end(), [](const Group& a, const Group& b) {
+    return a.trials.body < b.trials.body;
+  });
+  return out;
+}
+
+std::string FullName(const Group& group) {
+  return fmt::format(
+      "{}: {}, {}, {}",
+      group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,
+      core::Name(group.trials.body), AngleName(group),
+      core::Name(group.trials.origin));
+}
+
+std::string ShortName(const Group& group, std::span<const Group> groups) {
+  const auto same =
+      std::count_if(groups.begin(), groups.end(), [&](const Group& other) {
+        return other.trials.body == group.trials.body;
+      });
+  std::string name(core::Name(group.trials.body));
+  if (same > 1) {
+    name += fmt::format(" ({})", group.trials.campaign.empty()
+                                     ? "no campaign"
+                                     : group.trials.campaign);
+  }
+  return name;
+}
+
+std::string AngleName(const Group& group) {
+  return fmt::format("{} angle", core::Name(group.trials.angle_kind));
+}
+
+std::string PaperWord(core::MotionState state) {
+  if (state == core::MotionState::kBounce) return "bounce";
+  return core::IsNotBounce(state) ? "slide" : "undecided";
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,54 @@
+// Groups of trials that may be pooled, with all that is said of each: what the
+// commands print and the report is made of.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/report/report.h"
+#include "touchdown/analysis/boundary_study.h"
+#include "touchdown/analysis/observation.h"
+#include "touchdown/core/campaign.h"
+#include "touchdown/core/trial.h"
+
+namespace touchdown::report {
+
+struct Group {
+  analysis::TrialGroup trials;
+  core::Campaign campaign;  // made up from the trials where not registered
+  bool registered = false;  // the campaign is known to the store
+  std::vector<std::size_t> members;  // its trials, in the order of the tables
+  analysis::ScatterPrior prior;      // that the posterior was made with
+  analysis::BoundaryStudy study;
+  std::vector<std::string> notes;  // where each of study.theories comes from
+
+  bool simulated() const { return trials.origin == core::Origin::kSimulated; }
+  // The campaign's own theory, or nothing.
+  const analysis::TheoryComparison* declared() const;
+};
+
+// The order of every table: campaign, body, kind, origin, set-point, measured
+// angle, clip, identity. A total order, so that nothing depends on the order in
+// which a store gives its trials.
+void SortTrials(std::vector<core::Trial>& trials);
+
+// All groups of `trials`, which SortTrials() has sorted; spheres first, as in
+// the paper, then by campaign. Throws std::invalid_argument where two campaigns
+// have one name.
+std::vector<Group> MakeGroups(const ReportInput& input,
+                              std::span<const core::Trial> trials);
+
+// "asphalt: sphere, approach angle, recorded": tells any two groups apart.
+std::string FullName(const Group& group);
+
+// "sphere", or "sphere (campaign)" where `groups` has several of that body.
+std::string ShortName(const Group& group, std::span<const Group> groups);
+
+// "approach angle": what the group's contact angle is.
+std::string AngleName(const Group& group);
+
+// The paper's word: every not-bounce is "slide".
+std::string PaperWord(core::MotionState state);
+
+}  // namespace touchdown::report

@@ -1,0 +1,82 @@
+// The group's plot, and what it shows in words and numbers.
+#include <fmt/core.h>
+
+#include "app/report/boundary_plot.h"
+#include "app/report/content.h"
+#include "app/report/format.h"
+#include "app/report/sentences.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+
+using core::kDegree;
+
+namespace {
+
+// With more trials than this the table behind the plot would repeat the table
+// of trials at length.
+constexpr std::size_t kShowNumbersUpTo = 200;
+
+Table Numbers(const Group& group) {
+  Table table{"",
+              {{AngleName(group) + " (deg)", true},
+               {"2 u (deg)", true},
+               {"P(bounce)", true}},
+              {}};
+  if (group.trials.observations.size() > kShowNumbersUpTo) return table;
+  for (const auto& o : group.trials.observations) {
+    table.rows.push_back({{Plain(o.angle_rad / kDegree, 3)},
+                          {Plain(2 * o.u_rad / kDegree, 3)},
+                          {Plain(o.p_bounce, 4)}});
+  }
+  return table;
+}
+
+}  // namespace
+
+Figure MakeFigure(const Group& group, std::size_t index) {
+  const analysis::BoundaryStudy& study = group.study;
+  BoundaryPlot plot;
+  plot.angle_name = AngleName(group) + " at touchdown";
+  plot.observations = group.trials.observations;
+  plot.bracket = study.bracket;
+  plot.simulated = group.simulated();
+  plot.id = fmt::format("p{}", index);
+  for (const auto& theory : study.theories) {
+    plot.lines.push_back(
+        {fmt::format("{} {} deg", theory.theory.name,
+                     Plain(theory.theory.boundary_rad / kDegree)),
+         theory.theory.boundary_rad, theory.theory.u_rad});
+  }
+  if (study.counts.decided() > 0) {
+    plot.density = {"posterior", study.posterior.angle_rad,
+                    study.posterior.density_per_rad};
+  }
+
+  Figure figure;
+  figure.svg = DrawBoundaryPlot(plot);
+  figure.caption = fmt::format(
+      "{}{}, {}: what was seen at each {}. Bars are {} 2 u (95 %). Shaded: the "
+      "bracket. Hill: posterior density of the boundary angle, to its own "
+      "height.",
+      group.simulated() ? "Simulated. " : "", core::Name(group.trials.body),
+      group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,
+      AngleName(group), kPlusMinus);
+  figure.alt = fmt::format(
+      "{}Plot of {} trials of a {} over the {} in degrees: {} slide, {} "
+      "bounce, {} undecided; {}. Posterior of the boundary: {}.",
+      group.simulated() ? "Simulated trials. " : "",
+      group.trials.observations.size(), core::Name(group.trials.body),
+      AngleName(group), study.counts.not_bounce, study.counts.bounce,
+      study.counts.undecided, BracketSentence(study.bracket),
+      BoundarySentence(study));
+  for (const auto& theory : study.theories) {
+    figure.alt +=
+        fmt::format(" Line: {} boundary at {} deg.", theory.theory.name,
+                    Plain(theory.theory.boundary_rad / kDegree));
+  }
+  figure.data = Numbers(group);
+  return figure;
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,147 @@
+// One group of trials: facts, verdict, statistics, every trial.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/content.h"
+#include "app/report/format.h"
+#include "app/report/sentences.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+using core::kMillimetre;
+
+std::string SizeText(const core::Body& body) {
+  const auto with_unit = [](const core::Measured& size) {
+    return WithU(*size, kMillimetre) + " mm";
+  };
+  if (body.kind == core::BodyKind::kSphere) {
+    return body.diameter_m
+               ? "diameter " + with_unit(body.diameter_m)
+               : "diameter absent: " + body.diameter_m.error().reason;
+  }
+  if (!body.long_m) return "sides absent: " + body.long_m.error().reason;
+  if (!body.short_m) return "short side absent: " + body.short_m.error().reason;
+  return "sides " + with_unit(body.long_m) + " and " + with_unit(body.short_m);
+}
+
+// The one bounce height of the trials, or that they differ.
+std::string BounceHeightText(const Group& group,
+                             std::span<const core::Trial> trials) {
+  double low = 1e300;
+  double high = -1e300;
+  for (const std::size_t t : group.members) {
+    const auto& height = trials[t].first.state.bounce_height_m;
+    if (!height) continue;
+    low = std::min(low, height->value);
+    high = std::max(high, height->value);
+  }
+  if (low > high) return "not recorded";
+  if (high - low < 1e-9) return Plain(low / kMillimetre, 3) + " mm";
+  return fmt::format(
+      "{} to {} mm: NOT the same for all trials, so they are not strictly "
+      "comparable",
+      Plain(low / kMillimetre, 3), Plain(high / kMillimetre, 3));
+}
+
+Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
+  const core::Campaign& c = group.campaign;
+  const analysis::BoundaryStudy& study = group.study;
+  Table table{"", {{"campaign"}, {c.name.empty() ? "(none)" : c.name}}, {}};
+  const auto row = [&](std::string name, std::string value) {
+    table.rows.push_back({{std::move(name)}, {std::move(value)}});
+  };
+  row("origin of the trials", std::string(core::Name(group.trials.origin)));
+  const core::Body& body = c.body.kind == group.trials.body
+                               ? c.body
+                               : trials[group.members.front()].body;
+  row("body", fmt::format("{}, {}", core::Name(body.kind), SizeText(body)));
+  row("surface", c.surface.empty() ? "not recorded" : c.surface);
+  row("contact angle", AngleName(group) + " at touchdown");
+  row("bounce height", BounceHeightText(group, trials));
+  if (c.speed_max_mps > 0.0) {
+    row("speed band at touchdown",
+        fmt::format("{} to {} m/s", Plain(c.speed_min_mps),
+                    Plain(c.speed_max_mps)));
+  }
+  row("declared theory",
+      group.declared() != nullptr
+          ? fmt::format(
+                "{}: {} deg, margin {} deg", c.theory_name,
+                WithU({*c.theory_boundary_rad, c.theory_u_rad, {}}, kDegree),
+                Plain(c.margin_rad / kDegree))
+          : "none declared before the first trial");
+  row("trials",
+      fmt::format("{} slide, {} bounce, {} undecided; {} left out",
+                  study.counts.not_bounce, study.counts.bounce,
+                  study.counts.undecided, group.trials.left_out.size()));
+  row("u of the angles",
+      fmt::format("{} to {} deg", Plain(study.least_u_rad / kDegree, 3),
+                  Plain(study.greatest_u_rad / kDegree, 3)));
+  row("what the trials alone say", BracketSentence(study.bracket));
+  return table;
+}
+
+// theory.md E6.
+std::string FaceAngleText(const Group& group) {
+  std::string least = "atan(b/a) of its sides";
+  const core::Body& body = group.campaign.body;
+  if (body.long_m && body.short_m && body.long_m->value > 0.0) {
+    least += fmt::format(
+        ", here {} deg",
+        Plain(std::atan2(body.short_m->value, body.long_m->value) / kDegree,
+              1));
+  }
+  return fmt::format(
+      "The varied angle of this rectangle is its face angle, the inclination "
+      "of the long side to the ground. The paper's own angle (its Fig. 1, the "
+      "radius angle from the centre to the contact corner) cannot be less than "
+      "{}, so a body of finite thickness cannot be thrown at the radius angles "
+      "0, 3.9, ... of the paper's Table 1. The published boundary is shown for "
+      "orientation; it speaks of another angle.",
+      least);
+}
+
+}  // namespace
+
+Callout MakeVerdict(const Group& group, std::span<const Group> groups) {
+  Callout callout;
+  const std::string word = VerdictWord(group);
+  callout.tone = word == "confirmed"      ? Tone::kGood
+                 : word == "contradicted" ? Tone::kBad
+                                          : Tone::kPlain;
+  callout.title = fmt::format("{}: {}.", ShortName(group, groups), word);
+  const analysis::Counts& counts = group.study.counts;
+  callout.text = fmt::format(
+      "{} slide, {} bounce, {} undecided; {}. The boundary is {}. {}",
+      counts.not_bounce, counts.bounce, counts.undecided,
+      BracketSentence(group.study.bracket), BoundarySentence(group.study),
+      VerdictSentence(group));
+  const std::string outlook = OutlookSentence(group);
+  if (!outlook.empty()) callout.text += " " + outlook;
+  return callout;
+}
+
+Section MakeGroupSection(const Group& group, std::span<const Group> groups,
+                         std::span<const core::Trial> trials) {
+  Section section{group.simulated(), {}};
+  auto& out = section.blocks;
+  out.push_back(PageBreak{});
+  out.push_back(Heading{2, FullName(group)});
+  out.push_back(MakeFacts(group, trials));
+  if (group.trials.angle_kind == core::AngleKind::kFace) {
+    out.push_back(Callout{"Which angle.", FaceAngleText(group)});
+  }
+  out.push_back(MakeVerdict(group, groups));
+  for (Block& block : MakeStatistics(group)) out.push_back(std::move(block));
+  for (Block& block : MakeTrialTables(group, trials)) {
+    out.push_back(std::move(block));
+  }
+  return section;
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,185 @@
+// The numbers of a group, in the order in which they should be read: estimate,
+// distance to theory, equivalence, agreement of labels.
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "app/report/content.h"
+#include "app/report/format.h"
+#include "app/report/sentences.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+
+std::string Range(const core::Interval& interval) {
+  return fmt::format("{:.2f} to {:.2f}", interval.low / kDegree,
+                     interval.high / kDegree);
+}
+
+std::string Share(const core::Interval& interval) {
+  return fmt::format("{:.3f} to {:.3f}", interval.low, interval.high);
+}
+
+std::string PriorName(const analysis::ScatterPrior& prior) {
+  return fmt::format("scatter about {} deg, a factor {} either way",
+                     Plain(prior.median_rad / kDegree),
+                     Plain(std::exp(prior.log_sd), 1));
+}
+
+Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
+  const auto& p = group.study.posterior;
+  const auto& l = group.study.likelihood;
+  Table table{"The boundary angle",
+              {{"method"},
+               {"boundary (deg)", true},
+               {"95 % interval (deg)", true},
+               {"remark"}},
+              {}};
+  table.rows.push_back(
+      {{"posterior median"},
+       {fmt::format("{:.2f}", p.median_rad / kDegree)},
+       {Range(p.interval95_rad)},
+       {fmt::format("{}; 90 %: {} deg; sd {:.2f} deg", PriorName(prior),
+                    Range(p.interval90_rad), p.sd_rad / kDegree)}});
+  for (const auto& line : p.sensitivity) {
+    table.rows.push_back({{"the same, other prior"},
+                          {fmt::format("{:.2f}", line.median_rad / kDegree)},
+                          {Range(line.interval95_rad)},
+                          {PriorName(line.prior)}});
+  }
+  std::string remark = l.has_estimate ? "no prior" : "no estimate, no prior";
+  if (l.open_low) remark += "; open below";
+  if (l.open_high) remark += "; open above";
+  if (l.has_estimate && l.scatter_rad == 0.0) {
+    remark += "; middle of the flat top, scatter not told from 0";
+  }
+  table.rows.push_back(
+      {{"likelihood profile"},
+       {l.has_estimate ? fmt::format("{:.2f}", l.estimate_rad / kDegree) : ""},
+       {Range(l.interval95_rad)},
+       {remark}});
+  table.rows.push_back(
+      {{"scatter of the boundary"},
+       {fmt::format("{:.2f}", p.scatter_median_rad / kDegree)},
+       {Range(p.scatter95_rad)},
+       {"posterior; what a boundary varies from trial to trial"}});
+  return table;
+}
+
+Table MakeTheories(const Group& group) {
+  Table table{"Boundary angles of theory beside the trials",
+              {{"theory"},
+               {fmt::format("value {} u (deg)", kPlusMinus), true},
+               {"median - theory (deg)", true},
+               {"E_n", true},
+               {"P(boundary below it)", true},
+               {fmt::format("P(within {} {} deg)", kPlusMinus,
+                            Plain(group.study.margin_rad / kDegree)),
+                true},
+               {"smallest margin that passes (deg)", true},
+               {"verdict"},
+               {"where it comes from"}},
+              {}};
+  for (std::size_t i = 0; i < group.study.theories.size(); ++i) {
+    const auto& t = group.study.theories[i];
+    const auto& verdict = t.judgement.verdict;
+    table.rows.push_back(
+        {{t.theory.name + (t.declared ? " (declared)" : "")},
+         {WithU({t.theory.boundary_rad, t.theory.u_rad, {}}, kDegree)},
+         {fmt::format("{:+.2f}", t.difference_rad / kDegree)},
+         {fmt::format("{:+.2f}", t.e_n)},
+         {fmt::format("{:.3f}", t.p_below)},
+         {fmt::format("{:.3f}", t.p_within)},
+         {fmt::format("{:.1f}", t.smallest_margin_rad / kDegree)},
+         {verdict      ? std::string(core::Name(*verdict))
+          : t.declared ? "none"
+                       : "for information"},
+         {group.notes[i], Tone::kMuted}});
+  }
+  return table;
+}
+
+Table MakeConfusion(const Group& group, const analysis::TheoryComparison& t) {
+  const auto& a = t.agreement;
+  Table table{fmt::format("Predicted by {} {} deg, and seen", t.theory.name,
+                          Plain(t.theory.boundary_rad / kDegree)),
+              {{"prediction"}, {"seen: slide", true}, {"seen: bounce", true}},
+              {}};
+  const auto number = [](int n) { return Cell{fmt::format("{}", n)}; };
+  table.rows.push_back({{"slide"},
+                        number(a.deciding.slide_slide),
+                        number(a.deciding.slide_bounce)});
+  table.rows.push_back({{"bounce"},
+                        number(a.deciding.bounce_slide),
+                        number(a.deciding.bounce_bounce)});
+  table.rows.push_back(
+      {{"within 2 u of the boundary: decide nothing"},
+       number(a.all.slide_slide + a.all.bounce_slide - a.deciding.slide_slide -
+              a.deciding.bounce_slide),
+       number(a.all.slide_bounce + a.all.bounce_bounce -
+              a.deciding.slide_bounce - a.deciding.bounce_bounce)});
+  if (group.study.counts.undecided > 0) {
+    table.rows.push_back({{fmt::format("motion state undecided: {}",
+                                       group.study.counts.undecided)},
+                          {""},
+                          {""}});
+  }
+  return table;
+}
+
+std::string AgreementNumbers(const analysis::TheoryComparison& t) {
+  const auto& m = t.agreement.deciding;
+  if (m.total() == 0) return "No trial decides anything about this theory.";
+  std::string text = fmt::format(
+      "Of the {} trials that decide, {} agree: proportion {:.3f}, 95 % "
+      "interval {} (Wilson), {} (Clopper and Pearson).",
+      m.total(), m.right(), static_cast<double>(m.right()) / m.total(),
+      Share(*t.wilson95), Share(*t.clopper_pearson95));
+  if (t.kappa) {
+    text += fmt::format(
+        " Cohen's kappa {:.3f} (standard error {:.3f}; {:.3f} "
+        "under chance)",
+        t.kappa->kappa, t.kappa->ase, t.kappa->ase0);
+    if (t.matthews) {
+      text += fmt::format(", Matthews' correlation {:.3f}", *t.matthews);
+    }
+    text += ".";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<Block> MakeStatistics(const Group& group) {
+  std::vector<Block> out;
+  out.push_back(MakeEstimates(group, group.prior));
+  out.push_back(Paragraph{StatusSentence(group.study), true});
+  if (group.study.theories.empty()) return out;
+  out.push_back(MakeTheories(group));
+  const auto& first = group.study.theories.front();
+  if (first.declared) {
+    out.push_back(Paragraph{
+        fmt::format(
+            "Equivalence (two one-sided tests) at the margin of {} deg: "
+            "P(boundary below {} deg) = {:.3f}, P(above {} deg) = {:.3f}; both "
+            "under 0.05 is what confirmed means. |E_n| up to 1 is called "
+            "compatible, which is not the same as confirmed.",
+            Plain(group.study.margin_rad / kDegree),
+            Plain((first.theory.boundary_rad - group.study.margin_rad) /
+                  kDegree),
+            first.p_too_low,
+            Plain((first.theory.boundary_rad + group.study.margin_rad) /
+                  kDegree),
+            first.p_too_high),
+        true});
+  }
+  out.push_back(MakeConfusion(group, first));
+  out.push_back(Paragraph{AgreementSentence(first)});
+  out.push_back(Paragraph{AgreementNumbers(first), true});
+  return out;
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,182 @@
+#include "app/report/report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+
+#include "app/report/boundary_json.h"
+#include "app/report/content.h"
+#include "app/report/document.h"
+#include "app/report/format.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+constexpr core::Origin kOrigins[] = {
+    core::Origin::kRecorded, core::Origin::kManual, core::Origin::kSimulated};
+
+Section MakeQuestion(std::span<const Group> groups) {
+  Section section;
+  section.blocks.push_back(Paragraph{
+      "At what angle does a body cease to slide and begin to bounce, and do "
+      "these trials agree with the boundary angles that the paper publishes: "
+      "11.8 deg for a sphere, 7.8 deg for a rectangle?"});
+  if (groups.empty()) {
+    section.blocks.push_back(
+        Callout{"No trials.", "The store holds no trial for this report."});
+  }
+  return section;
+}
+
+// Everything of page 1 for the groups of one origin: never pooled.
+Section MakeFront(std::span<const Group> groups,
+                  std::span<const core::Trial> trials, std::size_t& figures) {
+  Section section{groups.front().simulated(), {}};
+  auto& out = section.blocks;
+  for (const Group& group : groups) out.push_back(MakeVerdict(group, groups));
+  for (Table& table : MakeTable1(groups, trials)) {
+    out.push_back(std::move(table));
+  }
+  out.push_back(Paragraph{
+      "In the paper's two words: slide is every motion that is not a bounce "
+      "(slide, roll-slide, roll, stick, stays-down). A bounce rises above the "
+      "campaign's bounce height. u is the standard uncertainty of a measured "
+      "angle; kinds of angle are never pooled.",
+      true});
+  for (const Group& group : groups) {
+    out.push_back(MakeFigure(group, ++figures));
+  }
+  return section;
+}
+
+// FNV-1a, 64 bits: tells two sets of trials apart in print; no defence against
+// forgery.
+std::uint64_t Digest(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  }
+  return hash;
+}
+
+Section MakeMethods(const ReportInput& input, const std::string& csv) {
+  Section section;
+  auto& out = section.blocks;
+  out.push_back(Heading{2, "How this report was made"});
+  out.push_back(List{
+      {"Boundary angle: posterior on a grid. A trial at the measured angle x, "
+       "known to u, bounces with probability Phi((x - boundary) / sqrt(scatter"
+       "\u00b2 + u\u00b2)); the boundary is as likely anywhere from 0 to 90 "
+       "deg "
+       "beforehand, the scatter has the prior named beside the estimate. "
+       "Undecided trials count by their P(bounce).",
+       "Likelihood profile: the same model without a prior; 95 % where twice "
+       "the fall from the maximum is below 3.84.",
+       "Bracket: from the greatest angle at which a body stayed down to the "
+       "least at which one bounced. It is exact only for exact angles and a "
+       "boundary that does not scatter.",
+       "Agreement: the theory predicts slide up to and including its boundary, "
+       "bounce above it. A trial whose angle lies within 2 u of the boundary "
+       "decides nothing and is counted apart.",
+       "Verdict, for the theory that the campaign declared before its first "
+       "trial: confirmed where the 90 % interval of the boundary lies within "
+       "the theory's value \u00b1 margin; contradicted where the 95 % interval "
+       "lies wholly outside value \u00b1 (margin + U of the theory); else "
+       "inconclusive. Simulated trials yield no verdict."}});
+  Table table{"", {{"made with"}, {""}}, {}};
+  const auto row = [&](const char* name, const std::string& value) {
+    if (!value.empty()) table.rows.push_back({{name}, {value}});
+  };
+  row("software", input.software_version.empty()
+                      ? "touchdown"
+                      : "touchdown " + input.software_version);
+  row("options", input.options);
+  row("source", input.source);
+  row("trials", fmt::format("{}", input.trials.size()));
+  row("digest of the trials", fmt::format("{:016x}", Digest(csv)));
+  out.push_back(table);
+  return section;
+}
+
+void WriteFile(const std::filesystem::path& path, const std::string& text) {
+  std::filesystem::path temporary = path;
+  temporary += ".part";
+  {
+    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+    file << text;
+    file.close();
+    if (!file) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw core::InputError(fmt::format(
+          "{}: cannot be written; give a folder that is writable and has room",
+          path.string()));
+    }
+  }
+  std::error_code trouble;
+  std::filesystem::rename(temporary, path, trouble);
+  if (trouble) {
+    throw core::InputError(
+        fmt::format("{}: cannot be replaced: {}; remove it or give another "
+                    "folder",
+                    path.string(), trouble.message()));
+  }
+}
+
+}  // namespace
+
+Report MakeReport(const ReportInput& input) {
+  std::vector<core::Trial> trials = input.trials;
+  SortTrials(trials);
+  const std::vector<Group> groups = MakeGroups(input, trials);
+
+  Document document;
+  document.title = input.title;
+  document.sections.push_back(MakeQuestion(groups));
+  std::size_t figures = 0;
+  for (const core::Origin origin : kOrigins) {
+    std::vector<Group> same;
+    std::copy_if(
+        groups.begin(), groups.end(), std::back_inserter(same),
+        [origin](const Group& g) { return g.trials.origin == origin; });
+    if (same.empty()) continue;
+    document.sections.push_back(MakeFront(same, trials, figures));
+  }
+  for (const Group& group : groups) {
+    document.sections.push_back(MakeGroupSection(group, groups, trials));
+  }
+  document.sections.push_back(MakePaperSection());
+  const std::string csv = MakeCsv(groups, trials);
+  document.sections.push_back(MakeMethods(input, csv));
+  Report out;
+  out.markdown = ToMarkdown(document);
+  out.csv = csv;
+  out.html = ToHtml(document);
+  out.latex = MakeLatex(groups, trials);
+  out.json = ReportDocument(input, groups, trials).dump(1) + "\n";
+  return out;
+}
+
+void WriteReport(const Report& report, const std::filesystem::path& folder) {
+  std::error_code trouble;
+  std::filesystem::create_directories(folder, trouble);
+  if (trouble) {
+    throw core::InputError(
+        fmt::format("{}: cannot be made: {}; give a folder that can",
+                    folder.string(), trouble.message()));
+  }
+  WriteFile(folder / "table1.md", report.markdown);
+  WriteFile(folder / "table1.csv", report.csv);
+  WriteFile(folder / "table1.html", report.html);
+  WriteFile(folder / "table1.tex", report.latex);
+  WriteFile(folder / "table1.json", report.json);
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,57 @@
+// The Table 1 report: trials against the published boundary angles.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "touchdown/analysis/agreement.h"
+#include "touchdown/analysis/boundary_study.h"
+#include "touchdown/core/campaign.h"
+#include "touchdown/core/trial.h"
+
+namespace touchdown::report {
+
+// A boundary angle to compare trials of one body with, for information: only a
+// campaign's own declared theory gets a verdict.
+struct ReportTheory {
+  core::BodyKind body = core::BodyKind::kSphere;
+  analysis::TheoryBoundary boundary;
+  std::string note;  // where it comes from, one sentence
+};
+
+// The paper's 11.8 deg (sphere) and 7.8 deg (rectangle), labelled published.
+std::vector<ReportTheory> PublishedTheories();
+
+struct ReportInput {
+  std::vector<core::Trial> trials;  // in any order; last revisions only
+  std::vector<core::Campaign> campaigns;
+  std::vector<ReportTheory> theories = PublishedTheories();
+  // How boundaries are estimated; what depends on the campaign (theory, margin,
+  // origin) is filled in.
+  analysis::StudyOptions study;
+  std::string title = "Table 1: slide or bounce at touchdown";
+  std::string software_version;
+  std::string options;  // how the report was asked for
+  std::string source;   // where the trials come from
+};
+
+// Every text is a whole file.
+struct Report {
+  std::string markdown;
+  std::string csv;  // one line a trial
+  std::string html;
+  std::string latex;  // Table 1 alone, to \input into a paper
+  std::string json;   // touchdown.report/1: every number
+};
+
+// Makes the report. The same input gives the same bytes: no clock, everything
+// sorted. Throws std::invalid_argument where two campaigns have one name, and
+// core::InputError where a plot cannot be drawn.
+Report MakeReport(const ReportInput& input);
+
+// Writes table1.md, .csv, .html, .tex and .json into `folder` (made where it is
+// missing), each under a temporary name first. Throws core::InputError.
+void WriteReport(const Report& report, const std::filesystem::path& folder);
+
+}  // namespace touchdown::report

@@ -1,0 +1,169 @@
+#include "app/report/sentences.h"
+
+#include <fmt/core.h>
+
+#include "app/report/format.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+
+using analysis::DataStatus;
+using core::kDegree;
+
+std::string BracketSentence(const analysis::Bracket& bracket) {
+  if (bracket.overlap) {
+    return fmt::format(
+        "no bracket: a body stayed down at {} deg and another bounced at {} "
+        "deg",
+        Plain(*bracket.low_rad / kDegree), Plain(*bracket.high_rad / kDegree));
+  }
+  if (bracket.closed()) {
+    return fmt::format("bracket {} deg, {} deg wide",
+                       HalfOpen(bracket.low_rad, bracket.high_rad, kDegree),
+                       Plain((*bracket.high_rad - *bracket.low_rad) / kDegree));
+  }
+  if (bracket.low_rad) {
+    return fmt::format("boundary {} deg (no bounce was seen)",
+                       HalfOpen(bracket.low_rad, {}, kDegree));
+  }
+  if (bracket.high_rad) {
+    return fmt::format("boundary {} deg (every body bounced)",
+                       HalfOpen({}, bracket.high_rad, kDegree));
+  }
+  return "no decided trial";
+}
+
+std::string BoundarySentence(const analysis::BoundaryStudy& study) {
+  const auto& p = study.posterior;
+  return fmt::format("{:.1f} deg, 95 % interval {:.1f} to {:.1f} deg",
+                     p.median_rad / kDegree, p.interval95_rad.low / kDegree,
+                     p.interval95_rad.high / kDegree);
+}
+
+std::string AgreementSentence(const analysis::TheoryComparison& theory) {
+  const analysis::Agreement& a = theory.agreement;
+  std::string text =
+      fmt::format("{} of {} agree with the {} boundary, {} deg", a.all.right(),
+                  a.all.total(), theory.theory.name,
+                  Plain(theory.theory.boundary_rad / kDegree));
+  if (a.decides_nothing > 0) {
+    text += fmt::format(", but {} of them decide{} nothing (within 2 u of it)",
+                        a.decides_nothing, a.decides_nothing == 1 ? "s" : "");
+  }
+  if (a.all.total() > 0) {
+    text += fmt::format(
+        "; every boundary {} deg agrees as well",
+        a.same_low_rad && a.same_high_rad
+            ? "in " + HalfOpen(a.same_low_rad, a.same_high_rad, kDegree)
+            : HalfOpen(a.same_low_rad, a.same_high_rad, kDegree));
+  }
+  return text + ".";
+}
+
+std::string VerdictWord(const Group& group) {
+  const analysis::TheoryComparison* theory = group.declared();
+  if (group.simulated()) return "no verdict";
+  if (theory == nullptr) return "no verdict: no theory was declared";
+  if (!theory->judgement.verdict) return "no verdict";
+  return std::string(core::Name(*theory->judgement.verdict));
+}
+
+std::string VerdictSentence(const Group& group) {
+  const analysis::TheoryComparison* theory = group.declared();
+  if (group.simulated()) {
+    return "Simulated trials yield no verdict on a theory: they test the "
+           "software.";
+  }
+  if (theory == nullptr) {
+    return "Only a theory that the campaign declares before its first trial "
+           "gets a verdict.";
+  }
+  if (!theory->judgement.verdict) return theory->judgement.reason + ".";
+  const std::string boundary =
+      fmt::format("the {} boundary, {} deg,", theory->theory.name,
+                  Plain(theory->theory.boundary_rad / kDegree));
+  const std::string margin = Plain(group.study.margin_rad / kDegree);
+  if (theory->judgement.verdict == core::Verdict::kInconclusive) {
+    return fmt::format(
+        "These trials neither confirm nor contradict {} with a margin of {} "
+        "deg: {}. The smallest margin that would pass is {:.1f} deg.",
+        boundary, margin, theory->judgement.reason,
+        theory->smallest_margin_rad / kDegree);
+  }
+  return fmt::format("These trials {} {} with a margin of {} deg: {}.",
+                     theory->judgement.verdict == core::Verdict::kConfirmed
+                         ? "confirm"
+                         : "contradict",
+                     boundary, margin, theory->judgement.reason);
+}
+
+std::string OutlookSentence(const Group& group) {
+  const analysis::TheoryComparison* theory = group.declared();
+  if (theory == nullptr || !theory->trials_to_decide) return "";
+  // A forecast beyond this means: not by more of the same trials.
+  constexpr int kHopeless = 1000;
+  if (*theory->trials_to_decide > kHopeless) {
+    return "More trials of this kind would hardly decide: the scatter of the "
+           "boundary is too large for the margin.";
+  }
+  return fmt::format(
+      "About {} near {:.0f} deg would decide, if boundary and scatter are what "
+      "they now seem.",
+      *theory->trials_to_decide == 1
+          ? std::string("one more trial")
+          : fmt::format("{} more trials", *theory->trials_to_decide),
+      group.study.posterior.median_rad / kDegree);
+}
+
+std::string StatusSentence(const analysis::BoundaryStudy& study) {
+  std::string text;
+  switch (study.posterior.status) {
+    case DataStatus::kNoTrials:
+      text = "No trial is decided: the estimate is nothing but its prior.";
+      break;
+    case DataStatus::kOnlySlides:
+      text =
+          "Every body stayed down: the boundary lies above, and its upper "
+          "limit is prior.";
+      break;
+    case DataStatus::kOnlyBounces:
+      text =
+          "Every body bounced: the boundary lies below, and its lower limit "
+          "is prior.";
+      break;
+    case DataStatus::kSeparated:
+      text =
+          "Slides and bounces do not overlap, so the trials alone do not tell "
+          "how much the boundary scatters: the width beyond the bracket comes "
+          "from the prior on that scatter.";
+      break;
+    case DataStatus::kTouching:
+      text =
+          "Slides and bounces share one angle and overlap no further: the "
+          "scatter is hardly known.";
+      break;
+    case DataStatus::kOverlap:
+      text = "Slides and bounces overlap, so the scatter is seen in the data.";
+      break;
+    case DataStatus::kReversed:
+      text =
+          "Inconsistent: bounces lie on the whole below slides. Check labels "
+          "and angles before using any number of this group.";
+      break;
+  }
+  if (study.posterior.few_trials) {
+    text += fmt::format(" Fewer than {} decided trials.", analysis::kFewTrials);
+  }
+  if (study.posterior.lapse > 0.0) {
+    text += fmt::format(
+        " The data ask for trials that went wrong: a lapse rate of {:.2f} is "
+        "allowed for.",
+        study.posterior.lapse);
+  }
+  if (study.posterior.binned) {
+    text += " The trials were binned.";
+  }
+  return text;
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,363 @@
+#include "touchdown/analysis/boundary_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/analysis/reference_data.h"
+#include "tests/support/shared_data.h"
+#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::analysis {
+namespace {
+
+using core::BodyKind;
+using core::kDegree;
+
+// Angles and uncertainties in degrees; outcome 1 bounce, 0 slide.
+std::vector<Observation> Trials(const std::vector<double>& x,
+                                const std::vector<int>& y, double u_deg) {
+  std::vector<Observation> out;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    out.push_back(Observe(x[i] * kDegree, u_deg * kDegree, y[i]));
+  }
+  return out;
+}
+
+BoundaryFitOptions NoLapse(double median_deg = 2.0, double log_sd = 1.5) {
+  BoundaryFitOptions options;
+  options.lapse_rule = LapseRule::kNever;
+  options.scatter = {median_deg * kDegree, log_sd};
+  return options;
+}
+
+// The reference grid is four times finer in s and stepped 0.02 deg;
+// statistics.md gives 0.004 deg for a grid like ours.
+constexpr double kTolerance_deg = 0.02;
+
+void ExpectPosterior(const BoundaryPosterior& p, double median_deg,
+                     double low_deg, double high_deg,
+                     double tolerance_deg = kTolerance_deg) {
+  EXPECT_NEAR(p.median_rad / kDegree, median_deg, tolerance_deg);
+  EXPECT_NEAR(p.interval95_rad.low / kDegree, low_deg, tolerance_deg);
+  EXPECT_NEAR(p.interval95_rad.high / kDegree, high_deg, tolerance_deg);
+}
+
+TEST(FitBoundary, PaperTable1) {
+  // statistics.md 1.4, last rows.
+  const auto sphere =
+      FitBoundary(PaperTable1(BodyKind::kSphere, 0.5 * kDegree), NoLapse());
+  ExpectPosterior(sphere, 20.051, 10.970, 32.016);
+  EXPECT_NEAR(sphere.sd_rad / kDegree, 5.767, kTolerance_deg);
+  EXPECT_NEAR(ProbabilityBelow(sphere, 11.8 * kDegree), 0.043, 0.002);
+  EXPECT_NEAR(ProbabilityWithin(sphere, 11.8 * kDegree, 0.5 * kDegree), 0.030,
+              0.002);
+  EXPECT_NEAR(SmallestPassingMargin(sphere, 11.8 * kDegree) / kDegree, 17.2,
+              0.05);
+  EXPECT_EQ(sphere.status, DataStatus::kSeparated);
+  EXPECT_TRUE(sphere.few_trials);
+
+  const auto rectangle =
+      FitBoundary(PaperTable1(BodyKind::kRectangle, 0.5 * kDegree), NoLapse());
+  ExpectPosterior(rectangle, 10.142, 4.701, 22.103);
+  EXPECT_NEAR(rectangle.sd_rad / kDegree, 4.184, kTolerance_deg);
+  EXPECT_NEAR(ProbabilityBelow(rectangle, 7.8 * kDegree), 0.145, 0.002);
+  EXPECT_NEAR(ProbabilityWithin(rectangle, 7.8 * kDegree, 0.5 * kDegree), 0.100,
+              0.002);
+  EXPECT_NEAR(ProbabilityWithin(rectangle, 7.8 * kDegree, 2 * kDegree), 0.397,
+              0.002);
+  EXPECT_NEAR(SmallestPassingMargin(rectangle, 7.8 * kDegree) / kDegree, 10.7,
+              0.05);
+}
+
+TEST(FitBoundary, SensitivityLinesAreFitsWithOtherPriors) {
+  const auto trials = PaperTable1(BodyKind::kSphere, 0.5 * kDegree);
+  const auto p = FitBoundary(trials, NoLapse());
+  ASSERT_EQ(p.sensitivity.size(), 2u);
+  EXPECT_NEAR(p.sensitivity[0].median_rad / kDegree, 19.719, kTolerance_deg);
+  EXPECT_NEAR(p.sensitivity[0].interval95_rad.low / kDegree, 11.517,
+              kTolerance_deg);
+  EXPECT_NEAR(p.sensitivity[0].interval95_rad.high / kDegree, 28.213,
+              kTolerance_deg);
+  // LN(.5, 1): statistics.md 3 gives D95 = 15.0 for the sphere.
+  const auto narrow = FitBoundary(trials, NoLapse(0.5, 1.0));
+  EXPECT_NEAR(SmallestPassingMargin(narrow, 11.8 * kDegree) / kDegree, 15.0,
+              0.05);
+  const auto rectangle = FitBoundary(
+      PaperTable1(BodyKind::kRectangle, 0.5 * kDegree), NoLapse(0.5, 1.0));
+  EXPECT_NEAR(SmallestPassingMargin(rectangle, 7.8 * kDegree) / kDegree, 4.6,
+              0.05);
+}
+
+TEST(FitBoundary, EveryPaperRowOfTheReference) {
+  const auto path = testing::Shared("reference/data/reference_bayes.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  int checked = 0;
+  for (const auto& row : ReadCsv(path)) {
+    const std::string& name = row[0];
+    const bool sphere = name.starts_with("sphere");
+    if (!sphere && !name.starts_with("rect")) continue;
+    const auto u = name.find("u=");
+    const auto lapse = name.find("lapse=");
+    const auto prior = name.find("LN(");
+    const auto comma = name.find(',', prior);
+    BoundaryFitOptions options = NoLapse(std::stod(name.substr(prior + 3)),
+                                         std::stod(name.substr(comma + 1)));
+    if (const double l = std::stod(name.substr(lapse + 6)); l > 0.0) {
+      options.lapse_rule = LapseRule::kAlways;
+      options.lapse = l;
+    }
+    const auto p = FitBoundary(
+        PaperTable1(sphere ? BodyKind::kSphere : BodyKind::kRectangle,
+                    std::stod(name.substr(u + 2)) * kDegree),
+        options);
+    SCOPED_TRACE(name);
+    ExpectPosterior(p, std::stod(row[1]), std::stod(row[4]), std::stod(row[5]));
+    EXPECT_NEAR(p.mean_rad / kDegree, std::stod(row[2]), kTolerance_deg);
+    EXPECT_NEAR(p.sd_rad / kDegree, std::stod(row[3]), kTolerance_deg);
+    ++checked;
+  }
+  EXPECT_EQ(checked, 16);
+}
+
+TEST(FitBoundary, PublishedDropTest) {
+  const auto path = testing::Shared("reference/data/hamada2019_drop25.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  BoundaryFitOptions options = NoLapse();
+  options.low_rad = 0.5;
+  options.high_rad = 2.5;
+  options.scatter = {std::exp(-2.8), 1.0};
+  options.scatter_low_rad = std::exp(-7.0);
+  options.scatter_high_rad = std::exp(1.0);
+  const auto p = FitBoundary(
+      ReadTrials(path, [](double h) { return std::log10(h); }), options);
+  // Published (OpenBUGS, Monte Carlo error 0.006): 1.535 [1.475, 1.649].
+  EXPECT_NEAR(p.median_rad, 1.535, 0.006);
+  EXPECT_NEAR(p.interval95_rad.low, 1.475, 0.006);
+  EXPECT_NEAR(p.interval95_rad.high, 1.649, 0.006);
+  // Computed on a fine grid.
+  EXPECT_NEAR(p.median_rad, 1.53488, 0.0005);
+  EXPECT_NEAR(p.interval95_rad.low, 1.47057, 0.0005);
+  EXPECT_NEAR(p.interval95_rad.high, 1.64486, 0.0008);
+  EXPECT_NEAR(p.sd_rad, 0.05124, 0.002);
+}
+
+TEST(FitBoundary, PublishedGoNoGoSets) {
+  const auto folder = testing::Shared("reference/data");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " not here";
+  const auto fit = [&](const char* file, double median, double log_sd,
+                       double low, double scatter_high) {
+    BoundaryFitOptions options = NoLapse();
+    options.low_rad = low;
+    options.high_rad = 30.0;
+    options.scatter_low_rad = 0.05;
+    options.scatter_high_rad = scatter_high;
+    options.scatter = {median, log_sd};
+    options.sensitivity.clear();
+    return FitBoundary(ReadTrials(folder / file), options);
+  };
+  const auto expect = [](const BoundaryPosterior& p, double median, double low,
+                         double high, double tolerance = 0.01) {
+    EXPECT_NEAR(p.median_rad, median, tolerance);
+    EXPECT_NEAR(p.interval95_rad.low, low, tolerance);
+    EXPECT_NEAR(p.interval95_rad.high, high, tolerance);
+  };
+  expect(fit("neyer1994_table1.csv", 1, 1, 0, 40.5), 5.43745, 4.44517, 6.84850);
+  // Its grid reached beyond 90 degrees of scatter; how far is not recorded.
+  expect(fit("wu_tian2014_table1.csv", 2, 1.5, -20, 200), 10.21191, 7.70878,
+         12.31469, 0.04);
+  expect(fit("gonogo19_sep4.csv", 1, 1, 0, 40.5), 14.50026, 10.97482, 18.04849);
+}
+
+TEST(FitBoundary, BeetlesWithManyTrials) {
+  const auto path = testing::Shared("reference/data/bliss1935_beetles.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  BoundaryFitOptions options = NoLapse();
+  options.low_rad = 1.6;
+  options.high_rad = 2.0;
+  options.scatter = {0.05, 1.0};
+  options.scatter_low_rad = 0.005;
+  options.scatter_high_rad = 0.5;
+  const auto p =
+      FitBoundary(ReadGroups(path, false, [](double x) { return x; }), options);
+  EXPECT_NEAR(p.median_rad, 1.77076, 1e-4);
+  EXPECT_NEAR(p.interval95_rad.low, 1.76312, 1e-4);
+  EXPECT_NEAR(p.interval95_rad.high, 1.77811, 1e-4);
+  EXPECT_NEAR(p.sd_rad, 0.00382, 1e-4);
+}
+
+std::vector<double> List(const std::string& text) {
+  std::vector<double> out;
+  for (std::size_t at = 1; at < text.size();) {
+    std::size_t used = 0;
+    out.push_back(std::stod(text.substr(at), &used));
+    at += used + 1;
+  }
+  return out;
+}
+
+TEST(FitBoundary, HardCases) {
+  const auto path = testing::Shared("reference/data/reference_hard_cases.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  const auto rows = ReadCsv(path);
+  ASSERT_EQ(rows.size(), 14u);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    SCOPED_TRACE(rows[i][0]);
+    std::vector<int> y;
+    for (const double v : List(rows[i][2])) y.push_back(v > 0.5);
+    BoundaryFitOptions options = NoLapse();
+    if (const double lapse = std::stod(rows[i][4]); lapse > 0.0) {
+      options.lapse_rule = LapseRule::kAlways;
+      options.lapse = lapse;
+    }
+    const auto p = FitBoundary(
+        Trials(List(rows[i][1]), y, std::stod(rows[i][3])), options);
+    ExpectPosterior(p, std::stod(rows[i][5]), std::stod(rows[i][6]),
+                    std::stod(rows[i][7]),
+                    std::max(0.02, 0.01 * p.sd_rad / kDegree));
+  }
+}
+
+TEST(Classify, KnowsEveryKindOfData) {
+  const auto status = [](std::vector<double> x, std::vector<int> y) {
+    return Classify(Trials(x, y, 0.3));
+  };
+  EXPECT_EQ(Classify({}), DataStatus::kNoTrials);
+  EXPECT_EQ(status({5, 10, 15}, {0, 0, 0}), DataStatus::kOnlySlides);
+  EXPECT_EQ(status({5, 10, 15}, {1, 1, 1}), DataStatus::kOnlyBounces);
+  EXPECT_EQ(status({10, 12}, {0, 1}), DataStatus::kSeparated);
+  EXPECT_EQ(status({14, 16, 16}, {0, 0, 1}), DataStatus::kTouching);
+  EXPECT_EQ(status({10, 12}, {1, 0}), DataStatus::kReversed);
+  EXPECT_EQ(status({10, 10}, {1, 0}), DataStatus::kReversed);
+  // gonogo06: means 10 and 10.33.
+  EXPECT_EQ(status({10, 12, 11, 8}, {0, 1, 1, 1}), DataStatus::kOverlap);
+}
+
+TEST(FitBoundary, NoTrialsGiveThePrior) {
+  const auto p = FitBoundary({});
+  EXPECT_EQ(p.status, DataStatus::kNoTrials);
+  ExpectPosterior(p, 45.0, 2.25, 87.75, 1e-6);
+  // s: the median of its prior, up to the ends of the grid.
+  EXPECT_NEAR(p.scatter_median_rad / kDegree, 2.0, 0.1);
+}
+
+TEST(FitBoundary, AnUndecidedTrialAtOneHalfChangesNothing) {
+  auto trials = Trials({5, 10, 15, 20}, {0, 0, 1, 1}, 0.3);
+  const auto before = FitBoundary(trials);
+  trials.push_back(Observe(12 * kDegree, 0.0, 0.5));
+  const auto after = FitBoundary(trials);
+  EXPECT_DOUBLE_EQ(before.median_rad, after.median_rad);
+}
+
+TEST(FitBoundary, ASoftLabelLiesBetweenTheHardOnes) {
+  auto trials = Trials({5, 10, 15, 20}, {0, 0, 1, 1}, 0.3);
+  std::vector<double> medians;
+  for (const double p : {0.0, 0.3, 0.5, 0.7, 1.0}) {
+    auto with = trials;
+    with.push_back(Observe(12 * kDegree, 0.3 * kDegree, p));
+    medians.push_back(FitBoundary(with).median_rad);
+  }
+  for (std::size_t i = 1; i < medians.size(); ++i) {
+    EXPECT_LT(medians[i], medians[i - 1]);
+  }
+}
+
+TEST(FitBoundary, OrderOfTrialsDoesNotMatter) {
+  auto trials = PaperTable1(BodyKind::kSphere, 0.5 * kDegree);
+  const auto a = FitBoundary(trials);
+  std::reverse(trials.begin(), trials.end());
+  const auto b = FitBoundary(trials);
+  EXPECT_EQ(a.median_rad, b.median_rad);
+  EXPECT_EQ(a.cumulative, b.cumulative);
+}
+
+TEST(FitBoundary, LapsesEnterOnlyWhenTheDataAsk) {
+  // One bounce at 2 deg among ten trials is not enough evidence of lapses.
+  const std::vector<int> one{1, 0, 0, 0, 0, 1, 1, 1, 1, 1};
+  const auto doubtful =
+      FitBoundary(Trials({2, 4, 6, 8, 10, 12, 14, 16, 18, 20}, one, 0.3));
+  EXPECT_EQ(doubtful.lapse, 0.0);
+  // Forty sharp trials and one impossible one are.
+  std::vector<double> x;
+  std::vector<int> y;
+  for (int i = 0; i < 40; ++i) {
+    x.push_back(8.0 + 0.2 * i);
+    y.push_back(x.back() > 12.0);
+  }
+  const auto clean = FitBoundary(Trials(x, y, 0.05));
+  EXPECT_EQ(clean.lapse, 0.0);
+  x.push_back(60.0);
+  y.push_back(0);
+  const auto spoiled = FitBoundary(Trials(x, y, 0.05));
+  EXPECT_EQ(spoiled.lapse, 0.02);
+  EXPECT_GT(spoiled.lapse_gain, 3.0);
+  EXPECT_NEAR(spoiled.median_rad / kDegree, 12.0, 0.3);
+}
+
+TEST(FitBoundary, ManyTrialsGiveTheTruthAndBinningItsOwnErrorOnly) {
+  std::mt19937_64 engine(20);
+  std::uniform_real_distribution<double> angle(5, 20);
+  std::normal_distribution<double> noise;
+  std::vector<Observation> trials;
+  for (int i = 0; i < 2200; ++i) {
+    const double true_angle = angle(engine);
+    const bool bounced = true_angle > 12.0 + 1.0 * noise(engine);
+    trials.push_back(Observe((true_angle + 0.2 * noise(engine)) * kDegree,
+                             0.2 * kDegree, bounced));
+  }
+  BoundaryFitOptions options;
+  const auto binned = FitBoundary(trials, options);
+  EXPECT_TRUE(binned.binned);
+  EXPECT_NEAR(binned.median_rad / kDegree, 12.0, 4 * 0.04);
+  EXPECT_NEAR(binned.scatter_median_rad / kDegree, 1.0, 0.2);
+  options.bin_above = trials.size();
+  const auto exact = FitBoundary(trials, options);
+  EXPECT_FALSE(exact.binned);
+  EXPECT_NEAR(binned.median_rad, exact.median_rad, 0.02 * exact.sd_rad);
+  EXPECT_NEAR(binned.sd_rad, exact.sd_rad, 0.01 * exact.sd_rad);
+}
+
+TEST(FitBoundary, ANarrowPosteriorIsNotSteppedOver) {
+  // A sharp boundary at an awkward angle between two starting steps.
+  std::vector<double> x;
+  std::vector<int> y;
+  for (int i = -200; i <= 200; ++i) {
+    x.push_back(33.3333 + 0.002 * (i + 0.5));
+    y.push_back(i >= 0);
+  }
+  const auto p = FitBoundary(Trials(x, y, 0.0));
+  EXPECT_NEAR(p.median_rad / kDegree, 33.3333, 0.01);
+  EXPECT_LT(p.sd_rad / kDegree, 0.02);
+  EXPECT_GT(p.sd_rad, 0.0);
+}
+
+TEST(FitBoundary, QuantileAndProbabilityAreInverse) {
+  const auto p = FitBoundary(PaperTable1(BodyKind::kRectangle, 0.1 * kDegree));
+  for (double q = 0.001; q < 1.0; q += 0.037) {
+    EXPECT_NEAR(ProbabilityBelow(p, Quantile(p, q)), q, 1e-9);
+  }
+  EXPECT_EQ(ProbabilityBelow(p, -1.0), 0.0);
+  EXPECT_EQ(ProbabilityBelow(p, 2.0), 1.0);
+}
+
+TEST(FitBoundary, RefusesImpossibleOptionsByName) {
+  BoundaryFitOptions options;
+  options.scatter_low_rad = 0.0;
+  EXPECT_THROW(FitBoundary({}, options), std::invalid_argument);
+  options = {};
+  options.high_rad = options.low_rad;
+  EXPECT_THROW(FitBoundary({}, options), std::invalid_argument);
+  options = {};
+  options.lapse = 0.5;
+  EXPECT_THROW(FitBoundary({}, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::analysis

@@ -1,0 +1,200 @@
+#include "touchdown/analysis/next_angle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/analysis/reference_data.h"
+#include "tests/support/shared_data.h"
+#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::analysis {
+namespace {
+
+using core::BodyKind;
+using core::kDegree;
+
+constexpr core::Interval kAnywhere{-1e9, 1e9};
+
+TEST(NextNeyer, PublishedLevelsOfNeyer1994) {
+  // Technometrics 36, Table 1; guesses 0.6, 1.4, 0.1; levels rounded to 0.01.
+  const double levels[] = {1.00, 1.20, 1.40, 1.80, 2.60, 4.20, 3.40,
+                           3.80, 4.00, 4.10, 4.28, 4.52, 5.55, 5.24,
+                           6.37, 6.08, 7.38, 7.09, 6.89, 6.74};
+  const int outcome[] = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0,
+                         0, 0, 1, 0, 1, 0, 1, 1, 1, 1};
+  // Before rounding, from the 11th on (gonogo).
+  const double exact[] = {4.280593, 4.522704, 5.546750, 5.243286, 6.371972,
+                          6.080507, 7.384474, 7.094228, 6.893248, 6.736075};
+  std::vector<Observation> trials;
+  for (std::size_t i = 0; i < std::size(levels); ++i) {
+    const NextAngle next = NextNeyer(trials, {0.6, 1.4, 0.1, kAnywhere});
+    EXPECT_NEAR(std::round(next.angle_rad * 100) / 100, levels[i], 1e-9)
+        << "level " << i + 1;
+    if (i >= 10) {
+      EXPECT_NEAR(next.angle_rad, exact[i - 10], 4e-6) << "level " << i + 1;
+    }
+    EXPECT_FALSE(next.clipped);
+    trials.push_back(Raw(levels[i], outcome[i] == 1));
+  }
+}
+
+TEST(NextNeyer, ClipsToWhatTheRigCanThrow) {
+  const NeyerOptions options{0.1, 0.3, 0.02, {0.0, 0.32}};
+  std::vector<Observation> trials;
+  for (const double x : {0.2, 0.25, 0.3}) trials.push_back(Raw(x, false));
+  const NextAngle next = NextNeyer(trials, options);
+  EXPECT_EQ(next.angle_rad, 0.32);
+  EXPECT_TRUE(next.clipped);
+}
+
+TEST(NextNeyer, NeverLeavesTheFiniteWhateverTheOutcomes) {
+  std::mt19937 engine(5);
+  std::bernoulli_distribution coin(0.5);
+  for (int run = 0; run < 20; ++run) {
+    std::vector<Observation> trials;
+    for (int i = 0; i < 30; ++i) {
+      const NextAngle next = NextNeyer(trials, {0.05, 0.5, 0.02, {0.0, 1.57}});
+      ASSERT_TRUE(std::isfinite(next.angle_rad));
+      trials.push_back(Raw(next.angle_rad, coin(engine)));
+    }
+  }
+}
+
+TEST(NextUpDown, OneStepDownAfterABounceUpAfterASlide) {
+  UpDownOptions options;
+  EXPECT_EQ(NextUpDown({}, options).angle_rad, options.start_rad);
+  std::vector<Observation> trials{Observe(0.35, 0.0, 1.0)};
+  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad,
+                   0.35 - options.step_rad);
+  trials.push_back(Observe(0.30, 0.0, 0.0));
+  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad,
+                   0.30 + options.step_rad);
+  trials.back().set_angle_rad = 0.29;
+  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad,
+                   0.29 + options.step_rad);
+  trials.push_back(Observe(0.30, 0.0, 0.6));
+  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad, 0.30);
+}
+
+TEST(EstimateDixonMood, PublishedStaircases) {
+  const auto folder = testing::Shared("reference/data");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " not here";
+  const auto t9 =
+      EstimateDixonMood(ReadTrials(folder / "gorla2017_t9_951.csv"), 1.0);
+  EXPECT_EQ(t9->n, 7);
+  EXPECT_EQ(t9->a, 9);
+  EXPECT_EQ(t9->b, 19);
+  EXPECT_NEAR(t9->mean_rad, 36.785714, 1e-6);
+  EXPECT_NEAR(t9->m, 1.061224, 1e-6);
+  EXPECT_NEAR(*t9->scatter_rad, 1.766164, 1e-6);
+  const auto t6 =
+      EstimateDixonMood(ReadTrials(folder / "gorla2017_t6_751.csv"), 1.0);
+  EXPECT_EQ(t6->n, 6);
+  EXPECT_EQ(t6->a, 8);
+  EXPECT_EQ(t6->b, 14);
+  EXPECT_NEAR(t6->mean_rad, 40.833333, 1e-6);
+  const auto dose =
+      EstimateDixonMood(ReadTrials(folder / "vanelstraete2008.csv"), 1.0);
+  EXPECT_EQ(dose->n, 21);
+  EXPECT_EQ(dose->a, 300);
+  EXPECT_NEAR(dose->mean_rad, 20.785714, 1e-6);
+}
+
+TEST(EstimateDixonMood, NothingWithOneOutcome) {
+  EXPECT_FALSE(EstimateDixonMood(std::vector{Raw(1, true)}, 1.0).has_value());
+}
+
+TEST(ChooseNextAngle, AfterTable1ItGoesIntoTheBracket) {
+  const auto posterior =
+      FitBoundary(PaperTable1(BodyKind::kSphere, 0.5 * kDegree));
+  const NextAngle next = ChooseNextAngle(posterior, 9);
+  EXPECT_GT(next.angle_rad / kDegree, 12.0);
+  EXPECT_LT(next.angle_rad / kDegree, 27.4);
+  EXPECT_LT(next.expected_sd_rad, posterior.sd_rad);
+  EXPECT_EQ(next.stop, StopReason::kNone);
+  EXPECT_GT(next.trials_to_target, 5);
+}
+
+// The closed form p v1 + (1 - p) v0 against brute force: fit the two futures.
+TEST(ChooseNextAngle, ExpectedSdIsThatOfTheTwoFutures) {
+  std::vector<Observation> trials;
+  for (const double x : {4.0, 8.0, 9.0, 11.0, 13.0, 18.0}) {
+    trials.push_back(Observe(x * kDegree, 0.2 * kDegree, x > 10 || x == 8.0));
+  }
+  BoundaryFitOptions fit;
+  fit.lapse_rule = LapseRule::kNever;
+  NextAngleOptions options;
+  options.spread_rad = 0.0;
+  options.set_u_rad = 0.3 * kDegree;
+  const auto posterior = FitBoundary(trials, fit);
+  const NextAngle next = ChooseNextAngle(posterior, 6, options);
+  double expected = 0.0;
+  double p_bounce = 0.0;
+  for (std::size_t k = 0; k < posterior.grid.weight.size(); ++k) {
+    const std::size_t m = posterior.grid.scatter_rad.size();
+    const double s =
+        std::hypot(posterior.grid.scatter_rad[k % m], options.set_u_rad);
+    p_bounce += posterior.grid.weight[k] * 0.5 *
+                std::erfc(-(next.angle_rad - posterior.grid.angle_rad[k / m]) /
+                          s / std::sqrt(2.0));
+  }
+  for (const bool bounced : {false, true}) {
+    auto future = trials;
+    future.push_back(Observe(next.angle_rad, options.set_u_rad, bounced));
+    const double sd = FitBoundary(future, fit).sd_rad;
+    expected += (bounced ? p_bounce : 1 - p_bounce) * sd * sd;
+  }
+  EXPECT_NEAR(next.expected_sd_rad / std::sqrt(expected), 1.0, 2e-3);
+}
+
+TEST(ChooseNextAngle, BeginsInTheMiddleOfWhatIsFeasible) {
+  NextAngleOptions options;
+  options.spread_rad = 0.0;
+  const NextAngle next = ChooseNextAngle(FitBoundary({}), 0, options);
+  EXPECT_NEAR(next.angle_rad / kDegree, 45.0, 1.0);
+}
+
+TEST(ChooseNextAngle, StaysFeasibleAndSaysSo) {
+  NextAngleOptions options;
+  options.feasible_rad = {30 * kDegree, 40 * kDegree};
+  std::vector<Observation> sharp;
+  for (int i = 0; i < 40; ++i) {
+    sharp.push_back(Observe((8.0 + 0.2 * i) * kDegree, 0.0, i > 20));
+  }
+  const NextAngle next = ChooseNextAngle(FitBoundary(sharp), 40, options);
+  EXPECT_EQ(next.angle_rad, 30 * kDegree);
+  EXPECT_TRUE(next.clipped);
+}
+
+TEST(ChooseNextAngle, StopsAtTheTargetOrAtTheMaximum) {
+  std::vector<Observation> sharp;
+  for (int i = 0; i < 60; ++i) {
+    sharp.push_back(Observe((8.0 + 0.1 * i) * kDegree, 0.0, i > 30));
+  }
+  const auto posterior = FitBoundary(sharp);
+  const NextAngle next = ChooseNextAngle(posterior, 60);
+  EXPECT_EQ(next.stop, StopReason::kTargetReached);
+  EXPECT_EQ(next.trials_to_target, 0);
+  const auto vague = FitBoundary(PaperTable1(BodyKind::kSphere, 0.0));
+  NextAngleOptions options;
+  options.max_trials = 9;
+  EXPECT_EQ(ChooseNextAngle(vague, 9, options).stop, StopReason::kMaxTrials);
+}
+
+TEST(ChooseNextAngle, RefusesImpossibleOptionsByName) {
+  const auto posterior = FitBoundary({});
+  NextAngleOptions options;
+  options.feasible_rad = {1.0, 0.5};
+  EXPECT_THROW(ChooseNextAngle(posterior, 0, options), std::invalid_argument);
+  options = {};
+  options.target_half_width_rad = 0.0;
+  EXPECT_THROW(ChooseNextAngle(posterior, 0, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::analysis

@@ -1,0 +1,240 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/pipeline/paper_trials.h"
+#include "app/pipeline/trials_csv.h"
+#include "tests/app/run_program.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using testing::Ran;
+using testing::ReadAll;
+using testing::RunProgram;
+using testing::TemporaryFolder;
+
+class BoundaryCommands : public ::testing::Test {
+ protected:
+  std::string Write(const std::string& name, const std::string& text) {
+    const auto path = folder_.path() / name;
+    std::ofstream(path) << text;
+    return path.string();
+  }
+  // Trials around 12 deg, sharp.
+  std::string Sharp() {
+    std::string text = "angle_deg,u_deg,p_bounce,set_angle_deg\n";
+    for (int i = 0; i < 40; ++i) {
+      const double x = 8.1 + 0.2 * i;
+      text += std::to_string(x) + ",0.05," + (x > 12 ? "1" : "0") + ",\n";
+    }
+    return Write("sharp.csv", text);
+  }
+  // A store with the paper's Table 1, and the sphere once more as simulated.
+  std::string Store() {
+    const auto path = folder_.path() / "lab.db";
+    db::Store store = db::Store::Open(path, db::OpenMode::kCreate);
+    const auto paper = pipeline::PaperTable1Trials(0.5 * core::kDegree);
+    for (const auto& campaign : paper.campaigns) store.AddCampaign(campaign);
+    for (core::Trial trial : paper.trials) {
+      trial.id.clear();
+      store.LogTrial(trial);
+    }
+    return path.string();
+  }
+
+  TemporaryFolder folder_;
+};
+
+void ExpectOneLine(const Ran& ran, int status, const std::string& part) {
+  EXPECT_EQ(ran.status, status);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr(part));
+}
+
+TEST_F(BoundaryCommands, JsonBearsTheNamesThatScriptsDependOn) {
+  const Ran ran =
+      RunProgram("boundary --json --theory-deg 11.8+-0.1 --trials " + Sharp());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json document = json::parse(ran.out);
+  EXPECT_EQ(document.at("schema"), "touchdown.boundary/1");
+  EXPECT_NEAR(document.at("bracket").at("low_deg").get<double>(), 11.9, 1e-9);
+  EXPECT_NEAR(document.at("bracket").at("high_deg").get<double>(), 12.1, 1e-9);
+  EXPECT_TRUE(document.at("bracket").at("separated").get<bool>());
+  EXPECT_EQ(document.at("status"), "separated");
+  const json& posterior = document.at("posterior");
+  EXPECT_NEAR(posterior.at("median_deg").get<double>(), 12.0, 0.1);
+  EXPECT_LT(posterior.at("low95_deg").get<double>(), 12.0);
+  EXPECT_GT(posterior.at("high95_deg").get<double>(), 12.0);
+  EXPECT_GT(posterior.at("sd_deg").get<double>(), 0.0);
+  const json& likelihood = document.at("likelihood");
+  for (const char* field : {"estimate_deg", "low95_deg", "high95_deg",
+                            "open_low", "open_high", "scatter_deg"}) {
+    EXPECT_TRUE(likelihood.contains(field)) << field;
+  }
+  const json& theory = document.at("theory").at(0);
+  EXPECT_EQ(theory.at("boundary_deg"), 11.8);
+  EXPECT_EQ(theory.at("verdict"), "confirmed");
+  for (const char* field : {"name", "p_below", "e_n", "smallest_margin_deg"}) {
+    EXPECT_TRUE(theory.contains(field)) << field;
+  }
+}
+
+TEST_F(BoundaryCommands, ThePapersTable1IsInconclusive) {
+  const Ran ran = RunProgram("boundary --paper-table1 --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json document = json::parse(ran.out);
+  const json& sphere = document.at("groups").at(0);
+  const json& rectangle = document.at("groups").at(1);
+  EXPECT_EQ(sphere.at("body"), "sphere");
+  for (const json& group : {sphere, rectangle}) {
+    EXPECT_EQ(group.at("theory").at(0).at("verdict"), "inconclusive");
+  }
+  const auto margin = [](const json& group) {
+    return group.at("theory").at(0).at("smallest_margin_deg").get<double>();
+  };
+  EXPECT_NEAR(margin(sphere), 17.2, 0.05);
+  EXPECT_NEAR(margin(rectangle), 10.7, 0.05);
+}
+
+TEST_F(BoundaryCommands, AStoreGivesTheSameAsThePaperItself) {
+  const Ran from_store = RunProgram("boundary --json --db " + Store());
+  ASSERT_EQ(from_store.status, 0) << from_store.err;
+  const json a = json::parse(from_store.out);
+  const json b = json::parse(RunProgram("boundary --json --paper-table1").out);
+  EXPECT_NEAR(a["groups"][0]["posterior"]["median_deg"].get<double>(),
+              b["groups"][0]["posterior"]["median_deg"].get<double>(), 1e-6);
+}
+
+TEST_F(BoundaryCommands, FiltersChooseTrials) {
+  const std::string store = Store();
+  const Ran body = RunProgram("boundary --json --body sphere --db " + store);
+  ASSERT_EQ(body.status, 0) << body.err;
+  EXPECT_EQ(json::parse(body.out).at("body"), "sphere");
+  ExpectOneLine(RunProgram("boundary --campaign nonsense --db " + store), 2,
+                "there is no campaign 'nonsense'");
+  ExpectOneLine(RunProgram("boundary --reviewed --db " + store), 2,
+                "no trial matches");
+  ExpectOneLine(RunProgram("next --db " + store), 2, "choose one with");
+}
+
+TEST_F(BoundaryCommands, NextPrintsTheAngle) {
+  const Ran ran = RunProgram("next --json --paper-table1 --body sphere");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json document = json::parse(ran.out);
+  EXPECT_GT(document.at("angle_deg").get<double>(), 11.8);
+  EXPECT_LT(document.at("angle_deg").get<double>(), 27.4);
+  EXPECT_LT(document.at("expected_sd_deg").get<double>(),
+            document.at("posterior").at("sd_deg").get<double>());
+  EXPECT_GT(document.at("trials_to_target").get<int>(), 0);
+}
+
+TEST_F(BoundaryCommands, NextStaysFeasibleAndFollowsTheRule) {
+  const auto angle = [](const Ran& ran) {
+    return json::parse(ran.out).at("angle_deg").get<double>();
+  };
+  const std::string paper = "next --json --paper-table1 --body sphere ";
+  const Ran clipped = RunProgram(paper + "--feasible-deg 30:40");
+  EXPECT_GE(angle(clipped), 30.0);
+  const Ran up_down = RunProgram(paper + "--rule up-down --step-deg 2");
+  EXPECT_NEAR(angle(up_down), 88.0, 1e-9);  // after the bounce at 90
+  const Ran neyer = RunProgram(paper + "--rule neyer --guess-deg 5:20");
+  EXPECT_NEAR(angle(neyer), 19.6, 1e-9);  // the middle of the bracket
+  ExpectOneLine(RunProgram(paper + "--rule neyer"), 2, "--guess-deg");
+  ExpectOneLine(RunProgram(paper + "--rule magic"), 2, "magic");
+}
+
+TEST_F(BoundaryCommands, NextBeforeTheFirstTrial) {
+  const std::string path = Write("none.csv", "angle_deg,u_deg,p_bounce\n");
+  const Ran ran = RunProgram("next --json --trials " + path);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NEAR(json::parse(ran.out).at("angle_deg").get<double>(), 45, 1.5);
+}
+
+TEST_F(BoundaryCommands, ReportIsTheSameByteForByte) {
+  const std::string store = Store();
+  const auto a = folder_.path() / "a";
+  const auto b = folder_.path() / "b";
+  for (const auto& out : {a, b}) {
+    const Ran ran =
+        RunProgram("report --db " + store + " --out " + out.string());
+    ASSERT_EQ(ran.status, 0) << ran.err;
+  }
+  for (const char* name : {"table1.md", "table1.csv", "table1.html",
+                           "table1.tex", "table1.json"}) {
+    const std::string text = ReadAll(a / name);
+    EXPECT_FALSE(text.empty()) << name;
+    EXPECT_TRUE(text == ReadAll(b / name)) << name;
+  }
+  EXPECT_EQ(json::parse(ReadAll(a / "table1.json")).at("schema"),
+            "touchdown.report/1");
+}
+
+TEST_F(BoundaryCommands, MistakesAreOneLine) {
+  ExpectOneLine(RunProgram("boundary"), 2, "exactly one of");
+  ExpectOneLine(RunProgram("boundary --trials /nowhere.csv"), 3,
+                "/nowhere.csv: cannot be read");
+  ExpectOneLine(RunProgram("boundary --db /nowhere.db"), 4, "/nowhere.db");
+  ExpectOneLine(RunProgram("boundary --paper-table1 --body cube"), 2,
+                "--body: 'cube'; expected sphere or rectangle");
+  ExpectOneLine(RunProgram("boundary --paper-table1 --target-deg=-1"), 2,
+                "target");
+  ExpectOneLine(RunProgram("boundary --paper-table1 --feasible-deg 9"), 2,
+                "LOW:HIGH");
+  ExpectOneLine(RunProgram("report --trials " + Sharp()), 2, "--body");
+  ExpectOneLine(RunProgram("boundary --theory-deg 200 --trials " + Sharp()), 2,
+                "--theory-deg");
+}
+
+TEST_F(BoundaryCommands, ABadLineOfACsvIsNamed) {
+  const auto run = [&](const std::string& text) {
+    return RunProgram("boundary --trials " + Write("bad.csv", text));
+  };
+  ExpectOneLine(run("angle_deg,u_deg\n1,2\n"), 3, "p_bounce");
+  ExpectOneLine(run("angle_deg,u_deg,p_bounce\n10,0.1,1\nx,0.1,1\n"), 3,
+                "line 3: angle_deg is 'x'");
+  ExpectOneLine(run("angle_deg,u_deg,p_bounce\n10,0.1\n"), 3, "2 cells");
+  ExpectOneLine(run("angle_deg,u_deg,p_bounce\n10,nan,1\n"), 3, "u_deg");
+  ExpectOneLine(run("angle_deg,u_deg,p_bounce\n100,0.1,1\n"), 3, "0 to 90");
+  ExpectOneLine(run(""), 3, "is empty");
+}
+
+TEST(ReadTrialsCsv, ReadsColumnsInAnyOrderWithSpacesAndAMark) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "t.csv";
+  std::ofstream(path) << "\xEF\xBB\xBFp_bounce, note ,u_deg,angle_deg\r\n"
+                         "# a remark\r\n"
+                         "\"0.5\",x, 0.2 ,12.5\r\n";
+  const auto trials = pipeline::ReadTrialsCsv(path, {.campaign = "c"});
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_NEAR(core::ContactAngle(trials[0])->value / core::kDegree, 12.5,
+              1e-12);
+  EXPECT_NEAR(core::ContactAngle(trials[0])->u / core::kDegree, 0.2, 1e-12);
+  EXPECT_EQ(trials[0].first.state.label, core::MotionState::kUndecided);
+  EXPECT_EQ(trials[0].origin, core::Origin::kManual);
+}
+
+TEST(PaperTable1Trials, AreTheEighteenOfThePaper) {
+  const auto paper = pipeline::PaperTable1Trials(0.0);
+  EXPECT_EQ(paper.trials.size(), 18u);
+  const auto bounces = std::count_if(
+      paper.trials.begin(), paper.trials.end(), [](const core::Trial& trial) {
+        return trial.first.state.label == core::MotionState::kBounce;
+      });
+  EXPECT_EQ(bounces, 5 + 6);
+  EXPECT_EQ(paper.campaigns.size(), 2u);
+}
+
+}  // namespace
+}  // namespace touchdown

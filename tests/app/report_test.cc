@@ -1,0 +1,274 @@
+#include "app/report/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/report/gnuplot.h"
+#include "app/report/text.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+using core::kMillimetre;
+using ::testing::HasSubstr;
+
+bool Has(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+struct Shot {
+  double set_deg;
+  double angle_deg;
+  bool bounced;
+};
+
+core::Trial MakeTrial(const Shot& shot, core::BodyKind body,
+                      core::Origin origin) {
+  core::Trial trial;
+  trial.origin = origin;
+  trial.campaign =
+      std::string(core::Name(origin)) + "-" + std::string(core::Name(body));
+  trial.body =
+      body == core::BodyKind::kSphere
+          ? core::Sphere({40 * kMillimetre, 0.02 * kMillimetre})
+          : core::Rectangle({60 * kMillimetre, 0.0}, {30 * kMillimetre, 0.0});
+  const core::Estimate angle{shot.angle_deg * kDegree, 0.048 * kDegree};
+  core::Contact& contact = trial.first.contact;
+  contact.found = true;
+  if (body == core::BodyKind::kSphere) {
+    contact.approach_angle_rad = angle;
+  } else {
+    trial.angle_kind = core::AngleKind::kFace;
+    contact.face_angle_rad = angle;
+  }
+  trial.set_angle_rad = shot.set_deg * kDegree;
+  auto& state = trial.first.state;
+  state.label =
+      shot.bounced ? core::MotionState::kBounce : core::MotionState::kSlide;
+  state.p_bounce = shot.bounced ? 0.9999 : 0.0002;
+  state.max_gap_m = core::Estimate{(shot.bounced ? 13.4 : 0.05) * kMillimetre,
+                                   0.05 * kMillimetre};
+  state.bounce_height_m = core::Estimate{0.8 * kMillimetre, 0.0};
+  trial.clip.path = "clips/" + trial.campaign + "-" +
+                    std::to_string(static_cast<int>(shot.set_deg * 10)) +
+                    ".avi";
+  trial.id = trial.clip.path;
+  trial.revision = 1;
+  return trial;
+}
+
+ReportInput Table1Input(core::Origin origin) {
+  ReportInput input;
+  const double set[] = {0, 3.9, 7.8, 11.8, 27.4, 43, 58.7, 74.4, 90};
+  for (const auto body :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    const double boundary = body == core::BodyKind::kSphere ? 12.0 : 8.0;
+    for (int i = 0; i < 9; ++i) {
+      input.trials.push_back(
+          MakeTrial({set[i], set[i] + 0.013 * (i % 3 - 1), set[i] > boundary},
+                    body, origin));
+    }
+    core::Campaign campaign;
+    campaign.name = input.trials.back().campaign;
+    campaign.body = input.trials.back().body;
+    campaign.surface = "asphalt, dry";
+    campaign.angle_kind = input.trials.back().angle_kind;
+    campaign.theory_name = "published";
+    campaign.theory_boundary_rad =
+        (body == core::BodyKind::kSphere ? 11.8 : 7.8) * kDegree;
+    input.campaigns.push_back(campaign);
+  }
+  input.software_version = "0.1.0";
+  return input;
+}
+
+TEST(MakeReport, SimulatedTrialsAreWatermarkedAndGetNoVerdict) {
+  const Report report = MakeReport(Table1Input(core::Origin::kSimulated));
+  EXPECT_TRUE(Has(report.html, "class=\"simulated\""));
+  EXPECT_TRUE(Has(report.html, "SIMULATED"));
+  EXPECT_TRUE(Has(report.html, "yield no verdict"));
+  EXPECT_TRUE(Has(report.markdown, "SIMULATED"));
+  for (const char* verdict : {"confirmed.", "contradicted.", "inconclusive."}) {
+    EXPECT_FALSE(Has(report.markdown, std::string("sphere: ") + verdict));
+  }
+  // Every line of the CSV bears the mark.
+  std::istringstream csv(report.csv);
+  std::string line;
+  std::getline(csv, line);
+  int lines = 0;
+  while (std::getline(csv, line)) {
+    EXPECT_THAT(line, HasSubstr(",simulated,SIMULATED,"));
+    ++lines;
+  }
+  EXPECT_EQ(lines, 18);
+}
+
+TEST(MakeReport, RecordedTrialsGetAVerdictAndNoWatermark) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  EXPECT_FALSE(Has(report.html, "class=\"simulated\""));
+  EXPECT_TRUE(Has(report.markdown, "sphere: inconclusive."));
+}
+
+TEST(MakeReport, SaysWhatTable1AloneSupports) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  EXPECT_TRUE(Has(report.html, "[11.8, 27.4)"));
+  EXPECT_TRUE(Has(report.html, "[7.8, 11.8)"));
+  EXPECT_THAT(report.html, HasSubstr("so the paper&#39;s criterion says slide "
+                                     "at every angle"));
+  EXPECT_TRUE(Has(report.html, "atan(b/a)"));
+  EXPECT_TRUE(Has(report.html, "here 26.6 deg"));
+}
+
+TEST(MakeReport, SameTrialsInAnyOrderGiveTheSameBytes) {
+  ReportInput input = Table1Input(core::Origin::kSimulated);
+  const Report first = MakeReport(input);
+  std::mt19937 engine(7);
+  std::shuffle(input.trials.begin(), input.trials.end(), engine);
+  std::reverse(input.campaigns.begin(), input.campaigns.end());
+  const Report second = MakeReport(input);
+  EXPECT_EQ(first.markdown, second.markdown);
+  EXPECT_EQ(first.csv, second.csv);
+  EXPECT_EQ(first.html, second.html);
+  EXPECT_EQ(first.latex, second.latex);
+  EXPECT_EQ(first.json, second.json);
+}
+
+TEST(MakeReport, TheHtmlAsksForNothingOutsideItself) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  for (const char* loader :
+       {"src=", "<link", "@import", "<script", "href=\"h"}) {
+    EXPECT_FALSE(Has(report.html, loader));
+  }
+  EXPECT_TRUE(Has(report.html, "<svg"));
+  EXPECT_TRUE(Has(report.html, "aria-label="));
+}
+
+TEST(MakeReport, IdentifiersInTheHtmlAreUnique) {
+  const std::string html =
+      MakeReport(Table1Input(core::Origin::kRecorded)).html;
+  std::vector<std::string> ids;
+  for (std::size_t at = html.find("id='"); at != std::string::npos;
+       at = html.find("id='", at + 1)) {
+    ids.push_back(html.substr(at + 4, html.find('\'', at + 4) - at - 4));
+  }
+  for (std::size_t at = html.find("id=\""); at != std::string::npos;
+       at = html.find("id=\"", at + 1)) {
+    ids.push_back(html.substr(at + 4, html.find('"', at + 4) - at - 4));
+  }
+  EXPECT_GT(ids.size(), 2u);
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  EXPECT_TRUE(twice == ids.end()) << *twice;
+}
+
+TEST(MakeReport, HostileTextStaysText) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  for (auto& trial : input.trials) {
+    trial.campaign = "<script>alert(1)</script>";
+    trial.clip.path = "=HYPERLINK(\"x\")|*.avi";
+  }
+  input.campaigns.resize(1);
+  input.campaigns[0].name = input.trials[0].campaign;
+  input.campaigns[0].theory_name = "'</text><script>\n`touch x`";
+  input.title = "a <b> & \"c\"";
+  const Report report = MakeReport(input);
+  EXPECT_FALSE(Has(report.html, "<script"));
+  EXPECT_THAT(report.html, HasSubstr("a &lt;b&gt; &amp; &quot;c&quot;"));
+  EXPECT_FALSE(Has(report.markdown, "<script"));
+  EXPECT_TRUE(Has(report.csv, "\"'=HYPERLINK(\"\"x\"\")|*.avi\""));
+}
+
+TEST(MakeReport, NoTrialsIsAReportThatSaysSo) {
+  const Report report = MakeReport({});
+  EXPECT_TRUE(Has(report.markdown, "No trials."));
+}
+
+TEST(MakeReport, AbsentNumbersShowTheirReason) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  input.trials[0].first.state.max_gap_m =
+      core::AbsentBecause("the rebound was not filmed");
+  input.trials[1].first.contact.approach_angle_rad =
+      core::AbsentBecause("two bodies");
+  const Report report = MakeReport(input);
+  EXPECT_TRUE(Has(report.markdown, "absent: the rebound was not filmed"));
+  EXPECT_TRUE(Has(report.markdown, "no approach angle: two bodies"));
+}
+
+TEST(MakeReport, RefusesTwoCampaignsOfOneName) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  input.campaigns.push_back(input.campaigns[0]);
+  EXPECT_THROW(MakeReport(input), std::invalid_argument);
+}
+
+TEST(MakeReport, ManyTrialsAreBinned) {
+  ReportInput input;
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> angle(0, 30);
+  for (int i = 0; i < 200; ++i) {
+    const double a = angle(engine);
+    input.trials.push_back(MakeTrial({a, a, a > 12}, core::BodyKind::kSphere,
+                                     core::Origin::kRecorded));
+    input.trials.back().id = std::to_string(i);
+  }
+  EXPECT_THAT(MakeReport(input).markdown,
+              HasSubstr("set angle, bins of 1 deg"));
+}
+
+TEST(WriteReport, WritesFiveFilesAndNothingElse) {
+  const auto folder = std::filesystem::temp_directory_path() /
+                      ("touchdown-report-test-" + std::to_string(getpid()));
+  WriteReport({"m", "c", "h", "t", "j"}, folder);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre(
+                         "table1.md", "table1.csv", "table1.html", "table1.tex",
+                         "table1.json"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WriteReport, AFolderThatCannotBeMadeIsAnInputError) {
+  EXPECT_THROW(WriteReport({}, "/proc/none/here"), core::InputError);
+}
+
+TEST(RunGnuplot, MissingIsSaidWithWhatToDo) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nowhere", 1);
+  std::string message;
+  try {
+    RunGnuplot("set terminal svg\nplot x\n");
+  } catch (const core::InputError& error) {
+    message = error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_THAT(message, HasSubstr("gnuplot-nox"));
+}
+
+TEST(RunGnuplot, ARefusedScriptIsSaid) {
+  EXPECT_THROW(RunGnuplot("plot nonsense(\n"), core::InputError);
+}
+
+TEST(RunGnuplot, AScriptLargerThanAPipePasses) {
+  std::string script = "set terminal svg\n$d << EOD\n";
+  for (int i = 0; i < 30000; ++i) script += std::to_string(i) + " 1\n";
+  script += "EOD\nplot $d with dots\n";
+  EXPECT_GT(script.size(), 200000u);
+  EXPECT_THAT(RunGnuplot(script), HasSubstr("</svg>"));
+}
+
+}  // namespace
+}  // namespace touchdown::report
