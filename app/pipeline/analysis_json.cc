@@ -264,7 +264,7 @@ std::string ToJson(const Analysis& analysis) {
   json["warnings"] = analysis.warnings;
   json["timing_s"] = {{"total", analysis.timing.total_s},
                       {"open", analysis.timing.open_s},
-                      {"background", analysis.timing.background_s},
+                      {"decode", analysis.timing.decode_s},
                       {"track", analysis.timing.track_s},
                       {"contact", analysis.timing.contact_s},
                       {"digest", 0.0},

@@ -122,8 +122,8 @@ int Merit(const vision::ContactResult& result) {
 
 class Analyzer {
  public:
-  Analyzer(const std::filesystem::path& path, const AnalyzeOptions& options)
-      : path_(path), options_(options) {}
+  Analyzer(std::unique_ptr<vision::Clip> clip, const AnalyzeOptions& options)
+      : options_(options), clip_(vision::KeepFrames(std::move(clip))) {}
 
   Analysis Run();
 
@@ -132,10 +132,9 @@ class Analyzer {
   void FindGroundAndContacts(const vision::Track& track);
   void DescribeScene();
 
-  const std::filesystem::path& path_;
   const AnalyzeOptions& options_;
-  Analysis result_;
   std::unique_ptr<vision::Clip> clip_;
+  Analysis result_;
   vision::Background background_;
   vision::ContactOptions contact_options_;
 };
@@ -239,13 +238,8 @@ Analysis Analyzer::Run() {
   const std::optional<core::BodyKind> kind = KindOf(options_);
 
   result_.options_hash = OptionsHash(options_);
-  vision::ClipOptions clip_options;
-  clip_options.fps = options_.fps;
-  clip_ = vision::KeepFrames(vision::OpenClip(path_, clip_options));
   result_.clip = clip_->info();
   result_.warnings = result_.clip.warnings;
-  result_.clip_id = vision::ClipId(path_);
-  result_.simulated = HasTruthFile(path_);
   const std::int64_t frames = result_.clip.frames;
   const std::int64_t last =
       options_.last_frame < 0 ? frames : options_.last_frame;
@@ -255,13 +249,8 @@ Analysis Analyzer::Run() {
         fmt::format("frames is {}:{}, must be a range within 0:{}",
                     options_.first_frame, last, frames));
   }
-  result_.timing.open_s = Since(start);
 
   auto lap = Clock::now();
-  background_ = vision::EstimateBackground(*clip_, options_.first_frame, last);
-  result_.timing.background_s = Since(lap);
-
-  lap = Clock::now();
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;
@@ -269,7 +258,7 @@ Analysis Analyzer::Run() {
   track_options.kind = kind;
   track_options.ground = options_.ground;
   track_options.progress = options_.progress;
-  const auto tracked = vision::TrackBody(*clip_, background_, track_options);
+  auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
 
   lap = Clock::now();
@@ -281,6 +270,7 @@ Analysis Analyzer::Run() {
     result_.contacts.first.state.reason = tracked.error().reason;
   } else {
     const vision::Track& track = tracked->track;
+    background_ = std::move(tracked->background);
     result_.scale = FindScale(options_, track.body);
     if (!result_.scale) {
       result_.no_scale_reason =
@@ -310,6 +300,7 @@ Analysis Analyzer::Run() {
                                                 : core::BodyKind::kSphere);
   DescribeScene();
   result_.timing.contact_s = Since(lap);
+  result_.timing.decode_s = clip_->reading_s();
   result_.timing.total_s = Since(start);
   result_.timing.frames_per_s =
       static_cast<double>(last - options_.first_frame) / result_.timing.total_s;
@@ -320,7 +311,23 @@ Analysis Analyzer::Run() {
 
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
-  return Analyzer(path, options).Run();
+  const auto start = Clock::now();
+  vision::ClipOptions clip_options;
+  clip_options.fps = options.fps;
+  auto clip = vision::OpenClip(path, clip_options);
+  const std::string id = vision::ClipId(path);
+  const double open_s = Since(start);
+  Analysis analysis = AnalyzeClip(std::move(clip), options);
+  analysis.clip_id = id;
+  analysis.simulated = HasTruthFile(path);
+  analysis.timing.open_s = open_s;
+  analysis.timing.total_s += open_s;
+  return analysis;
+}
+
+Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
+                     const AnalyzeOptions& options) {
+  return Analyzer(std::move(clip), options).Run();
 }
 
 core::Trial ToTrial(const Analysis& analysis) {

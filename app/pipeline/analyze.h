@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,7 +46,7 @@ struct SceneModel {
 struct Timing {
   double total_s = 0.0;
   double open_s = 0.0;
-  double background_s = 0.0;
+  double decode_s = 0.0;   // inside Clip::Read
   double track_s = 0.0;  // reading and fitting
   double contact_s = 0.0;
   double frames_per_s = 0.0;
@@ -76,6 +77,10 @@ struct Analysis {
 // core::InputError for unreadable clips.
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options = {});
+
+// The same for a clip that is already open; says nothing of its digest.
+Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
+                     const AnalyzeOptions& options = {});
 
 // The trial that an analysis makes: for the store and the report. id, revision
 // and time stamps are the store's.

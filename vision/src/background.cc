@@ -32,15 +32,19 @@ std::vector<std::uint16_t> CopyPlane(const core::Frame& frame) {
   return plane;
 }
 
+// Evenly over the range, both ends included.
+std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
+                         std::int64_t n) {
+  return n == 1 ? first : first + (k * (last - first - 1)) / (n - 1);
+}
+
 Samples ReadSamples(Clip& clip, std::int64_t first, std::int64_t last,
                     int wanted) {
   const std::int64_t n =
       std::min<std::int64_t>(last - first, std::max(wanted, 1));
   Samples samples;
   for (std::int64_t k = 0; k < n; ++k) {
-    // Evenly over the range, both ends included.
-    const std::int64_t index =
-        n == 1 ? first : first + (k * (last - first - 1)) / (n - 1);
+    const std::int64_t index = SampleIndex(first, last, k, n);
     samples.planes.push_back(CopyPlane(clip.Read(index)));
   }
   samples.pixels = samples.planes.front().size();
@@ -137,6 +141,51 @@ void EstimateNoise(const Samples& samples, Background& background) {
 }
 
 }  // namespace
+
+Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
+                                    std::int64_t last,
+                                    const CoverFunction& covers,
+                                    const Background& fallback,
+                                    const BackgroundOptions& options,
+                                    double* most_covered) {
+  Samples samples;
+  std::vector<std::vector<std::uint8_t>> masks;
+  const std::int64_t n =
+      std::min<std::int64_t>(last - first, std::max(options.samples, 1));
+  for (std::int64_t k = 0; k < n; ++k) {
+    const std::int64_t index = SampleIndex(first, last, k, n);
+    std::vector<std::uint8_t> mask(fallback.level.size(), 0);
+    if (!covers(index, mask)) continue;
+    samples.planes.push_back(CopyPlane(clip.Read(index)));
+    masks.push_back(std::move(mask));
+  }
+  Background background = fallback;
+  if (samples.planes.size() < 2) return background;
+  samples.pixels = fallback.level.size();
+  background.unknown.assign(samples.pixels, 0);
+  // Fewer samples than this are no background: noise, or the body's rim.
+  constexpr std::size_t kLeastSamples = 3;
+  std::vector<std::uint16_t> values;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < samples.pixels; ++i) {
+    values.clear();
+    for (std::size_t k = 0; k < samples.planes.size(); ++k) {
+      if (masks[k][i] == 0) values.push_back(samples.planes[k][i]);
+    }
+    most = std::max(most, samples.planes.size() - values.size());
+    if (values.size() < kLeastSamples) {
+      background.unknown[i] = 1;
+    } else {
+      background.level[i] = MidMean(values);
+    }
+  }
+  if (most_covered != nullptr) {
+    *most_covered =
+        static_cast<double>(most) / static_cast<double>(samples.planes.size());
+  }
+  EstimateNoise(samples, background);
+  return background;
+}
 
 Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
                               const BackgroundOptions& options) {

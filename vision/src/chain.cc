@@ -63,16 +63,16 @@ double Misfit(const Chain& chain, std::int64_t frame, const Blob& blob) {
   return Distance(predicted, blob.centre) / reach;
 }
 
-double Score(const Chain& chain) {
+}  // namespace
+
+double Chain::Strength() const {
   double sum = 0.0;
-  for (const Link& link : chain.links) {
-    sum += link.blob.area_px2 * std::abs(link.blob.contrast_dn);
+  for (const Link& link : links) {
+    // Squared: a shadow may be larger and be seen longer, but it is fainter.
+    sum += link.blob.area_px2 * link.blob.contrast_dn * link.blob.contrast_dn;
   }
   return sum;
 }
-
-}  // namespace
-
 double Chain::Area() const {
   return MedianOf(*this, [](const Link& l) { return l.blob.area_px2; });
 }
@@ -156,10 +156,42 @@ std::vector<Chain> ChainBuilder::Finish() {
     return c.Extent() <
            std::max(kLeastMotion_px, kLeastShareOfSize * std::sqrt(c.Area()));
   });
-  std::stable_sort(
-      chains.begin(), chains.end(),
-      [](const Chain& a, const Chain& b) { return Score(a) > Score(b); });
+  std::stable_sort(chains.begin(), chains.end(),
+                   [](const Chain& a, const Chain& b) {
+                     return a.Strength() > b.Strength();
+                   });
   return chains;
+}
+
+bool MoveAsOne(const Chain& a, const Chain& b) {
+  std::vector<double> dx;
+  std::vector<double> dy;
+  std::vector<double> x;
+  std::vector<double> y;
+  std::size_t j = 0;
+  for (const Link& link : a.links) {
+    while (j < b.links.size() && b.links[j].frame < link.frame) ++j;
+    if (j == b.links.size()) break;
+    if (b.links[j].frame != link.frame) continue;
+    dx.push_back(b.links[j].blob.centre.x_px - link.blob.centre.x_px);
+    dy.push_back(b.links[j].blob.centre.y_px - link.blob.centre.y_px);
+    x.push_back(link.blob.centre.x_px);
+    y.push_back(link.blob.centre.y_px);
+  }
+  constexpr std::size_t kLeastTogether = 5;
+  if (dx.size() < kLeastTogether) return false;
+  const auto spread = [](std::vector<double> values) {
+    const double centre = Median(values);
+    for (double& v : values) v = std::abs(v - centre);
+    return Median(std::move(values));
+  };
+  const double offset = std::hypot(spread(dx), spread(dy));
+  const double path = std::hypot(spread(x), spread(y));
+  const double size = std::sqrt(std::min(a.Area(), b.Area()));
+  constexpr double kShareOfSize = 0.15;
+  constexpr double kShareOfPath = 0.1;
+  return offset < std::max(2.0, kShareOfSize * size) &&
+         offset < kShareOfPath * path;
 }
 
 bool IsAnotherBody(const Chain& best, const Chain& other) {
@@ -173,12 +205,12 @@ bool IsAnotherBody(const Chain& best, const Chain& other) {
   constexpr double kLeastContrast = 0.7;
   constexpr double kAreaRatio = 2.5;
   return static_cast<double>(to - from + 1) > kOverlap * shorter &&
-         other.links.size() >= 5 &&
+         other.links.size() >= 5 && other.Contrast() * best.Contrast() > 0.0 &&
          std::abs(other.Contrast()) >
              kLeastContrast * std::abs(best.Contrast()) &&
          other.Area() * kAreaRatio > best.Area() &&
          other.Area() < kAreaRatio * best.Area() &&
-         other.Extent() > std::sqrt(other.Area());
+         other.Extent() > std::sqrt(other.Area()) && !MoveAsOne(best, other);
 }
 
 }  // namespace touchdown::vision

@@ -21,6 +21,7 @@ struct Chain {
   double Area() const;      // median, px^2
   double Contrast() const;  // median, DN, signed
   double Extent() const;    // largest distance from the first position, px
+  double Strength() const;  // sum of area times squared contrast
 };
 
 struct LinkOptions {
@@ -47,6 +48,10 @@ class ChainBuilder {
   std::vector<Chain> open_;
   std::vector<Chain> closed_;
 };
+
+// True if the two keep their distance while they move: parts of one body (or a
+// body and the shadow beside it).
+bool MoveAsOne(const Chain& a, const Chain& b);
 
 // True if `other` is a second body beside `best`: seen at the same time, alike
 // in size and contrast, and moving. (A shadow has less contrast.)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <system_error>
@@ -51,7 +52,12 @@ core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
         "window is {},{},{},{}, must lie within the {}x{} picture", window.x,
         window.y, window.width, window.height, clip.width_px, clip.height_px));
   }
-  return ReadWindow(index, window);
+  const auto start = std::chrono::steady_clock::now();
+  const core::Frame frame = ReadWindow(index, window);
+  reading_s_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+          .count();
+  return frame;
 }
 
 std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,

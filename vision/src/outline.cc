@@ -150,6 +150,20 @@ class Fitter {
   }
   double VisibleShare() const;
   void SolveLevels();
+  static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
+  // One pixel's share of the normal equations: by far most of the time goes
+  // here, so plain loops over the lower triangle.
+  void AddRow(const std::array<double, kMaxParameters>& row, double weight,
+              double residual) {
+    const auto n = static_cast<std::size_t>(Parameters());
+    for (std::size_t i = 0; i < n; ++i) {
+      const double w = weight * row[i];
+      if (w == 0.0) continue;
+      sums_gradient_[i] += w * residual;
+      double* sums = &sums_[i * kMaxParameters];
+      for (std::size_t j = 0; j <= i; ++j) sums[j] += w * row[j];
+    }
+  }
   double Accumulate(bool robust);
   bool Step(double& geometric_step);
   int LevelsBegin() const { return geometry_ + 1; }
@@ -170,6 +184,8 @@ class Fitter {
   std::vector<Pixel> pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
+  std::array<double, kMaxParameters * kMaxParameters> sums_{};
+  std::array<double, kMaxParameters> sums_gradient_{};
   Matrix normal_;
   Vector gradient_;
   double contrast_ = 0.0;
@@ -182,8 +198,9 @@ void Fitter::CollectPixels() {
   // lies outside; of a large body only a band inside the edge, wide enough to
   // tell the interior's level.
   constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
-  const double margin = kBand * std::max(blur_, 0.5) + 2.0;
+  const double margin = kBand * std::max(blur_, 0.5) + 1.0;
   const double inner = std::max(12.0, 6.0 * blur_);
+  const bool large = SmallestHalf(outline_) > 2.0 * margin;
   const double reach = Extent(outline_) + margin;
   const auto x0 = std::max<std::int32_t>(
       frame_.origin_x_px,
@@ -201,11 +218,14 @@ void Fitter::CollectPixels() {
   for (std::int32_t y = y0; y <= y1; ++y) {
     for (std::int32_t x = x0; x <= x1; ++x) {
       if (!Usable(x, y)) continue;
+      if (outer_ == 0 && !background_.known_at(x, y)) continue;
       Pixel p;
       p.x = x;
       p.y = y;
       const double depth = CoverageAt(p).depth_px;
       if (depth < -margin || depth > inner) continue;
+      // Deep inside there is only the shading to learn: every third pixel.
+      if (large && depth > margin && (x + y) % 3 != 0) continue;
       p.value = frame_.at(x - frame_.origin_x_px, y - frame_.origin_y_px);
       p.background = static_cast<double>(background_.at(x, y));
       p.variance = background_.Variance(p.value);
@@ -280,10 +300,10 @@ void Fitter::SolveLevels() {
 // Builds the normal equations; returns the (robust) cost per pixel.
 double Fitter::Accumulate(bool robust) {
   const int n = Parameters();
-  normal_ = Matrix::Zero(n, n);
-  gradient_ = Vector::Zero(n);
+  sums_.fill(0.0);
+  sums_gradient_.fill(0.0);
   residuals_.clear();
-  Vector row(n);
+  std::array<double, kMaxParameters> row{};
   double fi[6];
   double fo[6];
   double cost = 0.0;
@@ -314,19 +334,18 @@ double Fitter::Accumulate(bool robust) {
     }
     const double step = (in - out) / sigma;
     // d[0..4] are x, y, size(s), angle; a sphere uses the first three.
-    for (int k = 0; k < geometry_; ++k) row[k] = step * c.d[k];
-    row[geometry_] = step * c.d[5];
+    for (int k = 0; k < geometry_; ++k) row[At(k)] = step * c.d[k];
+    row[At(geometry_)] = step * c.d[5];
     for (int k = 0; k < interior_; ++k) {
-      row[LevelsBegin() + k] = c.value * fi[k] / sigma;
+      row[At(LevelsBegin() + k)] = c.value * fi[k] / sigma;
     }
     for (int k = 0; k < outer_; ++k) {
-      row[LevelsBegin() + interior_ + k] = (1 - c.value) * fo[k] / sigma;
+      row[At(LevelsBegin() + interior_ + k)] = (1 - c.value) * fo[k] / sigma;
     }
     for (int k = 0; k <= geometry_; ++k) {
-      if (!Free(k)) row[k] = 0.0;
+      if (!Free(k)) row[At(k)] = 0.0;
     }
-    normal_.noalias() += weight * row * row.transpose();
-    gradient_.noalias() += (weight * residual) * row;
+    AddRow(row, weight, residual);
     cost += weight * residual * residual;
     weight_sum += weight;
     if (weight > 0.5) {
@@ -336,6 +355,15 @@ double Fitter::Accumulate(bool robust) {
     const double edge = c.value * (1 - c.value);
     contrast += edge * (in - out);
     contrast_weight += edge;
+  }
+  normal_ = Matrix::Zero(n, n);
+  gradient_ = Vector::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    gradient_[i] = sums_gradient_[static_cast<std::size_t>(i)];
+    for (int j = 0; j <= i; ++j) {
+      normal_(i, j) = normal_(j, i) =
+          sums_[static_cast<std::size_t>(i * kMaxParameters + j)];
+    }
   }
   contrast_ = contrast_weight > 0.0 ? contrast / contrast_weight : 0.0;
   inliers_ = in_count / static_cast<double>(pixels_.size());
@@ -421,7 +449,9 @@ core::Expected<OutlineFit> Fitter::Run() {
     const auto middle =
         sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
-    robust_scale_ = std::max(1.0, 1.4826 * *middle);
+    // Held after a few rounds: a scale that follows the weights never settles.
+    constexpr int kSettled = 5;
+    if (iteration < kSettled) robust_scale_ = std::max(1.0, 1.4826 * *middle);
     if (!Step(step)) {
       return core::AbsentBecause("the outline's fit is degenerate");
     }
@@ -501,6 +531,20 @@ core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
                                       const Outline& start,
                                       const OutlineOptions& options) {
   return Fitter(frame, background, start, options).Run();
+}
+
+double DepthInside(const Outline& outline, double x_px, double y_px) {
+  const double dx = x_px - outline.centre.x_px;
+  const double dy = y_px - outline.centre.y_px;
+  if (outline.kind == core::BodyKind::kSphere) {
+    return outline.radius_px - std::hypot(dx, dy);
+  }
+  const double c = std::cos(outline.angle_rad);
+  const double s = std::sin(outline.angle_rad);
+  const double out_u = std::abs(dx * c + dy * s) - outline.half_long_px;
+  const double out_v = std::abs(-dx * s + dy * c) - outline.half_short_px;
+  return out_u > 0.0 && out_v > 0.0 ? -std::hypot(out_u, out_v)
+                                    : -std::max(out_u, out_v);
 }
 
 double SupportHeight(const Outline& outline, double ground_angle_rad) {

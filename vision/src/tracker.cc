@@ -3,24 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <numbers>
+#include <optional>
 
 #include "chain.h"
 #include "detect.h"
 #include "touchdown/core/errors.h"
+#include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+using Surround = OutlineOptions::Surround;
 
 struct Found {
   std::vector<Chain> chains;
@@ -74,8 +68,7 @@ struct Choice {
 
 // Tries the kinds on a few frames spread over the chain, away from the border.
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
-                  const TrackOptions& options,
-                  OutlineOptions::Surround surround) {
+                  const TrackOptions& options, Surround surround) {
   constexpr std::size_t kProbes = 9;
   std::vector<const Link*> inside;
   for (const Link& link : chain.links) {
@@ -122,21 +115,9 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
   return best;
 }
 
-struct Fitted {
-  std::int64_t frame = 0;
-  double time_s = 0.0;
-  OutlineFit fit;
-};
-
-double SizeOf(const OutlineFit& fit) {
-  return fit.outline.kind == core::BodyKind::kSphere ? fit.outline.radius_px
-                                                     : fit.outline.half_long_px;
-}
-
 std::vector<Fitted> FitAll(Clip& clip, const Background& background,
                            const Chain& chain, const Choice& choice,
-                           const TrackOptions& options,
-                           OutlineOptions::Surround surround) {
+                           const TrackOptions& options, Surround surround) {
   std::vector<Fitted> all;
   OutlineOptions fit_options;
   fit_options.surround = surround;
@@ -151,228 +132,181 @@ std::vector<Fitted> FitAll(Clip& clip, const Background& background,
   return all;
 }
 
-// Fits that are not of this body: other size, or far worse residuals than
-// usual.
-void DropStrangers(std::vector<Fitted>& all) {
-  std::vector<double> sizes;
-  std::vector<double> misfits;
-  for (const Fitted& f : all) {
-    sizes.push_back(SizeOf(f.fit));
-    misfits.push_back(f.fit.misfit);
-  }
-  const double size = Median(sizes);
-  const double misfit = Median(misfits);
-  constexpr double kSizeRatio = 1.35;
-  constexpr double kMisfitRatio = 4.0;
-  std::erase_if(all, [&](const Fitted& f) {
-    return SizeOf(f.fit) > kSizeRatio * size ||
-           SizeOf(f.fit) * kSizeRatio < size ||
-           f.fit.misfit > kMisfitRatio * std::max(1.0, misfit);
-  });
-}
-
-// Mean weighted by inverse variance, robustly: values off the median by more
-// than four times the scatter are left out. u from the scatter, or from the
-// fits' uncertainties where that is larger.
-core::Estimate RobustMean(const std::vector<double>& values,
-                          const std::vector<double>& us) {
-  const double centre = Median(values);
-  std::vector<double> off;
-  for (const double v : values) off.push_back(std::abs(v - centre));
-  const double scatter = 1.4826 * Median(off);
-  double sw = 0.0;
-  double swx = 0.0;
-  double n = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(values[i] - centre) > 4.0 * scatter + 1e-12) continue;
-    const double w = 1.0 / (us[i] * us[i] + 1e-12);
-    sw += w;
-    swx += w * values[i];
-    n += 1.0;
-  }
-  if (n < 1.0) return {centre, scatter};
-  return {swx / sw, std::max(1.0 / std::sqrt(sw), scatter / std::sqrt(n))};
-}
-
-BodyImage Shape(const std::vector<Fitted>& all, core::BodyKind kind) {
-  std::vector<double> size, size_u, shorter, shorter_u, blur, contrast;
-  // Only outlines that are wholly seen tell the size.
-  for (const bool strict : {true, false}) {
-    for (const Fitted& f : all) {
-      if (strict && f.fit.visible < 0.98) continue;
-      size.push_back(SizeOf(f.fit));
-      size_u.push_back(f.fit.u_size_px);
-      shorter.push_back(f.fit.outline.half_short_px);
-      shorter_u.push_back(f.fit.u_size_short_px);
-      blur.push_back(f.fit.blur_px);
-      contrast.push_back(f.fit.contrast_dn);
-    }
-    if (size.size() >= 3) break;
-  }
-  BodyImage body;
-  body.kind = kind;
-  body.blur_px = Median(blur);
-  body.contrast_dn = Median(contrast);
-  if (kind == core::BodyKind::kSphere) {
-    body.radius_px = RobustMean(size, size_u);
-  } else {
-    body.half_long_px = RobustMean(size, size_u);
-    body.half_short_px = RobustMean(shorter, shorter_u);
-    if (body.half_long_px.value < body.half_short_px.value) {
-      std::swap(body.half_long_px, body.half_short_px);
-    }
-  }
-  return body;
-}
-
-// A body that comes nearer grows: a straight line through the sizes, used only
-// where the change is large against its uncertainty and matters.
-void FollowSize(const std::vector<Fitted>& all, Track& track) {
-  if (track.body.kind != core::BodyKind::kSphere || all.size() < 12) return;
-  double sw = 0, st = 0, sr = 0, stt = 0, str = 0;
-  for (const Fitted& f : all) {
-    if (f.fit.visible < 0.98) continue;
-    const double w = 1.0 / (f.fit.u_size_px * f.fit.u_size_px + 1e-6);
-    sw += w;
-    st += w * f.time_s;
-    sr += w * f.fit.outline.radius_px;
-    stt += w * f.time_s * f.time_s;
-    str += w * f.time_s * f.fit.outline.radius_px;
-  }
-  const double determinant = sw * stt - st * st;
-  if (!(determinant > 0.0)) return;
-  const double slope = (sw * str - st * sr) / determinant;
-  const double level = (sr - slope * st) / sw;
-  const double span = all.back().time_s - all.front().time_s;
-  const double change = slope * span / track.body.radius_px.value;
-  double square = 0.0;
-  for (const Fitted& f : all) {
-    const double r = f.fit.outline.radius_px - level - slope * f.time_s;
-    square += r * r;
-  }
-  const double scatter = std::sqrt(square / static_cast<double>(all.size()));
-  constexpr double kMatters = 0.01;
-  const double noise = scatter / track.body.radius_px.value /
-                       std::sqrt(static_cast<double>(all.size()) / 12.0);
-  if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
-  for (Pose& pose : track.poses) {
-    pose.relative_size =
-        (level + slope * pose.time_s) / track.body.radius_px.value;
-  }
-  track.warnings.push_back(
-      fmt::format("the body's image changes size by {:.1f} % over the clip: it "
-                  "moves towards "
-                  "or away from the camera, and the scale with it",
-                  100.0 * change));
-}
-
-double Period(const BodyImage& body) {
-  constexpr double kSquare = 1.05;  // sides nearer than 5 %: a quarter turn
-  return body.half_long_px.value < kSquare * body.half_short_px.value
-             ? 0.5 * std::numbers::pi
-             : std::numbers::pi;
-}
-
-Pose PoseOf(const Fitted& f) {
-  Pose pose;
-  pose.frame = f.frame;
-  pose.time_s = f.time_s;
-  pose.centre = f.fit.outline.centre;
-  pose.angle_rad = f.fit.outline.angle_rad;
-  pose.u_x_px = f.fit.u_x_px;
-  pose.u_y_px = f.fit.u_y_px;
-  pose.correlation_xy = f.fit.correlation_xy;
-  pose.u_angle_rad = f.fit.u_angle_rad;
-  pose.misfit = f.fit.misfit;
-  return pose;
-}
-
-// Directions of a side are known up to a half turn: make them continuous.
-void Unwrap(Track& track) {
-  if (track.body.kind != core::BodyKind::kRectangle || track.poses.empty()) {
-    return;
-  }
-  const double period = Period(track.body);
-  double last = std::remainder(track.poses.front().angle_rad, period);
-  for (Pose& pose : track.poses) {
-    pose.angle_rad = last + std::remainder(pose.angle_rad - last, period);
-    last = pose.angle_rad;
-  }
-}
-
-Outline OutlineAt(const BodyImage& body, const Pose& pose) {
-  Outline outline;
-  outline.kind = body.kind;
-  outline.centre = pose.centre;
-  outline.angle_rad = pose.angle_rad;
-  outline.radius_px = body.radius_px.value * pose.relative_size;
-  outline.half_long_px = body.half_long_px.value * pose.relative_size;
-  outline.half_short_px = body.half_short_px.value * pose.relative_size;
-  return outline;
-}
-
-}  // namespace
-
-core::Expected<TrackResult> TrackBody(Clip& clip, const Background& background,
-                                      const TrackOptions& options) {
-  const std::int64_t last = options.last < 0
-                                ? clip.info().frames
-                                : std::min(options.last, clip.info().frames);
-  using Surround = OutlineOptions::Surround;
-  using Clock = std::chrono::steady_clock;
-
-  Found found = Detect(clip, background, options, Detector::kDifference, last);
+// The first look: detection against a background that may hold the body's
+// ghost.
+struct Look {
+  Found found;
   Choice choice;
   Surround surround = Surround::kBackground;
-  if (!found.chains.empty()) {
-    choice =
-        ChooseKind(clip, background, found.chains.front(), options, surround);
+  std::vector<Fitted> fits;
+};
+
+core::Expected<Look> FirstLook(Clip& clip, const Background& background,
+                               const TrackOptions& options, std::int64_t last) {
+  Look look;
+  look.found = Detect(clip, background, options, Detector::kDifference, last);
+  if (!look.found.chains.empty()) {
+    look.choice = ChooseKind(clip, background, look.found.chains.front(),
+                             options, look.surround);
   }
   // Where the body never leaves some of its pixels, the background holds its
   // ghost and the outlines fit badly: look at the frame's own two levels.
   constexpr double kWellFitted = 4.0;
-  if (choice.badness > kWellFitted) {
+  if (look.choice.badness > kWellFitted) {
     Found by_level = Detect(clip, background, options, Detector::kLevels, last);
     if (!by_level.chains.empty()) {
       const Choice other = ChooseKind(clip, background, by_level.chains.front(),
                                       options, Surround::kPolynomial);
-      if (other.badness < choice.badness) {
-        found = std::move(by_level);
-        choice = other;
-        surround = Surround::kPolynomial;
+      if (other.badness < look.choice.badness) {
+        look.found = std::move(by_level);
+        look.choice = other;
+        look.surround = Surround::kPolynomial;
       }
     }
   }
-  if (found.chains.empty()) {
+  if (look.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");
   }
-
-  const auto before = Clock::now();
-  const Chain& chain = found.chains.front();
-  std::vector<Fitted> all =
-      FitAll(clip, background, chain, choice, options, surround);
-  DropStrangers(all);
+  look.fits = FitAll(clip, background, look.found.chains.front(), look.choice,
+                     options, look.surround);
+  DropStrangers(look.fits);
   constexpr std::size_t kLeastFrames = 3;
-  if (all.size() < kLeastFrames) {
+  if (look.fits.size() < kLeastFrames) {
     return core::AbsentBecause(
         "something moves, but no outline of a sphere or rectangle fits it");
   }
+  return look;
+}
+
+// The pose in a frame: measured, or between two measured ones; nothing outside
+// the track.
+std::optional<Pose> PoseIn(const Track& track, std::int64_t frame) {
+  const auto after = std::lower_bound(
+      track.poses.begin(), track.poses.end(), frame,
+      [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
+  if (after == track.poses.end()) return std::nullopt;
+  if (after->frame == frame) return *after;
+  if (after == track.poses.begin()) return std::nullopt;
+  const Pose& a = *(after - 1);
+  const Pose& b = *after;
+  const double share = static_cast<double>(frame - a.frame) /
+                       static_cast<double>(b.frame - a.frame);
+  Pose pose = a;
+  pose.frame = frame;
+  pose.centre.x_px += share * (b.centre.x_px - a.centre.x_px);
+  pose.centre.y_px += share * (b.centre.y_px - a.centre.y_px);
+  pose.angle_rad += share * (b.angle_rad - a.angle_rad);
+  return pose;
+}
+
+// Marks what the body covers in `frame`, with a margin for blur, for the error
+// of a first look and for the shadow's rim.
+bool Cover(const Track& track, std::int64_t frame, const Background& background,
+           std::vector<std::uint8_t>& mask) {
+  const std::optional<Pose> pose = PoseIn(track, frame);
+  if (!pose) return false;
+  const Outline outline = OutlineAt(track.body, *pose);
+  const double margin = 3.0 * track.body.blur_px + 3.0;
+  const double reach =
+      margin + (outline.kind == core::BodyKind::kSphere
+                    ? outline.radius_px
+                    : std::hypot(outline.half_long_px, outline.half_short_px));
+  const auto from = [&](double centre) {
+    return std::max(0, static_cast<int>(std::floor(centre - reach)));
+  };
+  const auto to = [&](double centre, std::int32_t size) {
+    return std::min(size - 1, static_cast<int>(std::ceil(centre + reach)));
+  };
+  for (int y = from(outline.centre.y_px);
+       y <= to(outline.centre.y_px, background.height_px); ++y) {
+    for (int x = from(outline.centre.x_px);
+         x <= to(outline.centre.x_px, background.width_px); ++x) {
+      if (DepthInside(outline, x, y) > -margin) {
+        mask[static_cast<std::size_t>(y) *
+                 static_cast<std::size_t>(background.width_px) +
+             static_cast<std::size_t>(x)] = 1;
+      }
+    }
+  }
+  return true;
+}
+
+// Fits again from the track's own poses, in every frame of its stay.
+std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
+                                 const Track& track,
+                                 const TrackOptions& options, double blur_px) {
+  std::vector<Fitted> all;
+  OutlineOptions fit_options;
+  fit_options.ground = options.ground;
+  fit_options.blur_px = blur_px;
+  for (std::int64_t f = track.poses.front().frame;
+       f <= track.poses.back().frame; ++f) {
+    const auto pose = PoseIn(track, f);
+    const core::Frame frame = clip.Read(f);
+    auto fit = FitOutline(frame, background, OutlineAt(track.body, *pose),
+                          fit_options);
+    if (fit) all.push_back({f, frame.time_s, *fit});
+  }
+  return all;
+}
+
+}  // namespace
+
+core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
+  const std::int64_t last = options.last < 0
+                                ? clip.info().frames
+                                : std::min(options.last, clip.info().frames);
   TrackResult result;
+  result.background = EstimateBackground(clip, options.first, last);
+  auto first = FirstLook(clip, result.background, options, last);
+  if (!first) return tl::unexpected(first.error());
+
   Track& track = result.track;
   track.first_frame = options.first;
-  track.last_frame = found.last;
+  track.last_frame = first->found.last;
   track.frame_interval_s = 1.0 / clip.info().time_base.fps;
-  if (!found.warning.empty()) track.warnings.push_back(found.warning);
-  track.body = Shape(all, choice.kind);
-  for (const Fitted& f : all) track.poses.push_back(PoseOf(f));
-  Unwrap(track);
-  FollowSize(all, track);
-  for (std::size_t i = 1; i < found.chains.size(); ++i) {
-    track.several_bodies |= IsAnotherBody(chain, found.chains[i]);
+  if (!first->found.warning.empty()) {
+    track.warnings.push_back(first->found.warning);
   }
-  track.known_background = surround == Surround::kBackground;
-  result.frames_read = found.last - options.first;
-  result.fit_s = std::chrono::duration<double>(Clock::now() - before).count();
+  const Chain& chain = first->found.chains.front();
+  for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
+    track.several_bodies |= IsAnotherBody(chain, first->found.chains[i]);
+  }
+  track.known_background = first->surround == Surround::kBackground;
+  std::vector<Fitted> all = std::move(first->fits);
+  FillTrack(all, first->choice.kind, track);
+
+  // Now that the body's place is known, the background without it.
+  double most_covered = 0.0;
+  Background behind = EstimateBackgroundBehind(
+      clip, options.first, track.last_frame,
+      [&](std::int64_t frame, std::vector<std::uint8_t>& mask) {
+        return Cover(track, frame, result.background, mask);
+      },
+      result.background, {}, &most_covered);
+  // Covered less than a fifth of the time, a pixel's mid-mean is untouched.
+  constexpr double kUntouched = 0.2;
+  if (most_covered > kUntouched || !track.known_background) {
+    const Choice again =
+        ChooseKind(clip, behind, chain, options, Surround::kBackground);
+    if (again.badness < first->choice.badness || track.known_background) {
+      result.background = std::move(behind);
+      std::vector<Fitted> better;
+      if (again.kind == first->choice.kind) {
+        better = FitFromTrack(clip, result.background, track, options,
+                              again.blur_px);
+      } else {
+        better = FitAll(clip, result.background, chain, again, options,
+                        Surround::kBackground);
+      }
+      DropStrangers(better);
+      if (better.size() * 2 >= all.size()) {
+        track.known_background = true;
+        track.warnings.clear();
+        FillTrack(better, again.kind, track);
+      }
+    }
+  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "touchdown/vision/clip.h"
@@ -22,6 +23,10 @@ struct Background {
   std::int32_t height_px = 0;
   std::vector<float> level;  // (height, width), row-major
 
+  // 1 where the body was never away, so that the level is not known; empty:
+  // known everywhere.
+  std::vector<std::uint8_t> unknown;
+
   // Temporal noise of one sample at level L: variance = floor + slope * L, DN^2
   // (read noise and quantisation; shot noise).
   double noise_floor_dn2 = 1.0;
@@ -40,6 +45,12 @@ struct Background {
                  static_cast<std::size_t>(x)];
   }
 
+  bool known_at(std::int32_t x, std::int32_t y) const {
+    return unknown.empty() || unknown[static_cast<std::size_t>(y) *
+                                          static_cast<std::size_t>(width_px) +
+                                      static_cast<std::size_t>(x)] == 0;
+  }
+
   // Variance of rounding to whole DN: no sample is known better.
   static constexpr double kVarianceFloor_dn2 = 1.0 / 12.0;
 };
@@ -52,5 +63,22 @@ struct Background {
 // std::invalid_argument if the range is empty or outside the clip.
 Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
                               const BackgroundOptions& options = {});
+
+// The same from frames in which the body's place is known: what it covers is
+// left out, so that a slow or large body leaves no ghost. Frames for which
+// `covers(frame)` gives no mask are left out whole.
+//
+// `covers` fills a mask (height, width; 1 = covered) for a frame of the clip,
+// and returns false where the body's place is not known. `most_covered` (may be
+// null) receives the largest share of samples in which any one pixel was
+// covered.
+using CoverFunction =
+    std::function<bool(std::int64_t frame, std::vector<std::uint8_t>& mask)>;
+Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
+                                    std::int64_t last,
+                                    const CoverFunction& covers,
+                                    const Background& fallback,
+                                    const BackgroundOptions& options = {},
+                                    double* most_covered = nullptr);
 
 }  // namespace touchdown::vision

@@ -85,9 +85,17 @@ class Clip {
   core::Frame Read(std::int64_t index);
   core::Frame Read(std::int64_t index, const core::PixelRect& window);
 
+  // Wall time spent inside Read so far, in seconds: decoding and waiting for
+  // the disk (of memory-mapped clips the disk is waited for later, where pixels
+  // are used).
+  double reading_s() const { return reading_s_; }
+
  protected:
   virtual core::Frame ReadWindow(std::int64_t index,
                                  const core::PixelRect& window) = 0;
+
+ private:
+  double reading_s_ = 0.0;
 };
 
 // Opens a recording: a video file, an .mraw (or its .cih/.cihx), or a folder of

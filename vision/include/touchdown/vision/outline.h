@@ -53,8 +53,9 @@ struct OutlineOptions {
   double ground_margin_px = 2.0;
 
   int max_iterations = 30;
-  // Converged when no geometric parameter moves by more than this, px.
-  double tolerance_px = 1e-5;
+  // Converged when no geometric parameter moves by more than this, px: a
+  // twentieth of the best uncertainty that pixels give.
+  double tolerance_px = 1e-4;
 };
 
 struct OutlineFit {
@@ -83,6 +84,9 @@ core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
                                       const Background& background,
                                       const Outline& start,
                                       const OutlineOptions& options = {});
+
+// Distance of a point from the outline, positive inside, px.
+double DepthInside(const Outline& outline, double x_px, double y_px);
 
 // Height of the centre above the lowest point of the outline, measured along
 // the normal of a ground line at `ground_angle_rad` in the image: R for a

@@ -34,15 +34,14 @@ struct TrackOptions {
 
 struct TrackResult {
   Track track;
-  std::int64_t frames_read = 0;
-  double fit_s = 0.0;  // wall time spent fitting outlines
+  Background background;  // what is behind the body
 };
 
 // Follows the one moving body of a clip. Absent, with the reason, where nothing
 // moves or no outline fits. Frames from the first unreadable one on are left
 // out, with a warning in the track. Throws what Clip::Read throws for the first
 // frame.
-core::Expected<TrackResult> TrackBody(Clip& clip, const Background& background,
+core::Expected<TrackResult> TrackBody(Clip& clip,
                                       const TrackOptions& options = {});
 
 // Fits the outlines again with the ground line known and the body's size held

@@ -1,0 +1,193 @@
+#include "track_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace touchdown::vision {
+namespace {
+
+double SizeOf(const OutlineFit& fit) {
+  return fit.outline.kind == core::BodyKind::kSphere ? fit.outline.radius_px
+                                                     : fit.outline.half_long_px;
+}
+
+// Mean weighted by inverse variance, robustly: values off the median by more
+// than four times the scatter are left out. u from the scatter, or from the
+// fits' uncertainties where that is larger.
+core::Estimate RobustMean(const std::vector<double>& values,
+                          const std::vector<double>& us) {
+  const double centre = Median(values);
+  std::vector<double> off;
+  for (const double v : values) off.push_back(std::abs(v - centre));
+  const double scatter = 1.4826 * Median(off);
+  double sw = 0.0;
+  double swx = 0.0;
+  double n = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i] - centre) > 4.0 * scatter + 1e-12) continue;
+    const double w = 1.0 / (us[i] * us[i] + 1e-12);
+    sw += w;
+    swx += w * values[i];
+    n += 1.0;
+  }
+  if (n < 1.0) return {centre, scatter};
+  return {swx / sw, std::max(1.0 / std::sqrt(sw), scatter / std::sqrt(n))};
+}
+
+BodyImage Shape(const std::vector<Fitted>& all, core::BodyKind kind) {
+  std::vector<double> size, size_u, shorter, shorter_u, blur, contrast;
+  // Only outlines that are wholly seen tell the size.
+  for (const bool strict : {true, false}) {
+    for (const Fitted& f : all) {
+      if (strict && f.fit.visible < 0.98) continue;
+      size.push_back(SizeOf(f.fit));
+      size_u.push_back(f.fit.u_size_px);
+      shorter.push_back(f.fit.outline.half_short_px);
+      shorter_u.push_back(f.fit.u_size_short_px);
+      blur.push_back(f.fit.blur_px);
+      contrast.push_back(f.fit.contrast_dn);
+    }
+    if (size.size() >= 3) break;
+  }
+  BodyImage body;
+  body.kind = kind;
+  body.blur_px = Median(blur);
+  body.contrast_dn = Median(contrast);
+  if (kind == core::BodyKind::kSphere) {
+    body.radius_px = RobustMean(size, size_u);
+  } else {
+    body.half_long_px = RobustMean(size, size_u);
+    body.half_short_px = RobustMean(shorter, shorter_u);
+    if (body.half_long_px.value < body.half_short_px.value) {
+      std::swap(body.half_long_px, body.half_short_px);
+    }
+  }
+  return body;
+}
+
+// A body that comes nearer grows: a straight line through the sizes, used only
+// where the change is large against its uncertainty and matters.
+void FollowSize(const std::vector<Fitted>& all, Track& track) {
+  if (track.body.kind != core::BodyKind::kSphere || all.size() < 12) return;
+  double sw = 0, st = 0, sr = 0, stt = 0, str = 0;
+  for (const Fitted& f : all) {
+    if (f.fit.visible < 0.98) continue;
+    const double w = 1.0 / (f.fit.u_size_px * f.fit.u_size_px + 1e-6);
+    sw += w;
+    st += w * f.time_s;
+    sr += w * f.fit.outline.radius_px;
+    stt += w * f.time_s * f.time_s;
+    str += w * f.time_s * f.fit.outline.radius_px;
+  }
+  const double determinant = sw * stt - st * st;
+  if (!(determinant > 0.0)) return;
+  const double slope = (sw * str - st * sr) / determinant;
+  const double level = (sr - slope * st) / sw;
+  const double span = all.back().time_s - all.front().time_s;
+  const double change = slope * span / track.body.radius_px.value;
+  double square = 0.0;
+  for (const Fitted& f : all) {
+    const double r = f.fit.outline.radius_px - level - slope * f.time_s;
+    square += r * r;
+  }
+  const double scatter = std::sqrt(square / static_cast<double>(all.size()));
+  constexpr double kMatters = 0.01;
+  const double noise = scatter / track.body.radius_px.value /
+                       std::sqrt(static_cast<double>(all.size()) / 12.0);
+  if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
+  for (Pose& pose : track.poses) {
+    pose.relative_size =
+        (level + slope * pose.time_s) / track.body.radius_px.value;
+  }
+  track.warnings.push_back(
+      fmt::format("the body's image changes size by {:.1f} % over the clip: it "
+                  "moves towards "
+                  "or away from the camera, and the scale with it",
+                  100.0 * change));
+}
+
+double Period(const BodyImage& body) {
+  constexpr double kSquare = 1.05;  // sides nearer than 5 %: a quarter turn
+  return body.half_long_px.value < kSquare * body.half_short_px.value
+             ? 0.5 * std::numbers::pi
+             : std::numbers::pi;
+}
+
+}  // namespace
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void DropStrangers(std::vector<Fitted>& all) {
+  std::vector<double> sizes;
+  std::vector<double> misfits;
+  for (const Fitted& f : all) {
+    sizes.push_back(SizeOf(f.fit));
+    misfits.push_back(f.fit.misfit);
+  }
+  const double size = Median(sizes);
+  const double misfit = Median(misfits);
+  constexpr double kSizeRatio = 1.35;
+  constexpr double kMisfitRatio = 4.0;
+  std::erase_if(all, [&](const Fitted& f) {
+    return SizeOf(f.fit) > kSizeRatio * size ||
+           SizeOf(f.fit) * kSizeRatio < size ||
+           f.fit.misfit > kMisfitRatio * std::max(1.0, misfit);
+  });
+}
+
+Pose PoseOf(const Fitted& f) {
+  Pose pose;
+  pose.frame = f.frame;
+  pose.time_s = f.time_s;
+  pose.centre = f.fit.outline.centre;
+  pose.angle_rad = f.fit.outline.angle_rad;
+  pose.u_x_px = f.fit.u_x_px;
+  pose.u_y_px = f.fit.u_y_px;
+  pose.correlation_xy = f.fit.correlation_xy;
+  pose.u_angle_rad = f.fit.u_angle_rad;
+  pose.misfit = f.fit.misfit;
+  return pose;
+}
+
+void Unwrap(Track& track) {
+  if (track.body.kind != core::BodyKind::kRectangle || track.poses.empty()) {
+    return;
+  }
+  const double period = Period(track.body);
+  double last = std::remainder(track.poses.front().angle_rad, period);
+  for (Pose& pose : track.poses) {
+    pose.angle_rad = last + std::remainder(pose.angle_rad - last, period);
+    last = pose.angle_rad;
+  }
+}
+
+Outline OutlineAt(const BodyImage& body, const Pose& pose) {
+  Outline outline;
+  outline.kind = body.kind;
+  outline.centre = pose.centre;
+  outline.angle_rad = pose.angle_rad;
+  outline.radius_px = body.radius_px.value * pose.relative_size;
+  outline.half_long_px = body.half_long_px.value * pose.relative_size;
+  outline.half_short_px = body.half_short_px.value * pose.relative_size;
+  return outline;
+}
+
+void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
+               Track& track) {
+  track.body = Shape(all, kind);
+  track.poses.clear();
+  for (const Fitted& f : all) track.poses.push_back(PoseOf(f));
+  Unwrap(track);
+  FollowSize(all, track);
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,37 @@
+// From fitted outlines to a track: the body's common shape, continuous
+// attitude.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "touchdown/vision/outline.h"
+#include "touchdown/vision/track.h"
+
+namespace touchdown::vision {
+
+struct Fitted {
+  std::int64_t frame = 0;
+  double time_s = 0.0;
+  OutlineFit fit;
+};
+
+double Median(std::vector<double> values);
+
+// Leaves out fits that are not of this body: other size, or far worse residuals
+// than usual.
+void DropStrangers(std::vector<Fitted>& all);
+
+// Shape and poses; `all` by frame, at least one.
+void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
+               Track& track);
+
+// Directions of a side are known up to a half turn: makes them continuous.
+void Unwrap(Track& track);
+
+Pose PoseOf(const Fitted& fitted);
+
+// The outline that a pose stands for.
+Outline OutlineAt(const BodyImage& body, const Pose& pose);
+
+}  // namespace touchdown::vision
