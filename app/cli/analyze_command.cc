@@ -11,6 +11,7 @@
 #include "app/cli/values.h"
 #include "app/pipeline/analysis_text.h"
 #include "app/pipeline/analyze.h"
+#include "app/pipeline/evidence.h"
 #include "app/pipeline/log_analysis.h"
 #include "touchdown/core/units.h"
 
@@ -44,7 +45,7 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
   options.fps = flags.fps;
   if (!flags.scale.empty()) {
     options.scale_px_per_m =
-        ParseEstimate("--scale-px-per-m", flags.scale, kDefaultRelativeU);
+        ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kDefaultRelativeU);
   }
   if (flags.body != "auto") {
     options.body_kind = core::ParseBodyKind(flags.body);
@@ -54,15 +55,12 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
     }
   }
   if (!flags.diameter.empty()) {
-    options.diameter_m = core::Scaled(
-        ParseEstimate("--diameter-mm", flags.diameter, kDefaultRelativeU),
-        core::kMillimetre);
+    options.diameter_m = ParseEstimate("--diameter-mm", flags.diameter,
+                                       core::kMillimetre, kDefaultRelativeU);
   }
   if (!flags.sides.empty()) {
-    const auto [a, b] =
-        ParseSides("--sides-mm", flags.sides, kDefaultRelativeU);
-    options.long_m = core::Scaled(a, core::kMillimetre);
-    options.short_m = core::Scaled(b, core::kMillimetre);
+    std::tie(options.long_m, options.short_m) = ParseSides(
+        "--sides-mm", flags.sides, core::kMillimetre, kDefaultRelativeU);
   }
   if (!flags.ground.empty()) {
     const auto n = ParseNumbers("--ground", flags.ground, 4,
@@ -104,6 +102,7 @@ int Run(const Flags& flags) {
   options.progress = [&bar](double share) { bar.Show(share); };
   const pipeline::Analysis analysis = pipeline::Analyze(flags.clip, options);
   bar.Finish();
+  if (!flags.out.empty()) pipeline::WriteEvidence(analysis, options, flags.out);
   std::optional<pipeline::Logged> logged;
   if (!flags.db.empty()) {
     logged = pipeline::LogAnalysis(analysis, flags.db, flags.campaign);
@@ -159,8 +158,9 @@ void AddAnalyze(CLI::App& app, Action& action) {
   command->add_option("--bounce-height-mm", flags->bounce_height_mm,
                       "rising above it is what bounce means (default: the "
                       "larger of 0.5 mm and 2 % of the body's size)");
-  command->add_option("--out", flags->out,
-                      "write track.csv and contact.png into this folder");
+  command->add_option(
+      "--out", flags->out,
+      "write track.csv, contact.png and analysis.json into this folder");
   command->add_option("--db", flags->db, "log the trial in this store");
   command->add_option("--campaign", flags->campaign,
                       "the campaign the trial belongs to (with --db)");

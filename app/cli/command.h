@@ -20,5 +20,13 @@ void AddAnalyze(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
 void AddTheory(CLI::App& app, Action& action);
+void AddList(CLI::App& app, Action& action);
+void AddShow(CLI::App& app, Action& action);
+void AddLog(CLI::App& app, Action& action);
+void AddCorrect(CLI::App& app, Action& action);
+void AddCampaign(CLI::App& app, Action& action);
+void AddExport(CLI::App& app, Action& action);
+void AddImport(CLI::App& app, Action& action);
+void AddDb(CLI::App& app, Action& action);
 
 }  // namespace touchdown::cli

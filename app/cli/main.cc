@@ -39,6 +39,16 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   touchdown::cli::Action action;
   touchdown::cli::AddAnalyze(app, action);
+  touchdown::cli::AddRig(app, action);
+  touchdown::cli::AddTheory(app, action);
+  touchdown::cli::AddList(app, action);
+  touchdown::cli::AddShow(app, action);
+  touchdown::cli::AddLog(app, action);
+  touchdown::cli::AddCorrect(app, action);
+  touchdown::cli::AddCampaign(app, action);
+  touchdown::cli::AddExport(app, action);
+  touchdown::cli::AddImport(app, action);
+  touchdown::cli::AddDb(app, action);
   touchdown::cli::AddSimulate(app, action);
   try {
     app.parse(argc, argv);

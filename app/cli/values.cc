@@ -40,30 +40,30 @@ std::vector<std::string_view> Split(std::string_view text, char at) {
 }  // namespace
 
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double relative_u) {
+                             double unit, double relative_u) {
   const std::string form =
-      "a positive number, or one with its standard "
-      "uncertainty as in 40+-0.02";
+      "a number, or one with its standard uncertainty as in 40+-0.02";
   const std::size_t sign = text.find("+-");
   const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
-  if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
-    Refuse(flag, text, form);
+  if (!value || !std::isfinite(*value)) Refuse(flag, text, form);
+  if (sign == std::string::npos) {
+    return {*value * unit, std::abs(relative_u * *value * unit), std::nullopt};
   }
-  if (sign == std::string::npos) return {*value, relative_u * *value};
   const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
   if (!u || !(*u >= 0.0) || !std::isfinite(*u)) Refuse(flag, text, form);
-  return {*value, *u};
+  return {*value * unit, *u * unit, std::nullopt};
 }
 
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
+                                                     double unit,
                                                      double relative_u) {
   const std::size_t times = text.find('x');
   if (times == std::string::npos) {
     Refuse(flag, text, "two lengths as in 60x20");
   }
-  return {ParseEstimate(flag, text.substr(0, times), relative_u),
-          ParseEstimate(flag, text.substr(times + 1), relative_u)};
+  return {ParseEstimate(flag, text.substr(0, times), unit, relative_u),
+          ParseEstimate(flag, text.substr(times + 1), unit, relative_u)};
 }
 
 std::vector<double> ParseNumbers(const std::string& flag,

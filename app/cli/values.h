@@ -12,14 +12,16 @@
 
 namespace touchdown::cli {
 
-// "40" or "40+-0.02". Without a stated uncertainty: `relative_u` of the value.
+// "40" or "40+-0.02", in SI by `unit`. Where no uncertainty is stated it is
+// `relative_u` of the value.
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double relative_u);
+                             double unit, double relative_u = 0.0);
 
-// "60x20" or "60+-0.02x20+-0.02".
+// "60x20" or "60+-0.02x20+-0.02", likewise.
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
-                                                     double relative_u);
+                                                     double unit,
+                                                     double relative_u = 0.0);
 
 // Exactly `count` numbers separated by commas.
 std::vector<double> ParseNumbers(const std::string& flag,

@@ -32,6 +32,11 @@ void RequirePositive(const char* field, const std::optional<double>& value) {
   }
 }
 
+void RequirePositive(const char* field,
+                     const std::optional<core::Estimate>& value) {
+  if (value) RequirePositive(field, std::optional<double>(value->value));
+}
+
 std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
   if (options.diameter_m && (options.long_m || options.short_m)) {
     throw std::invalid_argument(
@@ -232,9 +237,10 @@ Analysis Analyzer::Run() {
   const auto start = Clock::now();
   RequirePositive("fps", options_.fps);
   RequirePositive("bounce height", options_.bounce_height_m);
-  if (options_.scale_px_per_m) {
-    RequirePositive("scale_px_per_m", options_.scale_px_per_m->value);
-  }
+  RequirePositive("scale_px_per_m", options_.scale_px_per_m);
+  RequirePositive("diameter", options_.diameter_m);
+  RequirePositive("first side", options_.long_m);
+  RequirePositive("second side", options_.short_m);
   const std::optional<core::BodyKind> kind = KindOf(options_);
 
   result_.options_hash = OptionsHash(options_);
@@ -309,6 +315,14 @@ Analysis Analyzer::Run() {
 
 }  // namespace
 
+namespace {
+
+bool OneBody(const Analysis& analysis) {
+  return analysis.body && !analysis.track->several_bodies;
+}
+
+}  // namespace
+
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
   const auto start = Clock::now();
@@ -318,10 +332,26 @@ Analysis Analyze(const std::filesystem::path& path,
   const std::string id = vision::ClipId(path);
   const double open_s = Since(start);
   Analysis analysis = AnalyzeClip(std::move(clip), options);
+  if (analysis.clip.has_colour && !OneBody(analysis)) {
+    for (const vision::Channel channel :
+         {vision::Channel::kRedDifference, vision::Channel::kBlueDifference}) {
+      clip_options.channel = channel;
+      Analysis other =
+          AnalyzeClip(vision::OpenClip(path, clip_options), options);
+      if (!OneBody(other)) continue;
+      other.channel = channel;
+      other.scene_model.used.push_back(std::string(vision::Name(channel)));
+      other.warnings.push_back(
+          fmt::format("in luma no single body stands out; the {} was used",
+                      vision::Name(channel)));
+      analysis = std::move(other);
+      break;
+    }
+  }
   analysis.clip_id = id;
   analysis.simulated = HasTruthFile(path);
   analysis.timing.open_s = open_s;
-  analysis.timing.total_s += open_s;
+  analysis.timing.total_s = Since(start);
   return analysis;
 }
 

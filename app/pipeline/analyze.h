@@ -46,14 +46,15 @@ struct SceneModel {
 struct Timing {
   double total_s = 0.0;
   double open_s = 0.0;
-  double decode_s = 0.0;   // inside Clip::Read
-  double track_s = 0.0;  // reading and fitting
+  double decode_s = 0.0;  // inside Clip::Read
+  double track_s = 0.0;   // reading and fitting
   double contact_s = 0.0;
   double frames_per_s = 0.0;
 };
 
 struct Analysis {
   vision::ClipInfo clip;
+  vision::Channel channel = vision::Channel::kLuma;  // what was looked at
   std::string clip_id;
   bool simulated = false;  // a truth file lies beside the clip
   std::optional<calib::Scale> scale;
@@ -72,7 +73,9 @@ struct Analysis {
   std::string options_hash;
 };
 
-// Analyses the clip at `path`. What science cannot say is in the result, with
+// Analyses the clip at `path`. Where a colour recording shows nothing, or
+// several bodies, in luma (a shadow as dark as the body), its colour
+// differences are tried. What science cannot say is in the result, with
 // reasons; throws std::invalid_argument for impossible options and
 // core::InputError for unreadable clips.
 Analysis Analyze(const std::filesystem::path& path,

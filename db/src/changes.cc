@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "quantities.h"
+#include "touchdown/db/quantities.h"
 #include "touchdown/db/records.h"
 
 namespace touchdown::db {

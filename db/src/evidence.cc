@@ -151,9 +151,8 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   }
   Statement(connection,
             "INSERT INTO revisions (id, uuid, trial_id, number, kind, "
-            "statement_id, exclusion_id, author, reason, software_version, "
-            "options_hash, recorded_at_utc) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+            "statement_id, exclusion_id, author, reason, recorded_at_utc) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .Add(row)
       .Add(revision.uuid)
       .Add(trial_row)
@@ -163,8 +162,6 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
       .Add(exclusion)
       .Add(trial.author)
       .Add(trial.reason)
-      .Add(trial.software_version)
-      .Add(trial.options_hash)
       .Add(revision.recorded_at_utc)
       .Run();
   if (own_statement) InsertStatement(connection, row, trial);
@@ -176,6 +173,29 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
         .Run();
   }
   return number;
+}
+
+std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid) {
+  static const std::string sql =
+      SelectRevisions(true) + "WHERE t.uuid = ? ORDER BY r.number";
+  Statement row(connection, sql);
+  row.Add(uuid);
+  std::vector<Revision> history;
+  while (row.Step()) {
+    RevisionRow one = TakeRevision(connection, row);
+    history.push_back(
+        {std::move(one.uuid),
+         ParseRevisionKind(one.kind).value_or(RevisionKind::kLogged),
+         std::move(one.trial)});
+  }
+  return history;
+}
+
+void VisitHistories(
+    Connection& connection,
+    const std::function<void(const std::vector<Revision>&)>& visit) {
+  Statement trials(connection, "SELECT uuid FROM trials ORDER BY id");
+  while (trials.Step()) visit(HistoryOf(connection, trials.TakeText()));
 }
 
 }  // namespace touchdown::db

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "statement.h"
 #include "touchdown/core/trial.h"
@@ -59,10 +61,17 @@ struct NewRevision {
   bool own_exclusion = true;
 };
 
-// Adds the next revision; author, reason, software and options are `trial`'s.
+// Adds the next revision; author and reason are `trial`'s.
 // Returns its number.
 std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
                          const std::optional<Head>& head,
                          const NewRevision& revision, const core::Trial& trial);
+
+// Every revision of a trial, oldest first.
+std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid);
+// The histories of all trials, in the order in which they were logged.
+void VisitHistories(
+    Connection& connection,
+    const std::function<void(const std::vector<Revision>&)>& visit);
 
 }  // namespace touchdown::db

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "quantities.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
 namespace {
@@ -293,8 +293,9 @@ void InsertStatement(Connection& connection, std::int64_t revision_id,
                      const core::Trial& trial) {
   static const std::string sql = fmt::format(
       "INSERT INTO statements (revision_id, clip_path, angle_kind, {}, "
-      "set_angle_rad, set_speed_mps, contacts, document_json) VALUES ({})",
-      BodyNames(""), Placeholders(8 + 5 * kBodyQuantities.size()));
+      "set_angle_rad, set_speed_mps, contacts, software_version, options_hash, "
+      "document_json) VALUES ({})",
+      BodyNames(""), Placeholders(10 + 5 * kBodyQuantities.size()));
   Statement insert(connection, sql);
   insert.Add(revision_id)
       .Add(trial.clip.path)
@@ -303,6 +304,8 @@ void InsertStatement(Connection& connection, std::int64_t revision_id,
   insert.Add(trial.set_angle_rad)
       .Add(trial.set_speed_mps)
       .Add(static_cast<std::int64_t>(1 + trial.later.size()))
+      .Add(trial.software_version)
+      .Add(trial.options_hash)
       .Add(trial.document_json);
   insert.Run();
   InsertContact(connection, revision_id, 0, trial.first);
@@ -318,7 +321,7 @@ std::string SelectRevisions(bool with_documents) {
       "t.origin, s.clip_path, ifnull(k.clip_id, ''), ifnull(k.sha256, ''), "
       "ifnull(k.size_bytes, 0), s.angle_kind, {}, s.set_angle_rad, "
       "s.set_speed_mps, r.number, r.author, r.reason, r.recorded_at_utc, "
-      "r.software_version, r.options_hash, r.exclusion_id IS NOT NULL, "
+      "s.software_version, s.options_hash, r.exclusion_id IS NOT NULL, "
       "ifnull(x.reason, ''), {} "
       "FROM trials t "
       "JOIN revisions r ON r.trial_id = t.id "

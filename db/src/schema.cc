@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "quantities.h"
+#include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
 namespace {
@@ -160,8 +160,6 @@ std::string Evidence() {
       "    DEFERRABLE INITIALLY DEFERRED,\n"
       "  author TEXT NOT NULL CHECK (author <> ''),\n"
       "  reason TEXT NOT NULL,\n"
-      "  software_version TEXT NOT NULL,\n"
-      "  options_hash TEXT NOT NULL,\n"
       "  {},\n"
       "  UNIQUE (trial_id, number)\n) STRICT;\n",
       kUuid,
@@ -179,6 +177,8 @@ std::string Evidence() {
       "  {},\n"
       "  {},\n  {},\n"
       "  contacts INTEGER NOT NULL CHECK (contacts >= 1),\n"
+      "  software_version TEXT NOT NULL,\n"
+      "  options_hash TEXT NOT NULL,\n"
       "  document_json TEXT NOT NULL,\n"
       "{}\n) STRICT;\n",
       angle_kind, body.columns, OptionalReal("set_angle_rad"),
@@ -344,6 +344,15 @@ std::string Triggers() {
       "             AND revision_id = NEW.revision_id)\n"
       "BEGIN SELECT raise(ABORT, 'contacts is append-only: add a revision');\n"
       "END;\n";
+  sql +=
+      "CREATE TRIGGER budget_lines_refuse_REPLACE BEFORE INSERT ON "
+      "budget_lines\n"
+      "WHEN EXISTS (SELECT 1 FROM budget_lines\n"
+      "             WHERE revision_id = NEW.revision_id\n"
+      "             AND ordinal = NEW.ordinal AND budget = NEW.budget\n"
+      "             AND line = NEW.line)\n"
+      "BEGIN SELECT raise(ABORT, 'budget_lines is append-only: add a "
+      "revision');\nEND;\n";
   // A clip's digest, once computed, stays.
   sql +=
       "CREATE TRIGGER clips_keep_digest BEFORE UPDATE ON clips\n"

@@ -76,6 +76,8 @@ void UseWriteAheadLog(Connection& connection, double patience_s) {
 }
 
 void RequireOurs(Connection& connection, const fs::path& path) {
+  // One snapshot: another process may be making the store right now.
+  Transaction snapshot(connection, Transaction::Kind::kRead);
   const std::int64_t id = connection.Integer("PRAGMA application_id");
   const std::int64_t version = connection.Integer("PRAGMA user_version");
   if (id != kApplicationId) {
@@ -215,14 +217,23 @@ Logged Store::Impl::Log(const core::Trial& trial) {
 }
 
 Logged Store::LogTrial(const core::Trial& trial) {
-  return LogTrials({&trial, 1}).front();
+  Transaction transaction(impl_->connection, Transaction::Kind::kWrite);
+  Logged logged = impl_->Log(trial);
+  transaction.Commit();
+  return logged;
 }
 
 std::vector<Logged> Store::LogTrials(std::span<const core::Trial> trials) {
   std::vector<Logged> logged;
   logged.reserve(trials.size());
   Transaction transaction(impl_->connection, Transaction::Kind::kWrite);
-  for (const auto& trial : trials) logged.push_back(impl_->Log(trial));
+  for (const auto& trial : trials) {
+    try {
+      logged.push_back(impl_->Log(trial));
+    } catch (const std::invalid_argument& error) {
+      throw TrialRefused(logged.size(), error.what());
+    }
+  }
   transaction.Commit();
   return logged;
 }
@@ -387,26 +398,6 @@ std::optional<core::Trial> Store::Find(std::string_view id_or_prefix) const {
   return TakeRevision(connection, row).trial;
 }
 
-namespace {
-
-std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid) {
-  static const std::string sql =
-      SelectRevisions(true) + "WHERE t.uuid = ? ORDER BY r.number";
-  Statement row(connection, sql);
-  row.Add(uuid);
-  std::vector<Revision> history;
-  while (row.Step()) {
-    RevisionRow one = TakeRevision(connection, row);
-    history.push_back(
-        {std::move(one.uuid),
-         ParseRevisionKind(one.kind).value_or(RevisionKind::kLogged),
-         std::move(one.trial)});
-  }
-  return history;
-}
-
-}  // namespace
-
 std::vector<Revision> Store::History(std::string_view id) const {
   Transaction snapshot(impl_->connection, Transaction::Kind::kRead);
   return HistoryOf(impl_->connection, id);
@@ -414,10 +405,8 @@ std::vector<Revision> Store::History(std::string_view id) const {
 
 void Store::ForEachHistory(
     const std::function<void(const std::vector<Revision>&)>& visit) const {
-  Connection& connection = impl_->connection;
-  Transaction snapshot(connection, Transaction::Kind::kRead);
-  Statement trials(connection, "SELECT uuid FROM trials ORDER BY id");
-  while (trials.Step()) visit(HistoryOf(connection, trials.TakeText()));
+  Transaction snapshot(impl_->connection, Transaction::Kind::kRead);
+  VisitHistories(impl_->connection, visit);
 }
 
 }  // namespace touchdown::db

@@ -8,10 +8,10 @@
 #include <fstream>
 #include <limits>
 
-#include "db/src/quantities.h"
 #include "tests/db/fixture.h"
 #include "tests/support/random_trials.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
 namespace {

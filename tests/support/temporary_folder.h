@@ -16,9 +16,10 @@ class TemporaryFolder {
   TemporaryFolder() {
     const auto* const test =
         ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            ("touchdown." + std::to_string(::getpid()) + "." +
-             test->test_suite_name() + "." + test->name());
+    std::string name = "touchdown." + std::to_string(::getpid()) + "." +
+                       test->test_suite_name() + "." + test->name();
+    for (char& c : name) c = c == '/' ? '_' : c;  // of parametrised tests
+    path_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -182,7 +182,7 @@ TEST(ImageFile, MutatedFilesNeverCrash) {
   int refused = 0;
   for (const std::string name : {"a.png", "a.tif", "a.jpg"}) {
     const std::string whole = ReadAll(folder / name);
-    for (int round = 0; round < 150; ++round) {
+    for (int round = 0; round < 60; ++round) {
       std::string bytes = whole;
       for (int i = 0; i < 3; ++i) {
         bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
@@ -190,7 +190,7 @@ TEST(ImageFile, MutatedFilesNeverCrash) {
       refused += ErrorOfImage(folder.Write("m." + name, bytes)).empty() ? 0 : 1;
     }
   }
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 50);
 }
 
 TEST(ImageFile, AnOutputThatCannotBeWrittenIsOneLine) {

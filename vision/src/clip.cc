@@ -35,6 +35,18 @@ std::string LowerExtension(const std::filesystem::path& path) {
   return extension;
 }
 
+std::string_view Name(Channel channel) {
+  switch (channel) {
+    case Channel::kLuma:
+      return "luma";
+    case Channel::kBlueDifference:
+      return "blue difference (Cb)";
+    case Channel::kRedDifference:
+      return "red difference (Cr)";
+  }
+  return "?";
+}
+
 core::Frame Clip::Read(std::int64_t index) {
   return Read(index, {0, 0, info().width_px, info().height_px});
 }
@@ -87,6 +99,13 @@ std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
   if (!std::filesystem::is_regular_file(status)) {
     throw core::InputError(
         fmt::format("{}: neither a file nor a folder", path.string()));
+  }
+  const bool colour = options.channel != Channel::kLuma;
+  if (colour &&
+      (IsMrawOrHeader(path) || std::filesystem::is_directory(status))) {
+    throw std::invalid_argument(
+        fmt::format("channel is {}, but {} is read as gray",
+                    Name(options.channel), path.string()));
   }
   if (IsMrawOrHeader(path)) return OpenMraw(path, options);
   if (IsImageName(path)) {

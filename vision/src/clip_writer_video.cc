@@ -194,7 +194,8 @@ class VideoWriter {
       av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
       av_opt_set_int(codec_->priv_data, "qp", quality, 0);
     } else if (options_.codec == VideoCodec::kFfv1) {
-      codec_->level = 3;  // slices with check sums
+      codec_->level = 3;     // slices with check sums
+      codec_->gop_size = 1;  // a damaged frame does not spoil the next
       av_opt_set_int(codec_->priv_data, "slicecrc", 1, 0);
     }
     if ((format_->oformat->flags & AVFMT_GLOBALHEADER) != 0) {

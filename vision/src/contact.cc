@@ -119,16 +119,6 @@ core::ContactRecord NoContact(std::string reason) {
   return record;
 }
 
-core::PixelPoint InImage(const PlaneTrack& track, double along_px,
-                         double height_px) {
-  const double angle = calib::ImageAngle(track.ground);
-  const double along = track.direction * along_px;
-  return {track.ground.reference.x_px + along * std::cos(angle) +
-              height_px * std::sin(angle),
-          track.ground.reference.y_px + along * std::sin(angle) -
-              height_px * std::cos(angle)};
-}
-
 ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
   ContactEvidence e;
   e.before = event.before;
@@ -138,8 +128,8 @@ ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
   e.ground_px = event.ground_px.value;
   e.u_ground_px = event.ground_px.u;
   const FlightState s = event.before->At(event.time_s.value);
-  e.centre = InImage(track, s.along_px, s.height_px);
-  e.touching = InImage(track, s.along_px + LowestPointAlong(track, s.face_rad),
+  e.centre = ToImage(track, s.along_px, s.height_px);
+  e.touching = ToImage(track, s.along_px + LowestPointAlong(track, s.face_rad),
                        s.height_px - SupportHeight(track, s.face_rad));
   return e;
 }

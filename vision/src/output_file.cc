@@ -55,6 +55,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::Write(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return;
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
     Fail(name_.target(), errno);
   }

@@ -68,6 +68,16 @@ PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground) {
   return plane;
 }
 
+core::PixelPoint ToImage(const PlaneTrack& track, double along_px,
+                         double height_px) {
+  const double angle = calib::ImageAngle(track.ground);
+  const double along = track.direction * along_px;
+  return {track.ground.reference.x_px + along * std::cos(angle) +
+              height_px * std::sin(angle),
+          track.ground.reference.y_px + along * std::sin(angle) -
+              height_px * std::cos(angle)};
+}
+
 double SupportHeight(const PlaneTrack& track, double face_rad) {
   if (track.kind == core::BodyKind::kSphere) return track.half_long_px;
   return track.half_long_px * std::abs(std::sin(face_rad)) +

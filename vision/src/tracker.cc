@@ -199,6 +199,60 @@ std::optional<Pose> PoseIn(const Track& track, std::int64_t frame) {
   return pose;
 }
 
+// Mean level of a frame inside the outline, clear of its edge.
+double LevelInside(const core::Frame& frame, const Outline& outline) {
+  const double reach = outline.kind == core::BodyKind::kSphere
+                           ? outline.radius_px
+                           : outline.half_long_px;
+  double sum = 0.0;
+  double count = 0.0;
+  for (int y = static_cast<int>(outline.centre.y_px - reach);
+       y <= static_cast<int>(outline.centre.y_px + reach); ++y) {
+    for (int x = static_cast<int>(outline.centre.x_px - reach);
+         x <= static_cast<int>(outline.centre.x_px + reach); ++x) {
+      if (x < 0 || y < 0 || x >= frame.width_px || y >= frame.height_px) {
+        continue;
+      }
+      if (DepthInside(outline, x, y) < 0.3 * reach) continue;
+      sum += frame.at(x, y);
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+// Before the track begins and after it ends the picture may be empty, or the
+// body may rest where the track begins or ends, unmoved and so unseen. Empty
+// frames are the best background there is.
+class Absence {
+ public:
+  Absence(Clip& clip, const Track& track) : clip_(clip), track_(track) {
+    const Pose& first = track.poses.front();
+    const Pose& last = track.poses.back();
+    level_first_ =
+        LevelInside(clip.Read(first.frame), OutlineAt(track.body, first));
+    level_last_ =
+        LevelInside(clip.Read(last.frame), OutlineAt(track.body, last));
+  }
+  // True if `frame` lies outside the track and the body is not in it.
+  bool Holds(std::int64_t frame) const {
+    const Pose& first = track_.poses.front();
+    const Pose& last = track_.poses.back();
+    const bool before = frame < first.frame;
+    if (!before && frame <= last.frame) return false;
+    const double level = LevelInside(
+        clip_.Read(frame), OutlineAt(track_.body, before ? first : last));
+    return std::abs(level - (before ? level_first_ : level_last_)) >
+           0.5 * std::abs(track_.body.contrast_dn);
+  }
+
+ private:
+  Clip& clip_;
+  const Track& track_;
+  double level_first_ = 0.0;
+  double level_last_ = 0.0;
+};
+
 // Marks what the body covers in `frame`, with a margin for blur, for the error
 // of a first look and for the shadow's rim.
 bool Cover(const Track& track, std::int64_t frame, const Background& background,
@@ -278,10 +332,12 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
 
   // Now that the body's place is known, the background without it.
   double most_covered = 0.0;
+  const Absence absence(clip, track);
   Background behind = EstimateBackgroundBehind(
       clip, options.first, track.last_frame,
       [&](std::int64_t frame, std::vector<std::uint8_t>& mask) {
-        return Cover(track, frame, result.background, mask);
+        return Cover(track, frame, result.background, mask) ||
+               absence.Holds(frame);
       },
       result.background, {}, &most_covered);
   // Covered less than a fifth of the time, a pixel's mid-mean is untouched.

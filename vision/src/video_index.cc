@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string_view>
+
+#include "ffv1_check.h"
 
 namespace touchdown::vision {
 namespace {
@@ -48,6 +52,41 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   index.uniform = FitsGrid(pts, index.fps, tick_s);
 }
 
+// The container's own list of an uncompressed stream, if it names every frame
+// and the file has room for the last.
+std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
+                                      AVRational declared) {
+  const int count = avformat_index_get_entries_count(&stream);
+  const std::int64_t frames =
+      stream.nb_frames > 0 ? stream.nb_frames : stream.duration;
+  if (stream.codecpar->codec_id != AV_CODEC_ID_RAWVIDEO || count < 2 ||
+      count != frames) {
+    return std::nullopt;
+  }
+  VideoIndex index;
+  std::int64_t before = 0;
+  std::int64_t end = 0;
+  for (int i = 0; i < count; ++i) {
+    const AVIndexEntry* const entry = avformat_index_get_entry(&stream, i);
+    // .cine lists no sizes; elsewhere an empty chunk stands for a lost frame.
+    const bool sizes = std::string_view(format.iformat->name) != "cine";
+    const bool in_order =
+        i == 0 || (entry->timestamp > index.pts.back() && entry->pos > before);
+    if (!in_order || (sizes && entry->size <= 0) ||
+        (entry->flags & AVINDEX_KEYFRAME) == 0) {
+      return std::nullopt;
+    }
+    end = entry->pos + (sizes ? entry->size : entry->pos - before);
+    before = entry->pos;
+    index.packets.push_back({entry->timestamp, entry->timestamp, -1, true});
+    index.pts.push_back(entry->timestamp);
+  }
+  if (format.pb == nullptr || end > avio_size(format.pb)) return std::nullopt;
+  index.frames = count;
+  FindRate(index.pts, stream, declared, index);
+  return index;
+}
+
 }  // namespace
 
 VideoPacket Describe(const AVPacket& packet) {
@@ -73,11 +112,32 @@ std::size_t VideoIndex::KeyPacketFor(std::int64_t index) const {
   return best;
 }
 
-VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
+std::int64_t VideoIndex::KeyFrameAfter(std::int64_t index) const {
+  std::int64_t after = frames;
+  if (pts.empty()) {
+    // Without timestamps, frames are in the order of their packets.
+    const auto begin = packets.begin() + static_cast<std::ptrdiff_t>(index) + 1;
+    const auto key = std::find_if(begin, packets.end(),
+                                  [](const VideoPacket& p) { return p.key; });
+    return std::min<std::int64_t>(key - packets.begin(), frames);
+  }
+  const std::int64_t time = pts[static_cast<std::size_t>(index)];
+  for (const VideoPacket& packet : packets) {
+    if (!packet.key || packet.pts <= time) continue;
+    if (const auto frame = FrameAt(packet.pts)) after = std::min(after, *frame);
+  }
+  return after;
+}
+
+VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
                       AVRational declared) {
+  if (auto listed = IndexByList(format, stream, declared)) return *listed;
   VideoIndex index;
   const LibavPtr<AVPacket> packet(av_packet_alloc());
   std::vector<std::int64_t> pts;
+  std::vector<std::int64_t> damaged;  // their presentation times
+  std::vector<std::int64_t> damaged_numbers;
+  bool has_sums = stream.codecpar->codec_id == AV_CODEC_ID_FFV1;
   std::int64_t last_dts = AV_NOPTS_VALUE;
   bool timed = true;
   int result = 0;
@@ -93,6 +153,16 @@ VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
       index.packets.push_back(Describe(*packet));
       // Frames before the start of an edit list are decoded but not shown.
       if ((packet->flags & AV_PKT_FLAG_DISCARD) == 0) {
+        const std::span<const std::uint8_t> bytes(
+            packet->data, static_cast<std::size_t>(packet->size));
+        if (has_sums && !Ffv1SumsHold(bytes)) {
+          if (index.frames == 0) {
+            has_sums = false;  // written without them
+          } else {
+            damaged.push_back(packet->pts);
+            damaged_numbers.push_back(index.frames);
+          }
+        }
         ++index.frames;
         timed = timed && packet->pts != AV_NOPTS_VALUE;
         pts.push_back(packet->pts);
@@ -122,6 +192,15 @@ VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
   const bool distinct = std::adjacent_find(pts.begin(), pts.end()) == pts.end();
   index.coarse = !distinct;
   if (timed && distinct) index.pts = std::move(pts);
+  if (index.pts.empty()) {
+    index.damaged = std::move(damaged_numbers);
+  } else {
+    for (const std::int64_t time : damaged) {
+      if (const auto frame = index.FrameAt(time)) {
+        index.damaged.push_back(*frame);
+      }
+    }
+  }
   return index;
 }
 

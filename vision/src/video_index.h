@@ -1,5 +1,6 @@
 // Every packet of a video stream, so that frames have exact numbers and times:
-// made by demuxing the whole file once, without decoding.
+// made by demuxing the whole file once, without decoding (uncompressed video is
+// large: there the container's own list is taken if it is complete).
 #pragma once
 
 #include <cstdint>
@@ -15,13 +16,14 @@ namespace touchdown::vision {
 struct VideoPacket {
   std::int64_t pts = AV_NOPTS_VALUE;
   std::int64_t dts = AV_NOPTS_VALUE;
-  std::int64_t pos = -1;
+  std::int64_t pos = -1;  // byte in the file; -1: not known
   bool key = false;
 
   // Whether a packet read again is this one. Not by dts: some demuxers guess it
   // from what they read before.
   bool Is(const VideoPacket& other) const {
-    return pts == other.pts && pos == other.pos && key == other.key &&
+    const bool same_place = pos < 0 || pos == other.pos;
+    return pts == other.pts && same_place && key == other.key &&
            (pts != AV_NOPTS_VALUE || pos >= 0);
   }
 };
@@ -36,19 +38,23 @@ struct VideoIndex {
   std::vector<std::int64_t> pts;
   std::int64_t frames = 0;
   bool uniform = true;
-  bool coarse = false;      // timestamps that several frames share
-  double fps = 0.0;         // mean rate if not uniform; 0: the file tells none
+  bool coarse = false;  // timestamps that several frames share
+  double fps = 0.0;     // mean rate if not uniform; 0: the file tells none
+  std::vector<std::int64_t> damaged;  // frames known to be, ascending
   std::string ended_early;  // why demuxing stopped before the end, or empty
 
   // Number of the frame shown at `pts`, if there is one.
   std::optional<std::int64_t> FrameAt(std::int64_t pts) const;
   // The last key packet from which frame `index` can be decoded.
   std::size_t KeyPacketFor(std::int64_t index) const;
+  // The first key frame after frame `index`, or the number of frames.
+  std::int64_t KeyFrameAfter(std::int64_t index) const;
 };
 
-// Reads on from the beginning to the end of the file. `declared` is the rate
-// that the container states, or 0/1.
-VideoIndex IndexVideo(AVFormatContext& format, const AVStream& stream,
+// Reads on from the beginning to the end of the file; of uncompressed video
+// whose container has a complete list of frames, only that list. `declared` is
+// the rate that the container states, or 0/1.
+VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
                       AVRational declared);
 
 // Whether the rate is one that players use (23.976, 24, 25, 29.97, 30, 50,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,6 +60,17 @@ struct TrialFilter {
   // The analysis documents are most of a store's bytes; without them
   // document_json is empty.
   bool with_documents = true;
+};
+
+// Thrown by Store::LogTrials: which of the trials cannot be recorded, and why.
+class TrialRefused : public std::invalid_argument {
+ public:
+  TrialRefused(std::size_t index, const std::string& why)
+      : std::invalid_argument(why), index_(index) {}
+  std::size_t index() const { return index_; }
+
+ private:
+  std::size_t index_;
 };
 
 // What became of a trial that was logged.

@@ -74,7 +74,8 @@ class Store {
   // excluded stays so. Body and angle kind must be those of the campaign, which
   // must exist; the origin of a trial cannot change.
   Logged LogTrial(const core::Trial& trial);
-  // The same for many, in one transaction: all or none.
+  // The same for many, in one transaction: all or none. A trial that LogTrial
+  // would refuse is a TrialRefused.
   std::vector<Logged> LogTrials(std::span<const core::Trial> trials);
 
   // A person's revision. `seen` is the trial as Find gave it, with the fields

@@ -50,6 +50,7 @@ struct ClipInfo {
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
   std::int32_t bit_depth = 8;           // significant bits of a sample, 1..16
+  bool has_colour = false;              // colour differences can be read, too
   std::int64_t frames = 0;              // that can be read
   std::int64_t first_camera_frame = 0;  // the camera's own number of frame 0
   std::optional<SensorOrigin> sensor_origin;  // absent: the file does not say
@@ -57,7 +58,15 @@ struct ClipInfo {
   std::vector<std::string> warnings;  // one sentence each, for the user
 };
 
+// Which gray picture is made of a colour recording.
+enum class Channel { kLuma, kBlueDifference, kRedDifference };
+std::string_view Name(Channel channel);  // "luma", "blue difference (Cb)", ...
+
 struct ClipOptions {
+  // The colour differences are there where ClipInfo::has_colour says so; else
+  // OpenClip throws std::invalid_argument for anything but luma.
+  Channel channel = Channel::kLuma;
+
   // Recorded frame rate, in frames per second; overrides the file's.
   std::optional<double> fps = std::nullopt;
   // Threads of a video decoder; 0: one for each core. Affects speed only.

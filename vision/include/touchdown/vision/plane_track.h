@@ -46,6 +46,10 @@ struct PlaneTrack {
 // displacement; right where there is none.
 PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground);
 
+// A point of the plane, in the image.
+core::PixelPoint ToImage(const PlaneTrack& track, double along_px,
+                         double height_px);
+
 // Height of a centre above the lowest point of its outline: the radius, or
 // a |sin(face)| + b |cos(face)| for half sides a, b.
 double SupportHeight(const PlaneTrack& track, double face_rad);

@@ -1,0 +1,275 @@
+#include "app/cli/case_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "app/report/text.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::cli {
+namespace {
+
+using core::InputError;
+
+std::string_view Trim(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+struct RawRow {
+  std::size_t line = 1;
+  std::vector<std::string> cells;
+};
+
+std::vector<RawRow> Split(const std::string& file, const std::string& text) {
+  std::vector<RawRow> rows;
+  RawRow row;
+  std::string cell;
+  std::size_t line = 1;
+  bool quoted = false;
+  const auto end_row = [&] {
+    row.cells.push_back(std::exchange(cell, {}));
+    const bool blank = row.cells.size() == 1 && Trim(row.cells[0]).empty();
+    if (!blank) rows.push_back(std::move(row));
+    row = RawRow{};
+    row.line = line + 1;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n' && quoted) ++line;
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      cell += '"';
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && c == ',') {
+      row.cells.push_back(std::exchange(cell, {}));
+    } else if (!quoted && c == '\n') {
+      end_row();
+      ++line;
+    } else if (quoted || c != '\r') {
+      cell += c;
+    }
+  }
+  if (quoted) {
+    throw InputError(fmt::format(
+        "{}: line {}: a quoted cell is never closed; expected a closing \"",
+        file, row.line));
+  }
+  if (!cell.empty() || !row.cells.empty()) end_row();
+  return rows;
+}
+
+std::string ReadAll(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(
+        fmt::format("{}: is a folder; expected a CSV file of cases", path));
+  }
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  if (in) text << in.rdbuf();
+  if (!in) {
+    throw InputError(fmt::format("{}: cannot be read: {}", path,
+                                 std::strerror(errno == 0 ? EIO : errno)));
+  }
+  std::string out = text.str();
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (out.starts_with(kByteOrderMark)) out.erase(0, kByteOrderMark.size());
+  return out;
+}
+
+}  // namespace
+
+CaseRow::CaseRow(std::shared_ptr<const Header> header, std::size_t line,
+                 std::vector<std::string> cells)
+    : header_(std::move(header)), line_(line), cells_(std::move(cells)) {}
+
+std::optional<std::size_t> CaseRow::Find(std::string_view column) const {
+  const auto& columns = header_->columns;
+  const auto it = std::find(columns.begin(), columns.end(), column);
+  if (it == columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(it - columns.begin());
+}
+
+std::optional<std::size_t> CaseRow::FindNumber(std::string_view column) const {
+  const auto filled = [&](const std::string& name) {
+    const auto index = Find(name);
+    return index && !Trim(cells_[*index]).empty() ? index : std::nullopt;
+  };
+  if (const auto hex = filled(std::string(column) + "_hex")) return hex;
+  const std::string_view stem = column.substr(0, column.rfind('_'));
+  if (const auto hex = filled(std::string(stem) + "_hex")) return hex;
+  return filled(std::string(column));
+}
+
+bool CaseRow::HasColumn(std::string_view column) const {
+  return Find(column).has_value();
+}
+
+const std::string& CaseRow::Text(std::string_view column) const {
+  const auto index = Find(column);
+  if (!index) {
+    throw InputError(fmt::format("{}: header: there is no column '{}'",
+                                 header_->file, column));
+  }
+  return cells_[*index];
+}
+
+double CaseRow::Parse(std::size_t index) const {
+  const std::string text(Trim(cells_[index]));
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() + text.size() || !std::isfinite(value)) {
+    Refuse(header_->columns[index],
+           "a finite number of double's range, decimal or hexadecimal");
+  }
+  return value;
+}
+
+double CaseRow::Number(std::string_view column) const {
+  if (const auto index = FindNumber(column)) return Parse(*index);
+  static_cast<void>(Text(column));  // complains where the column is missing
+  Refuse(column, "a number");
+}
+
+std::optional<double> CaseRow::OptionalNumber(std::string_view column) const {
+  if (const auto index = FindNumber(column)) return Parse(*index);
+  return std::nullopt;
+}
+
+int CaseRow::Choice(std::string_view column,
+                    const std::vector<int>& allowed) const {
+  const double value = Number(column);
+  std::string list;
+  for (const int choice : allowed) {
+    if (value == choice) return choice;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", choice);
+  }
+  Refuse(column, "one of " + list);
+}
+
+void CaseRow::Refuse(std::string_view column, std::string_view expected) const {
+  const auto index = Find(column);
+  throw InputError(fmt::format(
+      "{}: line {}, column {}: is '{}', expected {}", header_->file, line_,
+      column, index ? std::string(Trim(cells_[*index])) : "", expected));
+}
+
+void CaseRow::Answer(const std::function<void()>& answer) const {
+  try {
+    answer();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(
+        fmt::format("{}: line {}: {}", header_->file, line_, error.what()));
+  }
+}
+
+bool CaseTable::HasColumn(std::string_view column) const {
+  return std::find(header->columns.begin(), header->columns.end(), column) !=
+         header->columns.end();
+}
+
+CaseTable ReadCases(const std::string& path,
+                    const std::vector<std::string>& columns) {
+  auto raw = Split(path, ReadAll(path));
+  if (raw.empty()) {
+    throw InputError(
+        fmt::format("{}: is empty; expected a header and rows of cases", path));
+  }
+  auto header = std::make_shared<CaseRow::Header>();
+  header->file = path;
+  for (const std::string& name : raw[0].cells) {
+    header->columns.emplace_back(Trim(name));
+  }
+  CaseTable table;
+  table.header = header;
+  for (const std::string& column : columns) {
+    if (!table.HasColumn(column)) {
+      throw InputError(
+          fmt::format("{}: header: there is no column '{}'; expected {}", path,
+                      column, fmt::join(columns, ", ")));
+    }
+  }
+  for (std::size_t i = 1; i < raw.size(); ++i) {
+    if (raw[i].cells.size() != header->columns.size()) {
+      throw InputError(fmt::format(
+          "{}: line {}: has {} cells; expected {} as in the header", path,
+          raw[i].line, raw[i].cells.size(), header->columns.size()));
+    }
+    table.rows.emplace_back(header, raw[i].line, std::move(raw[i].cells));
+  }
+  if (table.rows.empty()) {
+    throw InputError(fmt::format(
+        "{}: has a header and no cases; expected at least one row", path));
+  }
+  return table;
+}
+
+std::string Cell(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{:.17g}", value);
+}
+
+std::string Cell(std::optional<double> value) {
+  return value ? Cell(*value) : std::string();
+}
+
+std::string Cell(int value) { return std::to_string(value); }
+
+std::string Cell(std::string_view value) { return std::string(value); }
+
+CaseWriter::CaseWriter(std::vector<std::string> columns)
+    : n_columns_(columns.size()) {
+  Add(columns);
+}
+
+void CaseWriter::Add(const std::vector<std::string>& cells) {
+  if (cells.size() != n_columns_) {
+    throw std::logic_error(fmt::format("row has {} cells, table has {} columns",
+                                       cells.size(), n_columns_));
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) csv_ += ',';
+    csv_ += report::CsvCell(cells[i]);
+  }
+  csv_ += '\n';
+}
+
+void WriteResult(std::string_view text, const std::string& path) {
+  if (path.empty()) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
+        std::fflush(stdout) != 0) {
+      throw InputError(fmt::format("standard output: cannot be written: {}",
+                                   std::strerror(errno)));
+    }
+    return;
+  }
+  const std::string temporary = fmt::format("{}.{}.part", path, getpid());
+  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(temporary, path, error);
+  if (!out || error) {
+    const std::string why =
+        error ? error.message() : std::string(std::strerror(errno));
+    std::filesystem::remove(temporary, error);
+    throw InputError(fmt::format("{}: cannot be written: {}", path, why));
+  }
+}
+
+}  // namespace touchdown::cli

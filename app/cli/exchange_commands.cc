@@ -1,0 +1,273 @@
+// export, import: trials to and from files.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "app/cli/command.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/report/trial_csv.h"
+#include "app/report/trial_json.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/db/maintenance.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Format { kCsv, kJsonLines };
+
+Format FormatOf(const std::string& flag, const std::string& file) {
+  const std::string kind =
+      !flag.empty() ? flag : fs::path(file).extension().string();
+  if (kind == "csv" || kind == ".csv") return Format::kCsv;
+  if (kind == "jsonl" || kind == ".jsonl") return Format::kJsonLines;
+  if (flag.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: the format does not follow from the name; give "
+                    "--format csv or --format jsonl",
+                    file.empty() ? "stdout" : file));
+  }
+  throw std::invalid_argument(
+      fmt::format("--format is '{}', must be csv or jsonl", flag));
+}
+
+// --- export ------------------------------------------------------------------
+
+struct ExportFlags {
+  std::string db;
+  std::string out;
+  std::string format;
+  std::string campaign;
+};
+
+void WriteAll(std::ostream& out, const db::Store& store,
+              const ExportFlags& flags, Format format) {
+  if (format == Format::kCsv) {
+    db::TrialFilter filter;
+    if (!flags.campaign.empty()) filter.campaign = flags.campaign;
+    filter.with_documents = false;
+    report::WriteTrialsCsv(out, store.Trials(filter));
+    return;
+  }
+  report::WriteExportHeader(out, store.uuid());
+  for (const auto& campaign : store.Campaigns()) {
+    if (flags.campaign.empty() || campaign.name == flags.campaign) {
+      out << report::CampaignJson(campaign) << '\n';
+    }
+  }
+  store.ForEachHistory([&](const std::vector<db::Revision>& history) {
+    if (!flags.campaign.empty() &&
+        history.front().trial.campaign != flags.campaign) {
+      return;
+    }
+    for (const auto& revision : history) {
+      out << report::RevisionJson(revision) << '\n';
+    }
+  });
+}
+
+int Export(const ExportFlags& flags) {
+  const Format format = FormatOf(flags.format, flags.out);
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  if (!flags.campaign.empty() && !store.FindCampaign(flags.campaign)) {
+    throw core::StoreError(
+        fmt::format("{}: there is no campaign '{}'; see `touchdown campaign "
+                    "list --db {}`",
+                    flags.db, flags.campaign, flags.db));
+  }
+  if (flags.out.empty()) {
+    WriteAll(std::cout, store, flags, format);
+    std::cout.flush();
+    if (!std::cout) {
+      throw core::InputError("stdout: the export could not be written");
+    }
+    return 0;
+  }
+  // Whole or absent: written beside under another name, then renamed.
+  const fs::path part = fmt::format("{}.{}.part", flags.out, getpid());
+  {
+    std::ofstream out(part, std::ios::binary);
+    WriteAll(out, store, flags, format);
+    out.flush();
+    if (!out) {
+      std::error_code ignored;
+      fs::remove(part, ignored);
+      throw core::InputError(fmt::format(
+          "{}: the export could not be written; check the folder and the disk",
+          flags.out));
+    }
+  }
+  fs::rename(part, flags.out);
+  return 0;
+}
+
+// --- import ------------------------------------------------------------------
+
+struct ImportFlags {
+  std::string db;
+  std::string file;
+  std::string format;
+  std::string by;
+  bool partial = false;
+  bool columns = false;
+};
+
+int PrintColumns() {
+  std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
+  for (const auto& column : report::TrialCsvColumns()) {
+    rows.push_back({column.name, column.meaning});
+  }
+  fmt::print("{}", Aligned(rows));
+  return 0;
+}
+
+int ImportCsv(const ImportFlags& flags, std::istream& in) {
+  auto read = report::ReadTrialsCsv(in, flags.file, flags.by);
+  auto& errors = read.errors;
+  if (!flags.partial && !errors.empty()) {
+    for (std::size_t i = 1; i < errors.size(); ++i) {
+      fmt::print(stderr, "touchdown: {}\n", Printable(errors[i]));
+    }
+    throw core::InputError(fmt::format(
+        "{} ({} error{} in all; nothing was imported, --partial takes the rows "
+        "that are right)",
+        Printable(errors.front()), errors.size(),
+        errors.size() == 1 ? "" : "s"));
+  }
+  auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  std::vector<core::Trial> good;
+  std::vector<std::size_t> rows;
+  for (auto& [row, trial] : read.trials) {
+    std::string error;
+    if (!trial.id.empty()) {
+      try {
+        if (store.Find(trial.id)) {
+          error =
+              "this trial is in the store already; leave the cell empty "
+              "for a new one";
+        }
+      } catch (const std::invalid_argument& invalid) {
+        error = invalid.what();
+      }
+    }
+    const bool no_campaign =
+        !trial.campaign.empty() && !store.FindCampaign(trial.campaign);
+    if (no_campaign) {
+      error =
+          "there is no such campaign; make it with `touchdown campaign new`";
+    }
+    if (!error.empty()) {
+      errors.push_back(
+          fmt::format("{}: row {}, column {}: '{}': {}", flags.file, row,
+                      no_campaign ? "campaign" : "id",
+                      no_campaign ? trial.campaign : trial.id, error));
+      if (!flags.partial) throw core::InputError(Printable(errors.back()));
+      continue;
+    }
+    good.push_back(std::move(trial));
+    rows.push_back(row);
+  }
+  std::size_t imported = 0;
+  if (!flags.partial) {
+    try {
+      imported = store.LogTrials(good).size();
+    } catch (const db::TrialRefused& refused) {
+      throw core::InputError(fmt::format("{}: row {}: {}", flags.file,
+                                         rows.at(refused.index()),
+                                         Printable(refused.what())));
+    }
+  } else {
+    for (std::size_t i = 0; i < good.size(); ++i) {
+      try {
+        store.LogTrials({&good[i], 1});
+        ++imported;
+      } catch (const db::TrialRefused& refused) {
+        errors.push_back(
+            fmt::format("{}: row {}: {}", flags.file, rows[i], refused.what()));
+      }
+    }
+  }
+  for (const auto& error : errors) {
+    fmt::print(stderr, "touchdown: {}\n", Printable(error));
+  }
+  fmt::print("{} trials imported, {} errors\n", imported, errors.size());
+  return errors.empty() ? 0 : 5;
+}
+
+int ImportJsonLines(const ImportFlags& flags, std::istream& in) {
+  report::ExportReader reader(in, flags.file);
+  auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  const db::MergeReport report =
+      db::Restore(store, reader.store_uuid(), reader.campaigns(),
+                  [&reader] { return reader.NextHistory(); });
+  for (const auto& conflict : report.conflicts) {
+    fmt::print("conflict: {}\n", Printable(conflict));
+  }
+  fmt::print(
+      "{} trials, {} revisions, {} campaigns imported; {} revisions were here "
+      "already; {} conflicts\n",
+      report.trials_added, report.revisions_added, report.campaigns_added,
+      report.revisions_known, report.conflicts.size());
+  return 0;
+}
+
+int Import(const ImportFlags& flags) {
+  if (flags.columns) return PrintColumns();
+  if (flags.file.empty()) {
+    throw std::invalid_argument(
+        "FILE is missing, must be a .csv or .jsonl file (or --columns)");
+  }
+  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  const Format format = FormatOf(flags.format, flags.file);
+  std::ifstream in(flags.file, std::ios::binary);
+  if (!in || fs::is_directory(flags.file)) {
+    throw core::InputError(fmt::format(
+        "{}: cannot be read; check the path and its permissions", flags.file));
+  }
+  return format == Format::kCsv ? ImportCsv(flags, in)
+                                : ImportJsonLines(flags, in);
+}
+
+}  // namespace
+
+void AddExport(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<ExportFlags>();
+  CLI::App* command = app.add_subcommand(
+      "export", "trials as CSV (flat) or JSON lines (lossless)");
+  AddDbFlag(*command, flags->db);
+  command->add_option("--out", flags->out, "FILE.csv or FILE.jsonl; or stdout");
+  command->add_option("--format", flags->format, "csv or jsonl");
+  command->add_option("--campaign", flags->campaign, "only of this campaign");
+  command->callback(
+      [flags, &action] { action = [flags] { return Export(*flags); }; });
+}
+
+void AddImport(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<ImportFlags>();
+  CLI::App* command = app.add_subcommand(
+      "import", "trials from CSV, or what `export` wrote as JSON lines");
+  command->add_option("FILE", flags->file, "FILE.csv or FILE.jsonl");
+  command->add_option("--db", flags->db, "the trial store, e.g. lab.db");
+  command->add_option("--format", flags->format, "csv or jsonl");
+  command->add_option("--by", flags->by,
+                      "who states rows without an author (CSV)");
+  command->add_flag("--partial", flags->partial,
+                    "import the rows that are right, report the others (CSV)");
+  command->add_flag("--columns", flags->columns, "print the columns of a CSV");
+  command->callback(
+      [flags, &action] { action = [flags] { return Import(*flags); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,502 @@
+// log, correct, campaign: what people state.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "app/cli/command.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/pipeline/version.h"
+#include "app/report/trial_json.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::cli {
+namespace {
+
+using core::kDegree;
+using core::kMillimetre;
+
+// --- what a trial by hand may say --------------------------------------------
+
+struct StatementFlags {
+  std::optional<double> angle_deg;
+  std::optional<double> angle_u_deg;
+  std::string angle_kind;
+  std::string state;
+  std::string corner;
+  std::optional<double> set_angle_deg;
+  std::optional<double> set_speed_mps;
+  std::string note;
+};
+
+void AddStatementFlags(CLI::App& command, StatementFlags& flags) {
+  command.add_option("--angle-deg", flags.angle_deg, "the contact angle");
+  command.add_option("--angle-u-deg", flags.angle_u_deg,
+                     "its standard uncertainty");
+  command.add_option(
+      "--angle-kind", flags.angle_kind,
+      "approach, radius or face; the campaign's where not given");
+  command.add_option("--state", flags.state, kStateWords);
+  command.add_option("--corner", flags.corner, "leading, trailing or flush");
+  command.add_option("--set-angle-deg", flags.set_angle_deg,
+                     "set-point of the varied angle");
+  command.add_option("--set-speed-mps", flags.set_speed_mps,
+                     "set-point of the launch speed");
+  command.add_option("--note", flags.note, "what was seen");
+}
+
+void RequireAngle(const std::string& flag, double angle_deg, double low_deg) {
+  if (!(angle_deg >= low_deg && angle_deg <= 90.0)) {
+    throw std::invalid_argument(
+        fmt::format("{} is {}, must be in {} .. 90", flag, angle_deg, low_deg));
+  }
+}
+
+// Puts what was given into `trial`; the rest stays as it is.
+void Apply(const StatementFlags& flags, core::Trial& trial) {
+  core::Contact& contact = trial.first.contact;
+  if (flags.angle_deg.has_value() != flags.angle_u_deg.has_value()) {
+    throw std::invalid_argument(
+        "--angle-deg and --angle-u-deg go together: a measured angle has an "
+        "uncertainty (a good protractor reads to 0.5 deg)");
+  }
+  if (!flags.angle_kind.empty()) {
+    trial.angle_kind = ParseWord<core::AngleKind>(
+        "--angle-kind", flags.angle_kind, core::ParseAngleKind,
+        "approach, radius or face");
+  }
+  if (flags.angle_deg) {
+    const bool face = trial.angle_kind == core::AngleKind::kFace;
+    RequireAngle("--angle-deg", *flags.angle_deg, face ? -90.0 : 0.0);
+    RequireAngle("--angle-u-deg", *flags.angle_u_deg, 0.0);
+    const core::Estimate angle{*flags.angle_deg * kDegree,
+                               *flags.angle_u_deg * kDegree, std::nullopt};
+    switch (trial.angle_kind) {
+      case core::AngleKind::kApproach:
+        contact.approach_angle_rad = angle;
+        break;
+      case core::AngleKind::kRadius:
+        contact.radius_angle_rad = angle;
+        break;
+      case core::AngleKind::kFace:
+        contact.face_angle_rad = angle;
+        break;
+    }
+  }
+  if (!flags.state.empty()) {
+    trial.first.state.label = ParseWord<core::MotionState>(
+        "--state", flags.state, core::ParseMotionState, kStateWords);
+    trial.first.state.p_bounce.reset();
+    trial.first.state.reason = "stated by hand";
+  }
+  if (!flags.note.empty()) trial.first.state.reason = flags.note;
+  if (!flags.corner.empty()) {
+    contact.corner =
+        ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
+                                "leading, trailing or flush");
+  }
+  if (flags.set_angle_deg) {
+    RequireAngle("--set-angle-deg", *flags.set_angle_deg, -90.0);
+    trial.set_angle_rad = *flags.set_angle_deg * kDegree;
+  }
+  if (flags.set_speed_mps) {
+    if (!(*flags.set_speed_mps >= 0.0) ||
+        !std::isfinite(*flags.set_speed_mps)) {
+      throw std::invalid_argument(
+          fmt::format("--set-speed-mps is {}, must be at least 0 and finite",
+                      *flags.set_speed_mps));
+    }
+    trial.set_speed_mps = *flags.set_speed_mps;
+  }
+}
+
+core::Trial ManualTrial() {
+  core::Trial trial;
+  trial.origin = core::Origin::kManual;
+  trial.software_version = pipeline::Version();
+  core::ContactRecord& first = trial.first;
+  first.contact.found = true;
+  for (core::Measured* measured : {&first.contact.time_s,
+                                   &first.contact.frame,
+                                   &first.contact.approach_angle_rad,
+                                   &first.contact.radius_angle_rad,
+                                   &first.contact.face_angle_rad,
+                                   &first.contact.duration_s,
+                                   &first.state.max_gap_m,
+                                   &first.state.bounce_height_m,
+                                   &first.state.detectable_gap_m,
+                                   &first.motion.before_speed_mps,
+                                   &first.motion.before_normal_mps,
+                                   &first.motion.before_tangential_mps,
+                                   &first.motion.before_omega_rad_per_s,
+                                   &first.motion.after_normal_mps,
+                                   &first.motion.after_tangential_mps,
+                                   &first.motion.after_omega_rad_per_s,
+                                   &first.motion.restitution,
+                                   &first.motion.centre_rebound_ratio,
+                                   &first.motion.impulse_ratio,
+                                   &first.motion.gravity_check_mps2}) {
+    *measured = core::AbsentBecause("not recorded by hand");
+  }
+  return trial;
+}
+
+void PrintLogged(const db::Logged& logged, bool json) {
+  if (json) {
+    // Of ASCII only: a UUID, a number, a truth value.
+    fmt::print(
+        "{{\"schema\": \"touchdown.logged/1\", \"id\": \"{}\", \"revision\": "
+        "{}, \"is_new\": {}}}\n",
+        logged.id, logged.revision, logged.is_new);
+  } else {
+    fmt::print("trial {} revision {}\n", logged.id, logged.revision);
+  }
+}
+
+struct LogFlags {
+  std::string db;
+  std::string campaign;
+  BodyFlags body;
+  StatementFlags statement;
+  std::string by;
+  bool json = false;
+};
+
+int Log(const LogFlags& flags) {
+  core::Trial trial = ManualTrial();
+  if (flags.statement.state.empty()) {
+    throw std::invalid_argument(
+        fmt::format("--state is missing, must be {}", kStateWords));
+  }
+  trial.campaign = flags.campaign;
+  trial.author = flags.by;
+  const auto body = ParseBody(flags.body);
+  if (flags.campaign.empty() && !body) {
+    throw std::invalid_argument(
+        "--body is missing, must be sphere or rectangle (or give --campaign, "
+        "whose body it is)");
+  }
+  // A store is made only for what has been found right.
+  core::Trial rehearsal = trial;
+  if (body) {
+    rehearsal.body = *body;
+    rehearsal.angle_kind = core::DefaultAngleKind(body->kind);
+  }
+  Apply(flags.statement, rehearsal);
+  auto store =
+      db::Store::Open(flags.db, flags.campaign.empty() ? db::OpenMode::kCreate
+                                                       : db::OpenMode::kWrite);
+  if (!flags.campaign.empty()) {
+    const auto campaign = store.FindCampaign(flags.campaign);
+    if (!campaign) {
+      throw core::StoreError(fmt::format(
+          "{}: there is no campaign '{}'; make it with `touchdown campaign "
+          "new`, or see `touchdown campaign list`",
+          flags.db, flags.campaign));
+    }
+    trial.body = campaign->body;
+    trial.angle_kind = campaign->angle_kind;
+    trial.first.state.bounce_height_m =
+        core::Estimate{campaign->bounce_height_m, 0.0, std::nullopt};
+  }
+  if (body) {
+    trial.body = *body;
+    if (flags.campaign.empty()) {
+      trial.angle_kind = core::DefaultAngleKind(body->kind);
+    }
+  }
+  Apply(flags.statement, trial);
+  PrintLogged(store.LogTrial(trial), flags.json);
+  return 0;
+}
+
+// --- correct -----------------------------------------------------------------
+
+struct CorrectFlags {
+  std::string db;
+  std::string id;
+  StatementFlags statement;
+  std::string by;
+  std::string why;
+  bool exclude = false;
+  bool include = false;
+  bool json = false;
+};
+
+int Correct(const CorrectFlags& flags) {
+  auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  const core::Trial seen = RequireTrial(store, flags.id);
+  core::Trial corrected = seen;
+  Apply(flags.statement, corrected);
+  const bool changed = !db::Changes(seen, corrected).empty();
+  if (!changed && !flags.exclude && !flags.include) {
+    throw std::invalid_argument(
+        "nothing would change; give what is to be corrected, --exclude or "
+        "--include");
+  }
+  if (changed && (flags.exclude || flags.include)) {
+    throw std::invalid_argument(
+        "--exclude and --include go alone: correct first, then exclude");
+  }
+  db::Logged logged;
+  if (flags.exclude) {
+    logged = store.Exclude(seen.id, flags.by, flags.why);
+  } else if (flags.include) {
+    logged = store.Include(seen.id, flags.by, flags.why);
+  } else {
+    logged = store.Correct(corrected, flags.by, flags.why);
+  }
+  PrintLogged(logged, flags.json);
+  return 0;
+}
+
+// --- campaign ----------------------------------------------------------------
+
+struct CampaignFlags {
+  std::string db;
+  std::string name;
+  BodyFlags body;
+  std::string surface;
+  std::string angle_kind;
+  std::optional<double> bounce_height_mm;
+  std::string speed_mps;
+  std::string theory;
+  std::optional<double> theory_boundary_deg;
+  std::optional<double> theory_u_deg;
+  double margin_deg = 1.0;
+  bool change = false;
+  bool json = false;
+};
+
+std::string CampaignText(const core::Campaign& campaign) {
+  std::vector<std::vector<std::string>> rows = {
+      {"campaign", Printable(campaign.name)},
+      {"body", BodyText(campaign.body)},
+      {"surface", campaign.surface.empty() ? "-" : Printable(campaign.surface)},
+      {"varied angle", std::string(core::Name(campaign.angle_kind))},
+      {"bounce height, mm",
+       fmt::format("{:.4g}", campaign.bounce_height_m / kMillimetre)},
+      {"speed, m/s",
+       campaign.speed_max_mps > 0.0
+           ? fmt::format("{:.4g} to {:.4g}", campaign.speed_min_mps,
+                         campaign.speed_max_mps)
+           : "not declared"}};
+  std::string theory = "none declared";
+  if (!campaign.theory_name.empty()) {
+    theory = Printable(campaign.theory_name);
+    if (campaign.theory_boundary_rad) {
+      theory += fmt::format(", boundary {:.4g} deg",
+                            *campaign.theory_boundary_rad / kDegree);
+      if (campaign.theory_u_rad > 0.0) {
+        theory += fmt::format(" (u {:.2g})", campaign.theory_u_rad / kDegree);
+      }
+    }
+  }
+  rows.push_back({"theory", theory});
+  rows.push_back(
+      {"margin, deg", fmt::format("{:.4g}", campaign.margin_rad / kDegree)});
+  return Aligned(rows);
+}
+
+core::Campaign CampaignOf(const CampaignFlags& flags) {
+  core::Campaign campaign;
+  campaign.name = flags.name;
+  const auto body = ParseBody(flags.body);
+  if (!body) {
+    throw std::invalid_argument(
+        "--body is missing, must be sphere (with --diameter-mm) or rectangle "
+        "(with --sides-mm)");
+  }
+  campaign.body = *body;
+  campaign.surface = flags.surface;
+  campaign.angle_kind = core::DefaultAngleKind(body->kind);
+  if (!flags.angle_kind.empty()) {
+    campaign.angle_kind = ParseWord<core::AngleKind>(
+        "--angle-kind", flags.angle_kind, core::ParseAngleKind,
+        "approach, radius or face");
+  }
+  if (flags.bounce_height_mm) {
+    campaign.bounce_height_m = *flags.bounce_height_mm * kMillimetre;
+  } else {
+    const auto size = core::Size(*body);
+    if (!size) {
+      throw std::invalid_argument(
+          "--bounce-height-mm is missing, and without the body's size it has "
+          "no default");
+    }
+    campaign.bounce_height_m = core::DefaultBounceHeight(size->value);
+  }
+  if (!flags.speed_mps.empty()) {
+    const auto colon = flags.speed_mps.find(':');
+    std::size_t used_low = 0;
+    std::size_t used_high = 0;
+    bool good = colon != std::string::npos;
+    try {
+      if (good) {
+        const std::string low = flags.speed_mps.substr(0, colon);
+        const std::string high = flags.speed_mps.substr(colon + 1);
+        campaign.speed_min_mps = std::stod(low, &used_low);
+        campaign.speed_max_mps = std::stod(high, &used_high);
+        good = used_low == low.size() && used_high == high.size();
+      }
+    } catch (const std::logic_error&) {
+      good = false;
+    }
+    if (!good) {
+      throw std::invalid_argument(fmt::format(
+          "--speed-mps is '{}', must be like 3.5:4.5", flags.speed_mps));
+    }
+  }
+  campaign.theory_name = flags.theory;
+  if (flags.theory_boundary_deg) {
+    campaign.theory_boundary_rad = *flags.theory_boundary_deg * kDegree;
+  }
+  if (flags.theory_u_deg) campaign.theory_u_rad = *flags.theory_u_deg * kDegree;
+  campaign.margin_rad = flags.margin_deg * kDegree;
+  return campaign;
+}
+
+int NewCampaign(const CampaignFlags& flags) {
+  const core::Campaign campaign = CampaignOf(flags);
+  auto store = db::Store::Open(
+      flags.db, flags.change ? db::OpenMode::kWrite : db::OpenMode::kCreate);
+  if (flags.change) {
+    store.ChangeCampaign(campaign);
+  } else {
+    store.AddCampaign(campaign);
+  }
+  fmt::print("{}", CampaignText(campaign));
+  return 0;
+}
+
+int ListCampaigns(const CampaignFlags& flags) {
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  std::vector<std::vector<std::string>> rows = {
+      {"campaign", "body", "surface", "varied angle", "bounce height, mm",
+       "theory", "boundary, deg"}};
+  for (const auto& campaign : store.Campaigns()) {
+    if (flags.json) {
+      fmt::print("{}\n", report::CampaignJson(campaign));
+      continue;
+    }
+    rows.push_back(
+        {Printable(campaign.name), BodyText(campaign.body),
+         Printable(campaign.surface),
+         std::string(core::Name(campaign.angle_kind)),
+         fmt::format("{:.4g}", campaign.bounce_height_m / kMillimetre),
+         campaign.theory_name.empty() ? "-" : Printable(campaign.theory_name),
+         campaign.theory_boundary_rad
+             ? fmt::format("{:.4g}", *campaign.theory_boundary_rad / kDegree)
+             : "-"});
+  }
+  if (!flags.json) fmt::print("{}", Aligned(rows));
+  return 0;
+}
+
+int ShowCampaign(const CampaignFlags& flags) {
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  const auto campaign = store.FindCampaign(flags.name);
+  if (!campaign) {
+    throw core::StoreError(fmt::format(
+        "{}: there is no campaign '{}'; see `touchdown campaign list --db {}`",
+        flags.db, flags.name, flags.db));
+  }
+  if (flags.json) {
+    fmt::print("{}\n", report::CampaignJson(*campaign));
+    return 0;
+  }
+  db::TrialFilter filter;
+  filter.campaign = flags.name;
+  filter.with_documents = false;
+  fmt::print("{}trials: {}\n", CampaignText(*campaign),
+             store.Trials(filter).size());
+  return 0;
+}
+
+}  // namespace
+
+void AddLog(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<LogFlags>();
+  CLI::App* command =
+      app.add_subcommand("log", "a trial by hand (origin: manual)");
+  AddDbFlag(*command, flags->db);
+  command->add_option("--campaign", flags->campaign, "its campaign");
+  AddBodyFlags(*command, flags->body);
+  AddStatementFlags(*command, flags->statement);
+  command->add_option("--by", flags->by, "who states this")->required();
+  command->add_flag("--json", flags->json, "one JSON document");
+  command->callback(
+      [flags, &action] { action = [flags] { return Log(*flags); }; });
+}
+
+void AddCorrect(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<CorrectFlags>();
+  CLI::App* command = app.add_subcommand(
+      "correct", "a person's revision of a trial; nothing is overwritten");
+  command->add_option("ID", flags->id, "of the trial, or the beginning of it")
+      ->required();
+  AddDbFlag(*command, flags->db);
+  AddStatementFlags(*command, flags->statement);
+  command->add_option("--by", flags->by, "who corrects")->required();
+  command->add_option("--why", flags->why, "the reason")->required();
+  CLI::Option* exclude = command->add_flag("--exclude", flags->exclude,
+                                           "the trial no longer counts");
+  command->add_flag("--include", flags->include, "it counts again")
+      ->excludes(exclude);
+  command->add_flag("--json", flags->json, "one JSON document");
+  command->callback(
+      [flags, &action] { action = [flags] { return Correct(*flags); }; });
+}
+
+void AddCampaign(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "campaign", "trials of one body on one surface, with its conventions");
+  command->require_subcommand(1);
+  auto flags = std::make_shared<CampaignFlags>();
+  CLI::App* make = command->add_subcommand(
+      "new", "declare a campaign before its first trial");
+  make->add_option("NAME", flags->name, "of the campaign")->required();
+  AddDbFlag(*make, flags->db);
+  AddBodyFlags(*make, flags->body);
+  make->add_option("--surface", flags->surface, "e.g. 'asphalt, dry'");
+  make->add_option("--angle-kind", flags->angle_kind,
+                   "the varied angle: approach (default for spheres), radius "
+                   "(rectangles) or face");
+  make->add_option("--bounce-height-mm", flags->bounce_height_mm,
+                   "default: the larger of 0.5 and 2 % of the body's size");
+  make->add_option("--speed-mps", flags->speed_mps,
+                   "band of the speed at touchdown, LOW:HIGH");
+  make->add_option("--theory", flags->theory,
+                   "the one theory that gets a verdict");
+  make->add_option("--theory-boundary-deg", flags->theory_boundary_deg,
+                   "its boundary angle");
+  make->add_option("--theory-u-deg", flags->theory_u_deg,
+                   "standard uncertainty of that");
+  make->add_option("--margin-deg", flags->margin_deg,
+                   "equivalence margin of the verdict")
+      ->capture_default_str();
+  make->add_flag("--change", flags->change,
+                 "change a campaign that has no trials yet");
+  make->callback(
+      [flags, &action] { action = [flags] { return NewCampaign(*flags); }; });
+  CLI::App* list = command->add_subcommand("list", "all campaigns of a store");
+  AddDbFlag(*list, flags->db);
+  list->add_flag("--json", flags->json, "one JSON line for each");
+  list->callback(
+      [flags, &action] { action = [flags] { return ListCampaigns(*flags); }; });
+  CLI::App* show = command->add_subcommand("show", "one campaign");
+  show->add_option("NAME", flags->name, "of the campaign")->required();
+  AddDbFlag(*show, flags->db);
+  show->add_flag("--json", flags->json, "one JSON document");
+  show->callback(
+      [flags, &action] { action = [flags] { return ShowCampaign(*flags); }; });
+}
+
+}  // namespace touchdown::cli

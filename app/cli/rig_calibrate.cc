@@ -1,0 +1,189 @@
+// touchdown rig calibrate
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/rig_commands.h"
+#include "app/cli/rig_flags.h"
+#include "app/cli/rig_print.h"
+#include "app/cli/table.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/calibrate.h"
+#include "touchdown/rig/predict.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct CalibrateFlags {
+  RigFlags rig;
+  std::string force, speeds, losses = "per-shot";
+  double elevation_deg = 0.0;
+  bool json = false;
+};
+
+core::Estimate Measured(const Table& table, const Row& row,
+                        const std::string& column) {
+  return {table.Number(row, column),
+          table.OptionalNumber(row, "u_" + column).value_or(0.0), std::nullopt};
+}
+
+void CalibrateStiffness(const CalibrateFlags& flags, OrderedJson& out) {
+  const Table table(flags.force);
+  std::vector<rig::ForcePoint> points;
+  for (const Row& row : table.rows()) {
+    points.push_back({table.Number(row, "compression_mm") * core::kMillimetre,
+                      Measured(table, row, "force_n")});
+  }
+  rig::StiffnessFitOptions options;
+  options.u_compression_m =
+      flags.rig.u_compression_mm.value_or(0.0) * core::kMillimetre;
+  const auto fit = rig::FitStiffness(points, options);
+  if (flags.json) {
+    OrderedJson one{{"points", points.size()}, {"possible", !!fit}};
+    one["reason"] =
+        fit ? OrderedJson(nullptr) : OrderedJson(fit.error().reason);
+    if (fit) {
+      one["stiffness_n_per_m"] = Json(fit->stiffness_n_per_m);
+      one["force_at_zero_n"] = Json(fit->force_at_zero_n);
+      one["correlation"] = fit->correlation;
+      one["residual_n"] = fit->residual_n;
+      one["dof"] = fit->dof;
+      one["warnings"] = Json(fit->findings);
+    }
+    out["stiffness"] = std::move(one);
+    return;
+  }
+  fmt::print("stiffness from {} forces\n", points.size());
+  if (!fit) {
+    fmt::print("  absent: {}\n", fit.error().reason);
+    return;
+  }
+  fmt::print("{}{}{}{}", Line("stiffness", fit->stiffness_n_per_m, 1.0, "N/m"),
+             Line("force at zero", fit->force_at_zero_n, 1.0, "N"),
+             Line("scatter of force", fit->residual_n, "N"),
+             Text(fit->findings));
+  fmt::print(
+      "  for rig.toml, [springs]: stiffness_n_per_m = {{ value = {:.6g}, u = "
+      "{:.2g} }}\n",
+      fit->stiffness_n_per_m.value, fit->stiffness_n_per_m.u);
+}
+
+rig::LossModel LossesFrom(const std::string& word) {
+  if (word == "none") return rig::LossModel::kNone;
+  if (word == "per-shot") return rig::LossModel::kPerShot;
+  if (word == "friction") return rig::LossModel::kFriction;
+  throw std::invalid_argument(fmt::format(
+      "--losses is \"{}\", must be none, per-shot or friction", word));
+}
+
+void CalibrateEfficiency(const CalibrateFlags& flags, OrderedJson& out) {
+  rig::EfficiencyFitOptions options;
+  options.losses = LossesFrom(flags.losses);
+  const rig::Description rig = DescriptionFrom(flags.rig);
+  if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
+    throw std::invalid_argument("--mass-g is missing: the mass of the body");
+  }
+  const rig::Launch launch =
+      rig::LaunchOf(rig, flags.elevation_deg * core::kDegree);
+  std::mt19937_64 engine(1);  // the first order needs no draws
+  const rig::Predicted stiffness = rig::PredictStiffness(rig, {2}, engine);
+  if (stiffness.first_order) {
+    options.u_stiffness_rel =
+        stiffness.first_order->u / stiffness.first_order->value;
+  }
+  const double moving_kg = launch.mass_kg + launch.spring_mass_kg / 3.0;
+  const double u_springs_kg =
+      rig.springs.mass_kg ? rig.springs.mass_kg->u : 0.0;
+  options.u_mass_rel =
+      std::hypot(rig.mass_kg.u, u_springs_kg / 3.0) / moving_kg;
+  const Table table(flags.speeds);
+  std::vector<rig::SpeedPoint> points;
+  for (const Row& row : table.rows()) {
+    points.push_back({table.Number(row, "compression_mm") * core::kMillimetre,
+                      Measured(table, row, "speed_mps")});
+  }
+  const auto fit = rig::FitEfficiency(points, launch, options);
+  if (flags.json) {
+    OrderedJson one{{"points", points.size()},
+                    {"losses", flags.losses},
+                    {"possible", !!fit}};
+    one["reason"] =
+        fit ? OrderedJson(nullptr) : OrderedJson(fit.error().reason);
+    if (fit) {
+      one["efficiency"] = Json(fit->efficiency);
+      one["effective_stiffness_n_per_m"] =
+          Json(fit->effective_stiffness_n_per_m);
+      one["loss_j"] = Json(fit->loss_j);
+      one["barrel_friction"] = Json(fit->barrel_friction);
+      one["slope_per_s2"] = fit->slope_per_s2;
+      one["residual_m2_per_s2"] = fit->residual_m2_per_s2;
+      one["dof"] = fit->dof;
+      one["warnings"] = Json(fit->findings);
+    }
+    out["efficiency"] = std::move(one);
+    return;
+  }
+  fmt::print("efficiency from {} launch speeds, losses: {}\n", points.size(),
+             flags.losses);
+  if (!fit) {
+    fmt::print("  absent: {}\n", fit.error().reason);
+    return;
+  }
+  fmt::print("{}{}", Line("efficiency", fit->efficiency, 1.0, ""),
+             Line("eta H", fit->effective_stiffness_n_per_m, 1.0, "N/m"));
+  if (options.losses == rig::LossModel::kPerShot) {
+    fmt::print("{}", Line("loss per shot", fit->loss_j, 1.0, "J"));
+  }
+  if (options.losses == rig::LossModel::kFriction) {
+    fmt::print("{}", Line("barrel friction", fit->barrel_friction, 1.0, ""));
+  }
+  fmt::print("{}{}", Line("scatter of v^2", fit->residual_m2_per_s2, "m2/s2"),
+             Text(fit->findings));
+  fmt::print(
+      "  for rig.toml, [ejector]: efficiency = {{ value = {:.6g}, u = {:.2g} "
+      "}}\n",
+      fit->efficiency.value, fit->efficiency.u);
+}
+
+int RunCalibrate(const CalibrateFlags& flags) {
+  if (flags.force.empty() && flags.speeds.empty()) {
+    throw std::invalid_argument(
+        "give --force FORCES.csv (compression_mm, force_n[, u_force_n]) or "
+        "--speeds SPEEDS.csv (compression_mm, speed_mps[, u_speed_mps])");
+  }
+  OrderedJson out{{"schema", "touchdown.rig.calibrate/1"}};
+  if (!flags.force.empty()) CalibrateStiffness(flags, out);
+  if (!flags.speeds.empty()) CalibrateEfficiency(flags, out);
+  if (flags.json) Print(out);
+  return 0;
+}
+
+}  // namespace
+
+void AddRigCalibrate(CLI::App& rig, Action& action) {
+  auto calibrate = std::make_shared<CalibrateFlags>();
+  CLI::App* one = rig.add_subcommand(
+      "calibrate", "stiffness from forces, efficiency from launch speeds");
+  AddSpringFlags(*one, calibrate->rig);
+  AddLaunchFlags(*one, calibrate->rig);
+  one->add_option("--force", calibrate->force,
+                  "CSV: compression_mm, force_n[, u_force_n], all springs");
+  one->add_option("--speeds", calibrate->speeds,
+                  "CSV: compression_mm, speed_mps[, u_speed_mps]");
+  one->add_option("--losses", calibrate->losses,
+                  "fitted besides: none, per-shot or friction")
+      ->capture_default_str();
+  one->add_option("--elevation-deg", calibrate->elevation_deg,
+                  "of the barrel during the shots [0]");
+  one->add_flag("--json", calibrate->json, "one JSON document");
+  one->callback([&action, calibrate] {
+    action = [calibrate] { return RunCalibrate(*calibrate); };
+  });
+}
+
+}  // namespace touchdown::cli

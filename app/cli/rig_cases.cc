@@ -1,0 +1,225 @@
+#include "app/cli/rig_cases.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "app/cli/table.h"
+#include "app/report/text.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/flight.h"
+#include "touchdown/rig/launch.h"
+#include "touchdown/rig/spring.h"
+#include "touchdown/rig/uncertainty.h"
+
+namespace touchdown::cli {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Name and text of one cell of the result.
+using Cells = std::vector<std::pair<std::string_view, std::string>>;
+
+struct Case {
+  rig::Spring spring;
+  rig::SpringLimits limits;
+  rig::Launch launch;
+  rig::IdealRelativeU u;
+  double compression_m = 0.0;
+  double drop_m = 0.0;
+};
+
+Case ReadCase(const Table& table, const Row& row) {
+  const auto number = [&](std::string_view column) {
+    return table.Number(row, column);
+  };
+  Case c;
+  c.spring.shear_modulus_pa = number("G");
+  c.spring.wire_diameter_m = number("d");
+  c.spring.coil_diameter_m = number("D_outer");
+  c.spring.coil_diameter = rig::CoilDiameter::kOuter;
+  c.spring.active_coils = number("n_active");
+  c.spring.total_coils = number("n_total");
+  c.spring.density_kg_per_m3 = number("rho_spring");
+  const double count = number("n_springs");
+  constexpr double kMost = 1000.0;
+  if (!(count >= 1.0 && count <= kMost) || count != std::floor(count)) {
+    throw std::invalid_argument(fmt::format(
+        "n_springs is {:g}, must be a whole number within 1 .. {:g}", count,
+        kMost));
+  }
+  c.spring.count = static_cast<int>(count);
+  c.limits.free_length_m = table.OptionalNumber(row, "L0_m");
+  c.compression_m = number("X");
+  c.drop_m = number("h0");
+  c.launch.stiffness_n_per_m = rig::Stiffness(c.spring);
+  c.launch.spring_mass_kg = rig::SpringMass(c.spring);
+  c.launch.mass_kg = number("m");
+  c.launch.preload_m = number("preload_X0");
+  c.launch.elevation_rad = number("theta_deg") * core::kDegree;
+  c.launch.efficiency = number("eta");
+  c.launch.barrel_friction = number("mu_barrel");
+  c.launch.gravity_mps2 = number("g");
+  c.u.shear_modulus = number("urel_G");
+  c.u.wire_diameter = number("urel_d");
+  c.u.active_coils = number("urel_n");
+  c.u.coil_diameter = number("urel_D");
+  c.u.compression = number("urel_X");
+  c.u.mass = number("urel_m");
+  return c;
+}
+
+void Add(Cells& cells, std::string_view name, double value) {
+  cells.emplace_back(name,
+                     std::isnan(value) ? "nan" : fmt::format("{:.17g}", value));
+}
+
+double SpeedOrNan(const rig::Launch& launch, double compression_m) {
+  const auto muzzle = rig::LaunchSpeed(launch, compression_m);
+  return muzzle ? muzzle->speed_mps : kNan;
+}
+
+void AddSpring(const Case& c, const rig::SpringReport& report, Cells& cells) {
+  const double whole_m = c.launch.preload_m + c.compression_m;
+  Add(cells, "H_outer_literal", report.stiffness_as_printed_n_per_m);
+  Add(cells, "H_mean", report.stiffness_n_per_m);
+  Add(cells, "ratio_H",
+      report.stiffness_n_per_m / report.stiffness_as_printed_n_per_m);
+  Add(cells, "spring_index_C", report.index);
+  Add(cells, "Wahl_Kw", report.wahl_factor);
+  Add(cells, "F_per_spring_N", report.force_of_one_n);
+  Add(cells, "tau_max_Pa", report.max_shear_pa);
+  Add(cells, "tau_uncorrected_Pa", report.uncorrected_shear_pa);
+  Add(cells, "solid_length_m", report.solid_length_m);
+  if (c.limits.free_length_m) {
+    Add(cells, "L0_m", *c.limits.free_length_m);
+    Add(cells, "coil_clearance_left_m",
+        *c.limits.free_length_m - whole_m - report.solid_length_m);
+  } else {
+    cells.emplace_back("L0_m", "");
+    cells.emplace_back("coil_clearance_left_m", "");
+  }
+  Add(cells, "spring_mass_total_kg", report.mass_kg);
+  Add(cells, "surge_freq_Hz", report.surge_hz);
+  Add(cells, "spring_energy_J",
+      0.5 * report.stiffness_n_per_m * c.compression_m *
+          (c.compression_m + 2.0 * c.launch.preload_m));
+}
+
+void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
+  const double x = c.compression_m;
+  Add(cells, "v_eq10_outer",
+      rig::IdealLaunchSpeed(x, report.stiffness_as_printed_n_per_m,
+                            c.launch.mass_kg));
+  Add(cells, "v_eq10_mean",
+      rig::IdealLaunchSpeed(x, report.stiffness_n_per_m, c.launch.mass_kg));
+  // One correction of Eq. (10) at a time (with the preload), then all.
+  rig::Launch one;
+  one.stiffness_n_per_m = c.launch.stiffness_n_per_m;
+  one.mass_kg = c.launch.mass_kg;
+  one.preload_m = c.launch.preload_m;
+  one.elevation_rad = c.launch.elevation_rad;
+  one.gravity_mps2 = c.launch.gravity_mps2;
+  Add(cells, "v_gravity", SpeedOrNan(one, x));
+  one.gravity_mps2 = 0.0;
+  one.spring_mass_kg = c.launch.spring_mass_kg;
+  Add(cells, "v_spring_mass", SpeedOrNan(one, x));
+  const double speed = SpeedOrNan(c.launch, x);
+  Add(cells, "v_full", speed);
+  rig::Flight flight{kNan, kNan, kNan, kNan, kNan, kNan};
+  if (!std::isnan(speed)) {
+    flight = rig::Fly(speed, c.launch.elevation_rad, c.drop_m,
+                      c.launch.gravity_mps2);
+  }
+  Add(cells, "impact_speed", flight.impact_speed_mps);
+  Add(cells, "impact_angle_deg", flight.approach_angle_rad / core::kDegree);
+  Add(cells, "flight_time", flight.time_s);
+  Add(cells, "range", flight.range_m);
+}
+
+void AddUncertainty(const Case& c, const RigCasesOptions& options,
+                    Cells& cells) {
+  const rig::IdealSpeedU gum = rig::IdealSpeedUncertainty(c.spring, c.u);
+  Add(cells, "u_rel_GUM_mean", gum.u_rel);
+  Add(cells, "u_rel_GUM_outer", rig::PrintedSpeedUncertainty(c.u).u_rel);
+  Add(cells, "bias_rel_2nd_order", gum.bias_rel);
+  std::mt19937_64 engine(options.seed);
+  const rig::MonteCarloRun run =
+      rig::IdealSpeedMonteCarlo(c.spring, c.u, options.draws, engine);
+  rig::MonteCarlo mc{kNan, kNan, kNan, {kNan, kNan}};
+  if (!run.outputs.empty()) mc = run.outputs.front();
+  Add(cells, "MC_mean_over_v", mc.mean);
+  Add(cells, "MC_u_rel", mc.u);
+  Add(cells, "MC_se_of_u", mc.u_of_u);
+  Add(cells, "MC_q2.5_over_v", mc.interval95.low);
+  Add(cells, "MC_q97.5_over_v", mc.interval95.high);
+}
+
+void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {
+  std::vector<rig::Finding> findings = report.findings;
+  const auto muzzle = rig::LaunchSpeed(c.launch, c.compression_m);
+  cells.emplace_back("leaves_muzzle", muzzle ? "yes" : "no");
+  cells.emplace_back("allowed", rig::Allowed(findings) ? "yes" : "no");
+  if (muzzle) {
+    findings.insert(findings.end(), muzzle->findings.begin(),
+                    muzzle->findings.end());
+  } else {
+    findings.push_back({rig::Severity::kRefusal, muzzle.error().reason});
+  }
+  std::string text;
+  for (const rig::Finding& finding : findings) {
+    text += text.empty() ? "" : "; ";
+    text += finding.what;
+  }
+  cells.emplace_back("findings", report::CsvCell(text));
+}
+
+Cells Evaluate(const Table& table, const Row& row,
+               const RigCasesOptions& options) {
+  const Case c = ReadCase(table, row);
+  const rig::SpringReport report = rig::CheckSpring(
+      c.spring, c.launch.preload_m + c.compression_m, c.limits);
+  Cells cells;
+  cells.emplace_back("id", report::CsvCell(table.Text(row, "id")));
+  AddSpring(c, report, cells);
+  AddLaunch(c, report, cells);
+  AddUncertainty(c, options, cells);
+  AddFindings(c, report, cells);
+  return cells;
+}
+
+}  // namespace
+
+std::string RigCases(const std::string& path, const RigCasesOptions& options) {
+  const Table table(path);
+  std::string out;
+  for (const Row& row : table.rows()) {
+    Cells cells;
+    try {
+      cells = Evaluate(table, row, options);
+    } catch (const std::invalid_argument& error) {
+      throw core::InputError(fmt::format("{}:{} (id {}): {}", path, row.line,
+                                         table.Text(row, "id"), error.what()));
+    }
+    if (out.empty()) {
+      for (const auto& [name, text] : cells) {
+        out += fmt::format("{}{}", out.empty() ? "" : ",", name);
+      }
+      out += '\n';
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      out += fmt::format("{}{}", i == 0 ? "" : ",", cells[i].second);
+    }
+    out += '\n';
+  }
+  if (out.empty()) throw core::InputError(path + ": has no rows");
+  return out;
+}
+
+}  // namespace touchdown::cli

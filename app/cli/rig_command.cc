@@ -1,0 +1,46 @@
+// touchdown rig spring|launch|plan|calibrate|example
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+#include "app/cli/rig_commands.h"
+#include "touchdown/rig/description.h"
+
+namespace touchdown::cli {
+
+void AddDrawFlags(CLI::App& app, DrawFlags& flags) {
+  app.add_option("--draws", flags.draws, "Monte Carlo draws")
+      ->capture_default_str();
+  app.add_option("--seed", flags.seed, "of the Monte Carlo")
+      ->capture_default_str();
+}
+
+void RequireDraws(std::size_t draws) {
+  constexpr std::size_t kMost = 100'000'000;  // 800 MB a column
+  if (draws < 2 || draws > kMost) {
+    throw std::invalid_argument(
+        fmt::format("--draws is {}, must be within 2 .. {}", draws, kMost));
+  }
+}
+
+void Print(const OrderedJson& json) { fmt::print("{}\n", json.dump(2)); }
+
+void AddRig(CLI::App& app, Action& action) {
+  CLI::App* rig = app.add_subcommand(
+      "rig", "the ejector: springs, launch, set-points, calibration");
+  rig->require_subcommand(1);
+  AddRigSpring(*rig, action);
+  AddRigLaunch(*rig, action);
+  AddRigPlan(*rig, action);
+  AddRigCalibrate(*rig, action);
+  rig->add_subcommand("example", "print a commented rig.toml")
+      ->callback([&action] {
+        action = [] {
+          fmt::print("{}", rig::ExampleDescription());
+          return 0;
+        };
+      });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,165 @@
+#include "app/cli/rig_flags.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "app/cli/values.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+constexpr double kGram = 1e-3;  // kg
+constexpr double kGiga = 1e9;
+constexpr double kMega = 1e6;
+
+// Overwrites `to` where the flag was given.
+template <class To>
+void Take(To& to, const char* flag, const std::string& text, double unit) {
+  if (!text.empty()) to = ParseEstimate(flag, text, unit);
+}
+
+void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
+  const bool any = !flags.shear_modulus_gpa.empty() || !flags.wire_mm.empty() ||
+                   !flags.coil_mm.empty() || !flags.coil_diameter.empty() ||
+                   !flags.active_coils.empty();
+  if (!any && (springs.geometry || springs.stiffness_n_per_m)) return;
+  const bool fresh = !springs.geometry;
+  rig::SpringGeometry geometry =
+      springs.geometry.value_or(rig::SpringGeometry{});
+  if (fresh) {
+    const auto need = [](const char* flag, const std::string& text) {
+      if (!text.empty()) return;
+      throw std::invalid_argument(
+          fmt::format("{} is missing: give --rig rig.toml (`touchdown rig "
+                      "example` prints one), all of --shear-modulus-gpa "
+                      "--wire-mm --coil-mm --coil-diameter --active-coils, or "
+                      "--stiffness-n-per-m",
+                      flag));
+    };
+    need("--shear-modulus-gpa", flags.shear_modulus_gpa);
+    need("--wire-mm", flags.wire_mm);
+    need("--coil-mm", flags.coil_mm);
+    need("--coil-diameter", flags.coil_diameter);
+    need("--active-coils", flags.active_coils);
+  }
+  const double dead =
+      fresh ? 2.0 : geometry.total_coils - geometry.active_coils.value;
+  Take(geometry.shear_modulus_pa, "--shear-modulus-gpa",
+       flags.shear_modulus_gpa, kGiga);
+  Take(geometry.wire_diameter_m, "--wire-mm", flags.wire_mm, core::kMillimetre);
+  Take(geometry.coil_diameter_m, "--coil-mm", flags.coil_mm, core::kMillimetre);
+  Take(geometry.active_coils, "--active-coils", flags.active_coils, 1.0);
+  if (!flags.coil_diameter.empty()) {
+    const auto kind = rig::ParseCoilDiameter(flags.coil_diameter);
+    if (!kind) {
+      throw std::invalid_argument(
+          fmt::format("--coil-diameter is \"{}\", must be mean, outer or inner",
+                      flags.coil_diameter));
+    }
+    geometry.coil_diameter = *kind;
+  }
+  // A geometry typed here is meant to be used: it replaces a stiffness measured
+  // on other springs.
+  if (any) springs.stiffness_n_per_m.reset();
+  geometry.total_coils = geometry.active_coils.value + dead;
+  springs.geometry = geometry;
+}
+
+}  // namespace
+
+void AddSpringFlags(CLI::App& app, RigFlags& flags) {
+  app.add_option("--rig", flags.rig,
+                 "rig description (`touchdown rig example` prints one); the "
+                 "flags below correct it. Numbers: VALUE or VALUE+-U");
+  app.add_option("--springs", flags.count, "equal springs side by side [2]");
+  app.add_option("--shear-modulus-gpa", flags.shear_modulus_gpa,
+                 "G of the wire");
+  app.add_option("--wire-mm", flags.wire_mm, "wire diameter d");
+  app.add_option("--coil-mm", flags.coil_mm, "coil diameter D");
+  app.add_option("--coil-diameter", flags.coil_diameter,
+                 "which diameter that is: mean, outer or inner");
+  app.add_option("--active-coils", flags.active_coils, "n");
+  app.add_option("--total-coils", flags.total_coils, "[active + 2]");
+  app.add_option("--density-kg-per-m3", flags.density_kg_per_m3,
+                 "of the wire [7850]");
+  app.add_option("--free-length-mm", flags.free_length_mm,
+                 "L0, for coil clearance and buckling");
+  app.add_option("--allowable-shear-mpa", flags.allowable_shear_mpa,
+                 "for the stress");
+  app.add_option("--stiffness-n-per-m", flags.stiffness_n_per_m,
+                 "measured, all springs together; replaces Eq. (11)");
+  app.add_option("--spring-mass-g", flags.spring_mass_g,
+                 "weighed, all springs together");
+  app.add_option("--preload-mm", flags.preload_mm, "X0 [0]");
+}
+
+void AddLaunchFlags(CLI::App& app, RigFlags& flags) {
+  app.add_option("--mass-g", flags.mass_g, "of the body");
+  app.add_option("--efficiency", flags.efficiency, "[1]");
+  app.add_option("--barrel-friction", flags.barrel_friction, "coefficient [0]");
+  app.add_option("--loss-j", flags.loss_j, "energy lost in each shot [0]");
+  app.add_option("--gravity-mps2", flags.gravity_mps2, "[9.80665+-0.015]");
+  app.add_option("--u-compression-mm", flags.u_compression_mm,
+                 "standard uncertainty of the compression [0]");
+  app.add_option("--u-elevation-deg", flags.u_elevation_deg, "[0]");
+  app.add_option("--u-height-mm", flags.u_height_mm, "[0]");
+}
+
+rig::Description DescriptionFrom(const RigFlags& flags) {
+  rig::Description out;
+  if (!flags.rig.empty()) out = rig::ReadDescription(flags.rig);
+  rig::Springs& springs = out.springs;
+  const bool typed_stiffness = !flags.stiffness_n_per_m.empty();
+  Take(springs.stiffness_n_per_m, "--stiffness-n-per-m",
+       flags.stiffness_n_per_m, 1.0);
+  TakeGeometry(flags, springs);
+  // Both typed: the measured one is used, as in rig.toml.
+  if (typed_stiffness) {
+    springs.stiffness_n_per_m =
+        ParseEstimate("--stiffness-n-per-m", flags.stiffness_n_per_m, 1.0);
+  }
+  if (flags.count) springs.count = *flags.count;
+  if (springs.geometry) {
+    rig::SpringGeometry& geometry = *springs.geometry;
+    if (flags.total_coils) geometry.total_coils = *flags.total_coils;
+    if (flags.density_kg_per_m3) {
+      geometry.density_kg_per_m3 = *flags.density_kg_per_m3;
+    }
+  }
+  if (flags.free_length_mm) {
+    springs.free_length_m = *flags.free_length_mm * core::kMillimetre;
+  }
+  if (flags.allowable_shear_mpa) {
+    springs.allowable_shear_pa = *flags.allowable_shear_mpa * kMega;
+  }
+  Take(springs.mass_kg, "--spring-mass-g", flags.spring_mass_g, kGram);
+  Take(out.preload_m, "--preload-mm", flags.preload_mm, core::kMillimetre);
+  Take(out.mass_kg, "--mass-g", flags.mass_g, kGram);
+  Take(out.efficiency, "--efficiency", flags.efficiency, 1.0);
+  Take(out.barrel_friction, "--barrel-friction", flags.barrel_friction, 1.0);
+  Take(out.loss_j, "--loss-j", flags.loss_j, 1.0);
+  Take(out.gravity_mps2, "--gravity-mps2", flags.gravity_mps2, 1.0);
+  const auto take_u = [](const char* flag, const std::optional<double>& given,
+                         double unit, double& to) {
+    if (!given) return;
+    if (!(*given >= 0.0) || !std::isfinite(*given)) {
+      throw std::invalid_argument(fmt::format(
+          "{} is {:g}, must be at least 0 and finite", flag, *given));
+    }
+    to = *given * unit;
+  };
+  take_u("--u-compression-mm", flags.u_compression_mm, core::kMillimetre,
+         out.u_compression_m);
+  take_u("--u-elevation-deg", flags.u_elevation_deg, core::kDegree,
+         out.u_elevation_rad);
+  take_u("--u-height-mm", flags.u_height_mm, core::kMillimetre,
+         out.u_muzzle_height_m);
+  return out;
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,127 @@
+// touchdown rig launch
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "app/cli/rig_commands.h"
+#include "app/cli/rig_flags.h"
+#include "app/cli/rig_print.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/launch.h"
+#include "touchdown/rig/predict.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct LaunchFlags {
+  RigFlags rig;
+  DrawFlags draw;
+  std::optional<double> compression_mm, speed_mps, height_mm;
+  double elevation_deg = 0.0;
+  bool json = false;
+};
+
+int RunLaunch(const LaunchFlags& flags) {
+  RequireDraws(flags.draw.draws);
+  if (flags.compression_mm.has_value() == flags.speed_mps.has_value()) {
+    throw std::invalid_argument(
+        "give either --compression-mm (what speed?) or --speed-mps (what "
+        "compression?)");
+  }
+  rig::Description rig = DescriptionFrom(flags.rig);
+  if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
+    throw std::invalid_argument("--mass-g is missing: the mass of the body");
+  }
+  if (!flags.height_mm) rig.body.reset();  // a point that is not followed
+  rig::Setting setting;
+  setting.elevation_rad = flags.elevation_deg * core::kDegree;
+  setting.muzzle_height_m = flags.height_mm.value_or(0.0) * core::kMillimetre;
+  const rig::Launch launch = rig::LaunchOf(rig, setting.elevation_rad);
+  setting.compression_m = flags.compression_mm
+                              ? *flags.compression_mm * core::kMillimetre
+                              : rig::CompressionFor(launch, *flags.speed_mps);
+  std::mt19937_64 engine(flags.draw.seed);
+  const auto muzzle = rig::LaunchSpeed(launch, setting.compression_m);
+  const rig::ContactPrediction contact =
+      rig::Predict(rig, setting, {flags.draw.draws}, engine);
+  const double ideal = rig::IdealLaunchSpeed(
+      setting.compression_m, launch.stiffness_n_per_m, launch.mass_kg);
+  if (flags.json) {
+    OrderedJson out{
+        {"schema", "touchdown.rig.launch/1"},
+        {"compression_mm", setting.compression_m / core::kMillimetre},
+        {"elevation_deg", flags.elevation_deg},
+        {"muzzle_height_mm", flags.height_mm ? OrderedJson(*flags.height_mm)
+                                             : OrderedJson(nullptr)},
+        {"ideal_speed_mps", ideal},
+        {"leaves_muzzle", muzzle.has_value()},
+        {"reason",
+         muzzle ? OrderedJson(nullptr) : OrderedJson(muzzle.error().reason)}};
+    out["energy_j"] =
+        muzzle ? OrderedJson{{"springs", muzzle->energy.spring_j},
+                             {"losses", muzzle->energy.losses_j},
+                             {"gravity", muzzle->energy.gravity_j},
+                             {"friction", muzzle->energy.friction_j},
+                             {"body", muzzle->energy.body_j},
+                             {"spring_motion", muzzle->energy.spring_motion_j}}
+               : OrderedJson(nullptr);
+    out["allowed"] = rig::Allowed(contact.findings);
+    OrderedJson predicted = Json(contact);
+    if (!flags.height_mm) {
+      for (const char* name :
+           {"impact_speed_mps", "approach_angle_deg", "flight_time_s",
+            "range_mm", "radius_angle_deg", "face_angle_deg", "corner"}) {
+        predicted[name] = nullptr;
+        predicted["absent"][name] = "no --height-mm";
+      }
+    }
+    out["contact"] = std::move(predicted);
+    Print(out);
+    return 0;
+  }
+  fmt::print("launch: compression {:.4f} mm, elevation {:g} deg{}\n",
+             setting.compression_m / core::kMillimetre, flags.elevation_deg,
+             flags.height_mm
+                 ? fmt::format(", muzzle height {:g} mm", *flags.height_mm)
+                 : ", no --height-mm: no flight");
+  if (!muzzle) {
+    fmt::print("  {}\n", muzzle.error().reason);
+  } else {
+    fmt::print("{}", Text(contact, flags.height_mm.has_value()));
+    fmt::print("{}", Line("ideal speed, Eq. (10)", ideal, "m/s"));
+    const rig::EnergyBalance& e = muzzle->energy;
+    fmt::print(
+        "  energy, J: springs {:.4g} = losses {:.4g} + gravity {:.4g} + "
+        "friction {:.4g} + body {:.4g} + motion of springs {:.4g}\n",
+        e.spring_j, e.losses_j, e.gravity_j, e.friction_j, e.body_j,
+        e.spring_motion_j);
+  }
+  fmt::print("{}", Text(contact.findings));
+  return 0;
+}
+
+}  // namespace
+
+void AddRigLaunch(CLI::App& rig, Action& action) {
+  auto launch = std::make_shared<LaunchFlags>();
+  CLI::App* one = rig.add_subcommand(
+      "launch", "speed from compression or back, Eq. (10) and its corrections");
+  AddSpringFlags(*one, launch->rig);
+  AddLaunchFlags(*one, launch->rig);
+  one->add_option("--compression-mm", launch->compression_mm,
+                  "X, beyond the preload");
+  one->add_option("--speed-mps", launch->speed_mps, "wanted at the muzzle");
+  one->add_option("--elevation-deg", launch->elevation_deg,
+                  "barrel above horizontal [0]");
+  one->add_option("--height-mm", launch->height_mm,
+                  "of the body's centre at the muzzle; gives the contact too");
+  AddDrawFlags(*one, launch->draw);
+  one->add_flag("--json", launch->json, "one JSON document");
+  one->callback(
+      [&action, launch] { action = [launch] { return RunLaunch(*launch); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,134 @@
+// touchdown rig plan
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/rig_commands.h"
+#include "app/cli/rig_flags.h"
+#include "app/cli/rig_print.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/setpoints.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct PlanFlags {
+  RigFlags rig;
+  DrawFlags draw;
+  std::string angle_kind, corner;
+  std::vector<double> angles_deg;
+  double speed_mps = 0.0;
+  std::optional<double> height_mm;
+  bool json = false;
+};
+
+rig::ContactWish WishFrom(const PlanFlags& flags, const rig::Description& rig) {
+  rig::ContactWish wish;
+  wish.kind = core::DefaultAngleKind(rig.body ? rig.body->kind
+                                              : core::BodyKind::kSphere);
+  if (!flags.angle_kind.empty()) {
+    const auto kind = core::ParseAngleKind(flags.angle_kind);
+    if (!kind) {
+      throw std::invalid_argument(
+          fmt::format("--angle-kind is \"{}\", must be approach, radius or "
+                      "face",
+                      flags.angle_kind));
+    }
+    wish.kind = *kind;
+  }
+  if (!flags.corner.empty()) {
+    wish.corner = core::ParseCorner(flags.corner);
+    if (!wish.corner) {
+      throw std::invalid_argument(
+          fmt::format("--corner is \"{}\", must be leading, trailing or flush",
+                      flags.corner));
+    }
+  }
+  wish.speed_mps = flags.speed_mps;
+  if (flags.height_mm) {
+    wish.muzzle_height_m = *flags.height_mm * core::kMillimetre;
+  }
+  return wish;
+}
+
+int RunPlan(const PlanFlags& flags) {
+  RequireDraws(flags.draw.draws);
+  const rig::Description rig = DescriptionFrom(flags.rig);
+  rig::ContactWish wish = WishFrom(flags, rig);
+  const std::string kind(core::Name(wish.kind));
+  std::mt19937_64 engine(flags.draw.seed);
+  OrderedJson out{{"schema", "touchdown.rig.plan/1"},
+                  {"rig", rig.name},
+                  {"angle_kind", kind},
+                  {"speed_mps", wish.speed_mps},
+                  {"set_points", OrderedJson::array()}};
+  if (!flags.json) {
+    fmt::print("plan for {}: {} angle, {:g} m/s at touchdown\n",
+               rig.name.empty() ? "the rig" : rig.name, kind, wish.speed_mps);
+  }
+  for (const double angle_deg : flags.angles_deg) {
+    wish.angle_rad = angle_deg * core::kDegree;
+    const auto point = rig::PlanContact(rig, wish, {flags.draw.draws}, engine);
+    if (flags.json) {
+      OrderedJson one{{"angle_deg", angle_deg}, {"possible", !!point}};
+      one["reason"] =
+          point ? OrderedJson(nullptr) : OrderedJson(point.error().reason);
+      if (point) {
+        one["elevation_deg"] = point->setting.elevation_rad / core::kDegree;
+        one["compression_mm"] =
+            point->setting.compression_m / core::kMillimetre;
+        one["muzzle_height_mm"] =
+            point->setting.muzzle_height_m / core::kMillimetre;
+        one["contact"] = Json(point->contact);
+      }
+      out["set_points"].push_back(std::move(one));
+      continue;
+    }
+    if (!point) {
+      fmt::print("\n{:g} deg: REFUSED: {}\n", angle_deg, point.error().reason);
+      continue;
+    }
+    fmt::print(
+        "\n{:g} deg: elevation {:.2f} deg, compression {:.2f} mm, muzzle "
+        "height "
+        "{:.1f} mm\n{}{}",
+        angle_deg, point->setting.elevation_rad / core::kDegree,
+        point->setting.compression_m / core::kMillimetre,
+        point->setting.muzzle_height_m / core::kMillimetre,
+        Text(point->contact, true), Text(point->contact.findings));
+  }
+  if (flags.json) Print(out);
+  return 0;
+}
+
+}  // namespace
+
+void AddRigPlan(CLI::App& rig, Action& action) {
+  auto plan = std::make_shared<PlanFlags>();
+  CLI::App* one = rig.add_subcommand(
+      "plan", "settings for wanted contact angles and speed at touchdown");
+  AddSpringFlags(*one, plan->rig);
+  AddLaunchFlags(*one, plan->rig);
+  one->get_option("--rig")->required();
+  one->add_option("--angle-kind", plan->angle_kind,
+                  "approach, radius or face [sphere approach, rectangle "
+                  "radius]");
+  one->add_option("--angle-deg", plan->angles_deg, "one or more, A,B,C")
+      ->required()
+      ->delimiter(',');
+  one->add_option("--speed-mps", plan->speed_mps, "at touchdown")->required();
+  one->add_option("--corner", plan->corner,
+                  "that lands first: leading, trailing or flush");
+  one->add_option("--height-mm", plan->height_mm, "muzzle height to keep");
+  AddDrawFlags(*one, plan->draw);
+  one->add_flag("--json", plan->json, "one JSON document");
+  one->callback(
+      [&action, plan] { action = [plan] { return RunPlan(*plan); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,97 @@
+// touchdown rig spring
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/rig_cases.h"
+#include "app/cli/rig_commands.h"
+#include "app/cli/rig_flags.h"
+#include "app/cli/rig_print.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/predict.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct SpringFlags {
+  RigFlags rig;
+  DrawFlags draw;
+  std::string cases;
+  std::optional<double> compression_mm;
+  bool json = false;
+};
+
+int RunSpring(const SpringFlags& flags, const CLI::App& app) {
+  if (!flags.cases.empty()) {
+    RigCasesOptions options;
+    if (app.count("--draws") > 0) options.draws = flags.draw.draws;
+    if (app.count("--seed") > 0) options.seed = flags.draw.seed;
+    RequireDraws(options.draws);
+    fmt::print("{}", RigCases(flags.cases, options));
+    return 0;
+  }
+  RequireDraws(flags.draw.draws);
+  const rig::Description rig = DescriptionFrom(flags.rig);
+  const auto spring = rig::SpringOf(rig.springs);
+  const double travel_m = flags.compression_mm
+                              ? *flags.compression_mm * core::kMillimetre
+                              : rig.compression_max_m.value_or(0.0);
+  const double whole_m = travel_m + rig.preload_m.value;
+  rig::SpringLimits limits;
+  limits.free_length_m = rig.springs.free_length_m;
+  limits.allowable_shear_pa = rig.springs.allowable_shear_pa;
+  std::optional<rig::SpringReport> report;
+  if (spring) report = rig::CheckSpring(*spring, whole_m, limits);
+  const std::vector<rig::Finding> findings =
+      rig::CheckCompression(rig, travel_m);
+
+  std::mt19937_64 engine(flags.draw.seed);
+  const rig::Predicted stiffness =
+      rig::PredictStiffness(rig, {flags.draw.draws}, engine);
+  if (flags.json) {
+    rig::ContactPrediction only;
+    only.stiffness_n_per_m = stiffness;
+    OrderedJson out{
+        {"schema", "touchdown.rig.spring/1"},
+        {"source", rig.springs.stiffness_n_per_m ? "measured" : "eq11"},
+        {"compression_mm", whole_m / core::kMillimetre},
+        {"stiffness_n_per_m", Json(only)["stiffness_n_per_m"]}};
+    out["spring"] = report ? Json(*report) : OrderedJson(nullptr);
+    out["allowed"] = rig::Allowed(findings);
+    out["warnings"] = Json(findings);
+    Print(out);
+    return 0;
+  }
+  fmt::print("springs: {} side by side, compressed by {:.4g} mm{}\n",
+             rig.springs.count, whole_m / core::kMillimetre,
+             rig.springs.stiffness_n_per_m ? ", measured stiffness" : "");
+  fmt::print("{}", Line("stiffness", stiffness, 1.0, "N/m"));
+  if (report) fmt::print("{}", Text(*report));
+  fmt::print("{}", Text(findings));
+  return 0;
+}
+
+}  // namespace
+
+void AddRigSpring(CLI::App& rig, Action& action) {
+  auto spring = std::make_shared<SpringFlags>();
+  CLI::App* one = rig.add_subcommand(
+      "spring", "stiffness, Eq. (11), stress, clearance, surge");
+  AddSpringFlags(*one, spring->rig);
+  one->add_option("--compression-mm", spring->compression_mm,
+                  "beyond the preload [rig's greatest]");
+  one->add_option("--cases", spring->cases,
+                  "CSV of rigs -> CSV of their numbers (2000000 draws, seed "
+                  "12345 unless given)");
+  AddDrawFlags(*one, spring->draw);
+  one->add_flag("--json", spring->json, "one JSON document");
+  one->callback([&action, spring, one] {
+    action = [spring, one] { return RunSpring(*spring, *one); };
+  });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,320 @@
+// list, show: what is in the store.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "app/cli/command.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/report/trial_json.h"
+#include "touchdown/core/units.h"
+#include "touchdown/db/quantities.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using core::kDegree;
+using core::kMillimetre;
+
+// --- list --------------------------------------------------------------------
+
+struct ListFlags {
+  std::string db;
+  std::string campaign;
+  std::string origin;
+  std::string body;
+  std::string state;
+  std::string from;
+  std::string until;
+  bool counting = false;
+  bool excluded = false;
+  bool json = false;
+};
+
+db::TrialFilter FilterOf(const ListFlags& flags, bool campaign_given) {
+  db::TrialFilter filter;
+  if (campaign_given) filter.campaign = flags.campaign;
+  if (!flags.origin.empty()) {
+    filter.origin =
+        ParseWord<core::Origin>("--origin", flags.origin, core::ParseOrigin,
+                                "recorded, simulated or manual");
+  }
+  if (!flags.body.empty()) {
+    filter.body = ParseWord<core::BodyKind>(
+        "--body", flags.body, core::ParseBodyKind, "sphere or rectangle");
+  }
+  if (!flags.state.empty()) {
+    filter.state = ParseWord<core::MotionState>(
+        "--state", flags.state, core::ParseMotionState, kStateWords);
+  }
+  if (!flags.from.empty()) filter.from_utc = flags.from;
+  if (!flags.until.empty()) filter.until_utc = flags.until;
+  if (flags.counting) filter.excluded = false;
+  if (flags.excluded) filter.excluded = true;
+  filter.with_documents = false;
+  return filter;
+}
+
+Json EdgeJson(const core::Measured& measured, double unit) {
+  if (!measured) return nullptr;
+  Json json = {{"value", measured->value / unit}, {"u", measured->u / unit}};
+  if (measured->interval95) {
+    json["interval95"] = {measured->interval95->low / unit,
+                          measured->interval95->high / unit};
+  }
+  return json;
+}
+
+Json OptionalJson(const std::optional<double>& value, double unit) {
+  return value ? Json(*value / unit) : Json(nullptr);
+}
+
+std::string ListJson(const std::vector<core::Trial>& trials) {
+  Json list = Json::array();
+  for (const auto& trial : trials) {
+    const auto& contact = trial.first.contact;
+    const auto& state = trial.first.state;
+    list.push_back(
+        {{"id", trial.id},
+         {"revision", trial.revision},
+         {"campaign", trial.campaign},
+         {"origin", core::Name(trial.origin)},
+         {"body",
+          {{"kind", core::Name(trial.body.kind)},
+           {"diameter_mm", EdgeJson(trial.body.diameter_m, kMillimetre)},
+           {"long_mm", EdgeJson(trial.body.long_m, kMillimetre)},
+           {"short_mm", EdgeJson(trial.body.short_m, kMillimetre)}}},
+         {"angle_kind", core::Name(trial.angle_kind)},
+         {"angle_deg", EdgeJson(core::ContactAngle(trial), kDegree)},
+         {"approach_angle_deg", EdgeJson(contact.approach_angle_rad, kDegree)},
+         {"set_angle_deg", OptionalJson(trial.set_angle_rad, kDegree)},
+         {"set_speed_mps", OptionalJson(trial.set_speed_mps, 1.0)},
+         {"state", core::Name(state.label)},
+         {"p_bounce", OptionalJson(state.p_bounce, 1.0)},
+         {"max_gap_mm", EdgeJson(state.max_gap_m, kMillimetre)},
+         {"micro_bounce", state.micro_bounce},
+         {"excluded", trial.excluded},
+         {"exclusion_reason", trial.exclusion_reason},
+         {"clip", {{"path", trial.clip.path}, {"id", trial.clip.id}}},
+         {"author", trial.author},
+         {"recorded_at_utc", trial.recorded_at_utc}});
+  }
+  const Json json = {{"schema", "touchdown.list/1"},
+                     {"trials", std::move(list)}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+// What a reader must know of a trial before its numbers.
+std::string Marks(const core::Trial& trial) {
+  std::string marks;
+  const auto add = [&marks](const std::string& mark) {
+    marks += (marks.empty() ? "" : "; ") + mark;
+  };
+  if (trial.origin == core::Origin::kSimulated) add("SIMULATED");
+  if (trial.excluded) add("EXCLUDED: " + Printable(trial.exclusion_reason));
+  if (trial.first.state.micro_bounce) add("micro-bounce");
+  if (!trial.first.contact.found) {
+    add("no contact: " + Printable(trial.first.contact.reason));
+  }
+  return marks;
+}
+
+std::string Shown(const std::optional<double>& value, int decimals,
+                  double unit) {
+  return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
+}
+
+std::string ListText(const std::vector<core::Trial>& trials) {
+  constexpr std::size_t kShortId = 8;
+  std::vector<std::vector<std::string>> rows = {
+      {"id", "campaign", "origin", "body", "angle kind", "contact angle, deg",
+       "set, deg", "state", "P(bounce)", "rev", "recorded, UTC", "remarks"}};
+  std::size_t simulated = 0;
+  std::size_t excluded = 0;
+  for (const auto& trial : trials) {
+    simulated += trial.origin == core::Origin::kSimulated ? 1 : 0;
+    excluded += trial.excluded ? 1 : 0;
+    rows.push_back({trial.id.substr(0, kShortId), Printable(trial.campaign),
+                    std::string(core::Name(trial.origin)), BodyText(trial.body),
+                    std::string(core::Name(trial.angle_kind)),
+                    WithU(core::ContactAngle(trial), kDegree),
+                    Shown(trial.set_angle_rad, 2, kDegree),
+                    std::string(core::Name(trial.first.state.label)),
+                    Shown(trial.first.state.p_bounce, 4, 1.0),
+                    fmt::format("{}", trial.revision),
+                    trial.recorded_at_utc.substr(0, 19), Marks(trial)});
+  }
+  std::string text = trials.empty() ? "" : Aligned(rows);
+  text +=
+      fmt::format("{} trial{}", trials.size(), trials.size() == 1 ? "" : "s");
+  if (excluded != 0) text += fmt::format(", {} excluded", excluded);
+  if (simulated != 0) {
+    text += fmt::format(", {} simulated (no verdict on a theory rests on them)",
+                        simulated);
+  }
+  return text + '\n';
+}
+
+// --- show --------------------------------------------------------------------
+
+std::string Name(std::string_view name) { return std::string(name); }
+
+void ShowContact(const core::ContactRecord& record,
+                 std::vector<std::vector<std::string>>& rows) {
+  for (const auto& quantity : db::kContactQuantities) {
+    const auto& measured = db::At(record, quantity);
+    std::string name = Name(quantity.name);
+    double unit = 1.0;
+    if (name.ends_with("_rad")) {
+      name.replace(name.size() - 3, 3, "deg");
+      unit = kDegree;
+    } else if (name.ends_with("_m")) {
+      name += "m";
+      unit = kMillimetre;
+    }
+    if (measured) {
+      std::string value = WithU(measured, unit);
+      if (measured->interval95) {
+        value +=
+            fmt::format("  [{:.6g}, {:.6g}]", measured->interval95->low / unit,
+                        measured->interval95->high / unit);
+      }
+      rows.push_back({"  " + name, value});
+    } else {
+      rows.push_back(
+          {"  " + name, "absent: " + Printable(measured.error().reason)});
+    }
+  }
+}
+
+std::string ShowText(const core::Trial& trial) {
+  std::string text;
+  if (trial.origin == core::Origin::kSimulated) {
+    text += "SIMULATED: no verdict on a theory rests on this trial\n";
+  }
+  std::vector<std::vector<std::string>> rows = {
+      {"trial", trial.id},
+      {"campaign", trial.campaign.empty() ? "-" : Printable(trial.campaign)},
+      {"origin", Name(core::Name(trial.origin))},
+      {"revision",
+       fmt::format("{}, {} by {}{}{}", trial.revision, trial.recorded_at_utc,
+                   Printable(trial.author), trial.reason.empty() ? "" : ": ",
+                   Printable(trial.reason))},
+      {"clip", trial.clip.path.empty() ? "-" : Printable(trial.clip.path)},
+      {"clip sha256", trial.clip.sha256.empty() ? "-" : trial.clip.sha256},
+      {"body", BodyText(trial.body)},
+      {"set angle, deg", Shown(trial.set_angle_rad, 3, kDegree)},
+      {"set speed, m/s", Shown(trial.set_speed_mps, 3, 1.0)},
+      {"contact angle, deg",
+       fmt::format("{} ({})", WithU(core::ContactAngle(trial), kDegree),
+                   core::Name(trial.angle_kind))},
+      {"state", Name(core::Name(trial.first.state.label))},
+      {"P(bounce)", Shown(trial.first.state.p_bounce, 4, 1.0)},
+      {"because", Printable(trial.first.state.reason)}};
+  if (trial.excluded) {
+    rows.push_back({"excluded", Printable(trial.exclusion_reason)});
+  }
+  if (const auto corner = trial.first.contact.corner) {
+    rows.push_back({"corner", Name(core::Name(*corner))});
+  }
+  rows.push_back({"measured", ""});
+  ShowContact(trial.first, rows);
+  for (std::size_t i = 0; i < trial.later.size(); ++i) {
+    rows.push_back({fmt::format("contact {}", i + 2),
+                    Name(core::Name(trial.later[i].state.label))});
+    ShowContact(trial.later[i], rows);
+  }
+  return text + Aligned(rows);
+}
+
+std::string HistoryText(const std::vector<db::Revision>& history) {
+  std::string text = "history\n";
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const core::Trial& trial = history[i].trial;
+    text += fmt::format(
+        "  {}  {}  {} by {}{}{}\n", trial.revision, trial.recorded_at_utc,
+        Name(history[i].kind), Printable(trial.author),
+        trial.reason.empty() ? "" : ": ", Printable(trial.reason));
+    if (i == 0) continue;
+    for (const auto& change :
+         db::Changes(history[i - 1].trial, history[i].trial)) {
+      text += fmt::format("       {}: {} -> {}\n", change.field,
+                          Printable(change.from), Printable(change.to));
+    }
+  }
+  return text;
+}
+
+struct ShowFlags {
+  std::string db;
+  std::string id;
+  bool history = false;
+  bool json = false;
+};
+
+}  // namespace
+
+void AddList(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<ListFlags>();
+  CLI::App* command = app.add_subcommand("list", "the trials of a store");
+  AddDbFlag(*command, flags->db);
+  CLI::Option* campaign =
+      command->add_option("--campaign", flags->campaign,
+                          "only of this campaign ('' for trials in none)");
+  command->add_option("--origin", flags->origin,
+                      "recorded, simulated or manual");
+  command->add_option("--body", flags->body, "sphere or rectangle");
+  command->add_option("--state", flags->state, kStateWords);
+  command->add_option("--from", flags->from,
+                      "first logged at or after, UTC, e.g. 2026-08-01");
+  command->add_option("--until", flags->until, "first logged before, UTC");
+  CLI::Option* counting = command->add_flag("--counting", flags->counting,
+                                            "leave excluded trials out");
+  command->add_flag("--excluded", flags->excluded, "only excluded trials")
+      ->excludes(counting);
+  command->add_flag("--json", flags->json, "one JSON document");
+  command->callback([flags, campaign, &action] {
+    const bool campaign_given = campaign->count() != 0;
+    action = [flags, campaign_given] {
+      const auto filter = FilterOf(*flags, campaign_given);
+      const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
+      const auto trials = store.Trials(filter);
+      fmt::print("{}",
+                 flags->json ? ListJson(trials) + '\n' : ListText(trials));
+      return 0;
+    };
+  });
+}
+
+void AddShow(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<ShowFlags>();
+  CLI::App* command = app.add_subcommand("show", "one trial, all of it");
+  command->add_option("ID", flags->id, "of the trial, or the beginning of it")
+      ->required();
+  AddDbFlag(*command, flags->db);
+  command->add_flag("--history", flags->history,
+                    "who changed what, when and why");
+  command->add_flag("--json", flags->json, "one JSON document");
+  command->callback([flags, &action] {
+    action = [flags] {
+      const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
+      const core::Trial trial = RequireTrial(store, flags->id);
+      const auto history = store.History(trial.id);
+      if (flags->json) {
+        fmt::print("{}\n", report::HistoryJson(history));
+        return 0;
+      }
+      fmt::print("{}", ShowText(trial));
+      if (flags->history) fmt::print("{}", HistoryText(history));
+      return 0;
+    };
+  });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,53 @@
+// Flags that several commands of the store share. Each Parse... throws
+// std::invalid_argument naming the flag, what was given and what is expected.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "touchdown/core/body.h"
+#include "touchdown/core/trial.h"
+#include "touchdown/db/store.h"
+
+namespace CLI {
+class App;
+}
+
+namespace touchdown::cli {
+
+// --db FILE
+void AddDbFlag(CLI::App& command, std::string& db);
+
+// The word of an enumeration, e.g. ParseWord("--state", text, ParseMotionState,
+// "bounce, slide ...").
+template <class T>
+T ParseWord(const std::string& flag, const std::string& text,
+            std::optional<T> (*parse)(std::string_view),
+            const std::string& words) {
+  if (const auto word = parse(text)) return *word;
+  throw std::invalid_argument(flag + " is '" + text + "', must be " + words);
+}
+
+inline constexpr const char* kStateWords =
+    "bounce, slide, roll-slide, roll, stick, stays-down or undecided";
+
+// --body sphere --diameter-mm D, --body rectangle --sides-mm AxB; sizes may
+// bear their standard uncertainty: "40+-0.02", "60+-0.02x20+-0.02".
+struct BodyFlags {
+  std::string kind;
+  std::string diameter_mm;
+  std::string sides_mm;
+};
+void AddBodyFlags(CLI::App& command, BodyFlags& flags);
+// Nothing if none of the three was given.
+std::optional<core::Body> ParseBody(const BodyFlags& flags);
+
+// The trial of that id or beginning of an id; core::StoreError where none is.
+core::Trial RequireTrial(const db::Store& store, const std::string& id);
+
+// "sphere 40 mm", "rectangle 60 x 20 mm".
+std::string BodyText(const core::Body& body);
+
+}  // namespace touchdown::cli

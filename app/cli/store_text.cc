@@ -1,0 +1,66 @@
+#include "app/cli/store_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::cli {
+namespace {
+
+std::size_t Width(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
+  }));
+}
+
+}  // namespace
+
+std::string Printable(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      out += fmt::format("\\x{:02x}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string WithU(const core::Measured& measured, double unit) {
+  if (!measured) return "-";
+  const double value = measured->value / unit;
+  const double u = measured->u / unit;
+  if (!(u > 0.0) || !std::isfinite(u) || !std::isfinite(value)) {
+    return fmt::format("{:.6g}", value);
+  }
+  // The decimals of u's second significant digit; 0.0996 rounds up to 0.10.
+  const int magnitude = static_cast<int>(std::floor(std::log10(u * 1.005)));
+  const int decimals = std::clamp(1 - magnitude, 0, 12);
+  return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, u, decimals);
+}
+
+std::string Aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], Width(row[i]));
+    }
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += row[i];
+      line.append(widths[i] - Width(row[i]) + 2, ' ');
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  }
+  return text;
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,24 @@
+// What the commands of the store print.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "touchdown/core/estimate.h"
+
+namespace touchdown::cli {
+
+// Text of others on a terminal: control characters are shown as \xNN, so that
+// no note can move the cursor or break a line.
+std::string Printable(std::string_view text);
+
+// "20.013 +- 0.048": u with two significant digits, the value to the same
+// decimals, both divided by `unit`; "-" where absent.
+std::string WithU(const core::Measured& measured, double unit);
+
+// Columns aligned by character (UTF-8), two spaces between; the first row is
+// the heading.
+std::string Aligned(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace touchdown::cli

@@ -1,0 +1,302 @@
+// `touchdown theory regime | impact | flat | lcp`.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/case_file.h"
+#include "app/cli/theory_cases.h"
+#include "app/cli/theory_options.h"
+#include "app/cli/theory_words.h"
+#include "touchdown/analysis/contact.h"
+#include "touchdown/analysis/flat_contact.h"
+#include "touchdown/analysis/impact.h"
+#include "touchdown/analysis/lcp.h"
+
+namespace touchdown::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using core::kDegree;
+
+int Put(const TheoryFlags& flags, const Json& json, const std::string& text) {
+  WriteResult(flags.result.json ? json.dump(2) + "\n" : text, flags.result.out);
+  return 0;
+}
+
+int PutCases(const TheoryFlags& flags, const std::string& csv) {
+  if (flags.result.json) {
+    throw std::invalid_argument(
+        "--cases answers in CSV; leave --json away, or the other");
+  }
+  WriteResult(csv, flags.result.out);
+  return 0;
+}
+
+// Finite numbers as they are, others as null.
+Json Number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::string Change(double value, double per_unit, const char* unit) {
+  return std::isfinite(value) ? fmt::format("{:+.4g}{}", value / per_unit, unit)
+                              : std::string("never");
+}
+
+}  // namespace
+
+int RunRegime(const TheoryFlags& flags) {
+  if (!flags.result.cases.empty()) {
+    return PutCases(flags, RegimeCases(flags.result.cases));
+  }
+  const CornerFlags& f = flags.corner;
+  analysis::ContactProblem p;
+  p.alpha = NeedAlpha(f);
+  p.mu = Need(f.mu, "--mu");
+  p.slip = NeedSlip(f);
+  p.kappa = NeedKappa(f);
+  p.mass_kg = f.mass_kg.value_or(1.0);
+  p.omega_rad_per_s = f.omega_rad_per_s.value_or(0.0);
+  // Without spin the radius plays no part.
+  p.radius_m = p.omega_rad_per_s == 0.0 ? f.radius_m.value_or(1.0)
+                                        : Need(f.radius_m, "--radius-m");
+  p.gravity_mps2 = f.gravity_mps2;
+  const analysis::ContactResult r = analysis::SolveContact(p);
+
+  Json json = {{"schema", "touchdown.theory.regime/1"},
+               {"regime", Name(r.regime)},
+               {"regime_with_tolerance", Name(r.tolerant_regime)},
+               {"within_tolerance", r.within_tolerance},
+               {"solutions", Json::array()}};
+  std::string text = fmt::format("regime   {}, {} solution{}\n", Name(r.regime),
+                                 r.n_solutions, r.n_solutions == 1 ? "" : "s");
+  for (const analysis::ContactSolution& s : r.Solutions()) {
+    json["solutions"].push_back({{"kind", Name(s.kind)},
+                                 {"normal_n", Number(s.normal_n)},
+                                 {"tangential_n", Number(s.tangential_n)},
+                                 {"normal_mps2", Number(s.normal_mps2)},
+                                 {"tangential_mps2", Number(s.tangential_mps2)},
+                                 {"residual", Number(s.residual)}});
+    text += fmt::format(
+        "  {:<7}F_n = {:.6g} N   F_t = {:.6g} N   g_N'' = {:.6g} m/s^2   "
+        "g_T'' = {:.6g} m/s^2\n",
+        Name(s.kind), s.normal_n, s.tangential_n, s.normal_mps2,
+        s.tangential_mps2);
+  }
+  if (r.regime == analysis::Regime::kInconsistent) {
+    text +=
+        "         no finite force keeps the contact: see `touchdown theory "
+        "impact --normal-mps 0`\n";
+  }
+  if (r.within_tolerance) {
+    text += fmt::format(
+        "         within rounding of an edge: for rounded inputs {}\n",
+        Name(r.tolerant_regime));
+  }
+  const analysis::ContactMargins& m = r.margins;
+  json["b_mps2"] = Number(r.b_mps2);
+  json["b_tolerance_mps2"] = Number(r.b_tolerance_mps2);
+  json["b_condition"] = Number(r.b_condition);
+  Json margins = {{"b_alpha_deg", Number(m.b_alpha_rad / kDegree)},
+                  {"b_omega_rad_per_s", Number(m.b_omega_rad_per_s)},
+                  {"b_radius_m", Number(m.b_radius_m)},
+                  {"b_gravity_mps2", Number(m.b_gravity_mps2)}};
+  if (p.slip != analysis::Slip::kNone) {
+    json["a_hat"] = Number(r.a_hat);
+    json["a_hat_tolerance"] = Number(r.a_hat_tolerance);
+    json["a_hat_condition"] = Number(r.a_hat_condition);
+    margins["a_hat_alpha_deg"] = Number(m.a_hat_alpha_rad / kDegree);
+    margins["a_hat_mu"] = Number(m.a_hat_mu);
+    margins["a_hat_kappa"] = Number(m.a_hat_kappa);
+    text += fmt::format(
+        "A_hat    {:.6g} (condition {:.3g}); to its change of sign: alpha {}, "
+        "mu {}, kappa {}\n",
+        r.a_hat, r.a_hat_condition, Change(m.a_hat_alpha_rad, kDegree, " deg"),
+        Change(m.a_hat_mu, 1.0, ""), Change(m.a_hat_kappa, 1.0, ""));
+  } else {
+    margins["cone_mu"] = Number(m.cone_mu);
+    text += fmt::format("cone     mu - |F_t/F_n| of sticking = {:.4g}\n",
+                        m.cone_mu);
+  }
+  text += fmt::format(
+      "b        {:.6g} m/s^2 (condition {:.3g}); to its change of sign: alpha "
+      "{}, omega {}, R {}\n",
+      r.b_mps2, r.b_condition, Change(m.b_alpha_rad, kDegree, " deg"),
+      Change(m.b_omega_rad_per_s, 1.0, " rad/s"),
+      Change(m.b_radius_m, 1.0, " m"));
+  json["margins"] = margins;
+  return Put(flags, json, text);
+}
+
+int RunImpact(const TheoryFlags& flags) {
+  if (!flags.result.cases.empty()) {
+    return PutCases(flags, ImpactCases(flags.result.cases));
+  }
+  const CornerFlags& f = flags.corner;
+  const ImpactFlags& i = flags.impact;
+  analysis::ImpactProblem p;
+  p.alpha = NeedAlpha(f);
+  p.radius_m = Need(f.radius_m, "--radius-m");
+  p.kappa = NeedKappa(f);
+  p.mu = Need(f.mu, "--mu");
+  p.restitution = Need(i.restitution, "--restitution");
+  const double omega = f.omega_rad_per_s.value_or(0.0);
+  // In the frame of corner.h P lies at +x; there a trailing corner moves to -x
+  // and what is counter-clockwise for the viewer is clockwise.
+  double mirror = 1.0;
+  if (i.tangential_mps || i.normal_mps) {
+    p.tangential_mps = Need(i.tangential_mps, "--tangential-mps");
+    p.normal_mps = Need(i.normal_mps, "--normal-mps");
+    p.alpha_rate_rad_per_s = -omega;
+  } else {
+    const double speed = Need(i.speed_mps, "--speed-mps");
+    const auto approach =
+        analysis::SinCosOfDegrees(Need(i.approach_deg, "--approach-deg"));
+    mirror = Sign(NeedSlip(f));
+    p.alpha_rate_rad_per_s = -mirror * omega;
+    // v_P = v_C + omega x r, with d(alpha)/dt = -omega.
+    p.tangential_mps = mirror * speed * approach.cos -
+                       p.alpha_rate_rad_per_s * p.radius_m * p.alpha.sin;
+    p.normal_mps = -speed * approach.sin -
+                   p.alpha_rate_rad_per_s * p.radius_m * p.alpha.cos;
+  }
+  const analysis::ImpactResult r = analysis::Impact(p);
+  const double omega_after = -mirror * r.alpha_rate_rad_per_s;
+  const double slip_before = mirror * p.tangential_mps;
+  const double slip_after = mirror * r.tangential_mps;
+  const Json json = {{"schema", "touchdown.theory.impact/1"},
+                     {"status", Word(r.status)},
+                     {"phases", PhasesText(r)},
+                     {"before",
+                      {{"tangential_mps", slip_before},
+                       {"normal_mps", p.normal_mps},
+                       {"omega_rad_per_s", omega}}},
+                     {"after",
+                      {{"tangential_mps", slip_after},
+                       {"normal_mps", r.normal_mps},
+                       {"omega_rad_per_s", omega_after}}},
+                     {"impulse_per_mass_mps",
+                      {{"compression", r.compression_impulse_mps},
+                       {"normal", r.normal_impulse_mps},
+                       {"tangential", mirror * r.tangential_impulse_mps}}}};
+  std::string text = fmt::format(
+      "impact     {}\n"
+      "phases     {}\n"
+      "contact point before: along the ground {:.6g} m/s, away from it {:.6g} "
+      "m/s; spin {:.6g} rad/s\n"
+      "contact point after:  along the ground {:.6g} m/s, away from it {:.6g} "
+      "m/s; spin {:.6g} rad/s\n"
+      "impulse per mass (change of the centre's velocity): normal {:.6g} m/s, "
+      "tangential {:.6g} m/s\n",
+      Word(r.status), r.n_phases > 0 ? PhasesText(r) : "none", slip_before,
+      p.normal_mps, omega, slip_after, r.normal_mps, omega_after,
+      r.normal_impulse_mps, mirror * r.tangential_impulse_mps);
+  return Put(flags, json, text);
+}
+
+int RunFlat(const TheoryFlags& flags) {
+  if (!flags.result.cases.empty()) {
+    return PutCases(flags, FlatCases(flags.result.cases));
+  }
+  analysis::FlatProblem p;
+  p.length_m = Need(flags.flat.length_m, "--length-m");
+  p.height_m = Need(flags.flat.height_m, "--height-m");
+  p.mu = Need(flags.corner.mu, "--mu");
+  p.mass_kg = flags.corner.mass_kg.value_or(1.0);
+  p.gravity_mps2 = flags.corner.gravity_mps2;
+  const analysis::FlatResult r = analysis::SolveFlatContact(p);
+  Json json = {{"schema", "touchdown.theory.flat/1"},
+               {"tipping", r.tipping},
+               {"matrix", {{r.m_rr, r.m_rf}, {r.m_fr, r.m_ff}}},
+               {"within_tolerance", r.within_tolerance},
+               {"solution", nullptr}};
+  std::string text = fmt::format(
+      "tipping  mu b/a = {:.6g} (an edge lifts above 1)\n", r.tipping);
+  if (const auto& s = r.solution) {
+    json["solution"] = {
+        {"feet", Name(s->feet)},     {"rear_n", s->rear_n},
+        {"front_n", s->front_n},     {"tangential_n", s->tangential_n},
+        {"rear_mps2", s->rear_mps2}, {"front_mps2", s->front_mps2}};
+    text += fmt::format(
+        "carried by {}: rear {:.6g} N, front {:.6g} N, friction {:.6g} N in "
+        "all\nrising   rear {:.6g} m/s^2, front {:.6g} m/s^2\n",
+        Name(s->feet), s->rear_n, s->front_n, s->tangential_n, s->rear_mps2,
+        s->front_mps2);
+  } else {
+    text += fmt::format(
+        "no solution: M_ff = {:.6g} < 0, the front edge jams (Painleve)\n",
+        r.m_ff);
+  }
+  return Put(flags, json, text);
+}
+
+namespace {
+
+std::vector<double> ParseVector(const std::string& text, const char* flag) {
+  std::vector<double> out;
+  std::size_t start = 0;
+  while (true) {
+    const std::size_t comma = text.find(',', start);
+    std::string entry = text.substr(start, comma - start);
+    std::erase(entry, ' ');
+    try {
+      out.push_back(ParseFraction(entry));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", flag, error.what()));
+    }
+    if (comma == std::string::npos) return out;
+    start = comma + 1;
+  }
+}
+
+}  // namespace
+
+int RunLcp(const TheoryFlags& flags) {
+  if (!flags.result.cases.empty()) {
+    return PutCases(flags, LcpCases(flags.result.cases));
+  }
+  if (flags.lcp.m.empty() || flags.lcp.q.empty()) {
+    throw std::invalid_argument(
+        "--matrix and --vector are missing; give both, or --cases a file");
+  }
+  const std::vector<double> q = ParseVector(flags.lcp.q, "--vector");
+  std::vector<double> m;
+  std::size_t rows = 0;
+  for (std::size_t start = 0; start <= flags.lcp.m.size(); ++rows) {
+    const std::size_t end =
+        std::min(flags.lcp.m.find(';', start), flags.lcp.m.size());
+    const auto row =
+        ParseVector(flags.lcp.m.substr(start, end - start), "--matrix");
+    if (row.size() != q.size()) {
+      throw std::invalid_argument(
+          fmt::format("--matrix: row {} has {} entries, must have {} as "
+                      "--vector has",
+                      rows + 1, row.size(), q.size()));
+    }
+    m.insert(m.end(), row.begin(), row.end());
+    start = end + 1;
+  }
+  const analysis::LcpResult r = analysis::SolveLcp(m, q);
+  Json json = {{"schema", "touchdown.theory.lcp/1"},
+               {"status", Name(r.status)},
+               {"n_basic_solutions", r.n_basic},
+               {"n_singular_bases", r.n_singular_bases},
+               {"solutions", Json::array()}};
+  std::string text =
+      fmt::format("status   {}, {} basic solution{}, {} singular bas{}\n",
+                  Name(r.status), r.n_basic, r.n_basic == 1 ? "" : "s",
+                  r.n_singular_bases, r.n_singular_bases == 1 ? "is" : "es");
+  for (const analysis::LcpSolution& s : r.solutions) {
+    json["solutions"].push_back(
+        {{"z", s.z}, {"w", s.w}, {"residual", s.residual}, {"basic", s.basic}});
+    text += fmt::format("  z = ({:.6g})   w = ({:.6g})   residual {:.1e}{}\n",
+                        fmt::join(s.z, ", "), fmt::join(s.w, ", "), s.residual,
+                        s.basic ? "" : "   corner of a continuum");
+  }
+  return Put(flags, json, text);
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,88 @@
+#include "app/pipeline/evidence.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "app/report/text_file.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/vision/contact_sheet.h"
+#include "touchdown/vision/image_file.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+std::string TrackCsv(const Analysis& analysis) {
+  std::string csv =
+      "frame,time_s,x_px,y_px,u_x_px,u_y_px,angle_deg,u_angle_deg,misfit,"
+      "along_px,height_px,gap_px,u_gap_px,face_deg\n";
+  if (!analysis.track) return csv;
+  const auto& poses = analysis.track->poses;
+  const bool rectangle =
+      analysis.track->body.kind == core::BodyKind::kRectangle;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const vision::Pose& p = poses[i];
+    csv +=
+        fmt::format("{},{:.9f},{:.5f},{:.5f},{:.5f},{:.5f},", p.frame, p.time_s,
+                    p.centre.x_px, p.centre.y_px, p.u_x_px, p.u_y_px);
+    csv += rectangle
+               ? fmt::format("{:.6f},{:.6f},", p.angle_rad / core::kDegree,
+                             p.u_angle_rad / core::kDegree)
+               : std::string(",,");
+    csv += fmt::format("{:.3f},", p.misfit);
+    if (analysis.plane && i < analysis.plane->samples.size()) {
+      const vision::PlaneSample& s = analysis.plane->samples[i];
+      csv += fmt::format("{:.5f},{:.5f},{:.5f},{:.5f},", s.along_px,
+                         s.height_px, s.gap_px, s.u_gap_px);
+      if (rectangle) csv += fmt::format("{:.6f}", s.face_rad / core::kDegree);
+    } else {
+      csv += ",,,,";
+    }
+    csv += '\n';
+  }
+  return csv;
+}
+
+std::string Title(const Analysis& analysis) {
+  const core::ContactRecord& first = analysis.contacts.first;
+  std::string title = analysis.clip.path.filename().string();
+  if (analysis.simulated) title += "  SIMULATED";
+  title += fmt::format("   state: {}", Name(first.state.label));
+  const core::Measured& angle = Angle(first.contact, analysis.angle_kind);
+  if (angle) {
+    title += fmt::format(
+        "   {} angle {:.3f} +- {:.3f} deg", Name(analysis.angle_kind),
+        angle->value / core::kDegree, angle->u / core::kDegree);
+  }
+  return title;
+}
+
+}  // namespace
+
+void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
+                   const std::filesystem::path& folder) {
+  std::error_code trouble;
+  std::filesystem::create_directories(folder, trouble);
+  if (trouble) {
+    throw core::InputError(fmt::format("{}: cannot make this folder: {}",
+                                       folder.string(), trouble.message()));
+  }
+  report::WriteTextFile(folder / "track.csv", TrackCsv(analysis));
+  report::WriteTextFile(folder / "analysis.json", ToJson(analysis) + "\n");
+  if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
+    return;
+  }
+  vision::ClipOptions clip_options;
+  clip_options.fps = options.fps;
+  const auto clip = vision::OpenClip(analysis.clip.path, clip_options);
+  vision::ContactSheetOptions sheet_options;
+  sheet_options.title = Title(analysis);
+  const vision::ColourImage sheet =
+      vision::DrawContactSheet(*clip, *analysis.track, *analysis.plane,
+                               analysis.contacts, sheet_options);
+  vision::WritePngRgb(folder / "contact.png", sheet.width_px, sheet.height_px,
+                      sheet.rgb);
+}
+
+}  // namespace touchdown::pipeline

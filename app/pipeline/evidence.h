@@ -1,0 +1,19 @@
+// What a person can check: the track as numbers and the contact as a picture.
+#pragma once
+
+#include <filesystem>
+
+#include "app/pipeline/analyze.h"
+
+namespace touchdown::pipeline {
+
+// Writes into `folder` (made where there is none):
+//   track.csv     one row a frame: image and plane coordinates with u
+//   contact.png   the frames around contact with what was measured drawn in
+//   analysis.json the touchdown.analysis/1 document
+// Each appears under its name only when it is complete. Throws core::InputError
+// naming the file that cannot be written or the clip that cannot be read again.
+void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
+                   const std::filesystem::path& folder);
+
+}  // namespace touchdown::pipeline

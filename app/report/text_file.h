@@ -1,0 +1,14 @@
+// Text files that appear under their name only when they are complete.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace touchdown::report {
+
+// Writes beside `path`, then renames. Throws core::InputError naming the file
+// if it cannot be written (no such folder, no right, disk full); nothing is
+// left.
+void WriteTextFile(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace touchdown::report

@@ -1,0 +1,116 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "schema.h"
+#include "statement.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/db/maintenance.h"
+
+namespace touchdown::db {
+namespace {
+
+namespace fs = std::filesystem;
+using core::StoreError;
+
+// Brings a file or a folder to the disk.
+void Sync(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0 || fsync(file) != 0) {
+    const int error = errno;
+    if (file >= 0) close(file);
+    throw StoreError(fmt::format("{}: cannot be brought to the disk ({})",
+                                 path.string(), std::strerror(error)));
+  }
+  close(file);
+}
+
+// Removes what is left of a copy that failed.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
+  ~TemporaryFile() {
+    std::error_code ignored;
+    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+      fs::remove(path_.string() + suffix, ignored);
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+void Backup(const Store& store, const fs::path& to) {
+  if (fs::exists(to)) {
+    throw StoreError(fmt::format(
+        "{}: this file exists; a backup expects a new name", to.string()));
+  }
+  const fs::path folder = fs::absolute(to).parent_path();
+  if (!fs::is_directory(folder)) {
+    throw StoreError(
+        fmt::format("{}: its folder {} does not exist; make it first",
+                    to.string(), folder.string()));
+  }
+  const TemporaryFile temporary(
+      fs::path(to.string() + "." + store.sources().new_uuid() + ".part"));
+  {
+    Connection copy(temporary.path(), Connection::Access::kCreate, 0.0);
+    Connection& source = store.connection();
+    sqlite3_backup* backup =
+        sqlite3_backup_init(copy.handle(), "main", source.handle(), "main");
+    if (backup == nullptr) copy.Fail(sqlite3_extended_errcode(copy.handle()));
+    // All pages in one step: one snapshot, and in WAL mode nobody waits for it.
+    const int code = sqlite3_backup_step(backup, -1);
+    sqlite3_backup_finish(backup);
+    if (code != SQLITE_DONE) copy.Fail(code);
+    Statement check(copy, "PRAGMA integrity_check");
+    if (!check.Step() || check.TakeText() != "ok") {
+      throw StoreError(fmt::format(
+          "{}: the copy is damaged, so the store may be; see `touchdown db "
+          "check`",
+          to.string()));
+    }
+  }
+  Sync(temporary.path());
+  // link() fails where rename() would silently replace; file systems without
+  // hard links (sticks, mostly) must do with the latter.
+  int error = link(temporary.path().c_str(), to.c_str()) == 0 ? 0 : errno;
+  if ((error == EPERM || error == ENOTSUP) && !fs::exists(to)) {
+    error = rename(temporary.path().c_str(), to.c_str()) == 0 ? 0 : errno;
+  }
+  if (error != 0) {
+    throw StoreError(fmt::format("{}: the backup cannot take this name ({})",
+                                 to.string(), std::strerror(error)));
+  }
+  Sync(folder);
+}
+
+Migration Migrate(const fs::path& path, OpenOptions options) {
+  if (!fs::exists(path)) {
+    throw StoreError(fmt::format(
+        "{}: there is no such trial store; check the path", path.string()));
+  }
+  {
+    Connection connection(path, Connection::Access::kWrite, options.patience_s);
+    const std::int64_t id = connection.Integer("PRAGMA application_id");
+    const std::int64_t version = connection.Integer("PRAGMA user_version");
+    // Version 1 is the first: there is no step to take yet. Each later version
+    // adds its step here, from the version before, in one write transaction.
+    if (id == kApplicationId && version >= 1 && version < kSchemaVersion) {
+      throw std::logic_error("a step of the upgrade is missing");
+    }
+  }
+  // Says what is wrong with a newer file, or one that is not a store.
+  Store::Open(path, OpenMode::kWrite, std::move(options));
+  return {kSchemaVersion, kSchemaVersion};
+}
+
+}  // namespace touchdown::db

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include "statement.h"
+#include "touchdown/db/maintenance.h"
+
+namespace touchdown::db {
+namespace {
+
+// Every row of `sql` is a problem told by its one text column.
+void Collect(Connection& connection, std::string_view sql,
+             std::vector<std::string>& problems) {
+  Statement row(connection, sql);
+  while (row.Step()) problems.push_back(row.TakeText());
+}
+
+void CheckFile(Connection& connection, std::vector<std::string>& problems) {
+  Statement integrity(connection, "PRAGMA integrity_check");
+  while (integrity.Step()) {
+    const std::string line = integrity.TakeText();
+    if (line != "ok") problems.push_back("file: " + line);
+  }
+  Statement keys(connection, "PRAGMA foreign_key_check");
+  while (keys.Step()) {
+    const std::string table = keys.TakeText();
+    const auto row = keys.TakeOptionalInteger();
+    problems.push_back(
+        fmt::format("row {} of {} refers to a row of {} that is "
+                    "not there",
+                    row.value_or(-1), table, keys.TakeText()));
+  }
+}
+
+void CheckChains(Connection& connection, std::vector<std::string>& problems) {
+  Collect(connection,
+          "SELECT 'trial ' || uuid || ' has no revision' FROM trials t "
+          "WHERE NOT EXISTS (SELECT 1 FROM revisions WHERE trial_id = t.id)",
+          problems);
+  Collect(
+      connection,
+      "SELECT 'trial ' || t.uuid || ': its revisions are not numbered 1 to '"
+      " || count(*) FROM revisions r JOIN trials t ON t.id = r.trial_id "
+      "GROUP BY t.id HAVING min(number) <> 1 OR max(number) <> count(*)",
+      problems);
+  // What a revision leans on must be of the same trial, and not younger.
+  for (const char* column : {"statement_id", "exclusion_id"}) {
+    Collect(connection,
+            fmt::format(
+                "SELECT 'revision ' || r.uuid || ': its {0} belongs to another "
+                "trial or to a later revision' FROM revisions r "
+                "JOIN revisions b ON b.id = r.{0} "
+                "WHERE b.trial_id <> r.trial_id OR b.number > r.number",
+                column),
+            problems);
+  }
+  Collect(connection,
+          "SELECT 'revision ' || r.uuid || ' should hold ' || s.contacts || "
+          "' contacts, but holds ' || (SELECT count(*) FROM contacts c "
+          "WHERE c.revision_id = s.revision_id) "
+          "FROM statements s JOIN revisions r ON r.id = s.revision_id "
+          "WHERE s.contacts <> (SELECT count(*) FROM contacts c "
+          "WHERE c.revision_id = s.revision_id)",
+          problems);
+  Collect(connection,
+          "SELECT 'trigger ' || n || ' is missing: the store is not guarded' "
+          "FROM (SELECT t || '_refuse_' || a AS n FROM "
+          "(SELECT 'trials' t UNION SELECT 'revisions' UNION "
+          "SELECT 'statements' UNION SELECT 'contacts' UNION "
+          "SELECT 'budget_lines' UNION SELECT 'exclusions' UNION "
+          "SELECT 'conditions'), "
+          "(SELECT 'UPDATE' a UNION SELECT 'DELETE')) "
+          "WHERE n NOT IN (SELECT name FROM sqlite_schema)",
+          problems);
+}
+
+}  // namespace
+
+CheckReport Check(const Store& store, const DigestOf& digest) {
+  Connection& connection = store.connection();
+  CheckReport report;
+  struct Clip {
+    std::string path;
+    std::string sha256;
+  };
+  std::vector<Clip> clips;
+  {
+    Transaction snapshot(connection, Transaction::Kind::kRead);
+    CheckFile(connection, report.problems);
+    CheckChains(connection, report.problems);
+    report.campaigns = connection.Integer("SELECT count(*) FROM campaigns");
+    report.trials = connection.Integer("SELECT count(*) FROM trials");
+    report.revisions = connection.Integer("SELECT count(*) FROM revisions");
+    Statement row(connection,
+                  "SELECT last_seen_path, ifnull(sha256, '') FROM clips "
+                  "ORDER BY id");
+    while (row.Step()) {
+      Clip clip;
+      clip.path = row.TakeText();
+      clip.sha256 = row.TakeText();
+      clips.push_back(std::move(clip));
+    }
+  }
+  // Clips are long: read them when the snapshot has been let go.
+  for (const Clip& clip : clips) {
+    if (clip.sha256.empty()) ++report.clips_without_digest;
+    if (!digest || clip.sha256.empty()) continue;
+    const auto found = digest(clip.path);
+    if (!found) {
+      report.clips_missing.push_back(clip.path);
+    } else if (*found != clip.sha256) {
+      report.clips_changed.push_back(clip.path);
+    } else {
+      ++report.clips_verified;
+    }
+  }
+  return report;
+}
+
+}  // namespace touchdown::db

@@ -1,0 +1,514 @@
+// touchdown/vision/clip.h on video files: numbers, times, turns and damage.
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <random>
+
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/vision/clip_helpers.h"
+#include "touchdown/vision/clip.h"
+#include "touchdown/vision/clip_writer.h"
+
+namespace touchdown::vision {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using touchdown::testing::ReadAll;
+using touchdown::testing::Shared;
+using touchdown::testing::TemporaryFolder;
+
+constexpr std::int32_t kWidth = 48;
+constexpr std::int32_t kHeight = 32;
+
+Image Plain(std::int64_t i) { return Pattern(kWidth, kHeight, 8, i); }
+
+void WritePlain(const std::filesystem::path& path, std::int64_t frames,
+                VideoOptions options,
+                const std::function<Image(std::int64_t)>& make = Plain) {
+  std::int64_t i = 0;
+  Image image;
+  WriteVideo(path, options, [&]() -> std::optional<core::Frame> {
+    if (i == frames) return std::nullopt;
+    image = make(i++);
+    return image.View();
+  });
+}
+
+VideoOptions Lossless(VideoCodec codec, double fps = 500.0) {
+  VideoOptions options;
+  options.codec = codec;
+  options.fps = fps;
+  if (codec == VideoCodec::kH264) options.quality = 0;
+  options.key_frame_distance = 10;
+  return options;
+}
+
+// Copies the packets of a video into another file after `change` of each.
+void Remux(const std::filesystem::path& from, const std::filesystem::path& to,
+           const std::function<void(AVPacket&)>& change) {
+  AVFormatContext* in = nullptr;
+  ASSERT_EQ(avformat_open_input(&in, from.c_str(), nullptr, nullptr), 0);
+  ASSERT_GE(avformat_find_stream_info(in, nullptr), 0);
+  AVFormatContext* out = nullptr;
+  ASSERT_GE(avformat_alloc_output_context2(&out, nullptr, nullptr, to.c_str()),
+            0);
+  AVStream* const stream = avformat_new_stream(out, nullptr);
+  avcodec_parameters_copy(stream->codecpar, in->streams[0]->codecpar);
+  stream->codecpar->codec_tag = 0;
+  stream->time_base = in->streams[0]->time_base;
+  ASSERT_GE(avio_open(&out->pb, to.c_str(), AVIO_FLAG_WRITE), 0);
+  ASSERT_GE(avformat_write_header(out, nullptr), 0);
+  AVPacket* packet = av_packet_alloc();
+  while (av_read_frame(in, packet) >= 0) {
+    change(*packet);
+    av_packet_rescale_ts(packet, in->streams[0]->time_base, stream->time_base);
+    packet->pos = -1;
+    ASSERT_EQ(av_interleaved_write_frame(out, packet), 0);
+  }
+  ASSERT_EQ(av_write_trailer(out), 0);
+  av_packet_free(&packet);
+  avio_closep(&out->pb);
+  avformat_free_context(out);
+  avformat_close_input(&in);
+}
+
+// --- times
+// ---------------------------------------------------------------------
+
+TEST(VideoTime, APlaybackRateIsNotTrusted) {
+  const TemporaryFolder folder;
+  for (const double fps : {24.0, 25.0, 30000.0 / 1001.0, 30.0, 50.0, 60.0}) {
+    const auto path = folder / "a.avi";
+    WritePlain(path, 3, Lossless(VideoCodec::kFfv1, fps));
+    const auto clip = OpenClip(path);
+    EXPECT_NEAR(clip->info().time_base.fps, fps, 1e-6);
+    EXPECT_FALSE(clip->info().time_base.trusted);
+    EXPECT_THAT(clip->info().warnings, ElementsAre(HasSubstr("--fps")));
+    const auto told = OpenClip(path, {.fps = 2000.0});
+    EXPECT_EQ(told->info().time_base.fps, 2000.0);
+    EXPECT_EQ(told->info().time_base.source, FpsSource::kUser);
+    EXPECT_TRUE(told->info().time_base.trusted);
+    EXPECT_THAT(told->info().warnings, IsEmpty());
+    EXPECT_DOUBLE_EQ(told->Read(2).time_s, 2.0 / 2000.0);
+  }
+  WritePlain(folder / "a.avi", 3, Lossless(VideoCodec::kFfv1, 31.0));
+  EXPECT_TRUE(OpenClip(folder / "a.avi")->info().time_base.trusted);
+}
+
+TEST(VideoTime, VariableRateGivesTheTrueTimes) {
+  const TemporaryFolder folder;
+  WritePlain(folder / "even.mkv", 20, Lossless(VideoCodec::kFfv1, 100.0));
+  // Every third frame comes 4 ms late, of a period of 10 ms.
+  Remux(folder / "even.mkv", folder / "uneven.mkv", [](AVPacket& packet) {
+    if (packet.pts % 30 == 20) {
+      packet.pts += 4;
+      packet.dts += 4;
+    }
+  });
+  const auto clip = OpenClip(folder / "uneven.mkv");
+  ASSERT_EQ(clip->info().frames, 20);
+  EXPECT_FALSE(clip->info().time_base.uniform);
+  EXPECT_THAT(clip->info().warnings,
+              ElementsAre(HasSubstr("not equally spaced")));
+  for (std::int64_t i = 0; i < 20; ++i) {
+    EXPECT_NEAR(clip->Read(i).time_s,
+                static_cast<double>(i) * 0.010 + (i % 3 == 2 ? 0.004 : 0.0),
+                1e-12);
+  }
+  ExpectOrderDoesNotMatter(folder / "uneven.mkv");
+  // The user's rate is of equally spaced frames.
+  const auto told = OpenClip(folder / "uneven.mkv", {.fps = 100.0});
+  EXPECT_TRUE(told->info().time_base.uniform);
+  EXPECT_DOUBLE_EQ(told->Read(2).time_s, 0.02);
+  EXPECT_THAT(told->info().warnings,
+              ElementsAre(HasSubstr("not equally spaced")));
+}
+
+// 30 fps in ticks of 1 ms: 33, 67, 100 ... are not a variable rate.
+TEST(VideoTime, RoundedTimestampsAreUniform) {
+  const TemporaryFolder folder;
+  WritePlain(folder / "a.mkv", 40, Lossless(VideoCodec::kFfv1, 30.0));
+  const auto clip = OpenClip(folder / "a.mkv");
+  EXPECT_TRUE(clip->info().time_base.uniform);
+  EXPECT_NEAR(clip->info().time_base.fps, 30.0, 1e-9);
+  EXPECT_NEAR(clip->Read(1).time_s, 1.0 / 30.0, 1e-12);
+}
+
+TEST(VideoTime, TimestampsThatFramesShareAreNotTrusted) {
+  const TemporaryFolder folder;
+  WritePlain(folder / "a.mp4", 40, Lossless(VideoCodec::kH264, 4000.0));
+  Remux(folder / "a.mp4", folder / "b.mkv", [](AVPacket&) {});
+  const auto clip = OpenClip(folder / "b.mkv");
+  EXPECT_EQ(clip->info().frames, 40);
+  EXPECT_FALSE(clip->info().time_base.trusted);
+  EXPECT_THAT(clip->info().warnings, Contains(HasSubstr("too coarse")));
+  for (const std::int64_t i : {0, 39, 5, 6, 7, 0}) {
+    EXPECT_EQ(Samples(clip->Read(i)), Samples(Plain(i).View()));
+  }
+}
+
+// --- numbers
+// ---------------------------------------------------------------------
+
+TEST(VideoNumbers, IdenticalFramesAtTheStartAreFrames) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.mp4", "a.mkv", "a.avi"}) {
+    WritePlain(
+        folder / name, 12, Lossless(VideoCodec::kH264),
+        [](std::int64_t i) { return Plain(std::max<std::int64_t>(i, 4)); });
+    const auto clip = OpenClip(folder / name);
+    ASSERT_EQ(clip->info().frames, 12);
+    for (std::int64_t i = 0; i < 12; ++i) {
+      EXPECT_EQ(Samples(clip->Read(i)),
+                Samples(Plain(std::max<std::int64_t>(i, 4)).View()));
+    }
+  }
+}
+
+TEST(VideoNumbers, JumpsAreExactWhateverTheThreads) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.mp4", "a.mkv", "a.avi"}) {
+    WritePlain(folder / name, 90, Lossless(VideoCodec::kH264));
+    for (const std::int32_t threads : {1, 2, 5}) {
+      const auto clip = OpenClip(folder / name, {.decoder_threads = threads});
+      for (const std::int64_t i : {0, 40, 89, 41, 42, 60, 3, 3, 88, 10, 9, 8}) {
+        ASSERT_EQ(Samples(clip->Read(i)), Samples(Plain(i).View()))
+            << name << " frame " << i << " with " << threads << " threads";
+      }
+    }
+  }
+}
+
+// --- display rotation
+// --------------------------------------------------------------
+
+// Rotating by a quarter turn anticlockwise takes stored (x, y) to shown
+// (y, width - 1 - x).
+TEST(VideoRotation, UpIsUp) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.mp4", "a.mov"}) {
+    for (int turns = 0; turns < 4; ++turns) {
+      VideoOptions options = Lossless(VideoCodec::kH264);
+      options.turn_quarters = turns;
+      WritePlain(folder / name, 3, options);
+      const auto clip = OpenClip(folder / name);
+      const bool upright = turns % 2 == 0;
+      ASSERT_EQ(clip->info().width_px, upright ? kWidth : kHeight);
+      ASSERT_EQ(clip->info().height_px, upright ? kHeight : kWidth);
+      EXPECT_THAT(clip->info().warnings, IsEmpty());
+      const core::Frame shown = clip->Read(2);
+      const Image stored = Plain(2);
+      for (std::int32_t y = 0; y < kHeight; ++y) {
+        for (std::int32_t x = 0; x < kWidth; ++x) {
+          std::int32_t u = x;
+          std::int32_t v = y;
+          std::int32_t width = kWidth;
+          for (int turn = 0; turn < turns; ++turn) {
+            const std::int32_t old_u = u;
+            u = v;
+            v = width - 1 - old_u;
+            width = width == kWidth ? kHeight : kWidth;
+          }
+          ASSERT_EQ(shown.at(u, v), stored.View().at(x, y))
+              << turns << " turns, stored " << x << "," << y;
+        }
+      }
+      ExpectWindowsAreCrops(*clip, 1);
+      ExpectOrderDoesNotMatter(folder / name);
+    }
+  }
+}
+
+// --- damage
+// ------------------------------------------------------------------------
+
+TEST(VideoDamage, WhatIsNoRecordingIsOneLine) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(ErrorOf(folder.Write("empty.avi", "")),
+              HasSubstr("not a recording that can be read"));
+  EXPECT_THAT(ErrorOf(folder.Write("text.mp4", "hello, world\nbye\n")),
+              HasSubstr("not a recording that can be read"));
+  EXPECT_THAT(ErrorOf(folder.Write("list.m3u8", "#EXTM3U\n#EXTINF:1,\na.ts\n")),
+              HasSubstr("not a recording that can be read"));
+  std::string noise(100'000, '\0');
+  std::mt19937 random(5);
+  for (char& c : noise) c = static_cast<char>(random());
+  EXPECT_NE(ErrorOf(folder.Write("noise.mkv", noise)), "");
+}
+
+struct DamageCase {
+  const char* name;
+  VideoCodec codec;
+};
+class VideoDamageIn : public ::testing::TestWithParam<DamageCase> {};
+
+// Cut anywhere: an error of one line, or a clip whose frames are the first ones
+// of the whole, with a warning.
+TEST_P(VideoDamageIn, ACutClipKeepsItsWholeFrames) {
+  const TemporaryFolder folder;
+  const auto path = folder / GetParam().name;
+  WritePlain(path, 40, Lossless(GetParam().codec));
+  const std::string whole = ReadAll(path);
+  const auto cut = folder / (std::string("cut_") + GetParam().name);
+  std::int64_t most = 0;
+  for (int part = 1; part < 40; ++part) {
+    folder.Write(
+        cut.filename().string(),
+        whole.substr(0, whole.size() * static_cast<std::size_t>(part) / 40));
+    try {
+      const auto clip = OpenClip(cut);
+      const std::int64_t n = clip->info().frames;
+      EXPECT_LE(n, 40);
+      if (n < 40) {
+        EXPECT_THAT(clip->info().warnings, Contains(HasSubstr("ends early")));
+      }
+      EXPECT_GE(n, most) << "more of the file gives no fewer frames";
+      most = n;
+      for (std::int64_t i = 0; i < n; ++i) {
+        ASSERT_EQ(Samples(clip->Read(i)), Samples(Plain(i).View()))
+            << "frame " << i << " of " << n << ", cut to " << part << "/40";
+      }
+      EXPECT_TRUE(clip->info().time_base.uniform);
+    } catch (const core::InputError& error) {
+      EXPECT_EQ(most, 0) << error.what();
+    }
+  }
+  // An .mp4 or .mov has its list of frames at the end.
+  if (GetParam().name[2] != 'm' || GetParam().name[3] == 'k') {
+    EXPECT_GE(most, 36);
+  }
+}
+
+// Bytes overwritten in the middle: every frame is the right one or an error
+// that names it (FFV1 has check sums; others may show changed pixels).
+TEST_P(VideoDamageIn, ABadFrameIsNamedAndTheOthersStay) {
+  const TemporaryFolder folder;
+  const auto path = folder / GetParam().name;
+  WritePlain(path, 40, Lossless(GetParam().codec));
+  std::string bytes = ReadAll(path);
+  std::mt19937 random(3);
+  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 60; ++i) {
+    bytes[i] = static_cast<char>(random());
+  }
+  folder.Write(GetParam().name, bytes);
+  const auto clip = OpenClip(path);
+  int right = 0;
+  int changed = 0;
+  int refused = 0;
+  for (std::int64_t i = 0; i < clip->info().frames; ++i) {
+    try {
+      const core::Frame frame = clip->Read(i);
+      EXPECT_EQ(frame.index, i);
+      ++(Samples(frame) == Samples(Plain(i).View()) ? right : changed);
+    } catch (const core::InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("frame " + std::to_string(i)));
+      ++refused;
+    }
+  }
+  EXPECT_GE(right, 15);
+  EXPECT_GE(refused + changed, 1);
+  if (GetParam().codec == VideoCodec::kFfv1) {
+    EXPECT_EQ(changed, 0);
+    EXPECT_GE(right, 35);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, VideoDamageIn,
+    ::testing::Values(DamageCase{"a.avi", VideoCodec::kRaw},
+                      DamageCase{"a.avi", VideoCodec::kFfv1},
+                      DamageCase{"a.mkv", VideoCodec::kFfv1},
+                      DamageCase{"a.avi", VideoCodec::kH264},
+                      DamageCase{"a.mkv", VideoCodec::kH264},
+                      DamageCase{"a.mp4", VideoCodec::kH264}));
+
+// Seeded mutations of headers: a clip or an error of the right lane.
+TEST(VideoDamage, MutatedHeadersNeverCrash) {
+  const TemporaryFolder folder;
+  std::mt19937 random(11);
+  for (const DamageCase& kind : {DamageCase{"a.avi", VideoCodec::kFfv1},
+                                 DamageCase{"a.mkv", VideoCodec::kFfv1},
+                                 DamageCase{"a.mp4", VideoCodec::kH264},
+                                 DamageCase{"b.avi", VideoCodec::kRaw}}) {
+    WritePlain(folder / kind.name, 3, Lossless(kind.codec));
+    const std::string whole = ReadAll(folder / kind.name);
+    for (int round = 0; round < 60; ++round) {
+      std::string bytes = whole;
+      // The lists are at either end.
+      for (int i = 0; i < 4; ++i) {
+        const std::size_t at =
+            random() % std::min<std::size_t>(700, bytes.size());
+        bytes[i % 2 == 0 ? at : bytes.size() - 1 - at] =
+            static_cast<char>(random());
+      }
+      ErrorOf(folder.Write(std::string("m_") + kind.name, bytes));
+    }
+  }
+}
+
+// --- real recordings (facts: footage/README.md)
+// --------------------------------------
+
+struct Recording {
+  const char* name;
+  const char* format;
+  std::int32_t width, height, bit_depth;
+  std::int64_t frames, first_camera_frame;
+  double fps;
+  bool trusted;
+};
+class VideoFootage : public ::testing::TestWithParam<Recording> {};
+
+TEST_P(VideoFootage, IsWhatItsReadmeSays) {
+  const Recording& expected = GetParam();
+  const auto path = Shared(std::string("footage/") + expected.name);
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  const auto clip = OpenClip(path);
+  const ClipInfo& info = clip->info();
+  EXPECT_EQ(info.format, expected.format);
+  EXPECT_EQ(info.width_px, expected.width);
+  EXPECT_EQ(info.height_px, expected.height);
+  EXPECT_EQ(info.bit_depth, expected.bit_depth);
+  EXPECT_EQ(info.frames, expected.frames);
+  EXPECT_EQ(info.first_camera_frame, expected.first_camera_frame);
+  EXPECT_NEAR(info.time_base.fps, expected.fps, 1e-4);
+  EXPECT_TRUE(info.time_base.uniform);
+  EXPECT_EQ(info.time_base.trusted, expected.trusted);
+  const bool packed = info.format == "cine" && info.bit_depth == 10;
+  EXPECT_EQ(info.warnings.size(), expected.trusted && !packed ? 0u : 1u);
+  for (std::int64_t i = 0; i < info.frames; ++i) {
+    EXPECT_EQ(clip->Read(i).index, i);
+  }
+  ExpectWindowsAreCrops(*clip, info.frames / 2);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Clips, VideoFootage,
+    ::testing::Values(
+        Recording{"red_ball.mp4", "mp4", 1080, 1920, 8, 65, 0, 29.97003, false},
+        Recording{"galileo_projectile.mp4", "mp4", 640, 480, 8, 33, 0, 30.0,
+                  false},
+        Recording{"bouncing_cart.mov", "mov", 640, 480, 8, 328, 0, 30.0, false},
+        Recording{"data_small_cine.cine", "cine", 256, 32, 10, 235, 0, 100.0,
+                  true},
+        Recording{"cine_781.cine", "cine", 256, 256, 12, 15, -5417, 90000.0,
+                  true},
+        Recording{"cine_legacy.cine", "cine", 128, 128, 14, 97, -7722, 35087.0,
+                  true}));
+
+TEST(VideoFootageOrder, BackwardsIsForwards) {
+  for (const char* name :
+       {"footage/galileo_projectile.mp4", "footage/cine_781.cine"}) {
+    const auto path = Shared(name);
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    ExpectOrderDoesNotMatter(path);
+  }
+}
+
+TEST(VideoFootageRedBall, TheFirstTwoFramesAreIdentical) {
+  const auto path = Shared("footage/red_ball.mp4");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  const auto clip = OpenClip(path);
+  const auto samples = [&](std::int64_t i) { return Samples(clip->Read(i)); };
+  const auto first = samples(0);
+  const auto second = samples(1);
+  const auto third = samples(2);
+  const auto distance = [](const auto& a, const auto& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      sum += std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    }
+    return sum / static_cast<double>(a.size());
+  };
+  EXPECT_LT(distance(first, second), 0.1 * distance(second, third));
+}
+
+// A second reader of uncompressed .cine, by the format's own layout: the
+// offsets of the frames stand in a table, each frame begins with the length of
+// its annotation, and rows of 16-bit samples run upwards.
+TEST(VideoFootageCine, SamplesAreThoseInTheFile) {
+  for (const char* name :
+       {"footage/cine_781.cine", "footage/cine_legacy.cine"}) {
+    const auto path = Shared(name);
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    const std::string bytes = ReadAll(path);
+    const auto number = [&](std::size_t at, std::size_t size) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, bytes.data() + at, size);
+      return value;
+    };
+    const std::size_t image_header = number(24, 4);    // OffImageHeader
+    const std::size_t setup = number(28, 4);           // OffSetup
+    const std::size_t table = number(32, 4);           // OffImageOffsets
+    const bool flipped = number(setup + 760, 4) != 0;  // bFlipV
+    const auto width = static_cast<std::int32_t>(number(image_header + 4, 4));
+    const auto height = static_cast<std::int32_t>(number(image_header + 8, 4));
+    const auto clip = OpenClip(path);
+    ASSERT_EQ(clip->info().width_px, width);
+    ASSERT_EQ(clip->info().height_px, height);
+    for (std::int64_t i = 0; i < clip->info().frames; i += 7) {
+      const std::size_t at = number(table + 8 * static_cast<std::size_t>(i), 8);
+      const std::size_t pixels = at + number(at, 4);
+      const core::Frame frame = clip->Read(i);
+      for (std::int32_t y = 0; y < height; ++y) {
+        for (std::int32_t x = 0; x < width; ++x) {
+          const auto row =
+              static_cast<std::size_t>(flipped ? y : height - 1 - y);
+          ASSERT_EQ(frame.at(x, y),
+                    number(pixels + 2 * (row * static_cast<std::size_t>(width) +
+                                         static_cast<std::size_t>(x)),
+                           2))
+              << name << " frame " << i << " at " << x << "," << y;
+        }
+      }
+    }
+  }
+}
+
+// Two readers of the same pictures: libjpeg in the folder, libav in a Motion
+// JPEG made of the same files. Their inverse transforms may differ by a level.
+TEST(VideoFootageHoop, LibavAndLibjpegAgree) {
+  const auto path = Shared("footage/roll_slip_42.4");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  const TemporaryFolder folder;
+  std::vector<std::string> files;
+  for (int i = 4; i <= 26; ++i) {
+    files.push_back(
+        ReadAll(path / ("RollSlip42." + std::string(i < 10 ? "0" : "") +
+                        std::to_string(i) + ".jpg")));
+  }
+  WritePlain(folder / "carrier.avi", 23, Lossless(VideoCodec::kMjpeg, 30.0));
+  Remux(folder / "carrier.avi", folder / "a.avi", [&](AVPacket& packet) {
+    const std::string& file = files[static_cast<std::size_t>(packet.pts)];
+    const std::int64_t pts = packet.pts;
+    av_packet_unref(&packet);
+    av_new_packet(&packet, static_cast<int>(file.size()));
+    std::memcpy(packet.data, file.data(), file.size());
+    packet.pts = packet.dts = pts;
+    packet.duration = 1;
+    packet.flags = AV_PKT_FLAG_KEY;
+  });
+  const auto pictures = OpenClip(path, {.fps = 30.0});
+  const auto video = OpenClip(folder / "a.avi", {.fps = 30.0});
+  ASSERT_EQ(pictures->info().frames, 23);
+  ASSERT_EQ(video->info().frames, 23);
+  for (std::int64_t i = 0; i < 23; i += 11) {
+    const auto a = Samples(pictures->Read(i));
+    const auto b = Samples(video->Read(i));
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::vision

@@ -1,0 +1,34 @@
+// Opening a video file with libav, up to its decoder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "libav.h"
+
+namespace touchdown::vision {
+
+struct VideoSource {
+  LibavPtr<AVFormatContext> format;
+  LibavPtr<AVCodecContext> codec;
+  AVStream* stream = nullptr;         // the video, of format
+  AVRational declared_rate = {0, 1};  // what the container states
+};
+
+// Opens the file at its beginning; sound, subtitles and cover pictures are left
+// out. Throws core::InputError naming the file.
+VideoSource OpenVideoSource(const std::filesystem::path& path,
+                            std::int32_t threads);
+
+// "avi", "mp4", "mov", "mkv", "cine" or libav's word for the container.
+std::string FormatName(const AVFormatContext& format);
+
+// Whether the file is shorter than the first of its headers says (RIFF, EBML):
+// libav takes the end of such a file for the end of the recording.
+bool IsCut(const std::filesystem::path& path);
+
+// The camera's number of the first frame of a .cine (FirstImageNo, at byte 16).
+std::int64_t CineFirstFrame(const std::filesystem::path& path);
+
+}  // namespace touchdown::vision
