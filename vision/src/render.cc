@@ -174,6 +174,7 @@ std::vector<float> Texture(const SceneCamera& camera, const SceneLook& look) {
     float* row = along.data() + size(y, camera.width_px);
     for (int k = 0; k <= 2 * reach; ++k) {
       const float weight = kernel[static_cast<std::size_t>(k)];
+      const float* shifted = white.data() + k;
       for (int x = 0; x < camera.width_px; ++x) row[x] += weight * shifted[x];
     }
   }
