@@ -241,7 +241,8 @@ class SceneClip final : public Clip {
 core::Frame SensorImage::view() const {
   core::Frame frame;
   frame.data = samples.data();
-  frame.stride_bytes = width_px * (bit_depth > 8 ? 2 : 1);
+  frame.stride_bytes =
+      static_cast<std::ptrdiff_t>(width_px) * (bit_depth > 8 ? 2 : 1);
   frame.width_px = width_px;
   frame.height_px = height_px;
   frame.bit_depth = bit_depth;
