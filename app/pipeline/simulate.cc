@@ -78,7 +78,7 @@ std::string_view Word(ClipFormat format) {
 
 std::filesystem::path ClipPath(const Shot& shot,
                                const SimulateOptions& options) {
-  const std::filesystem::path base = options.folder / shot.name;
+  std::filesystem::path base = options.folder / shot.name;
   switch (options.format) {
     case ClipFormat::kMraw:
       return base.string() + ".mraw";

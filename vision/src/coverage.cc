@@ -52,7 +52,8 @@ class NormalTable {
   };
   static Place Locate(double t) {
     const double at = (t - kFirst) / kStep;
-    const double floor = std::floor(at);
+    // Just below the end, `at` may round up to the last node.
+    const double floor = std::min(std::floor(at), kSize - 2.0);
     return {static_cast<std::size_t>(floor), at - floor};
   }
   static double Hermite(double f0, double f1, double d0, double d1, double u) {

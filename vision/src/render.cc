@@ -174,8 +174,8 @@ std::vector<float> Texture(const SceneCamera& camera, const SceneLook& look) {
     float* row = along.data() + size(y, camera.width_px);
     for (int k = 0; k <= 2 * reach; ++k) {
       const float weight = kernel[static_cast<std::size_t>(k)];
-      for (int x = 0; x < camera.width_px; ++x)
-        row[x] += weight * white[static_cast<std::size_t>(x + k)];
+      const float* shifted = white.data() + k;
+      for (int x = 0; x < camera.width_px; ++x) row[x] += weight * shifted[x];
     }
   }
   std::vector<float> field(size(camera.width_px, camera.height_px), 0.0f);
@@ -220,7 +220,8 @@ class SceneClip final : public Clip {
     }
     core::Frame frame = image_.view();
     frame.data +=
-        window.y * frame.stride_bytes + window.x * (frame.is_16_bit() ? 2 : 1);
+        window.y * frame.stride_bytes +
+        static_cast<std::ptrdiff_t>(window.x) * (frame.is_16_bit() ? 2 : 1);
     frame.width_px = window.width;
     frame.height_px = window.height;
     frame.origin_x_px = window.x;
@@ -240,7 +241,8 @@ class SceneClip final : public Clip {
 core::Frame SensorImage::view() const {
   core::Frame frame;
   frame.data = samples.data();
-  frame.stride_bytes = width_px * (bit_depth > 8 ? 2 : 1);
+  frame.stride_bytes =
+      static_cast<std::ptrdiff_t>(width_px) * (bit_depth > 8 ? 2 : 1);
   frame.width_px = width_px;
   frame.height_px = height_px;
   frame.bit_depth = bit_depth;
