@@ -21,8 +21,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "app/pipeline/simulate.h"
 #include "touchdown/core/body.h"
@@ -41,10 +39,9 @@ constexpr double kFramesBefore = 28.0;
 constexpr double kFramesAfter = 48.0;
 constexpr double kFramesAfterGreatest = 6.0;
 constexpr double kClearly = 3.0;
-// The lead-in is so long that the body covers no pixel in more than this share
-// of the frames: a background from the clip itself needs less than a quarter
-// (vision/background.h).
-constexpr double kMostCovered = 0.2;
+// The camera runs before the shot: 20 ms of empty picture. A body that falls in
+// place never uncovers its background; these frames show it.
+constexpr std::int64_t kLeadInFrames = 40;
 
 vision::SceneCamera Camera() {
   vision::SceneCamera camera;
@@ -77,43 +74,6 @@ std::string NameOf(const char* what, double angle_deg) {
   return fmt::format("{}_{:02}_{}_deg", what, tenths / 10, tenths % 10);
 }
 
-// In how many of the frames after the lead-in the body covers the point that it
-// covers most often.
-std::int64_t MostCovered(const Shot& shot, const analysis::RigidMotion& motion,
-                         double begin_s, std::int64_t frames) {
-  const core::Body& body = shot.thrown.body;
-  const bool sphere = body.kind == core::BodyKind::kSphere;
-  const double a = 0.5 * (sphere ? body.diameter_m : body.long_m)->value;
-  const double b = 0.5 * (sphere ? body.diameter_m : body.short_m)->value;
-  constexpr double kStep_m = 2.0 * core::kMillimetre;
-  std::map<std::pair<int, int>, std::int64_t> covered;
-  const auto cell = [](double x_m) {
-    return static_cast<int>(std::lround(x_m / kStep_m));
-  };
-  const double reach = std::hypot(a, b);
-  std::int64_t most = 0;
-  for (std::int64_t i = 0; i < frames; ++i) {
-    const analysis::BodyState s = analysis::StateAt(
-        motion, begin_s + static_cast<double>(i) / shot.camera.fps);
-    const double c = std::cos(s.angle_rad);
-    const double t = std::sin(s.angle_rad);
-    for (int y = cell(s.centre.y_m - reach); y <= cell(s.centre.y_m + reach);
-         ++y) {
-      for (int x = cell(s.centre.x_m - reach); x <= cell(s.centre.x_m + reach);
-           ++x) {
-        const double dx = x * kStep_m - s.centre.x_m;
-        const double dy = y * kStep_m - s.centre.y_m;
-        const double u = c * dx + t * dy;
-        const double v = -t * dx + c * dy;
-        const bool inside =
-            sphere ? u * u + v * v < a * a : std::abs(u) < a && std::abs(v) < b;
-        if (inside) most = std::max(most, ++covered[{x, y}]);
-      }
-    }
-  }
-  return most;
-}
-
 // Cuts the flight to what is filmed, with touchdown at x = 0, and adds the
 // lead-in. `phase` (0..1) is where between two frames the touchdown falls.
 void Film(Shot& shot, double phase) {
@@ -133,11 +93,8 @@ void Film(Shot& shot, double phase) {
     end = std::max(end, ever.time_s + kFramesAfterGreatest / kFps);
   }
   const auto seen = static_cast<std::int64_t>(std::ceil((end - begin) * kFps));
-  const std::int64_t covered = MostCovered(shot, whole, begin, seen);
-  shot.frames = std::max(
-      seen, static_cast<std::int64_t>(
-                std::ceil(static_cast<double>(covered) / kMostCovered)));
-  shot.lead_in_frames = shot.frames - seen;
+  shot.lead_in_frames = kLeadInFrames;
+  shot.frames = seen + kLeadInFrames;
   thrown.start = analysis::StateAt(whole, begin);
   thrown.start.centre.x_m -= touchdown->before.centre.x_m;
 }
