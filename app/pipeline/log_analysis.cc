@@ -5,12 +5,18 @@
 
 namespace touchdown::pipeline {
 
-Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
-                   const std::string& campaign) {
+core::Trial LoggableTrial(const Analysis& analysis,
+                          const std::string& campaign) {
   core::Trial trial = ToTrial(analysis);
   trial.campaign = campaign;
   trial.clip.path = std::filesystem::absolute(analysis.clip.path).string();
   trial.clip.sha256 = vision::Sha256(analysis.clip.path);
+  return trial;
+}
+
+Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
+                   const std::string& campaign) {
+  const core::Trial trial = LoggableTrial(analysis, campaign);
   db::Store store = db::Store::Open(db, db::OpenMode::kCreate);
   const db::Logged logged = store.LogTrial(trial);
   return {logged.id, logged.revision};

@@ -14,6 +14,11 @@ struct Logged {
   std::int64_t revision = 0;
 };
 
+// The trial as the store takes it: with an absolute path and the clip's full
+// SHA-256. Throws core::InputError if the clip cannot be read.
+core::Trial LoggableTrial(const Analysis& analysis,
+                          const std::string& campaign);
+
 // Logs the trial that `analysis` makes, with the clip's full SHA-256, in the
 // store at `db` (made where there is none): a new trial, or a further revision
 // where the campaign has one of the same clip. On the disk on return. Throws
