@@ -57,11 +57,9 @@ std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
   return kind;
 }
 
-// px per metre from a length known in both.
-core::Estimate ScaleFrom(const core::Estimate& px,
-                         const core::Estimate& metres) {
-  const double value = px.value / metres.value;
-  return {value, value * std::hypot(px.u / px.value, metres.u / metres.value),
+core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
+  const double value = a.value / b.value;
+  return {value, value * std::hypot(a.u / a.value, b.u / b.value),
           std::nullopt};
 }
 
@@ -74,15 +72,15 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
   if (image.whole_px > 0.0) return std::nullopt;
   if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
     return calib::Scale{
-        ScaleFrom(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
+        QuotientOf(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
         calib::ScaleSource::kBodySize};
   }
   if (options.long_m && image.kind == core::BodyKind::kRectangle) {
     // The long side is the better known one, relative to its length.
     const core::Estimate& a = *options.long_m;
     const core::Estimate& b = *options.short_m;
-    return calib::Scale{ScaleFrom(core::Scaled(image.half_long_px, 2.0),
-                                  a.value >= b.value ? a : b),
+    return calib::Scale{QuotientOf(core::Scaled(image.half_long_px, 2.0),
+                                   a.value >= b.value ? a : b),
                         calib::ScaleSource::kBodySize};
   }
   return std::nullopt;
@@ -144,13 +142,14 @@ class Analyzer {
   Analysis result_;
   vision::Background background_;
   vision::ContactOptions contact_options_;
+  std::optional<core::Estimate> aspect_;  // short over long side, measured
 };
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
   judged.ground = ground;
-  judged.track = vision::Refine(*clip_, background_, track, ground);
+  judged.track = vision::Refine(*clip_, background_, track, {ground, aspect_});
   judged.plane = vision::SeenFromGround(judged.track, ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
@@ -256,6 +255,12 @@ Analysis Analyzer::Run() {
     throw std::invalid_argument(
         fmt::format("frames is {}:{}, must be a range within 0:{}",
                     options_.first_frame, last, frames));
+  }
+
+  if (options_.long_m) {
+    const core::Body measured =
+        core::Rectangle(*options_.long_m, *options_.short_m);
+    aspect_ = QuotientOf(*measured.short_m, *measured.long_m);
   }
 
   auto lap = Clock::now();

@@ -409,25 +409,73 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   return result;
 }
 
+namespace {
+
+// a and b of one thing, each with its uncertainty, as one.
+core::Estimate Combined(const core::Estimate& a, const core::Estimate& b) {
+  const double wa = 1.0 / std::max(a.u * a.u, 1e-18);
+  const double wb = 1.0 / std::max(b.u * b.u, 1e-18);
+  return {(a.value * wa + b.value * wb) / (wa + wb), 1.0 / std::sqrt(wa + wb),
+          std::nullopt};
+}
+
+}  // namespace
+
 Track Refine(Clip& clip, const Background& background, const Track& track,
-             const calib::GroundLine& ground) {
-  Track refined = track;
-  refined.poses.clear();
+             const RefineOptions& refine) {
   OutlineOptions options;
-  options.surround = track.known_background
-                         ? OutlineOptions::Surround::kBackground
-                         : OutlineOptions::Surround::kPolynomial;
-  options.fit_size = false;
+  options.surround =
+      track.known_background ? Surround::kBackground : Surround::kPolynomial;
   options.fit_blur = false;
   options.blur_px = track.body.blur_px;
-  options.ground = ground;
-  for (const Pose& pose : track.poses) {
+  options.ground = refine.ground;
+  const auto fit_pose = [&](const BodyImage& body, const Pose& pose) {
     const core::Frame frame = clip.Read(pose.frame);
-    const auto fit =
-        FitOutline(frame, background, OutlineAt(track.body, pose), options);
+    return FitOutline(frame, background, OutlineAt(body, pose), options);
+  };
+
+  // The size once more, now that the ground is left out: a body that lies on it
+  // had the ground's edge taken for its own.
+  Track refined = track;
+  const bool steady =
+      std::all_of(track.poses.begin(), track.poses.end(),
+                  [](const Pose& pose) { return pose.relative_size == 1.0; });
+  if (steady) {
+    constexpr std::size_t kEnough =
+        80;  // frames; u of the size falls as 1/sqrt
+    const std::size_t step =
+        std::max<std::size_t>(1, track.poses.size() / kEnough);
+    std::vector<Fitted> sized;
+    for (std::size_t i = 0; i < track.poses.size(); i += step) {
+      const Pose& pose = track.poses[i];
+      const auto fit = fit_pose(track.body, pose);
+      if (fit) sized.push_back({pose.frame, pose.time_s, *fit});
+    }
+    DropStrangers(sized);
+    constexpr std::size_t kLeast = 3;
+    if (sized.size() >= kLeast) {
+      const BodyImage shape = ShapeOf(sized, track.body.kind);
+      refined.body.radius_px = shape.radius_px;
+      refined.body.half_long_px = shape.half_long_px;
+      refined.body.half_short_px = shape.half_short_px;
+    }
+  }
+  if (refine.aspect && track.body.kind == core::BodyKind::kRectangle &&
+      track.body.whole_px == 0.0) {
+    const core::Estimate& a = refined.body.half_long_px;
+    const core::Estimate& ratio = *refine.aspect;
+    refined.body.half_short_px = Combined(
+        refined.body.half_short_px,
+        {a.value * ratio.value,
+         std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});
+  }
+
+  options.fit_size = false;
+  refined.poses.clear();
+  for (const Pose& pose : track.poses) {
+    const auto fit = fit_pose(refined.body, pose);
     if (!fit) continue;
-    Fitted f{pose.frame, pose.time_s, *fit};
-    Pose better = PoseOf(f);
+    Pose better = PoseOf({pose.frame, pose.time_s, *fit});
     better.relative_size = pose.relative_size;
     refined.poses.push_back(better);
   }
