@@ -232,7 +232,7 @@ std::string Cell(int value) { return std::to_string(value); }
 
 std::string Cell(std::string_view value) { return std::string(value); }
 
-CaseWriter::CaseWriter(std::vector<std::string> columns)
+CaseWriter::CaseWriter(const std::vector<std::string>& columns)
     : n_columns_(columns.size()) {
   Add(columns);
 }
