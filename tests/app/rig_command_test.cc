@@ -341,7 +341,7 @@ TEST(RigCommand, MistakesAreOneLine) {
       {"launch --stiffness-n-per-m 10 --compression-mm 5",
        "--mass-g is missing"},
       {"launch --stiffness-n-per-m ten --mass-g 1 --compression-mm 5",
-       "--stiffness-n-per-m is \"ten\", expected a number"},
+       "--stiffness-n-per-m is 'ten', must be a number"},
       {"launch --stiffness-n-per-m 10+--1 --mass-g 1 --compression-mm 5",
        "its uncertainty must be at least 0"},
       {"launch --stiffness-n-per-m 10 --mass-g 1 --compression-mm -5",
