@@ -272,7 +272,8 @@ std::string ToJson(const Analysis& analysis) {
   json["absent"] = writer.TakeAbsent();
   json["software"] = {{"version", std::string(Version())},
                       {"options_hash", analysis.options_hash}};
-  return json.dump(2);
+  // A path may hold bytes that are no UTF-8: they are replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace touchdown::pipeline

@@ -263,6 +263,16 @@ Analysis Analyzer::Run() {
     aspect_ = QuotientOf(*measured.short_m, *measured.long_m);
   }
 
+  const core::PixelRect& r = options_.region;
+  if (r.width > 0 &&
+      (r.x < 0 || r.y < 0 || r.width > result_.clip.width_px - r.x ||
+       r.height > result_.clip.height_px - r.y)) {
+    throw std::invalid_argument(
+        fmt::format("region is {},{},{},{}, must lie within the {}x{} picture",
+                    r.x, r.y, r.width, r.height, result_.clip.width_px,
+                    result_.clip.height_px));
+  }
+
   auto lap = Clock::now();
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;

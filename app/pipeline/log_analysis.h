@@ -9,6 +9,12 @@
 
 namespace touchdown::pipeline {
 
+// What the campaign fixed and the options leave open: body and its size, kind
+// of angle, bounce height. Throws core::StoreError if there is no such
+// campaign.
+void FillFromCampaign(const std::filesystem::path& db,
+                      const std::string& campaign, AnalyzeOptions& options);
+
 struct Logged {
   std::string trial_id;
   std::int64_t revision = 0;
