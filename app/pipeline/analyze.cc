@@ -169,9 +169,23 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
                   8.0)};
     candidates = calib::FindGroundLines(still);
   }
+  // A first judgement by the track as it is; only the likely ones are worth
+  // fitting every outline again.
+  const auto first_merit = [&](const calib::GroundLine& candidate) {
+    return Merit(vision::FindContacts(vision::SeenFromGround(track, candidate),
+                                      contact_options_));
+  };
+  std::vector<std::pair<int, calib::GroundLine>> ranked;
+  for (const calib::GroundLine& candidate : candidates) {
+    ranked.emplace_back(first_merit(candidate), candidate);
+  }
+  std::stable_sort(
+      ranked.begin(), ranked.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
   std::optional<Judged> best;
   int best_merit = -1;
-  for (const calib::GroundLine& candidate : candidates) {
+  for (const auto& [expected, candidate] : ranked) {
+    if (expected <= best_merit) break;
     Judged judged = Judge(candidate, track);
     const int merit = Merit(judged.contacts);
     if (merit > best_merit) {
@@ -267,10 +281,9 @@ Analysis Analyzer::Run() {
   if (r.width > 0 &&
       (r.x < 0 || r.y < 0 || r.width > result_.clip.width_px - r.x ||
        r.height > result_.clip.height_px - r.y)) {
-    throw std::invalid_argument(
-        fmt::format("region is {},{},{},{}, must lie within the {}x{} picture",
-                    r.x, r.y, r.width, r.height, result_.clip.width_px,
-                    result_.clip.height_px));
+    throw std::invalid_argument(fmt::format(
+        "region is {},{},{},{}, must lie within the {}x{} picture", r.x, r.y,
+        r.width, r.height, result_.clip.width_px, result_.clip.height_px));
   }
 
   auto lap = Clock::now();

@@ -188,8 +188,8 @@ ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
   return e;
 }
 
-// The clip ends with the body in the air, and it meets the ground within one
-// frame of the last.
+// The clip ends with the body in the air, and it meets the ground within a
+// frame and a half of the last: the flight is known well enough to say so.
 std::optional<Event> ContactAtEnd(const PlaneTrack& track,
                                   const EventOptions& options,
                                   std::string& reason) {
@@ -220,7 +220,8 @@ std::optional<Event> ContactAtEnd(const PlaneTrack& track,
   const double late = event.time_s.value - samples.back().time_s;
   const FlightGap g = GapOf(track, *event.before, event.time_s.value);
   if (g.rate >= 0.0) return std::nullopt;
-  if (late > dt) {
+  constexpr double kFramesBeyond = 1.5;
+  if (late > kFramesBeyond * dt) {
     reason += fmt::format(
         "; the path would meet the ground {:.1f} frames after the last",
         late / dt);
