@@ -313,6 +313,7 @@ double WidenToScatter(PlaneTrack& track) {
   };
   const auto typical = [&](double PlaneSample::*u) {
     std::vector<double> all;
+    all.reserve(samples.size());
     for (const PlaneSample& s : samples) all.push_back(s.*u);
     const auto middle =
         all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
