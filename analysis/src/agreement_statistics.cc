@@ -73,7 +73,8 @@ double ClopperPearsonLowerLimit(int x, int n, double level) {
 }
 
 Kappa CohenKappa(std::span<const int> counts, int k, KappaWeights weights) {
-  const bool sizes = k >= 2 && counts.size() == static_cast<std::size_t>(k) * k;
+  const bool sizes = k >= 2 && counts.size() == static_cast<std::size_t>(k) *
+                                                    static_cast<std::size_t>(k);
   const bool all_positive =
       std::all_of(counts.begin(), counts.end(), [](int c) { return c >= 0; });
   const double n = std::accumulate(counts.begin(), counts.end(), 0.0);

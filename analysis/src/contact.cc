@@ -199,9 +199,12 @@ QuickContact SolveSlidingContact(const ContactProblem& p) {
   }
   const int a_sign = ContactCore<double>::SignOutside(a, a_tolerance);
   const int b_sign = ContactCore<double>::SignOutside(b, b_tolerance);
-  const double force = -b / a;
-  return {ContactCore<double>::RegimeOf(a_sign, b_sign),
-          a_sign * b_sign < 0 ? force : 0.0};
+  const Regime regime = ContactCore<double>::RegimeOf(a_sign, b_sign);
+  if (a_sign == 0 || b_sign == 0) [[unlikely]]
+    return {regime, 0.0};
+  // Where the signs are equal nothing slides and -b/a is negative: a maximum
+  // instead of a branch that nobody could predict.
+  return {regime, std::max(0.0, -b / a)};
 }
 
 double CriticalFriction(double kappa) {

@@ -25,6 +25,12 @@ struct CoreSolution {
   T residual = 0;
 };
 
+// By the signs of A_hat (rows) and b, each -1, 0, 1.
+inline constexpr std::array<Regime, 9> kSignTable = {
+    Regime::kInconsistent, Regime::kGraze,      Regime::kIndeterminate,
+    Regime::kAZeroNone,    Regime::kDegenerate, Regime::kAZeroDetach,
+    Regime::kSlide,        Regime::kGraze,      Regime::kDetach};
+
 template <class T>
 class ContactCore {
  public:
@@ -130,11 +136,7 @@ class ContactCore {
   }
 
   static constexpr Regime RegimeOf(int a_sign, int b_sign) {
-    constexpr Regime kTable[3][3] = {
-        {Regime::kInconsistent, Regime::kGraze, Regime::kIndeterminate},
-        {Regime::kAZeroNone, Regime::kDegenerate, Regime::kAZeroDetach},
-        {Regime::kSlide, Regime::kGraze, Regime::kDetach}};
-    return kTable[a_sign + 1][b_sign + 1];
+    return kSignTable[static_cast<std::size_t>(3 * (a_sign + 1) + b_sign + 1)];
   }
 
   static constexpr int SignOutside(T value, T tolerance) {

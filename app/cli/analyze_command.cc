@@ -98,6 +98,12 @@ pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
 
 int Run(const Flags& flags) {
   pipeline::AnalyzeOptions options = ToOptions(flags);
+  if (flags.db.empty() && !flags.campaign.empty()) {
+    throw std::invalid_argument("--campaign needs --db, the store it is in");
+  }
+  if (!flags.campaign.empty()) {
+    pipeline::FillFromCampaign(flags.db, flags.campaign, options);
+  }
   ProgressBar bar("analyze");
   options.progress = [&bar](double share) { bar.Show(share); };
   const pipeline::Analysis analysis = pipeline::Analyze(flags.clip, options);
@@ -162,8 +168,11 @@ void AddAnalyze(CLI::App& app, Action& action) {
       "--out", flags->out,
       "write track.csv, contact.png and analysis.json into this folder");
   command->add_option("--db", flags->db, "log the trial in this store");
-  command->add_option("--campaign", flags->campaign,
-                      "the campaign the trial belongs to (with --db)");
+  command->add_option(
+      "--campaign", flags->campaign,
+      "the campaign the trial belongs to (with --db); body, sizes, "
+      "angle kind and bounce height are then the campaign's "
+      "where not given");
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });

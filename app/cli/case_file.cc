@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "app/report/text.h"
+#include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::cli {
@@ -232,7 +233,7 @@ std::string Cell(int value) { return std::to_string(value); }
 
 std::string Cell(std::string_view value) { return std::string(value); }
 
-CaseWriter::CaseWriter(std::vector<std::string> columns)
+CaseWriter::CaseWriter(const std::vector<std::string>& columns)
     : n_columns_(columns.size()) {
   Add(columns);
 }
@@ -258,18 +259,7 @@ void WriteResult(std::string_view text, const std::string& path) {
     }
     return;
   }
-  const std::string temporary = fmt::format("{}.{}.part", path, getpid());
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(temporary, path, error);
-  if (!out || error) {
-    const std::string why =
-        error ? error.message() : std::string(std::strerror(errno));
-    std::filesystem::remove(temporary, error);
-    throw InputError(fmt::format("{}: cannot be written: {}", path, why));
-  }
+  report::WriteTextFile(path, text);
 }
 
 }  // namespace touchdown::cli

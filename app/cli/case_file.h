@@ -79,7 +79,7 @@ std::string Cell(std::string_view value);
 
 class CaseWriter {
  public:
-  explicit CaseWriter(std::vector<std::string> columns);
+  explicit CaseWriter(const std::vector<std::string>& columns);
   // As many cells as there are columns.
   void Add(const std::vector<std::string>& cells);
   const std::string& Csv() const { return csv_; }

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;
 }
 
@@ -30,6 +30,7 @@ void AddCorrect(CLI::App& app, Action& action);
 void AddCampaign(CLI::App& app, Action& action);
 void AddExport(CLI::App& app, Action& action);
 void AddImport(CLI::App& app, Action& action);
+void AddDemo(CLI::App& app, Action& action);
 void AddDb(CLI::App& app, Action& action);
 
 }  // namespace touchdown::cli

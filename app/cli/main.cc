@@ -39,20 +39,21 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   touchdown::cli::Action action;
   touchdown::cli::AddAnalyze(app, action);
-  touchdown::cli::AddRig(app, action);
-  touchdown::cli::AddTheory(app, action);
+  touchdown::cli::AddSimulate(app, action);
+  touchdown::cli::AddBoundary(app, action);
+  touchdown::cli::AddNext(app, action);
+  touchdown::cli::AddReport(app, action);
   touchdown::cli::AddList(app, action);
   touchdown::cli::AddShow(app, action);
   touchdown::cli::AddLog(app, action);
   touchdown::cli::AddCorrect(app, action);
   touchdown::cli::AddCampaign(app, action);
-  touchdown::cli::AddExport(app, action);
   touchdown::cli::AddImport(app, action);
+  touchdown::cli::AddExport(app, action);
   touchdown::cli::AddDb(app, action);
-  touchdown::cli::AddSimulate(app, action);
-  touchdown::cli::AddBoundary(app, action);
-  touchdown::cli::AddNext(app, action);
-  touchdown::cli::AddReport(app, action);
+  touchdown::cli::AddRig(app, action);
+  touchdown::cli::AddTheory(app, action);
+  touchdown::cli::AddDemo(app, action);
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

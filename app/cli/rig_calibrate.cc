@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/case_file.h"
 #include "app/cli/rig_commands.h"
 #include "app/cli/rig_flags.h"
 #include "app/cli/rig_print.h"
-#include "app/cli/table.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/calibrate.h"
 #include "touchdown/rig/predict.h"
@@ -26,18 +26,17 @@ struct CalibrateFlags {
   bool json = false;
 };
 
-core::Estimate Measured(const Table& table, const Row& row,
-                        const std::string& column) {
-  return {table.Number(row, column),
-          table.OptionalNumber(row, "u_" + column).value_or(0.0), std::nullopt};
+core::Estimate Measured(const CaseRow& row, const std::string& column) {
+  return {row.Number(column), row.OptionalNumber("u_" + column).value_or(0.0),
+          std::nullopt};
 }
 
 void CalibrateStiffness(const CalibrateFlags& flags, OrderedJson& out) {
-  const Table table(flags.force);
+  const CaseTable table = ReadCases(flags.force, {});
   std::vector<rig::ForcePoint> points;
-  for (const Row& row : table.rows()) {
-    points.push_back({table.Number(row, "compression_mm") * core::kMillimetre,
-                      Measured(table, row, "force_n")});
+  for (const CaseRow& row : table.rows) {
+    points.push_back({row.Number("compression_mm") * core::kMillimetre,
+                      Measured(row, "force_n")});
   }
   rig::StiffnessFitOptions options;
   options.u_compression_m =
@@ -101,11 +100,11 @@ void CalibrateEfficiency(const CalibrateFlags& flags, OrderedJson& out) {
       rig.springs.mass_kg ? rig.springs.mass_kg->u : 0.0;
   options.u_mass_rel =
       std::hypot(rig.mass_kg.u, u_springs_kg / 3.0) / moving_kg;
-  const Table table(flags.speeds);
+  const CaseTable table = ReadCases(flags.speeds, {});
   std::vector<rig::SpeedPoint> points;
-  for (const Row& row : table.rows()) {
-    points.push_back({table.Number(row, "compression_mm") * core::kMillimetre,
-                      Measured(table, row, "speed_mps")});
+  for (const CaseRow& row : table.rows) {
+    points.push_back({row.Number("compression_mm") * core::kMillimetre,
+                      Measured(row, "speed_mps")});
   }
   const auto fit = rig::FitEfficiency(points, launch, options);
   if (flags.json) {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/table.h"
+#include "app/cli/case_file.h"
 #include "app/report/text.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -35,9 +35,9 @@ struct Case {
   double drop_m = 0.0;
 };
 
-Case ReadCase(const Table& table, const Row& row) {
+Case ReadCase(const CaseRow& row) {
   const auto number = [&](std::string_view column) {
-    return table.Number(row, column);
+    return row.Number(column);
   };
   Case c;
   c.spring.shear_modulus_pa = number("G");
@@ -55,7 +55,7 @@ Case ReadCase(const Table& table, const Row& row) {
         kMost));
   }
   c.spring.count = static_cast<int>(count);
-  c.limits.free_length_m = table.OptionalNumber(row, "L0_m");
+  c.limits.free_length_m = row.OptionalNumber("L0_m");
   c.compression_m = number("X");
   c.drop_m = number("h0");
   c.launch.stiffness_n_per_m = rig::Stiffness(c.spring);
@@ -180,13 +180,12 @@ void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {
   cells.emplace_back("findings", report::CsvCell(text));
 }
 
-Cells Evaluate(const Table& table, const Row& row,
-               const RigCasesOptions& options) {
-  const Case c = ReadCase(table, row);
+Cells Evaluate(const CaseRow& row, const RigCasesOptions& options) {
+  const Case c = ReadCase(row);
   const rig::SpringReport report = rig::CheckSpring(
       c.spring, c.launch.preload_m + c.compression_m, c.limits);
   Cells cells;
-  cells.emplace_back("id", report::CsvCell(table.Text(row, "id")));
+  cells.emplace_back("id", report::CsvCell(row.Text("id")));
   AddSpring(c, report, cells);
   AddLaunch(c, report, cells);
   AddUncertainty(c, options, cells);
@@ -197,16 +196,11 @@ Cells Evaluate(const Table& table, const Row& row,
 }  // namespace
 
 std::string RigCases(const std::string& path, const RigCasesOptions& options) {
-  const Table table(path);
+  const CaseTable table = ReadCases(path, {});
   std::string out;
-  for (const Row& row : table.rows()) {
+  for (const CaseRow& row : table.rows) {
     Cells cells;
-    try {
-      cells = Evaluate(table, row, options);
-    } catch (const std::invalid_argument& error) {
-      throw core::InputError(fmt::format("{}:{} (id {}): {}", path, row.line,
-                                         table.Text(row, "id"), error.what()));
-    }
+    row.Answer([&] { cells = Evaluate(row, options); });
     if (out.empty()) {
       for (const auto& [name, text] : cells) {
         out += fmt::format("{}{}", out.empty() ? "" : ",", name);
@@ -218,7 +212,6 @@ std::string RigCases(const std::string& path, const RigCasesOptions& options) {
     }
     out += '\n';
   }
-  if (out.empty()) throw core::InputError(path + ": has no rows");
   return out;
 }
 

@@ -50,7 +50,11 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
     return {*value * unit, std::abs(relative_u * *value * unit), std::nullopt};
   }
   const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
-  if (!u || !(*u >= 0.0) || !std::isfinite(*u)) Refuse(flag, text, form);
+  if (!u || !std::isfinite(*u)) Refuse(flag, text, form);
+  if (*u < 0.0) {
+    throw std::invalid_argument(fmt::format(
+        "{} is '{}', its uncertainty must be at least 0", flag, text));
+  }
   return {*value * unit, *u * unit, std::nullopt};
 }
 

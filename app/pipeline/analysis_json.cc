@@ -144,16 +144,18 @@ Json MotionOf(Writer& writer, const std::string& at, const core::Motion& m) {
   return json;
 }
 
-Json ClipOf(const Analysis& analysis) {
+Json ClipOf(Writer& writer, const Analysis& analysis) {
   const vision::ClipInfo& clip = analysis.clip;
   Json json;
   json["path"] = clip.path.string();
   json["id"] = analysis.clip_id;
-  json["sha256"] = nullptr;
+  json["sha256"] =
+      writer.Missing("clip.sha256", "computed when a trial is logged");
   json["format"] = clip.format;
   json["width_px"] = clip.width_px;
   json["height_px"] = clip.height_px;
   json["bit_depth"] = clip.bit_depth;
+  json["channel"] = vision::Name(analysis.channel);
   json["frames"] = clip.frames;
   json["first_camera_frame"] = clip.first_camera_frame;
   json["time_base"] = {{"fps", clip.time_base.fps},
@@ -221,7 +223,7 @@ std::string ToJson(const Analysis& analysis) {
   Writer writer;
   Json json;
   json["schema"] = "touchdown.analysis/1";
-  json["clip"] = ClipOf(analysis);
+  json["clip"] = ClipOf(writer, analysis);
   json["origin"] = Name(analysis.simulated ? core::Origin::kSimulated
                                            : core::Origin::kRecorded);
   if (analysis.scale) {
@@ -272,7 +274,8 @@ std::string ToJson(const Analysis& analysis) {
   json["absent"] = writer.TakeAbsent();
   json["software"] = {{"version", std::string(Version())},
                       {"options_hash", analysis.options_hash}};
-  return json.dump(2);
+  // A path may hold bytes that are no UTF-8: they are replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace touchdown::pipeline

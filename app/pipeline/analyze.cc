@@ -57,11 +57,9 @@ std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
   return kind;
 }
 
-// px per metre from a length known in both.
-core::Estimate ScaleFrom(const core::Estimate& px,
-                         const core::Estimate& metres) {
-  const double value = px.value / metres.value;
-  return {value, value * std::hypot(px.u / px.value, metres.u / metres.value),
+core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
+  const double value = a.value / b.value;
+  return {value, value * std::hypot(a.u / a.value, b.u / b.value),
           std::nullopt};
 }
 
@@ -74,15 +72,15 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
   if (image.whole_px > 0.0) return std::nullopt;
   if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
     return calib::Scale{
-        ScaleFrom(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
+        QuotientOf(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
         calib::ScaleSource::kBodySize};
   }
   if (options.long_m && image.kind == core::BodyKind::kRectangle) {
     // The long side is the better known one, relative to its length.
     const core::Estimate& a = *options.long_m;
     const core::Estimate& b = *options.short_m;
-    return calib::Scale{ScaleFrom(core::Scaled(image.half_long_px, 2.0),
-                                  a.value >= b.value ? a : b),
+    return calib::Scale{QuotientOf(core::Scaled(image.half_long_px, 2.0),
+                                   a.value >= b.value ? a : b),
                         calib::ScaleSource::kBodySize};
   }
   return std::nullopt;
@@ -144,13 +142,14 @@ class Analyzer {
   Analysis result_;
   vision::Background background_;
   vision::ContactOptions contact_options_;
+  std::optional<core::Estimate> aspect_;  // short over long side, measured
 };
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
   judged.ground = ground;
-  judged.track = vision::Refine(*clip_, background_, track, ground);
+  judged.track = vision::Refine(*clip_, background_, track, {ground, aspect_});
   judged.plane = vision::SeenFromGround(judged.track, ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
@@ -170,9 +169,23 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
                   8.0)};
     candidates = calib::FindGroundLines(still);
   }
+  // A first judgement by the track as it is; only the likely ones are worth
+  // fitting every outline again.
+  const auto first_merit = [&](const calib::GroundLine& candidate) {
+    return Merit(vision::FindContacts(vision::SeenFromGround(track, candidate),
+                                      contact_options_));
+  };
+  std::vector<std::pair<int, calib::GroundLine>> ranked;
+  for (const calib::GroundLine& candidate : candidates) {
+    ranked.emplace_back(first_merit(candidate), candidate);
+  }
+  std::stable_sort(
+      ranked.begin(), ranked.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
   std::optional<Judged> best;
   int best_merit = -1;
-  for (const calib::GroundLine& candidate : candidates) {
+  for (const auto& [expected, candidate] : ranked) {
+    if (expected <= best_merit) break;
     Judged judged = Judge(candidate, track);
     const int merit = Merit(judged.contacts);
     if (merit > best_merit) {
@@ -256,6 +269,21 @@ Analysis Analyzer::Run() {
     throw std::invalid_argument(
         fmt::format("frames is {}:{}, must be a range within 0:{}",
                     options_.first_frame, last, frames));
+  }
+
+  if (options_.long_m) {
+    const core::Body measured =
+        core::Rectangle(*options_.long_m, *options_.short_m);
+    aspect_ = QuotientOf(*measured.short_m, *measured.long_m);
+  }
+
+  const core::PixelRect& r = options_.region;
+  if (r.width > 0 &&
+      (r.x < 0 || r.y < 0 || r.width > result_.clip.width_px - r.x ||
+       r.height > result_.clip.height_px - r.y)) {
+    throw std::invalid_argument(fmt::format(
+        "region is {},{},{},{}, must lie within the {}x{} picture", r.x, r.y,
+        r.width, r.height, result_.clip.width_px, result_.clip.height_px));
   }
 
   auto lap = Clock::now();

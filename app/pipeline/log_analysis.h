@@ -9,10 +9,21 @@
 
 namespace touchdown::pipeline {
 
+// What the campaign fixed and the options leave open: body and its size, kind
+// of angle, bounce height. Throws core::StoreError if there is no such
+// campaign.
+void FillFromCampaign(const std::filesystem::path& db,
+                      const std::string& campaign, AnalyzeOptions& options);
+
 struct Logged {
   std::string trial_id;
   std::int64_t revision = 0;
 };
+
+// The trial as the store takes it: with an absolute path and the clip's full
+// SHA-256. Throws core::InputError if the clip cannot be read.
+core::Trial LoggableTrial(const Analysis& analysis,
+                          const std::string& campaign);
 
 // Logs the trial that `analysis` makes, with the clip's full SHA-256, in the
 // store at `db` (made where there is none): a new trial, or a further revision

@@ -13,6 +13,7 @@
 
 #include "app/pipeline/truth_file.h"
 #include "app/pipeline/truth_json.h"
+#include "app/report/text_file.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/clip_writer.h"
@@ -89,29 +90,6 @@ std::filesystem::path ClipPath(const Shot& shot,
       break;
   }
   return base;
-}
-
-// The text under its name only when it is complete.
-void WriteText(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path part = path.string() + ".part";
-  {
-    std::ofstream out(part, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(part, ignored);
-      throw core::InputError(fmt::format(
-          "{}: cannot be written; is there room, and may you write there?",
-          path.string()));
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) {
-    throw core::InputError(fmt::format("{}: cannot be written: {}",
-                                       path.string(), error.message()));
-  }
 }
 
 std::optional<std::string> ReadText(const std::filesystem::path& path) {
@@ -274,9 +252,10 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   }
   RefuseFolderInUse(out.clip, options.format);
   const std::optional<std::string> old_truth = ReadText(out.truth_file);
-  WriteText(out.truth_file,
-            TruthText(shot, out.truth, out.clip.filename().string(),
-                      std::string(Word(options.format)), options.seed));
+  report::WriteTextFile(
+      out.truth_file,
+      TruthText(shot, out.truth, out.clip.filename().string(),
+                std::string(Word(options.format)), options.seed));
   std::mt19937_64 engine = NoiseEngine(options.seed, shot.name);
   std::int64_t index = 0;
   vision::SensorImage image;
@@ -294,7 +273,7 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   } catch (...) {
     // An older clip of that name is still there: its truth goes back to it.
     if (old_truth) {
-      WriteText(out.truth_file, *old_truth);
+      report::WriteTextFile(out.truth_file, *old_truth);
     } else {
       std::filesystem::remove(out.truth_file, error);
     }

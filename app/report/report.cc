@@ -13,6 +13,7 @@
 #include "app/report/content.h"
 #include "app/report/document.h"
 #include "app/report/format.h"
+#include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 
@@ -105,31 +106,6 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
   return section;
 }
 
-void WriteFile(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::path temporary = path;
-  temporary += ".part";
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    file << text;
-    file.close();
-    if (!file) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw core::InputError(fmt::format(
-          "{}: cannot be written; give a folder that is writable and has room",
-          path.string()));
-    }
-  }
-  std::error_code trouble;
-  std::filesystem::rename(temporary, path, trouble);
-  if (trouble) {
-    throw core::InputError(
-        fmt::format("{}: cannot be replaced: {}; remove it or give another "
-                    "folder",
-                    path.string(), trouble.message()));
-  }
-}
-
 }  // namespace
 
 Report MakeReport(const ReportInput& input) {
@@ -172,11 +148,11 @@ void WriteReport(const Report& report, const std::filesystem::path& folder) {
         fmt::format("{}: cannot be made: {}; give a folder that can",
                     folder.string(), trouble.message()));
   }
-  WriteFile(folder / "table1.md", report.markdown);
-  WriteFile(folder / "table1.csv", report.csv);
-  WriteFile(folder / "table1.html", report.html);
-  WriteFile(folder / "table1.tex", report.latex);
-  WriteFile(folder / "table1.json", report.json);
+  WriteTextFile(folder / "table1.md", report.markdown);
+  WriteTextFile(folder / "table1.csv", report.csv);
+  WriteTextFile(folder / "table1.html", report.html);
+  WriteTextFile(folder / "table1.tex", report.latex);
+  WriteTextFile(folder / "table1.json", report.json);
 }
 
 }  // namespace touchdown::report

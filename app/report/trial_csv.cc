@@ -466,6 +466,8 @@ CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
     bool kind_given = false;
     // Values before their uncertainties, whatever the order of the columns.
     for (const bool uncertainties : {false, true}) {
+      // One mistake is told once: a bad value has no uncertainty to speak of.
+      if (result.errors.size() != errors_before) break;
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const auto& about = columns[i]->about;
         const std::string cell = Unescaped((*cells)[i]);
@@ -486,7 +488,8 @@ CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
     }
     const auto require_u = [&](std::string_view quantity,
                                const core::Measured& measured) {
-      if (measured && measured->u < 0) {
+      if (measured && measured->u < 0 &&
+          result.errors.size() == errors_before) {
         const EdgeUnit unit = AtTheEdge(quantity);
         fail(unit.stem + "_u" + unit.suffix, "",
              "a standard uncertainty was expected beside the value");

@@ -137,8 +137,8 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
                          const std::optional<Head>& head,
                          const NewRevision& revision,
                          const core::Trial& trial) {
-  // A revision and its statement name each other, so its row is chosen here;
-  // the write lock is ours.
+  // A revision and its statement name each other, and the statement goes in
+  // first, so the row is chosen here; the write lock is ours.
   const std::int64_t row =
       connection.Integer("SELECT ifnull(max(id), 0) + 1 FROM revisions");
   const std::int64_t number = head ? head->number + 1 : 1;
@@ -148,6 +148,14 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
     exclusion = head->exclusion_id;
   } else if (trial.excluded) {
     exclusion = row;
+  }
+  if (own_statement) InsertStatement(connection, row, trial);
+  if (exclusion == row) {
+    Statement(connection,
+              "INSERT INTO exclusions (revision_id, reason) VALUES (?, ?)")
+        .Add(row)
+        .Add(trial.exclusion_reason)
+        .Run();
   }
   Statement(connection,
             "INSERT INTO revisions (id, uuid, trial_id, number, kind, "
@@ -164,14 +172,6 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
       .Add(trial.reason)
       .Add(revision.recorded_at_utc)
       .Run();
-  if (own_statement) InsertStatement(connection, row, trial);
-  if (exclusion == row) {
-    Statement(connection,
-              "INSERT INTO exclusions (revision_id, reason) VALUES (?, ?)")
-        .Add(row)
-        .Add(trial.exclusion_reason)
-        .Run();
-  }
   return number;
 }
 

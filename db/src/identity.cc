@@ -1,11 +1,12 @@
 #include "touchdown/db/identity.h"
 
 #include <fmt/format.h>
+#include <sys/random.h>
 
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <ctime>
-#include <random>
 #include <stdexcept>
 
 namespace touchdown::db {
@@ -94,12 +95,17 @@ Sources SystemSources() {
   Sources sources;
   sources.now_utc = [] { return UtcStamp(std::chrono::system_clock::now()); };
   sources.new_uuid = [] {
-    std::random_device device;
-    const auto word = [&device] {
-      return (std::uint64_t{device()} << 32) | device();
-    };
-    const std::uint64_t high = word();
-    return UuidFromBits(high, word());
+    std::array<std::uint64_t, 2> bits{};
+    // Short reads do not happen below 256 bytes; EINTR only before the kernel
+    // has gathered its first entropy, at boot.
+    while (getrandom(bits.data(), sizeof bits, 0) !=
+           static_cast<ssize_t>(sizeof bits)) {
+      if (errno != EINTR) {
+        throw std::runtime_error(
+            "the system's random numbers are not to be had (getrandom)");
+      }
+    }
+    return UuidFromBits(bits[0], bits[1]);
   };
   return sources;
 }

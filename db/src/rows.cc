@@ -332,6 +332,32 @@ std::string SelectRevisions(bool with_documents) {
       BodyNames("s."), with_documents ? "s.document_json" : "''");
 }
 
+std::string TrialsSql(const TrialFilter& filter) {
+  std::string sql = SelectRevisions(filter.with_documents);
+  if (filter.state) {
+    sql +=
+        "JOIN contacts f ON f.revision_id = s.revision_id AND f.ordinal = 0 ";
+  }
+  sql +=
+      "WHERE r.number = (SELECT max(number) FROM revisions "
+      "WHERE trial_id = t.id)";
+  if (filter.campaign) {
+    sql +=
+        " AND ifnull(t.campaign_id, 0) = ifnull((SELECT id FROM campaigns "
+        "WHERE name = ?), 0)";
+  }
+  if (filter.origin) sql += " AND t.origin = ?";
+  if (filter.body) sql += " AND s.body_kind = ?";
+  if (filter.state) sql += " AND f.state = ?";
+  if (filter.from_utc) sql += " AND t.logged_at_utc >= ?";
+  if (filter.until_utc) sql += " AND t.logged_at_utc < ?";
+  if (filter.excluded) {
+    sql += *filter.excluded ? " AND r.exclusion_id IS NOT NULL"
+                            : " AND r.exclusion_id IS NULL";
+  }
+  return sql + " ORDER BY t.id";
+}
+
 RevisionRow TakeRevision(Connection& connection, Statement& row) {
   RevisionRow out;
   core::Trial& trial = out.trial;

@@ -8,6 +8,7 @@
 #include "statement.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/trial.h"
+#include "touchdown/db/records.h"
 
 namespace touchdown::db {
 
@@ -32,6 +33,11 @@ core::Body TakeBody(Statement& statement);
 // t = trials, c = campaigns, k = clips, r = revisions (any number of a trial),
 // s = statements in force, x = exclusions in force.
 std::string SelectRevisions(bool with_documents);
+
+// The current revision of each trial that passes the filter. Parameters: the
+// filter's fields that are set, in the order campaign, origin, body, state,
+// from_utc, until_utc.
+std::string TrialsSql(const TrialFilter& filter);
 
 // One row of SelectRevisions; contacts and budgets are fetched beside it.
 struct RevisionRow {

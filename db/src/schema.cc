@@ -153,11 +153,9 @@ std::string Evidence() {
       "  number INTEGER NOT NULL CHECK (number >= 1),\n"
       "  {},\n"
       // Whose statement is in force: this revision's own, or an earlier one's.
-      "  statement_id INTEGER NOT NULL REFERENCES statements (revision_id)\n"
-      "    DEFERRABLE INITIALLY DEFERRED,\n"
+      "  statement_id INTEGER NOT NULL REFERENCES statements (revision_id),\n"
       // The exclusion in force; NULL: the trial counts.
-      "  exclusion_id INTEGER REFERENCES exclusions (revision_id)\n"
-      "    DEFERRABLE INITIALLY DEFERRED,\n"
+      "  exclusion_id INTEGER REFERENCES exclusions (revision_id),\n"
       "  author TEXT NOT NULL CHECK (author <> ''),\n"
       "  reason TEXT NOT NULL,\n"
       "  {},\n"
@@ -165,13 +163,20 @@ std::string Evidence() {
       kUuid,
       Word("kind", "'logged', 'corrected', 'excluded', 'included', 'merged'"),
       Stamp("recorded_at_utc"));
-  sql +=
+  // A revision and what it states name each other. The statement goes in first
+  // (its key is checked at the commit): the other way round SQLite would search
+  // all revisions for each statement.
+  constexpr std::string_view kOfRevision =
+      "revision_id INTEGER PRIMARY KEY REFERENCES revisions (id)\n"
+      "    DEFERRABLE INITIALLY DEFERRED";
+  sql += fmt::format(
       "CREATE TABLE exclusions (\n"
-      "  revision_id INTEGER PRIMARY KEY REFERENCES revisions (id),\n"
-      "  reason TEXT NOT NULL\n) STRICT;\n";
+      "  {},\n"
+      "  reason TEXT NOT NULL\n) STRICT;\n",
+      kOfRevision);
   sql += fmt::format(
       "CREATE TABLE statements (\n"
-      "  revision_id INTEGER PRIMARY KEY REFERENCES revisions (id),\n"
+      "  {},\n"
       "  clip_path TEXT NOT NULL,\n"
       "  {},\n"
       "  {},\n"
@@ -181,7 +186,7 @@ std::string Evidence() {
       "  options_hash TEXT NOT NULL,\n"
       "  document_json TEXT NOT NULL,\n"
       "{}\n) STRICT;\n",
-      angle_kind, body.columns, OptionalReal("set_angle_rad"),
+      kOfRevision, angle_kind, body.columns, OptionalReal("set_angle_rad"),
       OptionalReal("set_speed_mps"), body.checks);
   sql += fmt::format(
       "CREATE TABLE contacts (\n"

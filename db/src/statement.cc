@@ -66,6 +66,9 @@ Connection::Connection(const std::filesystem::path& path, Access access,
         "PRAGMA recursive_triggers = ON;"  // REPLACE must not evade a trigger
         "PRAGMA cell_size_check = ON;"
         "PRAGMA synchronous = FULL;"  // every commit is on the disk
+        // Room for a bulk import: with 2 MB, the default, pages of the indexes
+        // are written out and read back again and again.
+        "PRAGMA cache_size = -32768;"  // KiB
         "PRAGMA temp_store = MEMORY;");
     if (access == Access::kRead) Execute("PRAGMA query_only = ON");
   } catch (...) {
@@ -82,7 +85,9 @@ Connection::~Connection() {
 }
 
 int Connection::OpenAt(const std::string& name, int flags) {
-  int code = sqlite3_open_v2(name.c_str(), &handle_, flags, nullptr);
+  // One thread uses a Store, so SQLite need not lock for others.
+  int code = sqlite3_open_v2(name.c_str(), &handle_,
+                             flags | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) return code;
   sqlite3_extended_result_codes(handle_, 1);
   sqlite3_busy_handler(handle_, &Connection::OnBusy, this);

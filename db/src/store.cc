@@ -315,30 +315,6 @@ Logged Store::Include(std::string_view id, std::string_view who,
 }
 
 std::vector<core::Trial> Store::Trials(const TrialFilter& filter) const {
-  std::string sql = SelectRevisions(filter.with_documents);
-  if (filter.state) {
-    sql +=
-        "JOIN contacts f ON f.revision_id = s.revision_id AND f.ordinal = 0 ";
-  }
-  sql +=
-      "WHERE r.number = (SELECT max(number) FROM revisions "
-      "WHERE trial_id = t.id)";
-  if (filter.campaign) {
-    sql +=
-        " AND ifnull(t.campaign_id, 0) = ifnull((SELECT id FROM campaigns "
-        "WHERE name = ?), 0)";
-  }
-  if (filter.origin) sql += " AND t.origin = ?";
-  if (filter.body) sql += " AND s.body_kind = ?";
-  if (filter.state) sql += " AND f.state = ?";
-  if (filter.from_utc) sql += " AND t.logged_at_utc >= ?";
-  if (filter.until_utc) sql += " AND t.logged_at_utc < ?";
-  if (filter.excluded) {
-    sql += *filter.excluded ? " AND r.exclusion_id IS NOT NULL"
-                            : " AND r.exclusion_id IS NULL";
-  }
-  sql += " ORDER BY t.id";
-
   Connection& connection = impl_->connection;
   Transaction snapshot(connection, Transaction::Kind::kRead);
   if (filter.campaign && !filter.campaign->empty() &&
@@ -347,7 +323,7 @@ std::vector<core::Trial> Store::Trials(const TrialFilter& filter) const {
         "{}: there is no campaign {}; see `touchdown campaign list`",
         path().string(), Quoted(*filter.campaign)));
   }
-  Statement row(connection, sql);
+  Statement row(connection, TrialsSql(filter));
   if (filter.campaign) row.Add(*filter.campaign);
   if (filter.origin) row.Add(core::Name(*filter.origin));
   if (filter.body) row.Add(core::Name(*filter.body));

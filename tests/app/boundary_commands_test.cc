@@ -9,7 +9,7 @@
 
 #include "app/pipeline/paper_trials.h"
 #include "app/pipeline/trials_csv.h"
-#include "tests/app/run_program.h"
+#include "tests/support/run_program.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/store.h"

@@ -121,6 +121,51 @@ bool OnGroundFromStart(const PlaneTrack& track,
   return first - at_blow < needed;
 }
 
+// A body that is down from the start draws the contact line itself: the slope
+// of its gaps along the ground (robust straight line), which is the visible
+// edge's error where it is small. Takes it out; returns it, rad.
+double TakeOutSlope(PlaneTrack& track) {
+  auto& samples = track.samples;
+  double offset = MedianGap(samples);
+  double slope = 0.0;
+  double scatter = 0.0;
+  const double middle = samples[samples.size() / 2].along_px;
+  for (int iteration = 0; iteration < 15; ++iteration) {
+    std::vector<double> off;
+    for (const PlaneSample& s : samples) {
+      off.push_back(
+          std::abs(s.gap_px - offset - slope * (s.along_px - middle)));
+    }
+    const auto at = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+    std::nth_element(off.begin(), at, off.end());
+    scatter = std::max(1.4826 * *at, 1e-6);
+    double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (const PlaneSample& s : samples) {
+      const double x = s.along_px - middle;
+      const double t = (s.gap_px - offset - slope * x) / (4.685 * scatter);
+      const double w = std::abs(t) < 1.0 ? (1 - t * t) * (1 - t * t) : 0.0;
+      sw += w;
+      sx += w * x;
+      sy += w * s.gap_px;
+      sxx += w * x * x;
+      sxy += w * x * s.gap_px;
+    }
+    const double determinant = sw * sxx - sx * sx;
+    if (!(determinant > 1e-9 * sw * sxx)) return 0.0;
+    slope = (sw * sxy - sx * sy) / determinant;
+    offset = (sy - slope * sx) / sw;
+  }
+  // An edge of the ground seen in perspective differs from the contact line by
+  // so much; more is another line.
+  constexpr double kMost_rad = 1.0 * core::kDegree;
+  if (std::abs(slope) > kMost_rad) return 0.0;
+  for (PlaneSample& s : samples) {
+    s.gap_px -= slope * (s.along_px - middle);
+    s.height_px -= slope * (s.along_px - middle);
+  }
+  return slope;
+}
+
 core::ContactRecord NoContact(std::string reason) {
   core::ContactRecord record;
   record.contact.reason = reason;
@@ -143,8 +188,8 @@ ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
   return e;
 }
 
-// The clip ends with the body in the air, and it meets the ground within one
-// frame of the last.
+// The clip ends with the body in the air, and it meets the ground within a
+// frame and a half of the last: the flight is known well enough to say so.
 std::optional<Event> ContactAtEnd(const PlaneTrack& track,
                                   const EventOptions& options,
                                   std::string& reason) {
@@ -175,7 +220,8 @@ std::optional<Event> ContactAtEnd(const PlaneTrack& track,
   const double late = event.time_s.value - samples.back().time_s;
   const FlightGap g = GapOf(track, *event.before, event.time_s.value);
   if (g.rate >= 0.0) return std::nullopt;
-  if (late > dt) {
+  constexpr double kFramesBeyond = 1.5;
+  if (late > kFramesBeyond * dt) {
     reason += fmt::format(
         "; the path would meet the ground {:.1f} frames after the last",
         late / dt);
@@ -207,6 +253,14 @@ ContactResult FindContacts(const PlaneTrack& given,
   const bool from_start = OnGroundFromStart(track, blows.kinks);
   result.ground_refuted = blows.refuted;
   if (from_start) {
+    const double slope = TakeOutSlope(track);
+    constexpr double kNotable = 3.0;  // of the line's own uncertainty
+    if (std::abs(slope) > kNotable * track.ground.u_angle_rad) {
+      result.warnings.push_back(
+          fmt::format("the body's path is inclined by {:.2f} deg to the ground "
+                      "line; its gap is taken from the path",
+                      slope / core::kDegree));
+    }
     result.first = RecordFromStart(context);
     result.ground_refuted.clear();
   }

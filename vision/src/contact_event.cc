@@ -16,8 +16,11 @@ bool Deviates(const PlaneSample& s, const Flight& flight, double sigmas) {
   const FlightState at = flight.At(s.time_s);
   const double h = std::hypot(at.u_height_px, s.u_height_px);
   const double a = std::hypot(at.u_along_px, s.u_along_px);
+  // A blow on a corner turns a rectangle before it moves its centre.
+  const double f = std::hypot(at.u_face_rad, s.u_face_rad);
   return std::abs(s.height_px - at.height_px) > sigmas * h ||
-         std::abs(s.along_px - at.along_px) > sigmas * a;
+         std::abs(s.along_px - at.along_px) > sigmas * a ||
+         std::abs(s.face_rad - at.face_rad) > sigmas * f;
 }
 
 // The frames next to the blow may be in contact: fit those further off, and

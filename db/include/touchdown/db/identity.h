@@ -42,7 +42,7 @@ struct Sources {
       new_uuid;  // returns a UUID, never twice the same
 };
 
-// The system's clock, and std::random_device (the kernel's generator).
+// The system's clock, and the kernel's random numbers (getrandom).
 Sources SystemSources();
 
 }  // namespace touchdown::db

@@ -44,10 +44,19 @@ struct TrackResult {
 core::Expected<TrackResult> TrackBody(Clip& clip,
                                       const TrackOptions& options = {});
 
-// Fits the outlines again with the ground line known and the body's size held
-// at the track's, from the track's own poses: pixels of the ground leave the
-// fit, and the lowest point no longer depends on a free size.
+struct RefineOptions {
+  calib::GroundLine ground;
+
+  // Short over long side of a rectangle, where a person measured both: a block
+  // that lies on the ground hides one of its edges.
+  std::optional<core::Estimate> aspect;
+};
+
+// Fits the outlines again with the ground line known, from the track's own
+// poses: pixels of the ground leave the fit, the size is taken once more, and
+// then held, so that the lowest point no longer depends on a free size in each
+// frame.
 Track Refine(Clip& clip, const Background& background, const Track& track,
-             const calib::GroundLine& ground);
+             const RefineOptions& options);
 
 }  // namespace touchdown::vision

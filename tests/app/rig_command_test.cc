@@ -220,31 +220,35 @@ TEST(RigCases, HexWinsAndLossesCount) {
 TEST(RigCases, BadFilesAreNamed) {
   Ran ran = Rig("spring --cases /no/such.csv", true);
   EXPECT_EQ(ran.status, 3);
-  EXPECT_EQ(ran.out,
-            "touchdown: /no/such.csv: cannot be read, expected a CSV file\n");
+  EXPECT_EQ(
+      ran.out,
+      "touchdown: /no/such.csv: cannot be read: No such file or directory\n");
   const TemporaryFile word("word.csv", std::string(kCasesHeader) +
                                            "\nA,abc,0,0,0,0,0,0,0,0,0,0,0,0,0,"
                                            "0,0,0,0,0,0,0,0\n");
   ran = Rig("spring --cases " + word.path(), true);
   EXPECT_EQ(ran.status, 3);
-  EXPECT_THAT(ran.out, HasSubstr(":2: G is \"abc\", expected a finite number"));
+  EXPECT_THAT(
+      ran.out,
+      HasSubstr("line 2, column G: is 'abc', expected a finite number"));
   const TemporaryFile negative(
       "negative.csv", std::string(kCasesHeader) +
                           "\nB7,79e9,-0.002,10,12,0.018,0.05,0,0.1,0,0.5,7850,"
                           "1,0,9.81,2,0,0,0,0,0,0,0.1\n");
   ran = Rig("spring --cases " + negative.path(), true);
   EXPECT_EQ(ran.status, 3);
-  EXPECT_THAT(ran.out, HasSubstr(":2 (id B7): wire_diameter_m is -0.002"));
+  EXPECT_THAT(ran.out, HasSubstr(": line 2: wire_diameter_m is -0.002"));
   const TemporaryFile lacking("lacking.csv", "id,G\nA,1\n");
   ran = Rig("spring --cases " + lacking.path(), true);
   EXPECT_EQ(ran.status, 3);
-  EXPECT_THAT(ran.out, HasSubstr(":1: column d is missing"));
+  EXPECT_THAT(ran.out, HasSubstr(": header: there is no column 'd'"));
   const TemporaryFile ragged("ragged.csv", "id,G\nA,1,2\n");
   ran = Rig("spring --cases " + ragged.path(), true);
-  EXPECT_THAT(ran.out, HasSubstr(":2: 3 cells, the header has 2"));
+  EXPECT_THAT(ran.out,
+              HasSubstr(": line 2: has 3 cells; expected 2 as in the header"));
   const TemporaryFile open_quote("quote.csv", "id,G\n\"A,1\n");
   EXPECT_THAT(Rig("spring --cases " + open_quote.path(), true).out,
-              HasSubstr(":2: a quote is not closed"));
+              HasSubstr(": line 2: a quoted cell is never closed"));
   const TemporaryFile empty("empty.csv", "");
   EXPECT_EQ(Rig("spring --cases " + empty.path(), true).status, 3);
 }
@@ -341,7 +345,7 @@ TEST(RigCommand, MistakesAreOneLine) {
       {"launch --stiffness-n-per-m 10 --compression-mm 5",
        "--mass-g is missing"},
       {"launch --stiffness-n-per-m ten --mass-g 1 --compression-mm 5",
-       "--stiffness-n-per-m is \"ten\", expected a number"},
+       "--stiffness-n-per-m is 'ten', must be a number"},
       {"launch --stiffness-n-per-m 10+--1 --mass-g 1 --compression-mm 5",
        "its uncertainty must be at least 0"},
       {"launch --stiffness-n-per-m 10 --mass-g 1 --compression-mm -5",

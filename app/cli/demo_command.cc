@@ -1,0 +1,83 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/cli/command.h"
+#include "app/cli/progress.h"
+#include "app/pipeline/demo.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct Flags {
+  std::string out = "touchdown-demo";
+  std::uint64_t seed = 1;
+};
+
+std::string TwoWords(core::MotionState state) {
+  if (state == core::MotionState::kUndecided) return "undecided";
+  return core::IsNotBounce(state) ? "slide" : "bounce";
+}
+
+int Run(const Flags& flags) {
+  pipeline::DemoOptions options;
+  options.folder = flags.out;
+  options.seed = flags.seed;
+  ProgressBar bar("demo");
+  options.progress = [&bar](double share, const std::string&) {
+    bar.Show(share);
+  };
+  const pipeline::DemoResult demo = pipeline::RunDemo(options);
+  bar.Finish();
+  fmt::print(
+      "Table 1 on rendered clips (SIMULATED); \"slide\" is every trial that "
+      "does not bounce\n\n"
+      "{:<26} {:>9} {:>20} {:>9} {:>9} {:>9}\n",
+      "clip", "true/deg", "measured/deg", "error/deg", "true", "measured");
+  for (const pipeline::DemoRow& row : demo.rows) {
+    std::string measured = "absent";
+    std::string error;
+    if (row.angle_rad) {
+      const double value = std::abs(row.angle_rad->value) / core::kDegree;
+      measured = fmt::format("{:.3f} +- {:.3f}", value,
+                             row.angle_rad->u / core::kDegree);
+      error =
+          fmt::format("{:+.3f}", value - row.true_angle_rad / core::kDegree);
+    }
+    fmt::print("{:<26} {:>9.1f} {:>20} {:>9} {:>9} {:>9}{}\n", row.clip,
+               row.true_angle_rad / core::kDegree, measured, error,
+               TwoWords(row.true_state), TwoWords(row.state),
+               row.right() ? "" : "  WRONG");
+  }
+  fmt::print(
+      "\n{} of {} right as bounce or not; RMSE of the contact angle {:.4f} deg "
+      "over {} clips\nreport     {}\nstore      {}\n",
+      demo.right, demo.rows.size(), demo.rmse_rad / core::kDegree, demo.angles,
+      std::filesystem::absolute(demo.report).lexically_normal().string(),
+      std::filesystem::absolute(demo.store).lexically_normal().string());
+  return 0;
+}
+
+}  // namespace
+
+void AddDemo(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = app.add_subcommand(
+      "demo", "Table 1, end to end, on rendered clips with known truth");
+  command
+      ->add_option("--out", flags->out,
+                   "folder for clips, evidence, store and report")
+      ->capture_default_str();
+  command->add_option("--seed", flags->seed, "of the clips' noise")
+      ->capture_default_str();
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
+}
+
+}  // namespace touchdown::cli

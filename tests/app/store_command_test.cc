@@ -1,0 +1,196 @@
+// The commands of the store as a user runs them: exits, one line per mistake,
+// nothing on stdout but results.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/db/fixture.h"
+
+namespace touchdown {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct Ran {
+  int status = -1;
+  std::string out;
+  std::string error;
+};
+
+std::string Slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class StoreCommand : public ::testing::Test {
+ protected:
+  Ran Run(const std::string& arguments) {
+    const std::string line = "cd '" + folder_.path().string() +
+                             "' && " TOUCHDOWN_BINARY " " + arguments +
+                             " >out 2>error";
+    const int status = std::system(line.c_str());
+    return {WEXITSTATUS(status), Slurp(folder_ / "out"),
+            Slurp(folder_ / "error")};
+  }
+  void ExpectMistake(const std::string& arguments, int status,
+                     const std::string& says) {
+    SCOPED_TRACE(arguments);
+    const Ran ran = Run(arguments);
+    EXPECT_EQ(ran.status, status);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_THAT(ran.error, StartsWith("touchdown: "));
+    EXPECT_THAT(ran.error, HasSubstr(says));
+    EXPECT_EQ(std::count(ran.error.begin(), ran.error.end(), '\n'), 1);
+  }
+  std::string LogOne() {
+    EXPECT_EQ(Run("campaign new asphalt --db lab.db --body sphere "
+                  "--diameter-mm 40 --theory published "
+                  "--theory-boundary-deg 11.8")
+                  .status,
+              0);
+    const Ran ran =
+        Run("log --db lab.db --campaign asphalt --angle-deg 20 --angle-u-deg "
+            "0.5 --state bounce --by Ada --json");
+    EXPECT_EQ(ran.status, 0) << ran.error;
+    return nlohmann::json::parse(ran.out).at("id");
+  }
+  db::Folder folder_;
+};
+
+TEST_F(StoreCommand, LogListShowCorrect) {
+  const std::string id = LogOne();
+  const Ran list = Run("list --db lab.db --json");
+  const auto json = nlohmann::json::parse(list.out);
+  EXPECT_EQ(json["schema"], "touchdown.list/1");
+  ASSERT_EQ(json["trials"].size(), 1u);
+  const auto& trial = json["trials"][0];
+  EXPECT_EQ(trial["id"], id);
+  EXPECT_EQ(trial["origin"], "manual");
+  EXPECT_EQ(trial["state"], "bounce");
+  EXPECT_EQ(trial["angle_kind"], "approach");
+  EXPECT_DOUBLE_EQ(trial["angle_deg"]["value"], 20.0);
+  EXPECT_DOUBLE_EQ(trial["angle_deg"]["u"], 0.5);
+  EXPECT_THAT(Run("list --db lab.db").out, HasSubstr("20.00 +- 0.50"));
+  EXPECT_EQ(Run("correct " + id.substr(0, 8) +
+                " --db lab.db --state slide --by Bob --why 'seen again'")
+                .status,
+            0);
+  EXPECT_EQ(Run("correct " + id + " --db lab.db --exclude --by Bob --why dust")
+                .status,
+            0);
+  const Ran show = Run("show " + id + " --db lab.db --history");
+  EXPECT_THAT(show.out, HasSubstr("corrected by Bob: seen again"));
+  EXPECT_THAT(show.out, HasSubstr("state: bounce -> slide"));
+  EXPECT_THAT(show.out, HasSubstr("excluded by Bob: dust"));
+  const auto whole =
+      nlohmann::json::parse(Run("show " + id + " --db lab.db --json").out);
+  EXPECT_EQ(whole["schema"], "touchdown.trial/1");
+  EXPECT_EQ(whole["id"], id);
+  EXPECT_EQ(whole["history"].size(), 3u);
+  EXPECT_EQ(whole["excluded"], true);
+  EXPECT_THAT(Run("list --db lab.db").out,
+              AllOf(HasSubstr("EXCLUDED: dust"), HasSubstr("1 excluded")));
+  EXPECT_THAT(Run("list --db lab.db --counting").out, HasSubstr("0 trials"));
+}
+
+TEST_F(StoreCommand, MistakesAreOneLineWithTheirExit) {
+  ExpectMistake("list --db lab.db", 4, "no such trial store");
+  ExpectMistake("show abcd --db lab.db", 4, "no such trial store");
+  ExpectMistake("db check --db lab.db", 4, "no such trial store");
+  ExpectMistake("export --db lab.db --out x.csv", 4, "no such trial store");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "lab.db"));
+  LogOne();
+  ExpectMistake("list", 2, "--db");
+  ExpectMistake("list --db lab.db --state fly", 2, "--state is 'fly'");
+  ExpectMistake("list --db lab.db --campaign none", 4, "no campaign 'none'");
+  ExpectMistake("show abcd0000 --db lab.db", 4, "no trial 'abcd0000'");
+  ExpectMistake("show ab --db lab.db", 2, "at least 4");
+  const std::string log = "log --db lab.db --campaign asphalt --by Ada ";
+  ExpectMistake(log + "--state bounce --angle-deg 91 --angle-u-deg 1", 2,
+                "--angle-deg is 91");
+  ExpectMistake(log + "--state bounce --angle-deg nan --angle-u-deg 1", 2,
+                "--angle-deg is nan");
+  ExpectMistake(log + "--state bounce --angle-deg 9", 2, "go together");
+  ExpectMistake(log, 2, "--state is missing");
+  ExpectMistake(log + "--state bounce --angle-kind face", 2, "never pooled");
+  ExpectMistake("log --db lab.db --state bounce --by Ada", 2, "--body");
+  ExpectMistake("log --db lab.db --state bounce --body sphere", 2, "--by");
+  ExpectMistake(
+      "campaign new asphalt --db lab.db --body sphere "
+      "--diameter-mm 40",
+      4, "already");
+  ExpectMistake(
+      "campaign new asphalt --db lab.db --body sphere "
+      "--diameter-mm 30 --change",
+      4, "fixed before the first");
+  ExpectMistake("campaign new b --db lab.db --body sphere --diameter-mm 0", 2,
+                "diameter");
+  ExpectMistake(
+      "campaign new b --db lab.db --body sphere --diameter-mm 4 "
+      "--speed-mps 5",
+      2, "--speed-mps is '5'");
+  ExpectMistake("import none.csv --db lab.db", 3, "cannot be read");
+  ExpectMistake("import none.txt --db lab.db", 2, "format");
+  ExpectMistake("db backup --db lab.db lab.db", 4, "exists");
+  ExpectMistake("db merge --db lab.db lab.db", 2, "itself");
+}
+
+TEST_F(StoreCommand, ExportImportMergeBackup) {
+  LogOne();
+  EXPECT_EQ(Run("export --db lab.db --out all.jsonl").status, 0);
+  EXPECT_EQ(Run("import all.jsonl --db b.db").status, 0);
+  EXPECT_EQ(Run("export --db b.db --format jsonl").out.substr(100),
+            Slurp(folder_ / "all.jsonl").substr(100));
+  EXPECT_THAT(Run("db merge --db b.db lab.db").out,
+              HasSubstr("0 trials, 0 revisions"));
+  EXPECT_EQ(Run("db backup --db lab.db copy.db").status, 0);
+  EXPECT_THAT(Run("db check --db copy.db").out, HasSubstr("is sound"));
+  EXPECT_THAT(Run("db migrate --db copy.db").out, HasSubstr("nothing to do"));
+  // An export opened in a spreadsheet, its ids removed, is a table of new
+  // trials; with its ids it is what is there already.
+  EXPECT_EQ(Run("export --db lab.db --out all.csv").status, 0);
+  ExpectMistake("import all.csv --db lab.db", 3, "already");
+  std::ofstream(folder_ / "bad.csv")
+      << "body_kind,state,campaign\nsphere,bounce,asphalt\n"
+         "sphere,fly,\nsphere,slide,nowhere\n";
+  const Ran none = Run("import bad.csv --db lab.db --by Ada");
+  EXPECT_EQ(none.status, 3);
+  EXPECT_THAT(none.error, HasSubstr("row 3, column state"));
+  EXPECT_THAT(Run("list --db lab.db").out, HasSubstr("1 trial\n"));
+  const Ran some = Run("import bad.csv --db lab.db --by Ada --partial");
+  EXPECT_EQ(some.status, 5);
+  EXPECT_EQ(some.out, "1 trials imported, 2 errors\n");
+  EXPECT_THAT(some.error, HasSubstr("row 4, column campaign: 'nowhere'"));
+  EXPECT_THAT(Run("list --db lab.db").out, HasSubstr("2 trials\n"));
+}
+
+TEST_F(StoreCommand, SimulatedTrialsAreMarked) {
+  {
+    db::Store store = db::OpenFixed(folder_ / "lab.db");
+    core::Trial trial = db::SphereTrial(1, "");
+    trial.origin = core::Origin::kSimulated;
+    trial.first.state.reason = "\x1b[2Jescape\n";
+    store.LogTrial(trial);
+  }
+  const Ran list = Run("list --db lab.db");
+  EXPECT_THAT(list.out, HasSubstr("SIMULATED"));
+  EXPECT_THAT(list.out, HasSubstr("1 simulated (no verdict"));
+  const std::string id = nlohmann::json::parse(
+      Run("list --db lab.db --json").out)["trials"][0]["id"];
+  const Ran show = Run("show " + id + " --db lab.db");
+  EXPECT_THAT(show.out, StartsWith("SIMULATED"));
+  EXPECT_THAT(show.out, HasSubstr("\\x1b[2Jescape\\x0a"));
+}
+
+}  // namespace
+}  // namespace touchdown
