@@ -34,7 +34,10 @@ std::string_view Name(ScaleSource source) {
 
 GroundLine GroundThrough(core::PixelPoint p1, core::PixelPoint p2,
                          double u_point_px) {
-  if (p2.x_px < p1.x_px) std::swap(p1, p2);
+  // Of two points one above the other the upper comes first: direction +90.
+  if (p2.x_px < p1.x_px || (p2.x_px == p1.x_px && p2.y_px < p1.y_px)) {
+    std::swap(p1, p2);
+  }
   const double length = std::hypot(p2.x_px - p1.x_px, p2.y_px - p1.y_px);
   if (!(length > 0.0) || !std::isfinite(length)) {
     throw std::invalid_argument(

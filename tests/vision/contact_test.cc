@@ -1,0 +1,806 @@
+// Contacts of tracks with known truth. No pixel is needed: what the tracker
+// does to a track is the tracker's test.
+#include "touchdown/vision/contact.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/support/statistics.h"
+#include "tests/vision/synthetic_track.h"
+
+namespace touchdown::vision {
+namespace {
+
+using namespace core::literals;  // NOLINT
+using core::MotionState;
+using synthetic::Filming;
+using synthetic::FilmPlane;
+using synthetic::Rebound;
+using synthetic::Throw;
+using synthetic::WithScale;
+using ::testing::HasSubstr;
+using touchdown::testing::Largest;
+using touchdown::testing::Rms;
+using touchdown::testing::RmsBand99;
+
+// Every number of a record, by name, where it is present.
+std::map<std::string, core::Estimate> Numbers(
+    const core::ContactRecord& record) {
+  std::map<std::string, core::Estimate> numbers;
+  const auto add = [&](const char* name, const core::Measured& m) {
+    if (m) {
+      numbers[name] = *m;
+    } else {
+      EXPECT_FALSE(m.error().reason.empty()) << name;
+    }
+  };
+  const core::Contact& c = record.contact;
+  add("time", c.time_s);
+  add("frame", c.frame);
+  add("approach", c.approach_angle_rad);
+  add("radius", c.radius_angle_rad);
+  add("face", c.face_angle_rad);
+  add("duration", c.duration_s);
+  add("max gap", record.state.max_gap_m);
+  add("bounce height", record.state.bounce_height_m);
+  add("detectable gap", record.state.detectable_gap_m);
+  const core::Motion& m = record.motion;
+  add("speed", m.before_speed_mps);
+  add("vn", m.before_normal_mps);
+  add("vt", m.before_tangential_mps);
+  add("omega", m.before_omega_rad_per_s);
+  add("vn'", m.after_normal_mps);
+  add("vt'", m.after_tangential_mps);
+  add("omega'", m.after_omega_rad_per_s);
+  add("e", m.restitution);
+  add("centre ratio", m.centre_rebound_ratio);
+  add("impulse ratio", m.impulse_ratio);
+  add("gravity", m.gravity_check_mps2);
+  return numbers;
+}
+
+void ExpectFinite(const ContactResult& result) {
+  std::vector<core::ContactRecord> records = {result.first};
+  records.insert(records.end(), result.later.begin(), result.later.end());
+  for (const core::ContactRecord& record : records) {
+    for (const auto& [name, e] : Numbers(record)) {
+      EXPECT_TRUE(std::isfinite(e.value)) << name;
+      EXPECT_TRUE(std::isfinite(e.u)) << name;
+      EXPECT_GE(e.u, 0.0) << name;
+    }
+    if (record.state.p_bounce) {
+      EXPECT_GE(*record.state.p_bounce, 0.0);
+      EXPECT_LE(*record.state.p_bounce, 1.0);
+    }
+    EXPECT_FALSE(record.state.reason.empty());
+    EXPECT_EQ(record.contact.found, record.contact.reason.empty());
+  }
+}
+
+// What is true of a throw's first contact.
+std::map<std::string, double> TruthOf(const Throw& t, const Filming& filming) {
+  std::map<std::string, double> truth;
+  truth["time"] = t.contact_s;
+  truth["frame"] = t.contact_s * filming.camera.fps;
+  truth["approach"] = t.ContactAngle();
+  truth["duration"] = t.duration_s;
+  truth["speed"] = std::hypot(t.before.vx, t.before.vy);
+  truth["vn"] = t.before.vy;
+  truth["vt"] = t.before.vx;
+  truth["gravity"] = t.gravity_mps2;
+  if (t.kind == core::BodyKind::kRectangle) {
+    const double arm = t.Arm();
+    truth["face"] = t.face_rad;
+    truth["radius"] = std::atan2(t.Support(t.face_rad), std::abs(arm));
+    truth["omega"] = t.before.omega;
+  }
+  if (!t.stays) {
+    const double arm = t.Arm();
+    truth["vn'"] = t.after.vy;
+    truth["vt'"] = t.after.vx;
+    truth["e"] = -(t.after.vy + t.after.omega * arm) /
+                 (t.before.vy + t.before.omega * arm);
+    truth["centre ratio"] = -t.after.vy / t.before.vy;
+    truth["impulse ratio"] =
+        std::abs(t.after.vx - t.before.vx) / (t.after.vy - t.before.vy);
+    if (t.kind == core::BodyKind::kRectangle) truth["omega'"] = t.after.omega;
+  }
+  return truth;
+}
+
+struct Sweep {
+  std::map<std::string, std::vector<double>> z;
+  std::map<std::string, int> missing;
+  std::map<MotionState, int> states;
+  int not_found = 0;
+  int later = 0;
+  std::vector<double> u_approach;
+};
+
+// The same throw filmed `seeds` times, contact anywhere between two frames.
+Sweep Shoot(Throw thrown, Filming filming, int seeds = 60) {
+  Sweep sweep;
+  const double contact_s = thrown.contact_s;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    filming.seed = static_cast<std::uint64_t>(seed);
+    thrown.contact_s =
+        contact_s + std::fmod(0.618034 * seed, 1.0) / filming.camera.fps;
+    const PlaneTrack plane = FilmPlane(thrown, filming);
+    const ContactResult result = FindContacts(plane, WithScale(filming));
+    ExpectFinite(result);
+    if (!result.first.contact.found) {
+      ++sweep.not_found;
+      ADD_FAILURE() << "seed " << seed << ": " << result.first.contact.reason;
+      continue;
+    }
+    ++sweep.states[result.first.state.label];
+    sweep.later += static_cast<int>(result.later.size());
+    auto measured = Numbers(result.first);
+    for (const auto& [name, truth] : TruthOf(thrown, filming)) {
+      if (!measured.contains(name)) {
+        ++sweep.missing[name];
+        continue;
+      }
+      const core::Estimate e = measured[name];
+      if (name == "duration" && truth == 0.0) {
+        EXPECT_LE(e.value, 4.0 * e.u);
+        continue;
+      }
+      sweep.z[name].push_back((e.value - truth) / e.u);
+    }
+    sweep.u_approach.push_back(measured["approach"].u);
+  }
+  return sweep;
+}
+
+// Every error within 4 u, and none of the uncertainties too small; stated
+// uncertainties may be too wide by a factor of two (they hold the gravity of
+// the place, which the tracks here have exactly).
+void ExpectHonest(const Sweep& sweep) {
+  for (const auto& [name, z] : sweep.z) {
+    EXPECT_LT(Largest(z), 4.2) << name;
+    EXPECT_LT(Rms(z), RmsBand99(z.size()).high) << name;
+    EXPECT_GT(Rms(z), 0.45 * RmsBand99(z.size()).low) << name;
+  }
+}
+
+Throw Block(double face_rad) {
+  Throw thrown;
+  thrown.kind = core::BodyKind::kRectangle;
+  thrown.half_long_m = 0.03;
+  thrown.half_short_m = 0.01;
+  thrown.face_rad = face_rad;
+  return thrown;
+}
+
+TEST(Contact, BounceBetweenFrames) {
+  for (const double angle : {5.0_deg, 20.0_deg, 45.0_deg, 80.0_deg, 90.0_deg}) {
+    SCOPED_TRACE(angle / core::kDegree);
+    Throw thrown;
+    thrown.before = {1.5 * std::cos(angle), -1.5 * std::sin(angle), 0.0};
+    thrown.after = {0.8 * thrown.before.vx, -0.6 * thrown.before.vy, 0.0};
+    Filming filming;
+    filming.frames = 50;  // until before it comes down again
+    const Sweep sweep = Shoot(thrown, filming);
+    ExpectHonest(sweep);
+    EXPECT_EQ(sweep.later, 0);
+    if (angle > 15.0_deg) {
+      EXPECT_EQ(sweep.states.at(MotionState::kBounce), 60);
+    }
+  }
+}
+
+TEST(Contact, SoftContactOverSeveralFrames) {
+  Throw thrown;
+  thrown.duration_s = 3.3e-3;  // 6.6 frames
+  thrown.depth_m = 0.0015;
+  Filming filming;
+  const Sweep sweep = Shoot(thrown, filming);
+  ExpectHonest(sweep);
+  EXPECT_EQ(sweep.states.at(MotionState::kBounce), 60);
+  EXPECT_EQ(sweep.later, 0);
+}
+
+TEST(Contact, SlideAfterTouchdown) {
+  Throw thrown;
+  thrown.before = {1.4, -0.25, 0.0};
+  thrown.after = {1.2, 0.0, 0.0};
+  thrown.stays = true;
+  const Sweep sweep = Shoot(thrown, {});
+  ExpectHonest(sweep);
+  EXPECT_EQ(sweep.states.at(MotionState::kStaysDown), 60);
+
+  Throw block = Block(0.0);
+  block.before = {1.4, -0.25, 0.0};
+  block.after = {1.2, 0.0, 0.0};
+  block.stays = true;
+  const Sweep blocks = Shoot(block, {});
+  ExpectHonest(blocks);
+  EXPECT_EQ(blocks.states.at(MotionState::kSlide), 60);
+  Throw stuck = block;
+  stuck.after = {};
+  EXPECT_EQ(Shoot(stuck, {}).states.at(MotionState::kStick), 60);
+}
+
+TEST(Contact, RectangleCornerWithSpin) {
+  for (const double face : {-25.0_deg, -8.0_deg, 8.0_deg, 25.0_deg}) {
+    for (const double omega : {-6.0, 0.0, 6.0}) {
+      SCOPED_TRACE(face / core::kDegree);
+      SCOPED_TRACE(omega);
+      Throw thrown = Block(face);
+      thrown.before = {1.2, -0.9, omega};
+      Rebound(thrown, 0.6);
+      // Film until the other end comes near the ground.
+      Filming filming;
+      const core::Body body = core::Rectangle({0.06, 0}, {0.02, 0});
+      filming.frames = 32;
+      while (filming.frames < 60 &&
+             Gap(body, thrown.At((filming.frames + 1) / 2000.0)) > 2e-4) {
+        ++filming.frames;
+      }
+      ASSERT_GT(filming.frames, 38);
+      const Sweep sweep = Shoot(thrown, filming, 40);
+      ExpectHonest(sweep);
+    }
+  }
+}
+
+TEST(Contact, CornerIsTheOneThatTouches) {
+  for (const auto& [face, corner] :
+       std::vector<std::pair<double, core::Corner>>{
+           {-20.0_deg, core::Corner::kLeading},
+           {20.0_deg, core::Corner::kTrailing},
+           {80.0_deg, core::Corner::kTrailing},
+           {-80.0_deg, core::Corner::kLeading},
+           {0.0, core::Corner::kFlush},
+           {90.0_deg, core::Corner::kFlush}}) {
+    for (const bool left : {false, true}) {
+      Throw thrown = Block(face);
+      thrown.before = {1.2, -0.9, 0.0};
+      Rebound(thrown, 0.5);
+      if (corner == core::Corner::kFlush) thrown.after = {1.0, 0.4, 0.0};
+      Filming filming;
+      filming.frames = 40;
+      filming.noise = false;
+      filming.camera.travels_left = left;
+      const ContactResult result =
+          FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+      ASSERT_TRUE(result.first.contact.corner) << face;
+      EXPECT_EQ(*result.first.contact.corner, corner)
+          << face / core::kDegree << " degrees, left " << left;
+    }
+  }
+}
+
+TEST(Contact, FaceAngleLiesInItsHalfTurn) {
+  for (double face = -170.0; face <= 180.0; face += 17.5) {
+    Throw thrown = Block(std::remainder(face, 180.0) * core::kDegree);
+    thrown.before = {1.2, -0.9, 0.0};
+    Rebound(thrown, 0.5);
+    Filming filming;
+    filming.frames = 38;
+    const ContactResult result =
+        FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+    ASSERT_TRUE(result.first.contact.face_angle_rad);
+    const double measured = result.first.contact.face_angle_rad->value;
+    EXPECT_GT(measured, -90.0_deg - 1e-12);
+    EXPECT_LE(measured, 90.0_deg);
+    EXPECT_NEAR(
+        std::remainder(measured - face * core::kDegree, std::numbers::pi), 0.0,
+        5e-3);
+    const core::Measured& radius = result.first.contact.radius_angle_rad;
+    EXPECT_GE(radius->value, 0.0);
+    EXPECT_LE(radius->value, 90.0_deg);
+  }
+}
+
+TEST(Contact, OnTheGroundFromTheStart) {
+  for (const auto kind :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    Throw thrown = kind == core::BodyKind::kSphere ? Throw{} : Block(0.0);
+    thrown.contact_s = -1.0;
+    thrown.x_m = -1.2;
+    thrown.after = {1.2, 0.0, 0.0};
+    thrown.stays = true;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Filming filming;
+      filming.seed = seed;
+      const ContactResult result =
+          FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+      ExpectFinite(result);
+      const core::Contact& contact = result.first.contact;
+      ASSERT_TRUE(contact.found);
+      EXPECT_TRUE(contact.from_start);
+      EXPECT_FALSE(contact.time_s);
+      EXPECT_THAT(contact.time_s.error().reason, HasSubstr("from the start"));
+      EXPECT_EQ(contact.approach_angle_rad->value, 0.0);
+      EXPECT_TRUE(core::IsNotBounce(result.first.state.label));
+      EXPECT_NEAR(result.first.motion.before_tangential_mps->value, 1.2,
+                  4.0 * result.first.motion.before_tangential_mps->u);
+      if (kind == core::BodyKind::kRectangle) {
+        EXPECT_EQ(result.first.state.label, MotionState::kSlide);
+      }
+    }
+  }
+}
+
+TEST(Contact, NoneWhereTheClipEndsBefore) {
+  Throw thrown;
+  Filming filming;
+  filming.frames = 25;  // contact at frame 30.2
+  const ContactResult result =
+      FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+  ExpectFinite(result);
+  EXPECT_FALSE(result.first.contact.found);
+  EXPECT_THAT(result.first.contact.reason, HasSubstr("never reaches zero"));
+  EXPECT_EQ(result.first.state.label, MotionState::kUndecided);
+  EXPECT_FALSE(result.first.state.p_bounce);
+  EXPECT_TRUE(result.later.empty());
+}
+
+TEST(Contact, NoneWhereTheBodyPassesHigh) {
+  Throw thrown;
+  Filming filming;
+  const Track track = synthetic::FilmTrack(
+      thrown,
+      [](double t) {
+        return ScenePose{{t, 0.1 + t - 4.9 * t * t}};
+      },
+      filming);
+  const ContactResult result =
+      FindContacts(SeenFromGround(track, synthetic::FilmGround(filming)),
+                   WithScale(filming));
+  EXPECT_FALSE(result.first.contact.found);
+  EXPECT_FALSE(result.first.contact.reason.empty());
+}
+
+// The last frame is the one before, at, or just after touchdown: a contact with
+// angle and time, but nothing of a rebound.
+TEST(Contact, AtTheLastFrame) {
+  Throw thrown;  // frame 30.24
+  for (const int frames : {31, 32}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Filming filming;
+      filming.frames = frames;
+      filming.seed = seed;
+      const ContactResult result =
+          FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+      ExpectFinite(result);
+      SCOPED_TRACE(frames);
+      ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
+      const auto numbers = Numbers(result.first);
+      EXPECT_NEAR(numbers.at("time").value, thrown.contact_s,
+                  4.2 * numbers.at("time").u);
+      EXPECT_NEAR(numbers.at("approach").value, thrown.ContactAngle(),
+                  4.2 * numbers.at("approach").u);
+      EXPECT_EQ(result.first.state.label, MotionState::kUndecided);
+      EXPECT_FALSE(result.first.state.p_bounce);
+      EXPECT_THAT(result.first.state.reason,
+                  HasSubstr("no rebound was filmed"));
+    }
+  }
+}
+
+// Bounce after bounce, e = 0.7: each with its own time and restitution.
+TEST(Contact, SeveralContacts) {
+  Filming filming;
+  filming.camera.fps = 500.0;
+  filming.frames = 320;
+  Throw thrown;
+  const double e = 0.7;
+  const double vx = 0.3;
+  struct Hop {
+    double at_s, vy;  // of the rebound
+  };
+  std::vector<Hop> hops;
+  double at = 0.1037;
+  double vy = 1.1;
+  const double g = thrown.gravity_mps2;
+  while (at < 0.5) {
+    hops.push_back({at, e * vy});
+    vy *= e;
+    at += 2.0 * vy / g;
+  }
+  const auto motion = [&](double t) {
+    const Hop* last = nullptr;
+    for (const Hop& hop : hops) {
+      if (t >= hop.at_s) last = &hop;
+    }
+    const double s = t - (last ? last->at_s : hops[0].at_s);
+    const double v = last ? last->vy : -1.1;
+    return ScenePose{{vx * t, 0.02 + v * s - 0.5 * g * s * s}, 0.0};
+  };
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    filming.seed = seed;
+    const Track track = synthetic::FilmTrack(thrown, motion, filming);
+    const ContactResult result =
+        FindContacts(SeenFromGround(track, synthetic::FilmGround(filming)),
+                     WithScale(filming));
+    ExpectFinite(result);
+    ASSERT_TRUE(result.first.contact.found);
+    EXPECT_EQ(result.evidence.size(), 1 + result.later.size());
+    ASSERT_GE(result.later.size(), 3u);
+    std::vector<core::ContactRecord> records = {result.first};
+    records.insert(records.end(), result.later.begin(), result.later.end());
+    for (std::size_t i = 0; i < std::min<std::size_t>(4, records.size()); ++i) {
+      const auto numbers = Numbers(records[i]);
+      EXPECT_NEAR(numbers.at("time").value, hops[i].at_s,
+                  4.2 * numbers.at("time").u)
+          << i;
+      EXPECT_NEAR(numbers.at("e").value, e, 4.2 * numbers.at("e").u) << i;
+      EXPECT_NEAR(numbers.at("approach").value, std::atan2(hops[i].vy / e, vx),
+                  4.2 * numbers.at("approach").u)
+          << i;
+    }
+    EXPECT_EQ(result.first.state.label, MotionState::kBounce);
+    const auto greatest = hops[0].vy * hops[0].vy / (2.0 * g);
+    EXPECT_NEAR(result.first.state.max_gap_m->value, greatest,
+                4.2 * result.first.state.max_gap_m->u + 1e-5);
+  }
+}
+
+// The state against the closed form: the rise v'^2 / 2g on either side of the
+// bounce height.
+TEST(Contact, StateByTheRise) {
+  const double g = core::kStandardGravity_mps2;
+  for (const double rise_mm : {0.2, 0.4, 1.2, 2.4}) {
+    Throw thrown;
+    thrown.before = {1.4, -0.5, 0.0};
+    thrown.after = {1.3, std::sqrt(2.0 * g * rise_mm * 1e-3), 0.0};
+    Filming filming;
+    // Until it is down again: 0.8 mm is the bounce height of 40 mm.
+    const double back_s = 2.0 * thrown.after.vy / g;
+    filming.frames = static_cast<int>((thrown.contact_s + back_s) * 2000.0) - 1;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      filming.seed = seed;
+      const ContactResult result =
+          FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+      const core::StateDecision& state = result.first.state;
+      SCOPED_TRACE(rise_mm);
+      ASSERT_TRUE(state.max_gap_m) << state.reason;
+      EXPECT_NEAR(state.max_gap_m->value, rise_mm * 1e-3,
+                  4.2 * state.max_gap_m->u);
+      EXPECT_NEAR(state.bounce_height_m->value, 0.8e-3, 2e-6);
+      EXPECT_EQ(state.label,
+                rise_mm > 0.8 ? MotionState::kBounce : MotionState::kStaysDown);
+      EXPECT_EQ(state.micro_bounce, rise_mm < 0.8);
+    }
+  }
+}
+
+TEST(Contact, BounceHeightIsTheCampaigns) {
+  Throw thrown;
+  thrown.after = {1.3, 0.3, 0.0};  // rises by 4.6 mm
+  Filming filming;
+  ContactOptions options = WithScale(filming);
+  options.bounce_height_m = 0.02;
+  const ContactResult result =
+      FindContacts(FilmPlane(thrown, filming), options);
+  EXPECT_EQ(result.first.state.bounce_height_m->value, 0.02);
+  EXPECT_EQ(result.first.state.label, MotionState::kStaysDown);
+  EXPECT_TRUE(result.first.state.micro_bounce);
+}
+
+TEST(Contact, ClipThatEndsWhileItRisesIsUndecided) {
+  Throw thrown;
+  thrown.after = {1.3, 0.15, 0.0};  // 1.15 mm at last, 31 frames after contact
+  Filming filming;
+  filming.frames = 30 + 8;  // it has risen by half a millimetre
+  const ContactResult result =
+      FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+  EXPECT_EQ(result.first.state.label, MotionState::kUndecided);
+  EXPECT_THAT(result.first.state.reason, HasSubstr("still rises"));
+}
+
+// Without a scale: angles, times and ratios as with one, lengths absent.
+TEST(Contact, WithoutAScale) {
+  Throw thrown;
+  std::vector<double> z_time, z_angle, z_e;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Filming filming;
+    filming.seed = seed;
+    const ContactResult result = FindContacts(FilmPlane(thrown, filming), {});
+    ExpectFinite(result);
+    ASSERT_TRUE(result.first.contact.found);
+    const auto n = Numbers(result.first);
+    for (const char* name : {"speed", "vn", "vt", "vn'", "vt'", "gravity",
+                             "max gap", "bounce height", "detectable gap"}) {
+      EXPECT_FALSE(n.contains(name)) << name;
+    }
+    EXPECT_THAT(result.first.motion.before_speed_mps.error().reason,
+                HasSubstr("no scale"));
+    EXPECT_EQ(result.first.state.label, MotionState::kBounce);
+    z_time.push_back((n.at("time").value - thrown.contact_s) / n.at("time").u);
+    z_angle.push_back((n.at("approach").value - thrown.ContactAngle()) /
+                      n.at("approach").u);
+    z_e.push_back((n.at("e").value - 0.5) / n.at("e").u);
+  }
+  for (const auto& z : {z_time, z_angle, z_e}) {
+    EXPECT_LT(Rms(z), RmsBand99(60).high);
+    EXPECT_GT(Rms(z), 0.7 * RmsBand99(60).low);
+  }
+}
+
+// DESIGN.md section 5: the same answer wherever the picture's origin lies.
+TEST(Contact, OriginFarAway) {
+  for (const bool rectangle : {false, true}) {
+    Throw thrown = rectangle ? Block(0.3) : Throw{};
+    thrown.before = {1.2, -0.9, rectangle ? 5.0 : 0.0};
+    thrown.after = {1.0, 0.45, 0.0};
+    if (rectangle) Rebound(thrown, 0.5);
+    Filming filming;
+    filming.frames = 42;
+    Track track = synthetic::FilmTrack(
+        thrown, [&](double t) { return thrown.At(t); }, filming);
+    calib::GroundLine ground = synthetic::FilmGround(filming);
+    const auto reference = Numbers(
+        FindContacts(SeenFromGround(track, ground), WithScale(filming)).first);
+    for (const double far : {1e3, 1e6}) {
+      Track moved = track;
+      for (Pose& pose : moved.poses) {
+        pose.centre.x_px += far;
+        pose.centre.y_px -= far;
+      }
+      calib::GroundLine line = ground;
+      for (core::PixelPoint* p : {&line.p1, &line.p2, &line.reference}) {
+        p->x_px += far;
+        p->y_px -= far;
+      }
+      const auto shifted = Numbers(
+          FindContacts(SeenFromGround(moved, line), WithScale(filming)).first);
+      ASSERT_EQ(reference.size(), shifted.size());
+      for (const auto& [name, e] : reference) {
+        EXPECT_NEAR(shifted.at(name).value, e.value, 1e-3 * e.u + 1e-9) << name;
+        EXPECT_NEAR(shifted.at(name).u, e.u, 1e-3 * e.u + 1e-9) << name;
+      }
+    }
+  }
+}
+
+TEST(Contact, MirroredThrowIsTheSame) {
+  for (const bool rectangle : {false, true}) {
+    Throw thrown = rectangle ? Block(0.3) : Throw{};
+    thrown.before = {1.2, -0.9, rectangle ? 5.0 : 0.0};
+    thrown.after = {1.0, 0.45, 0.0};
+    if (rectangle) Rebound(thrown, 0.5);
+    Filming filming;
+    filming.frames = 42;
+    Track track = synthetic::FilmTrack(
+        thrown, [&](double t) { return thrown.At(t); }, filming);
+    calib::GroundLine ground = synthetic::FilmGround(filming);
+    const auto reference = Numbers(
+        FindContacts(SeenFromGround(track, ground), WithScale(filming)).first);
+    for (Pose& pose : track.poses) {
+      pose.centre.x_px = 640.0 - pose.centre.x_px;
+      pose.angle_rad = -pose.angle_rad;
+      pose.correlation_xy = -pose.correlation_xy;
+    }
+    std::swap(ground.p1, ground.p2);
+    for (core::PixelPoint* p : {&ground.p1, &ground.p2, &ground.reference}) {
+      p->x_px = 640.0 - p->x_px;
+    }
+    const auto mirrored = Numbers(
+        FindContacts(SeenFromGround(track, ground), WithScale(filming)).first);
+    ASSERT_EQ(reference.size(), mirrored.size());
+    for (const auto& [name, e] : reference) {
+      EXPECT_NEAR(mirrored.at(name).value, e.value, 1e-3 * e.u + 1e-9) << name;
+    }
+  }
+}
+
+// Seconds or hours into the recording, and whatever the unit of time.
+TEST(Contact, ClockChangesNothing) {
+  Throw thrown;
+  Filming filming;
+  const PlaneTrack plane = FilmPlane(thrown, filming);
+  const auto reference = Numbers(FindContacts(plane, WithScale(filming)).first);
+  PlaneTrack late = plane;
+  for (PlaneSample& s : late.samples) s.time_s += 1e3;
+  const auto shifted = Numbers(FindContacts(late, WithScale(filming)).first);
+  for (const auto& [name, e] : reference) {
+    const double offset = name == "time" ? 1e3 : 0.0;
+    EXPECT_NEAR(shifted.at(name).value - offset, e.value, 1e-3 * e.u + 1e-9)
+        << name;
+  }
+}
+
+// Slow-motion cameras and far ones: time and length by any factor.
+TEST(Contact, ScaledTimeAndLength) {
+  Throw thrown;
+  Filming filming;
+  const PlaneTrack plane = FilmPlane(thrown, filming);
+  const auto reference = Numbers(FindContacts(plane, {}).first);
+  for (const double time : {1e-3, 1e3}) {
+    PlaneTrack scaled = plane;
+    scaled.frame_interval_s *= time;
+    for (PlaneSample& s : scaled.samples) s.time_s *= time;
+    const auto numbers = Numbers(FindContacts(scaled, {}).first);
+    for (const char* name : {"frame", "approach", "e", "centre ratio"}) {
+      EXPECT_NEAR(numbers.at(name).value, reference.at(name).value,
+                  1e-3 * reference.at(name).u)
+          << name << " " << time;
+    }
+    EXPECT_NEAR(numbers.at("time").value / time, reference.at("time").value,
+                1e-3 * reference.at("time").u);
+  }
+}
+
+// Few frames on either side, contact near the first and the last frame: a
+// number with an honest u, or a reason; never NaN.
+TEST(Contact, FewFramesOnEitherSide) {
+  int found = 0;
+  std::vector<double> z;
+  for (int before = 1; before <= 9; ++before) {
+    for (int after = 0; after <= 9; ++after) {
+      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        for (const bool rectangle : {false, true}) {
+          Throw thrown = rectangle ? Block(0.35) : Throw{};
+          thrown.before = {1.2, -0.9, 0.0};
+          thrown.after = {1.0, 0.45, 0.0};
+          if (rectangle) Rebound(thrown, 0.5);
+          Filming filming;
+          filming.seed = seed;
+          thrown.contact_s = (before - 0.6) / 2000.0;
+          filming.frames = before + after;
+          const ContactResult result =
+              FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+          SCOPED_TRACE(before);
+          SCOPED_TRACE(after);
+          ExpectFinite(result);
+          if (!result.first.contact.found || result.first.contact.from_start) {
+            continue;
+          }
+          const auto n = Numbers(result.first);
+          ++found;
+          z.push_back((n.at("approach").value - thrown.ContactAngle()) /
+                      n.at("approach").u);
+          EXPECT_LT(std::abs(z.back()), 5.0)
+              << n.at("approach").value << " +- " << n.at("approach").u;
+          EXPECT_LT(std::abs(n.at("time").value - thrown.contact_s),
+                    5.0 * n.at("time").u);
+          if (after < 3) {
+            EXPECT_EQ(result.first.state.label, MotionState::kUndecided);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 200);
+  EXPECT_LT(Rms(z), 1.2);
+}
+
+TEST(Contact, TooFewFramesIsSaid) {
+  Filming filming;
+  for (int frames = 0; frames < 5; ++frames) {
+    filming.frames = frames;
+    const ContactResult result =
+        FindContacts(FilmPlane(Throw{}, filming), WithScale(filming));
+    EXPECT_FALSE(result.first.contact.found);
+    EXPECT_THAT(result.first.contact.reason, HasSubstr("frames"));
+  }
+}
+
+// Frames that the tracker lost, also at the contact itself.
+TEST(Contact, MissingFrames) {
+  Throw thrown;
+  std::vector<double> z;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Filming filming;
+    filming.seed = seed;
+    PlaneTrack plane = FilmPlane(thrown, filming);
+    std::erase_if(plane.samples, [&](const PlaneSample& s) {
+      return (s.frame >= 29 && s.frame <= 32) ||
+             (s.frame + static_cast<std::int64_t>(seed)) % 7 == 0;
+    });
+    const ContactResult result = FindContacts(plane, WithScale(filming));
+    ExpectFinite(result);
+    ASSERT_TRUE(result.first.contact.found);
+    const auto n = Numbers(result.first);
+    EXPECT_NEAR(n.at("time").value, thrown.contact_s, 4.2 * n.at("time").u);
+    z.push_back((n.at("approach").value - thrown.ContactAngle()) /
+                n.at("approach").u);
+  }
+  EXPECT_LT(Rms(z), RmsBand99(30).high);
+}
+
+// A line that is not the ground: the body turns back well above it.
+TEST(Contact, LineThatIsNotTheGroundIsRefuted) {
+  Throw thrown;
+  Filming filming;
+  for (const double lower_px : {8.0, 40.0}) {
+    Filming wrong = filming;
+    wrong.camera.ground_point.y_px += lower_px;
+    const Track track = synthetic::FilmTrack(
+        thrown, [&](double t) { return thrown.At(t); }, filming);
+    const PlaneTrack plane =
+        SeenFromGround(track, synthetic::FilmGround(wrong));
+    const ContactResult result = FindContacts(plane, WithScale(filming));
+    EXPECT_FALSE(result.ground_refuted.empty()) << lower_px;
+    ExpectFinite(result);
+  }
+  const ContactResult right =
+      FindContacts(FilmPlane(thrown, filming), WithScale(filming));
+  EXPECT_TRUE(right.ground_refuted.empty()) << right.ground_refuted;
+}
+
+// Without any line: the ground through the lowest point at the first rebound.
+TEST(Contact, GroundFromTheContactsThemselves) {
+  Throw thrown;
+  std::vector<double> z;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Filming filming;
+    filming.seed = seed;
+    const Track track = synthetic::FilmTrack(
+        thrown, [&](double t) { return thrown.At(t); }, filming);
+    const auto ground = GroundFromContacts(track);
+    ASSERT_TRUE(ground);
+    EXPECT_EQ(ground->source, calib::GroundSource::kContactPoints);
+    EXPECT_NEAR(calib::ImageAngle(*ground), 0.0, 1e-12);
+    EXPECT_DOUBLE_EQ(ground->u_angle_rad, 0.5 * core::kDegree);
+    z.push_back((ground->reference.y_px - 330.0) / ground->u_offset_px);
+    EXPECT_LT(ground->u_offset_px, 1.0);
+  }
+  EXPECT_LT(Rms(z), RmsBand99(30).high);
+  // No rebound, no ground.
+  Throw slides;
+  slides.contact_s = -1.0;
+  slides.after = {1.2, 0.0, 0.0};
+  slides.stays = true;
+  const Track flat = synthetic::FilmTrack(
+      slides, [&](double t) { return slides.At(t); }, Filming{});
+  EXPECT_FALSE(GroundFromContacts(flat));
+}
+
+// The budget adds up to the uncertainty that is printed.
+TEST(Contact, BudgetAddsUp) {
+  for (const bool rectangle : {false, true}) {
+    Throw thrown = rectangle ? Block(0.3) : Throw{};
+    thrown.before.omega = rectangle ? 4.0 : 0.0;
+    if (rectangle) Rebound(thrown, 0.5);
+    Filming filming;
+    filming.frames = 42;
+    const core::Contact contact =
+        FindContacts(FilmPlane(thrown, filming), WithScale(filming))
+            .first.contact;
+    const auto total = [](const core::Budget& budget) {
+      double sum = 0.0;
+      for (const core::BudgetLine& line : budget) sum += line.u * line.u;
+      return std::sqrt(sum);
+    };
+    EXPECT_NEAR(total(contact.approach_budget), contact.approach_angle_rad->u,
+                1e-12);
+    if (rectangle) {
+      EXPECT_NEAR(total(contact.attitude_budget), contact.face_angle_rad->u,
+                  1e-12);
+    }
+  }
+}
+
+// Noise that the poses understate is found in the track's own scatter.
+TEST(Contact, UnderstatedNoiseIsWidened) {
+  Throw thrown;
+  std::vector<double> z;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Filming filming;
+    filming.seed = seed;
+    filming.u_px = 0.08;
+    PlaneTrack plane = FilmPlane(thrown, filming);
+    for (PlaneSample& s : plane.samples) {
+      s.u_along_px = s.u_height_px = s.u_gap_px = 0.01;
+    }
+    const auto n = Numbers(FindContacts(plane, WithScale(filming)).first);
+    z.push_back((n.at("approach").value - thrown.ContactAngle()) /
+                n.at("approach").u);
+  }
+  EXPECT_LT(Rms(z), 1.4);
+}
+
+}  // namespace
+}  // namespace touchdown::vision

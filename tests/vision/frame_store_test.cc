@@ -1,0 +1,161 @@
+#include "touchdown/vision/frame_store.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "touchdown/core/errors.h"
+
+namespace touchdown::vision {
+namespace {
+
+// Says how often each frame was decoded.
+class Counting : public Clip {
+ public:
+  Counting(std::int32_t bit_depth, std::map<std::int64_t, int>& reads,
+           const std::string& format = "test")
+      : reads_(reads) {
+    info_.format = format;
+    info_.width_px = 17;
+    info_.height_px = 11;
+    info_.bit_depth = bit_depth;
+    info_.frames = 6;
+    info_.time_base.fps = 100.0;
+  }
+  const ClipInfo& info() const override { return info_; }
+
+  static std::uint32_t Sample(std::int64_t index, int x, int y) {
+    return static_cast<std::uint32_t>((index * 40 + x * 3 + y * 7) % 251);
+  }
+
+ private:
+  core::Frame ReadWindow(std::int64_t index,
+                         const core::PixelRect& window) override {
+    ++reads_[index];
+    if (index == 5) throw core::InputError("frame 5 is damaged");
+    const std::size_t bytes = info_.bit_depth > 8 ? 2 : 1;
+    // Rows padded as a decoder pads them; the same buffer every time.
+    const std::size_t stride = 32 * bytes;
+    pixels_.assign(stride * 11, std::byte{0});
+    for (int y = 0; y < 11; ++y) {
+      for (int x = 0; x < 17; ++x) {
+        std::byte* at = pixels_.data() + static_cast<std::size_t>(y) * stride +
+                        static_cast<std::size_t>(x) * bytes;
+        const std::uint32_t value = Sample(index, x, y);
+        if (bytes == 1) {
+          *at = static_cast<std::byte>(value);
+        } else {
+          const auto wide = static_cast<std::uint16_t>(value * 10);
+          __builtin_memcpy(at, &wide, 2);
+        }
+      }
+    }
+    core::Frame frame;
+    frame.data = pixels_.data() + static_cast<std::size_t>(window.y) * stride +
+                 static_cast<std::size_t>(window.x) * bytes;
+    frame.stride_bytes = static_cast<std::ptrdiff_t>(stride);
+    frame.width_px = window.width;
+    frame.height_px = window.height;
+    frame.bit_depth = info_.bit_depth;
+    frame.origin_x_px = window.x;
+    frame.origin_y_px = window.y;
+    frame.index = index;
+    frame.time_s = static_cast<double>(index) / 100.0;
+    return frame;
+  }
+
+  ClipInfo info_;
+  std::map<std::int64_t, int>& reads_;
+  std::vector<std::byte> pixels_;
+};
+
+void ExpectFrame(const core::Frame& frame, std::int64_t index,
+                 const core::PixelRect& window, std::uint32_t factor) {
+  ASSERT_EQ(frame.width_px, window.width);
+  ASSERT_EQ(frame.height_px, window.height);
+  EXPECT_EQ(frame.origin_x_px, window.x);
+  EXPECT_EQ(frame.origin_y_px, window.y);
+  EXPECT_EQ(frame.index, index);
+  EXPECT_DOUBLE_EQ(frame.time_s, static_cast<double>(index) / 100.0);
+  for (int y = 0; y < window.height; ++y) {
+    for (int x = 0; x < window.width; ++x) {
+      ASSERT_EQ(frame.at(x, y),
+                factor * Counting::Sample(index, x + window.x, y + window.y))
+          << index << " " << x << " " << y;
+    }
+  }
+}
+
+TEST(FrameStore, SamePixelsInAnyOrderAndWindowDecodedOnce) {
+  for (const std::int32_t depth : {8, 12}) {
+    std::map<std::int64_t, int> reads;
+    const auto clip = KeepFrames(std::make_unique<Counting>(depth, reads));
+    EXPECT_EQ(clip->info().frames, 6);
+    EXPECT_EQ(clip->info().bit_depth, depth);
+    std::mt19937_64 engine(1);
+    for (int k = 0; k < 200; ++k) {
+      const auto index = static_cast<std::int64_t>(engine() % 5);
+      core::PixelRect window{static_cast<std::int32_t>(engine() % 17),
+                             static_cast<std::int32_t>(engine() % 11), 1, 1};
+      window.width += static_cast<std::int32_t>(
+          engine() % static_cast<std::uint64_t>(17 - window.x));
+      window.height += static_cast<std::int32_t>(
+          engine() % static_cast<std::uint64_t>(11 - window.y));
+      ExpectFrame(clip->Read(index, window), index, window, depth > 8 ? 10 : 1);
+    }
+    for (const auto& [index, count] : reads) EXPECT_EQ(count, 1) << index;
+  }
+}
+
+// A kept frame outlives the next read: both are looked at side by side.
+TEST(FrameStore, KeptFramesLiveOn) {
+  std::map<std::int64_t, int> reads;
+  const auto clip = KeepFrames(std::make_unique<Counting>(8, reads));
+  const core::Frame first = clip->Read(0);
+  const core::Frame second = clip->Read(1);
+  ExpectFrame(first, 0, {0, 0, 17, 11}, 1);
+  ExpectFrame(second, 1, {0, 0, 17, 11}, 1);
+}
+
+// Beyond its memory it decodes again, with the same pixels.
+TEST(FrameStore, MemoryIsBounded) {
+  std::map<std::int64_t, int> reads;
+  FrameStoreOptions options;
+  options.most_bytes = 2 * 17 * 11;
+  const auto clip = KeepFrames(std::make_unique<Counting>(8, reads), options);
+  for (int round = 0; round < 3; ++round) {
+    for (std::int64_t i = 0; i < 5; ++i) {
+      ExpectFrame(clip->Read(i), i, {0, 0, 17, 11}, 1);
+      ExpectFrame(clip->Read(i, {3, 2, 5, 4}), i, {3, 2, 5, 4}, 1);
+    }
+  }
+  EXPECT_EQ(reads[0], 1);
+  EXPECT_EQ(reads[1], 1);
+  EXPECT_GT(reads[4], 1);
+}
+
+TEST(FrameStore, DamagedFrameIsSaidEachTime) {
+  std::map<std::int64_t, int> reads;
+  const auto clip = KeepFrames(std::make_unique<Counting>(8, reads));
+  EXPECT_THROW(clip->Read(5), core::InputError);
+  EXPECT_THROW(clip->Read(5), core::InputError);
+  ExpectFrame(clip->Read(4), 4, {0, 0, 17, 11}, 1);
+  EXPECT_THROW(clip->Read(6), std::invalid_argument);
+  EXPECT_THROW(clip->Read(0, {10, 0, 8, 11}), std::invalid_argument);
+}
+
+TEST(FrameStore, MappedClipsAreLeftAsTheyAre) {
+  std::map<std::int64_t, int> reads;
+  auto raw = std::make_unique<Counting>(8, reads, "mraw");
+  const Clip* const same = raw.get();
+  EXPECT_EQ(KeepFrames(std::move(raw)).get(), same);
+}
+
+}  // namespace
+}  // namespace touchdown::vision
