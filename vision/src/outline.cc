@@ -116,6 +116,7 @@ class Fitter {
   int geometry_ = 3;
   int interior_ = 6;
   int outer_ = 0;
+  bool saturated_ = false;  // what lies around the body
   double cosine_ = 1.0;
   double sine_ = 0.0;
   Vector levels_;  // interior then outer polynomial coefficients, DN
@@ -137,7 +138,8 @@ void Fitter::CollectPixels() {
   // tell the interior's level.
   constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
   const double margin = kBand * std::max(blur_, 0.5) + 1.0;
-  const double inner = std::max(12.0, 6.0 * blur_);
+  const double inner =
+      saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
   const bool large = SmallestHalf(outline_) > 2.0 * margin;
   const double reach = Extent(outline_) + margin;
   const auto x0 = std::max<std::int32_t>(
@@ -372,6 +374,21 @@ core::Expected<OutlineFit> Fitter::Run() {
   CollectPixels();
   if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
     return core::AbsentBecause("too few pixels of the outline are visible");
+  }
+  // Where the surround is saturated, the outer half of the edge's tail is cut
+  // off; its inner half must then not pass for shading, which would shift the
+  // edge outwards: one level for the whole body.
+  double outside = 0.0;
+  double full = 0.0;
+  for (const Pixel& p : pixels_) {
+    if (DepthInside(outline_, p.x, p.y, cosine_, sine_) > -2.0) continue;
+    outside += 1.0;
+    full += p.value >= background_.full_scale_dn;
+  }
+  if (full > 0.5 * outside) {
+    saturated_ = true;
+    interior_ = 1;
+    CollectPixels();
   }
   SolveLevels();
   double step = 0.0;

@@ -142,11 +142,13 @@ struct Look {
   Surround surround = Surround::kBackground;
   std::vector<Fitted> fits;
 
-  // Badness of the outlines; dearer where the body was seen in few frames.
+  // Roughness of the track; dearer where the body was seen in few frames. What
+  // outlines were fitted to a ghost's edge jumps about, however well they fit.
   double Cost() const {
-    if (found.chains.empty()) return std::numeric_limits<double>::infinity();
-    return choice.badness /
-           std::sqrt(static_cast<double>(found.chains.front().links.size()));
+    constexpr double kFloor_px = 0.002;  // below, the number of frames decides
+    return (Roughness(fits) + kFloor_px) /
+           std::sqrt(
+               static_cast<double>(std::max<std::size_t>(1, fits.size())));
   }
 };
 
@@ -158,8 +160,12 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
                                                     : Surround::kPolynomial;
   look.found = Detect(clip, look.background, options, detector, last);
   if (!look.found.chains.empty()) {
-    look.choice = ChooseKind(clip, look.background, look.found.chains.front(),
-                             options, look.surround);
+    const Chain& chain = look.found.chains.front();
+    look.choice =
+        ChooseKind(clip, look.background, chain, options, look.surround);
+    look.fits = FitAll(clip, look.background, chain, look.choice, options,
+                       look.surround);
+    DropStrangers(look.fits);
   }
   return look;
 }
@@ -196,9 +202,6 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");
   }
-  best.fits = FitAll(clip, best.background, best.found.chains.front(),
-                     best.choice, options, best.surround);
-  DropStrangers(best.fits);
   constexpr std::size_t kLeastFrames = 3;
   if (best.fits.size() < kLeastFrames) {
     return core::AbsentBecause(
@@ -382,7 +385,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     const Choice again =
         ChooseKind(clip, behind, chain, options, Surround::kBackground);
     if (again.badness < first->choice.badness || track.known_background) {
-      result.background = std::move(behind);
+      std::swap(result.background, behind);
       std::vector<Fitted> better;
       if (again.kind == first->choice.kind) {
         better = FitFromTrack(clip, result.background, track, options,
@@ -392,10 +395,14 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                         Surround::kBackground);
       }
       DropStrangers(better);
-      if (better.size() * 2 >= all.size()) {
+      constexpr double kAsSmooth = 1.5;
+      if (better.size() * 2 >= all.size() &&
+          Roughness(better) <= kAsSmooth * Roughness(all) + 0.01) {
         track.known_background = true;
         track.warnings.clear();
         FillTrack(better, again.kind, track);
+      } else {
+        std::swap(result.background, behind);
       }
     }
   }

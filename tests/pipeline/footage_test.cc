@@ -1,0 +1,111 @@
+// Real recordings, where they are at hand: the results must agree with the hand
+// measurements in their README.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/pipeline/analyze.h"
+#include "tests/support/shared_data.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using core::kDegree;
+
+std::filesystem::path Clip(const char* name) {
+  return testing::Shared("footage") / name;
+}
+
+#define SKIP_WITHOUT(path) \
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << (path) << " is not here"
+
+TEST(Footage, ABacklitSphereThatHasNotLandedHasNoContact) {
+  const auto path = Clip("ball_12bit.mraw");
+  SKIP_WITHOUT(path);
+  const Analysis a = Analyze(path);
+  EXPECT_FALSE(a.contacts.first.contact.found);
+  EXPECT_NE(a.contacts.first.contact.reason.find("never reaches zero"),
+            std::string::npos);
+  ASSERT_TRUE(a.track);
+  const auto& poses = a.track->poses;
+  ASSERT_EQ(poses.size(), 15u);
+  // By hand 63.2 +- 0.1. The surround is saturated, so that the outer half of
+  // the edge is cut off and the fit reads 0.5 px more; the centre is not
+  // touched.
+  EXPECT_NEAR(a.track->body.radius_px.value, 63.2, 0.6);
+  EXPECT_NEAR(poses.front().centre.x_px, 175.13, 0.03);
+  EXPECT_NEAR(poses.front().centre.y_px, 109.60, 0.03);
+  EXPECT_NEAR(poses.back().centre.x_px, 175.31, 0.05);
+  EXPECT_NEAR(poses.back().centre.y_px, 146.67, 0.03);
+  const double v =
+      (poses.back().centre.y_px - poses.front().centre.y_px) / 14.0;
+  EXPECT_NEAR(v, 2.6476, 0.001);
+  ASSERT_TRUE(a.ground);
+  EXPECT_NEAR(calib::ImageAngle(*a.ground) / kDegree, 0.30, 0.1);
+}
+
+TEST(Footage, AProjectileWithoutAFilmedReboundIsUndecided) {
+  const auto path = Clip("galileo_projectile.mp4");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 30.0;
+  options.scale_px_per_m = core::Estimate{318.3, 0.3};
+  options.ground = calib::GroundThrough({0, 440}, {640, 440});
+  options.first_frame = 17;
+  options.last_frame = 33;
+  const Analysis a = Analyze(path, options);
+  const core::ContactRecord& first = a.contacts.first;
+  ASSERT_TRUE(first.contact.found) << first.contact.reason;
+  ASSERT_TRUE(first.contact.approach_angle_rad);
+  EXPECT_NEAR(first.contact.approach_angle_rad->value / kDegree, 72.4, 1.0);
+  EXPECT_NEAR(first.contact.frame->value, 32.15, 0.25);
+  EXPECT_EQ(first.state.label, core::MotionState::kUndecided);
+  EXPECT_FALSE(first.state.p_bounce);
+  ASSERT_TRUE(first.motion.before_tangential_mps);
+  EXPECT_NEAR(first.motion.before_tangential_mps->value, 1.49, 0.02);
+}
+
+TEST(Footage, ACartOnItsTrackNeverBounces) {
+  const auto path = Clip("bouncing_cart.mov");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 30.0;
+  options.ground = calib::GroundThrough({0, 336}, {640, 230.5});
+  const Analysis a = Analyze(path, options);
+  EXPECT_TRUE(a.contacts.first.contact.from_start);
+  EXPECT_EQ(a.contacts.first.state.label, core::MotionState::kSlide)
+      << a.contacts.first.state.reason;
+}
+
+TEST(Footage, ABallWithTwoShadowsBouncesOffAGroundThatNoEdgeShows) {
+  const auto path = Clip("red_ball.mp4");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 29.97;
+  const Analysis a = Analyze(path, options);
+  ASSERT_TRUE(a.ground);
+  EXPECT_EQ(a.ground->source, calib::GroundSource::kContactPoints);
+  EXPECT_EQ(a.contacts.first.state.label, core::MotionState::kBounce);
+  // Contact frames, approach angles and restitution by hand.
+  const double frame[] = {7.41, 20.64, 30.33, 37.58, 43.16, 47.56};
+  const double angle_deg[] = {88.5, 87.9, 84.4, 83.6};
+  const double restitution[] = {0.73, 0.72, 0.73, 0.765};
+  ASSERT_GE(a.contacts.later.size(), 5u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const core::ContactRecord& record =
+        i == 0 ? a.contacts.first : a.contacts.later[i - 1];
+    ASSERT_TRUE(record.contact.frame);
+    EXPECT_NEAR(record.contact.frame->value, frame[i], 0.06) << i;
+    if (i >= 4) continue;
+    EXPECT_NEAR(record.contact.approach_angle_rad->value / kDegree,
+                angle_deg[i], 0.6)
+        << i;
+    ASSERT_TRUE(record.motion.restitution);
+    EXPECT_NEAR(record.motion.restitution->value, restitution[i], 0.025) << i;
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::pipeline
