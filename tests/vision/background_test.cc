@@ -85,7 +85,9 @@ TEST(Background, NoiseOfTheClipItself) {
     const Background background = EstimateBackground(*clip, 0, 60);
     const double sigma = std::sqrt(read * read + 1.0 / 12.0);
     for (const double level : {100.0, 160.0}) {
-      EXPECT_NEAR(std::sqrt(background.Variance(level)) / sigma, 1.0, 0.06)
+      // Noise of one DN or less is no longer normal once it is rounded.
+      EXPECT_NEAR(std::sqrt(background.Variance(level)) / sigma, 1.0,
+                  read < 1.5 ? 0.2 : 0.06)
           << read << " at " << level;
     }
   }

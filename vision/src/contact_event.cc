@@ -270,7 +270,9 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   const std::size_t from = event.first_after;
   const std::size_t to = std::min(event.end, from + 40);
   std::optional<core::Estimate> level;
-  if (to > from) {
+  // A few frames may still belong to the flight.
+  constexpr std::size_t kEnoughAtRest = 6;
+  if (to >= from + kEnoughAtRest) {
     level = LevelOf(samples.subspan(from, to - from));
   }
   if (level) {
