@@ -123,7 +123,7 @@ class Fitter {
   std::vector<Pixel> pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
-  std::array<double, kMaxParameters * kMaxParameters> sums_{};
+  std::array<double, std::size_t{kMaxParameters} * kMaxParameters> sums_{};
   std::array<double, kMaxParameters> sums_gradient_{};
   Matrix normal_;
   Vector gradient_;
@@ -301,8 +301,7 @@ double Fitter::Accumulate(bool robust) {
   for (int i = 0; i < n; ++i) {
     gradient_[i] = sums_gradient_[static_cast<std::size_t>(i)];
     for (int j = 0; j <= i; ++j) {
-      normal_(i, j) = normal_(j, i) =
-          sums_[static_cast<std::size_t>(i * kMaxParameters + j)];
+      normal_(i, j) = normal_(j, i) = sums_[At(i) * kMaxParameters + At(j)];
     }
   }
   contrast_ = contrast_weight > 0.0 ? contrast / contrast_weight : 0.0;

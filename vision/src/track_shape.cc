@@ -21,6 +21,7 @@ core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us) {
   const double centre = Median(values);
   std::vector<double> off;
+  off.reserve(values.size());
   for (const double v : values) off.push_back(std::abs(v - centre));
   const double scatter = 1.4826 * Median(off);
   double sw = 0.0;

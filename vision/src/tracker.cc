@@ -142,13 +142,20 @@ struct Look {
   Surround surround = Surround::kBackground;
   std::vector<Fitted> fits;
 
-  // Roughness of the track; dearer where the body was seen in few frames. What
-  // outlines were fitted to a ghost's edge jumps about, however well they fit.
+  // Badness of the outlines; dearer where the body was seen in few frames.
   double Cost() const {
-    constexpr double kFloor_px = 0.002;  // below, the number of frames decides
-    return (Roughness(fits) + kFloor_px) /
-           std::sqrt(
-               static_cast<double>(std::max<std::size_t>(1, fits.size())));
+    if (found.chains.empty()) return std::numeric_limits<double>::infinity();
+    return choice.badness /
+           std::sqrt(static_cast<double>(found.chains.front().links.size()));
+  }
+  // Outlines fitted to a ghost's edge jump about, however well they fit: a
+  // track of as many frames that is four times smoother is the body's.
+  bool MuchSmootherThan(const Look& other) const {
+    constexpr double kSmoother = 0.25;
+    constexpr double kAsManyFrames = 0.9;
+    return Roughness(fits) < kSmoother * Roughness(other.fits) &&
+           static_cast<double>(fits.size()) >=
+               kAsManyFrames * static_cast<double>(other.fits.size());
   }
 };
 
@@ -197,7 +204,10 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                  attempt == 2 ? Detector::kLevels : Detector::kDifference,
                  best.found.last);
     look.found.warning = best.found.warning;
-    if (look.Cost() < best.Cost()) best = std::move(look);
+    if (look.MuchSmootherThan(best) ||
+        (look.Cost() < best.Cost() && !best.MuchSmootherThan(look))) {
+      best = std::move(look);
+    }
   }
   if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");
