@@ -2,14 +2,15 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
 #include "app/pipeline/trial_selection.h"
 #include "app/pipeline/version.h"
@@ -25,154 +26,13 @@ namespace {
 
 using core::kDegree;
 
-// What the user typed; made into options once all of it is there.
-struct Flags {
-  std::string store;
-  std::string csv;
-  bool paper_table1 = false;
-  double paper_u_deg = 0.5;
-  std::string campaign;
-  std::string surface;
-  std::string body;
-  std::string angle_kind;
-  std::string origin;
-  std::string from;
-  std::string until;
-  bool reviewed = false;
-  std::string theory;
-  std::string theory_name;
-  double margin_deg = 0.0;
-  double target_deg = 0.5;
-  double set_u_deg = 0.5;
-  std::string feasible;
-  int max_trials = 60;
-  std::string rule = "expected-variance";
-  std::string guess;
-  double guess_scatter_deg = 2.0;
-  double start_deg = 20.0;
-  double step_deg = 1.0;
-  std::string out = ".";
-  std::string title;
-  bool json = false;
-};
-
-double Number(const char* flag, std::string_view text, const char* form) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) {
-    throw std::invalid_argument(
-        fmt::format("{}: '{}'; expected {}", flag, text, form));
-  }
-  return value;
-}
-
-// "11.8" or "11.8+-0.5".
-core::Estimate ParseTheory(const std::string& text) {
-  constexpr const char* kForm = "degrees from 0 to 90, e.g. 11.8 or 11.8+-0.5";
-  const std::size_t sign = text.find("+-");
-  const double value =
-      Number("--theory-deg", std::string_view(text).substr(0, sign), kForm);
-  const double u = sign == std::string::npos
-                       ? 0.0
-                       : Number("--theory-deg",
-                                std::string_view(text).substr(sign + 2), kForm);
-  if (!(value >= 0.0 && value <= 90.0) || !(u >= 0.0)) {
-    throw std::invalid_argument(
-        fmt::format("--theory-deg: '{}'; expected {}", text, kForm));
-  }
-  return {value * kDegree, u * kDegree, {}};
-}
-
-// "5:40", in degrees.
-core::Interval ParseRange(const char* flag, const std::string& text) {
-  constexpr const char* kForm = "LOW:HIGH in degrees, e.g. 5:40";
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) {
-    throw std::invalid_argument(
-        fmt::format("{}: '{}'; expected {}", flag, text, kForm));
-  }
-  const std::string_view view(text);
-  const core::Interval range{
-      Number(flag, view.substr(0, colon), kForm) * kDegree,
-      Number(flag, view.substr(colon + 1), kForm) * kDegree};
-  if (!(range.low < range.high)) {
-    throw std::invalid_argument(fmt::format(
-        "{}: '{}'; expected {}, low below high", flag, text, kForm));
-  }
-  return range;
-}
-
-template <class Parse>
-auto Word(const char* flag, const std::string& text, Parse parse,
-          const char* words) -> decltype(parse(text)) {
-  if (text.empty()) return std::nullopt;
-  auto parsed = parse(text);
-  if (!parsed) {
-    throw std::invalid_argument(
-        fmt::format("{}: '{}'; expected {}", flag, text, words));
-  }
-  return parsed;
-}
-
-std::optional<std::string> Given(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  return text;
-}
-
-pipeline::SelectionOptions MakeSelection(const Flags& flags) {
-  pipeline::SelectionOptions out;
-  out.store = flags.store;
-  out.csv = flags.csv;
-  out.paper_table1 = flags.paper_table1;
-  if (!(flags.paper_u_deg >= 0.0 && flags.paper_u_deg <= 90.0)) {
-    throw std::invalid_argument(
-        fmt::format("--paper-u-deg: {}; expected 0 to 90", flags.paper_u_deg));
-  }
-  out.paper_u_rad = flags.paper_u_deg * kDegree;
-  out.campaign = Given(flags.campaign);
-  out.surface = Given(flags.surface);
-  out.body =
-      Word("--body", flags.body, core::ParseBodyKind, "sphere or rectangle");
-  out.angle_kind = Word("--angle-kind", flags.angle_kind, core::ParseAngleKind,
-                        "approach, radius or face");
-  out.origin = Word("--origin", flags.origin, core::ParseOrigin,
-                    "recorded, simulated or manual");
-  out.from_utc = Given(flags.from);
-  out.until_utc = Given(flags.until);
-  out.reviewed_only = flags.reviewed;
-  if (flags.margin_deg < 0.0) {
-    throw std::invalid_argument(fmt::format(
-        "--margin-deg: {}; expected more than 0", flags.margin_deg));
-  }
-  if (!flags.csv.empty() && !flags.theory.empty()) {
-    const core::Estimate theory = ParseTheory(flags.theory);
-    out.theory_name = flags.theory_name;
-    out.theory_rad = theory.value;
-    out.theory_u_rad = theory.u;
-  }
-  out.margin_rad = flags.margin_deg * kDegree;
-  return out;
-}
-
-analysis::StudyOptions MakeStudy(const Flags& flags) {
-  analysis::StudyOptions out;
-  out.next.target_half_width_rad = flags.target_deg * kDegree;
-  out.next.set_u_rad = flags.set_u_deg * kDegree;
-  out.next.max_trials = flags.max_trials;
-  if (!flags.feasible.empty()) {
-    out.next.feasible_rad = ParseRange("--feasible-deg", flags.feasible);
-  }
-  return out;
-}
-
 struct Answer {
   report::ReportInput input;
   std::vector<core::Trial> trials;
   std::vector<report::Group> groups;
 };
 
-report::ReportInput MakeInput(const Flags& flags) {
+report::ReportInput MakeInput(const BoundaryFlags& flags) {
   pipeline::Selection selection = pipeline::SelectTrials(MakeSelection(flags));
   report::ReportInput input;
   input.trials = std::move(selection.trials);
@@ -197,7 +57,7 @@ report::ReportInput MakeInput(const Flags& flags) {
   return input;
 }
 
-Answer MakeAnswer(const Flags& flags) {
+Answer MakeAnswer(const BoundaryFlags& flags) {
   Answer out;
   out.input = MakeInput(flags);
   out.trials = std::move(out.input.trials);
@@ -259,7 +119,7 @@ void PrintGroup(const report::Group& group) {
   if (!outlook.empty()) fmt::print("              {}\n", outlook);
 }
 
-int RunBoundary(const Flags& flags) {
+int RunBoundary(const BoundaryFlags& flags) {
   const Answer answer = MakeAnswer(flags);
   if (flags.json) {
     fmt::print("{}\n", report::BoundaryDocument(answer.groups).dump(2));
@@ -293,7 +153,7 @@ std::vector<analysis::Observation> InOrder(
   return {};
 }
 
-analysis::NextAngle ApplyRule(const Flags& flags,
+analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
                               const std::vector<core::Trial>& as_given,
                               const report::Group& group) {
   const auto study = MakeStudy(flags);
@@ -331,7 +191,7 @@ analysis::NextAngle ApplyRule(const Flags& flags,
   return next;
 }
 
-int RunNext(const Flags& flags) {
+int RunNext(const BoundaryFlags& flags) {
   report::ReportInput input = MakeInput(flags);
   const std::vector<core::Trial> as_given = std::move(input.trials);
   std::vector<core::Trial> sorted = as_given;
@@ -395,7 +255,7 @@ int RunNext(const Flags& flags) {
   return 0;
 }
 
-int RunReport(const Flags& flags, const std::string& options) {
+int RunReport(const BoundaryFlags& flags, const std::string& options) {
   if (!flags.csv.empty() && flags.body.empty()) {
     throw std::invalid_argument(
         "--trials: a report needs --body sphere or rectangle, which the file "
@@ -423,64 +283,22 @@ int RunReport(const Flags& flags, const std::string& options) {
   return 0;
 }
 
-void AddSource(CLI::App& command, Flags& flags) {
-  command.add_option("--db", flags.store, "trial store");
-  command.add_option("--trials", flags.csv,
-                     "CSV file with angle_deg, u_deg, p_bounce and, where "
-                     "there were set-points, set_angle_deg");
-  command.add_flag("--paper-table1", flags.paper_table1,
-                   "the paper's own Table 1");
-  command
-      .add_option("--paper-u-deg", flags.paper_u_deg,
-                  "assumed u of the paper's angles")
-      ->capture_default_str();
-  command.add_option("--campaign", flags.campaign, "only this campaign");
-  command.add_option("--surface", flags.surface, "only this surface");
-  command.add_option("--body", flags.body, "sphere or rectangle");
-  command.add_option("--angle-kind", flags.angle_kind,
-                     "approach, radius or face");
-  command.add_option("--origin", flags.origin, "recorded, simulated or manual");
-  command.add_option("--from", flags.from, "logged at this UTC time or later");
-  command.add_option("--until", flags.until, "logged before this UTC time");
-  command.add_flag("--reviewed", flags.reviewed,
-                   "only trials that a person has corrected");
-  command.add_option("--theory-deg", flags.theory,
-                     "a theory's boundary, D or D+-u: of --trials the declared "
-                     "one, else for information");
-  command.add_option("--theory-name", flags.theory_name, "its name");
-  command.add_option("--margin-deg", flags.margin_deg,
-                     "equivalence margin, of --trials (default 1)");
-  command.add_option("--feasible-deg", flags.feasible,
-                     "angles the rig can throw, LOW:HIGH");
-  command
-      .add_option("--set-u-deg", flags.set_u_deg,
-                  "repeatability of the ejector")
-      ->capture_default_str();
-  command
-      .add_option("--target-deg", flags.target_deg,
-                  "half-width of the 95 % interval to reach")
-      ->capture_default_str();
-  command.add_option("--max-trials", flags.max_trials, "stop there")
-      ->capture_default_str();
-  command.add_flag("--json", flags.json, "one JSON document");
-}
-
 }  // namespace
 
 void AddBoundary(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<BoundaryFlags>();
   CLI::App* command = app.add_subcommand(
       "boundary", "Estimate the boundary angle and compare it with theory");
-  AddSource(*command, *flags);
+  AddBoundaryFlags(*command, *flags);
   command->callback(
       [flags, &action] { action = [flags] { return RunBoundary(*flags); }; });
 }
 
 void AddNext(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<BoundaryFlags>();
   CLI::App* command =
       app.add_subcommand("next", "The angle to throw next, and when to stop");
-  AddSource(*command, *flags);
+  AddBoundaryFlags(*command, *flags);
   command
       ->add_option("--rule", flags->rule, "expected-variance, neyer or up-down")
       ->capture_default_str();
@@ -499,10 +317,10 @@ void AddNext(CLI::App& app, Action& action) {
 }
 
 void AddReport(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<BoundaryFlags>();
   CLI::App* command = app.add_subcommand(
       "report", "Write table1.md, .csv, .html, .tex and .json");
-  AddSource(*command, *flags);
+  AddBoundaryFlags(*command, *flags);
   command->add_option("--out", flags->out, "folder for the report")
       ->capture_default_str();
   command->add_option("--title", flags->title, "title of the report");

@@ -1,0 +1,170 @@
+#include "app/cli/boundary_flags.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+using core::kDegree;
+
+double Number(const char* flag, std::string_view text, const char* form) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end) {
+    throw std::invalid_argument(
+        fmt::format("{}: '{}'; expected {}", flag, text, form));
+  }
+  return value;
+}
+
+template <class Parse>
+auto Word(const char* flag, const std::string& text, Parse parse,
+          const char* words) -> decltype(parse(text)) {
+  if (text.empty()) return std::nullopt;
+  auto parsed = parse(text);
+  if (!parsed) {
+    throw std::invalid_argument(
+        fmt::format("{}: '{}'; expected {}", flag, text, words));
+  }
+  return parsed;
+}
+
+std::optional<std::string> Given(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return text;
+}
+
+}  // namespace
+
+core::Estimate ParseTheory(const std::string& text) {
+  constexpr const char* kForm = "degrees from 0 to 90, e.g. 11.8 or 11.8+-0.5";
+  const std::size_t sign = text.find("+-");
+  const double value =
+      Number("--theory-deg", std::string_view(text).substr(0, sign), kForm);
+  const double u = sign == std::string::npos
+                       ? 0.0
+                       : Number("--theory-deg",
+                                std::string_view(text).substr(sign + 2), kForm);
+  if (!(value >= 0.0 && value <= 90.0) || !(u >= 0.0)) {
+    throw std::invalid_argument(
+        fmt::format("--theory-deg: '{}'; expected {}", text, kForm));
+  }
+  return {value * kDegree, u * kDegree, {}};
+}
+
+core::Interval ParseRange(const char* flag, const std::string& text) {
+  constexpr const char* kForm = "LOW:HIGH in degrees, e.g. 5:40";
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    throw std::invalid_argument(
+        fmt::format("{}: '{}'; expected {}", flag, text, kForm));
+  }
+  const std::string_view view(text);
+  const core::Interval range{
+      Number(flag, view.substr(0, colon), kForm) * kDegree,
+      Number(flag, view.substr(colon + 1), kForm) * kDegree};
+  if (!(range.low < range.high)) {
+    throw std::invalid_argument(fmt::format(
+        "{}: '{}'; expected {}, low below high", flag, text, kForm));
+  }
+  return range;
+}
+
+pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
+  pipeline::SelectionOptions out;
+  out.store = flags.store;
+  out.csv = flags.csv;
+  out.paper_table1 = flags.paper_table1;
+  if (!(flags.paper_u_deg >= 0.0 && flags.paper_u_deg <= 90.0)) {
+    throw std::invalid_argument(
+        fmt::format("--paper-u-deg: {}; expected 0 to 90", flags.paper_u_deg));
+  }
+  out.paper_u_rad = flags.paper_u_deg * kDegree;
+  out.campaign = Given(flags.campaign);
+  out.surface = Given(flags.surface);
+  out.body =
+      Word("--body", flags.body, core::ParseBodyKind, "sphere or rectangle");
+  out.angle_kind = Word("--angle-kind", flags.angle_kind, core::ParseAngleKind,
+                        "approach, radius or face");
+  out.origin = Word("--origin", flags.origin, core::ParseOrigin,
+                    "recorded, simulated or manual");
+  out.from_utc = Given(flags.from);
+  out.until_utc = Given(flags.until);
+  out.reviewed_only = flags.reviewed;
+  if (flags.margin_deg < 0.0) {
+    throw std::invalid_argument(fmt::format(
+        "--margin-deg: {}; expected more than 0", flags.margin_deg));
+  }
+  if (!flags.csv.empty() && !flags.theory.empty()) {
+    const core::Estimate theory = ParseTheory(flags.theory);
+    out.theory_name = flags.theory_name;
+    out.theory_rad = theory.value;
+    out.theory_u_rad = theory.u;
+  }
+  out.margin_rad = flags.margin_deg * kDegree;
+  return out;
+}
+
+analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
+  analysis::StudyOptions out;
+  out.next.target_half_width_rad = flags.target_deg * kDegree;
+  out.next.set_u_rad = flags.set_u_deg * kDegree;
+  out.next.max_trials = flags.max_trials;
+  if (!flags.feasible.empty()) {
+    out.next.feasible_rad = ParseRange("--feasible-deg", flags.feasible);
+  }
+  return out;
+}
+
+void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
+  command.add_option("--db", flags.store, "trial store");
+  command.add_option("--trials", flags.csv,
+                     "CSV file with angle_deg, u_deg, p_bounce and, where "
+                     "there were set-points, set_angle_deg");
+  command.add_flag("--paper-table1", flags.paper_table1,
+                   "the paper's own Table 1");
+  command
+      .add_option("--paper-u-deg", flags.paper_u_deg,
+                  "assumed u of the paper's angles")
+      ->capture_default_str();
+  command.add_option("--campaign", flags.campaign, "only this campaign");
+  command.add_option("--surface", flags.surface, "only this surface");
+  command.add_option("--body", flags.body, "sphere or rectangle");
+  command.add_option("--angle-kind", flags.angle_kind,
+                     "approach, radius or face");
+  command.add_option("--origin", flags.origin, "recorded, simulated or manual");
+  command.add_option("--from", flags.from, "logged at this UTC time or later");
+  command.add_option("--until", flags.until, "logged before this UTC time");
+  command.add_flag("--reviewed", flags.reviewed,
+                   "only trials that a person has corrected");
+  command.add_option("--theory-deg", flags.theory,
+                     "a theory's boundary, D or D+-u: of --trials the declared "
+                     "one, else for information");
+  command.add_option("--theory-name", flags.theory_name, "its name");
+  command.add_option("--margin-deg", flags.margin_deg,
+                     "equivalence margin, of --trials (default 1)");
+  command.add_option("--feasible-deg", flags.feasible,
+                     "angles the rig can throw, LOW:HIGH");
+  command
+      .add_option("--set-u-deg", flags.set_u_deg,
+                  "repeatability of the ejector")
+      ->capture_default_str();
+  command
+      .add_option("--target-deg", flags.target_deg,
+                  "half-width of the 95 % interval to reach")
+      ->capture_default_str();
+  command.add_option("--max-trials", flags.max_trials, "stop there")
+      ->capture_default_str();
+  command.add_flag("--json", flags.json, "one JSON document");
+}
+
+}  // namespace touchdown::cli

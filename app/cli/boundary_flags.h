@@ -1,0 +1,61 @@
+// The flags that boundary, next and report share.
+#pragma once
+
+#include <string>
+
+#include "app/pipeline/trial_selection.h"
+#include "touchdown/analysis/boundary_study.h"
+#include "touchdown/core/estimate.h"
+
+namespace CLI {
+class App;
+}
+
+namespace touchdown::cli {
+
+// What the user typed; made into options once all of it is there.
+struct BoundaryFlags {
+  std::string store;
+  std::string csv;
+  bool paper_table1 = false;
+  double paper_u_deg = 0.5;
+  std::string campaign;
+  std::string surface;
+  std::string body;
+  std::string angle_kind;
+  std::string origin;
+  std::string from;
+  std::string until;
+  bool reviewed = false;
+  std::string theory;
+  std::string theory_name;
+  double margin_deg = 0.0;
+  double target_deg = 0.5;
+  double set_u_deg = 0.5;
+  std::string feasible;
+  int max_trials = 60;
+  std::string rule = "expected-variance";
+  std::string guess;
+  double guess_scatter_deg = 2.0;
+  double start_deg = 20.0;
+  double step_deg = 1.0;
+  std::string out = ".";
+  std::string title;
+  bool json = false;
+};
+
+// Adds the flags of the source of trials, its filters, theory and stopping
+// rule.
+void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags);
+
+// What the flags ask for. Throw std::invalid_argument naming the flag.
+pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags);
+analysis::StudyOptions MakeStudy(const BoundaryFlags& flags);
+
+// "11.8" or "11.8+-0.5", in degrees.
+core::Estimate ParseTheory(const std::string& text);
+
+// "5:40", in degrees.
+core::Interval ParseRange(const char* flag, const std::string& text);
+
+}  // namespace touchdown::cli
