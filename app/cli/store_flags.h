@@ -11,7 +11,7 @@
 #include "touchdown/core/trial.h"
 #include "touchdown/db/store.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;
 }
 

@@ -103,7 +103,8 @@ class Columns {
 
   template <class T>
   void Word(std::string name, std::string meaning, T& (*at)(Trial&),
-            std::optional<T> (*parse)(std::string_view), std::string words) {
+            std::optional<T> (*parse)(std::string_view),
+            const std::string& words) {
     columns_.push_back(
         {{std::move(name), std::move(meaning) + ": " + words},
          [at](const Trial& t) {

@@ -105,7 +105,7 @@ TEST(Durability, SurvivesAKillAtAnyInstant) {
       logged.insert(id);
       return true;
     };
-    for (auto wait = engine() % 12; wait > 0; --wait) {
+    for (auto wait = engine() % 5; wait > 0; --wait) {
       ASSERT_TRUE(read_id());
     }
     // Up to about one commit later.
