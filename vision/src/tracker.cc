@@ -233,6 +233,9 @@ double LevelInside(const core::Frame& frame, const Outline& outline) {
   const double reach = outline.kind == core::BodyKind::kSphere
                            ? outline.radius_px
                            : outline.half_long_px;
+  const double depth = 0.3 * (outline.kind == core::BodyKind::kSphere
+                                  ? outline.radius_px
+                                  : outline.half_short_px);
   double sum = 0.0;
   double count = 0.0;
   for (int y = static_cast<int>(outline.centre.y_px - reach);
@@ -242,7 +245,7 @@ double LevelInside(const core::Frame& frame, const Outline& outline) {
       if (x < 0 || y < 0 || x >= frame.width_px || y >= frame.height_px) {
         continue;
       }
-      if (DepthInside(outline, x, y) < 0.3 * reach) continue;
+      if (DepthInside(outline, x, y) < depth) continue;
       sum += frame.at(x, y);
       count += 1.0;
     }
