@@ -209,6 +209,22 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   event.before =
       Grow(samples, event.before_begin, event.before_end, true, options);
   if (event.before->frames < static_cast<int>(Least(options))) return false;
+  // With few frames after it a blow is placed a frame or two early: what the
+  // flight before still explains, above the ground, is of that flight.
+  while (event.before_end == event.first_after &&
+         event.first_after < event.end) {
+    const PlaneSample& s = samples[event.first_after];
+    const FlightGap g = GapOf(track, *event.before, s.time_s);
+    if (!(g.gap_px > 0.0) ||
+        Deviates(s, *event.before, options.flight_sigmas)) {
+      break;
+    }
+    event.before_end = ++event.first_after;
+    event.before =
+        FitFlight(samples.subspan(event.before_begin,
+                                  event.before_end - event.before_begin),
+                  options.flight);
+  }
   const bool flies = FindFlightAfter(track, event, options);
 
   // What is known of the ground's height: the line, and the body's size.
