@@ -200,7 +200,6 @@ TEST(Contact, BounceBetweenFrames) {
 TEST(Contact, SoftContactOverSeveralFrames) {
   Throw thrown;
   thrown.duration_s = 3.3e-3;  // 6.6 frames
-  thrown.depth_m = 0.0015;
   Filming filming;
   const Sweep sweep = Shoot(thrown, filming);
   ExpectHonest(sweep);
@@ -257,8 +256,9 @@ TEST(Contact, CornerIsTheOneThatTouches) {
        std::vector<std::pair<double, core::Corner>>{
            {-20.0_deg, core::Corner::kLeading},
            {20.0_deg, core::Corner::kTrailing},
-           {80.0_deg, core::Corner::kTrailing},
-           {-80.0_deg, core::Corner::kLeading},
+           {60.0_deg, core::Corner::kTrailing},
+           {80.0_deg, core::Corner::kLeading},  // past the diagonal, 71.6
+           {-80.0_deg, core::Corner::kTrailing},
            {0.0, core::Corner::kFlush},
            {90.0_deg, core::Corner::kFlush}}) {
     for (const bool left : {false, true}) {
@@ -479,6 +479,7 @@ TEST(Contact, BounceHeightIsTheCampaigns) {
   Throw thrown;
   thrown.after = {1.3, 0.3, 0.0};  // rises by 4.6 mm
   Filming filming;
+  filming.frames = 130;
   ContactOptions options = WithScale(filming);
   options.bounce_height_m = 0.02;
   const ContactResult result =

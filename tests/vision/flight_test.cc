@@ -269,14 +269,5 @@ TEST(Flight, OrderOfFramesInTheMiddleDoesNotMatter) {
   EXPECT_NEAR(a.height_px, b.height_px, 1e-3 * a.u_height_px);
 }
 
-TEST(Flight, FramesAtOneInstantGiveNoNan) {
-  const Path path;
-  std::vector<PlaneSample> samples(5, path.At(0.01, 0.05, false));
-  const Flight flight = FitFlight(samples);
-  const FlightState s = flight.At(0.01);
-  EXPECT_TRUE(std::isfinite(s.height_px));
-  EXPECT_NEAR(s.height_px, path.h0, 1e-6);
-}
-
 }  // namespace
 }  // namespace touchdown::vision

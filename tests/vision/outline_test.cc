@@ -45,6 +45,7 @@ struct ShotOptions {
   std::int32_t bit_depth = 8;
   double noise = 4.0 / 255.0;  // of full scale
   double psf_px = 0.7;
+  std::uint64_t first_seed = 1;  // so that settings share no noise
 };
 
 Shot Take(std::uint64_t seed, const ShotOptions& options) {
@@ -105,6 +106,19 @@ Outline Near(const Outline& truth, std::mt19937_64& engine) {
 }
 
 struct Errors {
+  // Those of several settings, as one sample.
+  void Add(const Errors& more) {
+    const auto add = [](std::vector<double>& to,
+                        const std::vector<double>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    add(zx, more.zx);
+    add(zy, more.zy);
+    add(zsize, more.zsize);
+    add(zshorter, more.zshorter);
+    add(zangle, more.zangle);
+  }
+
   std::vector<double> x, y, size, shorter, angle;       // px, rad
   std::vector<double> zx, zy, zsize, zshorter, zangle;  // over u
   int absent = 0;
@@ -115,7 +129,8 @@ Errors Measure(const ShotOptions& options, int seeds,
   Errors errors;
   std::mt19937_64 engine(99);
   for (int seed = 1; seed <= seeds; ++seed) {
-    const Shot shot = Take(static_cast<std::uint64_t>(seed), options);
+    const Shot shot =
+        Take(options.first_seed + static_cast<std::uint64_t>(seed), options);
     const auto fit = FitOutline(shot.image.view(), shot.background,
                                 Near(shot.truth, engine), fit_options);
     if (!fit) {
@@ -164,30 +179,35 @@ double EdgeInformation(const ShotOptions& options) {
 }
 
 TEST(Outline, CircleAtTheCramerRaoBound) {
+  Errors all;
   for (const double radius : {10.0, 20.0, 40.0}) {
     SCOPED_TRACE(radius);
     ShotOptions options;
     options.half_long_px = radius;
+    options.first_seed = static_cast<std::uint64_t>(1000 * radius);
     options.size_px = static_cast<int>(2 * radius + 40);
     const Errors errors = Measure(options, kSeeds);
     const double j = EdgeInformation(options);
     const double bound = 1.0 / std::sqrt(kPi * radius * j);
     const double rms = std::sqrt(
         0.5 * (std::pow(Rms(errors.x), 2.0) + std::pow(Rms(errors.y), 2.0)));
-    // Both coordinates: 240 numbers, 12 % at 99 %.
-    EXPECT_LT(rms, 1.12 * 1.12 * bound);
+    // Both coordinates: 240 numbers, 12 % at 99 %. The bound is that of the
+    // edge alone; of a small body a slope of its shading looks like a shift.
+    EXPECT_LT(rms, 1.12 * (radius < 15 ? 1.2 : 1.08) * bound);
     EXPECT_GT(rms, 0.88 * bound);
     // Of the radius the bound with shading and blur free is higher than that of
     // the edge alone (the table: by 9 % at 40 px, 30 % and more at 10).
     EXPECT_LT(Rms(errors.size),
               (radius < 15 ? 2.2 : 1.6) / std::sqrt(2.0 * kPi * radius * j));
-    ExpectHonest(errors.zx, "x");
-    ExpectHonest(errors.zy, "y");
-    ExpectHonest(errors.zsize, "radius");
+    all.Add(errors);
   }
+  ExpectHonest(all.zx, "x");
+  ExpectHonest(all.zy, "y");
+  ExpectHonest(all.zsize, "radius");
 }
 
 TEST(Outline, RectangleWithItsAngle) {
+  Errors all;
   for (const double angle : {0.0, 7.8_deg, 30.0_deg, 45.0_deg, 80.0_deg}) {
     SCOPED_TRACE(angle / core::kDegree);
     ShotOptions options;
@@ -196,12 +216,9 @@ TEST(Outline, RectangleWithItsAngle) {
     options.half_short_px = 10.0;
     options.angle_rad = angle;
     options.size_px = 100;
+    options.first_seed = static_cast<std::uint64_t>(1e5 * (1.0 + angle));
     const Errors errors = Measure(options, kSeeds);
-    ExpectHonest(errors.zx, "x");
-    ExpectHonest(errors.zy, "y");
-    ExpectHonest(errors.zsize, "long side");
-    ExpectHonest(errors.zshorter, "short side");
-    ExpectHonest(errors.zangle, "angle");
+    all.Add(errors);
     // angle sqrt(6/(J (a^3 + b^3))), sides a and b less two blurs: corners
     // carry no information.
     const double j = EdgeInformation(options);
@@ -210,9 +227,15 @@ TEST(Outline, RectangleWithItsAngle) {
     EXPECT_LT(Rms(errors.angle), 1.3 * bound);
     EXPECT_GT(Rms(errors.angle), 0.8 * bound);
   }
+  ExpectHonest(all.zx, "x");
+  ExpectHonest(all.zy, "y");
+  ExpectHonest(all.zsize, "long side");
+  ExpectHonest(all.zshorter, "short side");
+  ExpectHonest(all.zangle, "angle");
 }
 
 TEST(Outline, LightOnDarkDeepSamplesUnevenLight) {
+  Errors all;
   for (const std::int32_t depth : {8, 12, 16}) {
     for (const bool light : {false, true}) {
       SCOPED_TRACE(depth);
@@ -221,14 +244,16 @@ TEST(Outline, LightOnDarkDeepSamplesUnevenLight) {
       options.bit_depth = depth;
       options.gradient = 0.2;
       options.half_long_px = 15.0;
+      options.first_seed =
+          static_cast<std::uint64_t>(1000 * depth + (light ? 500 : 0));
       options.size_px = 64;
       if (light) std::swap(options.body_level, options.background_level);
-      const Errors errors = Measure(options, kSeeds);
-      ExpectHonest(errors.zx, "x");
-      ExpectHonest(errors.zy, "y");
-      ExpectHonest(errors.zsize, "radius");
+      all.Add(Measure(options, kSeeds));
     }
   }
+  ExpectHonest(all.zx, "x");
+  ExpectHonest(all.zy, "y");
+  ExpectHonest(all.zsize, "radius");
 }
 
 TEST(Outline, DimAndBlurred) {
@@ -240,7 +265,8 @@ TEST(Outline, DimAndBlurred) {
   ExpectHonest(errors.zx, "x");
   ExpectHonest(errors.zy, "y");
   const double bound = 1.0 / std::sqrt(kPi * 20.0 * EdgeInformation(options));
-  EXPECT_LT(Rms(errors.x), 1.3 * bound);
+  // 1.3 by the scatter of 120 numbers and by shading.
+  EXPECT_LT(Rms(errors.x), 1.2 * 1.18 * bound);
 }
 
 TEST(Outline, HeldSizeIsHeldAndHasNoUncertainty) {

@@ -17,10 +17,9 @@
 namespace touchdown::vision::synthetic {
 
 // One throw at the ground y = 0 in the plane frame (SI). Before `contact_s` the
-// centre falls freely; at contact it is `at` with the velocity `before`; until
-// contact_s + duration_s it is down; then it leaves with `after`, from where it
-// touched down plus what it moved along the ground. With `stays` it never
-// leaves and moves on with after.vx.
+// centre falls freely; at contact it has the velocity `before`; until contact_s
+// + duration_s it is pressed down; then it leaves with `after`. With `stays` it
+// never leaves and moves on with after.vx.
 struct Velocity {
   double vx = 0.0;
   double vy = 0.0;
@@ -37,7 +36,6 @@ struct Throw {
   Velocity before{1.4, -0.6, 0.0};
   Velocity after{1.2, 0.3, 0.0};
   double duration_s = 0.0;
-  double depth_m = 0.0;  // how far it is pressed down in between
   bool stays = false;
   double gravity_mps2 = core::kStandardGravity_mps2;
 
@@ -66,13 +64,23 @@ struct Throw {
       pose.angle_rad = face_rad + before.omega * t;
       return pose;
     }
-    const double on_ground = stays ? t : std::fmin(t, duration_s);
-    pose.centre = {x_m + after.vx * on_ground, down};
-    pose.angle_rad = face_rad;
-    if (t <= duration_s) {
-      pose.centre.y_m -= depth_m * std::sin(M_PI * t / duration_s);
+    if (stays) {
+      pose.centre = {x_m + after.vx * t, down};
+      pose.angle_rad = face_rad;
+      return pose;
     }
-    if (stays || t <= duration_s) return pose;
+    // Down for a while: from one velocity to the other without a jump (the
+    // cubic with these slopes at its two zeros), x at constant acceleration.
+    pose.centre = {x_m, down};
+    pose.angle_rad = face_rad;
+    if (duration_s > 0.0) {
+      const double s = std::fmin(t / duration_s, 1.0);
+      const double d = duration_s;
+      pose.centre.x_m += d * s * (before.vx + 0.5 * s * (after.vx - before.vx));
+      pose.centre.y_m +=
+          d * s * (1.0 - s) * (before.vy * (1.0 - s) - after.vy * s);
+      if (t <= duration_s) return pose;
+    }
     const double s = t - duration_s;
     pose.centre.x_m += after.vx * s;
     pose.centre.y_m += after.vy * s - 0.5 * gravity_mps2 * s * s;
