@@ -55,7 +55,6 @@ double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
   const std::size_t m = grid.scatter_rad.size();
   double p = 0.0;
   double p_theta = 0.0;
-  double p_theta2 = 0.0;
   for (std::size_t i = 0; i < grid.angle_rad.size(); ++i) {
     const double theta = grid.angle_rad[i];
     double q = 0.0;
@@ -66,7 +65,6 @@ double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
     }
     p += q;
     p_theta += q * (theta - mean);
-    p_theta2 += q * (theta - mean) * (theta - mean);
   }
   // p v1 + (1 - p) v0, each v being E[theta^2] - E[theta]^2 given the outcome.
   double expected = second;

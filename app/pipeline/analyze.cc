@@ -176,6 +176,7 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
                                       contact_options_));
   };
   std::vector<std::pair<int, calib::GroundLine>> ranked;
+  ranked.reserve(candidates.size());
   for (const calib::GroundLine& candidate : candidates) {
     ranked.emplace_back(first_merit(candidate), candidate);
   }

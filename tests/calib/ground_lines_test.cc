@@ -19,7 +19,7 @@ namespace {
 using namespace core::literals;  // NOLINT
 using touchdown::testing::Largest;
 using touchdown::testing::Rms;
-using touchdown::testing::RmsBand99;
+using touchdown::testing::RmsBand9999;
 
 // The picture of a still ground: a scene whose body is far out of sight.
 struct Still {
@@ -99,7 +99,7 @@ Errors Measure(const StillOptions& options, int seeds) {
 constexpr int kSeeds = 60;
 
 void ExpectHonest(const Errors& errors) {
-  const auto band = RmsBand99(errors.z_angle.size());
+  const auto band = RmsBand9999(errors.z_angle.size());
   EXPECT_GT(Rms(errors.z_angle), band.low);
   EXPECT_LT(Rms(errors.z_angle), band.high);
   EXPECT_GT(Rms(errors.z_height), band.low);
@@ -144,7 +144,7 @@ TEST(GroundLines, VeryUnevenLightShiftsByAHundredthOfAPixel) {
   StillOptions options;
   options.gradient = 0.3;
   const Errors errors = Measure(options, kSeeds);
-  const auto band = RmsBand99(errors.z_angle.size());
+  const auto band = RmsBand9999(errors.z_angle.size());
   EXPECT_LT(Rms(errors.z_angle), band.high);
   EXPECT_LT(Largest(errors.height_px), 0.02);
 }

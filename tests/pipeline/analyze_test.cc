@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "app/pipeline/evidence.h"
 #include "tests/pipeline/filmed.h"
 #include "tests/support/csv.h"
+#include "tests/support/statistics.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/composite_clip.h"
 #include "touchdown/core/errors.h"
@@ -132,6 +134,33 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"BlockTwelveBits", kBlock, false, 0.4, 12},
                       Case{"BlockLightOnDark", kBlock, false, 0.4, 12, true}),
     [](const auto& each) { return std::string(each.param.name); });
+
+// Two dozen clips together: their errors are what is claimed, no more, no less.
+TEST(AnalyzeSpheres, UncertaintiesAreHonest) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> z_angle, z_time;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    Film film = Default(kSphere);
+    const double angle = (30.0 + 15.0 * uniform(engine)) * core::kDegree;
+    film.thrown.before = {1.3 * std::cos(angle), -1.3 * std::sin(angle), 0.0};
+    film.thrown.after = {1.1 * std::cos(angle), 0.6 * std::sin(angle), 0.0};
+    film.camera.travels_left = seed % 2 == 0;
+    film.contact_frame += uniform(engine);
+    const core::Contact contact =
+        AnalyzeFilm(film, 100 + seed).contacts.first.contact;
+    ASSERT_TRUE(contact.found) << contact.reason;
+    z_angle.push_back((contact.approach_angle_rad->value - angle) /
+                      contact.approach_angle_rad->u);
+    z_time.push_back((contact.frame->value - film.contact_frame) /
+                     contact.frame->u);
+  }
+  const auto band = testing::RmsBand9999(24);
+  for (const auto& z : {z_angle, z_time}) {
+    EXPECT_LT(testing::Rms(z), band.high);
+    EXPECT_GT(testing::Rms(z), band.low);
+  }
+}
 
 // ---- The document -------------------------------------------------------
 

@@ -12,16 +12,17 @@ struct Band {
   double high = 0.0;
 };
 
-// The central 99 % band of the root mean square of `n` independent standard
+// The central 99.99 % band (hundreds of such checks are made: one false alarm
+// in a hundred runs of all) of the root mean square of `n` independent standard
 // normal numbers: sqrt(chi2_n / n), the quantiles by Wilson and Hilferty's cube
 // (to 1 % from n = 5 on).
-inline Band RmsBand99(std::size_t n) {
-  constexpr double kNormal995 = 2.5758293035489;
+inline Band RmsBand9999(std::size_t n) {
+  constexpr double kNormal99995 = 3.8905918864131;
   const double a = 2.0 / (9.0 * static_cast<double>(n));
   const auto root = [&](double z) {
     return std::pow(std::fmax(0.0, 1.0 - a + z * std::sqrt(a)), 1.5);
   };
-  return {root(-kNormal995), root(kNormal995)};
+  return {root(-kNormal99995), root(kNormal99995)};
 }
 
 inline double Rms(const std::vector<double>& values) {

@@ -28,7 +28,7 @@ using synthetic::WithScale;
 using ::testing::HasSubstr;
 using touchdown::testing::Largest;
 using touchdown::testing::Rms;
-using touchdown::testing::RmsBand99;
+using touchdown::testing::RmsBand9999;
 
 // Every number of a record, by name, where it is present.
 std::map<std::string, core::Estimate> Numbers(
@@ -166,8 +166,8 @@ Sweep Shoot(Throw thrown, Filming filming, int seeds = 60) {
 void ExpectHonest(const Sweep& sweep) {
   for (const auto& [name, z] : sweep.z) {
     EXPECT_LT(Largest(z), 4.2) << name;
-    EXPECT_LT(Rms(z), RmsBand99(z.size()).high) << name;
-    EXPECT_GT(Rms(z), 0.45 * RmsBand99(z.size()).low) << name;
+    EXPECT_LT(Rms(z), RmsBand9999(z.size()).high) << name;
+    EXPECT_GT(Rms(z), 0.45 * RmsBand9999(z.size()).low) << name;
   }
 }
 
@@ -524,8 +524,8 @@ TEST(Contact, WithoutAScale) {
     z_e.push_back((n.at("e").value - 0.5) / n.at("e").u);
   }
   for (const auto& z : {z_time, z_angle, z_e}) {
-    EXPECT_LT(Rms(z), RmsBand99(60).high);
-    EXPECT_GT(Rms(z), 0.7 * RmsBand99(60).low);
+    EXPECT_LT(Rms(z), RmsBand9999(60).high);
+    EXPECT_GT(Rms(z), 0.7 * RmsBand9999(60).low);
   }
 }
 
@@ -708,7 +708,7 @@ TEST(Contact, MissingFrames) {
     z.push_back((n.at("approach").value - thrown.ContactAngle()) /
                 n.at("approach").u);
   }
-  EXPECT_LT(Rms(z), RmsBand99(30).high);
+  EXPECT_LT(Rms(z), RmsBand9999(30).high);
 }
 
 // A line that is not the ground: the body turns back well above it.
@@ -748,7 +748,7 @@ TEST(Contact, GroundFromTheContactsThemselves) {
     z.push_back((ground->reference.y_px - 330.0) / ground->u_offset_px);
     EXPECT_LT(ground->u_offset_px, 1.0);
   }
-  EXPECT_LT(Rms(z), RmsBand99(30).high);
+  EXPECT_LT(Rms(z), RmsBand9999(30).high);
   // No rebound, no ground.
   Throw slides;
   slides.contact_s = -1.0;

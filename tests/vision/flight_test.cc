@@ -14,7 +14,7 @@ namespace touchdown::vision {
 namespace {
 
 using touchdown::testing::Rms;
-using touchdown::testing::RmsBand99;
+using touchdown::testing::RmsBand9999;
 
 struct Path {
   double s0 = 12.0, v_t = 1400.0;            // px, px/s
@@ -169,7 +169,7 @@ TEST(Flight, ErrorsAreWhatTheCovarianceSays) {
     z_f.push_back((s.face_rad - truth.face_rad) / s.u_face_rad);
     z_w.push_back((s.omega - path.omega) / s.u_omega);
   }
-  const auto band = RmsBand99(kTrials);
+  const auto band = RmsBand9999(kTrials);
   // Widening by reduced chi2 where it is above 1 (never below) makes u larger
   // by a few per cent on the mean of 20 frames: the lower side gives way.
   for (const auto& z : {z_h, z_vn, z_vt, z_f, z_w}) {

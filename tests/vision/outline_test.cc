@@ -21,7 +21,7 @@ using namespace core::literals;  // NOLINT
 using ::testing::HasSubstr;
 using touchdown::testing::Mean;
 using touchdown::testing::Rms;
-using touchdown::testing::RmsBand99;
+using touchdown::testing::RmsBand9999;
 constexpr double kPi = std::numbers::pi;
 
 // One picture of one body, at 1000 px a metre, so that millimetres are pixels.
@@ -161,7 +161,7 @@ Errors Measure(const ShotOptions& options, int seeds,
 constexpr int kSeeds = 120;
 
 void ExpectHonest(const std::vector<double>& z, const char* what) {
-  const auto band = RmsBand99(z.size());
+  const auto band = RmsBand9999(z.size());
   EXPECT_GT(Rms(z), band.low) << what;
   EXPECT_LT(Rms(z), band.high) << what;
   // No bias: the mean of n standard normal numbers, 99 %.
@@ -385,7 +385,7 @@ TEST(Outline, BelowTheGroundsMarginPixelsAreLeftOut) {
     zy.push_back((fit->outline.centre.y_px - shot.truth.centre.y_px) /
                  fit->u_y_px);
   }
-  const auto band = RmsBand99(60);
+  const auto band = RmsBand9999(60);
   EXPECT_LT(Rms(zx), band.high);
   EXPECT_LT(Rms(zy), band.high);
 }

@@ -14,8 +14,6 @@
 namespace touchdown::vision {
 namespace {
 
-using core::AbsentBecause;
-
 double MedianGap(std::span<const PlaneSample> samples) {
   std::vector<double> gaps;
   for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
@@ -132,6 +130,7 @@ double TakeOutSlope(PlaneTrack& track) {
   const double middle = samples[samples.size() / 2].along_px;
   for (int iteration = 0; iteration < 15; ++iteration) {
     std::vector<double> off;
+    off.reserve(samples.size());
     for (const PlaneSample& s : samples) {
       off.push_back(
           std::abs(s.gap_px - offset - slope * (s.along_px - middle)));
@@ -166,7 +165,7 @@ double TakeOutSlope(PlaneTrack& track) {
   return slope;
 }
 
-core::ContactRecord NoContact(std::string reason) {
+core::ContactRecord NoContact(const std::string& reason) {
   core::ContactRecord record;
   record.contact.reason = reason;
   record.state.reason = "no contact: " + reason;

@@ -325,7 +325,9 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   const std::size_t from = event.first_after;
   const std::size_t to = std::min(event.end, from + 40);
   std::optional<core::Estimate> level;
-  if (to > from) {
+  // A few frames may still belong to the flight.
+  constexpr std::size_t kEnoughAtRest = 6;
+  if (to >= from + kEnoughAtRest) {
     level = LevelOf(samples.subspan(from, to - from));
   }
   if (level) {
@@ -368,6 +370,7 @@ double WidenToScatter(PlaneTrack& track) {
   };
   const auto typical = [&](double PlaneSample::*u) {
     std::vector<double> all;
+    all.reserve(samples.size());
     for (const PlaneSample& s : samples) all.push_back(s.*u);
     const auto middle =
         all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);

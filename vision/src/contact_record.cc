@@ -339,9 +339,16 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
         std::abs(event.disagreement),
         event.disagreement > 0 ? "above" : "below"));
   }
-  FillState(context, event.first_after, event.ground_px.value,
-            event.ground_px.u, event.after.has_value(), record.state);
-  NameWhatStaysDown(context, event.first_after, record.state);
+  // Only what was filmed after touchdown speaks of a rebound; the blow may have
+  // been sought a frame or two early.
+  std::size_t from = event.first_after;
+  while (from < track.samples.size() &&
+         track.samples[from].time_s <= event.time_s.value) {
+    ++from;
+  }
+  FillState(context, from, event.ground_px.value, event.ground_px.u,
+            event.after.has_value(), record.state);
+  NameWhatStaysDown(context, from, record.state);
   return record;
 }
 

@@ -111,7 +111,7 @@ void DrawFlight(Panel& panel, const PlaneTrack& plane, const Flight& flight,
           flight.At(from_s + (to_s - from_s) * k / double{kPieces});
       return ToImage(plane, s.along_px, s.height_px);
     };
-    panel.Line(at(i), at(i + 1), colour);
+    panel.Line(at(i), at(i + 1), colour, 2);
   }
 }
 

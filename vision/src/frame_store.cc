@@ -43,8 +43,9 @@ class FrameStore : public Clip {
       kept.frame.stride_bytes = static_cast<std::ptrdiff_t>(row_bytes);
     }
     core::Frame view = kept.frame;
-    view.data = kept.pixels.data() + window.y * view.stride_bytes +
-                window.x * (view.is_16_bit() ? 2 : 1);
+    view.data =
+        kept.pixels.data() + window.y * view.stride_bytes +
+        static_cast<std::ptrdiff_t>(window.x) * (view.is_16_bit() ? 2 : 1);
     view.width_px = window.width;
     view.height_px = window.height;
     view.origin_x_px = window.x;

@@ -116,13 +116,14 @@ class Fitter {
   int geometry_ = 3;
   int interior_ = 6;
   int outer_ = 0;
+  bool saturated_ = false;  // what lies around the body
   double cosine_ = 1.0;
   double sine_ = 0.0;
   Vector levels_;  // interior then outer polynomial coefficients, DN
   std::vector<Pixel> pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
-  std::array<double, kMaxParameters * kMaxParameters> sums_{};
+  std::array<double, std::size_t{kMaxParameters} * kMaxParameters> sums_{};
   std::array<double, kMaxParameters> sums_gradient_{};
   Matrix normal_;
   Vector gradient_;
@@ -137,7 +138,8 @@ void Fitter::CollectPixels() {
   // tell the interior's level.
   constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
   const double margin = kBand * std::max(blur_, 0.5) + 1.0;
-  const double inner = std::max(12.0, 6.0 * blur_);
+  const double inner =
+      saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
   const bool large = SmallestHalf(outline_) > 2.0 * margin;
   const double reach = Extent(outline_) + margin;
   const auto x0 = std::max<std::int32_t>(
@@ -299,8 +301,7 @@ double Fitter::Accumulate(bool robust) {
   for (int i = 0; i < n; ++i) {
     gradient_[i] = sums_gradient_[static_cast<std::size_t>(i)];
     for (int j = 0; j <= i; ++j) {
-      normal_(i, j) = normal_(j, i) =
-          sums_[static_cast<std::size_t>(i * kMaxParameters + j)];
+      normal_(i, j) = normal_(j, i) = sums_[At(i) * kMaxParameters + At(j)];
     }
   }
   contrast_ = contrast_weight > 0.0 ? contrast / contrast_weight : 0.0;
@@ -372,6 +373,21 @@ core::Expected<OutlineFit> Fitter::Run() {
   CollectPixels();
   if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
     return core::AbsentBecause("too few pixels of the outline are visible");
+  }
+  // Where the surround is saturated, the outer half of the edge's tail is cut
+  // off; its inner half must then not pass for shading, which would shift the
+  // edge outwards: one level for the whole body.
+  double outside = 0.0;
+  double full = 0.0;
+  for (const Pixel& p : pixels_) {
+    if (DepthInside(outline_, p.x, p.y, cosine_, sine_) > -2.0) continue;
+    outside += 1.0;
+    full += p.value >= background_.full_scale_dn;
+  }
+  if (full > 0.5 * outside) {
+    saturated_ = true;
+    interior_ = 1;
+    CollectPixels();
   }
   SolveLevels();
   double step = 0.0;

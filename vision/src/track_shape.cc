@@ -21,6 +21,7 @@ core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us) {
   const double centre = Median(values);
   std::vector<double> off;
+  off.reserve(values.size());
   for (const double v : values) off.push_back(std::abs(v - centre));
   const double scatter = 1.4826 * Median(off);
   double sw = 0.0;
@@ -179,6 +180,26 @@ BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind) {
     }
   }
   return body;
+}
+
+double Roughness(const std::vector<Fitted>& all) {
+  std::vector<double> jumps;
+  for (std::size_t i = 3; i < all.size(); ++i) {
+    if (all[i].frame - all[i - 3].frame != 3) continue;
+    const auto third = [&](double core::PixelPoint::*value) {
+      const auto at = [&](std::size_t k) {
+        return all[k].fit.outline.centre.*value;
+      };
+      return at(i) - 3.0 * at(i - 1) + 3.0 * at(i - 2) - at(i - 3);
+    };
+    jumps.push_back(std::hypot(third(&core::PixelPoint::x_px),
+                               third(&core::PixelPoint::y_px)));
+  }
+  constexpr std::size_t kLeast = 4;
+  constexpr double kUnknown_px = 1e3;
+  if (jumps.size() < kLeast) return kUnknown_px;
+  // Two coordinates: the median of their length is 1.18 standard deviations.
+  return Median(std::move(jumps)) / 1.18 / std::sqrt(20.0);
 }
 
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,

@@ -22,6 +22,12 @@ double Median(std::vector<double> values);
 // than usual.
 void DropStrangers(std::vector<Fitted>& all);
 
+// How much a track jumps about: the robust scatter of third differences of the
+// centre over consecutive frames, as the standard deviation of one position,
+// px; blind to any parabola. A large number where there are too few frames to
+// tell.
+double Roughness(const std::vector<Fitted>& all);
+
 // The shape common to all frames, from those in which the outline is wholly
 // seen where there are enough of them.
 BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind);

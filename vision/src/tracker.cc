@@ -148,6 +148,15 @@ struct Look {
     return choice.badness /
            std::sqrt(static_cast<double>(found.chains.front().links.size()));
   }
+  // Outlines fitted to a ghost's edge jump about, however well they fit: a
+  // track of as many frames that is four times smoother is the body's.
+  bool MuchSmootherThan(const Look& other) const {
+    constexpr double kSmoother = 0.25;
+    constexpr double kAsManyFrames = 0.9;
+    return Roughness(fits) < kSmoother * Roughness(other.fits) &&
+           static_cast<double>(fits.size()) >=
+               kAsManyFrames * static_cast<double>(other.fits.size());
+  }
 };
 
 Look LookWith(Clip& clip, Background background, const TrackOptions& options,
@@ -158,8 +167,12 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
                                                     : Surround::kPolynomial;
   look.found = Detect(clip, look.background, options, detector, last);
   if (!look.found.chains.empty()) {
-    look.choice = ChooseKind(clip, look.background, look.found.chains.front(),
-                             options, look.surround);
+    const Chain& chain = look.found.chains.front();
+    look.choice =
+        ChooseKind(clip, look.background, chain, options, look.surround);
+    look.fits = FitAll(clip, look.background, chain, look.choice, options,
+                       look.surround);
+    DropStrangers(look.fits);
   }
   return look;
 }
@@ -191,14 +204,14 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                  attempt == 2 ? Detector::kLevels : Detector::kDifference,
                  best.found.last);
     look.found.warning = best.found.warning;
-    if (look.Cost() < best.Cost()) best = std::move(look);
+    if (look.MuchSmootherThan(best) ||
+        (look.Cost() < best.Cost() && !best.MuchSmootherThan(look))) {
+      best = std::move(look);
+    }
   }
   if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");
   }
-  best.fits = FitAll(clip, best.background, best.found.chains.front(),
-                     best.choice, options, best.surround);
-  DropStrangers(best.fits);
   constexpr std::size_t kLeastFrames = 3;
   if (best.fits.size() < kLeastFrames) {
     return core::AbsentBecause(
@@ -410,7 +423,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     const Choice again =
         ChooseKind(clip, behind, chain, options, Surround::kBackground);
     if (again.badness < first->choice.badness || track.known_background) {
-      result.background = std::move(behind);
+      std::swap(result.background, behind);
       std::vector<Fitted> better;
       if (again.kind == first->choice.kind) {
         better = FitFromTrack(clip, result.background, track, options,
@@ -420,10 +433,14 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                         Surround::kBackground);
       }
       DropStrangers(better);
-      if (better.size() * 2 >= all.size()) {
+      constexpr double kAsSmooth = 1.5;
+      if (better.size() * 2 >= all.size() &&
+          Roughness(better) <= kAsSmooth * Roughness(all) + 0.01) {
         track.known_background = true;
         track.warnings.clear();
         FillTrack(better, again.kind, track);
+      } else {
+        std::swap(result.background, behind);
       }
     }
   }
