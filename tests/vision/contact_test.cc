@@ -197,6 +197,16 @@ TEST(Contact, BounceBetweenFrames) {
   }
 }
 
+TEST(Contact, SoftContactOverSeveralFrames) {
+  Throw thrown;
+  thrown.duration_s = 3.3e-3;  // 6.6 frames
+  Filming filming;
+  const Sweep sweep = Shoot(thrown, filming);
+  ExpectHonest(sweep);
+  EXPECT_EQ(sweep.states.at(MotionState::kBounce), 60);
+  EXPECT_EQ(sweep.later, 0);
+}
+
 TEST(Contact, SlideAfterTouchdown) {
   Throw thrown;
   thrown.before = {1.4, -0.25, 0.0};
@@ -212,11 +222,10 @@ TEST(Contact, SlideAfterTouchdown) {
   block.stays = true;
   const Sweep blocks = Shoot(block, {});
   ExpectHonest(blocks);
-  // At most one in twenty may stay undecided.
-  EXPECT_GE(blocks.states.at(MotionState::kSlide), 57);
+  EXPECT_EQ(blocks.states.at(MotionState::kSlide), 60);
   Throw stuck = block;
   stuck.after = {};
-  EXPECT_GE(Shoot(stuck, {}).states.at(MotionState::kStick), 57);
+  EXPECT_EQ(Shoot(stuck, {}).states.at(MotionState::kStick), 60);
 }
 
 TEST(Contact, RectangleCornerWithSpin) {
@@ -720,6 +729,34 @@ TEST(Contact, LineThatIsNotTheGroundIsRefuted) {
   const ContactResult right =
       FindContacts(FilmPlane(thrown, filming), WithScale(filming));
   EXPECT_TRUE(right.ground_refuted.empty()) << right.ground_refuted;
+}
+
+// Without any line: the ground through the lowest point at the first rebound.
+TEST(Contact, GroundFromTheContactsThemselves) {
+  Throw thrown;
+  std::vector<double> z;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Filming filming;
+    filming.seed = seed;
+    const Track track = synthetic::FilmTrack(
+        thrown, [&](double t) { return thrown.At(t); }, filming);
+    const auto ground = GroundFromContacts(track);
+    ASSERT_TRUE(ground);
+    EXPECT_EQ(ground->source, calib::GroundSource::kContactPoints);
+    EXPECT_NEAR(calib::ImageAngle(*ground), 0.0, 1e-12);
+    EXPECT_DOUBLE_EQ(ground->u_angle_rad, 0.5 * core::kDegree);
+    z.push_back((ground->reference.y_px - 330.0) / ground->u_offset_px);
+    EXPECT_LT(ground->u_offset_px, 1.0);
+  }
+  EXPECT_LT(Rms(z), RmsBand9999(30).high);
+  // No rebound, no ground.
+  Throw slides;
+  slides.contact_s = -1.0;
+  slides.after = {1.2, 0.0, 0.0};
+  slides.stays = true;
+  const Track flat = synthetic::FilmTrack(
+      slides, [&](double t) { return slides.At(t); }, Filming{});
+  EXPECT_FALSE(GroundFromContacts(flat));
 }
 
 // The budget adds up to the uncertainty that is printed.

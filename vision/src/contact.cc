@@ -305,7 +305,9 @@ ContactResult FindContacts(const PlaneTrack& given,
 std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
                                                     double u_level_rad) {
   if (track.poses.size() < 6) return std::nullopt;
-  // A level line far below: heights are what matters, not gaps.
+  // A level line through the lowest point of all: also a flight that rises by
+  // less than the body's radius comes down to it, and gaps vanish near
+  // contacts.
   double lowest = track.poses.front().centre.y_px;
   double left = track.poses.front().centre.x_px;
   double right = left;
@@ -314,10 +316,18 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     left = std::min(left, pose.centre.x_px);
     right = std::max(right, pose.centre.x_px);
   }
-  calib::GroundLine level = calib::GroundThrough(
-      {left, lowest}, {std::max(right, left + 1.0), lowest});
-  level.u_angle_rad = u_level_rad;
-  PlaneTrack plane = SeenFromGround(track, level);
+  const auto seen_from = [&](double y_px) {
+    calib::GroundLine level =
+        calib::GroundThrough({left, y_px}, {std::max(right, left + 1.0), y_px});
+    level.u_angle_rad = u_level_rad;
+    return SeenFromGround(track, level);
+  };
+  PlaneTrack plane = seen_from(lowest);
+  double least = plane.samples.front().gap_px;
+  for (const PlaneSample& s : plane.samples) {
+    least = std::min(least, s.gap_px);
+  }
+  plane = seen_from(lowest - least);
   WidenToScatter(plane);
   const std::vector<Kink> kinks = FindKinks(plane.samples);
   EventOptions options;

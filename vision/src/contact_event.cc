@@ -186,6 +186,40 @@ bool FindFlightAfter(const PlaneTrack& track, Event& event,
   return true;
 }
 
+// The frames next to a soft contact deviate from flight by less than their
+// noise, all to one side: those after touchdown or before release leave the
+// fits. False where there are none, or too few would be left.
+bool LeaveOutContact(std::span<const PlaneSample> samples, double touchdown_s,
+                     double release_s, Event& event,
+                     const EventOptions& options) {
+  std::size_t before_end = event.before_end;
+  std::size_t after_begin = event.after_begin;
+  while (before_end > event.before_begin &&
+         samples[before_end - 1].time_s > touchdown_s) {
+    --before_end;
+  }
+  while (after_begin < event.after_end &&
+         samples[after_begin].time_s < release_s) {
+    ++after_begin;
+  }
+  if (before_end == event.before_end && after_begin == event.after_begin) {
+    return false;
+  }
+  if (before_end - event.before_begin < Least(options) ||
+      event.after_end - after_begin < Least(options)) {
+    return false;
+  }
+  event.before_end = before_end;
+  event.after_begin = after_begin;
+  event.before = FitFlight(
+      samples.subspan(event.before_begin, before_end - event.before_begin),
+      options.flight);
+  event.after =
+      FitFlight(samples.subspan(after_begin, event.after_end - after_begin),
+                options.flight);
+  return true;
+}
+
 }  // namespace
 
 FlightGap GapOf(const PlaneTrack& track, const Flight& flight, double time_s) {
@@ -209,6 +243,22 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   event.before =
       Grow(samples, event.before_begin, event.before_end, true, options);
   if (event.before->frames < static_cast<int>(Least(options))) return false;
+  // With few frames after it a blow is placed a frame or two early: what the
+  // flight before still explains, above the ground, is of that flight.
+  while (event.before_end == event.first_after &&
+         event.first_after < event.end) {
+    const PlaneSample& s = samples[event.first_after];
+    const FlightGap g = GapOf(track, *event.before, s.time_s);
+    if (!(g.gap_px > 0.0) ||
+        Deviates(s, *event.before, options.flight_sigmas)) {
+      break;
+    }
+    event.before_end = ++event.first_after;
+    event.before =
+        FitFlight(samples.subspan(event.before_begin,
+                                  event.before_end - event.before_begin),
+                  options.flight);
+  }
   const bool flies = FindFlightAfter(track, event, options);
 
   // What is known of the ground's height: the line, and the body's size.
@@ -217,10 +267,17 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   const double start_s = samples[event.before_end - 1].time_s;
 
   if (flies) {
-    const auto t1 = TimeOfGap(track, *event.before, start_s, 0.0);
-    const auto t2 =
+    auto t1 = TimeOfGap(track, *event.before, start_s, 0.0);
+    auto t2 =
         TimeOfGap(track, *event.after, samples[event.after_begin].time_s, 0.0);
     if (!t1 || !t2) return false;
+    const bool in_contact = event.before_end < event.first_after ||
+                            event.after_begin > event.first_after;
+    if (in_contact && LeaveOutContact(samples, *t1, *t2, event, options)) {
+      t1 = TimeOfGap(track, *event.before, *t1, 0.0);
+      t2 = TimeOfGap(track, *event.after, *t2, 0.0);
+      if (!t1 || !t2) return false;
+    }
     const FlightGap g1 = GapOf(track, *event.before, *t1);
     const FlightGap g2 = GapOf(track, *event.after, *t2);
     // Linear in (t, d): rate_k (t - t_k) - d = 0 +- u_k, d = 0 +- u.
@@ -240,8 +297,6 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
     const Eigen::Matrix2d free_cov = a.inverse();
     event.disagreement =
         free[1] / std::sqrt(free_cov(1, 1) + ground.u * ground.u);
-    const bool in_contact = event.before_end < event.first_after ||
-                            event.after_begin > event.first_after;
     constexpr double kDisagree = 3.0;
     if (std::abs(event.disagreement) > kDisagree && in_contact) {
       // Frames in contact were seen: the body stayed down for a while, and the

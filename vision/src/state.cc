@@ -83,7 +83,10 @@ std::optional<GreatestGap> FindGreatestGap(std::span<const PlaneSample> samples,
   constexpr std::size_t kLook = 3;
   if (last >= kLook && greatest.at + 1 >= samples.size()) {
     const double rise = samples[last].gap_px - samples[last - kLook].gap_px;
-    greatest.still_rising = rise > 3.0 * samples[last].u_gap_px;
+    // A difference of two gaps has the noise of both.
+    const double u =
+        std::hypot(samples[last].u_gap_px, samples[last - kLook].u_gap_px);
+    greatest.still_rising = rise > 3.0 * u;
   }
   return greatest;
 }

@@ -246,6 +246,9 @@ double LevelInside(const core::Frame& frame, const Outline& outline) {
   const double reach = outline.kind == core::BodyKind::kSphere
                            ? outline.radius_px
                            : outline.half_long_px;
+  const double depth =
+      0.3 * (outline.kind == core::BodyKind::kSphere ? outline.radius_px
+                                                     : outline.half_short_px);
   double sum = 0.0;
   double count = 0.0;
   for (int y = static_cast<int>(outline.centre.y_px - reach);
@@ -255,7 +258,7 @@ double LevelInside(const core::Frame& frame, const Outline& outline) {
       if (x < 0 || y < 0 || x >= frame.width_px || y >= frame.height_px) {
         continue;
       }
-      if (DepthInside(outline, x, y) < 0.3 * reach) continue;
+      if (DepthInside(outline, x, y) < depth) continue;
       sum += frame.at(x, y);
       count += 1.0;
     }
@@ -346,24 +349,49 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
   return all;
 }
 
+// The first frame of [first, last) that cannot be read, with the reason; `last`
+// where all can.
+std::int64_t FirstUnreadable(Clip& clip, std::int64_t first, std::int64_t last,
+                             std::string& reason) {
+  for (std::int64_t index = first; index < last; ++index) {
+    try {
+      clip.Read(index);
+    } catch (const core::InputError& error) {
+      reason = error.what();
+      return index;
+    }
+  }
+  return last;
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
-  const std::int64_t last = options.last < 0
-                                ? clip.info().frames
-                                : std::min(options.last, clip.info().frames);
+  std::int64_t last = options.last < 0
+                          ? clip.info().frames
+                          : std::min(options.last, clip.info().frames);
   TrackResult result;
-  auto first = FirstLook(clip, options, last);
+  std::string warning;
+  core::Expected<Look> first = core::AbsentBecause("not looked at");
+  try {
+    first = FirstLook(clip, options, last);
+  } catch (const core::InputError&) {
+    // The background's samples reach the damage first: look at what can be
+    // read.
+    std::string reason;
+    last = FirstUnreadable(clip, options.first, last, reason);
+    if (last == options.first) throw;
+    warning = fmt::format("frames from {} on cannot be read: {}", last, reason);
+    first = FirstLook(clip, options, last);
+  }
   if (!first) return tl::unexpected(first.error());
+  if (warning.empty()) warning = first->found.warning;
   result.background = std::move(first->background);
 
   Track& track = result.track;
   track.first_frame = options.first;
   track.last_frame = first->found.last;
   track.frame_interval_s = 1.0 / clip.info().time_base.fps;
-  if (!first->found.warning.empty()) {
-    track.warnings.push_back(first->found.warning);
-  }
   const Chain& chain = first->found.chains.front();
   for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
     track.several_bodies |= IsAnotherBody(chain, first->found.chains[i]);
@@ -416,6 +444,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
       }
     }
   }
+  if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
   if (whole_px > 0.0) {
     track.warnings.push_back(fmt::format(
