@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <random>
 #include <set>
 #include <string>
@@ -98,6 +99,8 @@ struct Case {
   std::int32_t bit_depth = 8;
   bool light = false;
 };
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 class AnalyzeRendered : public ::testing::TestWithParam<Case> {};
 

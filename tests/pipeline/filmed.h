@@ -42,7 +42,7 @@ inline Film Default(core::BodyKind kind) {
     t.half_short_m = 0.008;
     t.face_rad = 14.0 * core::kDegree;
     Rebound(t, 0.6);
-    film.frames = 100;
+    film.frames = 90;  // the leading corner is still in the air
   }
   return film;
 }
