@@ -17,10 +17,16 @@ constexpr double kPxPerM = 1000.0;
 constexpr double kRestitution = 0.6;
 constexpr int kLeadIn = 24;  // empty frames before the body
 
-// The gap of the film's body in px, `frames` after contact.
-double GapAfter(const Throw& thrown, double frames, double fps) {
-  const vision::ScenePose pose = thrown.At(thrown.contact_s + frames / fps);
-  return kPxPerM * (pose.centre.y_m - thrown.Support(pose.angle_rad));
+// The film's body is off the ground `frames` after contact, and not about to
+// come down.
+bool IsClear(const Throw& thrown, double frames, double fps) {
+  const auto gap_px = [&](double at) {
+    const vision::ScenePose pose = thrown.At(thrown.contact_s + at / fps);
+    return kPxPerM * (pose.centre.y_m - thrown.Support(pose.angle_rad));
+  };
+  constexpr double kMargin_px = 0.5;
+  const double gap = gap_px(frames);
+  return gap > kMargin_px || gap > gap_px(frames - 1.0);
 }
 
 class Drawer {
@@ -82,36 +88,10 @@ void DrawLevels(Levels& l, Drawer& draw) {
   }
 }
 
-}  // namespace
-
-const char* Name(Hardship hardship) {
-  switch (hardship) {
-    case Hardship::kNone:
-      return "regular";
-    case Hardship::kSmall:
-      return "small";
-    case Hardship::kDim:
-      return "dim";
-    case Hardship::kFewFrames:
-      return "few frames";
-    case Hardship::kFast:
-      return "fast";
-    case Hardship::kLongExposure:
-      return "long exposure";
-    case Hardship::kTexture:
-      return "texture";
-    case Hardship::kSlow:
-      return "slow";
-  }
-  return "?";
-}
-
-Case Draw(std::uint64_t index, Hardship hardship) {
-  Case c;
-  c.seed = 1000 * (index + 1) + static_cast<std::uint64_t>(hardship);
-  c.levels.hardship = hardship;
-  Drawer draw(c.seed);
+// The whole case but its seed, from levels that are drawn here.
+void DrawFilm(Case& c, Drawer& draw) {
   Levels& l = c.levels;
+  const Hardship hardship = l.hardship;
   DrawLevels(l, draw);
 
   // Gravity in px per frame^2 follows from the frame rate: a flight that curves
@@ -141,7 +121,7 @@ Case Draw(std::uint64_t index, Hardship hardship) {
   film.lead_in = kLeadIn;
   // The clip ends before a block's other corner comes down.
   int after = 1;
-  while (after < l.frames_after && GapAfter(t, after + 1.5, fps) > 0.5) ++after;
+  while (after < l.frames_after && IsClear(t, after + 1.5, fps)) ++after;
   l.frames_after = after;
   film.frames = kLeadIn + l.frames_before + 1 + after;
   film.noise = l.noise;
@@ -178,6 +158,44 @@ Case Draw(std::uint64_t index, Hardship hardship) {
   look.gradient_x = 0.06;
   look.texture_seed = c.seed;
   look.texture_amplitude = hardship == Hardship::kTexture ? 0.10 : 0.0;
+}
+
+}  // namespace
+
+const char* Name(Hardship hardship) {
+  switch (hardship) {
+    case Hardship::kNone:
+      return "regular";
+    case Hardship::kSmall:
+      return "small";
+    case Hardship::kDim:
+      return "dim";
+    case Hardship::kFewFrames:
+      return "few frames";
+    case Hardship::kFast:
+      return "fast";
+    case Hardship::kLongExposure:
+      return "long exposure";
+    case Hardship::kTexture:
+      return "texture";
+    case Hardship::kSlow:
+      return "slow";
+  }
+  return "?";
+}
+
+Case Draw(std::uint64_t index, Hardship hardship) {
+  Case c;
+  c.seed = 1000 * (index + 1) + static_cast<std::uint64_t>(hardship);
+  Drawer draw(c.seed);
+  // A block that comes down on its other corner at once is drawn again.
+  constexpr int kLeastAfter = 6;
+  do {
+    c.levels = {};
+    c.levels.hardship = hardship;
+    DrawFilm(c, draw);
+  } while (hardship != Hardship::kFewFrames && hardship != Hardship::kFast &&
+           c.levels.frames_after < kLeastAfter);
   return c;
 }
 

@@ -267,6 +267,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   EventOptions event_options;
   event_options.flight = context.flight;
   event_options.flight_sigmas = options.flight_sigmas;
+  event_options.u_line_px = track.ground.u_offset_px;
+  event_options.u_slope_rad = track.ground.u_angle_rad;
   bool first_done = from_start;
   std::size_t begin = 0;
   for (std::size_t k = 0; k < blows.kinks.size(); ++k) {
@@ -276,8 +278,6 @@ ContactResult FindContacts(const PlaneTrack& given,
     event.end = k + 1 < blows.kinks.size() ? blows.kinks[k + 1].after + 1
                                            : samples.size();
     begin = event.first_after;
-    event_options.u_line_px =
-        UncertaintyOfLine(track, samples[event.first_after]);
     if (!MeasureEvent(track, event, event_options)) continue;
     if (GapOf(track, *event.before, event.time_s.value).rate >= 0.0) continue;
     if (from_start) continue;  // hops of a body that slides
@@ -291,7 +291,6 @@ ContactResult FindContacts(const PlaneTrack& given,
   }
   if (!first_done) {
     std::string reason;
-    event_options.u_line_px = UncertaintyOfLine(track, samples.back());
     if (const auto event = ContactAtEnd(track, event_options, reason)) {
       result.first = RecordOf(context, *event, result.warnings);
       result.evidence.push_back(EvidenceOf(track, *event));
@@ -332,6 +331,7 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   const std::vector<Kink> kinks = FindKinks(plane.samples);
   EventOptions options;
   options.u_line_px = 1e3;  // nothing is known of the line yet
+  options.u_slope_rad = u_level_rad;
   std::size_t begin = 0;
   for (std::size_t k = 0; k < kinks.size(); ++k) {
     Event event;

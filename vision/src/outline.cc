@@ -60,7 +60,10 @@ class Fitter {
           calib::HeightAbove(*options.ground, {1.0, 0.0}) - ground_offset_;
       ground_y_ =
           calib::HeightAbove(*options.ground, {0.0, 1.0}) - ground_offset_;
-      ground_offset_ -= options.ground_margin_px;
+      // The blurred edges of body and ground do not superpose: clear of both.
+      constexpr double kBlurs = 2.5;
+      ground_offset_ -=
+          std::max(options.ground_margin_px, kBlurs * options.blur_px);
     }
     geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
     // A body of a few pixels cannot tell shading from shape.
