@@ -138,12 +138,12 @@ enum Parameter {
   kFace,
   kOmega,
   kOmega2,
+  kGravity,
   kParameters
 };
 
 struct Model {
-  double gravity = 0.0;  // px per frame^2
-  double middle = 0.0;   // of the picture, from the contact, along the ground
+  double middle = 0.0;  // of the picture, from the contact, along the ground
   bool turns = false;
 
   double Support(const VectorXd& p, double face) const {
@@ -158,7 +158,7 @@ struct Model {
                         Support(p, p[kFace] - p[kSlope]);
     Eigen::Matrix<double, kPose, 1> pose;
     pose << p[kPlace] + (before ? p[kVx] : p[kVx2]) * s,
-        down + (before ? p[kVy] : p[kVy2]) * s - 0.5 * gravity * s * s,
+        down + (before ? p[kVy] : p[kVy2]) * s - 0.5 * p[kGravity] * s * s,
         p[kFace] + (before ? p[kOmega] : p[kOmega2]) * s, p[kHalfLong],
         p[kHalfShort];
     return pose;
@@ -174,7 +174,6 @@ Bound BoundOf(const Case& c) {
   const double fps = film.camera.fps;
   Model model;
   model.turns = c.levels.kind == BodyKind::kRectangle;
-  model.gravity = t.gravity_mps2 * scale / (fps * fps);
   model.middle = (0.5 * film.camera.width_px - film.camera.ground_point.x_px) *
                  (film.camera.travels_left ? -1.0 : 1.0);
   VectorXd truth = VectorXd::Zero(kParameters);
@@ -188,6 +187,7 @@ Bound BoundOf(const Case& c) {
   truth[kFace] = t.face_rad;
   truth[kOmega] = t.before.omega / fps;
   truth[kOmega2] = t.after.omega / fps;
+  truth[kGravity] = t.gravity_mps2 * scale / (fps * fps);
 
   const auto gradient = [&](const auto& f) {
     constexpr double kStep = 1e-6;
@@ -219,6 +219,10 @@ Bound BoundOf(const Case& c) {
   }
   const Eigen::Matrix2d ground = GroundInformation(c);
   information.block<2, 2>(kGround, kGround) += ground;
+  const double u_gravity =
+      truth[kGravity] *
+      std::hypot(kScaleRelativeU, kGravityU_mps2 / core::kStandardGravity_mps2);
+  information(kGravity, kGravity) += 1.0 / (u_gravity * u_gravity);
   if (!model.turns) {
     for (const int unused : {kHalfShort, kFace, kOmega, kOmega2}) {
       information.row(unused).setZero();

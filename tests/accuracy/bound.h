@@ -13,12 +13,19 @@
 // Trajectory. Parameters: contact time and place, velocities before and after,
 // the body's size, the ground's height and angle, for a rectangle its angle and
 // its two angular velocities. The centre's path is continuous at contact and
-// its height there is that of the body on the ground; gravity is known.
+// its height there is that of the body on the ground. What `analyze` is told
+// beside the pixels counts as told: the scale, and standard gravity.
 #pragma once
 
 #include "tests/accuracy/design.h"
+#include "touchdown/core/units.h"
 
 namespace touchdown::accuracy {
+
+// What is told beside the pixels: relative u of the scale; u of local gravity,
+// where it is not given (vision/contact.h).
+inline constexpr double kScaleRelativeU = 1e-4;
+inline constexpr double kGravityU_mps2 = 0.002 * core::kStandardGravity_mps2;
 
 // Standard deviations; NaN where the quantity does not exist.
 struct Bound {

@@ -16,7 +16,8 @@ Outcome Analyse(const Case& c) {
   pipeline::AnalyzeOptions options;
   options.body_kind = t.kind;
   const double scale = c.film.camera.px_per_m;
-  options.scale_px_per_m = core::Estimate{scale, 1e-4 * scale, std::nullopt};
+  options.scale_px_per_m =
+      core::Estimate{scale, kScaleRelativeU * scale, std::nullopt};
   auto clip = vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
   const auto start = std::chrono::steady_clock::now();
   const pipeline::Analysis analysis =

@@ -48,7 +48,7 @@ struct Blows {
   std::string refuted;
 };
 
-Blows FindBlows(const PlaneTrack& track) {
+Blows FindBlows(const PlaneTrack& track, const KinkOptions& kink_options) {
   const std::span<const PlaneSample> samples(track.samples);
   Blows blows;
   // No body sinks into the ground by more than what it yields and what the line
@@ -66,7 +66,7 @@ Blows FindBlows(const PlaneTrack& track) {
         "the body passes {:.1f} px below the ground line at frame {}", sunk,
         lowest->frame);
   }
-  for (const Kink& kink : FindKinks(samples)) {
+  for (const Kink& kink : FindKinks(samples, kink_options)) {
     const PlaneSample& a = samples[kink.after];
     const PlaneSample& b = samples[kink.after + 1];
     // Between two frames the body can come lower than in either by what the
@@ -90,10 +90,38 @@ Blows FindBlows(const PlaneTrack& track) {
   return blows;
 }
 
+// The first frames, up to the first blow, fall as free flight does, and not
+// along a straight line as what lies on the ground.
+bool FallsAtFirst(std::span<const PlaneSample> samples,
+                  const std::vector<Kink>& blows,
+                  const FlightOptions& options) {
+  const std::size_t n =
+      blows.empty() ? samples.size() / 2 : blows.front().after + 1;
+  constexpr std::size_t kLeast = 5;
+  if (n < kLeast) return false;
+  const auto chi2 = [&](const Flight& flight) {
+    double sum = 0.0;
+    for (const PlaneSample& s : samples.first(n)) {
+      const double r =
+          (s.height_px - flight.At(s.time_s).height_px) / s.u_height_px;
+      sum += r * r;
+    }
+    return sum;
+  };
+  FlightOptions straight;
+  straight.gravity_px_per_s2 = core::Estimate{0.0, 1e-9, std::nullopt};
+  const Flight falling = FitFlight(samples.first(n), options);
+  const double without = chi2(FitFlight(samples.first(n), straight));
+  if (!(falling.height[2] > 0.0)) return false;
+  constexpr double kMustWinBy = 12.0;  // odds of e^6
+  return without - chi2(falling) > kMustWinBy;
+}
+
 // The body is on the ground in the first frames and does not come down to it.
-bool OnGroundFromStart(const PlaneTrack& track,
-                       const std::vector<Kink>& blows) {
+bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
+                       const FlightOptions& flight) {
   const std::span<const PlaneSample> samples(track.samples);
+  if (FallsAtFirst(samples, blows, flight)) return false;
   const std::size_t n = samples.size();
   const std::size_t m = std::min<std::size_t>(8, n);
   const double first = MedianGap(samples.first(m));
@@ -245,11 +273,15 @@ ContactResult FindContacts(const PlaneTrack& given,
   WidenToScatter(track);
   const std::span<const PlaneSample> samples(track.samples);
 
-  Blows blows = FindBlows(track);
   RecordContext context{track, options, FlightFor(options), {}};
+  KinkOptions kink_options;
+  if (context.flight.gravity_px_per_s2) {
+    kink_options.gravity_px_per_s2 = context.flight.gravity_px_per_s2->value;
+  }
+  Blows blows = FindBlows(track, kink_options);
   for (const Kink& kink : blows.kinks) context.breaks.push_back(kink.after + 1);
 
-  const bool from_start = OnGroundFromStart(track, blows.kinks);
+  const bool from_start = OnGroundFromStart(track, blows.kinks, context.flight);
   result.ground_refuted = blows.refuted;
   if (from_start) {
     const double slope = TakeOutSlope(track);
