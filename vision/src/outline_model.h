@@ -55,7 +55,8 @@ inline NormalTable::Value Normal(double z) {
 struct Coverage {
   double value = 0.0;
   double d[6] = {0, 0, 0, 0, 0, 0};
-  double xi = 0.0;  // position in the body, in units of its size
+  double d_open = 0.0;  // by the share of the frame interval that is exposed
+  double xi = 0.0;      // position in the body, in units of its size
   double eta = 0.0;
 };
 
