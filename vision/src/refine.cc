@@ -88,19 +88,18 @@ std::optional<Shading> ShadingOf(const std::vector<Fitted>& all) {
   return shading;
 }
 
-// What all frames share of the camera: mean weighted by information.
+// What all frames share of the camera.
 std::optional<double> Shared(const std::vector<Fitted>& all,
                              double OutlineFit::*value, double OutlineFit::*u) {
-  double sw = 0.0;
-  double swx = 0.0;
+  std::vector<double> values;
+  std::vector<double> us;
   for (const Fitted& f : all) {
     if (!(f.fit.*u > 0.0)) continue;
-    const double w = 1.0 / (f.fit.*u * f.fit.*u);
-    sw += w;
-    swx += w * f.fit.*value;
+    values.push_back(f.fit.*value);
+    us.push_back(f.fit.*u);
   }
-  if (!(sw > 0.0)) return std::nullopt;
-  return swx / sw;
+  if (values.empty()) return std::nullopt;
+  return RobustMean(values, us).value;
 }
 
 class Refiner {
@@ -181,9 +180,9 @@ void Refiner::LearnShape(Track& refined) {
   options_.blur_px = refined.body.blur_px;
   sized = Sample(refined.body);
   if (sized.size() < kLeast) return;
+  // Not with the shading held: its error is common to all frames, and what it
+  // does to the size would not show in their scatter.
   options_.shading = ShadingOf(sized);
-  if (options_.shading) sized = Sample(refined.body);
-  if (sized.size() < kLeast) return;
   const BodyImage shape = ShapeOf(sized, track_.body.kind);
   refined.body.radius_px = shape.radius_px;
   refined.body.half_long_px = shape.half_long_px;
