@@ -220,8 +220,7 @@ Bound BoundOf(const Case& c) {
   const Eigen::Matrix2d ground = GroundInformation(c);
   information.block<2, 2>(kGround, kGround) += ground;
   const double u_gravity =
-      truth[kGravity] *
-      std::hypot(kScaleRelativeU, kGravityU_mps2 / core::kStandardGravity_mps2);
+      truth[kGravity] * std::hypot(kScaleRelativeU, kGravityRelativeU);
   information(kGravity, kGravity) += 1.0 / (u_gravity * u_gravity);
   if (!model.turns) {
     for (const int unused : {kHalfShort, kFace, kOmega, kOmega2}) {

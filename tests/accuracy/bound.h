@@ -18,14 +18,8 @@
 #pragma once
 
 #include "tests/accuracy/design.h"
-#include "touchdown/core/units.h"
 
 namespace touchdown::accuracy {
-
-// What is told beside the pixels: relative u of the scale; u of local gravity,
-// where it is not given (vision/contact.h).
-inline constexpr double kScaleRelativeU = 1e-4;
-inline constexpr double kGravityU_mps2 = 0.002 * core::kStandardGravity_mps2;
 
 // Standard deviations; NaN where the quantity does not exist.
 struct Bound {

@@ -35,6 +35,7 @@ class Drawer {
   double Uniform(double low, double high) {
     return low + (high - low) * std::uniform_real_distribution<>()(engine_);
   }
+  double Normal() { return std::normal_distribution<>()(engine_); }
   template <typename T>
   T Level(std::initializer_list<T> levels) {
     const auto i = std::min<std::size_t>(
@@ -106,6 +107,8 @@ void DrawFilm(Case& c, Drawer& draw) {
   pipeline::filmed::Film& film = c.film;
   Throw& t = film.thrown;
   t.kind = l.kind;
+  t.gravity_mps2 *= 1.0 + kGravityRelativeU * draw.Normal();
+  c.told_px_per_m = kPxPerM * (1.0 + kScaleRelativeU * draw.Normal());
   t.before = {l.speed_px * std::cos(angle) * fps / kPxPerM, -vn * fps / kPxPerM,
               0.0};
   t.half_long_m = t.half_short_m = 0.5 * l.size_px / kPxPerM;
@@ -120,7 +123,7 @@ void DrawFilm(Case& c, Drawer& draw) {
   t.contact_s = film.contact_frame / fps;
   film.lead_in = kLeadIn;
   // The clip ends before a block's other corner comes down.
-  int after = 1;
+  int after = 0;
   while (after < l.frames_after && IsClear(t, after + 1.5, fps)) ++after;
   l.frames_after = after;
   film.frames = kLeadIn + l.frames_before + 1 + after;
@@ -189,13 +192,14 @@ Case Draw(std::uint64_t index, Hardship hardship) {
   c.seed = 1000 * (index + 1) + static_cast<std::uint64_t>(hardship);
   Drawer draw(c.seed);
   // A block that comes down on its other corner at once is drawn again.
-  constexpr int kLeastAfter = 6;
+  const bool short_stay =
+      hardship == Hardship::kFewFrames || hardship == Hardship::kFast;
+  const int least_after = short_stay ? 2 : 6;
   do {
     c.levels = {};
     c.levels.hardship = hardship;
     DrawFilm(c, draw);
-  } while (hardship != Hardship::kFewFrames && hardship != Hardship::kFast &&
-           c.levels.frames_after < kLeastAfter);
+  } while (c.levels.frames_after < least_after);
   return c;
 }
 

@@ -49,7 +49,15 @@ struct Case {
   std::uint64_t seed = 0;  // of the noise; also names the case
   Levels levels;
   pipeline::filmed::Film film;
+  // What `analyze` is told: the true scale but for its uncertainty. Gravity is
+  // standard gravity there, and in the film what it may be somewhere on earth.
+  double told_px_per_m = 0.0;
 };
+
+// Relative u of what is told beside the pixels: the scale, and local gravity
+// (vision/contact.h).
+inline constexpr double kScaleRelativeU = 1e-4;
+inline constexpr double kGravityRelativeU = 0.002;
 
 // Case `index` of the regular part, or of one hardship. The same index gives
 // the same case, whatever else is drawn.

@@ -15,9 +15,8 @@ Outcome Analyse(const Case& c) {
   const Bound bound = BoundOf(c);
   pipeline::AnalyzeOptions options;
   options.body_kind = t.kind;
-  const double scale = c.film.camera.px_per_m;
-  options.scale_px_per_m =
-      core::Estimate{scale, kScaleRelativeU * scale, std::nullopt};
+  options.scale_px_per_m = core::Estimate{
+      c.told_px_per_m, kScaleRelativeU * c.told_px_per_m, std::nullopt};
   auto clip = vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
   const auto start = std::chrono::steady_clock::now();
   const pipeline::Analysis analysis =

@@ -90,6 +90,16 @@ Blows FindBlows(const PlaneTrack& track, const KinkOptions& kink_options) {
   return blows;
 }
 
+// An edge of the ground seen in perspective differs from the contact line by so
+// much; more is another line, or none.
+constexpr double kMostInclined_rad = 1.0 * core::kDegree;
+
+FlightOptions Straight() {
+  FlightOptions options;
+  options.gravity_px_per_s2 = core::Estimate{0.0, 1e-9, std::nullopt};
+  return options;
+}
+
 // The first frames, up to the first blow, fall as free flight does, and not
 // along a straight line as what lies on the ground.
 bool FallsAtFirst(std::span<const PlaneSample> samples,
@@ -108,8 +118,7 @@ bool FallsAtFirst(std::span<const PlaneSample> samples,
     }
     return sum;
   };
-  FlightOptions straight;
-  straight.gravity_px_per_s2 = core::Estimate{0.0, 1e-9, std::nullopt};
+  const FlightOptions straight = Straight();
   const Flight falling = FitFlight(samples.first(n), options);
   const double without = chi2(FitFlight(samples.first(n), straight));
   if (!(falling.height[2] > 0.0)) return false;
@@ -117,11 +126,27 @@ bool FallsAtFirst(std::span<const PlaneSample> samples,
   return without - chi2(falling) > kMustWinBy;
 }
 
+// The first half of the track, up to the first blow, comes down along a line
+// that is clearly steeper than what a ground line may be off.
+bool DescendsAtFirst(std::span<const PlaneSample> samples,
+                     const std::vector<Kink>& blows) {
+  std::size_t n = std::max<std::size_t>(3, samples.size() / 2);
+  if (!blows.empty()) n = std::min(n, blows.front().after + 1);
+  if (n < 3) return false;
+  const Flight line = FitFlight(samples.first(n), Straight());
+  const double rate = line.height[1];
+  const double u = std::sqrt(line.height_cov(1, 1));
+  constexpr double kClear = 3.0;
+  return rate < -kClear * u &&
+         -rate > std::tan(kMostInclined_rad) * std::abs(line.along[1]);
+}
+
 // The body is on the ground in the first frames and does not come down to it.
 bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
                        const FlightOptions& flight) {
   const std::span<const PlaneSample> samples(track.samples);
   if (FallsAtFirst(samples, blows, flight)) return false;
+  if (DescendsAtFirst(samples, blows)) return false;
   const std::size_t n = samples.size();
   const std::size_t m = std::min<std::size_t>(8, n);
   const double first = MedianGap(samples.first(m));
@@ -182,10 +207,7 @@ double TakeOutSlope(PlaneTrack& track) {
     slope = (sw * sxy - sx * sy) / determinant;
     offset = (sy - slope * sx) / sw;
   }
-  // An edge of the ground seen in perspective differs from the contact line by
-  // so much; more is another line.
-  constexpr double kMost_rad = 1.0 * core::kDegree;
-  if (std::abs(slope) > kMost_rad) return 0.0;
+  if (std::abs(slope) > kMostInclined_rad) return 0.0;
   for (PlaneSample& s : samples) {
     s.gap_px -= slope * (s.along_px - middle);
     s.height_px -= slope * (s.along_px - middle);
@@ -292,7 +314,7 @@ ContactResult FindContacts(const PlaneTrack& given,
                       "line; its gap is taken from the path",
                       slope / core::kDegree));
     }
-    result.first = RecordFromStart(context);
+    result.first = RecordFromStart(context, slope);
     result.ground_refuted.clear();
   }
 

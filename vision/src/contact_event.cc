@@ -27,14 +27,18 @@ bool Deviates(const PlaneSample& s, const Flight& flight, double sigmas) {
 void TrimAtBlow(std::span<const PlaneSample> samples, std::size_t& begin,
                 std::size_t& end, bool blow_at_end,
                 const EventOptions& options) {
-  constexpr std::size_t kDoubtful = 3;  // frames looked at next to the blow
-  constexpr std::size_t kTrusted = 8;   // frames that judge them
+  constexpr std::size_t kMostDoubtful = 3;  // frames looked at next to the blow
+  constexpr std::size_t kTrusted = 8;       // frames that judge them
   const std::size_t count = end - begin;
-  if (count < kDoubtful + Least(options) + 2) return;
-  const std::size_t trusted = std::min(kTrusted, count - kDoubtful);
+  // With few frames only the nearest, which may be exposed across the blow.
+  const std::size_t least = Least(options);
+  if (count < least + 1) return;
+  const std::size_t doubtful =
+      std::clamp<std::size_t>(count - least, 2, kMostDoubtful + 1) - 1;
+  const std::size_t trusted = std::min(kTrusted, count - doubtful);
   const double sigmas = options.flight_sigmas;
   if (blow_at_end) {
-    const std::size_t last = end - kDoubtful;
+    const std::size_t last = end - doubtful;
     const Flight flight =
         FitFlight(samples.subspan(last - trusted, trusted), options.flight);
     for (std::size_t i = last; i < end; ++i) {
@@ -44,7 +48,7 @@ void TrimAtBlow(std::span<const PlaneSample> samples, std::size_t& begin,
       }
     }
   } else {
-    const std::size_t first = begin + kDoubtful;
+    const std::size_t first = begin + doubtful;
     const Flight flight =
         FitFlight(samples.subspan(first, trusted), options.flight);
     for (std::size_t i = first; i-- > begin;) {
@@ -354,6 +358,9 @@ bool MeasureStay(const PlaneTrack& track, Event& event,
   constexpr std::size_t kEnoughAtRest = 6;
   if (to >= from + kEnoughAtRest) {
     level = LevelOf(samples.subspan(from, to - from));
+    // Frames that do not agree on a height are not at rest.
+    constexpr double kAtRest_px = 0.25;
+    if (level && level->u > kAtRest_px) level = std::nullopt;
   }
   const double start_s = samples[event.before_end - 1].time_s;
   if (level) {

@@ -368,7 +368,8 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   return record;
 }
 
-core::ContactRecord RecordFromStart(const RecordContext& context) {
+core::ContactRecord RecordFromStart(const RecordContext& context,
+                                    double slope_rad) {
   const PlaneTrack& track = context.track;
   const std::span<const PlaneSample> samples(track.samples);
   core::ContactRecord record;
@@ -378,9 +379,12 @@ core::ContactRecord RecordFromStart(const RecordContext& context) {
   contact.time_s = AbsentBecause("on the ground from the start");
   contact.frame = AbsentBecause("on the ground from the start");
   contact.duration_s = AbsentBecause("on the ground from the start");
-  contact.approach_angle_rad =
-      Estimate{0.0, track.ground.u_angle_rad, std::nullopt};
-  contact.approach_budget = {{"ground", track.ground.u_angle_rad}};
+  // It does not approach; that its path and the visible line are inclined to
+  // each other is all that could be taken for it.
+  const double u_angle = std::hypot(track.ground.u_angle_rad, slope_rad);
+  contact.approach_angle_rad = Estimate{0.0, u_angle, std::nullopt};
+  contact.approach_budget = {{"ground", track.ground.u_angle_rad},
+                             {"path", std::abs(slope_rad)}};
 
   // The ground's height is that of the body's lowest point, half of the time.
   std::vector<double> gaps;
