@@ -448,9 +448,17 @@ double WidenToScatter(PlaneTrack& track) {
                            samples[i - 3].*value));
     }
     if (d.size() < 5) return 0.0;
-    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
-    std::nth_element(d.begin(), middle, d.end());
-    return 1.4826 * *middle / std::sqrt(20.0);
+    // A blow spoils three differences: in short tracks too many for the median.
+    constexpr std::size_t kMany = 12;
+    const bool many = d.size() >= kMany;
+    const double quantile = many ? 0.6744898 : 0.4307273;  // of |normal|
+    const auto at =
+        d.begin() + static_cast<std::ptrdiff_t>(d.size() / (many ? 2 : 3));
+    std::nth_element(d.begin(), at, d.end());
+    const double sigma = *at / quantile / std::sqrt(20.0);
+    // An excess within the scatter's own uncertainty is none.
+    const double doubt = 2.0 / std::sqrt(static_cast<double>(d.size()));
+    return sigma / (1.0 + doubt);
   };
   const auto typical = [&](double PlaneSample::*u) {
     std::vector<double> all;

@@ -66,17 +66,27 @@ inline Coverage DiscCoverage(const Outline& o, double w, double px, double py) {
   const double dy = py - o.centre.y_px;
   const double r = std::sqrt(dx * dx + dy * dy);
   const double radius = o.radius_px;
-  const double edge = radius - w * w / (2.0 * radius);
-  const double z = (edge - r) / w;
-  const NormalTable::Value normal = Normal(z);
-  const double density = normal.pdf / w;
-  c.value = normal.cdf;
+  // The blurred disc as a series in e = w/R, s = (r - R)/w, from the heat
+  // equation u_t = u_rr + u_r/r with 2 t = w^2:
+  //   Phi(-s) + phi(s) (-e/2 + 3/8 e^2 s - e^3 (1 + 5 s^2)/16) + O(e^4)
+  const double s = (r - radius) / w;
+  constexpr double kLargest = 0.6;  // the series' range
+  const double e = std::min(w / radius, kLargest);
+  const NormalTable::Value normal = Normal(-s);
+  const double g =
+      e * (-0.5 + e * (0.375 * s - e * (1.0 + 5.0 * s * s) / 16.0));
+  const double g_s = e * e * (0.375 - 0.625 * e * s);
+  const double g_e = -0.5 + e * (0.75 * s - 0.1875 * e * (1.0 + 5.0 * s * s));
+  c.value = normal.cdf + normal.pdf * g;
+  const double by_s = normal.pdf * (-1.0 - s * g + g_s);
+  const double by_e = normal.pdf * g_e;
+  const double density = -by_s / w;
   if (r > 1e-9) {
     c.d[0] = density * dx / r;
     c.d[1] = density * dy / r;
   }
-  c.d[2] = density * (1.0 + w * w / (2.0 * radius * radius));
-  c.d[5] = density * (-w / radius) - normal.pdf * z / w;
+  c.d[2] = density - by_e * e / radius;
+  c.d[5] = -by_s * s / w + by_e / radius;
   c.xi = dx / radius;
   c.eta = dy / radius;
   return c;

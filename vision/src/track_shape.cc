@@ -44,6 +44,26 @@ void FollowSize(const std::vector<Fitted>& all, Track& track) {
   const double noise = scatter / track.body.radius_px.value /
                        std::sqrt(static_cast<double>(all.size()) / 12.0);
   if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
+  // A step is no growth: a blow changes the way that smears the image. Each
+  // half must show a good part of the slope.
+  const auto half = [&](std::size_t begin, std::size_t end) {
+    std::vector<double> early;
+    std::vector<double> late;
+    const std::size_t third = (end - begin) / 3;
+    for (std::size_t i = 0; i < third; ++i) {
+      early.push_back(all[begin + i].fit.outline.radius_px);
+      late.push_back(all[end - 1 - i].fit.outline.radius_px);
+    }
+    const double apart =
+        all[end - 1 - third / 2].time_s - all[begin + third / 2].time_s;
+    return (Median(late) - Median(early)) / apart;
+  };
+  constexpr double kGoodPart = 0.4;
+  const std::size_t middle = all.size() / 2;
+  if (half(0, middle) / slope < kGoodPart ||
+      half(middle, all.size()) / slope < kGoodPart) {
+    return;
+  }
   for (Pose& pose : track.poses) {
     pose.relative_size =
         (level + slope * pose.time_s) / track.body.radius_px.value;
