@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace touchdown::vision {
 namespace {
@@ -12,6 +13,7 @@ struct Sides {
   double jump = 0.0;
   double u = 0.0;
   double bic = 0.0;
+  double chi2 = 0.0;
   double meet_s = 0.0;
   bool ok = false;
 };
@@ -78,12 +80,41 @@ Sides FitSides(std::span<const PlaneSample> left,
   const double widen = std::max(1.0, chi2 / (count - n));
   sides.jump = (x[3] - x[1]) / unit;
   sides.u = std::sqrt(widen * difference.dot(factor.solve(difference))) / unit;
+  sides.chi2 = chi2;
   sides.bic = chi2 + n * std::log(static_cast<double>(count));
   // Lines through the middle meet where the heights agree.
   const double dv = x[3] - x[1];
   sides.meet_s = middle + unit * (dv != 0.0 ? (x[0] - x[2]) / dv : 0.0);
   sides.ok = std::isfinite(sides.u) && sides.u > 0.0;
   return sides;
+}
+
+// Sum of squared residuals, in sigmas, of one straight line with `gravity`
+// added: of rest and sliding (0) or of one flight.
+double WithoutBlow(std::span<const PlaneSample> left,
+                   std::span<const PlaneSample> right, double gravity,
+                   double PlaneSample::*value, double PlaneSample::*u) {
+  const double middle = 0.5 * (left.back().time_s + right.front().time_s);
+  const double unit = right.back().time_s - left.front().time_s;
+  const double origin = left.back().*value;
+  double sw = 0, st = 0, sh = 0, stt = 0, sth = 0, shh = 0;
+  for (const auto side : {left, right}) {
+    for (const PlaneSample& s : side) {
+      const double w = 1.0 / (s.*u * s.*u);
+      const double seconds = s.time_s - middle;
+      const double t = seconds / unit;
+      const double h = s.*value - origin + 0.5 * gravity * seconds * seconds;
+      sw += w;
+      st += w * t;
+      sh += w * h;
+      stt += w * t * t;
+      sth += w * t * h;
+      shh += w * h * h;
+    }
+  }
+  const double tt = stt - st * st / sw;
+  const double th = sth - st * sh / sw;
+  return shh - sh * sh / sw - (tt > 0.0 ? th * th / tt : 0.0);
 }
 
 }  // namespace
@@ -103,9 +134,21 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
       if (other.ok && (!sides.ok || other.bic < sides.bic)) sides = other;
     };
     if (left.size() >= 4 && right.size() >= 4) better(Curvature::kOwn);
-    if (options.gravity_px_per_s2) better(Curvature::kKnown);
+    double most = std::numeric_limits<double>::infinity();
+    if (options.gravity_px_per_s2) {
+      const Sides before = sides;
+      better(Curvature::kKnown);
+      if (sides.bic < before.bic || !before.ok) {
+        // Rest looks like many small bounces, and one flight like none: the
+        // blow must explain what neither does.
+        const double without =
+            std::min(WithoutBlow(left, right, 0.0, value, u),
+                     WithoutBlow(left, right, gravity, value, u));
+        most = std::sqrt(std::max(0.0, without - sides.chi2));
+      }
+    }
     if (!sides.ok || sides.jump <= 0.0) return;
-    const double significance = sides.jump / sides.u;
+    const double significance = std::min(most, sides.jump / sides.u);
     const double span_s = right.back().time_s - left.front().time_s;
     if (significance < options.least_significance) return;
     if (0.25 * sides.jump * span_s < options.least_effect_px) return;
@@ -121,7 +164,7 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
   };
   const bool turns = !samples.empty() && samples.front().u_face_rad > 0.0;
   for (const std::size_t window : kWindows) {
-    for (std::size_t k = 2; k + 3 < samples.size() + 1; ++k) {
+    for (std::size_t k = 1; k + 2 < samples.size(); ++k) {
       // Left: [.., k], right: [k + 1, ..]; shorter near the ends.
       const std::size_t n_left = std::min(window, k + 1);
       const std::size_t n_right = std::min(window, samples.size() - k - 1);

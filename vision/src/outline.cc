@@ -61,10 +61,7 @@ class Fitter {
           calib::HeightAbove(*options.ground, {1.0, 0.0}) - ground_offset_;
       ground_y_ =
           calib::HeightAbove(*options.ground, {0.0, 1.0}) - ground_offset_;
-      // The blurred edges of body and ground do not superpose: clear of both.
-      constexpr double kBlurs = 2.5;
-      ground_offset_ -=
-          std::max(options.ground_margin_px, kBlurs * options.blur_px);
+      ground_offset_ -= options.ground_margin_px;
     }
     geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
     // A body of a few pixels cannot tell shading from shape.
@@ -512,7 +509,15 @@ core::Expected<OutlineFit> Fitter::Run() {
   const double noise =
       std::sqrt(background_.Variance(pixels_[pixels_.size() / 2].background));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel
-  if (!(std::abs(contrast_) > kLeastContrast * noise)) {
+  // Noise has blobs of a pixel or two as bright as that: all of the body
+  // together must stand out, too.
+  constexpr double kLeastOfAll = 12.0;
+  const double area =
+      outline_.kind == core::BodyKind::kSphere
+          ? std::numbers::pi * outline_.radius_px * outline_.radius_px
+          : 4.0 * outline_.half_long_px * outline_.half_short_px;
+  if (!(std::abs(contrast_) > kLeastContrast * noise) ||
+      !(std::abs(contrast_) * std::sqrt(area) > kLeastOfAll * noise)) {
     return core::AbsentBecause(
         fmt::format("contrast {:.1f} DN is below {:.0f} times the noise {:.1f}",
                     std::abs(contrast_), kLeastContrast, noise));
@@ -560,7 +565,11 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.visible = VisibleShare();
   fit.pixels = static_cast<int>(pixels_.size());
   fit.iterations = iteration + 1;
-  if (!std::isfinite(fit.u_x_px + fit.u_y_px + fit.u_angle_rad)) {
+  // Known to no better than half its size it is no outline.
+  const double vague = 0.5 * SmallestHalf(outline_);
+  if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <
+        vague) ||
+      !std::isfinite(fit.u_angle_rad) || inliers_ == 0.0) {
     return core::AbsentBecause("the outline's covariance is degenerate");
   }
   return fit;

@@ -102,6 +102,22 @@ std::optional<double> Shared(const std::vector<Fitted>& all,
   return RobustMean(values, us).value;
 }
 
+// A body that is no sphere or rectangle, or lies behind others, may lose its
+// size in a free fit: what was found is kept then.
+bool IsSameSize(const BodyImage& again, const BodyImage& found) {
+  constexpr double kMost = 0.2;    // change
+  constexpr double kMostU = 0.05;  // both relative to the size
+  const auto same = [&](const core::Estimate& a, const core::Estimate& b) {
+    return std::abs(a.value - b.value) <= kMost * b.value &&
+           a.u <= kMostU * b.value;
+  };
+  if (found.kind == core::BodyKind::kSphere) {
+    return same(again.radius_px, found.radius_px);
+  }
+  return same(again.half_long_px, found.half_long_px) &&
+         same(again.half_short_px, found.half_short_px);
+}
+
 class Refiner {
  public:
   Refiner(Clip& clip, const Background& background, const Track& track,
@@ -111,6 +127,16 @@ class Refiner {
         track.known_background ? Surround::kBackground : Surround::kPolynomial;
     options_.blur_px = track.body.blur_px;
     options_.ground = refine.ground;
+    // The blurred edges of body and ground do not superpose: clear of both, as
+    // long as most of the body is left.
+    constexpr double kBlurs = 2.5;
+    constexpr double kMostOfHalf = 0.5;
+    const double half = track.body.kind == core::BodyKind::kSphere
+                            ? track.body.radius_px.value
+                            : track.body.half_short_px.value;
+    options_.ground_margin_px =
+        std::max(options_.ground_margin_px,
+                 std::min(kBlurs * track.body.blur_px, kMostOfHalf * half));
     for (std::size_t i = 0; i < track.poses.size(); ++i) {
       travel_.push_back(TravelOf(track.poses, i));
     }
@@ -163,17 +189,16 @@ void Refiner::LearnShape(Track& refined) {
   constexpr double kStart = 0.3;  // of the frame interval
   if (options_.fit_open) options_.open = kStart;
   std::vector<Fitted> sized = Sample(refined.body);
-  if (sized.size() >= kLeast) {
-    if (options_.fit_open) {
-      options_.open = std::clamp(
-          Shared(sized, &OutlineFit::open, &OutlineFit::u_open).value_or(0.0),
-          0.0, 1.0);
-    }
+  const double open = std::clamp(
+      Shared(sized, &OutlineFit::open, &OutlineFit::u_open).value_or(0.0), 0.0,
+      1.0);
+  options_.open = 0.0;
+  if (sized.size() >= kLeast &&
+      IsSameSize(ShapeOf(sized, track_.body.kind), track_.body)) {
+    if (options_.fit_open) options_.open = open;
     refined.body.blur_px =
         Shared(sized, &OutlineFit::blur_px, &OutlineFit::u_blur_px)
             .value_or(refined.body.blur_px);
-  } else {
-    options_.open = 0.0;
   }
   options_.fit_open = false;
   options_.fit_blur = false;
@@ -184,6 +209,7 @@ void Refiner::LearnShape(Track& refined) {
   // does to the size would not show in their scatter.
   options_.shading = ShadingOf(sized);
   const BodyImage shape = ShapeOf(sized, track_.body.kind);
+  if (!IsSameSize(shape, track_.body)) return;
   refined.body.radius_px = shape.radius_px;
   refined.body.half_long_px = shape.half_long_px;
   refined.body.half_short_px = shape.half_short_px;
