@@ -327,13 +327,27 @@ bool MeasureRebound(const PlaneTrack& track, Event& event,
     lasting.release_s = *t2;
     lasting.ground_px.u = std::max(options.u_line_px, 1e-6);
     std::optional<JointFit> soft = FitJointly(track, lasting);
-    if (soft && soft->p[kT2] > soft->p[kT]) {
+    if (soft) {
+      const core::Estimate lasts = soft->Of(
+          [](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
       const double more = static_cast<double>(
           soft->active.count() - (instant ? instant->active.count() : 0));
       const double n = static_cast<double>(soft->degrees);
+      // Where neither describes the frames to their noise, noise is what is
+      // left.
+      const double excess = std::max(1.0, soft->chi2 / std::max(1.0, n));
+      constexpr double kClear = 3.0;
+      const bool clear = lasts.value > kClear * lasts.u;
+      // Shorter, no frame shows the contact: only what the flights miss of each
+      // other speaks of it, as anything else would that bends them.
+      constexpr double kResolved = 0.5;  // frames
+      const bool resolved = clear && lasts.value > kResolved;
       if (!instant ||
-          instant->chi2 - soft->chi2 > more * std::log(std::max(2.0, n))) {
+          (resolved && instant->chi2 - soft->chi2 >
+                           excess * more * std::log(std::max(2.0, n)))) {
         instant = soft;
+      } else if (clear) {
+        event.unresolved_s = 0.5 * lasts.value * soft->interval_s;
       }
     }
   }
@@ -427,6 +441,7 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
                           std::nullopt};
   };
   event.time_s = time_of(kT);
+  event.time_s.u = std::hypot(event.time_s.u, event.unresolved_s);
   event.release_s = fit.instant ? event.time_s : time_of(kT2);
   event.ground_px =
       fit.Of([&](const JointVector& p) { return fit.GroundAtContact(p); });

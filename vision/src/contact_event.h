@@ -30,6 +30,7 @@ struct Event {
   std::optional<JointFit> fit;  // of all that follows
   core::Estimate time_s;        // touchdown
   core::Estimate release_s;     // valid with `after`
+  double unresolved_s = 0.0;    // half of a contact too short to be seen
   core::Estimate ground_px;     // height of the ground above the line, there
   double disagreement = 0.0;    // sigmas between the flights and the line
 };

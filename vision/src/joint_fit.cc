@@ -37,13 +37,14 @@ Support SupportOf(bool turns, const JointVector& p, double face) {
 
 // Which parameters one side of the contact uses.
 struct Side {
-  JointParameter t, x, vx, vy, face, omega;
+  JointParameter t, x, vx, vy, face, omega, gravity;
 };
 
-Side SideOf(bool after, bool instant) {
-  if (!after) return {kT, kX, kVx, kVy, kFace, kOmega};
-  if (instant) return {kT, kX, kVx2, kVy2, kFace, kOmega2};
-  return {kT2, kX2, kVx2, kVy2, kFace2, kOmega2};
+Side SideOf(const JointFit& fit, bool after) {
+  if (!after) return {kT, kX, kVx, kVy, kFace, kOmega, kGravity};
+  const JointParameter gravity = fit.active[kGravity2] ? kGravity2 : kGravity;
+  if (fit.instant) return {kT, kX, kVx2, kVy2, kFace, kOmega2, gravity};
+  return {kT2, kX2, kVx2, kVy2, kFace2, kOmega2, gravity};
 }
 
 struct Predicted {
@@ -71,15 +72,15 @@ PredictedPose Predict(const JointFit& fit, const Side& side, double t) {
   const double reach = p[side.x] - fit.reference_px;
   Predicted& h = pose.height;
   h.value = p[kGround] + p[kSlope] * reach + support.value + p[side.vy] * s -
-            0.5 * p[kGravity] * s * s;
+            0.5 * p[side.gravity] * s * s;
   h.d[kGround] = 1.0;
   h.d[kSlope] = reach - support.d_face;
   h.d[side.x] = p[kSlope];
   h.d[kHalfLong] = support.d_long;
   h.d[kHalfShort] = support.d_short;
   h.d[side.vy] = s;
-  h.d[kGravity] = -0.5 * s * s;
-  h.d[side.t] = -(p[side.vy] - p[kGravity] * s);
+  h.d[side.gravity] = -0.5 * s * s;
+  h.d[side.t] = -(p[side.vy] - p[side.gravity] * s);
   if (fit.turns) {
     h.d[side.face] = support.d_face;
     pose.face.value = p[side.face] + p[side.omega] * s;
@@ -145,8 +146,11 @@ void Solver::Start() {
   if (!fit_.turns) leave_out({kHalfShort, kFace, kOmega, kOmega2, kFace2});
   if (input_.after.empty()) leave_out({kVx2, kVy2, kOmega2});
   if (input_.after.empty() || input_.instant) leave_out({kT2, kX2, kFace2});
+  if (input_.after.empty() || input_.gravity_px_per_s2) leave_out({kGravity2});
   if (!input_.after.empty()) {
-    const FlightState a = FitFlight(input_.after, options).At(input_.release_s);
+    const Flight after = FitFlight(input_.after, options);
+    const FlightState a = after.At(input_.release_s);
+    p[kGravity2] = after.height[2] * dt * dt;
     p[kVx2] = a.v_t * dt;
     p[kVy2] = a.v_n * dt;
     p[kOmega2] = a.omega * dt;
@@ -178,7 +182,7 @@ void Solver::Accumulate() {
   fit_.degrees = 0;
   const double dt = fit_.interval_s;
   const auto add = [&](std::span<const PlaneSample> samples, bool after) {
-    const Side side = SideOf(after, input_.instant);
+    const Side side = SideOf(fit_, after);
     for (const PlaneSample& s : samples) {
       const PredictedPose pose =
           Predict(fit_, side, (s.time_s - fit_.origin_s) / dt);
@@ -307,9 +311,9 @@ Flight FlightOf(const JointFit& fit, const Side& side,
   d.row(2) = pose.height.d;
   d.row(3).setZero();
   d(3, side.vy) = fps;
-  d(3, side.t) = fps * fit.p[kGravity];
+  d(3, side.t) = fps * fit.p[side.gravity];
   d.row(4).setZero();
-  d(4, kGravity) = fps * fps;
+  d(4, side.gravity) = fps * fps;
   d.row(5) = pose.face.d;
   d.row(6).setZero();
   if (fit.turns) d(6, side.omega) = fps;
@@ -317,7 +321,7 @@ Flight FlightOf(const JointFit& fit, const Side& side,
       d * fit.covariance * d.transpose();
   flight.along = {fit.origin_px + pose.along.value, fps * fit.p[side.vx]};
   flight.height = {pose.height.value, fps * fit.p[side.vy],
-                   fps * fps * fit.p[kGravity]};
+                   fps * fps * fit.p[side.gravity]};
   flight.along_cov = covariance.block<2, 2>(0, 0);
   flight.height_cov = covariance.block<3, 3>(2, 2);
   flight.face.setZero();
@@ -372,11 +376,11 @@ double JointFit::ShareOf(const Function& f,
 }
 
 Flight JointFit::Before(std::span<const PlaneSample> samples) const {
-  return FlightOf(*this, SideOf(false, instant), samples);
+  return FlightOf(*this, SideOf(*this, false), samples);
 }
 
 Flight JointFit::After(std::span<const PlaneSample> samples) const {
-  return FlightOf(*this, SideOf(true, instant), samples);
+  return FlightOf(*this, SideOf(*this, true), samples);
 }
 
 std::optional<JointFit> FitJointly(const PlaneTrack& track,

@@ -42,6 +42,7 @@ enum JointParameter {
   kT2,
   kX2,
   kFace2,
+  kGravity2,
   kJointParameters
 };
 
@@ -57,7 +58,8 @@ struct JointInput {
   core::Estimate ground_px;  // prior, at the contact
   double u_slope_rad = 0.0;
   double reference_along_px = 0.0;  // where the line's height is known best
-  // px/s^2; nothing: free, the same before and after.
+  // px/s^2; nothing: free, and another after than before, since without a scale
+  // nothing says that the body keeps its distance from the camera.
   std::optional<core::Estimate> gravity_px_per_s2;
 };
 

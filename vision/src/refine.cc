@@ -128,9 +128,9 @@ class Refiner {
     options_.blur_px = track.body.blur_px;
     options_.ground = refine.ground;
     // The blurred edges of body and ground do not superpose: clear of both, as
-    // long as most of the body is left.
+    // long as half of the body is left.
     constexpr double kBlurs = 2.5;
-    constexpr double kMostOfHalf = 0.5;
+    constexpr double kMostOfHalf = 1.0;
     const double half = track.body.kind == core::BodyKind::kSphere
                             ? track.body.radius_px.value
                             : track.body.half_short_px.value;
