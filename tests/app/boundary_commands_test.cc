@@ -117,6 +117,30 @@ TEST_F(BoundaryCommands, AStoreGivesTheSameAsThePaperItself) {
               b["groups"][0]["posterior"]["median_deg"].get<double>(), 1e-6);
 }
 
+// The first report of a new user: the paper's own.
+TEST_F(BoundaryCommands, ImportOfThePapersTable1MakesItsReport) {
+  const std::string store = (folder_.path() / "paper.db").string();
+  const Ran imported = RunProgram("import --paper-table1 --db " + store);
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  EXPECT_EQ(imported.out, "18 trials in 2 campaigns imported\n");
+  const auto out = folder_.path() / "report";
+  const Ran ran = RunProgram("report --db " + store + " --out " + out.string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const std::string page = ReadAll(out / "table1.md");
+  EXPECT_THAT(page, HasSubstr("sphere: inconclusive."));
+  EXPECT_THAT(page, HasSubstr("rectangle: inconclusive."));
+  EXPECT_THAT(page, HasSubstr("The smallest margin that would pass is 17.2"));
+  EXPECT_THAT(page, HasSubstr("The smallest margin that would pass is 10.7"));
+  // Once more it is refused, and nothing is doubled.
+  ExpectOneLine(RunProgram("import --paper-table1 --db " + store), 4,
+                "there is a campaign 'paper-table1-sphere' already");
+  const json document = json::parse(ReadAll(out / "table1.json"));
+  EXPECT_EQ(document.at("groups").at(0).at("trials").size(), 9u);
+  ExpectOneLine(RunProgram("import --paper-table1"), 2, "--db");
+  ExpectOneLine(RunProgram("import x.csv --paper-table1 --db " + store), 2,
+                "must be left out");
+}
+
 TEST_F(BoundaryCommands, FiltersChooseTrials) {
   const std::string store = Store();
   const Ran body = RunProgram("boundary --json --body sphere --db " + store);
