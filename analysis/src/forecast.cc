@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "likelihood.h"
@@ -14,8 +15,9 @@ namespace {
 // Steps of the forecast's own grid per target half-width: quantiles between
 // them are interpolated.
 constexpr double kStepsPerTarget = 4.0;
-// No finer than this, however small the target is.
-constexpr std::size_t kMostAngles = 600;
+// With more angles than this the grid begins coarser, and becomes finer as the
+// belief gets narrower.
+constexpr std::size_t kMostAngles = 120;
 // Neighbouring scatters of the posterior that become one.
 constexpr std::size_t kScattersPerLevel = 3;
 // What lies outside these quantiles is left out.
@@ -23,9 +25,9 @@ constexpr double kTail = 1e-4;
 // Angles whose share is below this of the greatest are dropped on the way.
 constexpr double kForgotten = 1e-7;
 // Where a trial may be thrown, in standard deviations from the mean.
-constexpr double kCandidates[] = {-1.0, -0.5, 0.0, 0.5, 1.0};
+constexpr double kCandidates[] = {-0.7, 0.0, 0.7};
 // After so many trials the interval is taken to narrow as the information says.
-constexpr int kMostSteps = 80;
+constexpr int kMostSteps = 40;
 constexpr double kNever = 1e6;  // what the number says beyond
 
 // The posterior on an even grid that gets narrower as trials come in.
@@ -187,6 +189,22 @@ void Learn(Belief& belief, const std::vector<double>& inverse, double angle_rad,
   for (double& w : belief.weight) w /= total;
 }
 
+// Halves the steps while they are coarse for the target and few: each half has
+// half of what its step had.
+void Refine(Belief& belief, double target_rad) {
+  const std::size_t m = belief.levels();
+  while (belief.step_rad > target_rad / kStepsPerTarget &&
+         2 * belief.angles() <= kMostAngles) {
+    std::vector<double> halves(2 * belief.weight.size());
+    for (std::size_t k = 0; k < halves.size(); ++k) {
+      halves[k] = belief.weight[k / m / 2 * m + k % m] / 2;
+    }
+    belief.weight = std::move(halves);
+    belief.first_rad -= belief.step_rad / 4;
+    belief.step_rad /= 2;
+  }
+}
+
 struct Truth {
   double boundary_rad = 0.0;
   double scatter_rad = 0.0;
@@ -236,6 +254,7 @@ double PlayOut(Belief belief, const Truth& truth, double u_rad,
     const bool bounced =
         angle > truth.boundary_rad + truth.scatter_rad * normal(engine);
     Learn(belief, when_seen, angle + u_rad * normal(engine), bounced);
+    Refine(belief, options.target_half_width_rad);
   }
 }
 

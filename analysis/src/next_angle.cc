@@ -342,9 +342,14 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
   } else if (trials_so_far >= options.max_trials) {
     out.stop = StopReason::kMaxTrials;
   }
-  std::mt19937_64 engine(options.forecast_seed);
-  out.trials_to_target = ForecastTrials(
-      posterior, {options.target_half_width_rad, options.set_u_rad}, engine);
+  if (options.forecast_futures > 0) {
+    std::mt19937_64 engine(options.forecast_seed);
+    out.trials_to_target =
+        ForecastTrials(posterior,
+                       {options.target_half_width_rad, options.set_u_rad,
+                        options.forecast_futures},
+                       engine);
+  }
   return out;
 }
 

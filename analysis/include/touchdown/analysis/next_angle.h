@@ -30,11 +30,13 @@ struct NextAngleOptions {
   // the rule spend its first trials on that tail. Simulated (scatter 0.3 deg),
   // the estimate is within 0.5 deg in 95 of 100 cases after 14 trials instead
   // of 18.
-  ScatterPrior design_scatter{1.0 * core::kDegree, 1.0};
+  ScatterPrior design_scatter{0.7 * core::kDegree, 1.0};
   // Enough when the 95 % interval is no wider than +- this.
   double target_half_width_rad = 0.5 * core::kDegree;
-  int max_trials = 60;              // or when so many have been thrown
-  std::uint64_t forecast_seed = 1;  // of the futures of ForecastTrials()
+  int max_trials = 60;  // or when so many have been thrown
+  // Of ForecastTrials(): its futures (0: no forecast) and their seed.
+  int forecast_futures = 15;
+  std::uint64_t forecast_seed = 1;
 };
 
 enum class StopReason { kNone, kTargetReached, kMaxTrials };
@@ -63,9 +65,9 @@ double ExpectedSd(const BoundaryPosterior& posterior, double angle_rad,
 struct ForecastOptions {
   double target_half_width_rad = 0.5 * core::kDegree;
   double set_u_rad = 0.5 * core::kDegree;  // repeatability of the ejector
-  // The answer is their median: with 31 it is repeatable to about a tenth of
-  // how far futures differ.
-  int futures = 31;
+  // The answer is their median: repeatable to about a third of how far futures
+  // differ, and 10 ms.
+  int futures = 15;
 };
 
 // Forecast: how many further trials until the 95 % interval is no wider than
