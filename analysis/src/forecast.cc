@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "design.h"
 #include "likelihood.h"
 #include "require.h"
 #include "touchdown/analysis/next_angle.h"
@@ -271,9 +272,10 @@ int ForecastTrials(const BoundaryPosterior& posterior,
   if (half_width <= options.target_half_width_rad) return 0;
   const double u_rad = posterior.typical_u_rad.value_or(options.set_u_rad);
   const Belief belief = Coarsen(posterior, options.target_half_width_rad);
+  const Design design = Reweigh(posterior, options.design_scatter);
   std::vector<double> needed;
   for (int i = 0; i < options.futures; ++i) {
-    const Truth truth = DrawTruth(posterior.grid, engine);
+    const Truth truth = DrawTruth(design.grid, engine);
     needed.push_back(PlayOut(belief, truth, u_rad, options, engine));
   }
   const auto middle =

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "design.h"
 #include "likelihood.h"
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/special_functions.h"
@@ -41,11 +42,6 @@ void CheckFeasible(const core::Interval& feasible) {
           "finite and not below feasible_rad.low");
 }
 
-double LogPrior(const ScatterPrior& prior, double scatter_rad) {
-  const double z = std::log(scatter_rad / prior.median_rad) / prior.log_sd;
-  return -0.5 * z * z;
-}
-
 NextAngle Clipped(double angle_rad, const core::Interval& feasible) {
   NextAngle out;
   out.angle_rad = std::clamp(angle_rad, feasible.low, feasible.high);
@@ -76,39 +72,6 @@ double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
   if (p > 0.0) expected -= p_theta * p_theta / p;
   if (p < 1.0) expected -= p_theta * p_theta / (1.0 - p);
   return expected;
-}
-
-// The posterior as it would be under another prior on the scatter, with its
-// moments.
-struct Design {
-  BoundaryGrid grid;
-  double mean_rad = 0.0;
-  double sd_rad = 0.0;
-};
-
-Design Reweigh(const BoundaryPosterior& posterior, const ScatterPrior& prior) {
-  Design out{posterior.grid, 0.0, 0.0};
-  const std::size_t m = out.grid.scatter_rad.size();
-  std::vector<double> log_ratio;
-  for (const double s : out.grid.scatter_rad) {
-    log_ratio.push_back(LogPrior(prior, s) - LogPrior(posterior.prior, s));
-  }
-  const double most = *std::max_element(log_ratio.begin(), log_ratio.end());
-  double total = 0.0;
-  for (std::size_t k = 0; k < out.grid.weight.size(); ++k) {
-    total += out.grid.weight[k] *= std::exp(log_ratio[k % m] - most);
-  }
-  for (std::size_t k = 0; k < out.grid.weight.size(); ++k) {
-    out.grid.weight[k] /= total;
-    out.mean_rad += out.grid.weight[k] * out.grid.angle_rad[k / m];
-  }
-  double variance = 0.0;
-  for (std::size_t k = 0; k < out.grid.weight.size(); ++k) {
-    const double d = out.grid.angle_rad[k / m] - out.mean_rad;
-    variance += out.grid.weight[k] * d * d;
-  }
-  out.sd_rad = std::sqrt(variance);
-  return out;
 }
 
 // The golden ratio's multiples fill an interval evenly, however many there are.
@@ -347,7 +310,7 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
     out.trials_to_target =
         ForecastTrials(posterior,
                        {options.target_half_width_rad, options.set_u_rad,
-                        options.forecast_futures},
+                        options.forecast_futures, options.design_scatter},
                        engine);
   }
   return out;

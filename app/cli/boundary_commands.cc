@@ -113,7 +113,7 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         "--trials: a report needs --body sphere or rectangle, which the file "
         "does not say");
   }
-  report::ReportInput input = MakeInput(flags);
+  report::ReportInput input = MakeInput(flags, true);
   input.options = options;
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();

@@ -126,11 +126,16 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   return out;
 }
 
-report::ReportInput MakeInput(const BoundaryFlags& flags) {
-  pipeline::Selection selection = pipeline::SelectTrials(MakeSelection(flags));
+report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
+  pipeline::SelectionOptions options = MakeSelection(flags);
+  options.with_evidence = with_evidence;
+  pipeline::Selection selection = pipeline::SelectTrials(options);
   report::ReportInput input;
   input.trials = std::move(selection.trials);
   input.campaigns = std::move(selection.campaigns);
+  for (const pipeline::TwoLabels& pair : selection.labels) {
+    input.labels.push_back({pair.trial, pair.by_program, pair.by_person});
+  }
   input.source = std::move(selection.source);
   input.software_version = std::string(pipeline::Version());
   input.study = MakeStudy(flags);

@@ -57,7 +57,8 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags);
 analysis::StudyOptions MakeStudy(const BoundaryFlags& flags);
 
 // The selected trials with what they are to be compared with.
-report::ReportInput MakeInput(const BoundaryFlags& flags);
+report::ReportInput MakeInput(const BoundaryFlags& flags,
+                              bool with_evidence = false);
 
 // "11.8" or "11.8+-0.5", in degrees.
 core::Estimate ParseTheory(const std::string& text);

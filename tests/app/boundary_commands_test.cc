@@ -179,6 +179,36 @@ TEST_F(BoundaryCommands, NextStaysFeasibleAndFollowsTheRule) {
   ExpectOneLine(RunProgram(paper + "--rule magic"), 2, "magic");
 }
 
+TEST_F(BoundaryCommands, NextGivesTheRigsSetPointsAndStaysWithinItsReach) {
+  const std::string rig = Write("rig.toml", RunProgram("rig example").out);
+  // The example's rectangle stands at a radius angle of 18.4 deg at least.
+  const std::string next =
+      "next --paper-table1 --body rectangle --speed-mps 4 --rig " + rig;
+  const Ran ran = RunProgram(next + " --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json document = json::parse(ran.out);
+  EXPECT_NEAR(document.at("angle_deg").get<double>(), 18.44, 0.02);
+  EXPECT_TRUE(document.at("next").at("clipped").get<bool>());
+  const json& set = document.at("set_points");
+  EXPECT_TRUE(set.at("possible").get<bool>());
+  EXPECT_GT(set.at("compression_mm").get<double>(), 0.0);
+  EXPECT_GT(set.at("contact").at("launch_speed_mps").at("u").get<double>(), 0);
+  EXPECT_NEAR(
+      set.at("contact").at("radius_angle_deg").at("value").get<double>(),
+      document.at("angle_deg").get<double>(), 1e-6);
+  EXPECT_THAT(RunProgram(next).out, HasSubstr("compression"));
+  ExpectOneLine(RunProgram("next --paper-table1 --body rectangle --rig " + rig),
+                2, "--speed-mps");
+  ExpectOneLine(RunProgram("next --paper-table1 --body sphere --speed-mps 4 "
+                           "--rig " +
+                           rig),
+                2, "is a rectangle, the trials are of a sphere");
+  ExpectOneLine(RunProgram("next --paper-table1 --body rectangle "
+                           "--speed-mps 4000 --rig " +
+                           rig),
+                2, "cannot throw any radius angle");
+}
+
 TEST_F(BoundaryCommands, NextBeforeTheFirstTrial) {
   const std::string path = Write("none.csv", "angle_deg,u_deg,p_bounce\n");
   const Ran ran = RunProgram("next --json --trials " + path);
