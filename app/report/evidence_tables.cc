@@ -50,8 +50,8 @@ std::vector<Block> MakeLabels(const Group& group) {
       group.labels.size(), count[0][1], count[1][0], test.p_exact, test.p_mid);
   if (undecided > 0) {
     text += fmt::format(
-        " {} more, undecided by one of the two, are not in the table.",
-        undecided);
+        " {} of them, undecided by one of the two, {} not in the table.",
+        undecided, undecided == 1 ? "is" : "are");
   }
   return {table, Paragraph{text, true}};
 }

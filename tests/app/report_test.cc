@@ -218,8 +218,8 @@ TEST(MakeReport, TwoLabelsOfTheSameTrialsAreCompared) {
                           core::MotionState::kBounce});
   const Report report = MakeReport(input);
   EXPECT_THAT(report.markdown, HasSubstr("7 trials bear both labels"));
-  EXPECT_THAT(report.markdown, HasSubstr("McNemar exact p = 0.0312"));
-  EXPECT_THAT(report.markdown, HasSubstr("1 more, undecided"));
+  EXPECT_THAT(report.markdown, HasSubstr("McNemar exact p = 0.0313"));
+  EXPECT_THAT(report.markdown, HasSubstr("1 of them, undecided"));
 }
 
 TEST(MakeReport, WhatStandsBehindTheTrialsIsSaid) {
