@@ -133,7 +133,9 @@ struct Run {
   int forecast_at_10 = 0;
 };
 
-Run RunRule(double scatter_deg, int max_trials, Engine& engine) {
+// Goes on after the stop until `at_least` trials, so that the error after so
+// many is of all runs.
+Run RunRule(double scatter_deg, int at_least, int max_trials, Engine& engine) {
   const Lab lab{Draw(5, 20, engine), scatter_deg, 0.3, 0.2};
   const double truth = lab.boundary_deg * kDegree;
   BoundaryFitOptions fit;
@@ -160,8 +162,7 @@ Run RunRule(double scatter_deg, int max_trials, Engine& engine) {
       out.covered = posterior.interval95_rad.low <= truth &&
                     truth <= posterior.interval95_rad.high;
     }
-    // Long past the goal nothing new is to be seen.
-    if (out.stop <= max_trials && n >= 20) break;
+    if (out.stop <= max_trials && n >= at_least) break;
     trials.push_back(Throw(lab, next.angle_rad / kDegree, engine));
   }
   return out;
@@ -189,9 +190,10 @@ void Sequential(int repetitions, Engine& engine) {
     int covered = 0;
     int n_stopped = 0;
     for (int r = 0; r < repetitions; ++r) {
-      const Run run = RunRule(goal.scatter_deg, goal.max_trials, engine);
+      const Run run = RunRule(goal.scatter_deg, std::max(goal.n95, 20),
+                              goal.max_trials, engine);
       for (std::size_t k = 0; k < close.size(); ++k) {
-        // A run that stopped early keeps its last answer.
+        // Beyond the goal a run that stopped keeps its last answer.
         close[k] += run.close[std::min(k, run.close.size() - 1)] ? 1 : 0;
       }
       stops.push_back(run.stop);
