@@ -177,10 +177,12 @@ void Learn(Belief& belief, const std::vector<double>& inverse, double angle_rad,
   }
   std::size_t first = belief.angles();
   std::size_t last = 0;
-  for (std::size_t k = 0; k < belief.weight.size(); ++k) {
-    if (belief.weight[k] < kForgotten * greatest) continue;
-    first = std::min(first, k / m);
-    last = k / m;
+  for (std::size_t i = 0; i < belief.angles(); ++i) {
+    for (std::size_t j = 0; j < m; ++j) {
+      if (belief.weight[i * m + j] < kForgotten * greatest) continue;
+      first = std::min(first, i);
+      last = i;
+    }
   }
   belief.first_rad = belief.Angle(first);
   const auto begin = belief.weight.begin();

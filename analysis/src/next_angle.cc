@@ -285,8 +285,10 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
   // that can be thrown: Clipped() sees to that.
   double best = mean;
   double best_variance = std::numeric_limits<double>::infinity();
-  for (double c = std::ceil((mean - reach) / step) * step; c <= mean + reach;
-       c += step) {
+  const auto last = std::llround(std::floor((mean + reach) / step));
+  for (auto i = std::llround(std::ceil((mean - reach) / step)); i <= last;
+       ++i) {
+    const double c = static_cast<double>(i) * step;
     if (c < options.feasible_rad.low || c > options.feasible_rad.high) continue;
     const double expected =
         ExpectedVariance(design.grid, c, inverse_scatter, mean, variance);

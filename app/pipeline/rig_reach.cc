@@ -1,6 +1,6 @@
 #include "app/pipeline/rig_reach.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "touchdown/core/units.h"
 
@@ -10,6 +10,7 @@ namespace {
 using core::kDegree;
 
 constexpr int kDegrees = 90;
+constexpr double kMiddle_rad = 45.0 * kDegree;
 constexpr double kEnd_rad = 0.01 * kDegree;
 
 }  // namespace
@@ -39,7 +40,7 @@ core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
     }
   }
   if (best_count == 0) {
-    wish.angle_rad = kDegrees / 2 * kDegree;
+    wish.angle_rad = kMiddle_rad;
     const auto refused = rig::SettingFor(rig, wish);
     return core::AbsentBecause(refused ? "no whole degree can be thrown"
                                        : refused.error().reason);

@@ -73,6 +73,7 @@ std::vector<Block> MakeBudget(const Group& group,
   }
   if (n == 0) return {};
   std::vector<std::pair<double, std::string>> lines;
+  lines.reserve(squares.size());
   for (const auto& [source, sum] : squares) {
     lines.emplace_back(std::sqrt(sum / n), source);
   }
