@@ -7,13 +7,17 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/truth_file.h"
 #include "app/pipeline/version.h"
 #include "touchdown/calib/ground_lines.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/clip_digest.h"
 #include "touchdown/vision/frame_store.h"
+#include "touchdown/vision/lens_track.h"
 #include "touchdown/vision/tracker.h"
 
 namespace touchdown::pipeline {
@@ -63,10 +67,15 @@ core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
           std::nullopt};
 }
 
+// `image`: of the body in the ideal picture.
 std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
                                       const vision::BodyImage& image) {
   if (options.scale_px_per_m) {
     return calib::Scale{*options.scale_px_per_m, calib::ScaleSource::kUser};
+  }
+  if (options.calibration && options.calibration->scale) {
+    return calib::Scale{options.calibration->scale->px_per_m,
+                        calib::ScaleSource::kCalibration};
   }
   // The size of a part is not that of the body.
   if (image.whole_px > 0.0) return std::nullopt;
@@ -133,6 +142,11 @@ class Analyzer {
   Analysis Run();
 
  private:
+  void FitCalibration();
+  vision::Track Seen(const vision::Track& track) const;
+  calib::GroundLine InImage(const calib::GroundLine& ground,
+                            const vision::Track& track) const;
+  void AddLens();
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   void FindGroundAndContacts(const vision::Track& track);
   void DescribeScene();
@@ -143,22 +157,120 @@ class Analyzer {
   vision::Background background_;
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
+  std::optional<calib::Lens> lens_;       // of this clip
+  // As given or calibrated, in the image and in the ideal picture.
+  std::optional<calib::GroundLine> image_ground_;
+  std::optional<calib::GroundLine> known_ground_;
 };
+
+void Analyzer::FitCalibration() {
+  image_ground_ = options_.ground;
+  if (options_.calibration) {
+    const vision::ClipInfo& clip = result_.clip;
+    calib::Picture picture{clip.width_px, clip.height_px, options_.crop};
+    if (!picture.corner && clip.sensor_origin) {
+      picture.corner = calib::SensorCorner{clip.sensor_origin->x_px,
+                                           clip.sensor_origin->y_px};
+    }
+    auto fitted = calib::FittedTo(*options_.calibration, picture);
+    if (!fitted) {
+      throw core::InputError(
+          fmt::format("{}: {}", clip.path.string(), fitted.error().reason));
+    }
+    result_.calibration = *std::move(fitted);
+    const calib::Calibration& calibration = *result_.calibration;
+    if (calibration.lens) lens_ = calibration.lens->lens;
+    if (!options_.today.empty()) {
+      if (auto old = calib::AgeWarning(calibration, options_.today)) {
+        result_.warnings.push_back(*std::move(old));
+      }
+    }
+    if (calibration.ground && !image_ground_) {
+      const calib::GroundRecord& ground = *calibration.ground;
+      image_ground_ =
+          calib::GroundThrough(ground.p1, ground.p2, ground.u_point_px);
+      image_ground_->source = calib::GroundSource::kCalibration;
+    }
+    if (calibration.ground && calibration.ground->slope_rad) {
+      // Of gravity only the part along the ground's normal is modelled.
+      const core::Estimate& slope = *calibration.ground->slope_rad;
+      core::Estimate& gravity = contact_options_.gravity_mps2;
+      gravity.u = std::hypot(gravity.u,
+                             gravity.value * std::sin(slope.value) * slope.u);
+      gravity.value *= std::cos(slope.value);
+    }
+  }
+  known_ground_ = image_ground_;
+  if (lens_ && image_ground_) {
+    known_ground_ = calib::Undistorted(*image_ground_, *lens_);
+    if (!known_ground_) {
+      throw std::invalid_argument(
+          "ground has a point so far outside the picture that the lens model "
+          "does not hold there; give two points within the picture");
+    }
+  }
+}
+
+vision::Track Analyzer::Seen(const vision::Track& track) const {
+  return lens_ ? vision::Undistorted(track, *lens_) : track;
+}
+
+// The line as the camera sees it where the body is near it: the lens bends it,
+// and a straight line can follow it over the part that matters.
+calib::GroundLine Analyzer::InImage(const calib::GroundLine& ground,
+                                    const vision::Track& track) const {
+  if (!lens_) return ground;
+  const vision::PlaneTrack plane = vision::SeenFromGround(Seen(track), ground);
+  double from = 0.0;
+  double to = 0.0;
+  bool any = false;
+  for (const vision::PlaneSample& s : plane.samples) {
+    if (std::abs(s.gap_px) > 0.5 * plane.size_px) continue;
+    from = any ? std::min(from, s.along_px) : s.along_px;
+    to = any ? std::max(to, s.along_px) : s.along_px;
+    any = true;
+  }
+  const double half = 0.5 * plane.size_px;
+  return calib::Distorted(ground, *lens_,
+                          vision::ToImage(plane, from - half, 0.0),
+                          vision::ToImage(plane, to + half, 0.0));
+}
+
+void Analyzer::AddLens() {
+  if (!lens_ || !result_.plane || !result_.contacts.first.contact.found) {
+    return;
+  }
+  // The ground was seen in the image, too.
+  const calib::GroundLine& ideal = result_.plane->ground;
+  const calib::GroundLine seen =
+      calib::Distorted(ideal, *lens_, ideal.p1, ideal.p2);
+  AddLensUncertainty(
+      result_.contacts, *lens_, result_.calibration->lens->covariance,
+      [&](const calib::Lens& lens) {
+        const auto ground = calib::Undistorted(seen, lens);
+        if (!ground) return vision::ContactResult{};
+        return vision::FindContacts(
+            vision::SeenFromGround(vision::Undistorted(*result_.track, lens),
+                                   *ground),
+            contact_options_);
+      });
+}
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
   judged.ground = ground;
-  judged.track = vision::Refine(*clip_, background_, track, {ground, aspect_});
-  judged.plane = vision::SeenFromGround(judged.track, ground);
+  judged.track = vision::Refine(*clip_, background_, track,
+                                {InImage(ground, track), aspect_});
+  judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
 }
 
 void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   std::vector<calib::GroundLine> candidates;
-  if (options_.ground) {
-    candidates.push_back(*options_.ground);
+  if (known_ground_) {
+    candidates.push_back(*known_ground_);
   } else {
     // The background's own noise: that of a frame over the square root of the
     // frames averaged.
@@ -167,12 +279,15 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
         std::sqrt(background_.Variance(static_cast<double>(
                       background_.level[background_.level.size() / 2])) /
                   8.0)};
-    candidates = calib::FindGroundLines(still);
+    calib::GroundLineOptions line_options;
+    line_options.lens = lens_;
+    candidates = calib::FindGroundLines(still, line_options);
   }
   // A first judgement by the track as it is; only the likely ones are worth
   // fitting every outline again.
+  const vision::Track seen = Seen(track);
   const auto first_merit = [&](const calib::GroundLine& candidate) {
-    return Merit(vision::FindContacts(vision::SeenFromGround(track, candidate),
+    return Merit(vision::FindContacts(vision::SeenFromGround(seen, candidate),
                                       contact_options_));
   };
   std::vector<std::pair<int, calib::GroundLine>> ranked;
@@ -197,8 +312,8 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   }
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
-  if (!options_.ground && best_merit < 2) {
-    if (const auto from_contacts = vision::GroundFromContacts(track)) {
+  if (!known_ground_ && best_merit < 2) {
+    if (const auto from_contacts = vision::GroundFromContacts(seen)) {
       Judged judged = Judge(*from_contacts, track);
       if (judged.contacts.first.contact.found) {
         best = std::move(judged);
@@ -216,9 +331,10 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
     result_.track = track;
     return;
   }
-  if (best_merit == 0 && options_.ground) {
-    result_.warnings.push_back("ground: " + best->contacts.ground_refuted +
-                               "; check --ground");
+  if (best_merit == 0 && known_ground_) {
+    result_.warnings.push_back(
+        "ground: " + best->contacts.ground_refuted +
+        (options_.ground ? "; check --ground" : "; calibrate it again"));
   } else if (best_merit == 0) {
     result_.no_ground_reason = best->contacts.ground_refuted;
   }
@@ -241,8 +357,30 @@ void Analyzer::DescribeScene() {
     scene.used.push_back(result_.scale ? "free flight with known gravity"
                                        : "free flight with gravity fitted");
   }
-  scene.left_out["lens distortion"] = "no calibration";
+  if (lens_) {
+    scene.used.push_back("lens (Brown), calibrated on " +
+                         result_.calibration->date);
+  } else {
+    scene.left_out["lens distortion"] =
+        result_.calibration ? "the calibration has no lens" : "no calibration";
+  }
   scene.left_out["perspective"] = "no calibration";
+  if (result_.calibration && result_.calibration->ground) {
+    const calib::GroundRecord& ground = *result_.calibration->ground;
+    if (ground.yaw_rad) {
+      scene.left_out["perspective"] = fmt::format(
+          "the plane of travel is turned by {:.2f} +- {:.2f} deg from the "
+          "picture's",
+          ground.yaw_rad->value / core::kDegree,
+          ground.yaw_rad->u / core::kDegree);
+    }
+    if (ground.slope_rad) {
+      scene.used.push_back("slope of the ground, in gravity along its normal");
+      scene.left_out["gravity along the ground"] = fmt::format(
+          "slope {:.2f} +- {:.2f} deg", ground.slope_rad->value / core::kDegree,
+          ground.slope_rad->u / core::kDegree);
+    }
+  }
   scene.left_out["drag"] = "below what the frames show";
   if (track.body.kind == core::BodyKind::kSphere) {
     scene.left_out["spin"] = "no mark on the sphere";
@@ -287,13 +425,14 @@ Analysis Analyzer::Run() {
         r.width, r.height, result_.clip.width_px, result_.clip.height_px));
   }
 
+  FitCalibration();
   auto lap = Clock::now();
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;
   track_options.region = options_.region;
   track_options.kind = kind;
-  track_options.ground = options_.ground;
+  track_options.ground = image_ground_;
   track_options.progress = options_.progress;
   auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
@@ -308,7 +447,8 @@ Analysis Analyzer::Run() {
   } else {
     const vision::Track& track = tracked->track;
     background_ = std::move(tracked->background);
-    result_.scale = FindScale(options_, track.body);
+    const vision::Track seen = Seen(track);
+    result_.scale = FindScale(options_, seen.body);
     if (!result_.scale) {
       result_.no_scale_reason =
           track.body.whole_px > 0.0
@@ -316,12 +456,13 @@ Analysis Analyzer::Run() {
               : "give --calibration, --scale-px-per-m, --diameter-mm or "
                 "--sides-mm";
     }
-    result_.body = BodyOf(options_, track.body, result_.scale);
+    result_.body = BodyOf(options_, seen.body, result_.scale);
     contact_options_.scale = result_.scale;
     contact_options_.bounce_height_m = options_.bounce_height_m;
     FindGroundAndContacts(track);
-    result_.warnings.insert(result_.warnings.end(), track.warnings.begin(),
-                            track.warnings.end());
+    AddLens();
+    result_.warnings.insert(result_.warnings.end(), seen.warnings.begin(),
+                            seen.warnings.end());
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());
