@@ -236,18 +236,55 @@ calib::GroundLine Analyzer::InImage(const calib::GroundLine& ground,
                           vision::ToImage(plane, to + half, 0.0));
 }
 
+// The line nearest to points of the image in the ideal picture of `lens` (least
+// squares of y), known as well as `like`.
+std::optional<calib::GroundLine> ThroughPoints(
+    const std::vector<core::PixelPoint>& seen, const calib::Lens& lens,
+    const calib::GroundLine& like) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const core::PixelPoint& p : seen) {
+    const auto ideal = calib::Undistort(lens, p);
+    if (!ideal) return std::nullopt;
+    // From the reference point, so that nothing cancels.
+    const double x = ideal->point.x_px - like.reference.x_px;
+    const double y = ideal->point.y_px - like.reference.y_px;
+    n += 1.0;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  const double offset = (sy - slope * sx) / n;
+  const auto at = [&](double x_px) {
+    const double x = x_px - like.reference.x_px;
+    return core::PixelPoint{x_px, like.reference.y_px + offset + slope * x};
+  };
+  calib::GroundLine line = like;
+  line.p1 = at(like.p1.x_px);
+  line.p2 = at(like.p2.x_px);
+  line.reference = at(like.reference.x_px);
+  return line;
+}
+
 void Analyzer::AddLens() {
   if (!lens_ || !result_.plane || !result_.contacts.first.contact.found) {
     return;
   }
-  // The ground was seen in the image, too.
+  // The ground was seen in the image, too: at two points, or all along.
   const calib::GroundLine& ideal = result_.plane->ground;
-  const calib::GroundLine seen =
-      calib::Distorted(ideal, *lens_, ideal.p1, ideal.p2);
+  const int steps = known_ground_ ? 1 : 32;
+  std::vector<core::PixelPoint> seen;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    seen.push_back(calib::Distort(
+        *lens_, {ideal.p1.x_px + t * (ideal.p2.x_px - ideal.p1.x_px),
+                 ideal.p1.y_px + t * (ideal.p2.y_px - ideal.p1.y_px)}));
+  }
   AddLensUncertainty(
       result_.contacts, *lens_, result_.calibration->lens->covariance,
       [&](const calib::Lens& lens) {
-        const auto ground = calib::Undistorted(seen, lens);
+        const auto ground = ThroughPoints(seen, lens, ideal);
         if (!ground) return vision::ContactResult{};
         return vision::FindContacts(
             vision::SeenFromGround(vision::Undistorted(*result_.track, lens),

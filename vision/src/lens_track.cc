@@ -85,7 +85,8 @@ std::optional<Shape> Misfit(core::BodyKind kind, const Shape& ideal,
       const Eigen::Vector2d along(-e.y(), e.x());
       row[0] = e.x();
       row[1] = e.y();
-      row[2] = along.dot(d);
+      // A turned normal meets a point farther along the side sooner.
+      row[2] = -along.dot(d);
       row[end ? 3 : 4] = 1.0;
       off = e.dot(d) - seen[end ? 3 : 4];
     }
