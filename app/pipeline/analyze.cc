@@ -7,13 +7,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/pipeline/clip_calibration.h"
 #include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/truth_file.h"
 #include "app/pipeline/version.h"
 #include "touchdown/calib/ground_lines.h"
-#include "touchdown/core/errors.h"
-#include "touchdown/core/units.h"
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/clip_digest.h"
 #include "touchdown/vision/frame_store.h"
@@ -142,10 +141,7 @@ class Analyzer {
   Analysis Run();
 
  private:
-  void FitCalibration();
   vision::Track Seen(const vision::Track& track) const;
-  calib::GroundLine InImage(const calib::GroundLine& ground,
-                            const vision::Track& track) const;
   void AddLens();
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   void FindGroundAndContacts(const vision::Track& track);
@@ -157,132 +153,24 @@ class Analyzer {
   vision::Background background_;
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
-  std::optional<calib::Lens> lens_;       // of this clip
-  // As given or calibrated, in the image and in the ideal picture.
-  std::optional<calib::GroundLine> image_ground_;
-  std::optional<calib::GroundLine> known_ground_;
+  ClipCalibration camera_;
 };
 
-void Analyzer::FitCalibration() {
-  image_ground_ = options_.ground;
-  if (options_.calibration) {
-    const vision::ClipInfo& clip = result_.clip;
-    calib::Picture picture{clip.width_px, clip.height_px, options_.crop};
-    if (!picture.corner && clip.sensor_origin) {
-      picture.corner = calib::SensorCorner{clip.sensor_origin->x_px,
-                                           clip.sensor_origin->y_px};
-    }
-    auto fitted = calib::FittedTo(*options_.calibration, picture);
-    if (!fitted) {
-      throw core::InputError(
-          fmt::format("{}: {}", clip.path.string(), fitted.error().reason));
-    }
-    result_.calibration = *std::move(fitted);
-    const calib::Calibration& calibration = *result_.calibration;
-    if (calibration.lens) lens_ = calibration.lens->lens;
-    if (!options_.today.empty()) {
-      if (auto old = calib::AgeWarning(calibration, options_.today)) {
-        result_.warnings.push_back(*std::move(old));
-      }
-    }
-    if (calibration.ground && !image_ground_) {
-      const calib::GroundRecord& ground = *calibration.ground;
-      image_ground_ =
-          calib::GroundThrough(ground.p1, ground.p2, ground.u_point_px);
-      image_ground_->source = calib::GroundSource::kCalibration;
-    }
-    if (calibration.ground && calibration.ground->slope_rad) {
-      // Of gravity only the part along the ground's normal is modelled.
-      const core::Estimate& slope = *calibration.ground->slope_rad;
-      core::Estimate& gravity = contact_options_.gravity_mps2;
-      gravity.u = std::hypot(gravity.u,
-                             gravity.value * std::sin(slope.value) * slope.u);
-      gravity.value *= std::cos(slope.value);
-    }
-  }
-  known_ground_ = image_ground_;
-  if (lens_ && image_ground_) {
-    known_ground_ = calib::Undistorted(*image_ground_, *lens_);
-    if (!known_ground_) {
-      throw std::invalid_argument(
-          "ground has a point so far outside the picture that the lens model "
-          "does not hold there; give two points within the picture");
-    }
-  }
-}
-
 vision::Track Analyzer::Seen(const vision::Track& track) const {
-  return lens_ ? vision::Undistorted(track, *lens_) : track;
-}
-
-// The line as the camera sees it where the body is near it: the lens bends it,
-// and a straight line can follow it over the part that matters.
-calib::GroundLine Analyzer::InImage(const calib::GroundLine& ground,
-                                    const vision::Track& track) const {
-  if (!lens_) return ground;
-  const vision::PlaneTrack plane = vision::SeenFromGround(Seen(track), ground);
-  double from = 0.0;
-  double to = 0.0;
-  bool any = false;
-  for (const vision::PlaneSample& s : plane.samples) {
-    if (std::abs(s.gap_px) > 0.5 * plane.size_px) continue;
-    from = any ? std::min(from, s.along_px) : s.along_px;
-    to = any ? std::max(to, s.along_px) : s.along_px;
-    any = true;
-  }
-  const double half = 0.5 * plane.size_px;
-  return calib::Distorted(ground, *lens_,
-                          vision::ToImage(plane, from - half, 0.0),
-                          vision::ToImage(plane, to + half, 0.0));
-}
-
-// The line nearest to points of the image in the ideal picture of `lens` (least
-// squares of y), known as well as `like`.
-std::optional<calib::GroundLine> ThroughPoints(
-    const std::vector<core::PixelPoint>& seen, const calib::Lens& lens,
-    const calib::GroundLine& like) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const core::PixelPoint& p : seen) {
-    const auto ideal = calib::Undistort(lens, p);
-    if (!ideal) return std::nullopt;
-    // From the reference point, so that nothing cancels.
-    const double x = ideal->point.x_px - like.reference.x_px;
-    const double y = ideal->point.y_px - like.reference.y_px;
-    n += 1.0;
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
-  }
-  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-  const double offset = (sy - slope * sx) / n;
-  const auto at = [&](double x_px) {
-    const double x = x_px - like.reference.x_px;
-    return core::PixelPoint{x_px, like.reference.y_px + offset + slope * x};
-  };
-  calib::GroundLine line = like;
-  line.p1 = at(like.p1.x_px);
-  line.p2 = at(like.p2.x_px);
-  line.reference = at(like.reference.x_px);
-  return line;
+  return camera_.lens ? vision::Undistorted(track, *camera_.lens) : track;
 }
 
 void Analyzer::AddLens() {
-  if (!lens_ || !result_.plane || !result_.contacts.first.contact.found) {
+  if (!camera_.lens || !result_.plane ||
+      !result_.contacts.first.contact.found) {
     return;
   }
   // The ground was seen in the image, too: at two points, or all along.
   const calib::GroundLine& ideal = result_.plane->ground;
-  const int steps = known_ground_ ? 1 : 32;
-  std::vector<core::PixelPoint> seen;
-  for (int i = 0; i <= steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
-    seen.push_back(calib::Distort(
-        *lens_, {ideal.p1.x_px + t * (ideal.p2.x_px - ideal.p1.x_px),
-                 ideal.p1.y_px + t * (ideal.p2.y_px - ideal.p1.y_px)}));
-  }
+  const auto seen =
+      SeenPoints(ideal, *camera_.lens, camera_.ideal_ground ? 2 : 33);
   AddLensUncertainty(
-      result_.contacts, *lens_, result_.calibration->lens->covariance,
+      result_.contacts, *camera_.lens, result_.calibration->lens->covariance,
       [&](const calib::Lens& lens) {
         const auto ground = ThroughPoints(seen, lens, ideal);
         if (!ground) return vision::ContactResult{};
@@ -297,8 +185,13 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
   judged.ground = ground;
-  judged.track = vision::Refine(*clip_, background_, track,
-                                {InImage(ground, track), aspect_});
+  calib::GroundLine in_image = ground;
+  if (camera_.lens) {
+    in_image =
+        SeenNear(vision::SeenFromGround(Seen(track), ground), *camera_.lens);
+  }
+  judged.track =
+      vision::Refine(*clip_, background_, track, {in_image, aspect_});
   judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
@@ -306,8 +199,8 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
 
 void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   std::vector<calib::GroundLine> candidates;
-  if (known_ground_) {
-    candidates.push_back(*known_ground_);
+  if (camera_.ideal_ground) {
+    candidates.push_back(*camera_.ideal_ground);
   } else {
     // The background's own noise: that of a frame over the square root of the
     // frames averaged.
@@ -317,7 +210,7 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
                       background_.level[background_.level.size() / 2])) /
                   8.0)};
     calib::GroundLineOptions line_options;
-    line_options.lens = lens_;
+    line_options.lens = camera_.lens;
     candidates = calib::FindGroundLines(still, line_options);
   }
   // A first judgement by the track as it is; only the likely ones are worth
@@ -349,7 +242,7 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   }
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
-  if (!known_ground_ && best_merit < 2) {
+  if (!camera_.ideal_ground && best_merit < 2) {
     if (const auto from_contacts = vision::GroundFromContacts(seen)) {
       Judged judged = Judge(*from_contacts, track);
       if (judged.contacts.first.contact.found) {
@@ -368,7 +261,7 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
     result_.track = track;
     return;
   }
-  if (best_merit == 0 && known_ground_) {
+  if (best_merit == 0 && camera_.ideal_ground) {
     result_.warnings.push_back(
         "ground: " + best->contacts.ground_refuted +
         (options_.ground ? "; check --ground" : "; calibrate it again"));
@@ -394,30 +287,7 @@ void Analyzer::DescribeScene() {
     scene.used.push_back(result_.scale ? "free flight with known gravity"
                                        : "free flight with gravity fitted");
   }
-  if (lens_) {
-    scene.used.push_back("lens (Brown), calibrated on " +
-                         result_.calibration->date);
-  } else {
-    scene.left_out["lens distortion"] =
-        result_.calibration ? "the calibration has no lens" : "no calibration";
-  }
-  scene.left_out["perspective"] = "no calibration";
-  if (result_.calibration && result_.calibration->ground) {
-    const calib::GroundRecord& ground = *result_.calibration->ground;
-    if (ground.yaw_rad) {
-      scene.left_out["perspective"] = fmt::format(
-          "the plane of travel is turned by {:.2f} +- {:.2f} deg from the "
-          "picture's",
-          ground.yaw_rad->value / core::kDegree,
-          ground.yaw_rad->u / core::kDegree);
-    }
-    if (ground.slope_rad) {
-      scene.used.push_back("slope of the ground, in gravity along its normal");
-      scene.left_out["gravity along the ground"] = fmt::format(
-          "slope {:.2f} +- {:.2f} deg", ground.slope_rad->value / core::kDegree,
-          ground.slope_rad->u / core::kDegree);
-    }
-  }
+  DescribeCalibration(result_.calibration, scene);
   scene.left_out["drag"] = "below what the frames show";
   if (track.body.kind == core::BodyKind::kSphere) {
     scene.left_out["spin"] = "no mark on the sphere";
@@ -462,14 +332,18 @@ Analysis Analyzer::Run() {
         r.width, r.height, result_.clip.width_px, result_.clip.height_px));
   }
 
-  FitCalibration();
+  camera_ = FitToClip(options_, result_.clip);
+  result_.calibration = camera_.calibration;
+  contact_options_.gravity_mps2 = camera_.gravity_mps2;
+  result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
+                          camera_.warnings.end());
   auto lap = Clock::now();
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;
   track_options.region = options_.region;
   track_options.kind = kind;
-  track_options.ground = image_ground_;
+  track_options.ground = camera_.image_ground;
   track_options.progress = options_.progress;
   auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
