@@ -242,10 +242,16 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   }
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
-  if (!camera_.ideal_ground && best_merit < 2) {
+  if (!camera_.ideal_ground && best_merit < 1) {
     if (const auto from_contacts = vision::GroundFromContacts(seen)) {
       Judged judged = Judge(*from_contacts, track);
       if (judged.contacts.first.contact.found) {
+        if (best) {
+          result_.warnings.push_back(
+              fmt::format("the visible edge is not the ground ({}); the "
+                          "contact points tell where it is",
+                          best->contacts.ground_refuted));
+        }
         best = std::move(judged);
         best_merit = 2;
       }
