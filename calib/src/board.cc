@@ -188,6 +188,7 @@ core::Expected<std::vector<cv::Point2f>> FindCircles(const Levels& levels,
     if (blobs.size() < wanted) continue;
     // Circles of one board are alike: those near the median size.
     std::vector<double> areas;
+    areas.reserve(blobs.size());
     for (const Blob& blob : blobs) areas.push_back(blob.area_px);
     const auto middle =
         areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);

@@ -6,15 +6,21 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/accuracy/score.h"
+#ifdef TOUCHDOWN_HAS_PEERS
+#include "tests/benchmarks/peers.h"
+#endif
 #include "touchdown/core/units.h"
 
 namespace {
@@ -90,6 +96,92 @@ void PrintTable(const std::vector<Outcome>& outcomes, const LevelOf& level_of) {
   }
 }
 
+#ifdef TOUCHDOWN_HAS_PEERS
+// Errors of one method over the same clips; failures apart.
+struct Method {
+  std::string name;
+  std::vector<double> angle_deg;
+  std::vector<double> frame;
+  std::vector<double> seconds;
+  std::size_t failures = 0;
+};
+
+double RmsOf(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+// 95 % interval of the root mean square: bootstrap over the clips.
+std::string RmsText(const std::vector<double>& errors) {
+  if (errors.empty()) return "-";
+  constexpr int kDraws = 1000;
+  std::mt19937_64 engine(1);
+  std::uniform_int_distribution<std::size_t> any(0, errors.size() - 1);
+  std::vector<double> drawn;
+  std::vector<double> sample(errors.size());
+  drawn.reserve(kDraws);
+  for (int i = 0; i < kDraws; ++i) {
+    for (double& v : sample) v = errors[any(engine)];
+    drawn.push_back(RmsOf(sample));
+  }
+  std::sort(drawn.begin(), drawn.end());
+  return fmt::format("{:.3g} ({:.3g} to {:.3g})", RmsOf(errors),
+                     drawn[kDraws / 40], drawn[kDraws - 1 - kDraws / 40]);
+}
+
+void PrintPeers(const std::vector<Outcome>& outcomes, std::size_t clips) {
+  std::vector<Method> methods(1);
+  methods[0].name = "touchdown";
+  for (std::size_t i = 0; i < std::min(clips, outcomes.size()); ++i) {
+    const Outcome& o = outcomes[i];
+    methods[0].seconds.push_back(o.seconds);
+    if (o.readings[kApproach] && o.readings[kFrame]) {
+      methods[0].angle_deg.push_back(o.readings[kApproach]->error /
+                                     core::kDegree);
+      methods[0].frame.push_back(o.readings[kFrame]->error);
+    } else {
+      ++methods[0].failures;
+    }
+  }
+  for (const Peer peer : kPeers) {
+    Method method;
+    method.name = Name(peer);
+    for (std::size_t i = 0; i < std::min(clips, outcomes.size()); ++i) {
+      const Case& c = outcomes[i].made;
+      const auto start = std::chrono::steady_clock::now();
+      const auto reading = Measure(c, peer);
+      method.seconds.push_back(std::chrono::duration<double>(
+                                   std::chrono::steady_clock::now() - start)
+                                   .count());
+      if (!reading) {
+        ++method.failures;
+        continue;
+      }
+      method.angle_deg.push_back(
+          (reading->approach_rad - c.film.thrown.ContactAngle()) /
+          core::kDegree);
+      method.frame.push_back(reading->frame - c.film.contact_frame);
+    }
+    methods.push_back(method);
+  }
+  fmt::print(stderr,
+             "\n| method, {} regular clips | approach angle RMSE, deg (95 %) | "
+             "contact time RMSE, frames (95 %) | failures | ms a clip |\n"
+             "|---|---:|---:|---:|---:|\n",
+             clips);
+  for (Method& m : methods) {
+    std::nth_element(
+        m.seconds.begin(),
+        m.seconds.begin() + static_cast<std::ptrdiff_t>(m.seconds.size() / 2),
+        m.seconds.end());
+    fmt::print(stderr, "| {} | {} | {} | {} | {:.0f} |\n", m.name,
+               RmsText(m.angle_deg), RmsText(m.frame), m.failures,
+               1e3 * m.seconds[m.seconds.size() / 2]);
+  }
+}
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,6 +232,10 @@ int main(int argc, char** argv) {
   PrintTable(of_regular, [](const Levels& l) {
     return fmt::format("regular, {}", core::Name(l.kind));
   });
+#ifdef TOUCHDOWN_HAS_PEERS
+  constexpr std::size_t kForPeers = 200;
+  PrintPeers(of_regular, std::min(kForPeers, of_regular.size()));
+#endif
   cases.clear();
   for (unsigned long i = 0; i < rebounds; ++i) cases.push_back(DrawRebound(i));
   States states;
