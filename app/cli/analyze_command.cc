@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "app/cli/calibrate_file.h"
 #include "app/cli/command.h"
+#include "app/cli/dates.h"
 #include "app/cli/progress.h"
 #include "app/cli/values.h"
 #include "app/pipeline/analysis_text.h"
@@ -20,6 +22,8 @@ namespace {
 
 struct Flags {
   std::string clip;
+  std::string calibration;
+  std::string crop;
   std::string scale;
   std::string body = "auto";
   std::string diameter;
@@ -43,6 +47,11 @@ constexpr double kDefaultRelativeU = 1e-3;
 pipeline::AnalyzeOptions ToOptions(const Flags& flags) {
   pipeline::AnalyzeOptions options;
   options.fps = flags.fps;
+  if (!flags.calibration.empty()) {
+    options.calibration = calib::ReadCalibration(flags.calibration);
+    options.today = Today();
+  }
+  if (!flags.crop.empty()) options.crop = ParseCorner("--crop", flags.crop);
   if (!flags.scale.empty()) {
     options.scale_px_per_m =
         ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kDefaultRelativeU);
@@ -137,6 +146,12 @@ void AddAnalyze(CLI::App& app, Action& action) {
                    "a video, an .mraw (or its .cih/.cihx), or a folder of "
                    "PNG, TIFF or JPEG images")
       ->required();
+  command->add_option("--calibration", flags->calibration,
+                      "a file of `touchdown calibrate`: the lens, and scale "
+                      "and ground where they are in it and not given here");
+  command->add_option("--crop", flags->crop,
+                      "where the picture lies on the calibrated sensor, X,Y in "
+                      "pixels, where the file does not say");
   command->add_option("--scale-px-per-m", flags->scale,
                       "pixels per metre in the plane of travel, e.g. 1000 or "
                       "1000+-0.8 (u 0.1 % where not given)");

@@ -18,6 +18,7 @@ using Action = std::function<int()>;
 // when that command is the one called.
 void AddAnalyze(CLI::App& app, Action& action);
 void AddBoundary(CLI::App& app, Action& action);
+void AddCalibrate(CLI::App& app, Action& action);
 void AddNext(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);

@@ -93,7 +93,6 @@ void DrawLevels(Levels& l, Drawer& draw) {
 void DrawFilm(Case& c, Drawer& draw) {
   Levels& l = c.levels;
   const Hardship hardship = l.hardship;
-  DrawLevels(l, draw);
 
   // Gravity in px per frame^2 follows from the frame rate: a flight that curves
   // visibly, and whose body was not at its apex when it entered.
@@ -117,13 +116,16 @@ void DrawFilm(Case& c, Drawer& draw) {
     t.face_rad = draw.Uniform(8.0, 30.0) * core::kDegree;
     Rebound(t, kRestitution);
   } else {
-    t.after = {0.85 * t.before.vx, -kRestitution * t.before.vy, 0.0};
+    const double up_mps = c.rise_m ? std::sqrt(2.0 * t.gravity_mps2 * *c.rise_m)
+                                   : -kRestitution * t.before.vy;
+    t.after = {0.85 * t.before.vx, up_mps, 0.0};
+    t.stays = up_mps == 0.0;
   }
   film.contact_frame = kLeadIn + l.frames_before + draw.Uniform(-0.5, 0.5);
   t.contact_s = film.contact_frame / fps;
   film.lead_in = kLeadIn;
   // The clip ends before a block's other corner comes down.
-  int after = 0;
+  int after = c.rise_m ? l.frames_after : 0;
   while (after < l.frames_after && IsClear(t, after + 1.5, fps)) ++after;
   l.frames_after = after;
   film.frames = kLeadIn + l.frames_before + 1 + after;
@@ -198,8 +200,36 @@ Case Draw(std::uint64_t index, Hardship hardship) {
   do {
     c.levels = {};
     c.levels.hardship = hardship;
+    DrawLevels(c.levels, draw);
     DrawFilm(c, draw);
   } while (c.levels.frames_after < least_after);
+  return c;
+}
+
+Case DrawRebound(std::uint64_t index) {
+  Case c;
+  c.seed = 1000 * (index + 1) + 999;
+  Drawer draw(c.seed);
+  constexpr double kGravity_px = 0.02;  // per frame^2, as DrawFilm has it
+  const double size_px = draw.Level({16.0, 24.0, 40.0});
+  const double bounce_height_m = core::DefaultBounceHeight(size_px / kPxPerM);
+  const bool stays = draw.Uniform(0.0, 1.0) < 0.25;
+  c.rise_m =
+      stays ? 0.0 : bounce_height_m * std::pow(10.0, draw.Uniform(-1.3, 1.0));
+  const double up_px = std::sqrt(2.0 * kGravity_px * *c.rise_m * kPxPerM);
+  Levels levels;
+  levels.size_px = size_px;
+  levels.contrast = draw.Level({-0.2, -0.5, 0.2});
+  levels.noise = draw.Level({0.004, 0.012});
+  levels.blur_px = draw.Level({0.5, 0.8, 1.4});
+  levels.speed_px = draw.Level({2.0, 3.0});
+  levels.angle_deg = draw.Level({20.0, 40.0, 60.0});
+  levels.bit_depth = draw.Level({8, 12});
+  // Until it is well past its apex, or for long enough to see that it stays.
+  levels.frames_after =
+      8 + static_cast<int>(std::ceil(1.4 * up_px / kGravity_px));
+  c.levels = levels;
+  DrawFilm(c, draw);
   return c;
 }
 

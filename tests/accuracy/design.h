@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ struct Case {
   // What `analyze` is told: the true scale but for its uncertainty. Gravity is
   // standard gravity there, and in the film what it may be somewhere on earth.
   double told_px_per_m = 0.0;
+  std::optional<double> rise_m;  // of a state's case: the greatest gap
 };
 
 // Relative u of what is told beside the pixels: the scale, and local gravity
@@ -62,5 +64,9 @@ inline constexpr double kGravityRelativeU = 0.002;
 // Case `index` of the regular part, or of one hardship. The same index gives
 // the same case, whatever else is drawn.
 Case Draw(std::uint64_t index, Hardship hardship);
+
+// Case `index` of the states: a sphere that stays down (one in four) or rises
+// by 0.05 to 10 times the default bounce height, filmed until after its apex.
+Case DrawRebound(std::uint64_t index);
 
 }  // namespace touchdown::accuracy

@@ -26,6 +26,11 @@ Outcome Analyse(const Case& c) {
           .count();
   const core::ContactRecord& first = analysis.contacts.first;
   outcome.state = first.state.label;
+  outcome.state_reason = first.state.reason;
+  if (first.state.max_gap_m) outcome.u_gap_m = first.state.max_gap_m->u;
+  if (first.state.bounce_height_m) {
+    outcome.bounce_height_m = first.state.bounce_height_m->value;
+  }
   const auto read = [&](Quantity quantity, const core::Measured& measured,
                         double truth, double of_bound) {
     if (!measured) {
@@ -84,6 +89,20 @@ void Add(Sum& sum, const Outcome& outcome, Quantity quantity) {
   const double z = reading->error / reading->u;
   sum.z += z;
   sum.z2 += z * z;
+}
+
+void Add(States& states, const Outcome& outcome) {
+  ++states.cases;
+  const double off = *outcome.made.rise_m - outcome.bounce_height_m;
+  const bool clear = std::abs(off) > 2.0 * outcome.u_gap_m;
+  const bool far = std::abs(off) > 4.0 * outcome.u_gap_m;
+  const bool undecided = outcome.state == core::MotionState::kUndecided;
+  const bool bounce = outcome.state == core::MotionState::kBounce;
+  states.clear += clear;
+  states.far += far;
+  states.false_bounces += clear && bounce && off < 0.0;
+  states.missed_bounces += clear && !bounce && !undecided && off > 0.0;
+  states.undecided += far && undecided;
 }
 
 Share Wilson99(std::size_t hits, std::size_t n) {

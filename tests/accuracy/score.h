@@ -33,6 +33,9 @@ struct Outcome {
   std::array<std::optional<Reading>, kQuantities> readings;
   std::array<std::string, kQuantities> reasons;
   core::MotionState state = core::MotionState::kUndecided;
+  std::string state_reason;
+  double bounce_height_m = 0.0;
+  double u_gap_m = 0.0;  // of the greatest gap
   double seconds = 0.0;
 };
 
@@ -56,6 +59,18 @@ struct Sum {
   double MeanZBand() const;
 };
 void Add(Sum& sum, const Outcome& outcome, Quantity quantity);
+
+// Labels of cases with a known rise. A case is clear where the rise is off the
+// bounce height by more than twice its u, far where by more than four times.
+struct States {
+  std::size_t cases = 0;
+  std::size_t clear = 0;
+  std::size_t far = 0;
+  std::size_t false_bounces = 0;   // of the clear ones
+  std::size_t missed_bounces = 0;  //
+  std::size_t undecided = 0;       // of the far ones
+};
+void Add(States& states, const Outcome& outcome);
 
 // The Wilson interval of a share at 99 %.
 struct Share {

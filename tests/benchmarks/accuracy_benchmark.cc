@@ -1,7 +1,7 @@
 // Error against the Cramer-Rao bound, bias and coverage over the declared
 // design (tests/accuracy/design.h). Prints CSV, a row a clip; the table of them
 // goes to the error output.
-// Usage: touchdown_accuracy_benchmark [REGULAR] [PER_HARDSHIP]
+// Usage: touchdown_accuracy_benchmark [REGULAR] [PER_HARDSHIP] [STATES]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
   };
   const unsigned long regular = number(1, 1000);
   const unsigned long hard = number(2, 60);
+  const unsigned long rebounds = number(3, 400);
   std::vector<Case> cases;
   for (unsigned long i = 0; i < regular; ++i) {
     cases.push_back(Draw(i, Hardship::kNone));
@@ -139,5 +140,17 @@ int main(int argc, char** argv) {
   PrintTable(of_regular, [](const Levels& l) {
     return fmt::format("regular, {}", core::Name(l.kind));
   });
+  cases.clear();
+  for (unsigned long i = 0; i < rebounds; ++i) cases.push_back(DrawRebound(i));
+  States states;
+  for (const Outcome& o : AnalyseAll(cases)) Add(states, o);
+  fmt::print(
+      stderr,
+      "\n| states: clips | off the bounce height by > 2 u | false bounces "
+      "| missed bounces | off by > 4 u | undecided there |\n"
+      "|---:|---:|---:|---:|---:|---:|\n| {} | {} | {} | {} | {} | {} "
+      "|\n",
+      states.cases, states.clear, states.false_bounces, states.missed_bounces,
+      states.far, states.undecided);
   return 0;
 }

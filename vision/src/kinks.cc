@@ -136,9 +136,12 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
     if (left.size() >= 4 && right.size() >= 4) better(Curvature::kOwn);
     double most = std::numeric_limits<double>::infinity();
     if (options.gravity_px_per_s2) {
-      const Sides before = sides;
-      better(Curvature::kKnown);
-      if (sides.bic < before.bic || !before.ok) {
+      // Gravity is no guess: free curvature must explain clearly more.
+      constexpr double kClearly = 6.0;  // of BIC: odds of e^3
+      const Sides known =
+          FitSides(left, right, Curvature::kKnown, gravity, value, u);
+      if (known.ok && (!sides.ok || known.bic < sides.bic + kClearly)) {
+        sides = known;
         // Rest looks like many small bounces, and one flight like none: the
         // blow must explain what neither does.
         const double without =
