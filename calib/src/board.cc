@@ -74,7 +74,9 @@ int WindowFor(const std::vector<cv::Point2f>& corners, const Board& board) {
   double shortest = 1e9;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
-      const auto i = static_cast<std::size_t>(row * board.columns + column);
+      const auto i = static_cast<std::size_t>(row) *
+                         static_cast<std::size_t>(board.columns) +
+                     static_cast<std::size_t>(column);
       if (column + 1 < board.columns) {
         shortest = std::min(shortest, cv::norm(corners[i] - corners[i + 1]));
       }
@@ -188,6 +190,7 @@ core::Expected<std::vector<cv::Point2f>> FindCircles(const Levels& levels,
     if (blobs.size() < wanted) continue;
     // Circles of one board are alike: those near the median size.
     std::vector<double> areas;
+    areas.reserve(blobs.size());
     for (const Blob& blob : blobs) areas.push_back(blob.area_px);
     const auto middle =
         areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
