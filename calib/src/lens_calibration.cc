@@ -115,8 +115,7 @@ std::string EmptySides(const LensCalibration& calibration) {
   const auto empty = [&](int column0, int column1, int row0, int row1) {
     for (int row = row0; row < row1; ++row) {
       for (int column = column0; column < column1; ++column) {
-        if (calibration.cells[static_cast<std::size_t>(row * kCoverageColumns +
-                                                       column)] > 0) {
+        if (calibration.cells[Cell(row, column)] > 0) {
           return false;
         }
       }
