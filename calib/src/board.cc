@@ -74,7 +74,9 @@ int WindowFor(const std::vector<cv::Point2f>& corners, const Board& board) {
   double shortest = 1e9;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
-      const auto i = static_cast<std::size_t>(row * board.columns + column);
+      const auto i = static_cast<std::size_t>(row) *
+                         static_cast<std::size_t>(board.columns) +
+                     static_cast<std::size_t>(column);
       if (column + 1 < board.columns) {
         shortest = std::min(shortest, cv::norm(corners[i] - corners[i + 1]));
       }

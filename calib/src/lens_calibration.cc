@@ -85,6 +85,12 @@ double Median(std::vector<double> values) {
   return *at;
 }
 
+std::size_t Cell(int row, int column) {
+  return static_cast<std::size_t>(row) *
+             static_cast<std::size_t>(kCoverageColumns) +
+         static_cast<std::size_t>(column);
+}
+
 void Cover(const std::vector<BoardView>& views, std::int32_t width_px,
            std::int32_t height_px, LensCalibration& out) {
   for (const BoardView& view : views) {
@@ -95,7 +101,7 @@ void Cover(const std::vector<BoardView>& views, std::int32_t width_px,
       const int row = std::clamp(
           static_cast<int>(kCoverageRows * (p.y_px + 0.5) / height_px), 0,
           kCoverageRows - 1);
-      ++out.cells[static_cast<std::size_t>(row * kCoverageColumns + column)];
+      ++out.cells[Cell(row, column)];
     }
   }
   const auto seen = std::count_if(out.cells.begin(), out.cells.end(),
@@ -109,8 +115,7 @@ std::string EmptySides(const LensCalibration& calibration) {
   const auto empty = [&](int column0, int column1, int row0, int row1) {
     for (int row = row0; row < row1; ++row) {
       for (int column = column0; column < column1; ++column) {
-        if (calibration.cells[static_cast<std::size_t>(row * kCoverageColumns +
-                                                       column)] > 0) {
+        if (calibration.cells[Cell(row, column)] > 0) {
           return false;
         }
       }

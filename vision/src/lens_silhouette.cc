@@ -101,7 +101,8 @@ ShapeOutline GroundThroughLens(const SceneCamera& camera, double margin) {
   // model may fold back out there: then the last point before it must do, and
   // the picture's own width is safe (Validate).
   const double width = camera.width_px;
-  for (double x = -0.5 * width; x <= 1.5 * width; x += 1.0) {
+  for (int step = 0; step <= 2 * camera.width_px; ++step) {
+    const double x = -0.5 * width + step;
     const core::PixelPoint seen = calib::Distort(
         lens,
         {x, camera.ground_point.y_px + slope * (x - camera.ground_point.x_px)});
