@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <map>
+#include <set>
+
 #include "statement.h"
 #include "touchdown/db/maintenance.h"
 
@@ -72,16 +75,43 @@ void CheckChains(Connection& connection, std::vector<std::string>& problems) {
           problems);
 }
 
+struct KnownClip {
+  std::string path;
+  std::string sha256;  // empty: never computed
+};
+
+void CheckClips(const std::vector<KnownClip>& clips, const DigestOf& digest,
+                CheckReport& report) {
+  std::set<std::string> known;
+  for (const KnownClip& clip : clips) {
+    if (clip.sha256.empty()) ++report.clips_without_digest;
+    known.insert(clip.sha256);
+  }
+  if (!digest) return;
+  // Several clips may have borne one name, one after the other.
+  std::map<std::string, std::optional<std::string>> found_at;
+  for (const KnownClip& clip : clips) {
+    if (clip.sha256.empty()) continue;
+    const auto [at, is_new] = found_at.try_emplace(clip.path);
+    if (is_new) at->second = digest(clip.path);
+    const auto& found = at->second;
+    if (found == clip.sha256) {
+      ++report.clips_verified;
+    } else if (!found || known.contains(*found)) {
+      // Gone, or another recording of the store has its name now.
+      report.clips_missing.push_back(clip.path);
+    } else {
+      report.clips_changed.push_back(clip.path);
+    }
+  }
+}
+
 }  // namespace
 
 CheckReport Check(const Store& store, const DigestOf& digest) {
   Connection& connection = store.connection();
   CheckReport report;
-  struct Clip {
-    std::string path;
-    std::string sha256;
-  };
-  std::vector<Clip> clips;
+  std::vector<KnownClip> clips;
   {
     Transaction snapshot(connection, Transaction::Kind::kRead);
     CheckFile(connection, report.problems);
@@ -93,25 +123,14 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
                   "SELECT last_seen_path, ifnull(sha256, '') FROM clips "
                   "ORDER BY id");
     while (row.Step()) {
-      Clip clip;
+      KnownClip clip;
       clip.path = row.TakeText();
       clip.sha256 = row.TakeText();
       clips.push_back(std::move(clip));
     }
   }
   // Clips are long: read them when the snapshot has been let go.
-  for (const Clip& clip : clips) {
-    if (clip.sha256.empty()) ++report.clips_without_digest;
-    if (!digest || clip.sha256.empty()) continue;
-    const auto found = digest(clip.path);
-    if (!found) {
-      report.clips_missing.push_back(clip.path);
-    } else if (*found != clip.sha256) {
-      report.clips_changed.push_back(clip.path);
-    } else {
-      ++report.clips_verified;
-    }
-  }
+  CheckClips(clips, digest, report);
   return report;
 }
 

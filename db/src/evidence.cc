@@ -55,9 +55,11 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
                                      const core::ClipIdentity& clip,
                                      std::string_view now_utc) {
   if (clip.id.empty()) return std::nullopt;
-  // The same clip: the same cheap id, and the same digest where both are known.
+  // The same clip: the same cheap id (the size is part of what it digests; some
+  // clips were logged without), and the same digest where both are known.
   Statement find(connection,
-                 "SELECT id FROM clips WHERE clip_id = ?1 AND size_bytes = ?2 "
+                 "SELECT id FROM clips WHERE clip_id = ?1 "
+                 "AND (size_bytes = ?2 OR size_bytes = 0 OR ?2 = 0) "
                  "AND (sha256 = ?3 OR sha256 IS NULL OR ?3 = '') "
                  "ORDER BY sha256 IS NULL, id LIMIT 1");
   find.Add(clip.id).Add(clip.size_bytes).Add(clip.sha256);

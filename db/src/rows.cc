@@ -358,6 +358,16 @@ std::string TrialsSql(const TrialFilter& filter) {
   return sql + " ORDER BY t.id";
 }
 
+std::string_view LastLoggedSql() {
+  return "SELECT t.uuid, s.options_hash, s.set_angle_rad, s.set_speed_mps "
+         "FROM clips k JOIN trials t ON t.clip_id = k.id "
+         "AND ifnull(t.campaign_id, 0) = "
+         "ifnull((SELECT id FROM campaigns WHERE name = ?1), 0) "
+         "JOIN revisions r ON r.trial_id = t.id AND r.kind = 'logged' "
+         "JOIN statements s ON s.revision_id = r.statement_id "
+         "WHERE k.clip_id = ?2 ORDER BY t.id DESC, r.number DESC LIMIT 1";
+}
+
 RevisionRow TakeRevision(Connection& connection, Statement& row) {
   RevisionRow out;
   core::Trial& trial = out.trial;
