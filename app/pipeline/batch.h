@@ -63,11 +63,11 @@ struct BatchOptions {
   bool again = false;
   // Where the evidence of each recording goes, in a folder of its name; empty:
   // none is written.
-  std::filesystem::path evidence;
+  std::filesystem::path evidence = {};
   // Called from any thread, one call at a time. May be empty.
-  std::function<void(const BatchProgress&)> progress;
+  std::function<void(const BatchProgress&)> progress = {};
   // Looked at before each recording: true ends the batch early. May be empty.
-  std::function<bool()> stop;
+  std::function<bool()> stop = {};
 };
 
 // Analyses `clips` and logs each trial as soon as it and all before it are
