@@ -84,6 +84,27 @@ const std::string& ContactNames() {
 }
 constexpr std::size_t kContactColumns = 8 + 5 * kContactQuantities.size();
 
+void InsertBudgets(Connection& connection, std::int64_t revision_id,
+                   std::int64_t ordinal, const core::Contact& contact) {
+  // One row at a time: with several in one VALUES, SQLite makes a temporary
+  // table first, because of the triggers.
+  Statement insert(connection,
+                   "INSERT INTO budget_lines (revision_id, ordinal, budget, "
+                   "line, source, u_rad) VALUES (?, ?, ?, ?, ?, ?)");
+  for (const auto& budget : kBudgets) {
+    const Budget& lines = contact.*budget.member;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      insert.Add(revision_id)
+          .Add(ordinal)
+          .Add(budget.name)
+          .Add(static_cast<std::int64_t>(i))
+          .Add(lines[i].source)
+          .Add(lines[i].u)
+          .Run();
+    }
+  }
+}
+
 void InsertContact(Connection& connection, std::int64_t revision_id,
                    std::int64_t ordinal, const ContactRecord& record) {
   static const std::string sql =
@@ -108,21 +129,7 @@ void InsertContact(Connection& connection, std::int64_t revision_id,
     AddMeasured(insert, At(record, quantity));
   }
   insert.Run();
-  for (const auto& budget : kBudgets) {
-    const Budget& lines = record.contact.*budget.member;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      Statement(connection,
-                "INSERT INTO budget_lines (revision_id, ordinal, budget, line, "
-                "source, u_rad) VALUES (?, ?, ?, ?, ?, ?)")
-          .Add(revision_id)
-          .Add(ordinal)
-          .Add(budget.name)
-          .Add(static_cast<std::int64_t>(i))
-          .Add(lines[i].source)
-          .Add(lines[i].u)
-          .Run();
-    }
-  }
+  InsertBudgets(connection, revision_id, ordinal, record.contact);
 }
 
 ContactRecord TakeContact(Connection& connection, Statement& row) {

@@ -8,13 +8,15 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/db/fixture.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/program.h"
-#include "tests/support/temporary_folder.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown {
@@ -36,6 +38,11 @@ class BatchCommand : public ::testing::Test {
 
   std::string Db(const std::string& name = "lab.db") const {
     return (folder_ / name).string();
+  }
+  std::filesystem::path Write(const std::string& name,
+                              const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
   }
   std::string Films() const { return (folder_ / "films").string(); }
 
@@ -59,7 +66,7 @@ class BatchCommand : public ::testing::Test {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
 
-  testing::TemporaryFolder folder_;
+  db::Folder folder_;
 };
 
 TEST_F(BatchCommand, OneBadClipIsExit5AndStopsNothing) {
@@ -78,7 +85,7 @@ TEST_F(BatchCommand, OneBadClipIsExit5AndStopsNothing) {
   EXPECT_THAT(ran.out, HasSubstr("4 recordings: 3 logged, 0 known already, 0 "
                                  "copies, 1 failed; 1 to look at"));
   EXPECT_THAT(ran.err, HasSubstr("1 of 4 recordings failed"));
-  EXPECT_THAT(testing::ReadAll(folder_ / "out/triage.csv"),
+  EXPECT_THAT(testing::ReadText((folder_ / "out/triage.csv").string()),
               HasSubstr("\n'=bad.avi,failed,failed,"));
   for (const std::string& name : names) {
     EXPECT_TRUE(
@@ -99,13 +106,13 @@ TEST_F(BatchCommand, OneBadClipIsExit5AndStopsNothing) {
 
 TEST_F(BatchCommand, AManifestAttachesSetPoints) {
   pipeline::filmed::WriteSphere(folder_ / "films/a.mraw", 24.0, 1);
-  const auto manifest = folder_.Write(
-      "m.csv", "clip,set_angle_deg,campaign\nfilms/a.mraw,25,asphalt\n");
+  const auto manifest =
+      Write("m.csv", "clip,set_angle_deg,campaign\nfilms/a.mraw,25,asphalt\n");
   EXPECT_EQ(Run({"batch", manifest.string(), "--db", Db()}).status, 0);
   const auto store = db::Store::Open(Db(), db::OpenMode::kRead);
   ASSERT_EQ(store.Trials().size(), 1u);
   EXPECT_DOUBLE_EQ(*store.Trials()[0].set_angle_rad, 25.0 * core::kDegree);
-  folder_.Write("m.csv", "clip,set_angle_deg\nfilms/a.mraw,steep\n");
+  Write("m.csv", "clip,set_angle_deg\nfilms/a.mraw,steep\n");
   ExpectMistake({"batch", manifest.string(), "--db", Db()}, 3,
                 "m.csv: row 2, column set_angle_deg: 'steep'");
   EXPECT_THAT(Run({"batch", "--columns"}).out, HasSubstr("set_speed_mps"));

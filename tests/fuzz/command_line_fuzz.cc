@@ -1,10 +1,12 @@
 // Numbers of the command line. The first byte chooses the kind.
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "app/cli/store_flags.h"
 #include "app/cli/values.h"
+#include "app/pipeline/batch.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace touchdown::fuzz {
@@ -16,13 +18,13 @@ void RequireSane(const core::Estimate& estimate) {
           "an uncertainty is finite and at least 0");
 }
 
-void Parse(char kind, const std::string& text) {
-  switch (kind % 5) {
+void Parse(int kind, const std::string& text) {
+  switch (kind % 7) {
     case 0:
-      RequireSane(cli::ParseEstimate("--x", text, 1e-3, 1e-3));
+      RequireSane(cli::ParseEstimate("--x", text, 1e-3, {.relative = 1e-3}));
       break;
     case 1: {
-      const auto sides = cli::ParseSides("--x", text, 1e-3, 1e-3);
+      const auto sides = cli::ParseSides("--x", text, 1e-3, {.relative = 1e-3});
       RequireSane(sides.first);
       RequireSane(sides.second);
       break;
@@ -35,6 +37,18 @@ void Parse(char kind, const std::string& text) {
     case 3: {
       const auto [first, last] = cli::ParseFrames("--x", text);
       Require(first >= 0 && (last == -1 || last > first), "a range of frames");
+      break;
+    }
+    case 4: {
+      const core::PixelRect region = cli::ParseRegion("--x", text);
+      Require(region.x >= 0 && region.y >= 0 && region.width >= 1 &&
+                  region.height >= 1,
+              "a region within a picture");
+      break;
+    }
+    case 5: {
+      const auto shard = pipeline::ParseShard("--x", text);
+      Require(shard.k >= 1 && shard.k <= shard.n, "a part of the whole");
       break;
     }
     default: {
@@ -64,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   using namespace touchdown;  // NOLINT(google-build-using-namespace)
   if (size == 0) return 0;
   try {
-    fuzz::Parse(static_cast<char>(data[0] & 0x7F),
+    fuzz::Parse(static_cast<int>(data[0]),
                 std::string(fuzz::Text(data + 1, size - 1)));
   } catch (const std::invalid_argument& error) {
     fuzz::Require(std::string(error.what()).size() > 3,
