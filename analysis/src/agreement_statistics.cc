@@ -85,7 +85,9 @@ Kappa CohenKappa(std::span<const int> counts, int k, KappaWeights weights) {
         counts.size(), n, k));
   }
   const auto at = [&](int i, int j) {
-    return counts[static_cast<std::size_t>(i * k + j)] / n;
+    return counts[static_cast<std::size_t>(i) * static_cast<std::size_t>(k) +
+                  static_cast<std::size_t>(j)] /
+           n;
   };
   const auto weight = [&](int i, int j) {
     if (weights == KappaWeights::kNone) return i == j ? 1.0 : 0.0;

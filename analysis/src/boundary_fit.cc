@@ -322,6 +322,13 @@ void FillMoments(BoundaryPosterior& out) {
   out.sd_rad = std::sqrt(variance);
 }
 
+std::optional<double> TypicalU(std::span<const Observation> observations) {
+  if (observations.empty()) return std::nullopt;
+  double squares = 0.0;
+  for (const Observation& o : observations) squares += o.u_rad * o.u_rad;
+  return std::sqrt(squares / static_cast<double>(observations.size()));
+}
+
 Table MakeTable(std::span<const Cell> cells, const std::vector<double>& start,
                 const BoundaryFitOptions& options, double lapse,
                 double max_mass) {
@@ -383,6 +390,8 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   out.status = Classify(observations);
   out.few_trials = Count(observations).decided() < kFewTrials;
   out.binned = observations.size() > options.bin_above;
+  out.prior = options.scatter;
+  out.typical_u_rad = TypicalU(observations);
   const std::vector<Cell> cells =
       MakeCells(observations, out.binned ? options.bin_width_rad : 0.0);
   const std::vector<double> start = StartAngles(observations, options);

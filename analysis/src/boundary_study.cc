@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace touchdown::analysis {
 namespace {
@@ -23,7 +24,8 @@ int TrialsToDecide(const BoundaryPosterior& posterior,
   // margin stands for that.
   const double target =
       std::max({to_confirm, off - far, options.margin_rad / 100});
-  return ForecastTrials(posterior, target, options.next.set_u_rad);
+  std::mt19937_64 engine(options.next.forecast_seed);
+  return ForecastTrials(posterior, {target, options.next.set_u_rad}, engine);
 }
 
 TheoryComparison Compare(std::span<const Observation> observations,

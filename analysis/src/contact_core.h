@@ -136,7 +136,9 @@ class ContactCore {
   }
 
   static constexpr Regime RegimeOf(int a_sign, int b_sign) {
-    return kSignTable[static_cast<std::size_t>(3 * (a_sign + 1) + b_sign + 1)];
+    const int row = 3 * (a_sign + 1);
+    return kSignTable[static_cast<std::size_t>(row) +
+                      static_cast<std::size_t>(b_sign + 1)];
   }
 
   static constexpr int SignOutside(T value, T tolerance) {

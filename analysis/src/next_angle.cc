@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "design.h"
 #include "likelihood.h"
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/special_functions.h"
@@ -254,30 +255,6 @@ double ExpectedSd(const BoundaryPosterior& posterior, double angle_rad,
       0.0));
 }
 
-int ForecastTrials(const BoundaryPosterior& posterior,
-                   double target_half_width_rad, double set_u_rad) {
-  Require(target_half_width_rad > 0.0, "target_half_width_rad",
-          target_half_width_rad, "positive");
-  const double half_width = HalfWidth(posterior);
-  if (half_width <= target_half_width_rad) return 0;
-  const double s_eff = std::hypot(posterior.scatter_median_rad, set_u_rad);
-  const double target_sd = target_half_width_rad / core::kNormal975;
-  const double now_sd = half_width / core::kNormal975;
-  const double by_information =
-      (1 / (target_sd * target_sd) - 1 / (now_sd * now_sd)) * std::numbers::pi *
-      s_eff * s_eff / 2;
-  // What the next trial is expected to bring, kept up: nothing later is faster.
-  NextAngleOptions options;
-  options.set_u_rad = set_u_rad;
-  const double rate =
-      posterior.sd_rad / ExpectedSd(posterior, posterior.mean_rad, options);
-  const double by_rate =
-      std::log(half_width / target_half_width_rad) / std::log(rate);
-  constexpr double kMost = 1e6;  // beyond, the number says "never"
-  return static_cast<int>(
-      std::ceil(std::min(std::max(by_information, by_rate), kMost)));
-}
-
 NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
                           const NextAngleOptions& options) {
   CheckFeasible(options.feasible_rad);
@@ -290,47 +267,54 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
   Require(options.target_half_width_rad > 0.0, "target_half_width_rad",
           options.target_half_width_rad, "positive");
 
-  const BoundaryGrid& grid = posterior.grid;
+  Require(options.design_scatter.median_rad > 0.0, "design_scatter median_rad",
+          options.design_scatter.median_rad, "positive");
+  Require(options.design_scatter.log_sd > 0.0, "design_scatter log_sd",
+          options.design_scatter.log_sd, "positive");
+
+  const Design design = Reweigh(posterior, options.design_scatter);
   std::vector<double> inverse_scatter;
-  for (const double s : grid.scatter_rad) {
+  for (const double s : design.grid.scatter_rad) {
     inverse_scatter.push_back(1.0 / std::hypot(s, options.set_u_rad));
   }
-  const double mean = posterior.mean_rad;
-  const double reach = std::max(kReach * posterior.sd_rad, kLeastReach_rad);
+  const double mean = design.mean_rad;
+  const double reach = std::max(kReach * design.sd_rad, kLeastReach_rad);
   const double step = options.candidate_step_rad;
-  const double variance = posterior.sd_rad * posterior.sd_rad;
+  const double variance = design.sd_rad * design.sd_rad;
+  // Where the rig cannot reach what is believed, the nearer of its ends is all
+  // that can be thrown: Clipped() sees to that.
   double best = mean;
   double best_variance = std::numeric_limits<double>::infinity();
-  for (double c = std::ceil((mean - reach) / step) * step; c <= mean + reach;
-       c += step) {
+  const auto last = std::llround(std::floor((mean + reach) / step));
+  for (auto i = std::llround(std::ceil((mean - reach) / step)); i <= last;
+       ++i) {
+    const double c = static_cast<double>(i) * step;
     if (c < options.feasible_rad.low || c > options.feasible_rad.high) continue;
     const double expected =
-        ExpectedVariance(grid, c, inverse_scatter, mean, variance);
+        ExpectedVariance(design.grid, c, inverse_scatter, mean, variance);
     // A tie, to rounding, stays with the lower angle.
     if (expected < best_variance * (1.0 - 1e-12)) {
       best_variance = expected;
       best = c;
     }
   }
-  if (!std::isfinite(best_variance)) {
-    // The rig cannot reach where the boundary is believed to be: its nearer end
-    // is all that can be thrown.
-    const double end =
-        std::clamp(mean, options.feasible_rad.low, options.feasible_rad.high);
-    best_variance =
-        ExpectedVariance(grid, end, inverse_scatter, mean, variance);
-  }
   NextAngle out = Clipped(best + Spread(trials_so_far, options.spread_rad),
                           options.feasible_rad);
-  out.expected_sd_rad = std::sqrt(std::max(best_variance, 0.0));
+  out.expected_sd_rad = ExpectedSd(posterior, out.angle_rad, options);
   out.half_width_rad = HalfWidth(posterior);
   if (out.half_width_rad <= options.target_half_width_rad) {
     out.stop = StopReason::kTargetReached;
   } else if (trials_so_far >= options.max_trials) {
     out.stop = StopReason::kMaxTrials;
   }
-  out.trials_to_target = ForecastTrials(
-      posterior, options.target_half_width_rad, options.set_u_rad);
+  if (options.forecast_futures > 0) {
+    std::mt19937_64 engine(options.forecast_seed);
+    out.trials_to_target =
+        ForecastTrials(posterior,
+                       {options.target_half_width_rad, options.set_u_rad,
+                        options.forecast_futures, options.design_scatter},
+                       engine);
+  }
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "app/cli/calibrate_file.h"
+#include "app/cli/dates.h"
 #include "app/cli/values.h"
 #include "touchdown/core/units.h"
 
@@ -18,6 +20,11 @@ constexpr DefaultU kReading = {.relative = 1e-3};
 pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   pipeline::AnalyzeOptions options;
   options.fps = flags.fps;
+  if (!flags.calibration.empty()) {
+    options.calibration = calib::ReadCalibration(flags.calibration);
+    options.today = Today();
+  }
+  if (!flags.crop.empty()) options.crop = ParseCorner("--crop", flags.crop);
   if (!flags.scale.empty()) {
     options.scale_px_per_m =
         ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kReading);
@@ -64,6 +71,12 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
 }
 
 void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
+  command.add_option("--calibration", flags.calibration,
+                     "a file of `touchdown calibrate`: the lens, and scale "
+                     "and ground where they are in it and not given here");
+  command.add_option("--crop", flags.crop,
+                     "where the picture lies on the calibrated sensor, X,Y in "
+                     "pixels, where the file does not say");
   command.add_option("--scale-px-per-m", flags.scale,
                      "pixels per metre in the plane of travel, e.g. 1000 or "
                      "1000+-0.8 (u 0.1 % where not given)");

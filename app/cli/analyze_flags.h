@@ -14,6 +14,8 @@ class App;
 namespace touchdown::cli {
 
 struct AnalyzeFlags {
+  std::string calibration;
+  std::string crop;
   std::string scale;
   std::string body = "auto";
   std::string diameter;

@@ -1,4 +1,4 @@
-// touchdown boundary, next, report: from trials to a boundary angle.
+// touchdown boundary, report: from trials to a boundary angle.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -12,8 +12,6 @@
 
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
-#include "app/pipeline/trial_selection.h"
-#include "app/pipeline/version.h"
 #include "app/report/boundary_json.h"
 #include "app/report/format.h"
 #include "app/report/group.h"
@@ -31,31 +29,6 @@ struct Answer {
   std::vector<core::Trial> trials;
   std::vector<report::Group> groups;
 };
-
-report::ReportInput MakeInput(const BoundaryFlags& flags) {
-  pipeline::Selection selection = pipeline::SelectTrials(MakeSelection(flags));
-  report::ReportInput input;
-  input.trials = std::move(selection.trials);
-  input.campaigns = std::move(selection.campaigns);
-  input.source = std::move(selection.source);
-  input.software_version = std::string(pipeline::Version());
-  input.study = MakeStudy(flags);
-  // A file of bare angles is compared with the published boundary of the body
-  // that it is said to be of.
-  if (!flags.csv.empty() && flags.body.empty()) input.theories.clear();
-  if (flags.csv.empty() && !flags.theory.empty()) {
-    const core::Estimate theory = ParseTheory(flags.theory);
-    for (const auto body :
-         {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
-      input.theories.push_back(
-          {body,
-           {flags.theory_name.empty() ? "theory" : flags.theory_name,
-            theory.value, theory.u},
-           "given for information"});
-    }
-  }
-  return input;
-}
 
 Answer MakeAnswer(const BoundaryFlags& flags) {
   Answer out;
@@ -134,134 +107,13 @@ int RunBoundary(const BoundaryFlags& flags) {
   return 0;
 }
 
-// Neyer's test and up-and-down want the trials as they were thrown: the order
-// of a CSV file; of a store, the order in which trials were logged.
-std::vector<analysis::Observation> InOrder(
-    const std::vector<core::Trial>& as_given, const report::Group& group) {
-  for (const auto& candidate : analysis::GroupTrials(as_given)) {
-    if (candidate.campaign != group.trials.campaign ||
-        candidate.body != group.trials.body ||
-        candidate.angle_kind != group.trials.angle_kind ||
-        candidate.origin != group.trials.origin) {
-      continue;
-    }
-    std::vector<analysis::Observation> out = candidate.observations;
-    std::sort(out.begin(), out.end(),
-              [](const auto& a, const auto& b) { return a.trial < b.trial; });
-    return out;
-  }
-  return {};
-}
-
-analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
-                              const std::vector<core::Trial>& as_given,
-                              const report::Group& group) {
-  const auto study = MakeStudy(flags);
-  if (flags.rule == "expected-variance") return group.study.next;
-  analysis::NextAngle next;
-  if (flags.rule == "neyer") {
-    if (flags.guess.empty()) {
-      throw std::invalid_argument(
-          "--rule neyer: needs --guess-deg LOW:HIGH, between which the "
-          "boundary "
-          "is believed to lie");
-    }
-    const core::Interval guess = ParseRange("--guess-deg", flags.guess);
-    next = analysis::NextNeyer(
-        InOrder(as_given, group),
-        {guess.low, guess.high, flags.guess_scatter_deg * kDegree,
-         study.next.feasible_rad});
-  } else if (flags.rule == "up-down") {
-    next = analysis::NextUpDown(
-        InOrder(as_given, group),
-        {flags.start_deg * kDegree, flags.step_deg * kDegree,
-         study.next.feasible_rad});
-  } else {
-    throw std::invalid_argument(
-        fmt::format("--rule: '{}'; expected expected-variance, neyer or "
-                    "up-down",
-                    flags.rule));
-  }
-  // What there is to know does not depend on the rule.
-  next.expected_sd_rad =
-      analysis::ExpectedSd(group.study.posterior, next.angle_rad, study.next);
-  next.half_width_rad = group.study.next.half_width_rad;
-  next.stop = group.study.next.stop;
-  next.trials_to_target = group.study.next.trials_to_target;
-  return next;
-}
-
-int RunNext(const BoundaryFlags& flags) {
-  report::ReportInput input = MakeInput(flags);
-  const std::vector<core::Trial> as_given = std::move(input.trials);
-  std::vector<core::Trial> sorted = as_given;
-  report::SortTrials(sorted);
-  input.trials.clear();
-  std::vector<report::Group> groups = report::MakeGroups(input, sorted);
-  if (groups.size() > 1) {
-    std::string names;
-    for (const auto& group : groups) {
-      names += (names.empty() ? "" : "; ") + report::FullName(group);
-    }
-    throw std::invalid_argument(fmt::format(
-        "{} groups of trials match ({}); choose one with --campaign, --body, "
-        "--angle-kind or --origin",
-        groups.size(), names));
-  }
-  if (groups.empty()) {
-    // Before the first trial there is nothing but the prior.
-    report::Group group;
-    group.campaign.name = flags.campaign;
-    analysis::StudyOptions study = input.study;
-    group.prior = study.fit.scatter;
-    group.study = analysis::StudyBoundary({}, study);
-    groups.push_back(std::move(group));
-  }
-  report::Group& group = groups.front();
-  group.study.next = ApplyRule(flags, as_given, group);
-  const analysis::NextAngle& next = group.study.next;
-  if (flags.json) {
-    nlohmann::ordered_json document = report::BoundaryDocument(groups);
-    for (const char* field :
-         {"angle_deg", "expected_sd_deg", "trials_to_target"}) {
-      document[field] = document["next"][field];
-    }
-    document["rule"] = flags.rule;
-    fmt::print("{}\n", document.dump(2));
-    return 0;
-  }
-  fmt::print("next angle        {} deg{}\n", Degrees(next.angle_rad),
-             next.clipped ? " (the end of what is feasible)" : "");
-  fmt::print("boundary now      {}\n", report::BoundarySentence(group.study));
-  fmt::print("sd after it       {} deg expected, {} deg now\n",
-             Degrees(next.expected_sd_rad),
-             Degrees(group.study.posterior.sd_rad));
-  switch (next.stop) {
-    case analysis::StopReason::kTargetReached:
-      fmt::print("stop              the 95 % interval is within +- {} deg\n",
-                 report::Plain(flags.target_deg));
-      break;
-    case analysis::StopReason::kMaxTrials:
-      fmt::print("stop              {} trials were thrown\n",
-                 group.study.counts.total());
-      break;
-    case analysis::StopReason::kNone:
-      fmt::print(
-          "trials to target  about {} until the 95 % interval is within "
-          "+- {} deg\n",
-          next.trials_to_target, report::Plain(flags.target_deg));
-      break;
-  }
-  return 0;
-}
-
 int RunReport(const BoundaryFlags& flags, const std::string& options) {
   if (!flags.csv.empty() && flags.body.empty()) {
     throw std::invalid_argument(
         "--trials: a report needs --body sphere or rectangle, which the file "
         "does not say");
   }
-  report::ReportInput input = MakeInput(flags);
+  report::ReportInput input = MakeInput(flags, true);
   input.options = options;
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();
@@ -292,28 +144,6 @@ void AddBoundary(CLI::App& app, Action& action) {
   AddBoundaryFlags(*command, *flags);
   command->callback(
       [flags, &action] { action = [flags] { return RunBoundary(*flags); }; });
-}
-
-void AddNext(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<BoundaryFlags>();
-  CLI::App* command =
-      app.add_subcommand("next", "The angle to throw next, and when to stop");
-  AddBoundaryFlags(*command, *flags);
-  command
-      ->add_option("--rule", flags->rule, "expected-variance, neyer or up-down")
-      ->capture_default_str();
-  command->add_option("--guess-deg", flags->guess,
-                      "neyer: LOW:HIGH, between which the boundary should lie");
-  command
-      ->add_option("--guess-scatter-deg", flags->guess_scatter_deg,
-                   "neyer: guessed scatter")
-      ->capture_default_str();
-  command->add_option("--start-deg", flags->start_deg, "up-down: first angle")
-      ->capture_default_str();
-  command->add_option("--step-deg", flags->step_deg, "up-down: step")
-      ->capture_default_str();
-  command->callback(
-      [flags, &action] { action = [flags] { return RunNext(*flags); }; });
 }
 
 void AddReport(CLI::App& app, Action& action) {

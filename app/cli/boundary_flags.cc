@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "app/pipeline/version.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -123,6 +124,36 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
     out.next.feasible_rad = ParseRange("--feasible-deg", flags.feasible);
   }
   return out;
+}
+
+report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
+  pipeline::SelectionOptions options = MakeSelection(flags);
+  options.with_evidence = with_evidence;
+  pipeline::Selection selection = pipeline::SelectTrials(options);
+  report::ReportInput input;
+  input.trials = std::move(selection.trials);
+  input.campaigns = std::move(selection.campaigns);
+  for (const pipeline::TwoLabels& pair : selection.labels) {
+    input.labels.push_back({pair.trial, pair.by_program, pair.by_person});
+  }
+  input.source = std::move(selection.source);
+  input.software_version = std::string(pipeline::Version());
+  input.study = MakeStudy(flags);
+  // A file of bare angles is compared with the published boundary of the body
+  // that it is said to be of.
+  if (!flags.csv.empty() && flags.body.empty()) input.theories.clear();
+  if (flags.csv.empty() && !flags.theory.empty()) {
+    const core::Estimate theory = ParseTheory(flags.theory);
+    for (const auto body :
+         {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+      input.theories.push_back(
+          {body,
+           {flags.theory_name.empty() ? "theory" : flags.theory_name,
+            theory.value, theory.u},
+           "given for information"});
+    }
+  }
+  return input;
 }
 
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/pipeline/trial_selection.h"
+#include "app/report/report.h"
 #include "touchdown/analysis/boundary_study.h"
 #include "touchdown/core/estimate.h"
 
@@ -39,6 +40,9 @@ struct BoundaryFlags {
   double guess_scatter_deg = 2.0;
   double start_deg = 20.0;
   double step_deg = 1.0;
+  std::string rig;
+  double speed_mps = 0.0;  // at touchdown; 0: the middle of the campaign's band
+  std::string corner;
   std::string out = ".";
   std::string title;
   bool json = false;
@@ -51,6 +55,10 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags);
 // What the flags ask for. Throw std::invalid_argument naming the flag.
 pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags);
 analysis::StudyOptions MakeStudy(const BoundaryFlags& flags);
+
+// The selected trials with what they are to be compared with.
+report::ReportInput MakeInput(const BoundaryFlags& flags,
+                              bool with_evidence = false);
 
 // "11.8" or "11.8+-0.5", in degrees.
 core::Estimate ParseTheory(const std::string& text);

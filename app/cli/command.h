@@ -19,6 +19,7 @@ using Action = std::function<int()>;
 void AddAnalyze(CLI::App& app, Action& action);
 void AddBatch(CLI::App& app, Action& action);
 void AddBoundary(CLI::App& app, Action& action);
+void AddCalibrate(CLI::App& app, Action& action);
 void AddNext(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);

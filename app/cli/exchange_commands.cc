@@ -16,9 +16,11 @@
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/paper_trials.h"
 #include "app/report/trial_csv.h"
 #include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
 
@@ -123,6 +125,8 @@ struct ImportFlags {
   std::string by;
   bool partial = false;
   bool columns = false;
+  bool paper_table1 = false;
+  double paper_u_deg = 0.5;
 };
 
 int PrintColumns() {
@@ -270,11 +274,40 @@ class Rehearsal {
   fs::path folder_;
 };
 
+// All of the paper's Table 1 or, where one of its campaigns is there, nothing.
+int ImportPaperTable1(const ImportFlags& flags) {
+  if (!flags.file.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "FILE is '{}', must be left out with --paper-table1", flags.file));
+  }
+  if (!(flags.paper_u_deg >= 0.0 && flags.paper_u_deg <= 90.0)) {
+    throw std::invalid_argument(fmt::format(
+        "--paper-u-deg is {}, must be from 0 to 90", flags.paper_u_deg));
+  }
+  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  auto paper = pipeline::PaperTable1Trials(flags.paper_u_deg * core::kDegree);
+  auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  for (const auto& campaign : paper.campaigns) {
+    if (store.FindCampaign(campaign.name)) {
+      throw core::StoreError(fmt::format(
+          "{}: there is a campaign '{}' already; nothing was imported",
+          flags.db, campaign.name));
+    }
+  }
+  for (const auto& campaign : paper.campaigns) store.AddCampaign(campaign);
+  for (auto& trial : paper.trials) trial.id.clear();  // the store gives one
+  const std::size_t n = store.LogTrials(paper.trials).size();
+  fmt::print("{} trials in {} campaigns imported\n", n, paper.campaigns.size());
+  return 0;
+}
+
 int Import(const ImportFlags& flags) {
   if (flags.columns) return PrintColumns();
+  if (flags.paper_table1) return ImportPaperTable1(flags);
   if (flags.file.empty()) {
     throw std::invalid_argument(
-        "FILE is missing, must be a .csv or .jsonl file (or --columns)");
+        "FILE is missing, must be a .csv or .jsonl file (or --columns, or "
+        "--paper-table1)");
   }
   if (flags.db.empty()) throw std::invalid_argument("--db is missing");
   const Format format = FormatOf(flags.format, flags.file);
@@ -327,6 +360,13 @@ void AddImport(CLI::App& app, Action& action) {
   command->add_flag("--partial", flags->partial,
                     "import the rows that are right, report the others (CSV)");
   command->add_flag("--columns", flags->columns, "print the columns of a CSV");
+  command->add_flag("--paper-table1", flags->paper_table1,
+                    "the eighteen trials of the paper's Table 1, in place of "
+                    "FILE");
+  command
+      ->add_option("--paper-u-deg", flags->paper_u_deg,
+                   "assumed u of the paper's angles")
+      ->capture_default_str();
   command->callback(
       [flags, &action] { action = [flags] { return Import(*flags); }; });
 }

@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   touchdown::cli::Action action;
   touchdown::cli::AddAnalyze(app, action);
   touchdown::cli::AddBatch(app, action);
+  touchdown::cli::AddCalibrate(app, action);
   touchdown::cli::AddSimulate(app, action);
   touchdown::cli::AddBoundary(app, action);
   touchdown::cli::AddNext(app, action);

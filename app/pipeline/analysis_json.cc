@@ -187,6 +187,29 @@ Json BodyOf(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
+Json CalibrationOf(Writer& writer, const Analysis& analysis) {
+  if (!analysis.calibration) {
+    return writer.Missing("calibration", "no --calibration");
+  }
+  const calib::Calibration& c = *analysis.calibration;
+  Json json;
+  json["camera"] = c.camera;
+  json["date"] = c.date;
+  json["expires"] = c.expires;
+  json["lens_rms_px"] = c.lens ? Json(c.lens->rms_px)
+                               : writer.Missing("calibration.lens_rms_px",
+                                                "the calibration has no lens");
+  return json;
+}
+
+// The ground line through two points at which the camera sees it.
+calib::GroundLine InImage(const Analysis& analysis,
+                          const calib::GroundLine& ground) {
+  if (!analysis.calibration || !analysis.calibration->lens) return ground;
+  return calib::Distorted(ground, analysis.calibration->lens->lens, ground.p1,
+                          ground.p2);
+}
+
 // Where and how fast the body is over the whole track, in image coordinates: a
 // straight line through the centres.
 Json TrackOf(Writer& writer, const Analysis& analysis) {
@@ -232,8 +255,9 @@ std::string ToJson(const Analysis& analysis) {
   } else {
     json["scale"] = writer.Missing("scale", analysis.no_scale_reason);
   }
+  json["calibration"] = CalibrationOf(writer, analysis);
   if (analysis.ground) {
-    const calib::GroundLine& g = *analysis.ground;
+    const calib::GroundLine g = InImage(analysis, *analysis.ground);
     json["ground"] = {{"x1_px", g.p1.x_px},
                       {"y1_px", g.p1.y_px},
                       {"x2_px", g.p2.x_px},
@@ -241,6 +265,11 @@ std::string ToJson(const Analysis& analysis) {
                       {"u_offset_px", g.u_offset_px},
                       {"u_angle_deg", g.u_angle_rad * kToDegrees},
                       {"source", calib::Name(g.source)}};
+    if (analysis.calibration && analysis.calibration->lens) {
+      const calib::GroundLine& ideal = *analysis.ground;
+      json["ground"]["ideal_px"] = {ideal.p1.x_px, ideal.p1.y_px, ideal.p2.x_px,
+                                    ideal.p2.y_px};
+    }
   } else {
     json["ground"] = writer.Missing("ground", analysis.no_ground_reason);
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/pipeline/clip_calibration.h"
+#include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/truth_file.h"
 #include "app/pipeline/version.h"
@@ -14,6 +16,7 @@
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/clip_digest.h"
 #include "touchdown/vision/frame_store.h"
+#include "touchdown/vision/lens_track.h"
 #include "touchdown/vision/tracker.h"
 
 namespace touchdown::pipeline {
@@ -63,10 +66,15 @@ core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
           std::nullopt};
 }
 
+// `image`: of the body in the ideal picture.
 std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
                                       const vision::BodyImage& image) {
   if (options.scale_px_per_m) {
     return calib::Scale{*options.scale_px_per_m, calib::ScaleSource::kUser};
+  }
+  if (options.calibration && options.calibration->scale) {
+    return calib::Scale{options.calibration->scale->px_per_m,
+                        calib::ScaleSource::kCalibration};
   }
   // The size of a part is not that of the body.
   if (image.whole_px > 0.0) return std::nullopt;
@@ -133,6 +141,8 @@ class Analyzer {
   Analysis Run();
 
  private:
+  vision::Track Seen(const vision::Track& track) const;
+  void AddLens();
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   void FindGroundAndContacts(const vision::Track& track);
   void DescribeScene();
@@ -143,22 +153,54 @@ class Analyzer {
   vision::Background background_;
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
+  ClipCalibration camera_;
 };
+
+vision::Track Analyzer::Seen(const vision::Track& track) const {
+  return camera_.lens ? vision::Undistorted(track, *camera_.lens) : track;
+}
+
+void Analyzer::AddLens() {
+  if (!camera_.lens || !result_.plane ||
+      !result_.contacts.first.contact.found) {
+    return;
+  }
+  // The ground was seen in the image, too: at two points, or all along.
+  const calib::GroundLine& ideal = result_.plane->ground;
+  const auto seen =
+      SeenPoints(ideal, *camera_.lens, camera_.ideal_ground ? 2 : 33);
+  AddLensUncertainty(
+      result_.contacts, *camera_.lens, result_.calibration->lens->covariance,
+      [&](const calib::Lens& lens) {
+        const auto ground = ThroughPoints(seen, lens, ideal);
+        if (!ground) return vision::ContactResult{};
+        return vision::FindContacts(
+            vision::SeenFromGround(vision::Undistorted(*result_.track, lens),
+                                   *ground),
+            contact_options_);
+      });
+}
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
   judged.ground = ground;
-  judged.track = vision::Refine(*clip_, background_, track, {ground, aspect_});
-  judged.plane = vision::SeenFromGround(judged.track, ground);
+  calib::GroundLine in_image = ground;
+  if (camera_.lens) {
+    in_image =
+        SeenNear(vision::SeenFromGround(Seen(track), ground), *camera_.lens);
+  }
+  judged.track =
+      vision::Refine(*clip_, background_, track, {in_image, aspect_});
+  judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
 }
 
 void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   std::vector<calib::GroundLine> candidates;
-  if (options_.ground) {
-    candidates.push_back(*options_.ground);
+  if (camera_.ideal_ground) {
+    candidates.push_back(*camera_.ideal_ground);
   } else {
     // The background's own noise: that of a frame over the square root of the
     // frames averaged.
@@ -167,12 +209,15 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
         std::sqrt(background_.Variance(static_cast<double>(
                       background_.level[background_.level.size() / 2])) /
                   8.0)};
-    candidates = calib::FindGroundLines(still);
+    calib::GroundLineOptions line_options;
+    line_options.lens = camera_.lens;
+    candidates = calib::FindGroundLines(still, line_options);
   }
   // A first judgement by the track as it is; only the likely ones are worth
   // fitting every outline again.
+  const vision::Track seen = Seen(track);
   const auto first_merit = [&](const calib::GroundLine& candidate) {
-    return Merit(vision::FindContacts(vision::SeenFromGround(track, candidate),
+    return Merit(vision::FindContacts(vision::SeenFromGround(seen, candidate),
                                       contact_options_));
   };
   std::vector<std::pair<int, calib::GroundLine>> ranked;
@@ -197,10 +242,16 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   }
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
-  if (!options_.ground && best_merit < 2) {
-    if (const auto from_contacts = vision::GroundFromContacts(track)) {
+  if (!camera_.ideal_ground && best_merit < 1) {
+    if (const auto from_contacts = vision::GroundFromContacts(seen)) {
       Judged judged = Judge(*from_contacts, track);
       if (judged.contacts.first.contact.found) {
+        if (best) {
+          result_.warnings.push_back(
+              fmt::format("the visible edge is not the ground ({}); the "
+                          "contact points tell where it is",
+                          best->contacts.ground_refuted));
+        }
         best = std::move(judged);
         best_merit = 2;
       }
@@ -216,9 +267,10 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
     result_.track = track;
     return;
   }
-  if (best_merit == 0 && options_.ground) {
-    result_.warnings.push_back("ground: " + best->contacts.ground_refuted +
-                               "; check --ground");
+  if (best_merit == 0 && camera_.ideal_ground) {
+    result_.warnings.push_back(
+        "ground: " + best->contacts.ground_refuted +
+        (options_.ground ? "; check --ground" : "; calibrate it again"));
   } else if (best_merit == 0) {
     result_.no_ground_reason = best->contacts.ground_refuted;
   }
@@ -241,8 +293,7 @@ void Analyzer::DescribeScene() {
     scene.used.push_back(result_.scale ? "free flight with known gravity"
                                        : "free flight with gravity fitted");
   }
-  scene.left_out["lens distortion"] = "no calibration";
-  scene.left_out["perspective"] = "no calibration";
+  DescribeCalibration(result_.calibration, scene);
   scene.left_out["drag"] = "below what the frames show";
   if (track.body.kind == core::BodyKind::kSphere) {
     scene.left_out["spin"] = "no mark on the sphere";
@@ -287,13 +338,18 @@ Analysis Analyzer::Run() {
         r.width, r.height, result_.clip.width_px, result_.clip.height_px));
   }
 
+  camera_ = FitToClip(options_, result_.clip);
+  result_.calibration = camera_.calibration;
+  contact_options_.gravity_mps2 = camera_.gravity_mps2;
+  result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
+                          camera_.warnings.end());
   auto lap = Clock::now();
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;
   track_options.region = options_.region;
   track_options.kind = kind;
-  track_options.ground = options_.ground;
+  track_options.ground = camera_.image_ground;
   track_options.progress = options_.progress;
   auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
@@ -308,7 +364,8 @@ Analysis Analyzer::Run() {
   } else {
     const vision::Track& track = tracked->track;
     background_ = std::move(tracked->background);
-    result_.scale = FindScale(options_, track.body);
+    const vision::Track seen = Seen(track);
+    result_.scale = FindScale(options_, seen.body);
     if (!result_.scale) {
       result_.no_scale_reason =
           track.body.whole_px > 0.0
@@ -316,12 +373,13 @@ Analysis Analyzer::Run() {
               : "give --calibration, --scale-px-per-m, --diameter-mm or "
                 "--sides-mm";
     }
-    result_.body = BodyOf(options_, track.body, result_.scale);
+    result_.body = BodyOf(options_, seen.body, result_.scale);
     contact_options_.scale = result_.scale;
     contact_options_.bounce_height_m = options_.bounce_height_m;
     FindGroundAndContacts(track);
-    result_.warnings.insert(result_.warnings.end(), track.warnings.begin(),
-                            track.warnings.end());
+    AddLens();
+    result_.warnings.insert(result_.warnings.end(), seen.warnings.begin(),
+                            seen.warnings.end());
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());

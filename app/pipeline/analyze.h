@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "touchdown/calib/calibration_file.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/trial.h"
@@ -36,6 +37,14 @@ struct AnalyzeOptions {
   std::optional<double> bounce_height_m;       // nothing: default convention
   std::function<void(double share)> progress;  // may be empty
   std::int32_t decoder_threads = 0;            // as in vision::ClipOptions
+
+  // Of the camera: its lens, and scale and ground where nothing else is given.
+  // Its uncertainty enters every quantity. A clip that it does not fit is
+  // refused.
+  std::optional<calib::Calibration> calibration;
+  // Where the clip lies on the sensor, for files that do not say.
+  std::optional<calib::SensorCorner> crop;
+  std::string today;  // YYYY-MM-DD, for the calibration's age; empty: not asked
 };
 
 // What was modelled, and what was left out and why.
@@ -60,13 +69,16 @@ struct Analysis {
   bool simulated = false;  // a truth file lies beside the clip
   std::optional<calib::Scale> scale;
   std::string no_scale_reason;
+  // In the ideal picture where there is a lens, as `plane` is.
   std::optional<calib::GroundLine> ground;
   std::string no_ground_reason;
   std::optional<core::Body> body;  // nothing where none was found
   std::string no_body_reason;
   core::AngleKind angle_kind = core::AngleKind::kApproach;
   vision::ContactResult contacts;
-  std::optional<vision::Track> track;
+  // As it fits this clip (FittedTo).
+  std::optional<calib::Calibration> calibration;
+  std::optional<vision::Track> track;  // in the image as it was recorded
   std::optional<vision::PlaneTrack> plane;
   SceneModel scene_model;
   std::vector<std::string> warnings;
@@ -78,7 +90,7 @@ struct Analysis {
 // several bodies, in luma (a shadow as dark as the body), its colour
 // differences are tried. What science cannot say is in the result, with
 // reasons; throws std::invalid_argument for impossible options and
-// core::InputError for unreadable clips.
+// core::InputError for unreadable clips and for calibrations of other pictures.
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options = {});
 

@@ -4,11 +4,13 @@
 
 #include <fstream>
 
+#include "app/pipeline/undistorted_clip.h"
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/contact_sheet.h"
 #include "touchdown/vision/image_file.h"
+#include "touchdown/vision/lens_track.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -21,8 +23,8 @@ std::string TrackCsv(const Analysis& analysis) {
   const auto& poses = analysis.track->poses;
   const bool rectangle =
       analysis.track->body.kind == core::BodyKind::kRectangle;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const vision::Pose& p = poses[i];
+  std::size_t at = 0;  // of the plane's samples: frames may be missing there
+  for (const vision::Pose& p : poses) {
     csv +=
         fmt::format("{},{:.9f},{:.5f},{:.5f},{:.5f},{:.5f},", p.frame, p.time_s,
                     p.centre.x_px, p.centre.y_px, p.u_x_px, p.u_y_px);
@@ -31,8 +33,9 @@ std::string TrackCsv(const Analysis& analysis) {
                              p.u_angle_rad / core::kDegree)
                : std::string(",,");
     csv += fmt::format("{:.3f},", p.misfit);
-    if (analysis.plane && i < analysis.plane->samples.size()) {
-      const vision::PlaneSample& s = analysis.plane->samples[i];
+    if (analysis.plane && at < analysis.plane->samples.size() &&
+        analysis.plane->samples[at].frame == p.frame) {
+      const vision::PlaneSample& s = analysis.plane->samples[at++];
       csv += fmt::format("{:.5f},{:.5f},{:.5f},{:.5f},", s.along_px,
                          s.height_px, s.gap_px, s.u_gap_px);
       if (rectangle) csv += fmt::format("{:.6f}", s.face_rad / core::kDegree);
@@ -75,12 +78,17 @@ void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
   }
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
-  const auto clip = vision::OpenClip(analysis.clip.path, clip_options);
+  auto clip = vision::OpenClip(analysis.clip.path, clip_options);
+  vision::Track track = *analysis.track;
+  if (analysis.calibration && analysis.calibration->lens) {
+    const calib::Lens& lens = analysis.calibration->lens->lens;
+    clip = UndistortedClip(std::move(clip), lens);
+    track = vision::Undistorted(track, lens);
+  }
   vision::ContactSheetOptions sheet_options;
   sheet_options.title = Title(analysis);
-  const vision::ColourImage sheet =
-      vision::DrawContactSheet(*clip, *analysis.track, *analysis.plane,
-                               analysis.contacts, sheet_options);
+  const vision::ColourImage sheet = vision::DrawContactSheet(
+      *clip, track, *analysis.plane, analysis.contacts, sheet_options);
   vision::WritePngRgb(folder / "contact.png", sheet.width_px, sheet.height_px,
                       sheet.rgb);
 }

@@ -134,6 +134,24 @@ core::Body ReadBody(Object body) {
   return out;
 }
 
+// k1, k2, p1, p2, k3, the focal length and where the axis meets the picture
+// (its middle where not given).
+calib::Lens ReadLens(Object object, const vision::SceneCamera& camera) {
+  calib::Lens lens;
+  lens.fx_px = lens.fy_px = object.Positive("focal_px");
+  lens.cx_px = 0.5 * (camera.width_px - 1);
+  lens.cy_px = 0.5 * (camera.height_px - 1);
+  object.Number("cx_px", 1.0, lens.cx_px);
+  object.Number("cy_px", 1.0, lens.cy_px);
+  object.Number("k1", 1.0, lens.k1);
+  object.Number("k2", 1.0, lens.k2);
+  object.Number("p1", 1.0, lens.p1);
+  object.Number("p2", 1.0, lens.p2);
+  object.Number("k3", 1.0, lens.k3);
+  object.Done();
+  return lens;
+}
+
 vision::SceneCamera ReadCamera(Object object) {
   vision::SceneCamera camera;
   object.Whole("width_px", 1, 65536, camera.width_px);
@@ -154,6 +172,7 @@ vision::SceneCamera ReadCamera(Object object) {
   object.Number("exposure_us", 1e-6, camera.exposure_s);
   object.Number("psf_sigma_px", 1.0, camera.psf_sigma_px);
   object.Whole("bit_depth", 1, 16, camera.bit_depth);
+  if (object.Has("lens")) camera.lens = ReadLens(object.Child("lens"), camera);
   object.Done();
   return camera;
 }

@@ -62,6 +62,13 @@ ordered_json SceneJson(const Shot& shot) {
                      {"exposure_us", camera.exposure_s * 1e6},
                      {"psf_sigma_px", camera.psf_sigma_px},
                      {"bit_depth", camera.bit_depth}};
+  if (camera.lens) {
+    const calib::Lens& lens = *camera.lens;
+    scene["camera"]["lens"] = {{"focal_px", lens.fx_px}, {"cx_px", lens.cx_px},
+                               {"cy_px", lens.cy_px},    {"k1", lens.k1},
+                               {"k2", lens.k2},          {"p1", lens.p1},
+                               {"p2", lens.p2},          {"k3", lens.k3}};
+  }
   const vision::SceneLook& look = shot.look;
   scene["look"] = {{"body_level", look.body_level},
                    {"background_level", look.background_level},

@@ -28,6 +28,27 @@ bool IsReviewed(const db::Store& store, const std::string& id) {
   });
 }
 
+// Nothing where the program never spoke, or no person after it.
+std::optional<TwoLabels> LabelsOf(const db::Store& store,
+                                  const std::string& id) {
+  TwoLabels out{id};
+  bool program = false;
+  bool person = false;
+  for (const auto& revision : store.History(id)) {
+    const core::MotionState label = revision.trial.first.state.label;
+    if (revision.kind == db::RevisionKind::kLogged &&
+        !revision.trial.document_json.empty()) {
+      out.by_program = label;
+      program = true;
+    } else if (revision.kind == db::RevisionKind::kCorrected) {
+      out.by_person = label;
+      person = true;
+    }
+  }
+  if (!program || !person) return std::nullopt;
+  return out;
+}
+
 Selection FromStore(const SelectionOptions& options) {
   const db::Store store = db::Store::Open(options.store, db::OpenMode::kRead);
   db::TrialFilter filter;
@@ -36,7 +57,7 @@ Selection FromStore(const SelectionOptions& options) {
   filter.body = options.body;
   filter.from_utc = options.from_utc;
   filter.until_utc = options.until_utc;
-  filter.with_documents = false;
+  filter.with_documents = options.with_evidence;
   Selection out;
   out.campaigns = store.Campaigns();
   if (options.campaign && !options.campaign->empty() &&
@@ -50,6 +71,14 @@ Selection FromStore(const SelectionOptions& options) {
     std::erase_if(out.trials, [&](const core::Trial& trial) {
       return !IsReviewed(store, trial.id);
     });
+  }
+  if (options.with_evidence) {
+    for (const core::Trial& trial : out.trials) {
+      if (trial.revision < 2) continue;
+      if (auto labels = LabelsOf(store, trial.id)) {
+        out.labels.push_back(std::move(*labels));
+      }
+    }
   }
   out.source = fmt::format("store {} ({})", options.store.filename().string(),
                            store.uuid());
@@ -84,7 +113,9 @@ Selection FromCsv(const SelectionOptions& options) {
 
 Selection FromPaper(const SelectionOptions& options) {
   PaperTrials paper = PaperTable1Trials(options.paper_u_rad);
-  return {std::move(paper.trials), std::move(paper.campaigns),
+  return {std::move(paper.trials),
+          std::move(paper.campaigns),
+          {},
           "the paper's Table 1"};
 }
 

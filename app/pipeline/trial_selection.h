@@ -28,6 +28,9 @@ struct SelectionOptions {
   std::optional<core::Origin> origin;
   std::optional<std::string> from_utc;  // first logged from <= t < until
   std::optional<std::string> until_utc;
+  // Of a store: also what the program said of trials that a person revised, and
+  // the documents of the analyses. A report wants them, an estimate does not.
+  bool with_evidence = false;
   bool reviewed_only = false;  // only trials that a person has corrected
 
   // The theory and margin of a CSV file, which has no campaign to declare one.
@@ -37,10 +40,18 @@ struct SelectionOptions {
   double margin_rad = 0.0;  // 0: the default of a campaign
 };
 
+// One trial's two labels.
+struct TwoLabels {
+  std::string trial;  // id
+  core::MotionState by_program = core::MotionState::kUndecided;
+  core::MotionState by_person = core::MotionState::kUndecided;
+};
+
 struct Selection {
   std::vector<core::Trial> trials;
   std::vector<core::Campaign> campaigns;
-  std::string source;  // in words: file and filters
+  std::vector<TwoLabels> labels;  // with_evidence: of those that bear both
+  std::string source;             // in words: file and filters
 };
 
 // Throws std::invalid_argument unless there is exactly one source,

@@ -28,6 +28,10 @@ std::vector<Block> MakeStatistics(const Group& group);
 std::vector<Block> MakeTrialTables(const Group& group,
                                    std::span<const core::Trial> trials);
 
+// Labels of two kinds, budget, calibration and software (evidence_tables.cc).
+std::vector<Block> MakeEvidence(const Group& group,
+                                std::span<const core::Trial> trials);
+
 // The group's plot with its text (group_figure.cc). `index` makes identifiers
 // unique.
 Figure MakeFigure(const Group& group, std::size_t index);

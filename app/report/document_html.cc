@@ -65,7 +65,7 @@ summary { cursor: pointer; color: var(--soft); }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; line-height: 1.38; }
   h1 { font-size: 17pt; } h2 { font-size: 13pt; } h3 { font-size: 11pt; }
-  h2, h3 { break-after: avoid; }
+  h2, h3 { break-after: avoid; } ul { font-size: 9pt; line-height: 1.3; }
   table { font-size: 8.6pt; margin: 6px 0 10px; } th { font-size: 8pt; }
   th, td { padding: 1.5px 10px 1.5px 0; }
   p, .callout, .banner, figure { margin: 5px 0 6px; }

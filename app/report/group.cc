@@ -88,6 +88,8 @@ void SortTrials(std::vector<core::Trial>& trials) {
 std::vector<Group> MakeGroups(const ReportInput& input,
                               std::span<const core::Trial> trials) {
   const auto campaigns = ByName(input.campaigns);
+  std::map<std::string, const LabelPair*> labels;
+  for (const LabelPair& pair : input.labels) labels[pair.trial] = &pair;
   std::vector<Group> out;
   for (analysis::TrialGroup& trial_group : analysis::GroupTrials(trials)) {
     Group group;
@@ -98,6 +100,10 @@ std::vector<Group> MakeGroups(const ReportInput& input,
       group.members.push_back(left.trial);
     }
     std::sort(group.members.begin(), group.members.end());
+    for (const std::size_t t : group.members) {
+      const auto pair = labels.find(trials[t].id);
+      if (pair != labels.end()) group.labels.push_back(*pair->second);
+    }
     const auto known = campaigns.find(trial_group.campaign);
     group.registered = known != campaigns.end();
     if (group.registered) {

@@ -21,6 +21,7 @@ struct Group {
   std::vector<std::size_t> members;  // its trials, in the order of the tables
   analysis::ScatterPrior prior;      // that the posterior was made with
   analysis::BoundaryStudy study;
+  std::vector<LabelPair> labels;   // of those members that bear both
   std::vector<std::string> notes;  // where each of study.theories comes from
 
   bool simulated() const { return trials.origin == core::Origin::kSimulated; }

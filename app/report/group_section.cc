@@ -141,6 +141,9 @@ Section MakeGroupSection(const Group& group, std::span<const Group> groups,
   for (Block& block : MakeTrialTables(group, trials)) {
     out.push_back(std::move(block));
   }
+  for (Block& block : MakeEvidence(group, trials)) {
+    out.push_back(std::move(block));
+  }
   return section;
 }
 

@@ -23,9 +23,17 @@ struct ReportTheory {
 // The paper's 11.8 deg (sphere) and 7.8 deg (rectangle), labelled published.
 std::vector<ReportTheory> PublishedTheories();
 
+// What the program said of a trial before a person revised it, and the person.
+struct LabelPair {
+  std::string trial;  // id
+  core::MotionState by_program = core::MotionState::kUndecided;
+  core::MotionState by_person = core::MotionState::kUndecided;
+};
+
 struct ReportInput {
   std::vector<core::Trial> trials;  // in any order; last revisions only
   std::vector<core::Campaign> campaigns;
+  std::vector<LabelPair> labels;  // of the trials that bear both
   std::vector<ReportTheory> theories = PublishedTheories();
   // How boundaries are estimated; what depends on the campaign (theory, margin,
   // origin) is filled in.

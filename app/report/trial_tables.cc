@@ -41,10 +41,17 @@ Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
                                               : Cell{"no", Tone::kBad};
 }
 
+// The clip's name; without a clip the beginning of the identity, which
+// `touchdown show` takes and table1.csv has whole.
 Cell TrialCell(const core::Trial& trial) {
-  return {trial.clip.path.empty()
-              ? trial.id
-              : std::filesystem::path(trial.clip.path).filename().string(),
+  constexpr std::size_t kUuidLength = 36;
+  constexpr std::size_t kShown = 8;
+  if (!trial.clip.path.empty()) {
+    return {std::filesystem::path(trial.clip.path).filename().string(),
+            Tone::kMuted};
+  }
+  return {trial.id.substr(
+              0, trial.id.size() == kUuidLength ? kShown : std::string::npos),
           Tone::kMuted};
 }
 
@@ -172,6 +179,16 @@ std::vector<Block> MakeTrialTables(const Group& group,
     out.push_back(std::move(set_points));
     const std::string summary = SetPointText(group);
     if (!summary.empty()) out.push_back(Paragraph{summary, true});
+    if (std::any_of(group.members.begin(), group.members.end(),
+                    [&](std::size_t t) {
+                      return trials[t].set_speed_mps.has_value();
+                    })) {
+      out.push_back(Paragraph{
+          "The set speed is that of the launch; the measured one is at "
+          "touchdown, faster by the fall from a muzzle height that is not in "
+          "a trial. So they have no E_n.",
+          true});
+    }
   }
   if (!group.trials.left_out.empty()) {
     out.push_back(MakeLeftOut(group, trials));

@@ -37,6 +37,30 @@ double StepAt(const StillImage& image, std::int32_t x, std::int32_t y) {
   return (below - above) / 3.0;
 }
 
+// To the ideal picture; false where the lens has no ideal point.
+bool ToIdeal(const std::optional<Lens>& lens, EdgePoint& p) {
+  if (!lens) return true;
+  const auto ideal = Undistort(*lens, {p.x, p.y});
+  if (!ideal) return false;
+  p.x = ideal->point.x_px;
+  p.y = ideal->point.y_px;
+  return true;
+}
+
+// Where in column x of the picture the line is seen.
+double SeenAt(const std::optional<Lens>& lens, const Line& line, double middle,
+              double x) {
+  if (!lens) return line.offset + line.slope * (x - middle);
+  double along = x;
+  core::PixelPoint seen;
+  constexpr int kSteps = 6;  // each gains the lens's slope, a digit or more
+  for (int k = 0; k < kSteps; ++k) {
+    seen = Distort(*lens, {along, line.offset + line.slope * (along - middle)});
+    along += x - seen.x_px;
+  }
+  return seen.y_px;
+}
+
 std::vector<EdgePoint> EdgePoints(const StillImage& image, double least) {
   std::vector<EdgePoint> points;
   const std::int32_t step = std::max<std::int32_t>(1, image.width_px / 640);
@@ -192,7 +216,8 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
 }
 
 // The edge's blur: the one that explains a sample of columns best.
-double EstimateBlur(const StillImage& image, const Line& line, double middle) {
+double EstimateBlur(const StillImage& image, const std::optional<Lens>& lens,
+                    const Line& line, double middle) {
   constexpr std::array<double, 12> kTried = {0.4, 0.5, 0.6, 0.7, 0.85, 1.0,
                                              1.2, 1.5, 1.9, 2.4, 3.0,  4.0};
   double best = kTried[0];
@@ -203,8 +228,8 @@ double EstimateBlur(const StillImage& image, const Line& line, double middle) {
     for (std::int32_t x = 2; x < image.width_px;
          x += 1 + image.width_px / 120) {
       double r2 = 0.0;
-      const EdgePoint edge = ColumnEdge(
-          image, x, line.offset + line.slope * (x - middle), blur, r2);
+      const EdgePoint edge =
+          ColumnEdge(image, x, SeenAt(lens, line, middle, x), blur, r2);
       if (edge.strength != 0.0) residuals.push_back(r2);
     }
     if (residuals.size() < 8) continue;
@@ -258,7 +283,10 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
   const double middle = 0.5 * (image.width_px - 1);
   // A mean of three rows on each side has noise sqrt(2/3) sigma.
   const double least = options.least_contrast_sigmas * image.noise_dn;
-  const std::vector<EdgePoint> points = EdgePoints(image, least);
+  std::vector<EdgePoint> points;
+  for (EdgePoint p : EdgePoints(image, least)) {
+    if (ToIdeal(options.lens, p)) points.push_back(p);
+  }
   std::vector<bool> used(points.size(), false);
   const double step = std::max<std::int32_t>(1, image.width_px / 640);
   for (int found = 0; found < options.most_lines; ++found) {
@@ -281,13 +309,15 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
       if (std::abs(off) < kSameLine_px) used[i] = true;
     }
     // To sub-pixel, from every column.
-    const double blur = EstimateBlur(image, best, middle);
+    const double blur = EstimateBlur(image, options.lens, best, middle);
     std::vector<EdgePoint> edge;
     for (std::int32_t x = 0; x < image.width_px; ++x) {
       double r2 = 0.0;
-      const EdgePoint p = ColumnEdge(
-          image, x, best.offset + best.slope * (x - middle), blur, r2);
-      if (std::abs(p.strength) > least) edge.push_back(p);
+      EdgePoint p =
+          ColumnEdge(image, x, SeenAt(options.lens, best, middle, x), blur, r2);
+      if (std::abs(p.strength) > least && ToIdeal(options.lens, p)) {
+        edge.push_back(p);
+      }
     }
     if (static_cast<double>(edge.size()) <
         options.least_share * image.width_px) {

@@ -80,4 +80,38 @@ double HeightUncertainty(const GroundLine& ground, core::PixelPoint p) {
                     ground.u_angle_rad * PositionAlong(ground, p));
 }
 
+namespace {
+
+// The line through p and q, known as well as `like`.
+GroundLine Through(core::PixelPoint p, core::PixelPoint q,
+                   const GroundLine& like) {
+  GroundLine line = GroundThrough(p, q, 0.0);
+  line.u_offset_px = like.u_offset_px;
+  line.u_angle_rad = like.u_angle_rad;
+  line.source = like.source;
+  return line;
+}
+
+}  // namespace
+
+std::optional<GroundLine> Undistorted(const GroundLine& image,
+                                      const Lens& lens) {
+  const auto p = Undistort(lens, image.p1);
+  const auto q = Undistort(lens, image.p2);
+  const auto at = Undistort(lens, image.reference);
+  if (!p || !q || !at) return std::nullopt;
+  GroundLine line = Through(p->point, q->point, image);
+  // The same place along the line, on it.
+  const double along = PositionAlong(line, at->point);
+  const double angle = ImageAngle(line);
+  line.reference.x_px += along * std::cos(angle);
+  line.reference.y_px += along * std::sin(angle);
+  return line;
+}
+
+GroundLine Distorted(const GroundLine& ideal, const Lens& lens,
+                     core::PixelPoint a, core::PixelPoint b) {
+  return Through(Distort(lens, a), Distort(lens, b), ideal);
+}
+
 }  // namespace touchdown::calib

@@ -186,6 +186,84 @@ TEST(ChooseNextAngle, StopsAtTheTargetOrAtTheMaximum) {
   EXPECT_EQ(ChooseNextAngle(vague, 9, options).stop, StopReason::kMaxTrials);
 }
 
+// The estimate's long tail must not choose the angle: five trials of a sharp
+// boundary leave the design's reach narrower than the estimate's own.
+TEST(ChooseNextAngle, ATighterPriorPlansWhatTheEstimateDoesNotKnow) {
+  std::vector<Observation> trials;
+  for (const double x : {35.0, 18.0, 9.0, 13.0, 11.0}) {
+    trials.push_back(Observe(x * kDegree, 0.2 * kDegree, x > 12));
+  }
+  const auto posterior = FitBoundary(trials);
+  NextAngleOptions options;
+  options.spread_rad = 0.0;
+  options.set_u_rad = 0.3 * kDegree;
+  const NextAngle next = ChooseNextAngle(posterior, 5, options);
+  EXPECT_GT(next.angle_rad / kDegree, 11.0);
+  EXPECT_LT(next.angle_rad / kDegree, 13.0);
+  // The same prior for both is the plain rule: the least of all candidates.
+  options.design_scatter = posterior.prior;
+  const NextAngle plain = ChooseNextAngle(posterior, 5, options);
+  for (double c = 8.0; c <= 20.0; c += 0.5) {
+    EXPECT_LE(plain.expected_sd_rad,
+              ExpectedSd(posterior, c * kDegree, options) * (1 + 1e-9))
+        << c;
+  }
+}
+
+TEST(ForecastTrials, IsNothingWhereTheTargetIsReached) {
+  std::mt19937_64 engine(1);
+  const auto posterior = FitBoundary(PaperTable1(BodyKind::kSphere, 0.0));
+  EXPECT_EQ(ForecastTrials(posterior, {40 * kDegree, 0.0}, engine), 0);
+  EXPECT_GE(ForecastTrials(posterior, {9 * kDegree, 0.0}, engine), 1);
+}
+
+TEST(ForecastTrials, GrowsAsTheTargetShrinksAndIsRepeatable) {
+  const auto posterior =
+      FitBoundary(PaperTable1(BodyKind::kRectangle, 0.2 * kDegree));
+  int last = 0;
+  for (const double target_deg : {5.0, 2.0, 1.0, 0.5, 0.1}) {
+    std::mt19937_64 engine(4);
+    std::mt19937_64 again(4);
+    const ForecastOptions options{target_deg * kDegree, 0.3 * kDegree};
+    const int n = ForecastTrials(posterior, options, engine);
+    EXPECT_EQ(n, ForecastTrials(posterior, options, again));
+    EXPECT_GE(n, last) << target_deg;
+    last = n;
+  }
+  EXPECT_GT(last, 20);
+}
+
+// After ten trials that closed in on a sharp boundary about ten more are
+// needed (simulated: 8 to 16 in nine of ten runs).
+TEST(ForecastTrials, ASharpBoundaryNeedsFewMore) {
+  std::vector<Observation> trials;
+  for (const double x :
+       {35.0, 18.0, 9.0, 13.5, 11.2, 12.4, 11.8, 12.2, 11.6, 12.1}) {
+    trials.push_back(Observe(x * kDegree, 0.2 * kDegree, x > 12));
+  }
+  std::mt19937_64 engine(2);
+  const int n = ForecastTrials(FitBoundary(trials),
+                               {0.5 * kDegree, 0.3 * kDegree}, engine);
+  EXPECT_GE(n, 3);
+  EXPECT_LE(n, 25);
+}
+
+TEST(ForecastTrials, NoTrialsIsAForecastToo) {
+  std::mt19937_64 engine(3);
+  const int n = ForecastTrials(FitBoundary({}), {}, engine);
+  EXPECT_GE(n, 8);
+  EXPECT_LE(n, 1000000);
+}
+
+TEST(ForecastTrials, RefusesImpossibleOptionsByName) {
+  std::mt19937_64 engine(1);
+  const auto posterior = FitBoundary({});
+  EXPECT_THROW(ForecastTrials(posterior, {0.0, 0.1}, engine),
+               std::invalid_argument);
+  EXPECT_THROW(ForecastTrials(posterior, {0.1, -0.1}, engine),
+               std::invalid_argument);
+}
+
 TEST(ChooseNextAngle, RefusesImpossibleOptionsByName) {
   const auto posterior = FitBoundary({});
   NextAngleOptions options;

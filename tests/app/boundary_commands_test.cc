@@ -117,6 +117,30 @@ TEST_F(BoundaryCommands, AStoreGivesTheSameAsThePaperItself) {
               b["groups"][0]["posterior"]["median_deg"].get<double>(), 1e-6);
 }
 
+// The first report of a new user: the paper's own.
+TEST_F(BoundaryCommands, ImportOfThePapersTable1MakesItsReport) {
+  const std::string store = (folder_.path() / "paper.db").string();
+  const Ran imported = RunProgram("import --paper-table1 --db " + store);
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  EXPECT_EQ(imported.out, "18 trials in 2 campaigns imported\n");
+  const auto out = folder_.path() / "report";
+  const Ran ran = RunProgram("report --db " + store + " --out " + out.string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const std::string page = ReadAll(out / "table1.md");
+  EXPECT_THAT(page, HasSubstr("sphere: inconclusive."));
+  EXPECT_THAT(page, HasSubstr("rectangle: inconclusive."));
+  EXPECT_THAT(page, HasSubstr("The smallest margin that would pass is 17.2"));
+  EXPECT_THAT(page, HasSubstr("The smallest margin that would pass is 10.7"));
+  // Once more it is refused, and nothing is doubled.
+  ExpectOneLine(RunProgram("import --paper-table1 --db " + store), 4,
+                "there is a campaign 'paper-table1-sphere' already");
+  const json document = json::parse(ReadAll(out / "table1.json"));
+  EXPECT_EQ(document.at("groups").at(0).at("trials").size(), 9u);
+  ExpectOneLine(RunProgram("import --paper-table1"), 2, "--db");
+  ExpectOneLine(RunProgram("import x.csv --paper-table1 --db " + store), 2,
+                "must be left out");
+}
+
 TEST_F(BoundaryCommands, FiltersChooseTrials) {
   const std::string store = Store();
   const Ran body = RunProgram("boundary --json --body sphere --db " + store);
@@ -153,6 +177,36 @@ TEST_F(BoundaryCommands, NextStaysFeasibleAndFollowsTheRule) {
   EXPECT_NEAR(angle(neyer), 19.6, 1e-9);  // the middle of the bracket
   ExpectOneLine(RunProgram(paper + "--rule neyer"), 2, "--guess-deg");
   ExpectOneLine(RunProgram(paper + "--rule magic"), 2, "magic");
+}
+
+TEST_F(BoundaryCommands, NextGivesTheRigsSetPointsAndStaysWithinItsReach) {
+  const std::string rig = Write("rig.toml", RunProgram("rig example").out);
+  // The example's rectangle stands at a radius angle of 18.4 deg at least.
+  const std::string next =
+      "next --paper-table1 --body rectangle --speed-mps 4 --rig " + rig;
+  const Ran ran = RunProgram(next + " --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json document = json::parse(ran.out);
+  EXPECT_NEAR(document.at("angle_deg").get<double>(), 18.44, 0.02);
+  EXPECT_TRUE(document.at("next").at("clipped").get<bool>());
+  const json& set = document.at("set_points");
+  EXPECT_TRUE(set.at("possible").get<bool>());
+  EXPECT_GT(set.at("compression_mm").get<double>(), 0.0);
+  EXPECT_GT(set.at("contact").at("launch_speed_mps").at("u").get<double>(), 0);
+  EXPECT_NEAR(
+      set.at("contact").at("radius_angle_deg").at("value").get<double>(),
+      document.at("angle_deg").get<double>(), 1e-6);
+  EXPECT_THAT(RunProgram(next).out, HasSubstr("compression"));
+  ExpectOneLine(RunProgram("next --paper-table1 --body rectangle --rig " + rig),
+                2, "--speed-mps");
+  ExpectOneLine(RunProgram("next --paper-table1 --body sphere --speed-mps 4 "
+                           "--rig " +
+                           rig),
+                2, "is a rectangle, the trials are of a sphere");
+  ExpectOneLine(RunProgram("next --paper-table1 --body rectangle "
+                           "--speed-mps 4000 --rig " +
+                           rig),
+                2, "cannot throw any radius angle");
 }
 
 TEST_F(BoundaryCommands, NextBeforeTheFirstTrial) {

@@ -207,6 +207,40 @@ TEST(MakeReport, AbsentNumbersShowTheirReason) {
   EXPECT_TRUE(Has(report.markdown, "no approach angle: two bodies"));
 }
 
+TEST(MakeReport, TwoLabelsOfTheSameTrialsAreCompared) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  for (int i = 0; i < 6; ++i) {  // six discordant, all one way: p = 1/32
+    input.labels.push_back({input.trials[static_cast<std::size_t>(i)].id,
+                            core::MotionState::kSlide,
+                            core::MotionState::kBounce});
+  }
+  input.labels.push_back({input.trials[6].id, core::MotionState::kUndecided,
+                          core::MotionState::kBounce});
+  const Report report = MakeReport(input);
+  EXPECT_THAT(report.markdown, HasSubstr("7 trials bear both labels"));
+  EXPECT_THAT(report.markdown, HasSubstr("McNemar exact p = 0.0313"));
+  EXPECT_THAT(report.markdown, HasSubstr("1 of them, undecided"));
+}
+
+TEST(MakeReport, WhatStandsBehindTheTrialsIsSaid) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  for (core::Trial& trial : input.trials) {
+    trial.first.contact.approach_budget = {{"ground", 0.03 * kDegree},
+                                           {"localisation", 0.04 * kDegree}};
+    trial.software_version = "0.1.0";
+    trial.document_json =
+        R"({"scale": {"source": "calibration"}, "ground": {"source": "user"},
+            "clip": {"time_base": {"fps": 2000.0, "source": "header"}}})";
+  }
+  input.trials[0].document_json = "{ damaged";
+  const Report report = MakeReport(input);
+  EXPECT_THAT(report.markdown, HasSubstr("Budget of the approach angle"));
+  EXPECT_THAT(report.markdown, HasSubstr("| localisation | 0.04 |"));
+  EXPECT_THAT(report.markdown, HasSubstr("calibration (8 trials)"));
+  EXPECT_THAT(report.markdown,
+              HasSubstr("2000 frames/s, from the header (8 trials)"));
+}
+
 TEST(MakeReport, RefusesTwoCampaignsOfOneName) {
   ReportInput input = Table1Input(core::Origin::kRecorded);
   input.campaigns.push_back(input.campaigns[0]);

@@ -278,7 +278,9 @@ json ExpectDocument(const Analysis& analysis) {
       EXPECT_TRUE(document["absent"].contains(path))
           << path << " is null without a reason";
     }
-    if (value.is_number()) EXPECT_TRUE(std::isfinite(value.get<double>()));
+    if (value.is_number()) {
+      EXPECT_TRUE(std::isfinite(value.get<double>()));
+    }
     // A measured number has its uncertainty.
     if (value.is_object() && value.contains("value")) {
       EXPECT_TRUE(value["value"].is_number()) << path;

@@ -48,7 +48,7 @@ struct Blows {
   std::string refuted;
 };
 
-Blows FindBlows(const PlaneTrack& track) {
+Blows FindBlows(const PlaneTrack& track, const KinkOptions& kink_options) {
   const std::span<const PlaneSample> samples(track.samples);
   Blows blows;
   // No body sinks into the ground by more than what it yields and what the line
@@ -66,7 +66,7 @@ Blows FindBlows(const PlaneTrack& track) {
         "the body passes {:.1f} px below the ground line at frame {}", sunk,
         lowest->frame);
   }
-  for (const Kink& kink : FindKinks(samples)) {
+  for (const Kink& kink : FindKinks(samples, kink_options)) {
     const PlaneSample& a = samples[kink.after];
     const PlaneSample& b = samples[kink.after + 1];
     // Between two frames the body can come lower than in either by what the
@@ -90,10 +90,63 @@ Blows FindBlows(const PlaneTrack& track) {
   return blows;
 }
 
+// An edge of the ground seen in perspective differs from the contact line by so
+// much; more is another line, or none.
+constexpr double kMostInclined_rad = 1.0 * core::kDegree;
+
+FlightOptions Straight() {
+  FlightOptions options;
+  options.gravity_px_per_s2 = core::Estimate{0.0, 1e-9, std::nullopt};
+  return options;
+}
+
+// The first frames, up to the first blow, fall as free flight does, and not
+// along a straight line as what lies on the ground.
+bool FallsAtFirst(std::span<const PlaneSample> samples,
+                  const std::vector<Kink>& blows,
+                  const FlightOptions& options) {
+  const std::size_t n =
+      blows.empty() ? samples.size() / 2 : blows.front().after + 1;
+  constexpr std::size_t kLeast = 5;
+  if (n < kLeast) return false;
+  const auto chi2 = [&](const Flight& flight) {
+    double sum = 0.0;
+    for (const PlaneSample& s : samples.first(n)) {
+      const double r =
+          (s.height_px - flight.At(s.time_s).height_px) / s.u_height_px;
+      sum += r * r;
+    }
+    return sum;
+  };
+  const FlightOptions straight = Straight();
+  const Flight falling = FitFlight(samples.first(n), options);
+  const double without = chi2(FitFlight(samples.first(n), straight));
+  if (!(falling.height[2] > 0.0)) return false;
+  constexpr double kMustWinBy = 12.0;  // odds of e^6
+  return without - chi2(falling) > kMustWinBy;
+}
+
+// The first half of the track, up to the first blow, comes down along a line
+// that is clearly steeper than what a ground line may be off.
+bool DescendsAtFirst(std::span<const PlaneSample> samples,
+                     const std::vector<Kink>& blows) {
+  std::size_t n = std::max<std::size_t>(3, samples.size() / 2);
+  if (!blows.empty()) n = std::min(n, blows.front().after + 1);
+  if (n < 3) return false;
+  const Flight line = FitFlight(samples.first(n), Straight());
+  const double rate = line.height[1];
+  const double u = std::sqrt(line.height_cov(1, 1));
+  constexpr double kClear = 3.0;
+  return rate < -kClear * u &&
+         -rate > std::tan(kMostInclined_rad) * std::abs(line.along[1]);
+}
+
 // The body is on the ground in the first frames and does not come down to it.
-bool OnGroundFromStart(const PlaneTrack& track,
-                       const std::vector<Kink>& blows) {
+bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
+                       const FlightOptions& flight) {
   const std::span<const PlaneSample> samples(track.samples);
+  if (FallsAtFirst(samples, blows, flight)) return false;
+  if (DescendsAtFirst(samples, blows)) return false;
   const std::size_t n = samples.size();
   const std::size_t m = std::min<std::size_t>(8, n);
   const double first = MedianGap(samples.first(m));
@@ -154,10 +207,7 @@ double TakeOutSlope(PlaneTrack& track) {
     slope = (sw * sxy - sx * sy) / determinant;
     offset = (sy - slope * sx) / sw;
   }
-  // An edge of the ground seen in perspective differs from the contact line by
-  // so much; more is another line.
-  constexpr double kMost_rad = 1.0 * core::kDegree;
-  if (std::abs(slope) > kMost_rad) return 0.0;
+  if (std::abs(slope) > kMostInclined_rad) return 0.0;
   for (PlaneSample& s : samples) {
     s.gap_px -= slope * (s.along_px - middle);
     s.height_px -= slope * (s.along_px - middle);
@@ -245,11 +295,15 @@ ContactResult FindContacts(const PlaneTrack& given,
   WidenToScatter(track);
   const std::span<const PlaneSample> samples(track.samples);
 
-  Blows blows = FindBlows(track);
   RecordContext context{track, options, FlightFor(options), {}};
+  KinkOptions kink_options;
+  if (context.flight.gravity_px_per_s2) {
+    kink_options.gravity_px_per_s2 = context.flight.gravity_px_per_s2->value;
+  }
+  Blows blows = FindBlows(track, kink_options);
   for (const Kink& kink : blows.kinks) context.breaks.push_back(kink.after + 1);
 
-  const bool from_start = OnGroundFromStart(track, blows.kinks);
+  const bool from_start = OnGroundFromStart(track, blows.kinks, context.flight);
   result.ground_refuted = blows.refuted;
   if (from_start) {
     const double slope = TakeOutSlope(track);
@@ -260,13 +314,15 @@ ContactResult FindContacts(const PlaneTrack& given,
                       "line; its gap is taken from the path",
                       slope / core::kDegree));
     }
-    result.first = RecordFromStart(context);
+    result.first = RecordFromStart(context, slope);
     result.ground_refuted.clear();
   }
 
   EventOptions event_options;
   event_options.flight = context.flight;
   event_options.flight_sigmas = options.flight_sigmas;
+  event_options.u_line_px = track.ground.u_offset_px;
+  event_options.u_slope_rad = track.ground.u_angle_rad;
   bool first_done = from_start;
   std::size_t begin = 0;
   for (std::size_t k = 0; k < blows.kinks.size(); ++k) {
@@ -276,8 +332,6 @@ ContactResult FindContacts(const PlaneTrack& given,
     event.end = k + 1 < blows.kinks.size() ? blows.kinks[k + 1].after + 1
                                            : samples.size();
     begin = event.first_after;
-    event_options.u_line_px =
-        UncertaintyOfLine(track, samples[event.first_after]);
     if (!MeasureEvent(track, event, event_options)) continue;
     if (GapOf(track, *event.before, event.time_s.value).rate >= 0.0) continue;
     if (from_start) continue;  // hops of a body that slides
@@ -291,7 +345,6 @@ ContactResult FindContacts(const PlaneTrack& given,
   }
   if (!first_done) {
     std::string reason;
-    event_options.u_line_px = UncertaintyOfLine(track, samples.back());
     if (const auto event = ContactAtEnd(track, event_options, reason)) {
       result.first = RecordOf(context, *event, result.warnings);
       result.evidence.push_back(EvidenceOf(track, *event));
@@ -332,6 +385,7 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   const std::vector<Kink> kinks = FindKinks(plane.samples);
   EventOptions options;
   options.u_line_px = 1e3;  // nothing is known of the line yet
+  options.u_slope_rad = u_level_rad;
   std::size_t begin = 0;
   for (std::size_t k = 0; k < kinks.size(); ++k) {
     Event event;

@@ -1,7 +1,5 @@
 #include "contact_event.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -29,14 +27,18 @@ bool Deviates(const PlaneSample& s, const Flight& flight, double sigmas) {
 void TrimAtBlow(std::span<const PlaneSample> samples, std::size_t& begin,
                 std::size_t& end, bool blow_at_end,
                 const EventOptions& options) {
-  constexpr std::size_t kDoubtful = 3;  // frames looked at next to the blow
-  constexpr std::size_t kTrusted = 8;   // frames that judge them
+  constexpr std::size_t kMostDoubtful = 3;  // frames looked at next to the blow
+  constexpr std::size_t kTrusted = 8;       // frames that judge them
   const std::size_t count = end - begin;
-  if (count < kDoubtful + Least(options) + 2) return;
-  const std::size_t trusted = std::min(kTrusted, count - kDoubtful);
+  // With few frames only the nearest, which may be exposed across the blow.
+  const std::size_t least = Least(options);
+  if (count < least + 1) return;
+  const std::size_t doubtful =
+      std::clamp<std::size_t>(count - least, 2, kMostDoubtful + 1) - 1;
+  const std::size_t trusted = std::min(kTrusted, count - doubtful);
   const double sigmas = options.flight_sigmas;
   if (blow_at_end) {
-    const std::size_t last = end - kDoubtful;
+    const std::size_t last = end - doubtful;
     const Flight flight =
         FitFlight(samples.subspan(last - trusted, trusted), options.flight);
     for (std::size_t i = last; i < end; ++i) {
@@ -46,7 +48,7 @@ void TrimAtBlow(std::span<const PlaneSample> samples, std::size_t& begin,
       }
     }
   } else {
-    const std::size_t first = begin + kDoubtful;
+    const std::size_t first = begin + doubtful;
     const Flight flight =
         FitFlight(samples.subspan(first, trusted), options.flight);
     for (std::size_t i = first; i-- > begin;) {
@@ -232,6 +234,173 @@ FlightGap GapOf(const PlaneTrack& track, const Flight& flight, double time_s) {
   return g;
 }
 
+namespace {
+
+std::span<const PlaneSample> BeforeOf(std::span<const PlaneSample> samples,
+                                      const Event& event) {
+  return samples.subspan(event.before_begin,
+                         event.before_end - event.before_begin);
+}
+
+std::span<const PlaneSample> AfterOf(std::span<const PlaneSample> samples,
+                                     const Event& event) {
+  return samples.subspan(event.after_begin,
+                         event.after_end - event.after_begin);
+}
+
+JointInput InputFor(const PlaneTrack& track, const Event& event,
+                    const EventOptions& options) {
+  JointInput input;
+  input.before = BeforeOf(track.samples, event);
+  if (event.after) input.after = AfterOf(track.samples, event);
+  input.u_slope_rad = options.u_slope_rad;
+  input.gravity_px_per_s2 = options.flight.gravity_px_per_s2;
+  input.ground_px = {0.0, std::max(options.u_line_px, 1e-6), std::nullopt};
+  return input;
+}
+
+// The frame nearest to touchdown may have been exposed across it: left out
+// where the others suffice.
+void LeaveOutStraddling(const PlaneTrack& track, Event& event, double time_s,
+                        const EventOptions& options) {
+  constexpr double kHalfAFrame = 0.5;
+  const double reach = kHalfAFrame * track.frame_interval_s;
+  const auto near = [&](std::size_t i) {
+    return std::abs(track.samples[i].time_s - time_s) < reach;
+  };
+  if (near(event.before_end - 1) &&
+      event.before_end - event.before_begin > Least(options)) {
+    --event.before_end;
+  }
+  if (near(event.after_begin) &&
+      event.after_end - event.after_begin > Least(options)) {
+    ++event.after_begin;
+  }
+}
+
+// It rebounds: one fit of both flights.
+bool MeasureRebound(const PlaneTrack& track, Event& event,
+                    const EventOptions& options) {
+  const std::span<const PlaneSample> samples(track.samples);
+  auto t1 = TimeOfGap(track, *event.before,
+                      samples[event.before_end - 1].time_s, 0.0);
+  auto t2 =
+      TimeOfGap(track, *event.after, samples[event.after_begin].time_s, 0.0);
+  if (!t1 || !t2) return false;
+  const bool in_contact = event.before_end < event.first_after ||
+                          event.after_begin > event.first_after;
+  if (in_contact && LeaveOutContact(samples, *t1, *t2, event, options)) {
+    t1 = TimeOfGap(track, *event.before, *t1, 0.0);
+    t2 = TimeOfGap(track, *event.after, *t2, 0.0);
+    if (!t1 || !t2) return false;
+  }
+  if (!in_contact) LeaveOutStraddling(track, event, *t1, options);
+  JointInput input = InputFor(track, event, options);
+  const double half_px = std::hypot(options.u_line_px, track.u_half_px);
+  input.touchdown_s = *t1;
+  input.release_s = *t2;
+
+  // The flights alone, without the line: do they meet on it?
+  constexpr double kUnknown_px = 1e3;
+  JointInput without = input;
+  without.touchdown_s = without.release_s = 0.5 * (*t1 + *t2);
+  without.ground_px.u = kUnknown_px;
+  std::optional<JointFit> free = FitJointly(track, without);
+  constexpr double kDisagree = 3.0;
+  event.disagreement = 0.0;
+  if (free) {
+    const core::Estimate d = free->Of(
+        [&](const JointVector& p) { return free->GroundAtContact(p); });
+    event.disagreement = d.value / std::hypot(d.u, half_px);
+    if (std::abs(event.disagreement) > kDisagree && !in_contact) {
+      // No frame in contact: the flights know the ground better than the line.
+      input.ground_px.u = std::abs(d.value);
+    }
+    input.touchdown_s = input.release_s = free->TimeAt(free->p[kT]);
+  }
+  // A contact that lasts needs up to three numbers more, and must earn them.
+  std::optional<JointFit> instant = FitJointly(track, input);
+  if (in_contact || !instant) {
+    JointInput lasting = input;
+    lasting.instant = false;
+    lasting.touchdown_s = *t1;
+    lasting.release_s = *t2;
+    lasting.ground_px.u = std::max(options.u_line_px, 1e-6);
+    std::optional<JointFit> soft = FitJointly(track, lasting);
+    if (soft) {
+      const core::Estimate lasts = soft->Of(
+          [](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
+      const double more = static_cast<double>(
+          soft->active.count() - (instant ? instant->active.count() : 0));
+      const double n = static_cast<double>(soft->degrees);
+      // Where neither describes the frames to their noise, noise is what is
+      // left.
+      const double excess = std::max(1.0, soft->chi2 / std::max(1.0, n));
+      constexpr double kClear = 3.0;
+      const bool clear = lasts.value > kClear * lasts.u;
+      // Shorter, no frame shows the contact: only what the flights miss of each
+      // other speaks of it, as anything else would that bends them.
+      constexpr double kResolved = 0.5;  // frames
+      const bool resolved = clear && lasts.value > kResolved;
+      if (!instant ||
+          (resolved && instant->chi2 - soft->chi2 >
+                           excess * more * std::log(std::max(2.0, n)))) {
+        instant = soft;
+      } else if (clear) {
+        event.unresolved_s = 0.5 * lasts.value * soft->interval_s;
+      }
+    }
+  }
+  if (!instant) return false;
+  event.fit = instant;
+  return true;
+}
+
+// It stays down: the frames in contact tell the ground's height.
+bool MeasureStay(const PlaneTrack& track, Event& event,
+                 const EventOptions& options) {
+  const std::span<const PlaneSample> samples(track.samples);
+  JointInput input = InputFor(track, event, options);
+  const std::size_t from = event.first_after;
+  const std::size_t to = std::min(event.end, from + 40);
+  // What is known of the ground's height: the line, and the body's size.
+  core::Estimate ground{
+      0.0, std::max(std::hypot(options.u_line_px, track.u_half_px), 1e-6),
+      std::nullopt};
+  std::optional<core::Estimate> level;
+  // A few frames may still belong to the flight.
+  constexpr std::size_t kEnoughAtRest = 6;
+  if (to >= from + kEnoughAtRest) {
+    level = LevelOf(samples.subspan(from, to - from));
+    // Frames that do not agree on a height are not at rest.
+    constexpr double kAtRest_px = 0.25;
+    if (level && level->u > kAtRest_px) level = std::nullopt;
+  }
+  const double start_s = samples[event.before_end - 1].time_s;
+  if (level) {
+    event.disagreement = level->value / std::hypot(ground.u, level->u);
+    constexpr double kDisagree = 3.0;
+    if (std::abs(event.disagreement) > kDisagree) {
+      ground = *level;
+    } else {
+      const double w0 = 1.0 / (ground.u * ground.u);
+      const double w1 = 1.0 / (level->u * level->u);
+      ground = {level->value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
+                std::nullopt};
+    }
+    input.ground_px = ground;
+    input.reference_along_px =
+        samples[std::min(from, samples.size() - 1)].along_px;
+  }
+  const auto t = TimeOfGap(track, *event.before, start_s, ground.value);
+  if (!t) return false;
+  input.touchdown_s = input.release_s = *t;
+  event.fit = FitJointly(track, input);
+  return event.fit.has_value();
+}
+
+}  // namespace
+
 bool MeasureEvent(const PlaneTrack& track, Event& event,
                   const EventOptions& options) {
   const std::span<const PlaneSample> samples(track.samples);
@@ -261,93 +430,23 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   }
   const bool flies = FindFlightAfter(track, event, options);
 
-  // What is known of the ground's height: the line, and the body's size.
-  const double u_line = std::hypot(options.u_line_px, track.u_half_px);
-  core::Estimate ground{0.0, std::max(u_line, 1e-6), std::nullopt};
-  const double start_s = samples[event.before_end - 1].time_s;
-
-  if (flies) {
-    auto t1 = TimeOfGap(track, *event.before, start_s, 0.0);
-    auto t2 =
-        TimeOfGap(track, *event.after, samples[event.after_begin].time_s, 0.0);
-    if (!t1 || !t2) return false;
-    const bool in_contact = event.before_end < event.first_after ||
-                            event.after_begin > event.first_after;
-    if (in_contact && LeaveOutContact(samples, *t1, *t2, event, options)) {
-      t1 = TimeOfGap(track, *event.before, *t1, 0.0);
-      t2 = TimeOfGap(track, *event.after, *t2, 0.0);
-      if (!t1 || !t2) return false;
-    }
-    const FlightGap g1 = GapOf(track, *event.before, *t1);
-    const FlightGap g2 = GapOf(track, *event.after, *t2);
-    // Linear in (t, d): rate_k (t - t_k) - d = 0 +- u_k, d = 0 +- u.
-    Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d b = Eigen::Vector2d::Zero();
-    const double origin = *t1;
-    const auto add = [&](const FlightGap& g, double at) {
-      const double w = 1.0 / (g.u_px * g.u_px);
-      const Eigen::Vector2d row(g.rate, -1.0);
-      a.noalias() += w * row * row.transpose();
-      b.noalias() += w * (g.rate * (at - origin)) * row;
-    };
-    add(g1, *t1);
-    add(g2, *t2);
-    // How far apart the two fits and the line are, before the line is used.
-    const Eigen::Vector2d free = a.ldlt().solve(b);
-    const Eigen::Matrix2d free_cov = a.inverse();
-    event.disagreement =
-        free[1] / std::sqrt(free_cov(1, 1) + ground.u * ground.u);
-    constexpr double kDisagree = 3.0;
-    if (std::abs(event.disagreement) > kDisagree && in_contact) {
-      // Frames in contact were seen: the body stayed down for a while, and the
-      // line is the ground.
-      event.ground_px = ground;
-      event.time_s = {*t1, std::hypot(g1.u_px, ground.u) / std::abs(g1.rate),
-                      std::nullopt};
-      event.release_s = {*t2, std::hypot(g2.u_px, ground.u) / std::abs(g2.rate),
-                         std::nullopt};
-      return true;
-    }
-    if (std::abs(event.disagreement) > kDisagree) {
-      // No frame in contact: the fits know the ground better than the line.
-      ground.u = std::abs(free[1]);
-    }
-    a(1, 1) += 1.0 / (ground.u * ground.u);
-    const Eigen::Vector2d x = a.ldlt().solve(b);
-    const Eigen::Matrix2d cov = a.inverse();
-    event.time_s = {origin + x[0], std::sqrt(cov(0, 0)), std::nullopt};
-    event.release_s = event.time_s;
-    event.ground_px = {x[1], std::sqrt(cov(1, 1)), std::nullopt};
-    return true;
+  if (!(flies ? MeasureRebound(track, event, options)
+              : MeasureStay(track, event, options))) {
+    return false;
   }
-
-  // It stays down: the frames in contact tell the ground's height.
-  const std::size_t from = event.first_after;
-  const std::size_t to = std::min(event.end, from + 40);
-  std::optional<core::Estimate> level;
-  // A few frames may still belong to the flight.
-  constexpr std::size_t kEnoughAtRest = 6;
-  if (to >= from + kEnoughAtRest) {
-    level = LevelOf(samples.subspan(from, to - from));
-  }
-  if (level) {
-    const double w0 = 1.0 / (ground.u * ground.u);
-    const double w1 = 1.0 / (level->u * level->u);
-    event.disagreement = level->value / std::hypot(ground.u, level->u);
-    constexpr double kDisagree = 3.0;
-    if (std::abs(event.disagreement) > kDisagree) {
-      ground = *level;
-    } else {
-      ground = {level->value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
-                std::nullopt};
-    }
-  }
-  const auto t = TimeOfGap(track, *event.before, start_s, ground.value);
-  if (!t) return false;
-  const FlightGap g = GapOf(track, *event.before, *t);
-  event.ground_px = ground;
-  event.time_s = {*t, std::hypot(g.u_px, ground.u) / std::abs(g.rate),
-                  std::nullopt};
+  const JointFit& fit = *event.fit;
+  const auto time_of = [&](JointParameter k) {
+    const core::Estimate t = fit.Of([k](const JointVector& p) { return p[k]; });
+    return core::Estimate{fit.TimeAt(t.value), t.u * fit.interval_s,
+                          std::nullopt};
+  };
+  event.time_s = time_of(kT);
+  event.time_s.u = std::hypot(event.time_s.u, event.unresolved_s);
+  event.release_s = fit.instant ? event.time_s : time_of(kT2);
+  event.ground_px =
+      fit.Of([&](const JointVector& p) { return fit.GroundAtContact(p); });
+  event.before = fit.Before(BeforeOf(samples, event));
+  if (flies) event.after = fit.After(AfterOf(samples, event));
   return true;
 }
 
@@ -364,9 +463,17 @@ double WidenToScatter(PlaneTrack& track) {
                            samples[i - 3].*value));
     }
     if (d.size() < 5) return 0.0;
-    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
-    std::nth_element(d.begin(), middle, d.end());
-    return 1.4826 * *middle / std::sqrt(20.0);
+    // A blow spoils three differences: in short tracks too many for the median.
+    constexpr std::size_t kMany = 12;
+    const bool many = d.size() >= kMany;
+    const double quantile = many ? 0.6744898 : 0.4307273;  // of |normal|
+    const auto at =
+        d.begin() + static_cast<std::ptrdiff_t>(d.size() / (many ? 2 : 3));
+    std::nth_element(d.begin(), at, d.end());
+    const double sigma = *at / quantile / std::sqrt(20.0);
+    // An excess within the scatter's own uncertainty is none.
+    const double doubt = 2.0 / std::sqrt(static_cast<double>(d.size()));
+    return sigma / (1.0 + doubt);
   };
   const auto typical = [&](double PlaneSample::*u) {
     std::vector<double> all;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "joint_fit.h"
 #include "touchdown/vision/contact.h"
 #include "touchdown/vision/flight.h"
 #include "touchdown/vision/plane_track.h"
@@ -26,16 +27,19 @@ struct Event {
   std::size_t after_begin = 0;
   std::size_t after_end = 0;
 
-  core::Estimate time_s;      // touchdown
-  core::Estimate release_s;   // valid with `after`
-  core::Estimate ground_px;   // height of the ground above the line
-  double disagreement = 0.0;  // sigmas between ground, fit before and fit after
+  std::optional<JointFit> fit;  // of all that follows
+  core::Estimate time_s;        // touchdown
+  core::Estimate release_s;     // valid with `after`
+  double unresolved_s = 0.0;    // half of a contact too short to be seen
+  core::Estimate ground_px;     // height of the ground above the line, there
+  double disagreement = 0.0;    // sigmas between the flights and the line
 };
 
 struct EventOptions {
   FlightOptions flight;
   double flight_sigmas = 4.0;
-  double u_line_px = 0.0;  // of the ground line's height at the contact
+  double u_line_px = 0.0;    // of the ground line's height at its reference
+  double u_slope_rad = 0.0;  // of its direction
 };
 
 // Measures the contact between samples[first_after - 1] and

@@ -27,59 +27,80 @@ Measured InMetres(const RecordContext& context, const Estimate& px) {
                   std::nullopt};
 }
 
-Estimate QuotientOf(const Estimate& a, const Estimate& b) {
-  const double q = a.value / b.value;
-  return {q, std::hypot(a.u / b.value, q * b.u / b.value), std::nullopt};
+// Velocities along and normal to the true ground, px per frame.
+double Tangential(const JointVector& p, JointParameter vx, JointParameter vy) {
+  return p[vx] + p[kSlope] * p[vy];
+}
+double Normal(const JointVector& p, JointParameter vx, JointParameter vy) {
+  return p[vy] - p[kSlope] * p[vx];
+}
+double NormalBefore(const JointVector& p) { return Normal(p, kVx, kVy); }
+double NormalAfter(const JointVector& p) { return Normal(p, kVx2, kVy2); }
+double TangentialBefore(const JointVector& p) {
+  return Tangential(p, kVx, kVy);
+}
+double TangentialAfter(const JointVector& p) {
+  return Tangential(p, kVx2, kVy2);
 }
 
-// Normal velocity of the contact point: v_n + omega x.
-Estimate PointVelocity(const FlightState& s, double arm) {
-  return {s.v_n + s.omega * arm, std::hypot(s.u_v_n, arm * s.u_omega),
-          std::nullopt};
+// The lowest point from the centre, along x', at touchdown.
+double ArmOf(const PlaneTrack& track, const JointVector& p) {
+  PlaneTrack sized;
+  sized.kind = track.kind;
+  sized.half_long_px = p[kHalfLong];
+  sized.half_short_px = p[kHalfShort];
+  return LowestPointAlong(sized, p[kFace] - p[kSlope]);
+}
+
+// What the uncertainty of `f` comes of; the squares add up to its own.
+core::Budget BudgetOf(const JointFit& fit, const JointFit::Function& f,
+                      double u) {
+  const double ground = fit.ShareOf(f, {kGround, kSlope});
+  const double with_size =
+      fit.ShareOf(f, {kGround, kSlope, kHalfLong, kHalfShort});
+  const double with_scale =
+      fit.ShareOf(f, {kGround, kSlope, kHalfLong, kHalfShort, kGravity});
+  const auto rest = [](double all, double part) {
+    return std::sqrt(std::max(0.0, all * all - part * part));
+  };
+  return {{"localisation", rest(u, with_scale)},
+          {"ground", ground},
+          {"size", rest(with_size, ground)},
+          {"scale", rest(with_scale, with_size)}};
 }
 
 void FillAngles(const RecordContext& context, const Event& event,
                 core::Contact& contact) {
   const PlaneTrack& track = context.track;
-  const FlightState s = event.before->At(event.time_s.value);
-  const double g = event.before->height[2];
-  const double speed2 = s.v_t * s.v_t + s.v_n * s.v_n;
-  // From the fit: v_n and v_t are uncorrelated but for the instant, which moves
-  // v_n by g u(t).
-  const double u_vn = std::hypot(s.u_v_n, 0.0);
-  const double localisation =
-      std::hypot(s.v_t * u_vn, s.v_n * s.u_v_t) / speed2;
-  const double timing = std::abs(s.v_t * g * event.time_s.u) / speed2;
-  const double ground = track.ground.u_angle_rad;
-  const double approach = std::atan2(-s.v_n, std::abs(s.v_t));
+  const JointFit& fit = *event.fit;
+  const auto approach = [](const JointVector& p) {
+    return std::atan2(-NormalBefore(p), std::abs(TangentialBefore(p)));
+  };
+  const Estimate angle = fit.Of(approach);
   contact.approach_angle_rad =
-      Estimate{std::clamp(approach, 0.0, 0.5 * std::numbers::pi),
-               std::sqrt(localisation * localisation + timing * timing +
-                         ground * ground),
+      Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u,
                std::nullopt};
-  contact.approach_budget = {
-      {"localisation", localisation}, {"ground", ground}, {"time", timing}};
+  contact.approach_budget = BudgetOf(fit, approach, angle.u);
   if (track.kind == core::BodyKind::kSphere) {
     contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
     contact.face_angle_rad = AbsentBecause("sphere");
     return;
   }
+  const auto to_ground = [](const JointVector& p) {
+    return p[kFace] - p[kSlope];
+  };
+  const Estimate measured = fit.Of(to_ground);
   const double pi = std::numbers::pi;
-  double face = std::remainder(s.face_rad, pi);
+  double face = std::remainder(measured.value, pi);
   if (face <= -0.5 * pi) face += pi;
-  const double turning = std::abs(s.omega) * event.time_s.u;
-  const double u_face = std::hypot(s.u_face_rad, turning);
-  contact.face_angle_rad =
-      Estimate{face, std::hypot(u_face, ground), std::nullopt};
-  contact.attitude_budget = {
-      {"localisation", s.u_face_rad}, {"ground", ground}, {"time", turning}};
+  contact.face_angle_rad = Estimate{face, measured.u, std::nullopt};
+  contact.attitude_budget = BudgetOf(fit, to_ground, measured.u);
   // Flush where the second lowest corner is as low as the lowest within what
   // the attitude is known to (2 u), or within the outline's own resolution.
   const double tilt = std::abs(std::remainder(face, 0.5 * pi));
   constexpr double kResolution_px = 0.05;
   const double flush_within =
-      std::max(2.0 * std::hypot(u_face, ground),
-               kResolution_px / (2.0 * track.half_long_px));
+      std::max(2.0 * measured.u, kResolution_px / (2.0 * track.half_long_px));
   const double arm = LowestPointAlong(track, face);
   if (tilt < flush_within) {
     contact.corner = core::Corner::kFlush;
@@ -87,33 +108,34 @@ void FillAngles(const RecordContext& context, const Event& event,
     contact.corner =
         arm > 0.0 ? core::Corner::kLeading : core::Corner::kTrailing;
   }
-  const double reach = SupportHeight(track, face);
-  contact.radius_angle_rad = Estimate{std::atan2(reach, std::abs(arm)),
-                                      std::hypot(u_face, ground), std::nullopt};
+  contact.radius_angle_rad = fit.Of([&](const JointVector& p) {
+    const double at = p[kFace] - p[kSlope];
+    const double reach = p[kHalfLong] * std::abs(std::sin(at)) +
+                         p[kHalfShort] * std::abs(std::cos(at));
+    return std::atan2(reach, std::abs(ArmOf(track, p)));
+  });
 }
 
 void FillMotion(const RecordContext& context, const Event& event,
                 core::ContactRecord& record) {
   const PlaneTrack& track = context.track;
+  const JointFit& fit = *event.fit;
   core::Motion& m = record.motion;
-  const FlightState before = event.before->At(event.time_s.value);
-  const double g = event.before->height[2];
-  const double u_vn = std::hypot(before.u_v_n, g * event.time_s.u);
-  const Estimate vn{before.v_n, u_vn, std::nullopt};
-  const Estimate vt{before.v_t, before.u_v_t, std::nullopt};
-  const double speed = std::hypot(vn.value, vt.value);
-  const Estimate v{speed, std::hypot(vn.value * vn.u, vt.value * vt.u) / speed,
-                   std::nullopt};
-  m.before_speed_mps = InMetres(context, v);
-  m.before_normal_mps = InMetres(context, vn);
-  m.before_tangential_mps = InMetres(context, vt);
+  const auto speed = [&](const JointFit::Function& f) {
+    return InMetres(context, core::Scaled(fit.Of(f), 1.0 / fit.interval_s));
+  };
+  m.before_speed_mps =
+      speed([](const JointVector& p) { return std::hypot(p[kVx], p[kVy]); });
+  m.before_normal_mps = speed(NormalBefore);
+  m.before_tangential_mps = speed(TangentialBefore);
   const bool turns = track.kind == core::BodyKind::kRectangle;
-  const auto omega = [&](const FlightState& s) -> Measured {
+  const auto omega = [&](JointParameter k) -> Measured {
     if (!turns) return AbsentBecause("no mark on the sphere");
     // face grows as the leading end rises: counter-clockwise with x' ahead.
-    return Estimate{s.omega, s.u_omega, std::nullopt};
+    return core::Scaled(fit.Of([k](const JointVector& p) { return p[k]; }),
+                        1.0 / fit.interval_s);
   };
-  m.before_omega_rad_per_s = omega(before);
+  m.before_omega_rad_per_s = omega(kOmega);
   if (!event.after) {
     const char reason[] = "no release from the ground was seen";
     m.after_normal_mps = AbsentBecause(reason);
@@ -123,45 +145,39 @@ void FillMotion(const RecordContext& context, const Event& event,
     m.centre_rebound_ratio = AbsentBecause(reason);
     m.impulse_ratio = AbsentBecause(reason);
   } else {
-    const FlightState after = event.after->At(event.release_s.value);
-    const double g2 = event.after->height[2];
-    const Estimate vn2{after.v_n,
-                       std::hypot(after.u_v_n, g2 * event.release_s.u),
-                       std::nullopt};
-    const Estimate vt2{after.v_t, after.u_v_t, std::nullopt};
-    m.after_normal_mps = InMetres(context, vn2);
-    m.after_tangential_mps = InMetres(context, vt2);
-    m.after_omega_rad_per_s = omega(after);
-    const double arm = LowestPointAlong(track, before.face_rad);
-    Estimate p1 = PointVelocity(before, arm);
-    Estimate p2 = PointVelocity(after, arm);
-    constexpr double kMeasurable = 5.0;  // below, a quotient means nothing
-    if (std::abs(p1.value) > kMeasurable * p1.u) {
-      Estimate e = QuotientOf(p2, p1);
-      e.value = -e.value;
-      m.restitution = e;
-    } else {
-      m.restitution = AbsentBecause(
-          "the normal velocity before is below five times its "
-          "uncertainty");
-    }
-    if (std::abs(vn.value) > kMeasurable * vn.u) {
-      Estimate e = QuotientOf(vn2, vn);
-      e.value = -e.value;
-      m.centre_rebound_ratio = e;
-    } else {
-      m.centre_rebound_ratio = m.restitution;
-    }
-    const Estimate dn{vn2.value - vn.value, std::hypot(vn2.u, vn.u),
-                      std::nullopt};
-    const Estimate dt{std::abs(vt2.value - vt.value), std::hypot(vt2.u, vt.u),
-                      std::nullopt};
-    if (std::abs(dn.value) > kMeasurable * dn.u) {
-      m.impulse_ratio = QuotientOf(dt, dn);
-    } else {
-      m.impulse_ratio = AbsentBecause(
-          "the change of normal velocity is below five times its uncertainty");
-    }
+    m.after_normal_mps = speed(NormalAfter);
+    m.after_tangential_mps = speed(TangentialAfter);
+    m.after_omega_rad_per_s = omega(kOmega2);
+    const auto point_before = [&](const JointVector& p) {
+      return NormalBefore(p) + p[kOmega] * ArmOf(track, p);
+    };
+    const auto point_after = [&](const JointVector& p) {
+      return NormalAfter(p) + p[kOmega2] * ArmOf(track, p);
+    };
+    // A quotient, where its denominator stands out of its uncertainty.
+    const auto quotient = [&](const JointFit::Function& above,
+                              const JointFit::Function& below,
+                              const char* what) -> Measured {
+      constexpr double kMeasurable = 5.0;  // below, a quotient means nothing
+      const Estimate denominator = fit.Of(below);
+      if (!(std::abs(denominator.value) > kMeasurable * denominator.u)) {
+        return AbsentBecause(
+            fmt::format("the {} is below five times its uncertainty", what));
+      }
+      return fit.Of([&](const JointVector& p) { return above(p) / below(p); });
+    };
+    m.restitution =
+        quotient([&](const JointVector& p) { return -point_after(p); },
+                 point_before, "normal velocity before");
+    m.centre_rebound_ratio =
+        quotient([](const JointVector& p) { return -NormalAfter(p); },
+                 NormalBefore, "normal velocity before");
+    m.impulse_ratio = quotient(
+        [](const JointVector& p) {
+          return std::abs(TangentialAfter(p) - TangentialBefore(p));
+        },
+        [](const JointVector& p) { return NormalAfter(p) - NormalBefore(p); },
+        "change of normal velocity");
   }
 
   // Gravity free, as a check of scale and frame rate.
@@ -352,7 +368,8 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   return record;
 }
 
-core::ContactRecord RecordFromStart(const RecordContext& context) {
+core::ContactRecord RecordFromStart(const RecordContext& context,
+                                    double slope_rad) {
   const PlaneTrack& track = context.track;
   const std::span<const PlaneSample> samples(track.samples);
   core::ContactRecord record;
@@ -362,9 +379,12 @@ core::ContactRecord RecordFromStart(const RecordContext& context) {
   contact.time_s = AbsentBecause("on the ground from the start");
   contact.frame = AbsentBecause("on the ground from the start");
   contact.duration_s = AbsentBecause("on the ground from the start");
-  contact.approach_angle_rad =
-      Estimate{0.0, track.ground.u_angle_rad, std::nullopt};
-  contact.approach_budget = {{"ground", track.ground.u_angle_rad}};
+  // It does not approach; that its path and the visible line are inclined to
+  // each other is all that could be taken for it.
+  const double u_angle = std::hypot(track.ground.u_angle_rad, slope_rad);
+  contact.approach_angle_rad = Estimate{0.0, u_angle, std::nullopt};
+  contact.approach_budget = {{"ground", track.ground.u_angle_rad},
+                             {"path", std::abs(slope_rad)}};
 
   // The ground's height is that of the body's lowest point, half of the time.
   std::vector<double> gaps;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Kink {
 };
 
 struct KinkOptions {
+  // Where gravity is known, px/s^2, both sides of a blow may be free flight.
+  std::optional<double> gravity_px_per_s2;
   // Jumps less significant than this are noise: with a few hundred instants and
   // scales tried, 6 lets one false jump pass in 1e6 clips of normal noise.
   double least_significance = 6.0;

@@ -15,9 +15,9 @@
 namespace touchdown::vision {
 namespace {
 
-// Geometry (x, y, size, size, angle), blur, six interior and six outer
-// polynomial terms.
-constexpr int kMaxParameters = 5 + 1 + 6 + 6;
+// Geometry (x, y, size, size, angle), blur, open share, six interior and six
+// outer polynomial terms.
+constexpr int kMaxParameters = 5 + 2 + 6 + 6;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
@@ -53,7 +53,8 @@ class Fitter {
         background_(background),
         options_(options),
         outline_(start),
-        blur_(options.blur_px) {
+        blur_(options.blur_px),
+        open_(options.open) {
     if (options.ground) {
       ground_offset_ = calib::HeightAbove(*options.ground, {0.0, 0.0});
       ground_x_ =
@@ -73,10 +74,16 @@ class Fitter {
 
  private:
   void CollectPixels();
-  Coverage CoverageAt(const Pixel& p) const {
-    return outline_.kind == core::BodyKind::kSphere
-               ? DiscCoverage(outline_, blur_, p.x, p.y)
-               : RectangleCoverage(outline_, blur_, p.x, p.y, cosine_, sine_);
+  Coverage StillCoverage(const Outline& outline, double blur,
+                         const Pixel& p) const {
+    return outline.kind == core::BodyKind::kSphere
+               ? DiscCoverage(outline, blur, p.x, p.y)
+               : RectangleCoverage(outline, blur, p.x, p.y, cosine_, sine_);
+  }
+  Coverage CoverageAt(const Pixel& p) const;
+  void SetNodes();
+  double Way() const {
+    return open_ * std::hypot(options_.travel_px.x_px, options_.travel_px.y_px);
   }
   bool Usable(double x, double y) const {
     return ground_x_ * x + ground_y_ * y + ground_offset_ >= 0.0;
@@ -99,9 +106,11 @@ class Fitter {
   }
   double Accumulate(bool robust);
   bool Step(double& geometric_step);
-  int LevelsBegin() const { return geometry_ + 1; }
+  int OpenAt() const { return geometry_ + 1; }
+  int LevelsBegin() const { return geometry_ + 2; }
   int Parameters() const { return LevelsBegin() + interior_ + outer_; }
   bool Free(int k) const;
+  bool HasPrior() const { return options_.shading && interior_ == 6; }
 
   // Pixels with a negative value of this plane lie below the ground's margin.
   double ground_x_ = 0.0;
@@ -113,6 +122,9 @@ class Fitter {
   const OutlineOptions& options_;
   Outline outline_;
   double blur_;
+  double open_;
+  int nodes_ = 1;           // places along the way that stand for all of it
+  double node_blur_ = 0.0;  // their blur: each stands for a short way
   int geometry_ = 3;
   int interior_ = 6;
   int outer_ = 0;
@@ -132,12 +144,51 @@ class Fitter {
   double inliers_ = 0.0;
 };
 
+// The mean along the way: `nodes_` places, each with the blur of its own share
+// of the way (of variance step^2 / 12). Steps of 0.7 w leave an error of 1e-4
+// of the contrast.
+void Fitter::SetNodes() {
+  constexpr double kStep = 0.7;         // of the blur
+  constexpr double kNegligible = 0.15;  // of the blur: its square adds 0.2 %
+  const double way = Way();
+  nodes_ = 1;
+  if (way > kNegligible * blur_ || options_.fit_open) {
+    constexpr int kMost = 96;
+    nodes_ = std::clamp(static_cast<int>(std::ceil(way / (kStep * blur_))), 2,
+                        kMost);
+  }
+  const double step = way / nodes_;
+  node_blur_ = std::sqrt(blur_ * blur_ + step * step / 12.0);
+}
+
+Coverage Fitter::CoverageAt(const Pixel& p) const {
+  if (nodes_ == 1) return StillCoverage(outline_, node_blur_, p);
+  Coverage mean;
+  Outline shifted = outline_;
+  const core::PixelPoint& travel = options_.travel_px;
+  const double share = 1.0 / nodes_;
+  for (int i = 0; i < nodes_; ++i) {
+    const double s = (i + 0.5) * share - 0.5;
+    shifted.centre.x_px = outline_.centre.x_px + s * open_ * travel.x_px;
+    shifted.centre.y_px = outline_.centre.y_px + s * open_ * travel.y_px;
+    const Coverage c = StillCoverage(shifted, node_blur_, p);
+    mean.value += share * c.value;
+    for (int k = 0; k < 6; ++k) mean.d[k] += share * c.d[k];
+    mean.xi += share * c.xi;
+    mean.eta += share * c.eta;
+    mean.d_open += share * s * (c.d[0] * travel.x_px + c.d[1] * travel.y_px);
+  }
+  mean.d[5] *= blur_ / node_blur_;
+  return mean;
+}
+
 void Fitter::CollectPixels() {
+  SetNodes();
   // The body and a band around it that holds the blurred edge and some of what
   // lies outside; of a large body only a band inside the edge, wide enough to
   // tell the interior's level.
   constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
-  const double margin = kBand * std::max(blur_, 0.5) + 1.0;
+  const double margin = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * Way();
   const double inner =
       saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
   const bool large = SmallestHalf(outline_) > 2.0 * margin;
@@ -205,6 +256,7 @@ double Fitter::VisibleShare() const {
 
 bool Fitter::Free(int k) const {
   if (k == geometry_) return options_.fit_blur;
+  if (k == OpenAt()) return options_.fit_open;
   if (options_.fit_size) return true;
   return !(k == 2 || (geometry_ == 5 && k == 3));
 }
@@ -231,6 +283,14 @@ void Fitter::SolveLevels() {
     }
     a.noalias() += row * row.transpose() / p.variance;
     b.noalias() += row * ((p.value - known) / p.variance);
+  }
+  if (HasPrior()) {
+    for (int k = 0; k < interior_; ++k) {
+      const double w =
+          1.0 / (options_.shading->u[At(k)] * options_.shading->u[At(k)]);
+      a(k, k) += w;
+      b[k] += w * options_.shading->level[At(k)];
+    }
   }
   // A trace of ridge keeps an unseen polynomial term at zero.
   a.diagonal().array() += 1e-9 * (1e-12 + a.diagonal().maxCoeff());
@@ -276,13 +336,14 @@ double Fitter::Accumulate(bool robust) {
     // d[0..4] are x, y, size(s), angle; a sphere uses the first three.
     for (int k = 0; k < geometry_; ++k) row[At(k)] = step * c.d[k];
     row[At(geometry_)] = step * c.d[5];
+    row[At(OpenAt())] = step * c.d_open;
     for (int k = 0; k < interior_; ++k) {
       row[At(LevelsBegin() + k)] = c.value * fi[k] / sigma;
     }
     for (int k = 0; k < outer_; ++k) {
       row[At(LevelsBegin() + interior_ + k)] = (1 - c.value) * fo[k] / sigma;
     }
-    for (int k = 0; k <= geometry_; ++k) {
+    for (int k = 0; k < LevelsBegin(); ++k) {
       if (!Free(k)) row[At(k)] = 0.0;
     }
     AddRow(row, weight, residual);
@@ -304,6 +365,14 @@ double Fitter::Accumulate(bool robust) {
       normal_(i, j) = normal_(j, i) = sums_[At(i) * kMaxParameters + At(j)];
     }
   }
+  if (HasPrior()) {
+    for (int k = 0; k < interior_; ++k) {
+      const double u = options_.shading->u[At(k)];
+      const int at = LevelsBegin() + k;
+      normal_(at, at) += 1.0 / (u * u);
+      gradient_[at] += (options_.shading->level[At(k)] - levels_[k]) / (u * u);
+    }
+  }
   contrast_ = contrast_weight > 0.0 ? contrast / contrast_weight : 0.0;
   inliers_ = in_count / static_cast<double>(pixels_.size());
   misfit_ = in_count > n ? std::sqrt(square / (in_count - n)) : 0.0;
@@ -315,7 +384,7 @@ bool Fitter::Step(double& geometric_step) {
   const int n = Parameters();
   Matrix a = normal_;
   for (int k = 0; k < n; ++k) {
-    if (k <= geometry_ && !Free(k)) {
+    if (k < LevelsBegin() && !Free(k)) {
       a(k, k) = 1.0;
     } else {
       a(k, k) *= 1.0 + 1e-9;
@@ -335,7 +404,7 @@ bool Fitter::Step(double& geometric_step) {
         k == 4 ? limit / std::max(outline_.half_long_px, 1.0) : limit;
     shrink = std::min(shrink, reach / std::max(std::abs(step[k]), 1e-300));
   }
-  step.head(geometry_ + 1) *= std::min(1.0, shrink);
+  step.head(LevelsBegin()) *= std::min(1.0, shrink);
   outline_.centre.x_px += step[0];
   outline_.centre.y_px += step[1];
   geometric_step = std::hypot(step[0], step[1]);
@@ -359,7 +428,9 @@ bool Fitter::Step(double& geometric_step) {
   constexpr double kSharpest_px = 0.25;
   blur_ = std::clamp(blur_ + step[geometry_], kSharpest_px,
                      std::max(2.0 * options_.blur_px, 0.5 * size));
+  open_ = std::clamp(open_ + step[OpenAt()], 0.0, 1.0);
   levels_ += step.tail(interior_ + outer_);
+  SetNodes();
   return true;
 }
 
@@ -438,7 +509,15 @@ core::Expected<OutlineFit> Fitter::Run() {
   const double noise =
       std::sqrt(background_.Variance(pixels_[pixels_.size() / 2].background));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel
-  if (!(std::abs(contrast_) > kLeastContrast * noise)) {
+  // Noise has blobs of a pixel or two as bright as that: all of the body
+  // together must stand out, too.
+  constexpr double kLeastOfAll = 12.0;
+  const double area =
+      outline_.kind == core::BodyKind::kSphere
+          ? std::numbers::pi * outline_.radius_px * outline_.radius_px
+          : 4.0 * outline_.half_long_px * outline_.half_short_px;
+  if (!(std::abs(contrast_) > kLeastContrast * noise) ||
+      !(std::abs(contrast_) * std::sqrt(area) > kLeastOfAll * noise)) {
     return core::AbsentBecause(
         fmt::format("contrast {:.1f} DN is below {:.0f} times the noise {:.1f}",
                     std::abs(contrast_), kLeastContrast, noise));
@@ -446,17 +525,31 @@ core::Expected<OutlineFit> Fitter::Run() {
 
   Matrix a = normal_;
   for (int k = 0; k < Parameters(); ++k) {
-    a(k, k) = (k <= geometry_ && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
+    a(k, k) =
+        (k < LevelsBegin() && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
   }
   const Matrix covariance =
       a.ldlt().solve(Matrix::Identity(Parameters(), Parameters()));
   const double widen = std::max(1.0, misfit_);
   const auto u = [&](int k) {
-    return Free(k) ? widen * std::sqrt(std::max(0.0, covariance(k, k))) : 0.0;
+    return k >= LevelsBegin() || Free(k)
+               ? widen * std::sqrt(std::max(0.0, covariance(k, k)))
+               : 0.0;
   };
   OutlineFit fit;
   fit.outline = outline_;
   fit.blur_px = blur_;
+  fit.u_blur_px = u(geometry_);
+  fit.open = open_;
+  fit.u_open = u(OpenAt());
+  if (interior_ == 6) {
+    Shading shading;
+    for (int k = 0; k < interior_; ++k) {
+      shading.level[At(k)] = levels_[k];
+      shading.u[At(k)] = u(LevelsBegin() + k);
+    }
+    fit.shading = shading;
+  }
   fit.u_x_px = u(0);
   fit.u_y_px = u(1);
   fit.correlation_xy =
@@ -472,7 +565,11 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.visible = VisibleShare();
   fit.pixels = static_cast<int>(pixels_.size());
   fit.iterations = iteration + 1;
-  if (!std::isfinite(fit.u_x_px + fit.u_y_px + fit.u_angle_rad)) {
+  // Known to no better than half its size it is no outline.
+  const double vague = 0.5 * SmallestHalf(outline_);
+  if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <
+        vague) ||
+      !std::isfinite(fit.u_angle_rad) || inliers_ == 0.0) {
     return core::AbsentBecause("the outline's covariance is degenerate");
   }
   return fit;

@@ -55,9 +55,80 @@ inline NormalTable::Value Normal(double z) {
 struct Coverage {
   double value = 0.0;
   double d[6] = {0, 0, 0, 0, 0, 0};
-  double xi = 0.0;  // position in the body, in units of its size
+  double d_open = 0.0;  // by the share of the frame interval that is exposed
+  double xi = 0.0;      // position in the body, in units of its size
   double eta = 0.0;
 };
+
+// A blurred disc's value at distance r from its centre, with its derivatives.
+struct DiscProfile {
+  double value = 0.0;
+  double d_r = 0.0;
+  double d_radius = 0.0;
+  double d_w = 0.0;
+};
+
+// As a series in e = w/R, s = (r - R)/w, from the heat equation
+// u_t = u_rr + u_r/r with 2 t = w^2:
+//   Phi(-s) + phi(s) (-e/2 + 3/8 e^2 s - e^3 (1 + 5 s^2)/16) + O(e^4)
+inline DiscProfile DiscSeries(double r, double radius, double w) {
+  const double s = (r - radius) / w;
+  const double e = w / radius;
+  const NormalTable::Value normal = Normal(-s);
+  const double g =
+      e * (-0.5 + e * (0.375 * s - e * (1.0 + 5.0 * s * s) / 16.0));
+  const double g_s = e * e * (0.375 - 0.625 * e * s);
+  const double g_e = -0.5 + e * (0.75 * s - 0.1875 * e * (1.0 + 5.0 * s * s));
+  const double by_s = normal.pdf * (-1.0 - s * g + g_s);
+  const double by_e = normal.pdf * g_e;
+  DiscProfile p;
+  p.value = normal.cdf + normal.pdf * g;
+  p.d_r = by_s / w;
+  p.d_radius = -by_s / w - by_e * e / radius;
+  p.d_w = -by_s * s / w + by_e / radius;
+  return p;
+}
+
+// By quadrature over chords, for discs of a few w, where the series does not
+// see the far side of the edge:
+//   2 int_0^(pi/2) phi_w(R sin t) (Phi((r + h)/w) - Phi((r - h)/w)) h dt,
+// h = R cos t; its derivative by R is the blurred circle itself.
+inline DiscProfile SmallDisc(double r, double radius, double w) {
+  // Gauss-Legendre, 10 nodes on [0, 1].
+  constexpr double kNode[10] = {0.0130467357414141, 0.0674683166555077,
+                                0.1602952158504878, 0.2833023029353764,
+                                0.4255628305091844, 0.5744371694908156,
+                                0.7166976970646236, 0.8397047841495122,
+                                0.9325316833444923, 0.9869532642585859};
+  constexpr double kWeight[10] = {0.0333356721543441, 0.0747256745752903,
+                                  0.1095431812579910, 0.1346333596549982,
+                                  0.1477621123573764, 0.1477621123573764,
+                                  0.1346333596549982, 0.1095431812579910,
+                                  0.0747256745752903, 0.0333356721543441};
+  constexpr double kHalfPi = 0.5 * std::numbers::pi;
+  DiscProfile p;
+  for (int i = 0; i < 10; ++i) {
+    const double t = kHalfPi * kNode[i];
+    const double h = radius * std::cos(t);
+    const double y = radius * std::sin(t);
+    const NormalTable::Value far = Normal((r + h) / w);
+    const NormalTable::Value near = Normal((r - h) / w);
+    const double weight =
+        2.0 * kHalfPi * kWeight[i] * h * Normal(y / w).pdf / w;
+    p.value += weight * (far.cdf - near.cdf);
+    p.d_r += weight * (far.pdf - near.pdf) / w;
+    const auto on_circle = [&](double cosine) {
+      const double apart2 = r * r + radius * radius - 2.0 * r * radius * cosine;
+      return std::exp(-0.5 * apart2 / (w * w));
+    };
+    const double cosine = std::cos(t);
+    p.d_radius += kWeight[i] * 0.5 * radius / (w * w) *
+                  (on_circle(cosine) + on_circle(-cosine));
+  }
+  // It depends on r/w and R/w alone.
+  p.d_w = -(r * p.d_r + radius * p.d_radius) / w;
+  return p;
+}
 
 inline Coverage DiscCoverage(const Outline& o, double w, double px, double py) {
   Coverage c;
@@ -65,17 +136,16 @@ inline Coverage DiscCoverage(const Outline& o, double w, double px, double py) {
   const double dy = py - o.centre.y_px;
   const double r = std::sqrt(dx * dx + dy * dy);
   const double radius = o.radius_px;
-  const double edge = radius - w * w / (2.0 * radius);
-  const double z = (edge - r) / w;
-  const NormalTable::Value normal = Normal(z);
-  const double density = normal.pdf / w;
-  c.value = normal.cdf;
+  constexpr double kSeriesFrom = 4.0;  // R/w; there the series is good to 3e-4
+  const DiscProfile p = radius < kSeriesFrom * w ? SmallDisc(r, radius, w)
+                                                 : DiscSeries(r, radius, w);
+  c.value = p.value;
   if (r > 1e-9) {
-    c.d[0] = density * dx / r;
-    c.d[1] = density * dy / r;
+    c.d[0] = -p.d_r * dx / r;
+    c.d[1] = -p.d_r * dy / r;
   }
-  c.d[2] = density * (1.0 + w * w / (2.0 * radius * radius));
-  c.d[5] = density * (-w / radius) - normal.pdf * z / w;
+  c.d[2] = p.d_radius;
+  c.d[5] = p.d_w;
   c.xi = dx / radius;
   c.eta = dy / radius;
   return c;

@@ -10,6 +10,7 @@
 
 #include "coverage.h"
 #include "gaussian.h"
+#include "lens_silhouette.h"
 
 namespace touchdown::vision {
 namespace {
@@ -17,14 +18,6 @@ namespace {
 struct SubExposure {
   double time_s;
   double weight;
-};
-
-// The outline's images at one instant: the body, and its part below the ground
-// line (empty where the motion is physical).
-struct Silhouette {
-  ShapeOutline body;
-  ShapeOutline below;
-  double min_x, max_x, min_y, max_y;
 };
 
 HalfPlane Ground(const SceneCamera& camera) {
@@ -35,6 +28,7 @@ HalfPlane Ground(const SceneCamera& camera) {
 
 Silhouette Draw(const Scene& scene, const ScenePose& pose) {
   const HalfPlane ground = Ground(scene.camera);
+  if (scene.camera.lens) return DrawThroughLens(scene, pose, ground);
   if (scene.body.kind == core::BodyKind::kSphere) {
     const core::PixelPoint c = ToImage(scene.camera, pose.centre);
     const double r = 0.5 * scene.body.diameter_m->value * scene.camera.px_per_m;
@@ -73,8 +67,8 @@ ScenePose PoseAt(const Scene& scene, double time_s) {
 // How far the image of the body's fastest point moves, in px.
 double MotionPx(const Scene& scene, const ScenePose& p, const ScenePose& q,
                 double radius_px) {
-  const core::PixelPoint a = ToImage(scene.camera, p.centre);
-  const core::PixelPoint b = ToImage(scene.camera, q.centre);
+  const core::PixelPoint a = ToIdealImage(scene.camera, p.centre);
+  const core::PixelPoint b = ToIdealImage(scene.camera, q.centre);
   return std::hypot(b.x_px - a.x_px, b.y_px - a.y_px) +
          radius_px * std::abs(q.angle_rad - p.angle_rad);
 }
@@ -267,7 +261,10 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
                                               {width + margin, height + margin},
                                               {-margin, height + margin}};
   CoverageMap coverage({0, 0, width, height}, camera.psf_sigma_px);
-  coverage.Add(PolygonOutline(ClipPolygon(picture, Ground(camera))), 1.0);
+  coverage.Add(camera.lens
+                   ? GroundThroughLens(camera, margin)
+                   : PolygonOutline(ClipPolygon(picture, Ground(camera))),
+               1.0);
   coverage.Finish();
 
   const auto pixels =

@@ -54,6 +54,15 @@ void Validate(const Scene& scene) {
           "camera.psf_sigma_px", camera.psf_sigma_px, "0, or 0.1 .. 10");
   Require(camera.bit_depth >= 1 && camera.bit_depth <= 16, "camera.bit_depth",
           camera.bit_depth, "1 .. 16");
+  if (camera.lens) {
+    Require(
+        calib::IsInvertible(*camera.lens, camera.width_px, camera.height_px),
+        "camera.lens.k1", camera.lens->k1,
+        "such that the lens does not fold the picture back on itself");
+    Require(std::abs(camera.roll_rad) < std::numbers::pi / 3.0,
+            "camera.roll_rad", camera.roll_rad,
+            "within -pi/3 .. pi/3 where there is a lens");
+  }
 
   const SceneLook& look = scene.look;
   Require(IsLevel(look.body_level), "look.body_level", look.body_level,
@@ -92,6 +101,12 @@ void Validate(const Scene& scene) {
 }
 
 core::PixelPoint ToImage(const SceneCamera& camera, core::PlanePoint point) {
+  const core::PixelPoint ideal = ToIdealImage(camera, point);
+  return camera.lens ? calib::Distort(*camera.lens, ideal) : ideal;
+}
+
+core::PixelPoint ToIdealImage(const SceneCamera& camera,
+                              core::PlanePoint point) {
   const double c = std::cos(camera.roll_rad);
   const double s = std::sin(camera.roll_rad);
   const double x =
@@ -157,8 +172,9 @@ SceneTruth TruthOf(const Scene& scene, std::int64_t index) {
 calib::GroundLine GroundOf(const SceneCamera& camera) {
   const double slope = std::tan(camera.roll_rad);
   const auto at = [&](double x) {
-    return core::PixelPoint{
+    const core::PixelPoint ideal{
         x, camera.ground_point.y_px + slope * (x - camera.ground_point.x_px)};
+    return camera.lens ? calib::Distort(*camera.lens, ideal) : ideal;
   };
   // Two points even of a picture one pixel wide.
   return calib::GroundThrough(at(0.0), at(std::max(1, camera.width_px - 1)),

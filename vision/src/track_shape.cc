@@ -14,30 +14,6 @@ double SizeOf(const OutlineFit& fit) {
                                                      : fit.outline.half_long_px;
 }
 
-// Mean weighted by inverse variance, robustly: values off the median by more
-// than four times the scatter are left out. u from the scatter, or from the
-// fits' uncertainties where that is larger.
-core::Estimate RobustMean(const std::vector<double>& values,
-                          const std::vector<double>& us) {
-  const double centre = Median(values);
-  std::vector<double> off;
-  off.reserve(values.size());
-  for (const double v : values) off.push_back(std::abs(v - centre));
-  const double scatter = 1.4826 * Median(off);
-  double sw = 0.0;
-  double swx = 0.0;
-  double n = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(values[i] - centre) > 4.0 * scatter + 1e-12) continue;
-    const double w = 1.0 / (us[i] * us[i] + 1e-12);
-    sw += w;
-    swx += w * values[i];
-    n += 1.0;
-  }
-  if (n < 1.0) return {centre, scatter};
-  return {swx / sw, std::max(1.0 / std::sqrt(sw), scatter / std::sqrt(n))};
-}
-
 // A body that comes nearer grows: a straight line through the sizes, used only
 // where the change is large against its uncertainty and matters.
 void FollowSize(const std::vector<Fitted>& all, Track& track) {
@@ -68,6 +44,26 @@ void FollowSize(const std::vector<Fitted>& all, Track& track) {
   const double noise = scatter / track.body.radius_px.value /
                        std::sqrt(static_cast<double>(all.size()) / 12.0);
   if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
+  // A step is no growth: a blow changes the way that smears the image. Each
+  // half must show a good part of the slope.
+  const auto half = [&](std::size_t begin, std::size_t end) {
+    std::vector<double> early;
+    std::vector<double> late;
+    const std::size_t third = (end - begin) / 3;
+    for (std::size_t i = 0; i < third; ++i) {
+      early.push_back(all[begin + i].fit.outline.radius_px);
+      late.push_back(all[end - 1 - i].fit.outline.radius_px);
+    }
+    const double apart =
+        all[end - 1 - third / 2].time_s - all[begin + third / 2].time_s;
+    return (Median(late) - Median(early)) / apart;
+  };
+  constexpr double kGoodPart = 0.4;
+  const std::size_t middle = all.size() / 2;
+  if (half(0, middle) / slope < kGoodPart ||
+      half(middle, all.size()) / slope < kGoodPart) {
+    return;
+  }
   for (Pose& pose : track.poses) {
     pose.relative_size =
         (level + slope * pose.time_s) / track.body.radius_px.value;
@@ -94,6 +90,29 @@ double Median(std::vector<double> values) {
       values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+core::Estimate RobustMean(const std::vector<double>& values,
+                          const std::vector<double>& us) {
+  const double centre = Median(values);
+  std::vector<double> off;
+  off.reserve(values.size());
+  for (const double v : values) off.push_back(std::abs(v - centre));
+  const double scatter = 1.4826 * Median(off);
+  const double typical = Median(us);
+  double sw = 0.0;
+  double swx = 0.0;
+  double n = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i] - centre) > 4.0 * scatter + 1e-12) continue;
+    const double u = std::max(us[i], typical);
+    const double w = 1.0 / (u * u + 1e-12);
+    sw += w;
+    swx += w * values[i];
+    n += 1.0;
+  }
+  if (n < 1.0) return {centre, scatter};
+  return {swx / sw, std::max(1.0 / std::sqrt(sw), scatter / std::sqrt(n))};
 }
 
 void DropStrangers(std::vector<Fitted>& all) {

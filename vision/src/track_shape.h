@@ -18,6 +18,14 @@ struct Fitted {
 
 double Median(std::vector<double> values);
 
+// Mean weighted by inverse variance, robustly: values off the median by more
+// than four times the scatter are left out. No value weighs more than the
+// typical one: a fit's own u is small where its error made the contrast large,
+// which would draw the mean to one side. u from the scatter, or from the fits'
+// uncertainties where that is larger.
+core::Estimate RobustMean(const std::vector<double>& values,
+                          const std::vector<double>& us);
+
 // Leaves out fits that are not of this body: other size, or far worse residuals
 // than usual.
 void DropStrangers(std::vector<Fitted>& all);

@@ -114,6 +114,9 @@ struct BoundaryPosterior {
   double lapse_gain = 0.0;  // of the greatest log likelihood, where looked at
   double max_log_likelihood = 0.0;  // on the grid, with the lapse used
   bool binned = false;
+  ScatterPrior prior;  // that it was made with
+  // Root mean square of the trials' u; absent without trials.
+  std::optional<double> typical_u_rad;
   std::vector<SensitivityLine> sensitivity;
   // Marginal of theta: density and distribution function at increasing angles.
   std::vector<double> angle_rad;

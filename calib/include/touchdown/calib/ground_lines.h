@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "touchdown/calib/lens.h"
 #include "touchdown/calib/plane.h"
 
 namespace touchdown::calib {
@@ -27,6 +29,10 @@ struct GroundLineOptions {
   // Its step in level must exceed this many times the noise.
   double least_contrast_sigmas = 4.0;
   int most_lines = 4;
+  // Where it is given, edges are found in the picture and fitted in the lens's
+  // ideal picture, in which straight lines are straight: the result is there,
+  // too.
+  std::optional<Lens> lens;
 };
 
 // Lines by falling support. Each is a robust straight line through the edge's

@@ -2,8 +2,10 @@
 // the scale.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
+#include "touchdown/calib/lens.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/points.h"
 
@@ -46,6 +48,16 @@ double HeightUncertainty(const GroundLine& ground, core::PixelPoint p);
 
 // Position of the foot of `p` along the line, from `reference`, in px.
 double PositionAlong(const GroundLine& ground, core::PixelPoint p);
+
+// A line through the same two points in the lens's ideal picture, and back:
+// the line through the two points at which the ideal points `a` and `b` of it
+// are seen (between them the ground's image is bent). Uncertainties stay as
+// they are, in px: distortion changes them by its own slope, a few per cent.
+// Nothing where the lens has no ideal point for one of them.
+std::optional<GroundLine> Undistorted(const GroundLine& image,
+                                      const Lens& lens);
+GroundLine Distorted(const GroundLine& ideal, const Lens& lens,
+                     core::PixelPoint a, core::PixelPoint b);
 
 struct Scale {
   core::Estimate px_per_m;

@@ -3,16 +3,18 @@
 // Model of a pixel at p:   I(p) = (1 - c(p)) out(p) + c(p) in(p)
 //   c     coverage of the pixel by the body, blurred by a Gaussian of standard
 //         deviation w (optics, pixel, focus): for a disc of radius R at
-//         distance r from its centre  Phi((R - w^2/(2 R) - r) / w)  (the second
-//         term: the half-level contour of a blurred disc lies inside it); for a
+//         distance r from its centre  Phi(z) to third order in w/R
+//         (outline_model.h; to first order Phi((R - w^2/(2 R) - r)/w)); for a
 //         rectangle the product of two slabs, exact for a Gaussian blur
 //   out   the known background, or a quadratic polynomial where the body never
 //         leaves it uncovered
 //   in    a quadratic polynomial over the body (shading)
-// Gauss-Newton on all parameters with the clip's own noise as weights, and
-// robust (Tukey) weights against spots, shadows and other things that move. The
-// covariance is that of the normal equations: at the Cramer-Rao bound where the
-// model holds, widened by the residuals' excess where it does not.
+// While the shutter is open the body moves by open * travel, and the coverage
+// is the mean along that way. Gauss-Newton on all parameters with the clip's
+// own noise as weights, and robust (Tukey) weights against spots, shadows and
+// other things that move. The covariance is that of the normal equations: at
+// the Cramer-Rao bound where the model holds, widened by the residuals' excess
+// where it does not.
 #pragma once
 
 #include <array>
@@ -36,6 +38,15 @@ struct Outline {
   double angle_rad = 0.0;      // of the long side, +x towards +y (image)
 };
 
+// The interior's polynomial over the body, in DN: value and standard
+// uncertainty of each coefficient of 1, x, y, x^2, xy, y^2, where x and y are
+// the position from the centre over the radius, or over the half sides along
+// them.
+struct Shading {
+  std::array<double, 6> level{};
+  std::array<double, 6> u{};
+};
+
 struct OutlineOptions {
   // What lies around the body: the known background, or, where the body never
   // left it uncovered, a polynomial of its own.
@@ -46,9 +57,21 @@ struct OutlineOptions {
   double blur_px = 0.8;  // start value of w, px
   bool fit_blur = true;
 
+  // The centre's way in one frame interval, px, and the share of the interval
+  // in which the shutter is open, 0 to 1.
+  core::PixelPoint travel_px{0.0, 0.0};
+  double open = 0.0;
+  bool fit_open = false;
+
+  // How the body is shaded, where other frames tell: a prior of the interior.
+  // Without it the shading of a small or blurred body costs half of the
+  // centre's information.
+  std::optional<Shading> shading;
+
   // Pixels lower than this above the ground line are left out: there the body
   // hides its own shadow and the ground's edge. 2 px: beyond the blur of both
-  // (without it angles were off by two to five standard uncertainties).
+  // (without it angles were off by two to five standard uncertainties). At
+  // least 2.5 w.
   std::optional<calib::GroundLine> ground;
   double ground_margin_px = 2.0;
 
@@ -61,6 +84,10 @@ struct OutlineOptions {
 struct OutlineFit {
   Outline outline;
   double blur_px = 0.0;
+  double u_blur_px = 0.0;
+  double open = 0.0;
+  double u_open = 0.0;             // 0: held
+  std::optional<Shading> shading;  // nothing where one level was fitted
   double u_x_px = 0.0;
   double u_y_px = 0.0;
   double correlation_xy = 0.0;

@@ -7,7 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
+#include "touchdown/calib/lens.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/points.h"
@@ -23,7 +25,7 @@ struct ScenePose {
 };
 using PoseFunction = std::function<ScenePose(double time_s)>;
 
-// A distortion-free camera whose axis is perpendicular to the plane of motion.
+// A camera whose axis is perpendicular to the plane of motion.
 struct SceneCamera {
   std::int32_t width_px = 640;
   std::int32_t height_px = 400;
@@ -43,6 +45,9 @@ struct SceneCamera {
   // the exact area of a pixel) or 0.1 to 10.
   double psf_sigma_px = 0.7;
   std::int32_t bit_depth = 8;  // 1..16
+  // Distorts what the camera sees; the fields above are those of the ideal
+  // picture (calib/lens.h). Nothing: no distortion. Needs |roll| < 60 degrees.
+  std::optional<calib::Lens> lens;
 };
 
 // Brightness, as fractions of full scale at the picture's centre.
@@ -82,7 +87,9 @@ struct Scene {
 // range if the scene cannot be rendered.
 void Validate(const Scene& scene);
 
-// Image of a point of the plane.
+// Image of a point of the plane, without and with the lens's distortion.
+core::PixelPoint ToIdealImage(const SceneCamera& camera,
+                              core::PlanePoint point);
 core::PixelPoint ToImage(const SceneCamera& camera, core::PlanePoint point);
 
 // The four corners of a rectangle in the plane, counter-clockwise, beginning
@@ -98,8 +105,9 @@ double Gap(const core::Body& body, const ScenePose& pose);
 struct SceneTruth {
   std::int64_t index = 0;
   double time_s = 0.0;
-  ScenePose pose;                // in the plane
-  core::PixelPoint centre;       // in the image
+  ScenePose pose;           // in the plane
+  core::PixelPoint centre;  // in the image: of the centre itself
+  // In the ideal picture:
   double image_angle_rad = 0.0;  // of the long side, from +x towards +y
   double radius_px = 0.0;  // of a sphere; half the diagonal of a rectangle
   double gap_px = 0.0;
@@ -107,6 +115,8 @@ struct SceneTruth {
 SceneTruth TruthOf(const Scene& scene, std::int64_t index);
 
 // The exact ground line in the image, from its left to its right border; u = 0.
+// With a lens: through two points at which the ground is seen; between them it
+// is bent.
 calib::GroundLine GroundOf(const SceneCamera& camera);
 
 }  // namespace touchdown::vision

@@ -1,0 +1,226 @@
+// touchdown calibrate lens; scale and ground are in calibrate_references.cc
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/calibrate_file.h"
+#include "app/cli/command.h"
+#include "app/cli/progress.h"
+#include "app/cli/rig_print.h"
+#include "touchdown/calib/board.h"
+#include "touchdown/calib/lens_calibration.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct LensFlags {
+  CalibrationFileFlags file;
+  std::vector<std::string> images;
+  std::string board;
+  bool json = false;
+};
+
+// Folders stand for the pictures in them, in the order of their names.
+std::vector<std::string> Expanded(const std::vector<std::string>& arguments) {
+  std::vector<std::string> images;
+  for (const std::string& argument : arguments) {
+    if (!std::filesystem::is_directory(argument)) {
+      images.push_back(argument);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : std::filesystem::directory_iterator(argument)) {
+      if (vision::IsImageName(entry.path())) {
+        inside.push_back(entry.path().string());
+      }
+    }
+    std::sort(inside.begin(), inside.end());
+    images.insert(images.end(), inside.begin(), inside.end());
+  }
+  return images;
+}
+
+struct Found {
+  calib::Picture picture;
+  std::vector<calib::BoardView> views;
+  std::vector<std::string> without;  // the board
+};
+
+Found FindBoards(const LensFlags& flags, const calib::Board& board) {
+  Found found;
+  const std::vector<std::string> images = Expanded(flags.images);
+  if (images.empty()) {
+    throw core::InputError(
+        fmt::format("{}: holds no PNG, TIFF or JPEG picture; give pictures of "
+                    "the board",
+                    flags.images.front()));
+  }
+  ProgressBar bar("calibrate");
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const StillPicture still = ReadPicture(images[i], 0);
+    const calib::Picture picture = PictureOf(flags.file, still);
+    if (i == 0) found.picture = picture;
+    if (picture.width_px != found.picture.width_px ||
+        picture.height_px != found.picture.height_px) {
+      throw core::InputError(fmt::format(
+          "{}: has {}x{} px, {} has {}x{}; all pictures must be of one camera "
+          "at one resolution",
+          images[i], picture.width_px, picture.height_px, images[0],
+          found.picture.width_px, found.picture.height_px));
+    }
+    auto points = calib::FindBoard(still.image.View(), board);
+    const std::string name =
+        std::filesystem::path(images[i]).filename().string();
+    if (points) {
+      found.views.push_back({name, *std::move(points)});
+    } else {
+      found.without.push_back(name);
+    }
+    bar.Show(static_cast<double>(i + 1) / static_cast<double>(images.size()));
+  }
+  bar.Finish();
+  return found;
+}
+
+nlohmann::ordered_json Json(const Found& found,
+                            const calib::LensCalibration& lens,
+                            const calib::Calibration& file) {
+  nlohmann::ordered_json json;
+  json["schema"] = "touchdown.calibrate.lens/1";
+  for (int i = 0; i < calib::kLensParameters; ++i) {
+    const core::Estimate e = lens.Parameter(i);
+    json["lens"][calib::kLensNames[static_cast<std::size_t>(i)]] = {
+        {"value", e.value}, {"u", e.u}};
+  }
+  json["rms_px"] = lens.rms_px;
+  json["u_corner_px"] = lens.u_corner_px;
+  json["widened"] = lens.widened;
+  json["coverage"] = lens.coverage;
+  json["cells"] = {{"columns", calib::kCoverageColumns},
+                   {"rows", calib::kCoverageRows},
+                   {"corners", lens.cells}};
+  for (const calib::ViewResult& view : lens.views) {
+    json["views"].push_back({{"name", view.name},
+                             {"rms_px", view.rms_px},
+                             {"most_px", view.most_px},
+                             {"tilt_deg", view.tilt_rad / core::kDegree}});
+  }
+  json["without_board"] = found.without;
+  json["warnings"] = lens.warnings;
+  json["calibration"] =
+      nlohmann::ordered_json::parse(calib::CalibrationText(file));
+  return json;
+}
+
+void PrintLens(const Found& found, const calib::LensCalibration& lens,
+               const calib::Board& board, const std::string& out) {
+  fmt::print("board      {} in {} of {} pictures of {}x{} px\n",
+             calib::Text(board), found.views.size(),
+             found.views.size() + found.without.size(), found.picture.width_px,
+             found.picture.height_px);
+  for (int i = 0; i < calib::kLensParameters; ++i) {
+    const std::string name = calib::kLensNames[static_cast<std::size_t>(i)];
+    const bool px = name.ends_with("_px");
+    fmt::print("{:<10} {}{}\n", px ? name.substr(0, 2) : name,
+               Rounded(lens.Parameter(i)), px ? " px" : "");
+  }
+  fmt::print("bends      up to {:.2f} px within the picture\n",
+             calib::LargestDisplacement(lens.lens, found.picture.width_px,
+                                        found.picture.height_px));
+  fmt::print(
+      "rms        {:.3f} px over {} corners; u of a corner {:.3f} px a "
+      "coordinate, lens u widened {:.2f} times by what views have in common\n",
+      lens.rms_px,
+      lens.views.size() * static_cast<std::size_t>(board.columns) *
+          static_cast<std::size_t>(board.rows),
+      lens.u_corner_px, lens.widened);
+  for (const calib::ViewResult& view : lens.views) {
+    fmt::print(
+        "view       {:<20} rms {:.3f} px, worst {:.3f} px, tilt {:.0f} "
+        "deg\n",
+        view.name, view.rms_px, view.most_px, view.tilt_rad / core::kDegree);
+  }
+  for (const std::string& name : found.without) {
+    fmt::print("view       {:<20} the board is not seen whole: left out\n",
+               name);
+  }
+  fmt::print("coverage   {:.0f} % of {} x {} cells\n", 100.0 * lens.coverage,
+             calib::kCoverageColumns, calib::kCoverageRows);
+  for (const std::string& warning : lens.warnings) {
+    fmt::print("warning    {}\n", warning);
+  }
+  fmt::print("written    {}\n", out);
+}
+
+int RunLens(const LensFlags& flags) {
+  const calib::Board board = calib::ParseBoard(flags.board);
+  const Found found = FindBoards(flags, board);
+  const auto lens = calib::CalibrateLens(
+      found.views, board, found.picture.width_px, found.picture.height_px);
+  if (!lens) {
+    std::string reason = lens.error().reason;
+    if (!found.without.empty()) {
+      reason += fmt::format(" (no whole {} in {} of {} pictures, {} first)",
+                            flags.board, found.without.size(),
+                            found.without.size() + found.views.size(),
+                            found.without.front());
+    }
+    throw core::InputError("calibrate lens: " + reason);
+  }
+  calib::Calibration file = BeginCalibration(flags.file, found.picture);
+  calib::LensRecord record;
+  record.lens = lens->lens;
+  record.covariance = lens->covariance;
+  record.board = calib::Text(board);
+  record.rms_px = lens->rms_px;
+  record.coverage = lens->coverage;
+  for (const calib::ViewResult& view : lens->views) {
+    record.views.push_back({view.name, view.rms_px});
+  }
+  file.lens = std::move(record);
+  calib::WriteCalibration(flags.file.out, file);
+  if (flags.json) {
+    fmt::print("{}\n", Json(found, *lens, file)
+                           .dump(2, ' ', false,
+                                 nlohmann::json::error_handler_t::replace));
+  } else {
+    PrintLens(found, *lens, board, flags.file.out);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddCalibrate(CLI::App& app, Action& action) {
+  CLI::App* calibrate = app.add_subcommand(
+      "calibrate", "what turns pixels into metres: a dated calibration file");
+  calibrate->require_subcommand(1);
+  auto flags = std::make_shared<LensFlags>();
+  CLI::App* lens = calibrate->add_subcommand(
+      "lens", "the lens's distortion, from ten or more pictures of a board");
+  lens->add_option("IMAGES", flags->images,
+                   "pictures of the board, tilted to different sides, all over "
+                   "the picture; or a folder of them")
+      ->required();
+  lens->add_option("--board", flags->board,
+                   "chessboard:9x6:25mm (inner corners, side of a square), "
+                   "circles:7x5:20mm or acircles:4x11:20mm (centres)")
+      ->required();
+  AddFileFlags(*lens, flags->file, false);
+  lens->add_flag("--json", flags->json, "one JSON document on stdout");
+  lens->callback(
+      [flags, &action] { action = [flags] { return RunLens(*flags); }; });
+  AddCalibrateScale(*calibrate, action);
+  AddCalibrateGround(*calibrate, action);
+}
+
+}  // namespace touchdown::cli

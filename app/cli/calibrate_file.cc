@@ -1,0 +1,128 @@
+#include "app/cli/calibrate_file.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "app/cli/dates.h"
+#include "app/cli/values.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/vision/clip.h"
+
+namespace touchdown::cli {
+
+void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
+  command
+      .add_option("--out", flags.out,
+                  "the calibration file to write, e.g. camera.json")
+      ->required();
+  command.add_option("--camera", flags.camera, "the camera's name");
+  command.add_option("--date", flags.date,
+                     "day of the pictures, as in 2026-11-21 (default: today)");
+  command
+      .add_option("--valid-days", flags.valid_days,
+                  "after so many days `analyze` warns that it is old")
+      ->check(CLI::Range(1, 36500))
+      ->capture_default_str();
+  command.add_option("--sensor-origin", flags.sensor_origin,
+                     "where the picture lies on the sensor, X,Y in pixels "
+                     "(default: as the file says, else 0,0)");
+  if (add) {
+    command.add_option("--calibration", flags.calibration,
+                       "a calibration of this camera to add to: its lens is "
+                       "used, and all of it goes into --out");
+  }
+}
+
+StillPicture ReadPicture(const std::string& path, std::int64_t frame) {
+  StillPicture picture;
+  if (!std::filesystem::is_directory(path) && vision::IsImageName(path)) {
+    picture.image = vision::ReadImage(path);
+    return picture;
+  }
+  vision::ClipOptions options;
+  options.fps = 1.0;  // time is not looked at
+  const auto clip = vision::OpenClip(path, options);
+  if (frame < 0 || frame >= clip->info().frames) {
+    throw std::invalid_argument(
+        fmt::format("--frame is {}, must be within 0 .. {} of {}", frame,
+                    clip->info().frames - 1, path));
+  }
+  const core::Frame view = clip->Read(frame);
+  vision::Image& image = picture.image;
+  image.width_px = view.width_px;
+  image.height_px = view.height_px;
+  image.bit_depth = view.bit_depth;
+  const std::size_t row_bytes =
+      static_cast<std::size_t>(view.width_px) * (view.is_16_bit() ? 2u : 1u);
+  image.pixels.resize(row_bytes * static_cast<std::size_t>(view.height_px));
+  for (std::int32_t y = 0; y < view.height_px; ++y) {
+    std::memcpy(image.pixels.data() + static_cast<std::size_t>(y) * row_bytes,
+                view.data + y * view.stride_bytes, row_bytes);
+  }
+  if (const auto& origin = clip->info().sensor_origin) {
+    picture.corner = calib::SensorCorner{origin->x_px, origin->y_px};
+  }
+  return picture;
+}
+
+calib::SensorCorner ParseCorner(const std::string& flag,
+                                const std::string& text) {
+  const auto n = ParseNumbers(flag, text, 2, "X,Y in whole pixels, at least 0");
+  for (const double v : n) {
+    if (v < 0.0 || v > 1e6 || v != std::floor(v)) {
+      throw std::invalid_argument(fmt::format(
+          "{} is '{}', must be X,Y in whole pixels, at least 0", flag, text));
+    }
+  }
+  return {static_cast<std::int32_t>(n[0]), static_cast<std::int32_t>(n[1])};
+}
+
+calib::MarkedPair ParsePair(const std::string& flag, const std::string& text,
+                            double u_point_px) {
+  const auto n =
+      ParseNumbers(flag, text, 4, "two points X1,Y1,X2,Y2 in pixels");
+  if (!(u_point_px >= 0.0) || !std::isfinite(u_point_px)) {
+    throw std::invalid_argument(
+        fmt::format("--u-point-px is {}, must be at least 0", u_point_px));
+  }
+  return {{n[0], n[1]}, {n[2], n[3]}, u_point_px};
+}
+
+calib::Picture PictureOf(const CalibrationFileFlags& flags,
+                         const StillPicture& picture) {
+  calib::Picture out{picture.image.width_px, picture.image.height_px,
+                     picture.corner};
+  if (!flags.sensor_origin.empty()) {
+    out.corner = ParseCorner("--sensor-origin", flags.sensor_origin);
+  }
+  return out;
+}
+
+calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
+                                    const calib::Picture& picture) {
+  calib::Calibration out;
+  if (!flags.calibration.empty()) {
+    const auto known = calib::ReadCalibration(flags.calibration);
+    auto fitted = calib::FittedTo(known, picture);
+    if (!fitted) {
+      throw core::InputError(
+          fmt::format("{}: {}", flags.calibration, fitted.error().reason));
+    }
+    out = *std::move(fitted);
+    if (!flags.camera.empty()) out.camera = flags.camera;
+    // The oldest part decides how long the whole is good.
+    return out;
+  }
+  out.camera = flags.camera;
+  out.date = flags.date.empty() ? Today() : flags.date;
+  out.expires = DaysAfter("--date", out.date, flags.valid_days);
+  out.picture = picture;
+  if (!out.picture.corner) out.picture.corner = calib::SensorCorner{};
+  return out;
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,57 @@
+// What `touchdown calibrate lens|scale|ground` have in common: the pictures
+// they read and the file they write.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/command.h"
+#include "touchdown/calib/calibration_file.h"
+#include "touchdown/calib/references.h"
+#include "touchdown/vision/image_file.h"
+
+namespace touchdown::cli {
+
+struct CalibrationFileFlags {
+  std::string camera;
+  std::string date;
+  int valid_days = 365;
+  std::string sensor_origin;
+  std::string calibration;
+  std::string out;
+};
+
+// `add`: with --calibration, the file to be added to.
+void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add);
+
+// One picture: a still image, or frame `frame` of a clip.
+struct StillPicture {
+  vision::Image image;
+  std::optional<calib::SensorCorner> corner;  // where the file says it
+};
+StillPicture ReadPicture(const std::string& path, std::int64_t frame);
+
+// The calibration that the command begins with: the file of --calibration, as
+// it fits the picture, or an empty one. Dates and names as the flags say.
+calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
+                                    const calib::Picture& picture);
+
+// Of a picture that was read; --sensor-origin wins over the file's own.
+calib::Picture PictureOf(const CalibrationFileFlags& flags,
+                         const StillPicture& picture);
+
+// "X,Y", whole pixels, at least 0.
+calib::SensorCorner ParseCorner(const std::string& flag,
+                                const std::string& text);
+
+// "X1,Y1,X2,Y2".
+calib::MarkedPair ParsePair(const std::string& flag, const std::string& text,
+                            double u_point_px);
+
+void AddCalibrateScale(CLI::App& calibrate, Action& action);
+void AddCalibrateGround(CLI::App& calibrate, Action& action);
+
+}  // namespace touchdown::cli

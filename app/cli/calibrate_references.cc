@@ -1,0 +1,294 @@
+// touchdown calibrate scale|ground
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/calibrate_file.h"
+#include "app/cli/rig_print.h"
+#include "app/cli/values.h"
+#include "touchdown/calib/ground_lines.h"
+#include "touchdown/calib/references.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+// What a rule is good for, where nobody says otherwise.
+constexpr DefaultU kDefaultU = {.relative = 1e-3};
+
+struct ReferenceFlags {
+  CalibrationFileFlags file;
+  std::string picture;
+  std::int64_t frame = 0;
+  double u_point_px = 0.5;
+  std::string points, length, check_points, check_length, plumb, board;
+  bool json = false;
+};
+
+struct Begun {
+  StillPicture still;
+  calib::Calibration file;
+  std::optional<calib::Lens> lens;
+};
+
+Begun Begin(const ReferenceFlags& flags) {
+  Begun begun{ReadPicture(flags.picture, flags.frame), {}, std::nullopt};
+  begun.file = BeginCalibration(flags.file, PictureOf(flags.file, begun.still));
+  if (begun.file.lens) begun.lens = begun.file.lens->lens;
+  return begun;
+}
+
+void Finish(const ReferenceFlags& flags, const calib::Calibration& file,
+            const std::vector<std::string>& lines) {
+  calib::WriteCalibration(flags.file.out, file);
+  if (flags.json) {
+    fmt::print("{}", calib::CalibrationText(file));
+    return;
+  }
+  for (const std::string& line : lines) fmt::print("{}\n", line);
+  fmt::print("written    {}\n", flags.file.out);
+}
+
+int RunScale(const ReferenceFlags& flags) {
+  if (flags.check_points.empty() != flags.check_length.empty()) {
+    throw std::invalid_argument(
+        "--check-points and --check-length-mm go together: give both");
+  }
+  Begun begun = Begin(flags);
+  const auto pair = ParsePair("--points", flags.points, flags.u_point_px);
+  const auto length =
+      ParseEstimate("--length-mm", flags.length, core::kMillimetre, kDefaultU);
+  calib::ScaleRecord scale = calib::ScaleFrom(pair, length, begun.lens);
+  std::vector<std::string> lines = {
+      fmt::format("scale      {} px/m{}", Rounded(scale.px_per_m),
+                  begun.lens ? ", lens undone" : "")};
+  if (!flags.check_points.empty()) {
+    scale.check_error_m = calib::CheckError(
+        scale,
+        ParsePair("--check-points", flags.check_points, flags.u_point_px),
+        ParseEstimate("--check-length-mm", flags.check_length,
+                      core::kMillimetre, kDefaultU),
+        begun.lens);
+    const core::Estimate& error = *scale.check_error_m;
+    lines.push_back(fmt::format("check      error {} mm",
+                                Rounded(core::Scaled(error, 1e3))));
+    if (std::abs(error.value) > core::kNormal975 * error.u) {
+      lines.emplace_back(
+          "warning    the check length does not agree: look at the points, the "
+          "lengths, the lens, and whether both lie in the plane of travel");
+    }
+  } else {
+    lines.emplace_back(
+        "check      none: give another known length with --check-points and "
+        "--check-length-mm");
+  }
+  begun.file.scale = scale;
+  Finish(flags, begun.file, lines);
+  return 0;
+}
+
+// The picture's levels as floats, and the noise of a pixel from differences of
+// neighbours in a row (median: edges do not count).
+struct FloatPicture {
+  std::vector<float> level;
+  double noise_dn = 1.0;
+};
+
+FloatPicture Floats(const core::Frame& frame) {
+  FloatPicture out;
+  std::vector<double> differences;
+  for (std::int32_t y = 0; y < frame.height_px; ++y) {
+    for (std::int32_t x = 0; x < frame.width_px; ++x) {
+      out.level.push_back(static_cast<float>(frame.at(x, y)));
+      if (x > 0) {
+        differences.push_back(
+            std::abs(static_cast<double>(out.level.back()) -
+                     static_cast<double>(out.level[out.level.size() - 2])));
+      }
+    }
+  }
+  if (!differences.empty()) {
+    const auto middle = differences.begin() +
+                        static_cast<std::ptrdiff_t>(differences.size() / 2);
+    std::nth_element(differences.begin(), middle, differences.end());
+    // At least that of rounding.
+    out.noise_dn = std::max(1.4826 * *middle / std::sqrt(2.0), 0.3);
+  }
+  return out;
+}
+
+calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
+  const core::Frame frame = begun.still.image.View();
+  const FloatPicture picture = Floats(frame);
+  calib::GroundLineOptions options;
+  options.lens = begun.lens;
+  options.most_lines = 1;
+  const auto lines = calib::FindGroundLines(
+      {picture.level.data(), frame.width_px, frame.height_px, picture.noise_dn},
+      options);
+  if (lines.empty()) {
+    throw core::InputError(fmt::format(
+        "{}: no straight edge within 20 degrees of level was found; give "
+        "--points X1,Y1,X2,Y2 on the ground line",
+        path));
+  }
+  const calib::GroundLine& line = lines.front();
+  const double length =
+      std::hypot(line.p2.x_px - line.p1.x_px, line.p2.y_px - line.p1.y_px);
+  calib::GroundRecord ground;
+  const auto seen = [&](core::PixelPoint p) {
+    return begun.lens ? calib::Distort(*begun.lens, p) : p;
+  };
+  ground.p1 = seen(line.p1);
+  ground.p2 = seen(line.p2);
+  // Of points of which both the height and the direction are at least as
+  // uncertain as the line's (calib::GroundThrough).
+  ground.u_point_px = std::max(std::sqrt(2.0) * line.u_offset_px,
+                               length * line.u_angle_rad / std::sqrt(2.0));
+  return ground;
+}
+
+int RunGround(const ReferenceFlags& flags) {
+  if (!flags.points.empty() && !flags.board.empty()) {
+    throw std::invalid_argument(
+        "both --points and --board are given; the ground is known from one");
+  }
+  Begun begun = Begin(flags);
+  std::vector<std::string> lines;
+  calib::GroundRecord ground;
+  const auto degrees = [](const core::Estimate& e) {
+    return Rounded(core::Scaled(e, 1.0 / core::kDegree));
+  };
+  if (!flags.board.empty()) {
+    if (!begun.lens) {
+      throw std::invalid_argument(
+          "--board needs --calibration with a lens: make one with `touchdown "
+          "calibrate lens`");
+    }
+    const calib::Board board = calib::ParseBoard(flags.board);
+    const auto points = calib::FindBoard(begun.still.image.View(), board);
+    if (!points) {
+      throw core::InputError(
+          fmt::format("{}: {}; lay the board so that all of it is seen",
+                      flags.picture, points.error().reason));
+    }
+    const auto located = calib::LocateBoard(*points, board, *begun.lens);
+    if (!located) {
+      throw core::InputError(
+          fmt::format("{}: {}", flags.picture, located.error().reason));
+    }
+    ground = located->ground;
+    calib::ScaleRecord scale;
+    scale.px_per_m = located->px_per_m;
+    scale.length_m = board.pitch_m * (board.columns - 1);
+    begun.file.scale = scale;
+    lines.push_back(
+        fmt::format("yaw        {} deg; seen lengths along the ground are "
+                    "{:.3f} % short",
+                    degrees(*ground.yaw_rad),
+                    100.0 * (1.0 - std::cos(ground.yaw_rad->value))));
+    lines.push_back(
+        fmt::format("pitch      {} deg, down", degrees(located->pitch_rad)));
+    lines.push_back(fmt::format("scale      {} px/m along the middle row",
+                                Rounded(located->px_per_m)));
+    lines.push_back(fmt::format("rms        {:.3f} px", located->rms_px));
+  } else if (!flags.points.empty()) {
+    const auto pair = ParsePair("--points", flags.points, flags.u_point_px);
+    ground.p1 = pair.p1;
+    ground.p2 = pair.p2;
+    ground.u_point_px = flags.u_point_px;
+  } else {
+    ground = Detected(begun, flags.picture);
+  }
+  if (ground.p1 == ground.p2) {
+    throw std::invalid_argument(fmt::format(
+        "--points is '{}', must be two different points", flags.points));
+  }
+  if (!flags.plumb.empty()) {
+    ground.slope_rad = calib::SlopeFrom(
+        {ground.p1, ground.p2, ground.u_point_px},
+        ParsePair("--plumb", flags.plumb, flags.u_point_px), begun.lens);
+    lines.push_back(
+        fmt::format("slope      {} deg, positive: rises to the "
+                    "right",
+                    degrees(*ground.slope_rad)));
+  }
+  lines.insert(
+      lines.begin(),
+      fmt::format("ground     ({:.2f}, {:.2f}) to ({:.2f}, {:.2f}) px, "
+                  "each +- {:.3f} px",
+                  ground.p1.x_px, ground.p1.y_px, ground.p2.x_px,
+                  ground.p2.y_px, ground.u_point_px));
+  begun.file.ground = ground;
+  Finish(flags, begun.file, lines);
+  return 0;
+}
+
+void AddPictureFlags(CLI::App& command, ReferenceFlags& flags) {
+  command
+      .add_option("PICTURE", flags.picture,
+                  "a picture, or a clip of which one frame is looked at")
+      ->required();
+  command.add_option("--frame", flags.frame, "of a clip")
+      ->capture_default_str();
+  command
+      .add_option("--u-point-px", flags.u_point_px,
+                  "standard uncertainty of each marked point, px")
+      ->capture_default_str();
+  AddFileFlags(command, flags.file, true);
+  command.add_flag("--json", flags.json, "the calibration file on stdout");
+}
+
+}  // namespace
+
+void AddCalibrateScale(CLI::App& calibrate, Action& action) {
+  auto flags = std::make_shared<ReferenceFlags>();
+  CLI::App* command = calibrate.add_subcommand(
+      "scale", "pixels per metre, from a known length in the plane of travel");
+  AddPictureFlags(*command, *flags);
+  command
+      ->add_option("--points", flags->points,
+                   "its two ends, X1,Y1,X2,Y2 in pixels")
+      ->required();
+  command
+      ->add_option("--length-mm", flags->length,
+                   "the length, e.g. 500 or 500+-0.2 (u 0.1 % where not given)")
+      ->required();
+  command->add_option("--check-points", flags->check_points,
+                      "the ends of another known length");
+  command->add_option("--check-length-mm", flags->check_length,
+                      "that length; how far the scale is off it is reported");
+  command->callback(
+      [flags, &action] { action = [flags] { return RunScale(*flags); }; });
+}
+
+void AddCalibrateGround(CLI::App& calibrate, Action& action) {
+  auto flags = std::make_shared<ReferenceFlags>();
+  CLI::App* command = calibrate.add_subcommand(
+      "ground",
+      "the ground line: two points, a board that lies on it, or (neither "
+      "given) the straightest edge in the picture");
+  AddPictureFlags(*command, *flags);
+  command->add_option("--points", flags->points,
+                      "two points on it, X1,Y1,X2,Y2 in pixels");
+  command->add_option("--board", flags->board,
+                      "a board flat on the ground, rows along the direction of "
+                      "travel, middle row under the body's path: tells the "
+                      "plane's yaw and the scale, too; needs --calibration");
+  command->add_option("--plumb", flags->plumb,
+                      "a plumb line, X1,Y1,X2,Y2 in pixels: tells the ground's "
+                      "slope, and so the direction of gravity");
+  command->callback(
+      [flags, &action] { action = [flags] { return RunGround(*flags); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,15 @@
+// Days as they are written in files: 2026-11-21.
+#pragma once
+
+#include <string>
+
+namespace touchdown::cli {
+
+std::string Today();  // of the local clock
+
+// `days` after `date`. Throws std::invalid_argument naming `flag` where `date`
+// is no day.
+std::string DaysAfter(const std::string& flag, const std::string& date,
+                      int days);
+
+}  // namespace touchdown::cli

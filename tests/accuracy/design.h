@@ -1,0 +1,72 @@
+// The declared design of the accuracy table: small rendered clips with exact
+// truth, factor levels drawn evenly by seed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/pipeline/filmed.h"
+#include "touchdown/calib/plane.h"
+
+namespace touchdown::accuracy {
+
+// The regular part has what a careful set-up gives; each case of the hard part
+// has one thing that a careful set-up avoids.
+enum class Hardship {
+  kNone,
+  kSmall,         // 8 px
+  kDim,           // contrast of 4 sigma of the noise
+  kFewFrames,     // 3 to 5 frames on either side of the contact
+  kFast,          // moves by 0.5 to 2 body lengths a frame
+  kLongExposure,  // open for 0.9 of the frame interval
+  kTexture,       // ground of 10 % texture
+  kSlow,          // 0.2 to 0.4 px a frame
+};
+const char* Name(Hardship hardship);
+inline constexpr Hardship kHardships[] = {
+    Hardship::kSmall, Hardship::kDim,          Hardship::kFewFrames,
+    Hardship::kFast,  Hardship::kLongExposure, Hardship::kTexture,
+    Hardship::kSlow};
+
+// Levels of one clip, as chosen; the table is broken down by them.
+struct Levels {
+  Hardship hardship = Hardship::kNone;
+  core::BodyKind kind = core::BodyKind::kSphere;
+  double size_px = 24.0;    // diameter, or the long side
+  double contrast = 0.5;    // of full scale; < 0: body darker
+  double noise = 0.004;     // of full scale
+  double blur_px = 0.8;     // of the lens
+  double speed_px = 2.0;    // a frame, at contact
+  double angle_deg = 20.0;  // approach
+  double open = 0.1;        // exposure over frame interval
+  int frames_before = 20;
+  int frames_after = 12;
+  int bit_depth = 8;
+};
+
+struct Case {
+  std::uint64_t seed = 0;  // of the noise; also names the case
+  Levels levels;
+  pipeline::filmed::Film film;
+  // What `analyze` is told: the true scale but for its uncertainty. Gravity is
+  // standard gravity there, and in the film what it may be somewhere on earth.
+  double told_px_per_m = 0.0;
+  std::optional<double> rise_m;  // of a state's case: the greatest gap
+};
+
+// Relative u of what is told beside the pixels: the scale, and local gravity
+// (vision/contact.h).
+inline constexpr double kScaleRelativeU = 1e-4;
+inline constexpr double kGravityRelativeU = 0.002;
+
+// Case `index` of the regular part, or of one hardship. The same index gives
+// the same case, whatever else is drawn.
+Case Draw(std::uint64_t index, Hardship hardship);
+
+// Case `index` of the states: a sphere that stays down (one in four) or rises
+// by 0.05 to 10 times the default bounce height, filmed until after its apex.
+Case DrawRebound(std::uint64_t index);
+
+}  // namespace touchdown::accuracy

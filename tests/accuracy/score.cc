@@ -1,0 +1,120 @@
+#include "tests/accuracy/score.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "app/pipeline/analyze.h"
+#include "touchdown/vision/render.h"
+
+namespace touchdown::accuracy {
+
+Outcome Analyse(const Case& c) {
+  Outcome outcome;
+  outcome.made = c;
+  const vision::synthetic::Throw& t = c.film.thrown;
+  const Bound bound = BoundOf(c);
+  pipeline::AnalyzeOptions options;
+  options.body_kind = t.kind;
+  options.scale_px_per_m = core::Estimate{
+      c.told_px_per_m, kScaleRelativeU * c.told_px_per_m, std::nullopt};
+  auto clip = vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
+  const auto start = std::chrono::steady_clock::now();
+  const pipeline::Analysis analysis =
+      pipeline::AnalyzeClip(std::move(clip), options);
+  outcome.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+          .count();
+  const core::ContactRecord& first = analysis.contacts.first;
+  outcome.state = first.state.label;
+  outcome.state_reason = first.state.reason;
+  if (first.state.max_gap_m) outcome.u_gap_m = first.state.max_gap_m->u;
+  if (first.state.bounce_height_m) {
+    outcome.bounce_height_m = first.state.bounce_height_m->value;
+  }
+  const auto read = [&](Quantity quantity, const core::Measured& measured,
+                        double truth, double of_bound) {
+    if (!measured) {
+      outcome.reasons[quantity] =
+          first.contact.found ? measured.error().reason : first.contact.reason;
+      return;
+    }
+    const core::Interval interval = core::Interval95(*measured);
+    outcome.readings[quantity] =
+        Reading{measured->value - truth, measured->u,
+                interval.low <= truth && truth <= interval.high, of_bound};
+  };
+  read(kApproach, first.contact.approach_angle_rad, t.ContactAngle(),
+       bound.approach_rad);
+  read(kFrame, first.contact.frame, c.film.contact_frame, bound.frame);
+  if (t.kind == core::BodyKind::kRectangle) {
+    read(kFace, first.contact.face_angle_rad, t.face_rad, bound.face_rad);
+    read(kRadius, first.contact.radius_angle_rad,
+         std::atan2(t.Support(t.face_rad), std::abs(t.Arm())),
+         bound.radius_rad);
+  }
+  return outcome;
+}
+
+double Sum::RmseOverBound() const {
+  return std::sqrt(square_of_ratio / static_cast<double>(measured));
+}
+
+double Sum::Rmse() const {
+  return std::sqrt(square / static_cast<double>(measured));
+}
+
+double Sum::Coverage() const {
+  return static_cast<double>(covered) / static_cast<double>(measured);
+}
+
+double Sum::MeanZ() const { return z / static_cast<double>(measured); }
+
+double Sum::MeanZBand() const {
+  constexpr double kNormal995 = 2.5758293035489;
+  const double n = static_cast<double>(measured);
+  const double variance = (z2 - z * z / n) / (n - 1.0);
+  return kNormal995 * std::sqrt(variance / n);
+}
+
+void Add(Sum& sum, const Outcome& outcome, Quantity quantity) {
+  const auto& reading = outcome.readings[quantity];
+  if (!reading && outcome.reasons[quantity].empty()) return;
+  ++sum.expected;
+  if (!reading) return;
+  ++sum.measured;
+  if (reading->covered) ++sum.covered;
+  const double ratio = reading->error / reading->bound;
+  sum.square_of_ratio += ratio * ratio;
+  sum.square += reading->error * reading->error;
+  const double z = reading->error / reading->u;
+  sum.z += z;
+  sum.z2 += z * z;
+}
+
+void Add(States& states, const Outcome& outcome) {
+  ++states.cases;
+  const double off = *outcome.made.rise_m - outcome.bounce_height_m;
+  const bool clear = std::abs(off) > 2.0 * outcome.u_gap_m;
+  const bool far = std::abs(off) > 4.0 * outcome.u_gap_m;
+  const bool undecided = outcome.state == core::MotionState::kUndecided;
+  const bool bounce = outcome.state == core::MotionState::kBounce;
+  states.clear += clear;
+  states.far += far;
+  states.false_bounces += clear && bounce && off < 0.0;
+  states.missed_bounces += clear && !bounce && !undecided && off > 0.0;
+  states.undecided += far && undecided;
+}
+
+Share Wilson99(std::size_t hits, std::size_t n) {
+  constexpr double kNormal995 = 2.5758293035489;
+  const double total = static_cast<double>(n);
+  const double p = static_cast<double>(hits) / total;
+  const double z2 = kNormal995 * kNormal995 / total;
+  const double centre = (p + 0.5 * z2) / (1.0 + z2);
+  const double half = kNormal995 *
+                      std::sqrt(p * (1.0 - p) / total + 0.25 * z2 / total) /
+                      (1.0 + z2);
+  return {centre - half, centre + half};
+}
+
+}  // namespace touchdown::accuracy

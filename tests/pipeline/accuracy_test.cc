@@ -1,0 +1,91 @@
+// An extract of the accuracy table (./dev bench accuracy): sixty clips of its
+// design, with the table's limits widened by what so few clips scatter.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "tests/accuracy/score.h"
+
+namespace touchdown::accuracy {
+namespace {
+
+using Sums = std::array<Sum, kQuantities>;
+
+Sums SumOf(Hardship hardship, std::uint64_t first, std::uint64_t count) {
+  Sums sums;
+  for (std::uint64_t i = first; i < first + count; ++i) {
+    const Outcome outcome = Analyse(Draw(i, hardship));
+    for (std::size_t q = 0; q < kQuantities; ++q) {
+      Add(sums[q], outcome, static_cast<Quantity>(q));
+    }
+  }
+  return sums;
+}
+
+TEST(Accuracy, RegularClipsAreNearTheCramerRaoBound) {
+  constexpr std::uint64_t kClips = 32;
+  const Sums sums = SumOf(Hardship::kNone, 0, kClips);
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    SCOPED_TRACE(kQuantityNames[q]);
+    const Sum& s = sums[q];
+    EXPECT_EQ(s.measured, s.expected);
+    ASSERT_GE(s.measured, 8U);
+    // 1.5: what the whole table reaches; three standard errors of a scatter.
+    const double few = 3.0 / std::sqrt(2.0 * static_cast<double>(s.measured));
+    EXPECT_LT(s.RmseOverBound(), 1.5 * (1.0 + few));
+    EXPECT_GT(s.RmseOverBound(), 1.0 - few);  // nobody beats the bound
+    EXPECT_LE(std::abs(s.MeanZ()), 1.5 * s.MeanZBand());
+    EXPECT_GE(Wilson99(s.covered, s.measured).high, 0.95);
+  }
+}
+
+TEST(Accuracy, HardClipsAreHonest) {
+  constexpr std::uint64_t kClips = 4;
+  Sum all;  // of all quantities
+  std::size_t approach = 0;
+  for (const Hardship hardship : kHardships) {
+    const Sums sums = SumOf(hardship, 100, kClips);
+    approach += sums[kApproach].measured;
+    for (const Sum& s : sums) {
+      all.measured += s.measured;
+      all.covered += s.covered;
+    }
+  }
+  EXPECT_GE(approach, 25U);  // of 28: a few may be absent, with a reason
+  ASSERT_GE(all.measured, 60U);
+  EXPECT_GE(Wilson99(all.covered, all.measured).high, 0.95);
+}
+
+// Rebounds from none to ten times the bounce height: where the gap is off it by
+// more than twice its u no label is wrong.
+TEST(Accuracy, NoFalseAndNoMissedBounce) {
+  constexpr std::uint64_t kClips = 40;
+  States states;
+  for (std::uint64_t i = 0; i < kClips; ++i)
+    Add(states, Analyse(DrawRebound(i)));
+  EXPECT_GE(states.clear, 25U);
+  EXPECT_EQ(states.false_bounces, 0U);
+  EXPECT_EQ(states.missed_bounces, 0U);
+  EXPECT_LE(states.undecided, 2U);  // 5 %
+}
+
+TEST(Accuracy, TheBoundFollowsTheTextbook) {
+  // A circle of diameter 40, contrast 120, noise 4 DN and a total blur of 1 px:
+  // 0.0079 px (circle of radius R: sd = 1 / sqrt(pi R J)).
+  Case c = Draw(0, Hardship::kNone);
+  c.levels.kind = core::BodyKind::kSphere;
+  c.film.thrown.kind = core::BodyKind::kSphere;
+  c.film.thrown.half_long_m = c.film.thrown.half_short_m =
+      20.0 / c.film.camera.px_per_m;
+  c.levels.contrast = -120.0 / 255.0;
+  c.levels.bit_depth = 16;  // no rounding to speak of
+  c.levels.noise = 4.0 / 255.0;
+  c.levels.blur_px = std::sqrt(1.0 - 1.0 / 12.0);
+  c.levels.open = 0.0;
+  EXPECT_NEAR(BoundOf(c).centre_px, 0.0079, 0.00005);
+}
+
+}  // namespace
+}  // namespace touchdown::accuracy

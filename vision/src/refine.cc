@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "touchdown/vision/tracker.h"
+#include "track_shape.h"
+
+namespace touchdown::vision {
+namespace {
+
+using Surround = OutlineOptions::Surround;
+
+// a and b of one thing, each with its uncertainty, as one.
+core::Estimate Combined(const core::Estimate& a, const core::Estimate& b) {
+  const double wa = 1.0 / std::max(a.u * a.u, 1e-18);
+  const double wb = 1.0 / std::max(b.u * b.u, 1e-18);
+  return {(a.value * wa + b.value * wb) / (wa + wb), 1.0 / std::sqrt(wa + wb),
+          std::nullopt};
+}
+
+core::PixelPoint Between(const Pose& a, const Pose& b) {
+  const double frames = static_cast<double>(b.frame - a.frame);
+  return {(b.centre.x_px - a.centre.x_px) / frames,
+          (b.centre.y_px - a.centre.y_px) / frames};
+}
+
+double Apart(const core::PixelPoint& a, const core::PixelPoint& b) {
+  return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
+}
+
+// The way of pose i in one frame interval, from the side on which the motion is
+// the steadier: a blow changes it from one frame to the next.
+core::PixelPoint TravelOf(const std::vector<Pose>& poses, std::size_t i) {
+  const std::size_t n = poses.size();
+  if (n < 2) return {0.0, 0.0};
+  if (i == 0) return Between(poses[0], poses[1]);
+  if (i + 1 == n) return Between(poses[n - 2], poses[n - 1]);
+  const core::PixelPoint back = Between(poses[i - 1], poses[i]);
+  const core::PixelPoint on = Between(poses[i], poses[i + 1]);
+  const double change_back =
+      i >= 2 ? Apart(Between(poses[i - 2], poses[i - 1]), back) : 0.0;
+  const double change_on =
+      i + 2 < n ? Apart(on, Between(poses[i + 1], poses[i + 2])) : 0.0;
+  // Alike on both sides: the mean is the less noisy.
+  if (Apart(back, on) < 2.0 * std::max({change_back, change_on, 0.1})) {
+    return {0.5 * (back.x_px + on.x_px), 0.5 * (back.y_px + on.y_px)};
+  }
+  return change_back <= change_on ? back : on;
+}
+
+// One coefficient over the frames: its median, and how far a frame's own may
+// lie from it beyond the fits' noise.
+void PriorOf(const std::vector<double>& values, const std::vector<double>& us,
+             double& level, double& u) {
+  level = Median(values);
+  std::vector<double> off;
+  off.reserve(values.size());
+  for (const double v : values) off.push_back(std::abs(v - level));
+  const double scatter = 1.4826 * Median(off);
+  const double noise = Median(us);
+  const double own = std::max(0.0, scatter * scatter - noise * noise);
+  // The median's own uncertainty, pi/2 times the mean's variance.
+  const double n = static_cast<double>(values.size());
+  u = std::sqrt(own + 1.5708 * noise * noise / n);
+}
+
+// The body's shading as the frames that show it whole agree on.
+std::optional<Shading> ShadingOf(const std::vector<Fitted>& all) {
+  constexpr double kWhole = 0.98;
+  constexpr std::size_t kLeast = 8;
+  std::vector<const OutlineFit*> whole;
+  for (const Fitted& f : all) {
+    if (f.fit.visible >= kWhole && f.fit.shading) whole.push_back(&f.fit);
+  }
+  if (whole.size() < kLeast) return std::nullopt;
+  Shading shading;
+  for (std::size_t k = 0; k < shading.level.size(); ++k) {
+    std::vector<double> values;
+    std::vector<double> us;
+    for (const OutlineFit* fit : whole) {
+      values.push_back(fit->shading->level[k]);
+      us.push_back(fit->shading->u[k]);
+    }
+    PriorOf(values, us, shading.level[k], shading.u[k]);
+    if (!(shading.u[k] > 0.0)) return std::nullopt;
+  }
+  return shading;
+}
+
+// What all frames share of the camera.
+std::optional<double> Shared(const std::vector<Fitted>& all,
+                             double OutlineFit::*value, double OutlineFit::*u) {
+  std::vector<double> values;
+  std::vector<double> us;
+  for (const Fitted& f : all) {
+    if (!(f.fit.*u > 0.0)) continue;
+    values.push_back(f.fit.*value);
+    us.push_back(f.fit.*u);
+  }
+  if (values.empty()) return std::nullopt;
+  return RobustMean(values, us).value;
+}
+
+// A body that is no sphere or rectangle, or lies behind others, may lose its
+// size in a free fit: what was found is kept then.
+bool IsSameSize(const BodyImage& again, const BodyImage& found) {
+  constexpr double kMost = 0.2;    // change
+  constexpr double kMostU = 0.05;  // both relative to the size
+  const auto same = [&](const core::Estimate& a, const core::Estimate& b) {
+    return std::abs(a.value - b.value) <= kMost * b.value &&
+           a.u <= kMostU * b.value;
+  };
+  if (found.kind == core::BodyKind::kSphere) {
+    return same(again.radius_px, found.radius_px);
+  }
+  return same(again.half_long_px, found.half_long_px) &&
+         same(again.half_short_px, found.half_short_px);
+}
+
+class Refiner {
+ public:
+  Refiner(Clip& clip, const Background& background, const Track& track,
+          const RefineOptions& refine)
+      : clip_(clip), background_(background), track_(track) {
+    options_.surround =
+        track.known_background ? Surround::kBackground : Surround::kPolynomial;
+    options_.blur_px = track.body.blur_px;
+    options_.ground = refine.ground;
+    // The blurred edges of body and ground do not superpose: clear of both, as
+    // long as half of the body is left.
+    constexpr double kBlurs = 2.5;
+    constexpr double kMostOfHalf = 1.0;
+    const double half = track.body.kind == core::BodyKind::kSphere
+                            ? track.body.radius_px.value
+                            : track.body.half_short_px.value;
+    options_.ground_margin_px =
+        std::max(options_.ground_margin_px,
+                 std::min(kBlurs * track.body.blur_px, kMostOfHalf * half));
+    for (std::size_t i = 0; i < track.poses.size(); ++i) {
+      travel_.push_back(TravelOf(track.poses, i));
+    }
+  }
+
+  // The size once more, now that the ground is left out: a body that lies on it
+  // had the ground's edge taken for its own. With it blur, exposure, shading.
+  void LearnShape(Track& refined);
+  void FitPoses(Track& refined);
+
+ private:
+  core::Expected<OutlineFit> FitPose(const BodyImage& body, std::size_t i) {
+    const Pose& pose = track_.poses[i];
+    options_.travel_px = travel_[i];
+    const core::Frame frame = clip_.Read(pose.frame);
+    return FitOutline(frame, background_, OutlineAt(body, pose), options_);
+  }
+  std::vector<Fitted> Sample(const BodyImage& body);
+
+  Clip& clip_;
+  const Background& background_;
+  const Track& track_;
+  OutlineOptions options_;
+  std::vector<core::PixelPoint> travel_;
+};
+
+std::vector<Fitted> Refiner::Sample(const BodyImage& body) {
+  constexpr std::size_t kEnough = 80;  // frames; u falls as 1/sqrt
+  const std::size_t step =
+      std::max<std::size_t>(1, track_.poses.size() / kEnough);
+  std::vector<Fitted> all;
+  for (std::size_t i = 0; i < track_.poses.size(); i += step) {
+    const auto fit = FitPose(body, i);
+    const Pose& pose = track_.poses[i];
+    if (fit) all.push_back({pose.frame, pose.time_s, *fit});
+  }
+  DropStrangers(all);
+  return all;
+}
+
+void Refiner::LearnShape(Track& refined) {
+  constexpr std::size_t kLeast = 3;
+  // The exposure, where the body moves by enough of its blur to show it.
+  std::vector<double> ways;
+  for (const core::PixelPoint& way : travel_) {
+    ways.push_back(std::hypot(way.x_px, way.y_px));
+  }
+  options_.fit_blur = true;
+  options_.fit_open = Median(ways) > track_.body.blur_px;
+  constexpr double kStart = 0.3;  // of the frame interval
+  if (options_.fit_open) options_.open = kStart;
+  std::vector<Fitted> sized = Sample(refined.body);
+  const double open = std::clamp(
+      Shared(sized, &OutlineFit::open, &OutlineFit::u_open).value_or(0.0), 0.0,
+      1.0);
+  options_.open = 0.0;
+  if (sized.size() >= kLeast &&
+      IsSameSize(ShapeOf(sized, track_.body.kind), track_.body)) {
+    if (options_.fit_open) options_.open = open;
+    refined.body.blur_px =
+        Shared(sized, &OutlineFit::blur_px, &OutlineFit::u_blur_px)
+            .value_or(refined.body.blur_px);
+  }
+  options_.fit_open = false;
+  options_.fit_blur = false;
+  options_.blur_px = refined.body.blur_px;
+  sized = Sample(refined.body);
+  if (sized.size() < kLeast) return;
+  // Not with the shading held: its error is common to all frames, and what it
+  // does to the size would not show in their scatter.
+  options_.shading = ShadingOf(sized);
+  const BodyImage shape = ShapeOf(sized, track_.body.kind);
+  if (!IsSameSize(shape, track_.body)) return;
+  refined.body.radius_px = shape.radius_px;
+  refined.body.half_long_px = shape.half_long_px;
+  refined.body.half_short_px = shape.half_short_px;
+}
+
+void Refiner::FitPoses(Track& refined) {
+  options_.fit_size = false;
+  options_.fit_blur = false;
+  refined.poses.clear();
+  for (std::size_t i = 0; i < track_.poses.size(); ++i) {
+    const auto fit = FitPose(refined.body, i);
+    if (!fit) continue;
+    const Pose& pose = track_.poses[i];
+    Pose better = PoseOf({pose.frame, pose.time_s, *fit});
+    better.relative_size = pose.relative_size;
+    refined.poses.push_back(better);
+  }
+}
+
+}  // namespace
+
+Track Refine(Clip& clip, const Background& background, const Track& track,
+             const RefineOptions& refine) {
+  Track refined = track;
+  Refiner refiner(clip, background, track, refine);
+  const bool steady =
+      std::all_of(track.poses.begin(), track.poses.end(),
+                  [](const Pose& pose) { return pose.relative_size == 1.0; });
+  if (steady) refiner.LearnShape(refined);
+  if (refine.aspect && track.body.kind == core::BodyKind::kRectangle &&
+      track.body.whole_px == 0.0) {
+    const core::Estimate& a = refined.body.half_long_px;
+    const core::Estimate& ratio = *refine.aspect;
+    refined.body.half_short_px = Combined(
+        refined.body.half_short_px,
+        {a.value * ratio.value,
+         std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});
+  }
+  refiner.FitPoses(refined);
+  Unwrap(refined);
+  return refined;
+}
+
+}  // namespace touchdown::vision
