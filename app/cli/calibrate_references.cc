@@ -23,7 +23,7 @@ namespace touchdown::cli {
 namespace {
 
 // What a rule is good for, where nobody says otherwise.
-constexpr double kDefaultRelativeU = 1e-3;
+constexpr DefaultU kDefaultU = {.relative = 1e-3};
 
 struct ReferenceFlags {
   CalibrationFileFlags file;
@@ -65,8 +65,8 @@ int RunScale(const ReferenceFlags& flags) {
   }
   Begun begun = Begin(flags);
   const auto pair = ParsePair("--points", flags.points, flags.u_point_px);
-  const auto length = ParseEstimate("--length-mm", flags.length,
-                                    core::kMillimetre, kDefaultRelativeU);
+  const auto length =
+      ParseEstimate("--length-mm", flags.length, core::kMillimetre, kDefaultU);
   calib::ScaleRecord scale = calib::ScaleFrom(pair, length, begun.lens);
   std::vector<std::string> lines = {
       fmt::format("scale      {} px/m{}", Rounded(scale.px_per_m),
@@ -76,7 +76,7 @@ int RunScale(const ReferenceFlags& flags) {
         scale,
         ParsePair("--check-points", flags.check_points, flags.u_point_px),
         ParseEstimate("--check-length-mm", flags.check_length,
-                      core::kMillimetre, kDefaultRelativeU),
+                      core::kMillimetre, kDefaultU),
         begun.lens);
     const core::Estimate& error = *scale.check_error_m;
     lines.push_back(fmt::format("check      error {} mm",

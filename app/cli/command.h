@@ -17,6 +17,7 @@ using Action = std::function<int()>;
 // Each Add...() adds one command with its flags to `app`, and sets `action`
 // when that command is the one called.
 void AddAnalyze(CLI::App& app, Action& action);
+void AddBatch(CLI::App& app, Action& action);
 void AddBoundary(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddNext(CLI::App& app, Action& action);

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
+#include "touchdown/vision/clip_digest.h"
 
 namespace touchdown::cli {
 namespace {
@@ -20,26 +23,58 @@ struct DbFlags {
   std::string db;
   std::string to;
   std::vector<std::string> from;
+  bool no_clips = false;
 };
+
+std::string Plural(std::size_t n, std::string_view word) {
+  return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
+}
 
 int Check(const DbFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  const db::CheckReport report = db::Check(store);
+  db::DigestOf digest;
+  if (!flags.no_clips) {
+    digest =
+        [](const std::filesystem::path& clip) -> std::optional<std::string> {
+      try {
+        return vision::Sha256(clip);
+      } catch (const core::InputError&) {
+        return std::nullopt;
+      }
+    };
+  }
+  const db::CheckReport report = db::Check(store, digest);
   for (const auto& problem : report.problems) {
     fmt::print("problem: {}\n", Printable(problem));
   }
-  fmt::print(
-      "{} campaigns, {} trials, {} revisions; {} clips without SHA-256\n",
-      report.campaigns, report.trials, report.revisions,
-      report.clips_without_digest);
-  if (report.problems.empty()) {
-    fmt::print("the store is sound\n");
-    return 0;
+  for (const auto& clip : report.clips_changed) {
+    fmt::print("changed: {}: not the bytes that were analysed\n",
+               Printable(clip));
   }
-  throw core::StoreError(fmt::format(
-      "{}: {} problem{}; go back to a backup, or export what can be read",
-      flags.db, report.problems.size(),
-      report.problems.size() == 1 ? "" : "s"));
+  for (const auto& clip : report.clips_missing) {
+    fmt::print("not where last seen: {}\n", Printable(clip));
+  }
+  fmt::print("{} campaigns, {} trials, {} revisions\n", report.campaigns,
+             report.trials, report.revisions);
+  fmt::print(
+      "clips: {} as they were analysed, {} changed, {} not where last seen, {} "
+      "without SHA-256{}\n",
+      report.clips_verified, report.clips_changed.size(),
+      report.clips_missing.size(), report.clips_without_digest,
+      flags.no_clips ? "; not looked at (--no-clips)" : "");
+  if (!report.problems.empty()) {
+    throw core::StoreError(
+        fmt::format("{}: {}; go back to a backup, or export what can be read",
+                    flags.db, Plural(report.problems.size(), "problem")));
+  }
+  fmt::print("the store is sound\n");
+  if (!report.clips_changed.empty()) {
+    throw core::StoreError(fmt::format(
+        "{}: {} changed since the analysis; bring back the recording, or "
+        "exclude its trial with the reason",
+        flags.db, Plural(report.clips_changed.size(), "clip")));
+  }
+  return 0;
 }
 
 int Backup(const DbFlags& flags) {
@@ -49,6 +84,10 @@ int Backup(const DbFlags& flags) {
 }
 
 int Merge(const DbFlags& flags) {
+  // What cannot be read makes no new store.
+  for (const auto& file : flags.from) {
+    db::Store::Open(file, db::OpenMode::kRead);
+  }
   auto into = db::Store::Open(flags.db, db::OpenMode::kCreate);
   for (const auto& file : flags.from) {
     const db::MergeReport report =
@@ -85,8 +124,11 @@ void AddDb(CLI::App& app, Action& action) {
   command->require_subcommand(1);
   auto flags = std::make_shared<DbFlags>();
   CLI::App* check = command->add_subcommand(
-      "check", "pages, foreign keys, the chain of revisions");
+      "check", "pages, foreign keys, the chain of revisions, the clips");
   AddDbFlag(*check, flags->db);
+  check->add_flag("--no-clips", flags->no_clips,
+                  "do not read the clips again (it takes as long as reading "
+                  "all their bytes)");
   check->callback(
       [flags, &action] { action = [flags] { return Check(*flags); }; });
   CLI::App* backup =

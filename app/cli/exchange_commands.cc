@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -137,7 +138,16 @@ int PrintColumns() {
   return 0;
 }
 
-int ImportCsv(const ImportFlags& flags, std::istream& in) {
+// What an import has done, to be printed at its end.
+struct Imported {
+  std::string summary;
+  std::vector<std::string> errors;     // of rows that were passed over
+  std::vector<std::string> conflicts;  // of a merge
+  std::size_t count = 0;
+};
+
+Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
+                   std::istream& in) {
   auto read = report::ReadTrialsCsv(in, flags.file, flags.by);
   auto& errors = read.errors;
   if (!flags.partial && !errors.empty()) {
@@ -150,7 +160,7 @@ int ImportCsv(const ImportFlags& flags, std::istream& in) {
         Printable(errors.front()), errors.size(),
         errors.size() == 1 ? "" : "s"));
   }
-  auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  auto store = db::Store::Open(db, db::OpenMode::kCreate);
   std::vector<core::Trial> good;
   std::vector<std::size_t> rows;
   for (auto& [row, trial] : read.trials) {
@@ -183,10 +193,10 @@ int ImportCsv(const ImportFlags& flags, std::istream& in) {
     good.push_back(std::move(trial));
     rows.push_back(row);
   }
-  std::size_t imported = 0;
+  Imported done;
   if (!flags.partial) {
     try {
-      imported = store.LogTrials(good).size();
+      done.count = store.LogTrials(good).size();
     } catch (const db::TrialRefused& refused) {
       throw core::InputError(fmt::format("{}: row {}: {}", flags.file,
                                          rows.at(refused.index()),
@@ -196,36 +206,73 @@ int ImportCsv(const ImportFlags& flags, std::istream& in) {
     for (std::size_t i = 0; i < good.size(); ++i) {
       try {
         store.LogTrials({&good[i], 1});
-        ++imported;
+        ++done.count;
       } catch (const db::TrialRefused& refused) {
         errors.push_back(
             fmt::format("{}: row {}: {}", flags.file, rows[i], refused.what()));
       }
     }
   }
-  for (const auto& error : errors) {
-    fmt::print(stderr, "touchdown: {}\n", Printable(error));
-  }
-  fmt::print("{} trials imported, {} errors\n", imported, errors.size());
-  return errors.empty() ? 0 : 5;
+  done.summary =
+      fmt::format("{} trials imported, {} errors", done.count, errors.size());
+  done.errors = std::move(errors);
+  return done;
 }
 
-int ImportJsonLines(const ImportFlags& flags, std::istream& in) {
+Imported ImportJsonLines(const ImportFlags& flags, const fs::path& db,
+                         std::istream& in) {
   report::ExportReader reader(in, flags.file);
-  auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  auto store = db::Store::Open(db, db::OpenMode::kCreate);
   const db::MergeReport report =
       db::Restore(store, reader.store_uuid(), reader.campaigns(),
                   [&reader] { return reader.NextHistory(); });
-  for (const auto& conflict : report.conflicts) {
-    fmt::print("conflict: {}\n", Printable(conflict));
-  }
-  fmt::print(
+  Imported done;
+  done.count = static_cast<std::size_t>(
+      report.trials_added + report.revisions_added + report.campaigns_added);
+  done.conflicts = report.conflicts;
+  done.summary = fmt::format(
       "{} trials, {} revisions, {} campaigns imported; {} revisions were here "
-      "already; {} conflicts\n",
+      "already; {} conflicts",
       report.trials_added, report.revisions_added, report.campaigns_added,
       report.revisions_known, report.conflicts.size());
-  return 0;
+  return done;
 }
+
+int Print(const Imported& done) {
+  for (const auto& conflict : done.conflicts) {
+    fmt::print("conflict: {}\n", Printable(conflict));
+  }
+  for (const auto& error : done.errors) {
+    fmt::print(stderr, "touchdown: {}\n", Printable(error));
+  }
+  fmt::print("{}\n", done.summary);
+  return done.errors.empty() ? 0 : 5;
+}
+
+// A store that goes away, in a folder of its own.
+class Rehearsal {
+ public:
+  Rehearsal() {
+    std::string name =
+        (fs::temp_directory_path() / "touchdown-import-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw core::InputError(fmt::format(
+          "{}: no folder can be made here; make room, or set TMPDIR",
+          fs::temp_directory_path().string()));
+    }
+    folder_ = name;
+  }
+  ~Rehearsal() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Rehearsal(const Rehearsal&) = delete;
+  Rehearsal& operator=(const Rehearsal&) = delete;
+  fs::path store() const { return folder_ / "rehearsal.db"; }
+
+ private:
+  fs::path folder_;
+};
 
 // All of the paper's Table 1 or, where one of its campaigns is there, nothing.
 int ImportPaperTable1(const ImportFlags& flags) {
@@ -264,13 +311,27 @@ int Import(const ImportFlags& flags) {
   }
   if (flags.db.empty()) throw std::invalid_argument("--db is missing");
   const Format format = FormatOf(flags.format, flags.file);
-  std::ifstream in(flags.file, std::ios::binary);
-  if (!in || fs::is_directory(flags.file)) {
-    throw core::InputError(fmt::format(
-        "{}: cannot be read; check the path and its permissions", flags.file));
+  const auto import_into = [&](const fs::path& db) {
+    std::ifstream in(flags.file, std::ios::binary);
+    if (!in || fs::is_directory(flags.file)) {
+      throw core::InputError(
+          fmt::format("{}: cannot be read; check the path and its permissions",
+                      flags.file));
+    }
+    return format == Format::kCsv ? ImportCsv(flags, db, in)
+                                  : ImportJsonLines(flags, db, in);
+  };
+  // A store is made only for what has been found right: the first import of a
+  // new one is tried elsewhere before. (A pipe can be read but once.)
+  std::error_code ignored;
+  if (!fs::exists(flags.db, ignored) &&
+      fs::is_regular_file(flags.file, ignored) &&
+      fs::is_directory(fs::absolute(flags.db).parent_path(), ignored)) {
+    const Rehearsal rehearsal;
+    const Imported tried = import_into(rehearsal.store());
+    if (tried.count == 0) return Print(tried);
   }
-  return format == Format::kCsv ? ImportCsv(flags, in)
-                                : ImportJsonLines(flags, in);
+  return Print(import_into(flags.db));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// log, correct, campaign: what people state.
+// log, correct: what people state of a trial.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,6 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/version.h"
-#include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/store.h"
@@ -21,7 +20,6 @@ namespace touchdown::cli {
 namespace {
 
 using core::kDegree;
-using core::kMillimetre;
 
 // --- what a trial by hand may say --------------------------------------------
 
@@ -190,6 +188,7 @@ int Log(const LogFlags& flags) {
     rehearsal.angle_kind = core::DefaultAngleKind(body->kind);
   }
   Apply(flags.statement, rehearsal);
+  db::RequireStorable(rehearsal);
   auto store =
       db::Store::Open(flags.db, flags.campaign.empty() ? db::OpenMode::kCreate
                                                        : db::OpenMode::kWrite);
@@ -257,169 +256,6 @@ int Correct(const CorrectFlags& flags) {
   return 0;
 }
 
-// --- campaign ----------------------------------------------------------------
-
-struct CampaignFlags {
-  std::string db;
-  std::string name;
-  BodyFlags body;
-  std::string surface;
-  std::string angle_kind;
-  std::optional<double> bounce_height_mm;
-  std::string speed_mps;
-  std::string theory;
-  std::optional<double> theory_boundary_deg;
-  std::optional<double> theory_u_deg;
-  double margin_deg = 1.0;
-  bool change = false;
-  bool json = false;
-};
-
-std::string CampaignText(const core::Campaign& campaign) {
-  std::vector<std::vector<std::string>> rows = {
-      {"campaign", Printable(campaign.name)},
-      {"body", BodyText(campaign.body)},
-      {"surface", campaign.surface.empty() ? "-" : Printable(campaign.surface)},
-      {"varied angle", std::string(core::Name(campaign.angle_kind))},
-      {"bounce height, mm",
-       fmt::format("{:.4g}", campaign.bounce_height_m / kMillimetre)},
-      {"speed, m/s",
-       campaign.speed_max_mps > 0.0
-           ? fmt::format("{:.4g} to {:.4g}", campaign.speed_min_mps,
-                         campaign.speed_max_mps)
-           : "not declared"}};
-  std::string theory = "none declared";
-  if (!campaign.theory_name.empty()) {
-    theory = Printable(campaign.theory_name);
-    if (campaign.theory_boundary_rad) {
-      theory += fmt::format(", boundary {:.4g} deg",
-                            *campaign.theory_boundary_rad / kDegree);
-      if (campaign.theory_u_rad > 0.0) {
-        theory += fmt::format(" (u {:.2g})", campaign.theory_u_rad / kDegree);
-      }
-    }
-  }
-  rows.push_back({"theory", theory});
-  rows.push_back(
-      {"margin, deg", fmt::format("{:.4g}", campaign.margin_rad / kDegree)});
-  return Aligned(rows);
-}
-
-core::Campaign CampaignOf(const CampaignFlags& flags) {
-  core::Campaign campaign;
-  campaign.name = flags.name;
-  const auto body = ParseBody(flags.body);
-  if (!body) {
-    throw std::invalid_argument(
-        "--body is missing, must be sphere (with --diameter-mm) or rectangle "
-        "(with --sides-mm)");
-  }
-  campaign.body = *body;
-  campaign.surface = flags.surface;
-  campaign.angle_kind = core::DefaultAngleKind(body->kind);
-  if (!flags.angle_kind.empty()) {
-    campaign.angle_kind = ParseWord<core::AngleKind>(
-        "--angle-kind", flags.angle_kind, core::ParseAngleKind,
-        "approach, radius or face");
-  }
-  if (flags.bounce_height_mm) {
-    campaign.bounce_height_m = *flags.bounce_height_mm * kMillimetre;
-  } else {
-    const auto size = core::Size(*body);
-    if (!size) {
-      throw std::invalid_argument(
-          "--bounce-height-mm is missing, and without the body's size it has "
-          "no default");
-    }
-    campaign.bounce_height_m = core::DefaultBounceHeight(size->value);
-  }
-  if (!flags.speed_mps.empty()) {
-    const auto colon = flags.speed_mps.find(':');
-    std::size_t used_low = 0;
-    std::size_t used_high = 0;
-    bool good = colon != std::string::npos;
-    try {
-      if (good) {
-        const std::string low = flags.speed_mps.substr(0, colon);
-        const std::string high = flags.speed_mps.substr(colon + 1);
-        campaign.speed_min_mps = std::stod(low, &used_low);
-        campaign.speed_max_mps = std::stod(high, &used_high);
-        good = used_low == low.size() && used_high == high.size();
-      }
-    } catch (const std::logic_error&) {
-      good = false;
-    }
-    if (!good) {
-      throw std::invalid_argument(fmt::format(
-          "--speed-mps is '{}', must be like 3.5:4.5", flags.speed_mps));
-    }
-  }
-  campaign.theory_name = flags.theory;
-  if (flags.theory_boundary_deg) {
-    campaign.theory_boundary_rad = *flags.theory_boundary_deg * kDegree;
-  }
-  if (flags.theory_u_deg) campaign.theory_u_rad = *flags.theory_u_deg * kDegree;
-  campaign.margin_rad = flags.margin_deg * kDegree;
-  return campaign;
-}
-
-int NewCampaign(const CampaignFlags& flags) {
-  const core::Campaign campaign = CampaignOf(flags);
-  auto store = db::Store::Open(
-      flags.db, flags.change ? db::OpenMode::kWrite : db::OpenMode::kCreate);
-  if (flags.change) {
-    store.ChangeCampaign(campaign);
-  } else {
-    store.AddCampaign(campaign);
-  }
-  fmt::print("{}", CampaignText(campaign));
-  return 0;
-}
-
-int ListCampaigns(const CampaignFlags& flags) {
-  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  std::vector<std::vector<std::string>> rows = {
-      {"campaign", "body", "surface", "varied angle", "bounce height, mm",
-       "theory", "boundary, deg"}};
-  for (const auto& campaign : store.Campaigns()) {
-    if (flags.json) {
-      fmt::print("{}\n", report::CampaignJson(campaign));
-      continue;
-    }
-    rows.push_back(
-        {Printable(campaign.name), BodyText(campaign.body),
-         Printable(campaign.surface),
-         std::string(core::Name(campaign.angle_kind)),
-         fmt::format("{:.4g}", campaign.bounce_height_m / kMillimetre),
-         campaign.theory_name.empty() ? "-" : Printable(campaign.theory_name),
-         campaign.theory_boundary_rad
-             ? fmt::format("{:.4g}", *campaign.theory_boundary_rad / kDegree)
-             : "-"});
-  }
-  if (!flags.json) fmt::print("{}", Aligned(rows));
-  return 0;
-}
-
-int ShowCampaign(const CampaignFlags& flags) {
-  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  const auto campaign = store.FindCampaign(flags.name);
-  if (!campaign) {
-    throw core::StoreError(fmt::format(
-        "{}: there is no campaign '{}'; see `touchdown campaign list --db {}`",
-        flags.db, flags.name, flags.db));
-  }
-  if (flags.json) {
-    fmt::print("{}\n", report::CampaignJson(*campaign));
-    return 0;
-  }
-  db::TrialFilter filter;
-  filter.campaign = flags.name;
-  filter.with_documents = false;
-  fmt::print("{}trials: {}\n", CampaignText(*campaign),
-             store.Trials(filter).size());
-  return 0;
-}
-
 }  // namespace
 
 void AddLog(CLI::App& app, Action& action) {
@@ -453,50 +289,6 @@ void AddCorrect(CLI::App& app, Action& action) {
   command->add_flag("--json", flags->json, "one JSON document");
   command->callback(
       [flags, &action] { action = [flags] { return Correct(*flags); }; });
-}
-
-void AddCampaign(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "campaign", "trials of one body on one surface, with its conventions");
-  command->require_subcommand(1);
-  auto flags = std::make_shared<CampaignFlags>();
-  CLI::App* make = command->add_subcommand(
-      "new", "declare a campaign before its first trial");
-  make->add_option("NAME", flags->name, "of the campaign")->required();
-  AddDbFlag(*make, flags->db);
-  AddBodyFlags(*make, flags->body);
-  make->add_option("--surface", flags->surface, "e.g. 'asphalt, dry'");
-  make->add_option("--angle-kind", flags->angle_kind,
-                   "the varied angle: approach (default for spheres), radius "
-                   "(rectangles) or face");
-  make->add_option("--bounce-height-mm", flags->bounce_height_mm,
-                   "default: the larger of 0.5 and 2 % of the body's size");
-  make->add_option("--speed-mps", flags->speed_mps,
-                   "band of the speed at touchdown, LOW:HIGH");
-  make->add_option("--theory", flags->theory,
-                   "the one theory that gets a verdict");
-  make->add_option("--theory-boundary-deg", flags->theory_boundary_deg,
-                   "its boundary angle");
-  make->add_option("--theory-u-deg", flags->theory_u_deg,
-                   "standard uncertainty of that");
-  make->add_option("--margin-deg", flags->margin_deg,
-                   "equivalence margin of the verdict")
-      ->capture_default_str();
-  make->add_flag("--change", flags->change,
-                 "change a campaign that has no trials yet");
-  make->callback(
-      [flags, &action] { action = [flags] { return NewCampaign(*flags); }; });
-  CLI::App* list = command->add_subcommand("list", "all campaigns of a store");
-  AddDbFlag(*list, flags->db);
-  list->add_flag("--json", flags->json, "one JSON line for each");
-  list->callback(
-      [flags, &action] { action = [flags] { return ListCampaigns(*flags); }; });
-  CLI::App* show = command->add_subcommand("show", "one campaign");
-  show->add_option("NAME", flags->name, "of the campaign")->required();
-  AddDbFlag(*show, flags->db);
-  show->add_flag("--json", flags->json, "one JSON document");
-  show->callback(
-      [flags, &action] { action = [flags] { return ShowCampaign(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   touchdown::cli::Action action;
   touchdown::cli::AddAnalyze(app, action);
+  touchdown::cli::AddBatch(app, action);
   touchdown::cli::AddCalibrate(app, action);
   touchdown::cli::AddSimulate(app, action);
   touchdown::cli::AddBoundary(app, action);

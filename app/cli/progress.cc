@@ -15,20 +15,32 @@ ProgressBar::ProgressBar(std::string what)
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 
-void ProgressBar::Show(double share) {
-  if (!terminal_) return;
+bool ProgressBar::IsTimeToDraw() {
+  if (!terminal_) return false;
   const auto now = std::chrono::steady_clock::now();
   constexpr auto kRedraw = std::chrono::milliseconds(100);
-  if (now - last_ < kRedraw) return;
+  if (now - last_ < kRedraw) return false;
   last_ = now;
+  return true;
+}
+
+void ProgressBar::Show(double share) {
+  const double gone =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_)
+          .count();
+  Show(share, share > 0.0 ? gone * (1.0 - share) / share : 0.0, "");
+}
+
+void ProgressBar::Show(double share, std::optional<double> left_s,
+                       const std::string& done) {
+  if (!IsTimeToDraw()) return;
   drawn_ = true;
   share = std::clamp(share, 0.0, 1.0);
   constexpr int kWidth = 30;
   const int full = static_cast<int>(share * kWidth);
-  const double gone = std::chrono::duration<double>(now - start_).count();
-  const double left = share > 0.0 ? gone * (1.0 - share) / share : 0.0;
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s left ", what_,
-             "", full, "", kWidth - full, 100.0 * share, left);
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {}{}\033[K", what_, "",
+             full, "", kWidth - full, 100.0 * share, done,
+             left_s ? fmt::format("{:.0f} s left ", *left_s) : "");
   std::fflush(stderr);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace touchdown::cli {
@@ -15,9 +16,15 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void Show(double share);  // 0..1; draws at most ten times a second
-  void Finish();            // takes the bar off the screen
+  // With an estimate of one's own, nothing while there is none, and what has
+  // been done in words.
+  void Show(double share, std::optional<double> left_s,
+            const std::string& done);
+  void Finish();  // takes the bar off the screen
 
  private:
+  bool IsTimeToDraw();
+
   std::string what_;
   bool terminal_ = false;
   bool drawn_ = false;

@@ -3,43 +3,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <stdexcept>
 
+#include "app/cli/values.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
 namespace {
 
-// A caliper of the shop: 0.02 mm (ISO 13385-1 calipers resolve that). What a
-// size is given without stands for it.
-constexpr double kCaliperU_mm = 0.02;
-
-double ParseNumber(const std::string& flag, const std::string& whole,
-                   std::string_view text, std::string_view form) {
-  double value = 0.0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw std::invalid_argument(
-        fmt::format("{} is '{}', must be like {}", flag, whole, form));
-  }
-  return value;
-}
-
-core::Estimate ParseSize(const std::string& flag, const std::string& whole,
-                         std::string_view text, std::string_view form) {
-  const auto split = text.find("+-");
-  core::Estimate size;
-  size.value =
-      ParseNumber(flag, whole, text.substr(0, split), form) * core::kMillimetre;
-  size.u = split == std::string_view::npos
-               ? kCaliperU_mm * core::kMillimetre
-               : ParseNumber(flag, whole, text.substr(split + 2), form) *
-                     core::kMillimetre;
-  return size;
-}
+// A caliper of the shop, in mm (ISO 13385-1 calipers resolve that). What a size
+// is given without stands for it.
+constexpr DefaultU kCaliper = {.absolute = 0.02};
 
 }  // namespace
 
@@ -83,8 +58,8 @@ std::optional<core::Body> ParseBody(const BodyFlags& flags) {
       body.diameter_m = core::AbsentBecause("not recorded");
       return body;
     }
-    return core::Sphere(ParseSize("--diameter-mm", flags.diameter_mm,
-                                  flags.diameter_mm, "40 or 40+-0.02"));
+    return core::Sphere(ParseEstimate("--diameter-mm", flags.diameter_mm,
+                                      core::kMillimetre, kCaliper));
   }
   if (!flags.diameter_mm.empty()) {
     throw std::invalid_argument(
@@ -98,15 +73,9 @@ std::optional<core::Body> ParseBody(const BodyFlags& flags) {
     body.short_m = core::AbsentBecause("not recorded");
     return body;
   }
-  const std::string_view sides = flags.sides_mm;
-  const auto cross = sides.find('x');
-  constexpr std::string_view kForm = "60x20 or 60+-0.02x20+-0.02";
-  if (cross == std::string_view::npos) {
-    ParseNumber("--sides-mm", flags.sides_mm, "", kForm);  // says what is wrong
-  }
-  return core::Rectangle(
-      ParseSize("--sides-mm", flags.sides_mm, sides.substr(0, cross), kForm),
-      ParseSize("--sides-mm", flags.sides_mm, sides.substr(cross + 1), kForm));
+  const auto [a, b] =
+      ParseSides("--sides-mm", flags.sides_mm, core::kMillimetre, kCaliper);
+  return core::Rectangle(a, b);
 }
 
 core::Trial RequireTrial(const db::Store& store, const std::string& id) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -40,14 +41,18 @@ std::vector<std::string_view> Split(std::string_view text, char at) {
 }  // namespace
 
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double unit, double relative_u) {
+                             double unit, DefaultU default_u) {
   const std::string form =
       "a number, or one with its standard uncertainty as in 40+-0.02";
   const std::size_t sign = text.find("+-");
   const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
   if (!value || !std::isfinite(*value)) Refuse(flag, text, form);
   if (sign == std::string::npos) {
-    return {*value * unit, std::abs(relative_u * *value * unit), std::nullopt};
+    return {
+        *value * unit,
+        std::max(default_u.relative * std::abs(*value), default_u.absolute) *
+            unit,
+        std::nullopt};
   }
   const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
   if (!u || !std::isfinite(*u)) Refuse(flag, text, form);
@@ -60,14 +65,13 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
 
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
-                                                     double unit,
-                                                     double relative_u) {
+                                                     double unit, DefaultU u) {
   const std::size_t times = text.find('x');
   if (times == std::string::npos) {
     Refuse(flag, text, "two lengths as in 60x20");
   }
-  return {ParseEstimate(flag, text.substr(0, times), unit, relative_u),
-          ParseEstimate(flag, text.substr(times + 1), unit, relative_u)};
+  return {ParseEstimate(flag, text.substr(0, times), unit, u),
+          ParseEstimate(flag, text.substr(times + 1), unit, u)};
 }
 
 std::vector<double> ParseNumbers(const std::string& flag,
@@ -81,6 +85,20 @@ std::vector<double> ParseNumbers(const std::string& flag,
   }
   if (numbers.size() != count) Refuse(flag, text, form);
   return numbers;
+}
+
+core::PixelRect ParseRegion(const std::string& flag, const std::string& text) {
+  constexpr double kMaxSidePx = 65536.0;
+  const std::string form = "X,Y,W,H in whole pixels, W and H positive";
+  const auto n = ParseNumbers(flag, text, 4, form);
+  for (std::size_t i = 0; i < n.size(); ++i) {
+    const double least = i < 2 ? 0.0 : 1.0;
+    if (!(n[i] >= least && n[i] <= kMaxSidePx) || n[i] != std::floor(n[i])) {
+      Refuse(flag, text, form);
+    }
+  }
+  return {static_cast<std::int32_t>(n[0]), static_cast<std::int32_t>(n[1]),
+          static_cast<std::int32_t>(n[2]), static_cast<std::int32_t>(n[3])};
 }
 
 std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,

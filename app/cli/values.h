@@ -9,24 +9,35 @@
 #include <vector>
 
 #include "touchdown/core/estimate.h"
+#include "touchdown/core/points.h"
 
 namespace touchdown::cli {
 
-// "40" or "40+-0.02", in SI by `unit`. Where no uncertainty is stated it is
-// `relative_u` of the value.
+// What a number is given without: `relative` of the value, and `absolute` in
+// its unit; the larger of the two.
+struct DefaultU {
+  double relative = 0.0;
+  double absolute = 0.0;
+};
+
+// "40" or "40+-0.02", in SI by `unit`.
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double unit, double relative_u = 0.0);
+                             double unit, DefaultU u = {});
 
 // "60x20" or "60+-0.02x20+-0.02", likewise.
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
                                                      double unit,
-                                                     double relative_u = 0.0);
+                                                     DefaultU u = {});
 
 // Exactly `count` numbers separated by commas.
 std::vector<double> ParseNumbers(const std::string& flag,
                                  const std::string& text, std::size_t count,
                                  const std::string& form);
+
+// "X,Y,W,H" in whole pixels, X and Y at least 0, W and H positive, none beyond
+// 65536, the largest picture that is read.
+core::PixelRect ParseRegion(const std::string& flag, const std::string& text);
 
 // "A:B", "A:" or ":B": frames A, A+1, ... B-1; an open end is -1.
 std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,

@@ -420,6 +420,7 @@ Analysis Analyze(const std::filesystem::path& path,
   const auto start = Clock::now();
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
+  clip_options.decoder_threads = options.decoder_threads;
   auto clip = vision::OpenClip(path, clip_options);
   const std::string id = vision::ClipId(path);
   const double open_s = Since(start);

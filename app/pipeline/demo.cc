@@ -147,7 +147,7 @@ DemoResult RunDemo(const DemoOptions& options) {
   for (std::size_t i = 0; i < shots.size(); ++i) {
     const core::Campaign campaign = CampaignOf(shots[i]);
     if (!store.FindCampaign(campaign.name)) store.AddCampaign(campaign);
-    core::Trial trial = LoggableTrial(analyses[i], campaign.name);
+    core::Trial trial = LoggableTrial(analyses[i], &campaign);
     trial.set_angle_rad = shots[i].set_angle_rad;
     store.LogTrial(trial);
   }

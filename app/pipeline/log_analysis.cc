@@ -8,17 +8,24 @@
 
 namespace touchdown::pipeline {
 
+core::Campaign RequireCampaign(const db::Store& store,
+                               const std::string& name) {
+  if (auto found = store.FindCampaign(name)) return *std::move(found);
+  throw core::StoreError(
+      fmt::format("{}: there is no campaign '{}'; make it first: touchdown "
+                  "campaign new",
+                  store.path().string(), name));
+}
+
 void FillFromCampaign(const std::filesystem::path& db,
                       const std::string& campaign, AnalyzeOptions& options) {
-  const db::Store store = db::Store::Open(db, db::OpenMode::kRead);
-  const auto found = store.FindCampaign(campaign);
-  if (!found) {
-    throw core::StoreError(
-        fmt::format("{}: there is no campaign '{}'; make it first: touchdown "
-                    "campaign new",
-                    db.string(), campaign));
-  }
-  const core::Body& body = found->body;
+  FillFromCampaign(
+      RequireCampaign(db::Store::Open(db, db::OpenMode::kRead), campaign),
+      options);
+}
+
+void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options) {
+  const core::Body& body = campaign.body;
   if (!options.body_kind && !options.diameter_m && !options.long_m) {
     options.body_kind = body.kind;
     if (body.diameter_m) options.diameter_m = *body.diameter_m;
@@ -27,30 +34,41 @@ void FillFromCampaign(const std::filesystem::path& db,
       options.short_m = *body.short_m;
     }
   }
-  if (!options.angle_kind) options.angle_kind = found->angle_kind;
-  if (!options.bounce_height_m && found->bounce_height_m > 0.0) {
-    options.bounce_height_m = found->bounce_height_m;
+  if (!options.angle_kind) options.angle_kind = campaign.angle_kind;
+  if (!options.bounce_height_m && campaign.bounce_height_m > 0.0) {
+    options.bounce_height_m = campaign.bounce_height_m;
   }
 }
 
 core::Trial LoggableTrial(const Analysis& analysis,
-                          const std::string& campaign) {
+                          const core::Campaign* campaign) {
   core::Trial trial = ToTrial(analysis);
-  trial.campaign = campaign;
   trial.clip.path = std::filesystem::absolute(analysis.clip.path).string();
+  trial.clip.size_bytes = vision::SizeBytes(analysis.clip.path);
   trial.clip.sha256 = vision::Sha256(analysis.clip.path);
+  if (campaign != nullptr) {
+    trial.campaign = campaign->name;
+    if (!analysis.body) {
+      trial.body = campaign->body;
+      trial.angle_kind = campaign->angle_kind;
+    }
+  }
   return trial;
 }
 
 Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
                    const std::string& campaign) {
-  core::Trial trial = LoggableTrial(analysis, campaign);
-  db::Store store = db::Store::Open(db, db::OpenMode::kCreate);
-  // Where the clip shows no body, it is still the campaign's that was thrown.
-  if (const auto found = store.FindCampaign(campaign);
-      found && !analysis.body) {
-    trial.body = found->body;
-    trial.angle_kind = found->angle_kind;
+  // Read the clip before the store is opened: what cannot be read makes none.
+  core::Trial trial = LoggableTrial(analysis, nullptr);
+  db::Store store = db::Store::Open(
+      db, campaign.empty() ? db::OpenMode::kCreate : db::OpenMode::kWrite);
+  if (!campaign.empty()) {
+    const core::Campaign found = RequireCampaign(store, campaign);
+    trial.campaign = campaign;
+    if (!analysis.body) {
+      trial.body = found.body;
+      trial.angle_kind = found.angle_kind;
+    }
   }
   const db::Logged logged = store.LogTrial(trial);
   return {logged.id, logged.revision};

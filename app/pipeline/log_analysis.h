@@ -6,6 +6,8 @@
 #include <string>
 
 #include "app/pipeline/analyze.h"
+#include "touchdown/core/campaign.h"
+#include "touchdown/db/store.h"
 
 namespace touchdown::pipeline {
 
@@ -14,6 +16,10 @@ namespace touchdown::pipeline {
 // campaign.
 void FillFromCampaign(const std::filesystem::path& db,
                       const std::string& campaign, AnalyzeOptions& options);
+void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options);
+
+// Throws core::StoreError if there is no campaign of that name.
+core::Campaign RequireCampaign(const db::Store& store, const std::string& name);
 
 struct Logged {
   std::string trial_id;
@@ -21,9 +27,10 @@ struct Logged {
 };
 
 // The trial as the store takes it: with an absolute path and the clip's full
-// SHA-256. Throws core::InputError if the clip cannot be read.
+// SHA-256; where the clip shows no body, it is still the campaign's (null: in
+// none) that was thrown. Throws core::InputError if the clip cannot be read.
 core::Trial LoggableTrial(const Analysis& analysis,
-                          const std::string& campaign);
+                          const core::Campaign* campaign);
 
 // Logs the trial that `analysis` makes, with the clip's full SHA-256, in the
 // store at `db` (made where there is none): a new trial, or a further revision

@@ -334,6 +334,10 @@ Shot Parse(const std::string& text, const std::string& source,
         "{}: is not JSON: trouble at byte {}; `touchdown simulate --example` "
         "prints a scene",
         source, error.byte));
+  } catch (const json::out_of_range&) {
+    throw core::InputError(fmt::format(
+        "{}: a number in it is too large; expected numbers up to 1e308",
+        source));
   }
   Shot shot = ReadShot(document, source, default_name);
   try {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "app/report/csv_record.h"
 #include "app/report/text.h"
 #include "app/report/trial_csv_columns.h"
 #include "touchdown/core/errors.h"
@@ -21,44 +22,6 @@ namespace {
 using core::Trial;
 
 constexpr const char* kNotRecorded = "not recorded";
-
-// One record (RFC 4180, section 2); nothing at the end of the file.
-std::optional<std::vector<std::string>> ReadRecord(std::istream& in,
-                                                   const std::string& name,
-                                                   std::size_t row) {
-  std::vector<std::string> cells(1);
-  bool any = false;
-  bool quoted = false;
-  for (int c = in.get(); c != EOF; c = in.get()) {
-    any = true;
-    if (quoted) {
-      if (c != '"') {
-        cells.back() += static_cast<char>(c);
-      } else if (in.peek() == '"') {
-        cells.back() += static_cast<char>(in.get());
-      } else {
-        quoted = false;
-      }
-      continue;
-    }
-    if (c == '"' && cells.back().empty()) {
-      quoted = true;
-    } else if (c == ',') {
-      cells.emplace_back();
-    } else if (c == '\n') {
-      break;
-    } else if (c != '\r' || in.peek() != '\n') {
-      cells.back() += static_cast<char>(c);
-    }
-  }
-  if (quoted) {
-    throw core::InputError(fmt::format(
-        "{}: row {}: a quote is left open; a closing \" was expected", name,
-        row));
-  }
-  if (!any) return std::nullopt;
-  return cells;
-}
 
 // "diameter_m" where "diameter_mm" is known: the same quantity, another unit.
 std::string Hint(const std::string& unknown) {
@@ -78,12 +41,8 @@ std::string Hint(const std::string& unknown) {
 
 std::vector<const Column*> ReadHeader(std::istream& in,
                                       const std::string& name) {
-  // Spreadsheets begin UTF-8 files with a byte order mark.
-  if (in.peek() == 0xef) {
-    char mark[3];
-    in.read(mark, 3);
-  }
-  const auto header = ReadRecord(in, name, 1);
+  SkipByteOrderMark(in);
+  const auto header = ReadCsvRecord(in, name, 1);
   if (!header) {
     throw core::InputError(
         fmt::format("{}: the file is empty; a header row was expected", name));
@@ -110,15 +69,6 @@ std::vector<const Column*> ReadHeader(std::istream& in,
     }
   }
   return columns;
-}
-
-std::string Unescaped(std::string cell) {
-  constexpr std::string_view kFormulaStart = "=+-@\t\r";
-  if (cell.size() > 1 && cell[0] == '\'' &&
-      kFormulaStart.find(cell[1]) != std::string_view::npos) {
-    cell.erase(0, 1);
-  }
-  return cell;
 }
 
 Trial EmptyTrial(const std::string& author) {
@@ -168,7 +118,7 @@ CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
       [](const Column* column) { return column->about.name == "angle_kind"; });
   CsvTrials result;
   std::size_t row = 1;
-  while (const auto cells = ReadRecord(in, name, ++row)) {
+  while (const auto cells = ReadCsvRecord(in, name, ++row)) {
     if (cells->size() == 1 && cells->front().empty()) continue;  // blank line
     const std::size_t errors_before = result.errors.size();
     const auto fail = [&](std::string_view column, std::string_view cell,
@@ -190,7 +140,7 @@ CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
       if (result.errors.size() != errors_before) break;
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const auto& about = columns[i]->about;
-        const std::string cell = Unescaped((*cells)[i]);
+        const std::string cell = CsvCellText((*cells)[i]);
         if (columns[i]->is_uncertainty != uncertainties) continue;
         if (cell.empty()) {
           if (about.name == "body_kind" || about.name == "state") {

@@ -297,7 +297,9 @@ Json Parsed(std::string_view line, std::string_view schema) {
 
 std::string SchemaOf(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
-  return json.is_object() ? json.value("schema", "") : "";
+  if (!json.is_object() || !json.contains("schema")) return "";
+  const Json& schema = json["schema"];
+  return schema.is_string() ? schema.get<std::string>() : "";
 }
 
 }  // namespace

@@ -262,6 +262,10 @@ Calibration ParseCalibration(const std::string& text,
         "{}: is not JSON: trouble at byte {}; `touchdown calibrate` writes "
         "calibration files",
         source, error.byte));
+  } catch (const Json::out_of_range&) {
+    throw core::InputError(fmt::format(
+        "{}: a number in it is too large; expected numbers up to 1e308",
+        source));
   }
   const Object object(document, source, "");
   const std::string schema = object.Word("schema");

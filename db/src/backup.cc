@@ -93,24 +93,52 @@ void Backup(const Store& store, const fs::path& to) {
   Sync(folder);
 }
 
+namespace {
+
+// Before an upgrade is committed.
+void RequireSound(Connection& connection, const fs::path& path) {
+  Statement keys(connection, "PRAGMA foreign_key_check");
+  Statement pages(connection, "PRAGMA integrity_check");
+  if (keys.Step() || !pages.Step() || pages.TakeText() != "ok") {
+    throw StoreError(fmt::format(
+        "{}: the trial store is damaged and was not upgraded; go back to a "
+        "backup, or see `touchdown db check` of the version that made it",
+        path.string()));
+  }
+}
+
+}  // namespace
+
 Migration Migrate(const fs::path& path, OpenOptions options) {
   if (!fs::exists(path)) {
     throw StoreError(fmt::format(
         "{}: there is no such trial store; check the path", path.string()));
   }
+  Migration migration{kSchemaVersion, kSchemaVersion};
   {
     Connection connection(path, Connection::Access::kWrite, options.patience_s);
-    const std::int64_t id = connection.Integer("PRAGMA application_id");
-    const std::int64_t version = connection.Integer("PRAGMA user_version");
-    // Version 1 is the first: there is no step to take yet. Each later version
-    // adds its step here, from the version before, in one write transaction.
-    if (id == kApplicationId && version >= 1 && version < kSchemaVersion) {
-      throw std::logic_error("a step of the upgrade is missing");
+    const auto version = [&connection] {
+      return connection.Integer("PRAGMA user_version");
+    };
+    const bool ours =
+        connection.Integer("PRAGMA application_id") == kApplicationId;
+    if (ours && version() >= 1 && version() < kSchemaVersion) {
+      // One transaction for all steps: killed in between, it is the old store.
+      Transaction transaction(connection, Transaction::Kind::kWrite);
+      // Another process may have been faster.
+      migration.from_version = version();
+      for (auto at = migration.from_version; at < kSchemaVersion; ++at) {
+        Upgrade(connection, at);
+      }
+      connection.Execute(
+          fmt::format("PRAGMA user_version = {}", kSchemaVersion));
+      RequireSound(connection, path);
+      transaction.Commit();
     }
   }
   // Says what is wrong with a newer file, or one that is not a store.
   Store::Open(path, OpenMode::kWrite, std::move(options));
-  return {kSchemaVersion, kSchemaVersion};
+  return migration;
 }
 
 }  // namespace touchdown::db

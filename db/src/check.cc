@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <map>
+#include <set>
+
+#include "schema.h"
 #include "statement.h"
 #include "touchdown/db/maintenance.h"
 
@@ -27,6 +31,32 @@ void CheckFile(Connection& connection, std::vector<std::string>& problems) {
         fmt::format("row {} of {} refers to a row of {} that is "
                     "not there",
                     row.value_or(-1), table, keys.TakeText()));
+  }
+}
+
+// Every trigger of the schema is there, as this program wrote it.
+void CheckGuards(Connection& connection, std::vector<std::string>& problems) {
+  const std::string schema = SchemaSql();
+  constexpr std::string_view kCreate = "CREATE TRIGGER ";
+  for (auto at = schema.find(kCreate); at != std::string::npos;
+       at = schema.find(kCreate, at + 1)) {
+    const std::size_t begin = at + kCreate.size();
+    const std::string name =
+        schema.substr(begin, schema.find(' ', begin) - begin);
+    Statement find(connection,
+                   "SELECT sql FROM sqlite_schema WHERE type = 'trigger' AND "
+                   "name = ?");
+    find.Add(name);
+    if (!find.Step()) {
+      problems.push_back(
+          fmt::format("trigger {} is missing: the store is not guarded", name));
+      continue;
+    }
+    const std::string sql = find.TakeText();
+    if (schema.compare(at, sql.size(), sql) != 0) {
+      problems.push_back(fmt::format(
+          "trigger {} is not what it was: the store is not guarded", name));
+    }
   }
 }
 
@@ -60,16 +90,38 @@ void CheckChains(Connection& connection, std::vector<std::string>& problems) {
           "WHERE s.contacts <> (SELECT count(*) FROM contacts c "
           "WHERE c.revision_id = s.revision_id)",
           problems);
-  Collect(connection,
-          "SELECT 'trigger ' || n || ' is missing: the store is not guarded' "
-          "FROM (SELECT t || '_refuse_' || a AS n FROM "
-          "(SELECT 'trials' t UNION SELECT 'revisions' UNION "
-          "SELECT 'statements' UNION SELECT 'contacts' UNION "
-          "SELECT 'budget_lines' UNION SELECT 'exclusions' UNION "
-          "SELECT 'conditions'), "
-          "(SELECT 'UPDATE' a UNION SELECT 'DELETE')) "
-          "WHERE n NOT IN (SELECT name FROM sqlite_schema)",
-          problems);
+  CheckGuards(connection, problems);
+}
+
+struct KnownClip {
+  std::string path;
+  std::string sha256;  // empty: never computed
+};
+
+void CheckClips(const std::vector<KnownClip>& clips, const DigestOf& digest,
+                CheckReport& report) {
+  std::set<std::string> known;
+  for (const KnownClip& clip : clips) {
+    if (clip.sha256.empty()) ++report.clips_without_digest;
+    known.insert(clip.sha256);
+  }
+  if (!digest) return;
+  // Several clips may have borne one name, one after the other.
+  std::map<std::string, std::optional<std::string>> found_at;
+  for (const KnownClip& clip : clips) {
+    if (clip.sha256.empty()) continue;
+    const auto [at, is_new] = found_at.try_emplace(clip.path);
+    if (is_new) at->second = digest(clip.path);
+    const auto& found = at->second;
+    if (found == clip.sha256) {
+      ++report.clips_verified;
+    } else if (!found || known.contains(*found)) {
+      // Gone, or another recording of the store has its name now.
+      report.clips_missing.push_back(clip.path);
+    } else {
+      report.clips_changed.push_back(clip.path);
+    }
+  }
 }
 
 }  // namespace
@@ -77,11 +129,7 @@ void CheckChains(Connection& connection, std::vector<std::string>& problems) {
 CheckReport Check(const Store& store, const DigestOf& digest) {
   Connection& connection = store.connection();
   CheckReport report;
-  struct Clip {
-    std::string path;
-    std::string sha256;
-  };
-  std::vector<Clip> clips;
+  std::vector<KnownClip> clips;
   {
     Transaction snapshot(connection, Transaction::Kind::kRead);
     CheckFile(connection, report.problems);
@@ -93,25 +141,14 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
                   "SELECT last_seen_path, ifnull(sha256, '') FROM clips "
                   "ORDER BY id");
     while (row.Step()) {
-      Clip clip;
+      KnownClip clip;
       clip.path = row.TakeText();
       clip.sha256 = row.TakeText();
       clips.push_back(std::move(clip));
     }
   }
   // Clips are long: read them when the snapshot has been let go.
-  for (const Clip& clip : clips) {
-    if (clip.sha256.empty()) ++report.clips_without_digest;
-    if (!digest || clip.sha256.empty()) continue;
-    const auto found = digest(clip.path);
-    if (!found) {
-      report.clips_missing.push_back(clip.path);
-    } else if (*found != clip.sha256) {
-      report.clips_changed.push_back(clip.path);
-    } else {
-      ++report.clips_verified;
-    }
-  }
+  CheckClips(clips, digest, report);
   return report;
 }
 

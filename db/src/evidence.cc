@@ -55,23 +55,41 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
                                      const core::ClipIdentity& clip,
                                      std::string_view now_utc) {
   if (clip.id.empty()) return std::nullopt;
-  // The same clip: the same cheap id, and the same digest where both are known.
-  Statement find(connection,
-                 "SELECT id FROM clips WHERE clip_id = ?1 AND size_bytes = ?2 "
-                 "AND (sha256 = ?3 OR sha256 IS NULL OR ?3 = '') "
-                 "ORDER BY sha256 IS NULL, id LIMIT 1");
-  find.Add(clip.id).Add(clip.size_bytes).Add(clip.sha256);
-  if (find.Step()) {
-    const std::int64_t row = find.TakeInteger();
+  // The same clip: the same cheap id (the size is part of what it digests; some
+  // clips were logged without), and the same digest where both are known.
+  // One whose digest agrees goes before one without. (Chosen here: ORDER BY
+  // would make a temporary table for each clip.)
+  std::optional<std::int64_t> known;
+  bool agrees = false;
+  {
+    Statement find(
+        connection,
+        "SELECT id, sha256, size_bytes FROM clips WHERE clip_id = ?");
+    find.Add(clip.id);
+    while (find.Step()) {
+      const std::int64_t id = find.TakeInteger();
+      const auto sha256 = find.TakeOptionalText();
+      const std::int64_t size = find.TakeInteger();
+      if (size != clip.size_bytes && size != 0 && clip.size_bytes != 0)
+        continue;
+      if (sha256 && !clip.sha256.empty() && *sha256 != clip.sha256) continue;
+      const bool better = sha256.has_value() && !agrees;
+      if (!known || better || (sha256.has_value() == agrees && id < *known)) {
+        known = id;
+        agrees = sha256.has_value();
+      }
+    }
+  }
+  if (known) {
     Statement(connection,
               "UPDATE clips SET last_seen_path = ?, last_seen_at_utc = ?, "
               "sha256 = ifnull(sha256, nullif(?, '')) WHERE id = ?")
         .Add(clip.path)
         .Add(now_utc)
         .Add(clip.sha256)
-        .Add(row)
+        .Add(*known)
         .Run();
-    return row;
+    return known;
   }
   Statement(connection,
             "INSERT INTO clips (clip_id, size_bytes, sha256, last_seen_path, "

@@ -84,6 +84,27 @@ const std::string& ContactNames() {
 }
 constexpr std::size_t kContactColumns = 8 + 5 * kContactQuantities.size();
 
+void InsertBudgets(Connection& connection, std::int64_t revision_id,
+                   std::int64_t ordinal, const core::Contact& contact) {
+  // One row at a time: with several in one VALUES, SQLite makes a temporary
+  // table first, because of the triggers.
+  Statement insert(connection,
+                   "INSERT INTO budget_lines (revision_id, ordinal, budget, "
+                   "line, source, u_rad) VALUES (?, ?, ?, ?, ?, ?)");
+  for (const auto& budget : kBudgets) {
+    const Budget& lines = contact.*budget.member;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      insert.Add(revision_id)
+          .Add(ordinal)
+          .Add(budget.name)
+          .Add(static_cast<std::int64_t>(i))
+          .Add(lines[i].source)
+          .Add(lines[i].u)
+          .Run();
+    }
+  }
+}
+
 void InsertContact(Connection& connection, std::int64_t revision_id,
                    std::int64_t ordinal, const ContactRecord& record) {
   static const std::string sql =
@@ -108,21 +129,7 @@ void InsertContact(Connection& connection, std::int64_t revision_id,
     AddMeasured(insert, At(record, quantity));
   }
   insert.Run();
-  for (const auto& budget : kBudgets) {
-    const Budget& lines = record.contact.*budget.member;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      Statement(connection,
-                "INSERT INTO budget_lines (revision_id, ordinal, budget, line, "
-                "source, u_rad) VALUES (?, ?, ?, ?, ?, ?)")
-          .Add(revision_id)
-          .Add(ordinal)
-          .Add(budget.name)
-          .Add(static_cast<std::int64_t>(i))
-          .Add(lines[i].source)
-          .Add(lines[i].u)
-          .Run();
-    }
-  }
+  InsertBudgets(connection, revision_id, ordinal, record.contact);
 }
 
 ContactRecord TakeContact(Connection& connection, Statement& row) {
@@ -356,6 +363,16 @@ std::string TrialsSql(const TrialFilter& filter) {
                             : " AND r.exclusion_id IS NULL";
   }
   return sql + " ORDER BY t.id";
+}
+
+std::string_view LastLoggedSql() {
+  return "SELECT t.uuid, s.options_hash, s.set_angle_rad, s.set_speed_mps "
+         "FROM clips k JOIN trials t ON t.clip_id = k.id "
+         "AND ifnull(t.campaign_id, 0) = "
+         "ifnull((SELECT id FROM campaigns WHERE name = ?1), 0) "
+         "JOIN revisions r ON r.trial_id = t.id AND r.kind = 'logged' "
+         "JOIN statements s ON s.revision_id = r.statement_id "
+         "WHERE k.clip_id = ?2 ORDER BY t.id DESC, r.number DESC LIMIT 1";
 }
 
 RevisionRow TakeRevision(Connection& connection, Statement& row) {

@@ -12,11 +12,6 @@
 
 namespace touchdown::db {
 
-// Throws std::invalid_argument naming the field if a number is NaN, a u is
-// negative, an interval is upside down, or the clip has a path but no id.
-void RequireStorable(const core::Trial& trial);
-void RequireStorable(const core::Campaign& campaign);
-
 // The statement of a revision: body, set-points, contacts, budgets, document.
 void InsertStatement(Connection& connection, std::int64_t revision_id,
                      const core::Trial& trial);
@@ -38,6 +33,10 @@ std::string SelectRevisions(bool with_documents);
 // filter's fields that are set, in the order campaign, origin, body, state,
 // from_utc, until_utc.
 std::string TrialsSql(const TrialFilter& filter);
+
+// The revision last logged of a clip in a campaign. Parameters: the campaign's
+// name ("": none), the clip's id.
+std::string_view LastLoggedSql();
 
 // One row of SelectRevisions; contacts and budgets are fetched beside it.
 struct RevisionRow {

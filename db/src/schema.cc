@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
@@ -22,8 +25,22 @@ std::string Flag(std::string_view name) {
   return fmt::format("{0} INTEGER NOT NULL CHECK ({0} IN (0, 1))", name);
 }
 
+// One of some words, "'dry', 'wet'". Compared one by one: for IN with more than
+// two, SQLite makes a temporary table for each row (a quarter of the time of a
+// bulk import).
+std::string OneOf(std::string_view name, std::string_view words) {
+  std::string check;
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find(", "), words.size());
+    check += fmt::format("{}{} = {}", check.empty() ? "" : " OR ", name,
+                         words.substr(0, end));
+    words.remove_prefix(std::min(end + 2, words.size()));
+  }
+  return check;
+}
+
 std::string Word(std::string_view name, std::string_view words) {
-  return fmt::format("{0} TEXT NOT NULL CHECK ({0} IN ({1}))", name, words);
+  return fmt::format("{} TEXT NOT NULL CHECK ({})", name, OneOf(name, words));
 }
 
 std::string Stamp(std::string_view name) {
@@ -195,7 +212,7 @@ std::string Evidence() {
       "  {},\n"
       "  not_found_because TEXT NOT NULL,\n"
       "  {},\n"
-      "  corner TEXT CHECK (corner IN ('leading', 'trailing', 'flush')),\n"
+      "  corner TEXT CHECK ({}),\n"
       "  {},\n"
       "  {},\n"
       "  state_because TEXT NOT NULL,\n"
@@ -204,6 +221,7 @@ std::string Evidence() {
       "  PRIMARY KEY (revision_id, ordinal),\n"
       "{}\n) STRICT;\n",
       Flag("found"), Flag("from_start"),
+      OneOf("corner", "'leading', 'trailing', 'flush'"),
       Word("state",
            "'bounce', 'slide', 'roll-slide', 'roll', 'stick', 'stays-down', "
            "'undecided'"),
@@ -303,6 +321,49 @@ std::string Register() {
   return sql;
 }
 
+// Also against INSERT OR REPLACE, which deletes without asking the triggers
+// above (other programs leave recursive triggers off); and the numbers of a
+// trial's revisions have no gap. One EXISTS a key: with OR inside, SQLite makes
+// a temporary table for each row. The id of a row that gives none is -1 here.
+std::string InsertTriggers() {
+  return "CREATE TRIGGER trials_refuse_REPLACE BEFORE INSERT ON trials\n"
+         "WHEN EXISTS (SELECT 1 FROM trials WHERE uuid = NEW.uuid)\n"
+         "  OR EXISTS (SELECT 1 FROM trials WHERE id = NEW.id)\n"
+         "  OR EXISTS (SELECT 1 FROM trials\n"
+         "             WHERE ifnull(campaign_id, 0) = ifnull(NEW.campaign_id, "
+         "0)\n"
+         "             AND clip_id = NEW.clip_id)\n"
+         "BEGIN SELECT raise(ABORT, 'this trial exists already'); END;\n"
+         "CREATE TRIGGER revisions_in_order BEFORE INSERT ON revisions\n"
+         "WHEN NEW.number <> 1 + (SELECT ifnull(max(number), 0) FROM "
+         "revisions\n"
+         "                        WHERE trial_id = NEW.trial_id)\n"
+         "  OR EXISTS (SELECT 1 FROM revisions WHERE uuid = NEW.uuid)\n"
+         "  OR EXISTS (SELECT 1 FROM revisions WHERE id = NEW.id)\n"
+         "BEGIN SELECT raise(ABORT, 'revisions are added one after the "
+         "other');\n"
+         "END;\n"
+         "CREATE TRIGGER contacts_refuse_REPLACE BEFORE INSERT ON contacts\n"
+         "WHEN NEW.ordinal >= (SELECT contacts FROM statements\n"
+         "                     WHERE revision_id = NEW.revision_id)\n"
+         "  OR EXISTS (SELECT 1 FROM contacts WHERE ordinal = NEW.ordinal\n"
+         "             AND revision_id = NEW.revision_id)\n"
+         "  OR EXISTS (SELECT 1 FROM contacts WHERE rowid = NEW.rowid)\n"
+         "BEGIN SELECT raise(ABORT, 'contacts is append-only: add a "
+         "revision');\n"
+         "END;\n"
+         "CREATE TRIGGER clips_refuse_REPLACE BEFORE INSERT ON clips\n"
+         "WHEN EXISTS (SELECT 1 FROM clips WHERE id = NEW.id)\n"
+         "  OR EXISTS (SELECT 1 FROM clips WHERE clip_id = NEW.clip_id\n"
+         "             AND sha256 = NEW.sha256)\n"
+         "BEGIN SELECT raise(ABORT, 'clips are kept'); END;\n"
+         "CREATE TRIGGER campaigns_refuse_REPLACE BEFORE INSERT ON campaigns\n"
+         "WHEN EXISTS (SELECT 1 FROM campaigns WHERE id = NEW.id)\n"
+         "  OR EXISTS (SELECT 1 FROM campaigns WHERE uuid = NEW.uuid)\n"
+         "  OR EXISTS (SELECT 1 FROM campaigns WHERE name = NEW.name)\n"
+         "BEGIN SELECT raise(ABORT, 'campaigns are kept'); END;\n";
+}
+
 // Nothing is overwritten: evidence may be added to, never changed or removed.
 std::string Triggers() {
   std::string sql;
@@ -316,23 +377,6 @@ std::string Triggers() {
           table, act);
     }
   }
-  // Also against INSERT OR REPLACE, which deletes without asking the above; and
-  // the numbers of a trial's revisions have no gap.
-  sql +=
-      "CREATE TRIGGER trials_refuse_REPLACE BEFORE INSERT ON trials\n"
-      "WHEN EXISTS (SELECT 1 FROM trials WHERE uuid = NEW.uuid\n"
-      "             OR id = NEW.id)\n"
-      "  OR EXISTS (SELECT 1 FROM trials\n"
-      "             WHERE ifnull(campaign_id, 0) = ifnull(NEW.campaign_id, 0)\n"
-      "             AND clip_id = NEW.clip_id)\n"
-      "BEGIN SELECT raise(ABORT, 'this trial exists already'); END;\n"
-      "CREATE TRIGGER revisions_in_order BEFORE INSERT ON revisions\n"
-      "WHEN NEW.number <> 1 + (SELECT ifnull(max(number), 0) FROM revisions\n"
-      "                        WHERE trial_id = NEW.trial_id)\n"
-      "  OR EXISTS (SELECT 1 FROM revisions WHERE uuid = NEW.uuid\n"
-      "             OR id = NEW.id)\n"
-      "BEGIN SELECT raise(ABORT, 'revisions are added one after the other');\n"
-      "END;\n";
   for (const char* table : {"statements", "exclusions", "conditions"}) {
     sql += fmt::format(
         "CREATE TRIGGER {0}_refuse_REPLACE BEFORE INSERT ON {0}\n"
@@ -341,14 +385,6 @@ std::string Triggers() {
         "END;\n",
         table);
   }
-  sql +=
-      "CREATE TRIGGER contacts_refuse_REPLACE BEFORE INSERT ON contacts\n"
-      "WHEN NEW.ordinal >= (SELECT contacts FROM statements\n"
-      "                     WHERE revision_id = NEW.revision_id)\n"
-      "  OR EXISTS (SELECT 1 FROM contacts WHERE ordinal = NEW.ordinal\n"
-      "             AND revision_id = NEW.revision_id)\n"
-      "BEGIN SELECT raise(ABORT, 'contacts is append-only: add a revision');\n"
-      "END;\n";
   sql +=
       "CREATE TRIGGER budget_lines_refuse_REPLACE BEFORE INSERT ON "
       "budget_lines\n"
@@ -374,7 +410,7 @@ std::string Triggers() {
       "conventions'); END;\n"
       "CREATE TRIGGER campaigns_refuse_DELETE BEFORE DELETE ON campaigns\n"
       "BEGIN SELECT raise(ABORT, 'campaigns are kept'); END;\n";
-  return sql;
+  return sql + InsertTriggers();
 }
 
 }  // namespace
@@ -386,6 +422,57 @@ std::string SchemaSql() {
              "  {},\n  {}\n) STRICT;\n",
              kUuid, Stamp("created_at_utc")) +
          Register() + Evidence() + Triggers();
+}
+
+namespace {
+
+// The text of `CREATE TABLE name ...` of today's schema.
+std::string TableSql(std::string_view name) {
+  const std::string schema = SchemaSql();
+  const std::size_t begin = schema.find(fmt::format("CREATE TABLE {} (", name));
+  return schema.substr(begin, schema.find(";\n", begin) - begin);
+}
+
+// Version 2: the guards against REPLACE also know clips, campaigns and a
+// contact's rowid; checks and guards say the same in a form that makes no
+// temporary tables. What is stored stays as it is, so the text of a table is
+// exchanged in place (sqlite.org/lang_altertable.html, section 8).
+void UpgradeFrom1(Connection& connection) {
+  connection.Execute(
+      "DROP TRIGGER trials_refuse_REPLACE;"
+      "DROP TRIGGER revisions_in_order;"
+      "DROP TRIGGER contacts_refuse_REPLACE;" +
+      InsertTriggers());
+  const std::int64_t cookie = connection.Integer("PRAGMA schema_version");
+  sqlite3_db_config(connection.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);
+  connection.Execute("PRAGMA writable_schema = ON");
+  for (const char* table : {"campaigns", "trials", "revisions", "statements",
+                            "contacts", "budget_lines", "surfaces", "bodies",
+                            "springs", "calibrations", "conditions"}) {
+    Statement(connection,
+              "UPDATE sqlite_schema SET sql = ? WHERE type = 'table' AND name "
+              "= ?")
+        .Add(TableSql(table))
+        .Add(table)
+        .Run();
+  }
+  connection.Execute(
+      fmt::format("PRAGMA schema_version = {}; PRAGMA writable_schema = RESET",
+                  cookie + 1));
+  sqlite3_db_config(connection.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+}
+
+}  // namespace
+
+void Upgrade(Connection& connection, std::int64_t from_version) {
+  switch (from_version) {
+    case 1:
+      UpgradeFrom1(connection);
+      break;
+    default:
+      throw std::logic_error(fmt::format(
+          "there is no step from version {} of the store", from_version));
+  }
 }
 
 void CreateSchema(Connection& connection, std::string_view store_uuid,

@@ -37,11 +37,20 @@ std::string ImmutableUri(const std::filesystem::path& path) {
   return uri + "?immutable=1";
 }
 
+// SQLite counts its memory under a lock of the whole process; nobody reads the
+// count, and without it a bulk import takes 9 % less. Only before the first
+// connection: later it has no effect.
+void LeaveMemoryUncounted() {
+  static const int once = sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+  static_cast<void>(once);
+}
+
 }  // namespace
 
 Connection::Connection(const std::filesystem::path& path, Access access,
                        double patience_s)
     : path_(path), patience_s_(patience_s) {
+  LeaveMemoryUncounted();
   // An absolute name is never ":memory:" nor an URI.
   const std::filesystem::path absolute = std::filesystem::absolute(path);
   const int create = access == Access::kCreate ? SQLITE_OPEN_CREATE : 0;
@@ -90,6 +99,12 @@ int Connection::OpenAt(const std::string& name, int flags) {
                              flags | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) return code;
   sqlite3_extended_result_codes(handle_, 1);
+  // Small pieces of memory of its own, 600 kB: enough for the hundred columns
+  // of a contact (the default is a tenth).
+  constexpr int kSlotBytes = 1200;
+  constexpr int kSlots = 500;
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_LOOKASIDE, nullptr, kSlotBytes,
+                    kSlots);
   sqlite3_busy_handler(handle_, &Connection::OnBusy, this);
   // The first look at the file: opens log and lock files, recovers after a
   // crash. SQLite reports some collisions here without asking the busy handler.

@@ -374,6 +374,21 @@ std::optional<core::Trial> Store::Find(std::string_view id_or_prefix) const {
   return TakeRevision(connection, row).trial;
 }
 
+std::optional<LastLogged> Store::FindLogged(std::string_view campaign,
+                                            std::string_view clip_id) const {
+  Connection& connection = impl_->connection;
+  Transaction snapshot(connection, Transaction::Kind::kRead);
+  Statement row(connection, LastLoggedSql());
+  row.Add(campaign).Add(clip_id);
+  if (!row.Step()) return std::nullopt;
+  LastLogged last;
+  last.trial_id = row.TakeText();
+  last.options_hash = row.TakeText();
+  last.set_angle_rad = row.TakeOptionalReal();
+  last.set_speed_mps = row.TakeOptionalReal();
+  return last;
+}
+
 std::vector<Revision> Store::History(std::string_view id) const {
   Transaction snapshot(impl_->connection, Transaction::Kind::kRead);
   return HistoryOf(impl_->connection, id);

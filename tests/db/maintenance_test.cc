@@ -72,6 +72,18 @@ TEST(AppendOnly, NoOrdinaryStatementChangesOrRemovesEvidence) {
                                " SELECT * FROM " + table),
               "");
   }
+  // Nor by the row's hidden number, nor what evidence leans on.
+  EXPECT_THAT(Tamper(path,
+                     "REPLACE INTO contacts (rowid, revision_id, ordinal, "
+                     "found, not_found_because, from_start, state, "
+                     "state_because, micro_bounce) SELECT 1, revision_id, "
+                     "ordinal + 1, found, '', 0, state, '', 0 FROM contacts"),
+              HasSubstr("append-only"));
+  for (const std::string table : {"clips", "campaigns"}) {
+    EXPECT_THAT(
+        Tamper(path, "REPLACE INTO " + table + " SELECT * FROM " + table),
+        HasSubstr("kept"));
+  }
   EXPECT_THAT(Tamper(path,
                      "UPDATE clips SET sha256 = 'x' WHERE id = 1; "
                      "UPDATE clips SET sha256 = 'y' WHERE id = 1"),
@@ -318,13 +330,13 @@ TEST(Migrate, LeavesACurrentStoreAndRefusesANewerOne) {
   }
   const Migration none = Migrate(path);
   EXPECT_EQ(none.from_version, none.to_version);
-  EXPECT_EQ(Tamper(path, "PRAGMA user_version = 2"), "");
+  EXPECT_EQ(Tamper(path, "PRAGMA user_version = 99"), "");
   for (const auto mode : {OpenMode::kRead, OpenMode::kCreate}) {
     try {
       Store::Open(path, mode);
       ADD_FAILURE() << "opened a newer store";
     } catch (const StoreError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("has version 2"));
+      EXPECT_THAT(error.what(), HasSubstr("has version 99"));
       EXPECT_THAT(error.what(), HasSubstr("use the touchdown that made it"));
     }
   }

@@ -4,17 +4,34 @@
 #include <sqlite3.h>
 
 #include <fstream>
+#include <functional>
 #include <map>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "db/src/schema.h"
 #include "tests/db/fixture.h"
+#include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 
 namespace touchdown::db {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+// Behind the store's back.
+void Tamper(const std::filesystem::path& path, const std::string& sql) {
+  sqlite3* handle = nullptr;
+  sqlite3_open(path.c_str(), &handle);
+  char* error = nullptr;
+  ASSERT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, &error),
+            SQLITE_OK)
+      << error;
+  sqlite3_close(handle);
+}
 
 void Load(const std::filesystem::path& path, const std::string& fixture) {
   std::ifstream in(std::filesystem::path(TOUCHDOWN_SOURCE_DIR) /
@@ -22,13 +39,7 @@ void Load(const std::filesystem::path& path, const std::string& fixture) {
   ASSERT_TRUE(in) << fixture;
   std::stringstream sql;
   sql << in.rdbuf();
-  sqlite3* handle = nullptr;
-  sqlite3_open(path.c_str(), &handle);
-  char* error = nullptr;
-  ASSERT_EQ(sqlite3_exec(handle, sql.str().c_str(), nullptr, nullptr, &error),
-            SQLITE_OK)
-      << error;
-  sqlite3_close(handle);
+  Tamper(path, sql.str());
 }
 
 // Every table, index and trigger with its text.
@@ -48,11 +59,24 @@ std::map<std::string, std::string> SchemaOf(const std::filesystem::path& path) {
   return schema;
 }
 
-TEST(Migrate, ReadsAStoreOfVersion1) {
+class MigrateFrom : public ::testing::TestWithParam<std::int64_t> {};
+
+TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   Folder folder;
   const auto path = folder / "lab.db";
-  Load(path, "v1.sql");
-  Migrate(path);
+  Load(path, "v" + std::to_string(GetParam()) + ".sql");
+  if (GetParam() < kSchemaVersion) {
+    // Nobody writes into an old store by accident, and it says what to do.
+    for (const OpenMode mode : {OpenMode::kRead, OpenMode::kCreate}) {
+      EXPECT_THAT(
+          [&] { Store::Open(path, mode); },
+          ThrowsMessage<core::StoreError>(HasSubstr("touchdown db migrate")));
+    }
+  }
+  const Migration migration = Migrate(path);
+  EXPECT_EQ(migration.from_version, GetParam());
+  EXPECT_EQ(migration.to_version, kSchemaVersion);
+  EXPECT_EQ(Migrate(path).from_version, kSchemaVersion);  // nothing to do
   Store store = Store::Open(path, OpenMode::kWrite);
   EXPECT_THAT(Check(store).problems, IsEmpty());
   const auto trials = store.Trials();
@@ -71,6 +95,47 @@ TEST(Migrate, ReadsAStoreOfVersion1) {
             11.8 * core::kDegree);
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryVersion, MigrateFrom,
+                         ::testing::Range<std::int64_t>(1, kSchemaVersion + 1));
+
+// An upgraded store is like a new one in every table, index and trigger.
+TEST_P(MigrateFrom, EndsWithTodaysSchema) {
+  Folder folder;
+  Load(folder / "old.db", "v" + std::to_string(GetParam()) + ".sql");
+  Migrate(folder / "old.db");
+  OpenFixed(folder / "new.db");
+  EXPECT_EQ(SchemaOf(folder / "old.db"), SchemaOf(folder / "new.db"));
+}
+
+// A step that fails half way leaves the old store.
+TEST(Migrate, ADamagedStoreStaysAsItIs) {
+  Folder folder;
+  const auto path = folder / "lab.db";
+  Load(path, "v1.sql");
+  Tamper(path,
+         "PRAGMA foreign_keys = OFF; DROP TRIGGER trials_refuse_UPDATE; UPDATE "
+         "trials SET campaign_id = 99");
+  const auto before = SchemaOf(path);
+  EXPECT_THAT([&] { Migrate(path); },
+              ThrowsMessage<core::StoreError>(HasSubstr("was not upgraded")));
+  EXPECT_EQ(SchemaOf(path), before);
+  EXPECT_THAT([&] { Store::Open(path, OpenMode::kRead); },
+              ThrowsMessage<core::StoreError>(HasSubstr("has version 1")));
+}
+
+TEST(Migrate, ANewerFileIsRefusedWithWhatToDo) {
+  Folder folder;
+  const auto path = folder / "lab.db";
+  OpenFixed(path);
+  Tamper(path, "PRAGMA user_version = " + std::to_string(kSchemaVersion + 1));
+  for (const auto& act : std::vector<std::function<void()>>{
+           [&] { Migrate(path); }, [&] { Store::Open(path, OpenMode::kRead); },
+           [&] { Store::Open(path, OpenMode::kCreate); }}) {
+    EXPECT_THAT(act, ThrowsMessage<core::StoreError>(
+                         HasSubstr("use the touchdown that made it")));
+  }
 }
 
 // The schema follows from a table of quantities: whoever adds one there must

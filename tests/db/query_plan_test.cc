@@ -99,5 +99,9 @@ TEST_F(QueryPlan, OneTrialIsFoundByItsIndex) {
       HasSubstr("trials_by_campaign_and_clip (<expr>=? AND clip_id=?)"));
 }
 
+TEST_F(QueryPlan, WhatWasLoggedOfAClipIsFoundByItsIndex) {
+  EXPECT_THAT(Of(std::string(LastLoggedSql())), Not(HasSubstr("SCAN")));
+}
+
 }  // namespace
 }  // namespace touchdown::db

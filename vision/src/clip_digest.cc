@@ -164,6 +164,12 @@ std::string ClipId(const std::filesystem::path& path) {
   return sha.Hex();
 }
 
+std::int64_t SizeBytes(const std::filesystem::path& path) {
+  std::int64_t total = 0;
+  for (const auto& file : FilesOf(path)) total += Input(file).size_bytes();
+  return total;
+}
+
 std::string Sha256(const std::filesystem::path& path) {
   const auto files = FilesOf(path);
   Sha whole;

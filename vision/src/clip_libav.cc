@@ -336,8 +336,8 @@ class VideoClip final : public Clip {
     if (info_.time_base.uniform || index_.pts.empty()) {
       return static_cast<double>(index) / info_.time_base.fps;
     }
-    return static_cast<double>(index_.pts[static_cast<std::size_t>(index)] -
-                               index_.pts[0]) *
+    return TicksBetween(index_.pts[0],
+                        index_.pts[static_cast<std::size_t>(index)]) *
            av_q2d(source_.stream->time_base);
   }
 

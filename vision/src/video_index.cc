@@ -23,7 +23,7 @@ bool FitsGrid(const std::vector<std::int64_t>& pts, double fps, double tick_s) {
   const double allowed = std::max(1.0, kRoundingPeriods * period_ticks);
   for (std::size_t i = 0; i < pts.size(); ++i) {
     const double grid = static_cast<double>(i) * period_ticks;
-    if (std::abs(static_cast<double>(pts[i] - pts[0]) - grid) > allowed) {
+    if (std::abs(TicksBetween(pts[0], pts[i]) - grid) > allowed) {
       return false;
     }
   }
@@ -48,7 +48,7 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   }
   if (pts.size() < 2 || pts.back() <= pts.front()) return;
   index.fps = static_cast<double>(pts.size() - 1) /
-              (static_cast<double>(pts.back() - pts.front()) * tick_s);
+              (TicksBetween(pts.front(), pts.back()) * tick_s);
   index.uniform = FitsGrid(pts, index.fps, tick_s);
 }
 
@@ -63,6 +63,7 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
       count != frames) {
     return std::nullopt;
   }
+  const std::int64_t size = format.pb == nullptr ? 0 : avio_size(format.pb);
   VideoIndex index;
   std::int64_t before = 0;
   std::int64_t end = 0;
@@ -72,7 +73,9 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
     const bool sizes = std::string_view(format.iformat->name) != "cine";
     const bool in_order =
         i == 0 || (entry->timestamp > index.pts.back() && entry->pos > before);
-    if (!in_order || (sizes && entry->size <= 0) ||
+    // Positions beyond the end could overflow the sum below.
+    if (!in_order || entry->pos < 0 || entry->pos > size ||
+        (sizes && entry->size <= 0) ||
         (entry->flags & AVINDEX_KEYFRAME) == 0) {
       return std::nullopt;
     }
@@ -81,13 +84,17 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
     index.packets.push_back({entry->timestamp, entry->timestamp, -1, true});
     index.pts.push_back(entry->timestamp);
   }
-  if (format.pb == nullptr || end > avio_size(format.pb)) return std::nullopt;
+  if (end > size) return std::nullopt;
   index.frames = count;
   FindRate(index.pts, stream, declared, index);
   return index;
 }
 
 }  // namespace
+
+double TicksBetween(std::int64_t begin, std::int64_t end) {
+  return static_cast<double>(end) - static_cast<double>(begin);
+}
 
 VideoPacket Describe(const AVPacket& packet) {
   return {packet.pts, packet.dts, packet.pos,

@@ -27,6 +27,11 @@ struct VideoPacket {
            (pts != AV_NOPTS_VALUE || pos >= 0);
   }
 };
+
+// From one time of a container to another; damaged files name times whose
+// difference does not fit an integer.
+double TicksBetween(std::int64_t begin, std::int64_t end);
+
 VideoPacket Describe(const AVPacket& packet);
 
 struct VideoIndex {

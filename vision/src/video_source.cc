@@ -62,6 +62,8 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
   context->pkt_timebase = stream.time_base;
   context->thread_count = threads;
   context->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
+  // Beyond any camera; a damaged header cannot make the decoder ask for more.
+  context->max_pixels = std::int64_t{1} << 28;
   // A frame with errors is an error, not something the decoder makes up.
   context->err_recognition |= AV_EF_CRCCHECK | AV_EF_EXPLODE;
   if (const int opened = avcodec_open2(context.get(), codec, nullptr);

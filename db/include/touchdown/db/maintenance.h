@@ -18,7 +18,9 @@ namespace touchdown::db {
 
 // --- check -------------------------------------------------------------------
 
-// SHA-256 of a file in lower-case hexadecimal; nothing if it cannot be read.
+// SHA-256 of a clip in lower-case hexadecimal, as core::ClipIdentity has it;
+// nothing if it cannot be read. This module opens no clips: the caller brings
+// it.
 using DigestOf =
     std::function<std::optional<std::string>(const std::filesystem::path&)>;
 
@@ -26,9 +28,11 @@ struct CheckReport {
   // One line each, empty if the store is sound: pages and indexes, foreign
   // keys, the chain of revisions of every trial, contacts that are missing.
   std::vector<std::string> problems;
-  // Clips whose file is gone, or is another than the one that was analysed.
-  // Not a fault of the store.
+  // Where clips were last seen and are no more: gone, or another recording that
+  // the store knows has the name now. No damage.
   std::vector<std::string> clips_missing;
+  // Files whose bytes are no longer those of the clip that was analysed: not a
+  // fault of the store, but of the evidence.
   std::vector<std::string> clips_changed;
   std::int64_t campaigns = 0;
   std::int64_t trials = 0;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "touchdown/core/campaign.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/core/words.h"
 
@@ -71,6 +72,22 @@ class TrialRefused : public std::invalid_argument {
 
  private:
   std::size_t index_;
+};
+
+// What a store takes: throws std::invalid_argument naming the field if a number
+// is NaN, a u is negative, an interval is upside down, the clip has a path but
+// no id, or a convention is impossible. The store asks itself; this is for
+// those who want to know before they make one.
+void RequireStorable(const core::Trial& trial);
+void RequireStorable(const core::Campaign& campaign);
+
+// What was last logged of a clip: whoever would log the same needs not. Later
+// corrections and exclusions by people do not count.
+struct LastLogged {
+  std::string trial_id;
+  std::string options_hash;
+  std::optional<double> set_angle_rad;
+  std::optional<double> set_speed_mps;
 };
 
 // What became of a trial that was logged.

@@ -95,6 +95,10 @@ class Store {
   // One trial by its id or by the beginning of it (at least 4 characters);
   // nothing if there is none, StoreError naming the candidates if several.
   std::optional<core::Trial> Find(std::string_view id_or_prefix) const;
+  // Of the trial that a campaign ("": none) has of a clip (core::ClipIdentity,
+  // its id); nothing where it has none.
+  std::optional<LastLogged> FindLogged(std::string_view campaign,
+                                       std::string_view clip_id) const;
   // Every revision of a trial, oldest first; empty if there is no such id.
   std::vector<Revision> History(std::string_view id) const;
   // Calls `visit` with the history of every trial, oldest trial first, from one

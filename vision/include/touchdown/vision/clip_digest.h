@@ -1,10 +1,11 @@
 // What tells one recording from another.
 //
-// Both digests speak of the clip's files in this order: a video file alone; of
+// All speak of the clip's files in this order: a video file alone; of
 // a Photron recording the header, then the .mraw, whichever of the two was
 // given; of a folder the images that OpenClip would read, in its order.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -34,5 +35,8 @@ std::string ClipId(const std::filesystem::path& path);
 // Takes as long as reading all bytes.
 // Throws core::InputError naming the file if it cannot be read.
 std::string Sha256(const std::filesystem::path& path);
+
+// Size of all its files together. Throws core::InputError like the above.
+std::int64_t SizeBytes(const std::filesystem::path& path);
 
 }  // namespace touchdown::vision

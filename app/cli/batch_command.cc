@@ -1,0 +1,289 @@
+// batch: a folder of recordings, or a manifest, into the trial store.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/analyze_flags.h"
+#include "app/cli/command.h"
+#include "app/cli/folder_watch.h"
+#include "app/cli/progress.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/pipeline/batch.h"
+#include "app/pipeline/log_analysis.h"
+#include "app/pipeline/recordings.h"
+#include "app/report/text_file.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using pipeline::TriageEntry;
+
+struct Flags {
+  std::string source;
+  std::string db;
+  std::string campaign;
+  std::string campaign_from;
+  AnalyzeFlags analyze;
+  int jobs = 0;
+  std::string shard;
+  bool again = false;
+  bool watch = false;
+  std::string out;
+  bool json = false;
+  bool columns = false;
+};
+
+// Set by SIGINT and SIGTERM: the watch ends after what is being analysed.
+volatile std::sig_atomic_t interrupted = 0;
+
+void OnSignal(int /*signal*/) { interrupted = 1; }
+
+void CatchSignals() {
+  struct sigaction action = {};
+  action.sa_handler = OnSignal;  // without SA_RESTART: waiting ends
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int PrintColumns() {
+  std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
+  for (const auto& column : pipeline::ManifestColumns()) {
+    rows.push_back({std::string(column.name), std::string(column.meaning)});
+  }
+  fmt::print("{}", Aligned(rows));
+  return 0;
+}
+
+db::Store OpenStore(const Flags& flags) {
+  if (flags.campaign_from.empty()) {
+    return db::Store::Open(flags.db, flags.campaign.empty()
+                                         ? db::OpenMode::kCreate
+                                         : db::OpenMode::kWrite);
+  }
+  if (flags.campaign.empty()) {
+    throw std::invalid_argument(
+        "--campaign is missing; --campaign-from needs the campaign's name");
+  }
+  const core::Campaign campaign = pipeline::RequireCampaign(
+      db::Store::Open(flags.campaign_from, db::OpenMode::kRead),
+      flags.campaign);
+  auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  if (!store.FindCampaign(campaign.name)) store.AddCampaign(campaign);
+  return store;
+}
+
+std::string StateText(const TriageEntry& entry) {
+  if (!entry.state) return "-";
+  std::string text(core::Name(*entry.state));
+  if (*entry.state == core::MotionState::kUndecided && entry.p_bounce) {
+    text += fmt::format(", P(bounce) {:.3f}", *entry.p_bounce);
+  }
+  return text;
+}
+
+std::string AngleText(const TriageEntry& entry) {
+  return entry.angle_rad ? fmt::format("{} {}", core::Name(*entry.angle_kind),
+                                       WithU(entry.angle_rad, core::kDegree))
+                         : std::string("-");
+}
+
+// What a person should look at, and the sum of it all.
+void PrintTriage(const std::vector<TriageEntry>& entries) {
+  std::vector<std::vector<std::string>> rows = {
+      {"look at", "recording", "state", "angle, deg", "because"}};
+  for (const TriageEntry& entry : entries) {
+    if (entry.attention == pipeline::Attention::kNone) continue;
+    rows.push_back({std::string(pipeline::Name(entry.attention)),
+                    Printable(entry.clip), StateText(entry), AngleText(entry),
+                    Printable(entry.reason)});
+  }
+  if (rows.size() > 1) fmt::print("{}", Aligned(rows));
+  const pipeline::TriageCounts counts = pipeline::Count(entries);
+  fmt::print(
+      "{} recordings: {} logged, {} known already, {} copies, {} failed; {} to "
+      "look at\n",
+      entries.size(), counts.logged, counts.known, counts.copies, counts.failed,
+      counts.to_look_at);
+}
+
+int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
+  pipeline::SortByNeed(entries);
+  if (!flags.out.empty()) {
+    std::error_code trouble;  // writing says what is wrong
+    fs::create_directories(flags.out, trouble);
+    report::WriteTextFile(fs::path(flags.out) / "triage.csv",
+                          pipeline::TriageCsv(entries));
+  }
+  if (flags.json) {
+    fmt::print("{}\n", pipeline::TriageJson(entries));
+  } else {
+    PrintTriage(entries);
+  }
+  const std::size_t failed = pipeline::Count(entries).failed;
+  if (failed == 0) return 0;
+  fmt::print(
+      stderr,
+      "touchdown: {} of {} recordings failed; the list says why, and the "
+      "same command tries them again\n",
+      failed, entries.size());
+  return 5;
+}
+
+pipeline::BatchOptions OptionsOf(const Flags& flags, ProgressBar& bar) {
+  pipeline::BatchOptions options;
+  options.jobs = flags.jobs;
+  options.again = flags.again;
+  options.evidence = flags.out;
+  options.progress = [&bar](const pipeline::BatchProgress& progress) {
+    bar.Show(progress.share, progress.seconds_left,
+             fmt::format("{} of {}, {} failed, ", progress.done, progress.all,
+                         progress.failed));
+  };
+  options.stop = [] { return interrupted != 0; };
+  return options;
+}
+
+// Takes what comes until SIGINT or SIGTERM.
+int WatchFolder(const Flags& flags, const pipeline::AnalyzeOptions& analyze) {
+  auto store = OpenStore(flags);
+  CatchSignals();
+  std::vector<TriageEntry> all;
+  const auto take = [&](const std::vector<fs::path>& complete) {
+    ProgressBar bar("batch");
+    const auto entries = pipeline::RunBatch(
+        store,
+        pipeline::ClipsOf(complete, flags.source, flags.campaign, analyze),
+        OptionsOf(flags, bar));
+    bar.Finish();
+    for (const TriageEntry& entry : entries) {
+      if (!flags.json) {
+        fmt::print("{}  {}  {}  {}\n", Printable(entry.clip), StateText(entry),
+                   AngleText(entry), Printable(entry.reason));
+        std::fflush(stdout);
+      }
+      // One that had been taken too early is taken again.
+      std::erase_if(all,
+                    [&](const auto& one) { return one.clip == entry.clip; });
+      all.push_back(entry);
+    }
+  };
+  FolderWatch changes(flags.source);
+  pipeline::WatchOptions options;
+  options.now = [] { return std::chrono::steady_clock::now(); };
+  options.wait = [&](bool growing) {
+    // Of a network drive nothing is heard: look now and then.
+    constexpr std::chrono::milliseconds kNowAndThen{10000};
+    if (interrupted == 0) {
+      changes.Wait(growing ? pipeline::Settling::kQuiet : kNowAndThen);
+    }
+    return interrupted == 0;
+  };
+  pipeline::Watch(flags.source, options, take);
+  return Finish(std::move(all), flags);
+}
+
+std::vector<pipeline::BatchClip> ListClips(
+    const Flags& flags, const pipeline::AnalyzeOptions& analyze) {
+  if (!fs::is_directory(flags.source)) {
+    return pipeline::ClipsOf(pipeline::ReadManifest(flags.source),
+                             flags.campaign, analyze);
+  }
+  const auto recordings = pipeline::FindRecordings(flags.source);
+  if (recordings.empty()) {
+    throw core::InputError(fmt::format(
+        "{}: no recording in this folder; videos, .mraw or folders of images "
+        "were expected",
+        flags.source));
+  }
+  return pipeline::ClipsOf(recordings, flags.source, flags.campaign, analyze);
+}
+
+int Run(const Flags& flags) {
+  if (flags.columns) return PrintColumns();
+  if (flags.source.empty()) {
+    throw std::invalid_argument(
+        "FOLDER is missing, must be a folder of recordings or a manifest.csv");
+  }
+  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  constexpr int kMaxJobs = 1024;
+  if (flags.jobs < 0 || flags.jobs > kMaxJobs) {
+    throw std::invalid_argument(
+        fmt::format("--jobs is {}, must be 1 to {}, or 0 for one on each core",
+                    flags.jobs, kMaxJobs));
+  }
+  const pipeline::AnalyzeOptions analyze = ToOptions(flags.analyze);
+  if (flags.watch) {
+    if (!fs::is_directory(flags.source) || !flags.shard.empty()) {
+      throw std::invalid_argument(
+          "--watch needs a folder, and goes without --shard");
+    }
+    return WatchFolder(flags, analyze);
+  }
+  auto clips = ListClips(flags, analyze);
+  if (!flags.shard.empty()) {
+    clips = pipeline::ShardOf(std::move(clips),
+                              pipeline::ParseShard("--shard", flags.shard));
+  }
+  auto store = OpenStore(flags);
+  ProgressBar bar("batch");
+  auto entries = pipeline::RunBatch(store, clips, OptionsOf(flags, bar));
+  bar.Finish();
+  return Finish(std::move(entries), flags);
+}
+
+}  // namespace
+
+void AddBatch(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = app.add_subcommand(
+      "batch",
+      "analyse and log many recordings; can be killed and started again");
+  command->add_option("FOLDER", flags->source,
+                      "a folder of recordings (looked through with all below "
+                      "it), or a manifest.csv that lists them with their "
+                      "set-points");
+  command->add_option("--db", flags->db,
+                      "the trial store; what it knows is not analysed again");
+  command->add_option("--campaign", flags->campaign,
+                      "the campaign of the trials; body, sizes, angle kind and "
+                      "bounce height are then the campaign's where not given");
+  command->add_option("--campaign-from", flags->campaign_from,
+                      "another store that has the campaign: its conventions "
+                      "are copied where --db lacks it");
+  command
+      ->add_option("--jobs", flags->jobs,
+                   "analyses at a time; 0: one on each core")
+      ->capture_default_str();
+  command->add_option("--shard", flags->shard,
+                      "only part k of n, as 2/8; use one --db a part, then "
+                      "`db merge`");
+  command->add_flag("--again", flags->again,
+                    "analyse also what is known: a further revision of each");
+  command->add_flag("--watch", flags->watch,
+                    "go on with new recordings of the folder, each when it has "
+                    "stopped growing; ends with Ctrl-C");
+  command->add_option("--out", flags->out,
+                      "write triage.csv, and each recording's evidence in a "
+                      "folder of its name");
+  command->add_flag("--json", flags->json, "one JSON document on stdout");
+  command->add_flag("--columns", flags->columns,
+                    "print the columns of a manifest");
+  AddAnalyzeFlags(*command, flags->analyze);
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,54 @@
+#include "app/cli/folder_watch.h"
+
+#include <poll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+namespace touchdown::cli {
+
+namespace fs = std::filesystem;
+
+FolderWatch::FolderWatch(fs::path folder)
+    : folder_(std::move(folder)),
+      inotify_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+  AddFolders();
+}
+
+FolderWatch::~FolderWatch() {
+  if (inotify_ >= 0) close(inotify_);
+}
+
+// New folders are found at the next wait; a folder that is watched already
+// stays as it is.
+void FolderWatch::AddFolders() {
+  if (inotify_ < 0) return;
+  constexpr std::uint32_t kEvents = IN_CREATE | IN_MODIFY | IN_CLOSE_WRITE |
+                                    IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE;
+  inotify_add_watch(inotify_, folder_.c_str(), kEvents);
+  std::error_code trouble;
+  fs::recursive_directory_iterator entry(
+      folder_, fs::directory_options::skip_permission_denied, trouble);
+  for (; !trouble && entry != fs::recursive_directory_iterator();
+       entry.increment(trouble)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) {
+      inotify_add_watch(inotify_, entry->path().c_str(), kEvents);
+    }
+  }
+}
+
+void FolderWatch::Wait(std::chrono::milliseconds longest) {
+  AddFolders();
+  pollfd events{inotify_, POLLIN, 0};  // a negative descriptor is passed over
+  poll(&events, 1, static_cast<int>(longest.count()));
+  if (inotify_ < 0) return;
+  std::array<char, 4096> told{};
+  while (read(inotify_, told.data(), told.size()) > 0) {
+  }
+}
+
+}  // namespace touchdown::cli

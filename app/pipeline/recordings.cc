@@ -1,0 +1,146 @@
+#include "app/pipeline/recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "touchdown/core/errors.h"
+#include "touchdown/vision/image_file.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Extensions of containers that vision/clip.h reads.
+constexpr std::array<std::string_view, 19> kVideos = {
+    ".avi",  ".mov", ".mp4", ".m4v",  ".3gp", ".mkv", ".webm",
+    ".cine", ".ts",  ".mpg", ".mpeg", ".asf", ".wmv", ".flv",
+    ".ogv",  ".nut", ".y4m", ".mxf",  ".dv"};
+
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+bool IsRecordingFile(const fs::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".mraw" ||
+         std::find(kVideos.begin(), kVideos.end(), extension) != kVideos.end();
+}
+
+bool IsHidden(const fs::path& path) {
+  return path.filename().string().starts_with('.');
+}
+
+void Collect(const fs::path& folder, std::vector<fs::path>& recordings) {
+  std::error_code trouble;
+  std::vector<fs::path> folders;
+  std::vector<fs::path> files;
+  bool images = false;
+  fs::directory_iterator entry(folder, trouble);
+  for (; !trouble && entry != fs::directory_iterator();
+       entry.increment(trouble)) {
+    const fs::path& path = entry->path();
+    std::error_code ignored;
+    if (IsHidden(path)) continue;
+    if (path.filename() == "analysis.json") return;  // evidence
+    if (entry->is_directory(ignored)) {
+      if (!entry->is_symlink(ignored)) folders.push_back(path);
+    } else if (entry->is_regular_file(ignored)) {
+      if (IsRecordingFile(path)) files.push_back(path);
+      images = images || vision::IsImageName(path);
+    }
+  }
+  if (trouble) {
+    throw core::InputError(
+        fmt::format("{}: {}", folder.string(), trouble.message()));
+  }
+  // Pictures beside a video are somebody's notes; alone they are a recording.
+  if (images && files.empty()) recordings.push_back(folder);
+  recordings.insert(recordings.end(), files.begin(), files.end());
+  for (const fs::path& below : folders) Collect(below, recordings);
+}
+
+void AddFile(const fs::path& file, Extent& extent) {
+  std::error_code trouble;
+  const std::uintmax_t bytes = fs::file_size(file, trouble);
+  if (trouble) return;
+  const auto written = fs::last_write_time(file, trouble);
+  if (trouble) return;
+  ++extent.files;
+  extent.bytes += bytes;
+  extent.written = std::max(extent.written, written);
+}
+
+}  // namespace
+
+std::vector<fs::path> FindRecordings(const fs::path& folder) {
+  std::vector<fs::path> recordings;
+  Collect(folder, recordings);
+  std::sort(recordings.begin(), recordings.end());
+  return recordings;
+}
+
+Extent ExtentOf(const fs::path& recording) {
+  Extent extent;
+  std::error_code trouble;
+  if (fs::is_directory(recording, trouble)) {
+    fs::directory_iterator entry(recording, trouble);
+    for (; !trouble && entry != fs::directory_iterator();
+         entry.increment(trouble)) {
+      if (vision::IsImageName(entry->path())) AddFile(entry->path(), extent);
+    }
+    return extent;
+  }
+  AddFile(recording, extent);
+  if (LowerExtension(recording) == ".mraw") {
+    for (const char* header : {".cih", ".cihx", ".CIH", ".CIHX"}) {
+      fs::path beside = recording;
+      AddFile(beside.replace_extension(header), extent);
+    }
+  }
+  return extent;
+}
+
+std::vector<fs::path> Settling::Look(const Extents& there, Instant now) {
+  std::vector<fs::path> complete;
+  waiting_ = false;
+  std::erase_if(seen_,
+                [&](const auto& one) { return !there.contains(one.first); });
+  for (const auto& [path, extent] : there) {
+    auto [at, is_new] = seen_.try_emplace(path, Seen{extent, now, false});
+    Seen& seen = at->second;
+    if (!is_new && seen.extent != extent) seen = {extent, now, false};
+    if (seen.told) continue;
+    if (now - seen.since >= quiet_) {
+      seen.told = true;
+      complete.push_back(path);
+    } else {
+      waiting_ = true;
+    }
+  }
+  return complete;
+}
+
+void Watch(const fs::path& folder, const WatchOptions& options,
+           const std::function<void(const std::vector<fs::path>&)>& take) {
+  Settling settling(options.quiet);
+  do {
+    Settling::Extents there;
+    for (const fs::path& recording : FindRecordings(folder)) {
+      there.emplace(recording, ExtentOf(recording));
+    }
+    const auto complete = settling.Look(there, options.now());
+    if (!complete.empty()) take(complete);
+  } while (options.wait(settling.waiting()));
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,80 @@
+// Which recordings lie in a folder, and which of them are complete.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace touchdown::pipeline {
+
+// Every recording in `folder` and below it, in the order of their paths: videos
+// by their extension, .mraw files, folders of images. Left out are hidden files
+// and folders, symbolic links to folders, and folders of evidence (they hold an
+// analysis.json). Throws core::InputError if the folder cannot be read.
+std::vector<std::filesystem::path> FindRecordings(
+    const std::filesystem::path& folder);
+
+// How large a recording is (all its files together) and when it was last
+// written to.
+struct Extent {
+  std::int64_t files = 0;
+  std::uintmax_t bytes = 0;
+  std::filesystem::file_time_type written{};
+
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+// Of a recording that may be growing, or vanish, at this moment: what cannot be
+// seen counts nothing.
+Extent ExtentOf(const std::filesystem::path& recording);
+
+// Tells when recordings have stopped growing: a recording is complete when its
+// extent has stayed the same for `quiet`. One that changes after it was told is
+// told again.
+class Settling {
+ public:
+  using Instant = std::chrono::steady_clock::time_point;
+  using Extents = std::map<std::filesystem::path, Extent>;
+
+  // The default: cameras and copying programs write at least once a second; a
+  // recording taken too early is refused or cut short, and is taken again when
+  // it has grown, so that a short wait costs an analysis and no answer.
+  static constexpr std::chrono::milliseconds kQuiet{2000};
+
+  explicit Settling(std::chrono::milliseconds quiet = kQuiet) : quiet_(quiet) {}
+
+  // What is there at the instant `now`; returns what has become complete.
+  std::vector<std::filesystem::path> Look(const Extents& there, Instant now);
+
+  // Whether anything is still waited for.
+  bool waiting() const { return waiting_; }
+
+ private:
+  struct Seen {
+    Extent extent;
+    Instant since;
+    bool told = false;
+  };
+  std::chrono::milliseconds quiet_;
+  std::map<std::filesystem::path, Seen> seen_;
+  bool waiting_ = false;
+};
+
+// Takes every recording of `folder` once it is complete, until `wait` says that
+// it is enough. `take` gets them in the order of their paths, never none.
+// Throws core::InputError if the folder cannot be read.
+struct WatchOptions {
+  std::chrono::milliseconds quiet = Settling::kQuiet;
+  std::function<Settling::Instant()> now;
+  // Waits until something may have changed; `growing`: at least one recording
+  // was not complete when it was looked at. False: end.
+  std::function<bool(bool growing)> wait;
+};
+void Watch(
+    const std::filesystem::path& folder, const WatchOptions& options,
+    const std::function<void(const std::vector<std::filesystem::path>&)>& take);
+
+}  // namespace touchdown::pipeline
