@@ -78,7 +78,7 @@ Blows FindBlows(const PlaneTrack& track, const KinkOptions& kink_options) {
     const double gap = std::min(a.gap_px, b.gap_px);
     if (gap > near + dip || gap < -near - dip) {
       constexpr double kClear = 15.0;
-      if (kink.significance > kClear && blows.refuted.empty()) {
+      if (kink.significance > kClear && !kink.of_gap && blows.refuted.empty()) {
         blows.refuted = fmt::format(
             "the body rebounds {:.1f} px {} the ground line at frame {}",
             std::abs(gap), gap > 0 ? "above" : "below", a.frame);

@@ -159,6 +159,7 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
     kink.after = k;
     kink.jump = sides.jump;
     kink.significance = significance;
+    kink.of_gap = value == &PlaneSample::gap_px;
     kink.time_s =
         std::clamp(sides.meet_s, left.front().time_s, right.back().time_s);
     candidates.push_back(kink);

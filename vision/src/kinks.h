@@ -16,6 +16,9 @@ struct Kink {
   double jump = 0.0;          // upward change of normal velocity, px/s
   double significance = 0.0;  // jump over its standard uncertainty
   double time_s = 0.0;        // where the two sides meet
+  // Seen in the gap alone: of a block that turns it is no parabola, so that
+  // only near the ground such a jump means a blow.
+  bool of_gap = false;
 };
 
 struct KinkOptions {
