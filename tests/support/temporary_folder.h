@@ -1,11 +1,11 @@
 // A folder of its own for one test, removed with all that is in it.
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
+#include <stdlib.h>  // mkdtemp
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -14,14 +14,12 @@ namespace touchdown::testing {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const auto* const test =
-        ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = "touchdown." + std::to_string(::getpid()) + "." +
-                       test->test_suite_name() + "." + test->name();
-    for (char& c : name) c = c == '/' ? '_' : c;  // of parametrised tests
-    path_ = std::filesystem::temp_directory_path() / name;
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
+    std::string name =
+        (std::filesystem::temp_directory_path() / "touchdown-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("no folder for the test: " + name);
+    }
+    path_ = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;
