@@ -43,7 +43,7 @@ class Straightened final : public vision::Clip {
         const double level =
             LevelAt(frame, calib::Distort(lens_, {static_cast<double>(x),
                                                   static_cast<double>(y)}));
-        const auto sample = static_cast<std::uint16_t>(level + 0.5);
+        const auto sample = static_cast<std::uint16_t>(std::lround(level));
         if (bytes == 2) {
           reinterpret_cast<std::uint16_t*>(samples_.data())[i] = sample;
         } else {
