@@ -75,8 +75,7 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
         i == 0 || (entry->timestamp > index.pts.back() && entry->pos > before);
     // Positions beyond the end could overflow the sum below.
     if (!in_order || entry->pos < 0 || entry->pos > size ||
-        (sizes && entry->size <= 0) ||
-        (entry->flags & AVINDEX_KEYFRAME) == 0) {
+        (sizes && entry->size <= 0) || (entry->flags & AVINDEX_KEYFRAME) == 0) {
       return std::nullopt;
     }
     end = entry->pos + (sizes ? entry->size : entry->pos - before);
