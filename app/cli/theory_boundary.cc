@@ -34,7 +34,7 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
     if (!given) out.emplace_back(flag);
   };
   const CornerFlags& f = flags.corner;
-  const BoundaryFlags& b = flags.boundary;
+  const TheoryBoundaryFlags& b = flags.boundary;
   const bool spins = f.omega_rad_per_s.value_or(0.0) != 0.0;
   switch (model) {
     case BoundaryModel::kPublished:
@@ -64,7 +64,7 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
 
 BoundaryInputs InputsOf(const TheoryFlags& flags, bool sphere) {
   const CornerFlags& f = flags.corner;
-  const BoundaryFlags& b = flags.boundary;
+  const TheoryBoundaryFlags& b = flags.boundary;
   BoundaryInputs in;
   in.body = sphere ? core::BodyKind::kSphere : core::BodyKind::kRectangle;
   in.slip = f.corner == "leading" ? analysis::Slip::kLeading

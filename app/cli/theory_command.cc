@@ -118,7 +118,7 @@ void AddBoundaryCommand(CLI::App& theory, const Flags& flags, Action& action) {
   auto* command = theory.add_subcommand(
       "boundary", "the boundary angle by each model, with its assumptions");
   CornerFlags& f = flags->corner;
-  BoundaryFlags& b = flags->boundary;
+  TheoryBoundaryFlags& b = flags->boundary;
   command
       ->add_option("--model", b.model, "one model (default: all side by side)")
       ->check(CLI::IsMember({"published", "printed-equations", "corrected-lcp",

@@ -45,7 +45,7 @@ struct FlatFlags {
   std::optional<double> height_m;
 };
 
-struct BoundaryFlags {
+struct TheoryBoundaryFlags {
   std::string model;  // empty: all
   std::optional<double> restitution;
   std::optional<double> speed_mps;
@@ -80,7 +80,7 @@ struct TheoryFlags {
   CornerFlags corner;
   ImpactFlags impact;
   FlatFlags flat;
-  BoundaryFlags boundary;
+  TheoryBoundaryFlags boundary;
   LcpFlags lcp;
   MapFlags map;
 };

@@ -39,18 +39,18 @@ std::string Hint(const std::string& unknown) {
   return "; see `touchdown import --columns`";
 }
 
-std::vector<const Column*> ReadHeader(std::istream& in,
-                                      const std::string& name) {
+std::vector<const TrialColumn*> ReadHeader(std::istream& in,
+                                           const std::string& name) {
   SkipByteOrderMark(in);
   const auto header = ReadCsvRecord(in, name, 1);
   if (!header) {
     throw core::InputError(
         fmt::format("{}: the file is empty; a header row was expected", name));
   }
-  std::vector<const Column*> columns;
+  std::vector<const TrialColumn*> columns;
   std::set<std::string> seen;
   for (const auto& cell : *header) {
-    const Column* column = FindColumn(cell);
+    const TrialColumn* column = FindColumn(cell);
     if (column == nullptr) {
       throw core::InputError(fmt::format("{}: row 1: there is no column '{}'{}",
                                          name, cell, Hint(cell)));
@@ -113,9 +113,10 @@ void WriteTrialsCsv(std::ostream& out, std::span<const Trial> trials) {
 CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
                         const std::string& author) {
   const auto columns = ReadHeader(in, name);
-  const bool has_angle_kind = std::ranges::any_of(
-      columns,
-      [](const Column* column) { return column->about.name == "angle_kind"; });
+  const bool has_angle_kind =
+      std::ranges::any_of(columns, [](const TrialColumn* column) {
+        return column->about.name == "angle_kind";
+      });
   CsvTrials result;
   std::size_t row = 1;
   while (const auto cells = ReadCsvRecord(in, name, ++row)) {

@@ -115,15 +115,15 @@ class Columns {
          true});
   }
 
-  void Add(Column column) { columns_.push_back(std::move(column)); }
-  std::vector<Column> Done() { return std::move(columns_); }
+  void Add(TrialColumn column) { columns_.push_back(std::move(column)); }
+  std::vector<TrialColumn> Done() { return std::move(columns_); }
 
  private:
-  std::vector<Column> columns_;
+  std::vector<TrialColumn> columns_;
 };
 
-Column OptionalNumber(std::string name, std::string meaning, double factor,
-                      std::optional<double>& (*at)(Trial&)) {
+TrialColumn OptionalNumber(std::string name, std::string meaning, double factor,
+                           std::optional<double>& (*at)(Trial&)) {
   return {{std::move(name), std::move(meaning)},
           [at, factor](const Trial& t) {
             const auto& value = at(const_cast<Trial&>(t));
@@ -134,7 +134,7 @@ Column OptionalNumber(std::string name, std::string meaning, double factor,
           }};
 }
 
-Column Flag(std::string name, std::string meaning, bool& (*at)(Trial&)) {
+TrialColumn Flag(std::string name, std::string meaning, bool& (*at)(Trial&)) {
   return {{std::move(name), std::move(meaning) + ": yes or no"},
           [at](const Trial& t) {
             return std::string(at(const_cast<Trial&>(t)) ? "yes" : "no");
@@ -142,7 +142,7 @@ Column Flag(std::string name, std::string meaning, bool& (*at)(Trial&)) {
           [at](Trial& t, const std::string& cell) { at(t) = ToFlag(cell); }};
 }
 
-std::vector<Column> MakeColumns() {
+std::vector<TrialColumn> MakeColumns() {
   Columns c;
   const auto ignore = [](Trial&, const std::string&) {};
   c.Text("id", "UUID; empty: a new trial",
@@ -266,12 +266,12 @@ core::Measured& ContactMeasured(Trial& trial, std::size_t i) {
   return db::At(trial.first, db::kContactQuantities.at(i));
 }
 
-const std::vector<Column>& AllColumns() {
-  static const std::vector<Column> columns = MakeColumns();
+const std::vector<TrialColumn>& AllColumns() {
+  static const std::vector<TrialColumn> columns = MakeColumns();
   return columns;
 }
 
-const Column* FindColumn(std::string_view name) {
+const TrialColumn* FindColumn(std::string_view name) {
   for (const auto& column : AllColumns()) {
     if (column.about.name == name) return &column;
   }

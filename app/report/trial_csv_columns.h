@@ -14,7 +14,7 @@ namespace touchdown::report {
 
 // A column: how a cell is written, and how it is read. Reading throws
 // std::invalid_argument, saying what was expected.
-struct Column {
+struct TrialColumn {
   CsvColumn about;
   std::function<std::string(const core::Trial&)> write;
   std::function<void(core::Trial&, const std::string&)> read;
@@ -34,9 +34,9 @@ EdgeUnit AtTheEdge(std::string_view inner);
 core::Measured& BodyMeasured(core::Trial& trial, std::size_t i);
 core::Measured& ContactMeasured(core::Trial& trial, std::size_t i);
 
-const std::vector<Column>& AllColumns();
+const std::vector<TrialColumn>& AllColumns();
 
 // Nothing where there is no column of that name.
-const Column* FindColumn(std::string_view name);
+const TrialColumn* FindColumn(std::string_view name);
 
 }  // namespace touchdown::report
