@@ -295,7 +295,7 @@ void Analyzer::DescribeScene() {
     scene.used.push_back(
         fmt::format("flicker of {:.1f} % taken out", 100.0 * *light_spread_));
   } else {
-    scene.left_out["flicker"] = "the light is steady to 0.2 %";
+    scene.left_out["flicker"] = "the light is steady to 1 %";
   }
   if (result_.plane) {
     scene.used.push_back(result_.scale ? "free flight with known gravity"

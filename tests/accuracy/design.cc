@@ -140,16 +140,19 @@ void DrawTrouble(Case& c, Drawer& draw) {
       trouble.speck_seed = c.seed;
       break;
     case Hardship::kObstacle: {
-      // Half as wide as the body, on the first half of its way.
+      // From the picture's border to where the body is clear of it at half of
+      // its way.
       const vision::SceneCamera& camera = c.film.camera;
-      const double back = draw.Uniform(0.4, 0.9) * l.frames_before *
-                          l.speed_px * std::cos(l.angle_deg * core::kDegree);
+      const double clear =
+          0.5 * l.size_px + 0.5 * l.frames_before * l.speed_px *
+                                std::cos(l.angle_deg * core::kDegree);
       const double x =
-          camera.ground_point.x_px + (camera.travels_left ? back : -back);
+          camera.ground_point.x_px + (camera.travels_left ? clear : -clear);
       core::PixelRect& obstacle = trouble.obstacle.emplace();
-      obstacle.width = static_cast<std::int32_t>(std::ceil(0.5 * l.size_px));
-      obstacle.x =
-          static_cast<std::int32_t>(std::lround(x)) - obstacle.width / 2;
+      const auto edge = static_cast<std::int32_t>(std::lround(x));
+      obstacle.x = camera.travels_left ? edge : -100;
+      obstacle.width =
+          camera.travels_left ? camera.width_px + 100 - edge : edge + 100;
       obstacle.height = camera.height_px;
       trouble.obstacle_level = 0.5 * c.film.look.background_level;
       break;

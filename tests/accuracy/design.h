@@ -28,7 +28,7 @@ enum class Hardship {
   kFlicker,       // mains: 10 %
   kWavy,          // the ground's edge goes up and down by 1 px
   kSpecks,        // five specks fly about
-  kObstacle,      // it flies behind something on its way
+  kObstacle,      // it comes out from behind something
 };
 const char* Name(Hardship hardship);
 inline constexpr Hardship kHardships[] = {

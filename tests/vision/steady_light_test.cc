@@ -55,7 +55,7 @@ double SpreadOfCorner(Clip& clip) {
 // A sine's standard deviation is its amplitude over sqrt(2).
 TEST(SteadyLight, FlickerIsTakenOut) {
   for (const std::int32_t bits : {8, 12}) {
-    for (const double amplitude : {0.01, 0.1, 0.3}) {
+    for (const double amplitude : {0.03, 0.1, 0.3}) {
       SCOPED_TRACE(amplitude);
       const Film film = Flickering(amplitude, bits);
       auto raw = Open(film);

@@ -23,14 +23,10 @@ namespace {
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
 constexpr int kMaxParameters = 5 + 2 + 6 + 6;
+constexpr double kTukey = 4.685;  // 95 % efficient
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
-
-void Polynomial(double xi, double eta, int terms, double* f) {
-  const double all[6] = {1.0, xi, eta, xi * xi, xi * eta, eta * eta};
-  std::copy(all, all + terms, f);
-}
 
 class Fitter {
  public:
@@ -56,6 +52,8 @@ class Fitter {
  private:
   void CollectPixels();
   std::string Gather();
+  std::string Iterate(int& iterations);
+  bool SetAsideUnexplained();
   Coverage CoverageAt(const OutlinePixel& p) const {
     return smear_.At(outline_, p.x, p.y, cosine_, sine_);
   }
@@ -79,6 +77,7 @@ class Fitter {
     }
   }
   double Accumulate(bool robust);
+  Matrix Regular() const;
   bool Step(double& geometric_step);
   int OpenAt() const { return geometry_ + 1; }
   int LevelsBegin() const { return geometry_ + 2; }
@@ -89,7 +88,7 @@ class Fitter {
   const core::Frame& frame_;
   const Background& background_;
   const OutlineOptions& options_;
-  UsableSide usable_;
+  UsablePart usable_;
   Outline outline_;
   double blur_;
   double open_;
@@ -111,6 +110,7 @@ class Fitter {
   double contrast_ = 0.0;
   double misfit_ = 0.0;
   double inliers_ = 0.0;
+  double before_aside_ = 0.0;  // visible share, where something was set aside
 };
 
 void Fitter::CollectPixels() {
@@ -195,7 +195,7 @@ double Fitter::Accumulate(bool robust) {
   double contrast_weight = 0.0;
   double square = 0.0;
   double in_count = 0.0;
-  const double cut = 4.685 * robust_scale_;  // Tukey: 95 % efficient
+  const double cut = kTukey * robust_scale_;
   for (const OutlinePixel& p : pixels_) {
     const Coverage c = CoverageAt(p);
     Polynomial(c.xi, c.eta, interior_, fi);
@@ -263,18 +263,18 @@ double Fitter::Accumulate(bool robust) {
                           : std::numeric_limits<double>::infinity();
 }
 
-bool Fitter::Step(double& geometric_step) {
-  const int n = Parameters();
+// The normal equations with what is held held, and a trace of ridge.
+Matrix Fitter::Regular() const {
   Matrix a = normal_;
-  for (int k = 0; k < n; ++k) {
-    if (k < LevelsBegin() && !Free(k)) {
-      a(k, k) = 1.0;
-    } else {
-      a(k, k) *= 1.0 + 1e-9;
-      a(k, k) += 1e-12;
-    }
+  for (int k = 0; k < Parameters(); ++k) {
+    a(k, k) =
+        (k < LevelsBegin() && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
   }
-  const Eigen::LDLT<Matrix> factor(a);
+  return a;
+}
+
+bool Fitter::Step(double& geometric_step) {
+  const Eigen::LDLT<Matrix> factor(Regular());
   if (factor.info() != Eigen::Success) return false;
   Vector step = factor.solve(gradient_);
   if (!step.allFinite()) return false;
@@ -317,35 +317,15 @@ bool Fitter::Step(double& geometric_step) {
   return true;
 }
 
-core::Expected<OutlineFit> Fitter::Run() {
-  cosine_ = std::cos(outline_.angle_rad);
-  sine_ = std::sin(outline_.angle_rad);
-  if (const std::string why = Gather(); !why.empty()) {
-    return core::AbsentBecause(why);
-  }
-  // Where the surround is saturated, the outer half of the edge's tail is cut
-  // off; its inner half must then not pass for shading, which would shift the
-  // edge outwards: one level for the whole body.
-  double outside = 0.0;
-  double full = 0.0;
-  for (const OutlinePixel& p : pixels_) {
-    if (DepthInside(outline_, p.x, p.y, cosine_, sine_) > -2.0) continue;
-    outside += 1.0;
-    full += p.value >= background_.full_scale_dn;
-  }
-  if (full > 0.5 * outside) {
-    saturated_ = true;
-    interior_ = 1;
-    CollectPixels();
-  }
-  SolveLevels();
+// Gauss-Newton to convergence; why it fails, or nothing.
+std::string Fitter::Iterate(int& iterations) {
   double step = 0.0;
   bool converged = false;
-  int iteration = 0;
   core::PixelPoint collected = outline_.centre;
-  for (; iteration < options_.max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+    ++iterations;
     Accumulate(iteration >= 2);
-    // Robust scale: at least the expected noise, more where the model is crude.
+    // At least the expected noise, more where the model is crude.
     std::vector<double> sizes(residuals_.size());
     std::transform(residuals_.begin(), residuals_.end(), sizes.begin(),
                    [](double r) { return std::abs(r); });
@@ -355,7 +335,7 @@ core::Expected<OutlineFit> Fitter::Run() {
       robust_scale_ = std::max(1.0, 1.4826 * Median(std::move(sizes)));
     }
     if (!Step(step)) {
-      return core::AbsentBecause("the outline's fit is degenerate");
+      return "the outline's fit is degenerate";
     }
     if (step < options_.tolerance_px && iteration >= 3) {
       converged = true;
@@ -366,7 +346,7 @@ core::Expected<OutlineFit> Fitter::Run() {
                    outline_.centre.y_px - collected.y_px) > 0.5 ||
         iteration < 3) {
       if (const std::string why = Gather(); !why.empty()) {
-        return core::AbsentBecause(why);
+        return why;
       }
       collected = outline_.centre;
     }
@@ -375,19 +355,73 @@ core::Expected<OutlineFit> Fitter::Run() {
   // outline.
   constexpr double kUsableStep_px = 0.02;
   if (!converged && !(step < kUsableStep_px)) {
-    return core::AbsentBecause("the outline's fit does not converge");
+    return "the outline's fit does not converge";
   }
+  return {};
+}
+
+// Marks what lies clear inside the body and is not explained by it, as what is
+// in front of it or a highlight. Whether there is enough of it to fit again
+// without its neighbourhood, which biases the edge.
+bool Fitter::SetAsideUnexplained() {
+  // A body that is crudely modelled has such pixels everywhere.
+  constexpr double kWellModelled = 1.5;  // residuals over noise
+  if (robust_scale_ > kWellModelled) return false;
+  constexpr double kClear = 1.5;  // of the blur, inside the edge
+  constexpr double kReach = 4.0;  // of the blur: where its tail is 1e-4
+  const double clear = kClear * blur_ + 0.5 * smear_.way_px();
+  const double cut = kTukey * robust_scale_;
+  std::vector<core::PixelPoint> unexplained;
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const OutlinePixel& p = pixels_[i];
+    if (DepthInside(outline_, p.x, p.y, cosine_, sine_) < clear) continue;
+    ++inside;
+    if (std::abs(residuals_[i]) > cut) unexplained.push_back({p.x, p.y});
+  }
+  constexpr double kLeastShare = 0.02;  // fewer are dust, or noise
+  constexpr std::size_t kLeast = 4;
+  if (unexplained.size() <
+      std::max(kLeast, static_cast<std::size_t>(kLeastShare *
+                                                static_cast<double>(inside)))) {
+    return false;
+  }
+  before_aside_ = Visible();
+  usable_.Without(unexplained, kReach * blur_ + 1.0);
+  return true;
+}
+
+core::Expected<OutlineFit> Fitter::Run() {
+  cosine_ = std::cos(outline_.angle_rad);
+  sine_ = std::sin(outline_.angle_rad);
+  if (const std::string why = Gather(); !why.empty()) {
+    return core::AbsentBecause(why);
+  }
+  // Where the surround is saturated, the outer half of the edge's tail is cut
+  // off; its inner half must then not pass for shading, which would shift the
+  // edge outwards: one level for the whole body.
+  if (IsSurroundSaturated(pixels_, outline_, cosine_, sine_,
+                          background_.full_scale_dn)) {
+    saturated_ = true;
+    interior_ = 1;
+    CollectPixels();
+  }
+  SolveLevels();
+  int iterations = 0;
+  std::string why = Iterate(iterations);
+  if (why.empty() && SetAsideUnexplained()) {
+    why = Gather();
+    if (why.empty()) why = Iterate(iterations);
+  }
+  if (!why.empty()) return core::AbsentBecause(why);
   Accumulate(true);
-  const double noise =
-      std::sqrt(background_.Variance(pixels_[pixels_.size() / 2].background));
+  const double level = pixels_[pixels_.size() / 2].background;
+  const double noise = std::sqrt(background_.Variance(level));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel
   // Noise has blobs of a pixel or two as bright as that: all of the body
   // together must stand out, too.
   constexpr double kLeastOfAll = 12.0;
-  const double area =
-      outline_.kind == core::BodyKind::kSphere
-          ? std::numbers::pi * outline_.radius_px * outline_.radius_px
-          : 4.0 * outline_.half_long_px * outline_.half_short_px;
+  const double area = Area(outline_);
   if (!(std::abs(contrast_) > kLeastContrast * noise) ||
       !(std::abs(contrast_) * std::sqrt(area) > kLeastOfAll * noise)) {
     return core::AbsentBecause(
@@ -395,13 +429,8 @@ core::Expected<OutlineFit> Fitter::Run() {
                     std::abs(contrast_), kLeastContrast, noise));
   }
 
-  Matrix a = normal_;
-  for (int k = 0; k < Parameters(); ++k) {
-    a(k, k) =
-        (k < LevelsBegin() && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
-  }
   const Matrix covariance =
-      a.ldlt().solve(Matrix::Identity(Parameters(), Parameters()));
+      Regular().ldlt().solve(Matrix::Identity(Parameters(), Parameters()));
   const double widen = std::max(1.0, misfit_);
   const auto u = [&](int k) {
     return k >= LevelsBegin() || Free(k)
@@ -435,8 +464,9 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.misfit = misfit_;
   fit.inliers = inliers_;
   fit.visible = Visible();
+  fit.hidden = std::max(0.0, before_aside_ - fit.visible);
   fit.pixels = static_cast<int>(pixels_.size());
-  fit.iterations = iteration + 1;
+  fit.iterations = iterations;
   // Known to no better than half its size it is no outline.
   const double vague = 0.5 * SmallestHalf(outline_);
   if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <

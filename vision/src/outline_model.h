@@ -60,6 +60,12 @@ struct Coverage {
   double eta = 0.0;
 };
 
+// The first `terms` (1 or 6) of what the levels are polynomials of.
+inline void Polynomial(double xi, double eta, int terms, double* f) {
+  const double all[6] = {1.0, xi, eta, xi * xi, xi * eta, eta * eta};
+  std::copy(all, all + terms, f);
+}
+
 // A blurred disc's value at distance r from its centre, with its derivatives.
 struct DiscProfile {
   double value = 0.0;

@@ -9,13 +9,55 @@
 
 namespace touchdown::vision {
 
-UsableSide::UsableSide(const std::optional<calib::GroundLine>& ground,
+UsablePart::UsablePart(const std::optional<calib::GroundLine>& ground,
                        double margin_px) {
   if (!ground) return;
   const double origin = calib::HeightAbove(*ground, {0.0, 0.0});
   x_ = calib::HeightAbove(*ground, {1.0, 0.0}) - origin;
   y_ = calib::HeightAbove(*ground, {0.0, 1.0}) - origin;
   offset_ = origin - margin_px;
+}
+
+void UsablePart::Without(const std::vector<core::PixelPoint>& pixels,
+                         double reach_px) {
+  if (pixels.empty()) return;
+  const auto reach = static_cast<std::int32_t>(std::ceil(reach_px));
+  double left = pixels[0].x_px, right = left;
+  double top = pixels[0].y_px, bottom = top;
+  for (const core::PixelPoint& p : pixels) {
+    left = std::min(left, p.x_px);
+    right = std::max(right, p.x_px);
+    top = std::min(top, p.y_px);
+    bottom = std::max(bottom, p.y_px);
+  }
+  box_.x = static_cast<std::int32_t>(left) - reach;
+  box_.y = static_cast<std::int32_t>(top) - reach;
+  box_.width = static_cast<std::int32_t>(right - left) + 2 * reach + 1;
+  box_.height = static_cast<std::int32_t>(bottom - top) + 2 * reach + 1;
+  aside_.assign(static_cast<std::size_t>(box_.width) *
+                    static_cast<std::size_t>(box_.height),
+                0);
+  for (const core::PixelPoint& p : pixels) {
+    for (std::int32_t dy = -reach; dy <= reach; ++dy) {
+      for (std::int32_t dx = -reach; dx <= reach; ++dx) {
+        if (dx * dx + dy * dy > reach_px * reach_px) continue;
+        const auto x = static_cast<std::int32_t>(p.x_px) + dx - box_.x;
+        const auto y = static_cast<std::int32_t>(p.y_px) + dy - box_.y;
+        aside_[static_cast<std::size_t>(y) *
+                   static_cast<std::size_t>(box_.width) +
+               static_cast<std::size_t>(x)] = 1;
+      }
+    }
+  }
+}
+
+bool UsablePart::IsAside(double x_px, double y_px) const {
+  const auto x = static_cast<std::int32_t>(std::lround(x_px)) - box_.x;
+  const auto y = static_cast<std::int32_t>(std::lround(y_px)) - box_.y;
+  return x >= 0 && y >= 0 && x < box_.width && y < box_.height &&
+         aside_[static_cast<std::size_t>(y) *
+                    static_cast<std::size_t>(box_.width) +
+                static_cast<std::size_t>(x)] != 0;
 }
 
 double Extent(const Outline& o) {
@@ -28,9 +70,29 @@ double SmallestHalf(const Outline& o) {
   return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_short_px;
 }
 
+double Area(const Outline& o) {
+  return o.kind == core::BodyKind::kSphere
+             ? std::numbers::pi * o.radius_px * o.radius_px
+             : 4.0 * o.half_long_px * o.half_short_px;
+}
+
+bool IsSurroundSaturated(const std::vector<OutlinePixel>& pixels,
+                         const Outline& outline, double cosine, double sine,
+                         double full_scale_dn) {
+  constexpr double kClear_px = 2.0;
+  double outside = 0.0;
+  double full = 0.0;
+  for (const OutlinePixel& p : pixels) {
+    if (DepthInside(outline, p.x, p.y, cosine, sine) > -kClear_px) continue;
+    outside += 1.0;
+    full += p.value >= full_scale_dn;
+  }
+  return full > 0.5 * outside;
+}
+
 void CollectOutlinePixels(const core::Frame& frame,
                           const Background& background, const Outline& outline,
-                          double cosine, double sine, const UsableSide& usable,
+                          double cosine, double sine, const UsablePart& usable,
                           const PixelBand& band,
                           std::vector<OutlinePixel>& pixels) {
   const double margin = band.margin_px;
@@ -69,7 +131,7 @@ void CollectOutlinePixels(const core::Frame& frame,
 }
 
 double VisibleShare(const core::Frame& frame, const Outline& outline,
-                    double cosine, double sine, const UsableSide& usable) {
+                    double cosine, double sine, const UsablePart& usable) {
   constexpr int kProbes = 72;
   int seen = 0;
   for (int i = 0; i < kProbes; ++i) {

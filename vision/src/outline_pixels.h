@@ -1,11 +1,13 @@
 // The pixels that an outline is fitted to.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/frame.h"
+#include "touchdown/core/points.h"
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/outline.h"
 
@@ -19,18 +21,26 @@ struct OutlinePixel {
   double variance = 1.0;    // DN^2
 };
 
-// What lies above the ground line by a margin, or everything without a line.
-class UsableSide {
+// What lies above the ground line by a margin, or everything without a line,
+// and is not set aside.
+class UsablePart {
  public:
-  UsableSide(const std::optional<calib::GroundLine>& ground, double margin_px);
+  UsablePart(const std::optional<calib::GroundLine>& ground, double margin_px);
   bool Holds(double x_px, double y_px) const {
-    return x_ * x_px + y_ * y_px + offset_ >= 0.0;
+    return x_ * x_px + y_ * y_px + offset_ >= 0.0 &&
+           (aside_.empty() || !IsAside(x_px, y_px));
   }
+  // Sets these pixels aside, and all within `reach_px` of any of them.
+  void Without(const std::vector<core::PixelPoint>& pixels, double reach_px);
 
  private:
+  bool IsAside(double x_px, double y_px) const;
+
   double x_ = 0.0;
   double y_ = 0.0;
   double offset_ = 0.0;
+  core::PixelRect box_;  // of the pixels set aside
+  std::vector<std::uint8_t> aside_;
 };
 
 // The body and a band around it that holds the blurred edge and some of what
@@ -43,15 +53,22 @@ struct PixelBand {
 };
 void CollectOutlinePixels(const core::Frame& frame,
                           const Background& background, const Outline& outline,
-                          double cosine, double sine, const UsableSide& usable,
+                          double cosine, double sine, const UsablePart& usable,
                           const PixelBand& band,
                           std::vector<OutlinePixel>& pixels);
 
-// Share of the outline that lies in the frame and on the usable side.
+// Share of the outline that lies in the frame and is usable.
 double VisibleShare(const core::Frame& frame, const Outline& outline,
-                    double cosine, double sine, const UsableSide& usable);
+                    double cosine, double sine, const UsablePart& usable);
+
+// Whether more than half of the pixels clear outside the outline are at full
+// scale.
+bool IsSurroundSaturated(const std::vector<OutlinePixel>& pixels,
+                         const Outline& outline, double cosine, double sine,
+                         double full_scale_dn);
 
 double Extent(const Outline& outline);        // px, centre to farthest point
 double SmallestHalf(const Outline& outline);  // px
+double Area(const Outline& outline);          // px^2
 
 }  // namespace touchdown::vision

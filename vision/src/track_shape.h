@@ -27,7 +27,8 @@ core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us);
 
 // Leaves out fits that are not of this body: other size, or far worse residuals
-// than usual.
+// than usual. Where half of them see the outline free, those go, too, in which
+// something hides a part of it: its edge passes for the body's.
 void DropStrangers(std::vector<Fitted>& all);
 
 // How much a track jumps about: the robust scatter of third differences of the

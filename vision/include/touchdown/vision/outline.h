@@ -98,6 +98,7 @@ struct OutlineFit {
   double inliers = 0.0;      // share of pixels with more than half weight
   double visible = 1.0;  // share of the outline inside the picture and above
                          // the ground's margin
+  double hidden = 0.0;   // share of it behind what the body does not explain
   int pixels = 0;
   int iterations = 0;
 };
