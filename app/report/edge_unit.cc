@@ -1,5 +1,6 @@
 #include "app/report/edge_unit.h"
 
+#include "touchdown/core/conditions.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -37,18 +37,6 @@ constexpr Table<Origin, 3> kOrigins{{
     {Origin::kSimulated, "simulated"},
     {Origin::kManual, "manual"},
 }};
-constexpr Table<Anomaly, 10> kAnomalies{{
-    {Anomaly::kNotRecorded, "not recorded"},
-    {Anomaly::kNone, "none"},
-    {Anomaly::kRig, "rig"},
-    {Anomaly::kCamera, "camera"},
-    {Anomaly::kLight, "light"},
-    {Anomaly::kBody, "body"},
-    {Anomaly::kSurface, "surface"},
-    {Anomaly::kOperator, "operator"},
-    {Anomaly::kOther, "other"},
-    {Anomaly::kNotApplicable, "not applicable"},
-}};
 constexpr Table<Verdict, 3> kVerdicts{{
     {Verdict::kConfirmed, "confirmed"},
     {Verdict::kContradicted, "contradicted"},
@@ -78,7 +66,6 @@ std::string_view Name(AngleKind kind) { return NameIn(kAngleKinds, kind); }
 std::string_view Name(Corner corner) { return NameIn(kCorners, corner); }
 std::string_view Name(MotionState s) { return NameIn(kMotionStates, s); }
 std::string_view Name(Origin origin) { return NameIn(kOrigins, origin); }
-std::string_view Name(Anomaly anomaly) { return NameIn(kAnomalies, anomaly); }
 std::string_view Name(Verdict verdict) { return NameIn(kVerdicts, verdict); }
 
 std::optional<BodyKind> ParseBodyKind(std::string_view word) {
@@ -95,9 +82,6 @@ std::optional<MotionState> ParseMotionState(std::string_view word) {
 }
 std::optional<Origin> ParseOrigin(std::string_view word) {
   return ParseIn(kOrigins, word);
-}
-std::optional<Anomaly> ParseAnomaly(std::string_view word) {
-  return ParseIn(kAnomalies, word);
 }
 std::optional<Verdict> ParseVerdict(std::string_view word) {
   return ParseIn(kVerdicts, word);

@@ -2,13 +2,34 @@
 // what air, and what was not as it should be.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/expected.h"
-#include "touchdown/core/words.h"
 
 namespace touchdown::core {
+
+// What was not as it should be. `other` needs a note; `not applicable` is for
+// shots in which nothing could go wrong (simulated).
+enum class Anomaly {
+  kNotRecorded,
+  kNone,
+  kRig,
+  kCamera,
+  kLight,
+  kBody,
+  kSurface,
+  kOperator,
+  kOther,
+  kNotApplicable
+};
+std::string_view Name(Anomaly anomaly);
+std::optional<Anomaly> ParseAnomaly(std::string_view word);
+
+// 0 deg C in K, exact by definition.
+inline constexpr double kIcePoint_k = 273.15;
 
 // An entry of the lab's register, in the version that was meant.
 struct Registered {

@@ -16,7 +16,6 @@ namespace touchdown::core {
 inline constexpr double kMillimetre = 1e-3;                  // m
 inline constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 inline constexpr double kMillisecond = 1e-3;                 // s
-inline constexpr double kIcePoint_k = 273.15;                // 0 deg C in K
 
 // Standard acceleration of free fall, m/s^2 (CGPM 1901, exact by definition).
 // Local gravity differs by up to 0.3 %; commands accept --gravity.

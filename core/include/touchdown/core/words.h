@@ -40,21 +40,6 @@ enum class MotionState {
 // Where a trial comes from. Never pooled.
 enum class Origin { kRecorded, kSimulated, kManual };
 
-// What was not as it should be when a shot was made. `other` needs a note;
-// `not applicable` is for shots in which nothing could go wrong (simulated).
-enum class Anomaly {
-  kNotRecorded,
-  kNone,
-  kRig,
-  kCamera,
-  kLight,
-  kBody,
-  kSurface,
-  kOperator,
-  kOther,
-  kNotApplicable
-};
-
 // What the trials say of a theory's boundary angle.
 enum class Verdict { kConfirmed, kContradicted, kInconclusive };
 
@@ -63,7 +48,6 @@ std::string_view Name(AngleKind kind);
 std::string_view Name(Corner corner);
 std::string_view Name(MotionState state);
 std::string_view Name(Origin origin);
-std::string_view Name(Anomaly anomaly);
 std::string_view Name(Verdict verdict);
 
 std::optional<BodyKind> ParseBodyKind(std::string_view word);
@@ -71,7 +55,6 @@ std::optional<AngleKind> ParseAngleKind(std::string_view word);
 std::optional<Corner> ParseCorner(std::string_view word);
 std::optional<MotionState> ParseMotionState(std::string_view word);
 std::optional<Origin> ParseOrigin(std::string_view word);
-std::optional<Anomaly> ParseAnomaly(std::string_view word);
 std::optional<Verdict> ParseVerdict(std::string_view word);
 
 // True for slide, roll-slide, roll, stick and stays-down: what a table in the
