@@ -152,7 +152,7 @@ int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
 pipeline::BatchOptions OptionsOf(const Flags& flags, const db::Store& store,
                                  ProgressBar& bar) {
   pipeline::BatchOptions options;
-  Apply(flags.conditions, options.conditions);
+  ApplyConditions(flags.conditions, options.conditions);
   if (options.conditions) {
     options.conditions = db::Resolved(store, *options.conditions);
   }

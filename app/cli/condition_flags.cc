@@ -65,8 +65,8 @@ void AddConditionFlag(CLI::App& command, ConditionFlags& flags) {
       ->allow_extra_args(false);
 }
 
-void Apply(const ConditionFlags& flags,
-           std::optional<core::Conditions>& conditions) {
+void ApplyConditions(const ConditionFlags& flags,
+                     std::optional<core::Conditions>& conditions) {
   if (flags.empty()) return;
   if (!conditions) conditions.emplace();
   for (const std::string& flag : flags) ApplyOne(flag, *conditions);
@@ -75,7 +75,7 @@ void Apply(const ConditionFlags& flags,
 std::optional<core::Conditions> ConditionsOf(const ConditionFlags& flags,
                                              const std::filesystem::path& db) {
   std::optional<core::Conditions> conditions;
-  Apply(flags, conditions);
+  ApplyConditions(flags, conditions);
   if (conditions && db::NameEntries(*conditions)) {
     conditions =
         db::Resolved(db::Store::Open(db, db::OpenMode::kRead), *conditions);

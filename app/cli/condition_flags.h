@@ -21,8 +21,8 @@ void AddConditionFlag(CLI::App& command, ConditionFlags& flags);
 
 // Puts what was given into `conditions`; the rest stays as it is. Throws
 // std::invalid_argument naming what was given and what is expected.
-void Apply(const ConditionFlags& flags,
-           std::optional<core::Conditions>& conditions);
+void ApplyConditions(const ConditionFlags& flags,
+                     std::optional<core::Conditions>& conditions);
 
 // Nothing where none were given. Entries of the register are looked up in the
 // store at `db` at once, before a long analysis.

@@ -117,7 +117,7 @@ void Apply(const StatementFlags& flags, core::Trial& trial) {
     }
     trial.set_speed_mps = *flags.set_speed_mps;
   }
-  Apply(flags.conditions, trial.conditions);
+  ApplyConditions(flags.conditions, trial.conditions);
 }
 
 core::Trial ManualTrial() {

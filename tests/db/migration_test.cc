@@ -94,6 +94,13 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   EXPECT_EQ(trials[2].first.contact.corner, core::Corner::kLeading);
   EXPECT_EQ(store.FindCampaign("asphalt")->theory_boundary_rad,
             11.8 * core::kDegree);
+  if (GetParam() >= 3) {
+    EXPECT_EQ(trials[0].conditions->spring.name, "S 3");
+    const auto springs = VersionsOf(store, RegisterKind::kSpring, "S 3");
+    ASSERT_EQ(springs.size(), 2u);
+    EXPECT_EQ(trials[0].conditions->spring.id, springs[0].id);
+    EXPECT_EQ(springs[1].measured.at("stiffness_n_per_m")->value, 1150.0);
+  }
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);
 }
