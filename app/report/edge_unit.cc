@@ -12,8 +12,10 @@ EdgeUnit AtTheEdge(std::string_view inner) {
     double factor;
     double offset = 0.0;
   };
-  // The longer endings first: "_rad_per_s" also ends in "_s".
+  // The longer endings first: "_rad_per_s" also ends in "_s", and "_n_per_m" in
+  // "_m", though it is no length.
   static constexpr Rule kRules[] = {
+      {"_n_per_m", "_n_per_m", 1.0},
       {"_rad_per_s", "_rad_per_s", 1.0},
       {"_rad", "_deg", core::kDegree},
       {"_mps2", "_mps2", 1.0},

@@ -10,7 +10,7 @@ CREATE TABLE store (
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
   created_at_utc TEXT NOT NULL CHECK (created_at_utc GLOB '[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]T[0-9][0-9]:[0-9][0-9]:[0-9][0-9].[0-9][0-9][0-9]Z')
 ) STRICT;
-INSERT INTO store VALUES(1,'2ce260f7-b121-405f-82ab-31a7bc04ab79','2026-11-21T11:15:21.827Z');
+INSERT INTO store VALUES(1,'5d349c6a-0353-4f2f-b759-d291e9d6340e','2026-11-21T11:19:21.763Z');
 CREATE TABLE rigs (
   id INTEGER PRIMARY KEY,
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
@@ -23,7 +23,7 @@ CREATE TABLE rigs (
   sha256 TEXT NOT NULL,
   note TEXT NOT NULL
 ) STRICT;
-INSERT INTO rigs VALUES(1,'580cfdc9-4002-495d-b4c2-966f42557751','R1',1,'Ada','','2026-11-21T11:15:21.946Z','','','the old one');
+INSERT INTO rigs VALUES(1,'52d80375-146a-496c-a367-341cbc50ba32','R1',1,'Ada','','2026-11-21T11:19:21.857Z','','','the old one');
 CREATE TABLE cameras (
   id INTEGER PRIMARY KEY,
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
@@ -61,6 +61,8 @@ CREATE TABLE springs (
   CHECK (CASE WHEN shear_modulus_pa IS NULL THEN shear_modulus_pa_absent IS NOT NULL AND coalesce(shear_modulus_pa_u, shear_modulus_pa_low, shear_modulus_pa_high) IS NULL ELSE shear_modulus_pa_absent IS NULL AND typeof(shear_modulus_pa) = 'real' AND typeof(shear_modulus_pa_u) = 'real' AND shear_modulus_pa_u >= 0 AND typeof(shear_modulus_pa_low) IN ('real', 'null') AND typeof(shear_modulus_pa_high) = typeof(shear_modulus_pa_low) AND coalesce(shear_modulus_pa_low <= shear_modulus_pa_high, 1) END),
   CHECK (CASE WHEN stiffness_n_per_m IS NULL THEN stiffness_n_per_m_absent IS NOT NULL AND coalesce(stiffness_n_per_m_u, stiffness_n_per_m_low, stiffness_n_per_m_high) IS NULL ELSE stiffness_n_per_m_absent IS NULL AND typeof(stiffness_n_per_m) = 'real' AND typeof(stiffness_n_per_m_u) = 'real' AND stiffness_n_per_m_u >= 0 AND typeof(stiffness_n_per_m_low) IN ('real', 'null') AND typeof(stiffness_n_per_m_high) = typeof(stiffness_n_per_m_low) AND coalesce(stiffness_n_per_m_low <= stiffness_n_per_m_high, 1) END)
 ) STRICT;
+INSERT INTO springs VALUES(1,'dd70d07b-ca9e-4dc5-baeb-791384166d1b','S 3',1,'Ada','','2026-11-21T11:19:22.607Z',1,'outer',NULL,NULL,NULL,NULL,'not recorded',NULL,NULL,NULL,NULL,'not recorded',NULL,NULL,NULL,NULL,'not recorded',NULL,NULL,NULL,NULL,'not recorded',1200.0,5.0,NULL,NULL,NULL,'');
+INSERT INTO springs VALUES(2,'b846d2ac-611e-4506-8754-169b464d1d5e','S 3',2,'Bob','measured again','2026-11-21T11:19:28.493Z',1,'outer',NULL,NULL,NULL,NULL,'not recorded',NULL,NULL,NULL,NULL,'not recorded',NULL,NULL,NULL,NULL,'not recorded',NULL,NULL,NULL,NULL,'not recorded',1150.0,5.0,NULL,NULL,NULL,'');
 CREATE TABLE calibrations (
   id INTEGER PRIMARY KEY,
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
@@ -110,7 +112,7 @@ CREATE TABLE surfaces (
   note TEXT NOT NULL,
   CHECK (CASE WHEN friction IS NULL THEN friction_absent IS NOT NULL AND coalesce(friction_u, friction_low, friction_high) IS NULL ELSE friction_absent IS NULL AND typeof(friction) = 'real' AND typeof(friction_u) = 'real' AND friction_u >= 0 AND typeof(friction_low) IN ('real', 'null') AND typeof(friction_high) = typeof(friction_low) AND coalesce(friction_low <= friction_high, 1) END)
 ) STRICT;
-INSERT INTO surfaces VALUES(1,'659f9a22-5ca3-4507-aa78-0548fe2e4152','asphalt, dry',1,'touchdown','named by a campaign','2026-11-21T11:15:23.027Z','not recorded',NULL,NULL,NULL,NULL,'not recorded','','');
+INSERT INTO surfaces VALUES(1,'b437f158-2946-420b-8af1-94a1ea48719a','asphalt, dry',1,'touchdown','named by a campaign','2026-11-21T11:19:23.359Z','not recorded',NULL,NULL,NULL,NULL,'not recorded','','');
 CREATE TABLE operators (
   id INTEGER PRIMARY KEY,
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
@@ -138,6 +140,7 @@ CREATE TABLE conditions (
   CHECK (CASE WHEN temperature_k IS NULL THEN temperature_k_absent IS NOT NULL AND coalesce(temperature_k_u, temperature_k_low, temperature_k_high) IS NULL ELSE temperature_k_absent IS NULL AND typeof(temperature_k) = 'real' AND typeof(temperature_k_u) = 'real' AND temperature_k_u >= 0 AND typeof(temperature_k_low) IN ('real', 'null') AND typeof(temperature_k_high) = typeof(temperature_k_low) AND coalesce(temperature_k_low <= temperature_k_high, 1) END),
   CHECK (CASE WHEN relative_humidity IS NULL THEN relative_humidity_absent IS NOT NULL AND coalesce(relative_humidity_u, relative_humidity_low, relative_humidity_high) IS NULL ELSE relative_humidity_absent IS NULL AND typeof(relative_humidity) = 'real' AND typeof(relative_humidity_u) = 'real' AND relative_humidity_u >= 0 AND typeof(relative_humidity_low) IN ('real', 'null') AND typeof(relative_humidity_high) = typeof(relative_humidity_low) AND coalesce(relative_humidity_low <= relative_humidity_high, 1) END)
 ) STRICT;
+INSERT INTO conditions VALUES(1,1,1,NULL,NULL,NULL,NULL,NULL,'light','',294.64999999999997727,0.5,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded');
 CREATE TABLE campaigns (
   id INTEGER PRIMARY KEY,
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
@@ -162,7 +165,7 @@ CREATE TABLE campaigns (
   CHECK (CASE WHEN long_m IS NULL THEN long_m_absent IS NOT NULL AND coalesce(long_m_u, long_m_low, long_m_high) IS NULL ELSE long_m_absent IS NULL AND typeof(long_m) = 'real' AND typeof(long_m_u) = 'real' AND long_m_u >= 0 AND typeof(long_m_low) IN ('real', 'null') AND typeof(long_m_high) = typeof(long_m_low) AND coalesce(long_m_low <= long_m_high, 1) END),
   CHECK (CASE WHEN short_m IS NULL THEN short_m_absent IS NOT NULL AND coalesce(short_m_u, short_m_low, short_m_high) IS NULL ELSE short_m_absent IS NULL AND typeof(short_m) = 'real' AND typeof(short_m_u) = 'real' AND short_m_u >= 0 AND typeof(short_m_low) IN ('real', 'null') AND typeof(short_m_high) = typeof(short_m_low) AND coalesce(short_m_low <= short_m_high, 1) END)
 ) STRICT;
-INSERT INTO campaigns VALUES(1,'659f9a22-5ca3-4507-aa78-0548fe2e4152','asphalt','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',1,'approach',0.00080000000000000003833,0.0,0.0,'published',0.20594885173533089561,0.0,0.017453292519943295474,'2026-11-21T11:15:23.027Z');
+INSERT INTO campaigns VALUES(1,'b437f158-2946-420b-8af1-94a1ea48719a','asphalt','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',1,'approach',0.00080000000000000003833,0.0,0.0,'published',0.20594885173533089561,0.0,0.017453292519943295474,'2026-11-21T11:19:23.359Z');
 CREATE TABLE clips (
   id INTEGER PRIMARY KEY,
   clip_id TEXT NOT NULL CHECK (clip_id <> ''),
@@ -180,8 +183,9 @@ CREATE TABLE trials (
   origin TEXT NOT NULL CHECK (origin = 'recorded' OR origin = 'simulated' OR origin = 'manual'),
   logged_at_utc TEXT NOT NULL CHECK (logged_at_utc GLOB '[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]T[0-9][0-9]:[0-9][0-9]:[0-9][0-9].[0-9][0-9][0-9]Z')
 ) STRICT;
-INSERT INTO trials VALUES(1,'75c9f701-c288-41c5-bf02-9fae9e75ca25',1,NULL,'manual','2026-11-21T11:15:24.151Z');
-INSERT INTO trials VALUES(2,'a4be33dd-65ac-4b5d-8829-c02eb7c2e043',NULL,NULL,'manual','2026-11-21T11:15:24.563Z');
+INSERT INTO trials VALUES(1,'007a8ebb-0815-4fc7-b32c-a54c4fea588c',1,NULL,'manual','2026-11-21T11:19:24.056Z');
+INSERT INTO trials VALUES(2,'11019f4b-0ede-400e-b645-62016b5dff76',1,NULL,'manual','2026-11-21T11:19:24.749Z');
+INSERT INTO trials VALUES(3,'51c76cf4-38db-4875-b9da-a234aed314c3',NULL,NULL,'manual','2026-11-21T11:19:25.483Z');
 CREATE TABLE revisions (
   id INTEGER PRIMARY KEY,
   uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36),
@@ -196,16 +200,17 @@ CREATE TABLE revisions (
   conditions_id INTEGER REFERENCES conditions (revision_id),
   UNIQUE (trial_id, number)
 ) STRICT;
-INSERT INTO revisions VALUES(1,'e84a488f-1706-4e78-883e-49cc48a2259b',1,1,'logged',1,NULL,'Ada','','2026-11-21T11:15:24.151Z',NULL);
-INSERT INTO revisions VALUES(2,'5c0bd7a3-ab2f-4aff-8ade-abbcbc568d2a',2,1,'logged',2,NULL,'Ada','','2026-11-21T11:15:24.563Z',NULL);
-INSERT INTO revisions VALUES(3,'0eded442-2bfc-483d-b7dc-7a23a5f17081',2,2,'corrected',3,NULL,'Bob','seen again','2026-11-21T11:15:25.490Z',NULL);
-INSERT INTO revisions VALUES(4,'0b01dd2d-df62-4202-9a65-04250b596a11',2,3,'excluded',3,4,'Bob','the lamp failed','2026-11-21T11:15:25.888Z',NULL);
+INSERT INTO revisions VALUES(1,'674e0d8e-533b-4e06-874d-3003ba6e80f4',1,1,'logged',1,NULL,'Ada','','2026-11-21T11:19:24.056Z',1);
+INSERT INTO revisions VALUES(2,'c7d4ce6f-f3eb-47dc-82e8-120b487c0482',2,1,'logged',2,NULL,'Ada','','2026-11-21T11:19:24.749Z',NULL);
+INSERT INTO revisions VALUES(3,'848385fa-8d84-49e7-8927-2c76512029bf',3,1,'logged',3,NULL,'Ada','','2026-11-21T11:19:25.483Z',NULL);
+INSERT INTO revisions VALUES(4,'549b3f82-12d2-48cf-b15a-a054fe7d1f16',2,2,'corrected',4,NULL,'Bob','seen again','2026-11-21T11:19:27.004Z',NULL);
+INSERT INTO revisions VALUES(5,'f8c90b34-2756-470f-9983-78d8df1c083e',2,3,'excluded',4,5,'Bob','the lamp failed','2026-11-21T11:19:27.780Z',NULL);
 CREATE TABLE exclusions (
   revision_id INTEGER PRIMARY KEY REFERENCES revisions (id)
     DEFERRABLE INITIALLY DEFERRED,
   reason TEXT NOT NULL
 ) STRICT;
-INSERT INTO exclusions VALUES(4,'the lamp failed');
+INSERT INTO exclusions VALUES(5,'the lamp failed');
 CREATE TABLE statements (
   revision_id INTEGER PRIMARY KEY REFERENCES revisions (id)
     DEFERRABLE INITIALLY DEFERRED,
@@ -226,8 +231,9 @@ CREATE TABLE statements (
   CHECK (CASE WHEN short_m IS NULL THEN short_m_absent IS NOT NULL AND coalesce(short_m_u, short_m_low, short_m_high) IS NULL ELSE short_m_absent IS NULL AND typeof(short_m) = 'real' AND typeof(short_m_u) = 'real' AND short_m_u >= 0 AND typeof(short_m_low) IN ('real', 'null') AND typeof(short_m_high) = typeof(short_m_low) AND coalesce(short_m_low <= short_m_high, 1) END)
 ) STRICT;
 INSERT INTO statements VALUES(1,'','approach','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,1,'0.1.0','','');
-INSERT INTO statements VALUES(2,'','radius','rectangle',NULL,NULL,NULL,NULL,'not a sphere',0.059999999999999997779,2.0000000000000001634e-05,NULL,NULL,NULL,0.020000000000000000416,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,1,'0.1.0','','');
+INSERT INTO statements VALUES(2,'','approach','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,1,'0.1.0','','');
 INSERT INTO statements VALUES(3,'','radius','rectangle',NULL,NULL,NULL,NULL,'not a sphere',0.059999999999999997779,2.0000000000000001634e-05,NULL,NULL,NULL,0.020000000000000000416,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,1,'0.1.0','','');
+INSERT INTO statements VALUES(4,'','approach','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,1,'0.1.0','','');
 CREATE TABLE contacts (
   revision_id INTEGER NOT NULL REFERENCES statements (revision_id),
   ordinal INTEGER NOT NULL CHECK (ordinal >= 0),
@@ -281,9 +287,10 @@ CREATE TABLE contacts (
   CHECK (CASE WHEN impulse_ratio IS NULL THEN impulse_ratio_absent IS NOT NULL AND coalesce(impulse_ratio_u, impulse_ratio_low, impulse_ratio_high) IS NULL ELSE impulse_ratio_absent IS NULL AND typeof(impulse_ratio) = 'real' AND typeof(impulse_ratio_u) = 'real' AND impulse_ratio_u >= 0 AND typeof(impulse_ratio_low) IN ('real', 'null') AND typeof(impulse_ratio_high) = typeof(impulse_ratio_low) AND coalesce(impulse_ratio_low <= impulse_ratio_high, 1) END),
   CHECK (CASE WHEN gravity_check_mps2 IS NULL THEN gravity_check_mps2_absent IS NOT NULL AND coalesce(gravity_check_mps2_u, gravity_check_mps2_low, gravity_check_mps2_high) IS NULL ELSE gravity_check_mps2_absent IS NULL AND typeof(gravity_check_mps2) = 'real' AND typeof(gravity_check_mps2_u) = 'real' AND gravity_check_mps2_u >= 0 AND typeof(gravity_check_mps2_low) IN ('real', 'null') AND typeof(gravity_check_mps2_high) = typeof(gravity_check_mps2_low) AND coalesce(gravity_check_mps2_low <= gravity_check_mps2_high, 1) END)
 ) STRICT;
-INSERT INTO contacts VALUES(1,0,1,'',0,NULL,'slide',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.13962634015954636379,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
-INSERT INTO contacts VALUES(2,0,1,'',0,'leading','bounce',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.69813170079773179121,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
-INSERT INTO contacts VALUES(3,0,1,'',0,'leading','roll',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.69813170079773179121,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
+INSERT INTO contacts VALUES(1,0,1,'',0,NULL,'bounce',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.3490658503988658956,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
+INSERT INTO contacts VALUES(2,0,1,'',0,NULL,'slide',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.13962634015954636379,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
+INSERT INTO contacts VALUES(3,0,1,'',0,'leading','bounce',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.69813170079773179121,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
+INSERT INTO contacts VALUES(4,0,1,'',0,NULL,'roll',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.13962634015954636379,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
 CREATE TABLE budget_lines (
   revision_id INTEGER NOT NULL,
   ordinal INTEGER NOT NULL,
