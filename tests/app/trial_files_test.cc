@@ -60,7 +60,9 @@ TEST(RevisionJson, NamesTheFieldThatIsWrong) {
   for (const auto& [key, value] : json.items()) {
     nlohmann::json bad = json;
     bad.erase(key);
-    EXPECT_THAT(message(bad), HasSubstr("'" + key + "'"));
+    // Exports of before the register have no conditions.
+    EXPECT_THAT(message(bad),
+                HasSubstr(key == "conditions" ? "accepted" : "'" + key + "'"));
     bad[key] = nlohmann::json::array({1});
     EXPECT_NE(message(bad), "accepted") << key;
   }
