@@ -8,6 +8,7 @@
 
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
+#include "app/cli/condition_flags.h"
 #include "app/cli/progress.h"
 #include "app/pipeline/analysis_text.h"
 #include "app/pipeline/analyze.h"
@@ -23,6 +24,7 @@ struct Flags {
   std::string out;
   std::string db;
   std::string campaign;
+  ConditionFlags conditions;
   bool json = false;
 };
 
@@ -31,6 +33,10 @@ int Run(const Flags& flags) {
   if (flags.db.empty() && !flags.campaign.empty()) {
     throw std::invalid_argument("--campaign needs --db, the store it is in");
   }
+  if (flags.db.empty() && !flags.conditions.empty()) {
+    throw std::invalid_argument("--condition needs --db, the store to log in");
+  }
+  const auto conditions = ConditionsOf(flags.conditions, flags.db);
   if (!flags.campaign.empty()) {
     pipeline::FillFromCampaign(flags.db, flags.campaign, options);
   }
@@ -41,7 +47,8 @@ int Run(const Flags& flags) {
   if (!flags.out.empty()) pipeline::WriteEvidence(analysis, options, flags.out);
   std::optional<pipeline::Logged> logged;
   if (!flags.db.empty()) {
-    logged = pipeline::LogAnalysis(analysis, flags.db, flags.campaign);
+    logged =
+        pipeline::LogAnalysis(analysis, flags.db, flags.campaign, conditions);
   }
   if (flags.json) {
     fmt::print("{}\n", pipeline::ToJson(analysis));
@@ -77,6 +84,7 @@ void AddAnalyze(CLI::App& app, Action& action) {
       "the campaign the trial belongs to (with --db); body, sizes, "
       "angle kind and bounce height are then the campaign's "
       "where not given");
+  AddConditionFlag(*command, flags->conditions);
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });

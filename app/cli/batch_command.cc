@@ -14,6 +14,7 @@
 
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
+#include "app/cli/condition_flags.h"
 #include "app/cli/folder_watch.h"
 #include "app/cli/progress.h"
 #include "app/cli/store_flags.h"
@@ -24,6 +25,8 @@
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/maintenance.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::cli {
 namespace {
@@ -36,6 +39,7 @@ struct Flags {
   std::string db;
   std::string campaign;
   std::string campaign_from;
+  ConditionFlags conditions;
   AnalyzeFlags analyze;
   int jobs = 0;
   std::string shard;
@@ -77,11 +81,14 @@ db::Store OpenStore(const Flags& flags) {
     throw std::invalid_argument(
         "--campaign is missing; --campaign-from needs the campaign's name");
   }
-  const core::Campaign campaign = pipeline::RequireCampaign(
-      db::Store::Open(flags.campaign_from, db::OpenMode::kRead),
-      flags.campaign);
+  const auto from = db::Store::Open(flags.campaign_from, db::OpenMode::kRead);
+  const core::Campaign campaign =
+      pipeline::RequireCampaign(from, flags.campaign);
   auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
-  if (!store.FindCampaign(campaign.name)) store.AddCampaign(campaign);
+  std::vector<core::Campaign> missing;
+  if (!store.FindCampaign(campaign.name)) missing.push_back(campaign);
+  db::Restore(store, from.uuid(), db::AllVersions(from), missing,
+              [] { return std::nullopt; });
   return store;
 }
 
@@ -142,8 +149,13 @@ int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
   return 5;
 }
 
-pipeline::BatchOptions OptionsOf(const Flags& flags, ProgressBar& bar) {
+pipeline::BatchOptions OptionsOf(const Flags& flags, const db::Store& store,
+                                 ProgressBar& bar) {
   pipeline::BatchOptions options;
+  ApplyConditions(flags.conditions, options.conditions);
+  if (options.conditions) {
+    options.conditions = db::Resolved(store, *options.conditions);
+  }
   options.jobs = flags.jobs;
   options.again = flags.again;
   options.evidence = flags.out;
@@ -166,7 +178,7 @@ int WatchFolder(const Flags& flags, const pipeline::AnalyzeOptions& analyze) {
     const auto entries = pipeline::RunBatch(
         store,
         pipeline::ClipsOf(complete, flags.source, flags.campaign, analyze),
-        OptionsOf(flags, bar));
+        OptionsOf(flags, store, bar));
     bar.Finish();
     for (const TriageEntry& entry : entries) {
       if (!flags.json) {
@@ -239,7 +251,7 @@ int Run(const Flags& flags) {
   }
   auto store = OpenStore(flags);
   ProgressBar bar("batch");
-  auto entries = pipeline::RunBatch(store, clips, OptionsOf(flags, bar));
+  auto entries = pipeline::RunBatch(store, clips, OptionsOf(flags, store, bar));
   bar.Finish();
   return Finish(std::move(entries), flags);
 }
@@ -281,6 +293,7 @@ void AddBatch(CLI::App& app, Action& action) {
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->add_flag("--columns", flags->columns,
                     "print the columns of a manifest");
+  AddConditionFlag(*command, flags->conditions);
   AddAnalyzeFlags(*command, flags->analyze);
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });

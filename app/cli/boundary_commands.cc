@@ -95,7 +95,10 @@ void PrintGroup(const report::Group& group) {
 int RunBoundary(const BoundaryFlags& flags) {
   const Answer answer = MakeAnswer(flags);
   if (flags.json) {
-    fmt::print("{}\n", report::BoundaryDocument(answer.groups).dump(2));
+    fmt::print("{}\n",
+               report::BoundaryDocument(answer.groups)
+                   .dump(2, ' ', false,
+                         nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
   bool first = true;
@@ -128,7 +131,9 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         {"files",
          {"table1.md", "table1.csv", "table1.html", "table1.tex",
           "table1.json"}}};
-    fmt::print("{}\n", document.dump(2));
+    fmt::print("{}\n",
+               document.dump(2, ' ', false,
+                             nlohmann::ordered_json::error_handler_t::replace));
   } else {
     fmt::print("{} trials: {}\n", n, page);
   }

@@ -21,6 +21,7 @@ void AddBatch(CLI::App& app, Action& action);
 void AddBoundary(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddNext(CLI::App& app, Action& action);
+void AddRegister(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);

@@ -54,8 +54,10 @@ int Check(const DbFlags& flags) {
   for (const auto& clip : report.clips_missing) {
     fmt::print("not where last seen: {}\n", Printable(clip));
   }
-  fmt::print("{} campaigns, {} trials, {} revisions\n", report.campaigns,
-             report.trials, report.revisions);
+  fmt::print(
+      "{} campaigns, {} trials, {} revisions, {} in the register\n",
+      report.campaigns, report.trials, report.revisions,
+      Plural(static_cast<std::size_t>(report.register_versions), "version"));
   fmt::print(
       "clips: {} as they were analysed, {} changed, {} not where last seen, {} "
       "without SHA-256{}\n",
@@ -96,11 +98,11 @@ int Merge(const DbFlags& flags) {
       fmt::print("conflict: {}\n", Printable(conflict));
     }
     fmt::print(
-        "{}: {} trials, {} revisions, {} campaigns added; {} revisions were "
-        "here already; {} conflicts\n",
+        "{}: {} trials, {} revisions, {} campaigns, {} versions of the "
+        "register added; {} revisions were here already; {} conflicts\n",
         Printable(file), report.trials_added, report.revisions_added,
-        report.campaigns_added, report.revisions_known,
-        report.conflicts.size());
+        report.campaigns_added, report.register_versions_added,
+        report.revisions_known, report.conflicts.size());
   }
   return 0;
 }

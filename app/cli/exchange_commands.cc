@@ -17,11 +17,13 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/paper_trials.h"
+#include "app/report/register_json.h"
 #include "app/report/trial_csv.h"
 #include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::cli {
@@ -65,6 +67,9 @@ void WriteAll(std::ostream& out, const db::Store& store,
     return;
   }
   report::WriteExportHeader(out, store.uuid());
+  for (const auto& entry : db::AllVersions(store)) {
+    out << report::EntryJson(entry) << '\n';
+  }
   for (const auto& campaign : store.Campaigns()) {
     if (flags.campaign.empty() || campaign.name == flags.campaign) {
       out << report::CampaignJson(campaign) << '\n';
@@ -223,18 +228,20 @@ Imported ImportJsonLines(const ImportFlags& flags, const fs::path& db,
                          std::istream& in) {
   report::ExportReader reader(in, flags.file);
   auto store = db::Store::Open(db, db::OpenMode::kCreate);
-  const db::MergeReport report =
-      db::Restore(store, reader.store_uuid(), reader.campaigns(),
-                  [&reader] { return reader.NextHistory(); });
+  const db::MergeReport report = db::Restore(
+      store, reader.store_uuid(), reader.entries(), reader.campaigns(),
+      [&reader] { return reader.NextHistory(); });
   Imported done;
   done.count = static_cast<std::size_t>(
-      report.trials_added + report.revisions_added + report.campaigns_added);
+      report.trials_added + report.revisions_added + report.campaigns_added +
+      report.register_versions_added);
   done.conflicts = report.conflicts;
   done.summary = fmt::format(
-      "{} trials, {} revisions, {} campaigns imported; {} revisions were here "
-      "already; {} conflicts",
+      "{} trials, {} revisions, {} campaigns, {} versions of the register "
+      "imported; {} revisions were here already; {} conflicts",
       report.trials_added, report.revisions_added, report.campaigns_added,
-      report.revisions_known, report.conflicts.size());
+      report.register_versions_added, report.revisions_known,
+      report.conflicts.size());
   return done;
 }
 

@@ -9,11 +9,13 @@
 #include <string>
 
 #include "app/cli/command.h"
+#include "app/cli/condition_flags.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::cli {
@@ -32,6 +34,7 @@ struct StatementFlags {
   std::optional<double> set_angle_deg;
   std::optional<double> set_speed_mps;
   std::string note;
+  ConditionFlags conditions;
 };
 
 void AddStatementFlags(CLI::App& command, StatementFlags& flags) {
@@ -48,6 +51,7 @@ void AddStatementFlags(CLI::App& command, StatementFlags& flags) {
   command.add_option("--set-speed-mps", flags.set_speed_mps,
                      "set-point of the launch speed");
   command.add_option("--note", flags.note, "what was seen");
+  AddConditionFlag(command, flags.conditions);
 }
 
 void RequireAngle(const std::string& flag, double angle_deg, double low_deg) {
@@ -113,6 +117,7 @@ void Apply(const StatementFlags& flags, core::Trial& trial) {
     }
     trial.set_speed_mps = *flags.set_speed_mps;
   }
+  ApplyConditions(flags.conditions, trial.conditions);
 }
 
 core::Trial ManualTrial() {
@@ -189,9 +194,12 @@ int Log(const LogFlags& flags) {
   }
   Apply(flags.statement, rehearsal);
   db::RequireStorable(rehearsal);
-  auto store =
-      db::Store::Open(flags.db, flags.campaign.empty() ? db::OpenMode::kCreate
-                                                       : db::OpenMode::kWrite);
+  // Campaigns and entries of the register are in a store that exists.
+  const bool refers =
+      !flags.campaign.empty() ||
+      (rehearsal.conditions && db::NameEntries(*rehearsal.conditions));
+  auto store = db::Store::Open(
+      flags.db, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
   if (!flags.campaign.empty()) {
     const auto campaign = store.FindCampaign(flags.campaign);
     if (!campaign) {

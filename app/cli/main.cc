@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   touchdown::cli::AddLog(app, action);
   touchdown::cli::AddCorrect(app, action);
   touchdown::cli::AddCampaign(app, action);
+  touchdown::cli::AddRegister(app, action);
   touchdown::cli::AddImport(app, action);
   touchdown::cli::AddExport(app, action);
   touchdown::cli::AddDb(app, action);

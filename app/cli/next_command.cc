@@ -249,7 +249,9 @@ int RunNext(const BoundaryFlags& flags) {
       document["set_points"] =
           SetPointsJson(*thrower, PlanNext(*thrower, next.angle_rad));
     }
-    fmt::print("{}\n", document.dump(2));
+    fmt::print("{}\n",
+               document.dump(2, ' ', false,
+                             nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
   fmt::print("next angle        {} deg{}\n", Degrees(next.angle_rad),

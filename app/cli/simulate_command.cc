@@ -92,7 +92,9 @@ int Run(const Flags& flags) {
   if (flags.json) {
     const nlohmann::ordered_json document{{"schema", "touchdown.simulate/1"},
                                           {"clips", clips}};
-    fmt::print("{}\n", document.dump(1));
+    fmt::print("{}\n",
+               document.dump(1, ' ', false,
+                             nlohmann::ordered_json::error_handler_t::replace));
   } else {
     fmt::print("{}", lines);
   }

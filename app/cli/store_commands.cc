@@ -13,6 +13,7 @@
 #include "app/report/trial_json.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
+#include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::cli {
@@ -21,6 +22,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using core::kDegree;
 using core::kMillimetre;
+
+constexpr double kPercent = 0.01;
+constexpr std::size_t kShownId = 8;  // characters of a UUID, enough for people
 
 // --- list --------------------------------------------------------------------
 
@@ -193,6 +197,31 @@ void ShowContact(const core::ContactRecord& record,
   }
 }
 
+void ShowConditions(const core::Conditions& conditions,
+                    std::vector<std::vector<std::string>>& rows) {
+  rows.push_back({"conditions", ""});
+  for (const auto& entry : db::kConditionEntries) {
+    const core::Registered& named = conditions.*entry.member;
+    if (named.name.empty()) continue;
+    rows.push_back({fmt::format("  {}", db::Name(entry.kind)),
+                    fmt::format("{} ({})", Printable(named.name),
+                                named.id.substr(0, kShownId))});
+  }
+  if (auto celsius = conditions.temperature_k) {
+    celsius->value -= core::kIcePoint_k;
+    rows.push_back({"  temperature, deg C", WithU(celsius, 1.0)});
+  }
+  if (conditions.relative_humidity) {
+    rows.push_back({"  relative humidity, %",
+                    WithU(conditions.relative_humidity, kPercent)});
+  }
+  rows.push_back(
+      {"  anomaly", conditions.anomaly_note.empty()
+                        ? Name(core::Name(conditions.anomaly))
+                        : fmt::format("{}: {}", core::Name(conditions.anomaly),
+                                      Printable(conditions.anomaly_note))});
+}
+
 std::string ShowText(const core::Trial& trial) {
   std::string text;
   if (trial.origin == core::Origin::kSimulated) {
@@ -223,6 +252,7 @@ std::string ShowText(const core::Trial& trial) {
   if (const auto corner = trial.first.contact.corner) {
     rows.push_back({"corner", Name(core::Name(*corner))});
   }
+  if (trial.conditions) ShowConditions(*trial.conditions, rows);
   rows.push_back({"measured", ""});
   ShowContact(trial.first, rows);
   for (std::size_t i = 0; i < trial.later.size(); ++i) {

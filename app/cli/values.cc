@@ -63,6 +63,22 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
   return {*value * unit, *u * unit, std::nullopt};
 }
 
+core::Measured ParseMeasured(const std::string& flag, const std::string& text,
+                             double unit, double offset) {
+  constexpr std::string_view kAbsent = "absent:";
+  if (text.starts_with(kAbsent) && text.size() > kAbsent.size()) {
+    return core::AbsentBecause(text.substr(kAbsent.size()));
+  }
+  if (text.find("+-") == std::string::npos) {
+    Refuse(flag, text,
+           "a number with its standard uncertainty as in 40+-0.02, or "
+           "absent:REASON");
+  }
+  core::Estimate estimate = ParseEstimate(flag, text, unit);
+  estimate.value += offset;
+  return estimate;
+}
+
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
                                                      double unit, DefaultU u) {

@@ -24,6 +24,11 @@ struct DefaultU {
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
                              double unit, DefaultU u = {});
 
+// "40+-0.02", its standard uncertainty always given, or "absent:REASON"; in SI
+// as value * unit + offset.
+core::Measured ParseMeasured(const std::string& flag, const std::string& text,
+                             double unit, double offset = 0.0);
+
 // "60x20" or "60+-0.02x20+-0.02", likewise.
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,

@@ -150,6 +150,7 @@ class Batch {
       core::Trial trial = LoggableTrial(analysis, campaign);
       trial.set_angle_rad = clip.set_angle_rad;
       trial.set_speed_mps = clip.set_speed_mps;
+      trial.conditions = options_.conditions;
       answer.what = std::move(trial);
     } catch (const core::StoreError&) {
       throw;

@@ -64,6 +64,8 @@ struct BatchOptions {
   // Where the evidence of each recording goes, in a folder of its name; empty:
   // none is written.
   std::filesystem::path evidence = {};
+  // Of each shot. Nothing: those stated before, if any, stay in force.
+  std::optional<core::Conditions> conditions = {};
   // Called from any thread, one call at a time. May be empty.
   std::function<void(const BatchProgress&)> progress = {};
   // Looked at before each recording: true ends the batch early. May be empty.

@@ -57,9 +57,11 @@ core::Trial LoggableTrial(const Analysis& analysis,
 }
 
 Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
-                   const std::string& campaign) {
+                   const std::string& campaign,
+                   const std::optional<core::Conditions>& conditions) {
   // Read the clip before the store is opened: what cannot be read makes none.
   core::Trial trial = LoggableTrial(analysis, nullptr);
+  trial.conditions = conditions;
   db::Store store = db::Store::Open(
       db, campaign.empty() ? db::OpenMode::kCreate : db::OpenMode::kWrite);
   if (!campaign.empty()) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "app/pipeline/analyze.h"
@@ -37,6 +38,7 @@ core::Trial LoggableTrial(const Analysis& analysis,
 // where the campaign has one of the same clip. On the disk on return. Throws
 // core::StoreError; core::InputError if the clip cannot be read.
 Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
-                   const std::string& campaign);
+                   const std::string& campaign,
+                   const std::optional<core::Conditions>& conditions = {});
 
 }  // namespace touchdown::pipeline

@@ -136,7 +136,10 @@ Report MakeReport(const ReportInput& input) {
   out.csv = csv;
   out.html = ToHtml(document);
   out.latex = MakeLatex(groups, trials);
-  out.json = ReportDocument(input, groups, trials).dump(1) + "\n";
+  out.json = ReportDocument(input, groups, trials)
+                 .dump(1, ' ', false,
+                       nlohmann::ordered_json::error_handler_t::replace) +
+             "\n";
   return out;
 }
 

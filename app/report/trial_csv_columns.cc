@@ -9,6 +9,7 @@
 
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::report {
 
@@ -77,20 +78,35 @@ class Columns {
   void Measured(std::string_view inner,
                 core::Measured& (*select)(Trial&, std::size_t),
                 std::size_t index) {
+    Measured(
+        inner,
+        [select, index](const Trial& t) {
+          return &select(const_cast<Trial&>(t), index);
+        },
+        [select, index](Trial& t) { return &select(t, index); });
+  }
+
+  // `get` may give nothing, which is an empty cell; `set` never does.
+  void Measured(std::string_view inner,
+                const std::function<const core::Measured*(const Trial&)>& get,
+                const std::function<core::Measured*(Trial&)>& set) {
     const EdgeUnit unit = AtTheEdge(inner);
-    const auto at = [select, index](const Trial& t) -> core::Measured& {
-      return select(const_cast<Trial&>(t), index);
-    };
     const std::string u_name = unit.stem + "_u" + unit.suffix;
     columns_.push_back(
         {{unit.stem + unit.suffix, "measured; empty: absent"},
-         [at, unit](const Trial& t) {
-           const auto& m = at(t);
-           return m ? Shortest(m->value / unit.factor) : std::string();
+         [get, unit](const Trial& t) {
+           const auto* m = get(t);
+           if (m == nullptr || !*m) return std::string();
+           const double value = (*m)->value;
+           // A sum does not come back to its last digit.
+           return unit.offset == 0.0
+                      ? Shortest(value / unit.factor)
+                      : fmt::format("{:.12g}",
+                                    (value - unit.offset) / unit.factor);
          },
-         [at, unit](Trial& t, const std::string& cell) {
-           const double value = ToNumber(cell) * unit.factor;
-           auto& m = at(t);
+         [set, unit](Trial& t, const std::string& cell) {
+           const double value = ToNumber(cell) * unit.factor + unit.offset;
+           auto& m = *set(t);
            if (m) {
              m->value = value;
            } else {
@@ -99,14 +115,15 @@ class Columns {
          }});
     columns_.push_back(
         {{u_name, "its standard uncertainty"},
-         [at, unit](const Trial& t) {
-           const auto& m = at(t);
-           return m ? Shortest(m->u / unit.factor) : std::string();
+         [get, unit](const Trial& t) {
+           const auto* m = get(t);
+           return m != nullptr && *m ? Shortest((*m)->u / unit.factor)
+                                     : std::string();
          },
-         [at, unit](Trial& t, const std::string& cell) {
+         [set, unit](Trial& t, const std::string& cell) {
            const double u = ToNumber(cell) * unit.factor;
            if (u < 0) throw std::invalid_argument("a number >= 0 was expected");
-           auto& m = at(t);
+           auto& m = *set(t);
            if (!m) {
              throw std::invalid_argument("u of an empty value");
            }
@@ -140,6 +157,54 @@ TrialColumn Flag(std::string name, std::string meaning, bool& (*at)(Trial&)) {
             return std::string(at(const_cast<Trial&>(t)) ? "yes" : "no");
           },
           [at](Trial& t, const std::string& cell) { at(t) = ToFlag(cell); }};
+}
+
+core::Conditions& Stated(Trial& t) {
+  return t.conditions ? *t.conditions : t.conditions.emplace();
+}
+
+void AddConditions(Columns& c) {
+  for (const auto& [kind, member] : db::kConditionEntries) {
+    c.Add({{std::string(Name(kind)), "name in the register; empty: none"},
+           [member = member](const Trial& t) {
+             return t.conditions ? ((*t.conditions).*member).name
+                                 : std::string();
+           },
+           [member = member](Trial& t, const std::string& cell) {
+             Stated(t).*member = {cell, ""};
+           }});
+  }
+  for (const auto& [name, member] : db::kConditionQuantities) {
+    c.Measured(
+        name,
+        [member = member](const Trial& t) {
+          return t.conditions ? &((*t.conditions).*member) : nullptr;
+        },
+        [member = member](Trial& t) { return &(Stated(t).*member); });
+  }
+  c.Add({{"anomaly",
+          "none, rig, camera, light, body, surface, operator, other, not "
+          "applicable or not recorded"},
+         [](const Trial& t) {
+           return t.conditions ? std::string(core::Name(t.conditions->anomaly))
+                               : std::string();
+         },
+         [](Trial& t, const std::string& cell) {
+           const auto word = core::ParseAnomaly(cell);
+           if (!word) {
+             throw std::invalid_argument(
+                 "none, rig, camera, light, body, surface, operator, other, "
+                 "not applicable or not recorded was expected");
+           }
+           Stated(t).anomaly = *word;
+         }});
+  c.Add({{"anomaly_note", "what it was"},
+         [](const Trial& t) {
+           return t.conditions ? t.conditions->anomaly_note : std::string();
+         },
+         [](Trial& t, const std::string& cell) {
+           Stated(t).anomaly_note = cell;
+         }});
 }
 
 std::vector<TrialColumn> MakeColumns() {
@@ -207,6 +272,7 @@ std::vector<TrialColumn> MakeColumns() {
   for (std::size_t i = 0; i < db::kContactQuantities.size(); ++i) {
     c.Measured(db::kContactQuantities.at(i).name, ContactMeasured, i);
   }
+  AddConditions(c);
   c.Text("clip_path", "where the clip was last seen",
          [](Trial& t) -> std::string& { return t.clip.path; });
   c.Text("clip_id", "clip.id of `analyze`",
@@ -237,27 +303,6 @@ std::vector<TrialColumn> MakeColumns() {
 }
 
 }  // namespace
-
-EdgeUnit AtTheEdge(std::string_view inner) {
-  struct Rule {
-    std::string_view from;
-    std::string_view to;
-    double factor;
-  };
-  // The longer endings first: "_rad_per_s" also ends in "_s".
-  static constexpr Rule kRules[] = {
-      {"_rad_per_s", "_rad_per_s", 1.0}, {"_rad", "_deg", core::kDegree},
-      {"_mps2", "_mps2", 1.0},           {"_mps", "_mps", 1.0},
-      {"_m", "_mm", core::kMillimetre},  {"_s", "_s", 1.0},
-  };
-  for (const Rule& rule : kRules) {
-    if (inner.ends_with(rule.from)) {
-      return {std::string(inner.substr(0, inner.size() - rule.from.size())),
-              std::string(rule.to), rule.factor};
-    }
-  }
-  return {std::string(inner), "", 1.0};
-}
 
 core::Measured& BodyMeasured(Trial& trial, std::size_t i) {
   return trial.body.*db::kBodyQuantities.at(i).member;

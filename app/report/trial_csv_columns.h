@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/report/edge_unit.h"
 #include "app/report/trial_csv.h"
 #include "touchdown/core/trial.h"
 
@@ -20,15 +21,6 @@ struct TrialColumn {
   std::function<void(core::Trial&, const std::string&)> read;
   bool is_uncertainty = false;  // to be read after the values
 };
-
-// The unit at the edge of an inner name: "_rad" is shown in "_deg".
-struct EdgeUnit {
-  std::string stem;
-  std::string suffix;   // with its underscore; empty: no unit
-  double factor = 1.0;  // inner units per edge unit
-};
-
-EdgeUnit AtTheEdge(std::string_view inner);
 
 // The i-th measured quantity of db::kBodyQuantities and db::kContactQuantities.
 core::Measured& BodyMeasured(core::Trial& trial, std::size_t i);

@@ -2,89 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <istream>
-#include <limits>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <stdexcept>
 #include <utility>
 
+#include "app/report/json_fields.h"
+#include "app/report/register_json.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/quantities.h"
 
 namespace touchdown::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-// --- there -------------------------------------------------------------------
-
-bool IsUtf8(std::string_view text) {
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    std::size_t more = 0;
-    unsigned code = 0;
-    if (byte < 0x80) {
-      ++i;
-      continue;
-    }
-    if (byte >= 0xc2 && byte <= 0xdf) {
-      more = 1;
-      code = byte & 0x1fU;
-    } else if (byte >= 0xe0 && byte <= 0xef) {
-      more = 2;
-      code = byte & 0x0fU;
-    } else if (byte >= 0xf0 && byte <= 0xf4) {
-      more = 3;
-      code = byte & 0x07U;
-    } else {
-      return false;
-    }
-    if (i + more >= text.size()) return false;
-    for (std::size_t k = 1; k <= more; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      if ((next & 0xc0U) != 0x80U) return false;
-      code = (code << 6U) | (next & 0x3fU);
-    }
-    const bool overlong =
-        (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
-    if (overlong || code > 0x10ffff || (code >= 0xd800 && code <= 0xdfff)) {
-      return false;
-    }
-    i += more + 1;
-  }
-  return true;
-}
-
-Json Text(const std::string& text) {
-  if (IsUtf8(text)) return text;
-  std::string hex;
-  for (const char c : text) {
-    hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
-  }
-  return {{"bytes", hex}};
-}
-
-Json Number(double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
-
-Json OptionalNumber(const std::optional<double>& value) {
-  return value ? Number(*value) : Json(nullptr);
-}
-
-Json MeasuredJson(const core::Measured& measured) {
-  if (!measured) return {{"absent", Text(measured.error().reason)}};
-  Json json = {{"value", Number(measured->value)}, {"u", Number(measured->u)}};
-  if (measured->interval95) {
-    json["interval95"] = Json::array({Number(measured->interval95->low),
-                                      Number(measured->interval95->high)});
-  }
-  return json;
-}
+constexpr std::string_view kCampaignSchema = "touchdown.campaign/1";
 
 Json BodyJson(const core::Body& body) {
   Json json = {{"kind", core::Name(body.kind)}};
@@ -97,12 +28,12 @@ Json BodyJson(const core::Body& body) {
 Json ContactJson(const core::ContactRecord& record) {
   const core::Contact& contact = record.contact;
   Json json = {{"found", contact.found},
-               {"not_found_because", Text(contact.reason)},
+               {"not_found_because", TextJson(contact.reason)},
                {"from_start", contact.from_start},
                {"corner", nullptr},
                {"state", core::Name(record.state.label)},
-               {"p_bounce", OptionalNumber(record.state.p_bounce)},
-               {"state_because", Text(record.state.reason)},
+               {"p_bounce", OptionalNumberJson(record.state.p_bounce)},
+               {"state_because", TextJson(record.state.reason)},
                {"micro_bounce", record.state.micro_bounce}};
   if (contact.corner) json["corner"] = core::Name(*contact.corner);
   for (const auto& quantity : db::kContactQuantities) {
@@ -112,7 +43,7 @@ Json ContactJson(const core::ContactRecord& record) {
     Json lines = Json::array();
     for (const auto& line : contact.*budget.member) {
       lines.push_back(
-          {{"source", Text(line.source)}, {"u_rad", Number(line.u)}});
+          {{"source", TextJson(line.source)}, {"u_rad", NumberJson(line.u)}});
     }
     json[fmt::format("{}_budget", budget.name)] = std::move(lines);
   }
@@ -121,128 +52,38 @@ Json ContactJson(const core::ContactRecord& record) {
 
 Json RevisionObject(const db::Revision& revision) {
   const core::Trial& trial = revision.trial;
-  Json json = {{"schema", "touchdown.revision/1"},
-               {"id", trial.id},
-               {"revision", trial.revision},
-               {"revision_id", revision.id},
-               {"kind", Name(revision.kind)},
-               {"campaign", Text(trial.campaign)},
-               {"origin", core::Name(trial.origin)},
-               {"author", Text(trial.author)},
-               {"reason", Text(trial.reason)},
-               {"recorded_at_utc", trial.recorded_at_utc},
-               {"software_version", Text(trial.software_version)},
-               {"options_hash", Text(trial.options_hash)},
-               {"clip",
-                {{"path", Text(trial.clip.path)},
-                 {"id", Text(trial.clip.id)},
-                 {"sha256", Text(trial.clip.sha256)},
-                 {"size_bytes", trial.clip.size_bytes}}},
-               {"body", BodyJson(trial.body)},
-               {"angle_kind", core::Name(trial.angle_kind)},
-               {"set_angle_rad", OptionalNumber(trial.set_angle_rad)},
-               {"set_speed_mps", OptionalNumber(trial.set_speed_mps)},
-               {"contacts", Json::array({ContactJson(trial.first)})},
-               {"excluded", trial.excluded},
-               {"exclusion_reason", Text(trial.exclusion_reason)},
-               {"document", Text(trial.document_json)}};
+  Json json = {
+      {"schema", "touchdown.revision/1"},
+      {"id", TextJson(trial.id)},
+      {"revision", trial.revision},
+      {"revision_id", TextJson(revision.id)},
+      {"kind", Name(revision.kind)},
+      {"campaign", TextJson(trial.campaign)},
+      {"origin", core::Name(trial.origin)},
+      {"author", TextJson(trial.author)},
+      {"reason", TextJson(trial.reason)},
+      {"recorded_at_utc", TextJson(trial.recorded_at_utc)},
+      {"software_version", TextJson(trial.software_version)},
+      {"options_hash", TextJson(trial.options_hash)},
+      {"clip",
+       {{"path", TextJson(trial.clip.path)},
+        {"id", TextJson(trial.clip.id)},
+        {"sha256", TextJson(trial.clip.sha256)},
+        {"size_bytes", trial.clip.size_bytes}}},
+      {"body", BodyJson(trial.body)},
+      {"angle_kind", core::Name(trial.angle_kind)},
+      {"set_angle_rad", OptionalNumberJson(trial.set_angle_rad)},
+      {"set_speed_mps", OptionalNumberJson(trial.set_speed_mps)},
+      {"conditions",
+       trial.conditions ? ConditionsJson(*trial.conditions) : Json(nullptr)},
+      {"contacts", Json::array({ContactJson(trial.first)})},
+      {"excluded", trial.excluded},
+      {"exclusion_reason", TextJson(trial.exclusion_reason)},
+      {"document", TextJson(trial.document_json)}};
   for (const auto& later : trial.later) {
     json["contacts"].push_back(ContactJson(later));
   }
   return json;
-}
-
-// --- and back ----------------------------------------------------------------
-
-const Json& Field(const Json& json, const std::string& name) {
-  const auto it = json.is_object() ? json.find(name) : json.end();
-  if (!json.is_object() || it == json.end()) {
-    throw std::invalid_argument(fmt::format("field '{}' is missing", name));
-  }
-  return *it;
-}
-
-[[noreturn]] void Wrong(const std::string& name, std::string_view expected) {
-  throw std::invalid_argument(
-      fmt::format("field '{}' must be {}", name, expected));
-}
-
-std::string TextOf(const Json& json, const std::string& name) {
-  const Json& field = Field(json, name);
-  if (field.is_string()) return field.get<std::string>();
-  const auto bytes = field.is_object() ? field.find("bytes") : field.end();
-  if (!field.is_object() || bytes == field.end() || !bytes->is_string()) {
-    Wrong(name, "a text");
-  }
-  const auto hex = bytes->get<std::string>();
-  std::string text;
-  if (hex.size() % 2 != 0 ||
-      hex.find_first_not_of("0123456789abcdef") != std::string::npos) {
-    Wrong(name, "bytes in hexadecimal");
-  }
-  for (std::size_t i = 0; i < hex.size(); i += 2) {
-    text += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
-  }
-  return text;
-}
-
-bool FlagOf(const Json& json, const std::string& name) {
-  const Json& field = Field(json, name);
-  if (!field.is_boolean()) Wrong(name, "true or false");
-  return field.get<bool>();
-}
-
-std::int64_t IntegerOf(const Json& json, const std::string& name) {
-  const Json& field = Field(json, name);
-  if (!field.is_number_integer()) Wrong(name, "a whole number");
-  return field.get<std::int64_t>();
-}
-
-double ToNumber(const Json& field, const std::string& name) {
-  if (field.is_number()) return field.get<double>();
-  if (field == "inf") return std::numeric_limits<double>::infinity();
-  if (field == "-inf") return -std::numeric_limits<double>::infinity();
-  Wrong(name, "a number");
-}
-
-double NumberOf(const Json& json, const std::string& name) {
-  return ToNumber(Field(json, name), name);
-}
-
-std::optional<double> OptionalNumberOf(const Json& json,
-                                       const std::string& name) {
-  const Json& field = Field(json, name);
-  if (field.is_null()) return std::nullopt;
-  return ToNumber(field, name);
-}
-
-template <class T>
-T WordOf(const Json& json, const std::string& name,
-         std::optional<T> (*parse)(std::string_view)) {
-  const Json& field = Field(json, name);
-  const auto word =
-      field.is_string() ? parse(field.get<std::string>()) : std::optional<T>();
-  if (!word) Wrong(name, "one of the words of the field");
-  return *word;
-}
-
-core::Measured MeasuredOf(const Json& json, const std::string& name) {
-  const Json& field = Field(json, name);
-  if (field.is_object() && field.contains("absent")) {
-    return core::AbsentBecause(TextOf(field, "absent"));
-  }
-  if (!field.is_object()) Wrong(name, "a value with u, or absent");
-  core::Estimate estimate;
-  estimate.value = ToNumber(Field(field, "value"), name + ".value");
-  estimate.u = ToNumber(Field(field, "u"), name + ".u");
-  if (const auto interval = field.find("interval95"); interval != field.end()) {
-    if (!interval->is_array() || interval->size() != 2) {
-      Wrong(name + ".interval95", "[low, high]");
-    }
-    estimate.interval95 = core::Interval{ToNumber((*interval)[0], name),
-                                         ToNumber((*interval)[1], name)};
-  }
-  return estimate;
 }
 
 core::Body BodyOf(const Json& json) {
@@ -273,7 +114,7 @@ core::ContactRecord ContactOf(const Json& json) {
   for (const auto& budget : db::kBudgets) {
     const std::string name = fmt::format("{}_budget", budget.name);
     const Json& lines = Field(json, name);
-    if (!lines.is_array()) Wrong(name, "an array");
+    if (!lines.is_array()) WrongField(name, "an array");
     for (const auto& line : lines) {
       (contact.*budget.member)
           .push_back({TextOf(line, "source"), NumberOf(line, "u_rad")});
@@ -282,47 +123,27 @@ core::ContactRecord ContactOf(const Json& json) {
   return record;
 }
 
-Json Parsed(std::string_view line, std::string_view schema) {
-  Json json = Json::parse(line, nullptr, false);
-  if (json.is_discarded()) {
-    throw std::invalid_argument("this is not JSON");
-  }
-  const Json& found = Field(json, "schema");
-  if (found != Json(schema)) {
-    throw std::invalid_argument(
-        fmt::format("field 'schema' must be \"{}\"", schema));
-  }
-  return json;
-}
-
-std::string SchemaOf(std::string_view line) {
-  const Json json = Json::parse(line, nullptr, false);
-  if (!json.is_object() || !json.contains("schema")) return "";
-  const Json& schema = json["schema"];
-  return schema.is_string() ? schema.get<std::string>() : "";
-}
-
 }  // namespace
 
 std::string CampaignJson(const core::Campaign& campaign) {
   const Json json = {
-      {"schema", "touchdown.campaign/1"},
-      {"name", Text(campaign.name)},
+      {"schema", kCampaignSchema},
+      {"name", TextJson(campaign.name)},
       {"body", BodyJson(campaign.body)},
-      {"surface", Text(campaign.surface)},
+      {"surface", TextJson(campaign.surface)},
       {"angle_kind", core::Name(campaign.angle_kind)},
-      {"bounce_height_m", Number(campaign.bounce_height_m)},
-      {"speed_min_mps", Number(campaign.speed_min_mps)},
-      {"speed_max_mps", Number(campaign.speed_max_mps)},
-      {"theory_name", Text(campaign.theory_name)},
-      {"theory_boundary_rad", OptionalNumber(campaign.theory_boundary_rad)},
-      {"theory_u_rad", Number(campaign.theory_u_rad)},
-      {"margin_rad", Number(campaign.margin_rad)}};
+      {"bounce_height_m", NumberJson(campaign.bounce_height_m)},
+      {"speed_min_mps", NumberJson(campaign.speed_min_mps)},
+      {"speed_max_mps", NumberJson(campaign.speed_max_mps)},
+      {"theory_name", TextJson(campaign.theory_name)},
+      {"theory_boundary_rad", OptionalNumberJson(campaign.theory_boundary_rad)},
+      {"theory_u_rad", NumberJson(campaign.theory_u_rad)},
+      {"margin_rad", NumberJson(campaign.margin_rad)}};
   return json.dump();
 }
 
 core::Campaign CampaignFromJson(std::string_view line) {
-  const Json json = Parsed(line, "touchdown.campaign/1");
+  const Json json = ParsedLine(line, kCampaignSchema);
   core::Campaign campaign;
   campaign.name = TextOf(json, "name");
   campaign.body = BodyOf(Field(json, "body"));
@@ -356,18 +177,18 @@ std::string HistoryJson(const std::vector<db::Revision>& history) {
   for (std::size_t i = 0; i < history.size(); ++i) {
     const auto& [id, kind, trial] = history[i];
     Json one = {{"revision", trial.revision},
-                {"revision_id", id},
+                {"revision_id", TextJson(id)},
                 {"kind", Name(kind)},
-                {"author", Text(trial.author)},
-                {"reason", Text(trial.reason)},
-                {"recorded_at_utc", trial.recorded_at_utc},
+                {"author", TextJson(trial.author)},
+                {"reason", TextJson(trial.reason)},
+                {"recorded_at_utc", TextJson(trial.recorded_at_utc)},
                 {"changes", Json::array()}};
     if (i > 0) {
       for (const auto& change :
            db::Changes(history[i - 1].trial, history[i].trial)) {
         one["changes"].push_back({{"field", change.field},
-                                  {"from", Text(change.from)},
-                                  {"to", Text(change.to)}});
+                                  {"from", TextJson(change.from)},
+                                  {"to", TextJson(change.to)}});
       }
     }
     revisions.push_back(std::move(one));
@@ -377,7 +198,7 @@ std::string HistoryJson(const std::vector<db::Revision>& history) {
 }
 
 db::Revision RevisionFromJson(std::string_view line) {
-  const Json json = Parsed(line, "touchdown.revision/1");
+  const Json json = ParsedLine(line, "touchdown.revision/1");
   db::Revision revision;
   core::Trial& trial = revision.trial;
   trial.id = TextOf(json, "id");
@@ -400,9 +221,14 @@ db::Revision RevisionFromJson(std::string_view line) {
   trial.angle_kind = WordOf(json, "angle_kind", core::ParseAngleKind);
   trial.set_angle_rad = OptionalNumberOf(json, "set_angle_rad");
   trial.set_speed_mps = OptionalNumberOf(json, "set_speed_mps");
+  // Exports of before have no conditions.
+  const auto conditions = json.find("conditions");
+  if (conditions != json.end() && !conditions->is_null()) {
+    trial.conditions = ConditionsOf(*conditions);
+  }
   const Json& contacts = Field(json, "contacts");
   if (!contacts.is_array() || contacts.empty()) {
-    Wrong("contacts", "an array of at least one contact");
+    WrongField("contacts", "an array of at least one contact");
   }
   trial.first = ContactOf(contacts.front());
   for (std::size_t i = 1; i < contacts.size(); ++i) {
@@ -423,9 +249,12 @@ ExportReader::ExportReader(std::istream& in, std::string name)
     : in_(in), name_(std::move(name)) {
   try {
     if (!NextLine()) Fail("the file is empty; an export was expected");
-    store_uuid_ = TextOf(Parsed(line_, "touchdown.export/1"), "store");
-    while (NextLine()) {
-      if (SchemaOf(line_) != "touchdown.campaign/1") break;
+    store_uuid_ = TextOf(ParsedLine(line_, "touchdown.export/1"), "store");
+    bool more = NextLine();
+    for (; more && SchemaOf(line_) == kEntrySchema; more = NextLine()) {
+      entries_.push_back(EntryFromJson(line_));
+    }
+    for (; more && SchemaOf(line_) == kCampaignSchema; more = NextLine()) {
       campaigns_.push_back(CampaignFromJson(line_));
     }
   } catch (const std::invalid_argument& error) {

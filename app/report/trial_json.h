@@ -16,6 +16,7 @@
 
 #include "touchdown/core/campaign.h"
 #include "touchdown/db/records.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::report {
 
@@ -31,7 +32,8 @@ core::Campaign CampaignFromJson(std::string_view line);
 db::Revision RevisionFromJson(std::string_view line);
 
 // An export: a header line {"schema": "touchdown.export/1", "store": UUID},
-// then a line for each campaign, then a line for each revision, those of one
+// then a line for each version of the register's entries (register_json.h), a
+// line for each campaign, then a line for each revision, those of one
 // trial together and in order.
 void WriteExportHeader(std::ostream& out, const std::string& store_uuid);
 
@@ -39,10 +41,12 @@ void WriteExportHeader(std::ostream& out, const std::string& store_uuid);
 // file and line.
 class ExportReader {
  public:
-  // Reads the header and the campaigns. `name` is the file's, for errors.
+  // Reads the header, the register and the campaigns. `name` is the file's, for
+  // errors.
   ExportReader(std::istream& in, std::string name);
 
   const std::string& store_uuid() const { return store_uuid_; }
+  const std::vector<db::Entry>& entries() const { return entries_; }
   const std::vector<core::Campaign>& campaigns() const { return campaigns_; }
 
   // The revisions of the next trial; nothing at the end.
@@ -57,6 +61,7 @@ class ExportReader {
   std::size_t number_ = 0;
   std::string line_;  // the line read last; empty: none left
   std::string store_uuid_;
+  std::vector<db::Entry> entries_;
   std::vector<core::Campaign> campaigns_;
   std::optional<db::Revision> ahead_;
 };

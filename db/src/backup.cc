@@ -123,13 +123,13 @@ Migration Migrate(const fs::path& path, OpenOptions options) {
     const bool ours =
         connection.Integer("PRAGMA application_id") == kApplicationId;
     if (ours && version() >= 1 && version() < kSchemaVersion) {
+      // They are checked, all of them, before the commit.
+      connection.Execute("PRAGMA foreign_keys = OFF");
       // One transaction for all steps: killed in between, it is the old store.
       Transaction transaction(connection, Transaction::Kind::kWrite);
       // Another process may have been faster.
       migration.from_version = version();
-      for (auto at = migration.from_version; at < kSchemaVersion; ++at) {
-        Upgrade(connection, at);
-      }
+      Upgrade(connection, migration.from_version);
       connection.Execute(
           fmt::format("PRAGMA user_version = {}", kSchemaVersion));
       RequireSound(connection, path);

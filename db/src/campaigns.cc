@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "register_rows.h"
 #include "rows.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/store.h"
@@ -72,24 +73,28 @@ std::string Placeholders(std::string_view names) {
 
 std::optional<std::int64_t> KeepSurface(Connection& connection,
                                         std::string_view name,
-                                        std::string_view uuid) {
+                                        std::string_view uuid,
+                                        std::string_view now_utc) {
   if (name.empty()) return std::nullopt;
-  Statement find(connection, "SELECT id FROM surfaces WHERE name = ?");
+  Statement find(connection,
+                 fmt::format("SELECT id FROM surfaces WHERE name = ? ORDER BY "
+                             "{} LIMIT 1",
+                             kInForceFirst));
   find.Add(name);
   if (find.Step()) return find.TakeInteger();
-  Statement(connection,
-            "INSERT INTO surfaces (uuid, name, condition, friction_absent) "
-            "VALUES (?, ?, 'not recorded', 'not recorded')")
-      .Add(uuid)
-      .Add(name)
-      .Run();
-  return sqlite3_last_insert_rowid(connection.handle());
+  Entry surface = NewEntry(RegisterKind::kSurface, name);
+  surface.id = uuid;
+  surface.version = 1;
+  surface.author = "touchdown";
+  surface.reason = "named by a campaign";
+  surface.recorded_at_utc = now_utc;
+  return InsertEntry(connection, surface);
 }
 
 void InsertCampaign(Connection& connection, const Campaign& campaign,
                     std::string_view uuid, std::string_view now_utc) {
   // The surface takes its UUID from the campaign that first names it.
-  const auto surface = KeepSurface(connection, campaign.surface, uuid);
+  const auto surface = KeepSurface(connection, campaign.surface, uuid, now_utc);
   const std::string names = ConventionNames();
   Statement insert(
       connection,
@@ -154,7 +159,8 @@ void Store::ChangeCampaign(const Campaign& campaign) {
         "first; make a new campaign",
         path().string(), campaign.name, trials));
   }
-  const auto surface = KeepSurface(c, campaign.surface, sources().new_uuid());
+  const auto surface = KeepSurface(c, campaign.surface, sources().new_uuid(),
+                                   sources().now_utc());
   const std::string names = ConventionNames();
   Statement update(
       c, fmt::format("UPDATE campaigns SET ({}) = ({}) WHERE id = ?", names,

@@ -14,11 +14,12 @@ void InsertCampaign(Connection& connection, const core::Campaign& campaign,
 std::optional<core::Campaign> SelectCampaign(Connection& connection,
                                              std::string_view name);
 
-// The row of the surface of that name, made where there is none; nothing for
-// no name.
+// The row of the surface of that name as it is in the register, entered where
+// it is not there; nothing for no name.
 std::optional<std::int64_t> KeepSurface(Connection& connection,
                                         std::string_view name,
-                                        std::string_view uuid);
+                                        std::string_view uuid,
+                                        std::string_view now_utc);
 
 // Equal in every convention.
 bool SameConventions(const core::Campaign& a, const core::Campaign& b);

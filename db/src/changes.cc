@@ -4,23 +4,14 @@
 #include <array>
 #include <utility>
 
+#include "rows.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/records.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::db {
-namespace {
 
-using core::Measured;
-
-constexpr std::array<std::pair<RevisionKind, std::string_view>, 5> kKinds{{
-    {RevisionKind::kLogged, "logged"},
-    {RevisionKind::kCorrected, "corrected"},
-    {RevisionKind::kExcluded, "excluded"},
-    {RevisionKind::kIncluded, "included"},
-    {RevisionKind::kMerged, "merged"},
-}};
-
-std::string Text(const Measured& measured) {
+std::string MeasuredText(const core::Measured& measured) {
   if (!measured) return fmt::format("absent: {}", measured.error().reason);
   std::string text = fmt::format("{} +- {}", measured->value, measured->u);
   if (measured->interval95) {
@@ -29,6 +20,23 @@ std::string Text(const Measured& measured) {
   }
   return text;
 }
+
+std::string RegisteredText(const core::Registered& entry) {
+  if (entry.name.empty()) return "none";
+  return entry.id.empty()
+             ? entry.name
+             : fmt::format("{} ({})", entry.name, entry.id.substr(0, 8));
+}
+
+namespace {
+
+constexpr std::array<std::pair<RevisionKind, std::string_view>, 5> kKinds{{
+    {RevisionKind::kLogged, "logged"},
+    {RevisionKind::kCorrected, "corrected"},
+    {RevisionKind::kExcluded, "excluded"},
+    {RevisionKind::kIncluded, "included"},
+    {RevisionKind::kMerged, "merged"},
+}};
 
 std::string Text(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value) : "none";
@@ -43,6 +51,12 @@ std::string Text(const core::Budget& budget) {
   return text.empty() ? "none" : text;
 }
 
+std::string Text(const core::Measured& measured) {
+  return MeasuredText(measured);
+}
+std::string Text(const core::Registered& entry) {
+  return RegisteredText(entry);
+}
 std::string Text(bool value) { return value ? "yes" : "no"; }
 std::string Text(const std::string& value) { return value; }
 
@@ -83,6 +97,17 @@ class Differences {
               before.contact.*budget.member, after.contact.*budget.member);
     }
   }
+  void CompareConditions(const core::Conditions& before,
+                         const core::Conditions& after) {
+    for (const auto& entry : kConditionEntries) {
+      Compare(Name(entry.kind), before.*entry.member, after.*entry.member);
+    }
+    for (const auto& quantity : kConditionQuantities) {
+      Compare(quantity.name, before.*quantity.member, after.*quantity.member);
+    }
+    CompareWords("anomaly", before.anomaly, after.anomaly);
+    Compare("anomaly_note", before.anomaly_note, after.anomaly_note);
+  }
   void SetPrefix(std::string prefix) { prefix_ = std::move(prefix); }
   void Push(Change change) { changes_.push_back(std::move(change)); }
   std::vector<Change> Done() { return std::move(changes_); }
@@ -122,6 +147,10 @@ std::vector<Change> Changes(const core::Trial& before,
                       after.set_angle_rad);
   differences.Compare("set_speed_mps", before.set_speed_mps,
                       after.set_speed_mps);
+  differences.SetPrefix("conditions: ");
+  differences.CompareConditions(before.conditions.value_or(core::Conditions{}),
+                                after.conditions.value_or(core::Conditions{}));
+  differences.SetPrefix("");
   differences.CompareContacts(before.first, after.first);
   const std::size_t both = std::min(before.later.size(), after.later.size());
   for (std::size_t i = 0; i < both; ++i) {

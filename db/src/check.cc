@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "register_rows.h"
 #include "schema.h"
 #include "statement.h"
 #include "touchdown/db/maintenance.h"
@@ -72,7 +73,7 @@ void CheckChains(Connection& connection, std::vector<std::string>& problems) {
       "GROUP BY t.id HAVING min(number) <> 1 OR max(number) <> count(*)",
       problems);
   // What a revision leans on must be of the same trial, and not younger.
-  for (const char* column : {"statement_id", "exclusion_id"}) {
+  for (const char* column : {"statement_id", "exclusion_id", "conditions_id"}) {
     Collect(connection,
             fmt::format(
                 "SELECT 'revision ' || r.uuid || ': its {0} belongs to another "
@@ -135,6 +136,10 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
     CheckFile(connection, report.problems);
     CheckChains(connection, report.problems);
     report.campaigns = connection.Integer("SELECT count(*) FROM campaigns");
+    for (const RegisterKind kind : kRegisterKinds) {
+      report.register_versions += connection.Integer(
+          fmt::format("SELECT count(*) FROM {}", TableOf(kind).table));
+    }
     report.trials = connection.Integer("SELECT count(*) FROM trials");
     report.revisions = connection.Integer("SELECT count(*) FROM revisions");
     Statement row(connection,

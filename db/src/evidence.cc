@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "register_rows.h"
 #include "rows.h"
 #include "touchdown/core/errors.h"
 
@@ -11,8 +12,9 @@ namespace touchdown::db {
 
 std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row) {
   Statement row(connection,
-                "SELECT number, uuid, statement_id, exclusion_id FROM "
-                "revisions WHERE trial_id = ? ORDER BY number DESC LIMIT 1");
+                "SELECT number, uuid, statement_id, exclusion_id, "
+                "conditions_id FROM revisions WHERE trial_id = ? ORDER BY "
+                "number DESC LIMIT 1");
   row.Add(trial_row);
   if (!row.Step()) return std::nullopt;
   Head head;
@@ -20,6 +22,7 @@ std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row) {
   head.uuid = row.TakeText();
   head.statement_id = row.TakeInteger();
   head.exclusion_id = row.TakeOptionalInteger();
+  head.conditions_id = row.TakeOptionalInteger();
   return head;
 }
 
@@ -167,6 +170,11 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   } else if (trial.excluded) {
     exclusion = row;
   }
+  std::optional<std::int64_t> conditions;
+  if (head) conditions = head->conditions_id;
+  if (revision.own_conditions) {
+    conditions = KeepConditions(connection, row, trial.conditions, conditions);
+  }
   if (own_statement) InsertStatement(connection, row, trial);
   if (exclusion == row) {
     Statement(connection,
@@ -177,8 +185,8 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   }
   Statement(connection,
             "INSERT INTO revisions (id, uuid, trial_id, number, kind, "
-            "statement_id, exclusion_id, author, reason, recorded_at_utc) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+            "statement_id, exclusion_id, author, reason, recorded_at_utc, "
+            "conditions_id) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .Add(row)
       .Add(revision.uuid)
       .Add(trial_row)
@@ -189,6 +197,7 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
       .Add(trial.author)
       .Add(trial.reason)
       .Add(revision.recorded_at_utc)
+      .Add(conditions)
       .Run();
   return number;
 }

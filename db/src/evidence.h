@@ -20,6 +20,7 @@ struct Head {
   std::string uuid;
   std::int64_t statement_id = 0;
   std::optional<std::int64_t> exclusion_id;
+  std::optional<std::int64_t> conditions_id;
 };
 std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row);
 
@@ -59,6 +60,8 @@ struct NewRevision {
   bool own_statement = true;
   // Exclusion of `trial` as it is; else the head's stays in force.
   bool own_exclusion = true;
+  // Conditions of `trial` as they are; else the head's stay in force.
+  bool own_conditions = true;
 };
 
 // Adds the next revision; author and reason are `trial`'s.

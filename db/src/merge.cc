@@ -7,6 +7,7 @@
 
 #include "campaigns.h"
 #include "evidence.h"
+#include "register_rows.h"
 #include "rows.h"
 #include "statement.h"
 #include "touchdown/core/errors.h"
@@ -67,9 +68,58 @@ class Restorer {
     if (!goes_on) Settle(row, *before, *unknown.back());
   }
 
+  // All of the other side's, in the order of AllVersions.
+  void AddRegister(std::span<const Entry> entries) {
+    std::map<std::pair<RegisterKind, std::string>, Diverged> names;
+    for (const Entry& entry : entries) {
+      RequireSound(entry);
+      Diverged& name = names[{entry.kind, entry.name}];
+      name.there = &entry;
+      if (!name.here) name.here = InForce(connection_, entry.kind, entry.name);
+      if (name.here && name.here->id == entry.id) name.goes_on = true;
+      if (HasVersion(connection_, entry.kind, entry.id)) continue;
+      name.added = true;
+      InsertEntry(connection_, entry);
+      ++report_.register_versions_added;
+    }
+    for (const auto& [key, name] : names) {
+      if (!name.added || !name.here || name.goes_on) continue;
+      if (Changes(*name.here, *name.there).empty()) continue;
+      const auto now = InForce(connection_, key.first, key.second);
+      report_.conflicts.push_back(fmt::format(
+          "{} '{}' is described here by {} at {} and there by {} at {}; both "
+          "are kept, the one {} is in force",
+          Name(key.first), key.second, name.here->author,
+          name.here->recorded_at_utc, name.there->author,
+          name.there->recorded_at_utc,
+          now && now->id == name.here->id ? "here" : "there"));
+    }
+  }
+
   MergeReport Done() { return std::move(report_); }
 
  private:
+  // One name of the register, as both sides have it.
+  struct Diverged {
+    std::optional<Entry> here;     // in force before
+    const Entry* there = nullptr;  // the last of the other side
+    bool goes_on = false;          // the other side knew what is in force here
+    bool added = false;
+  };
+
+  void RequireSound(const Entry& entry) const {
+    RequireStorable(entry);
+    if (!IsUuid(entry.id) || !IsUtcStamp(entry.recorded_at_utc) ||
+        entry.version < 1) {
+      throw std::invalid_argument(fmt::format(
+          "{} '{}' has the id '{}', version {} and date '{}', must have a UUID "
+          "in lower case, a number from 1 and a date like "
+          "2026-08-01T09:30:00.125Z",
+          Name(entry.kind), entry.name, entry.id, entry.version,
+          entry.recorded_at_utc));
+    }
+  }
+
   bool Known(std::string_view uuid) {
     Statement row(connection_, "SELECT 1 FROM revisions WHERE uuid = ?");
     row.Add(uuid);
@@ -207,10 +257,12 @@ class Restorer {
 }  // namespace
 
 MergeReport Restore(Store& into, std::string_view source,
+                    std::span<const Entry> entries,
                     std::span<const core::Campaign> campaigns,
                     const NextHistory& next) {
   Transaction transaction(into.connection(), Transaction::Kind::kWrite);
   Restorer restorer(into, source);
+  restorer.AddRegister(entries);
   for (const auto& campaign : campaigns) restorer.AddCampaign(campaign);
   while (const auto history = next()) restorer.Add(*history);
   transaction.Commit();
@@ -227,6 +279,7 @@ MergeReport Merge(Store& into, const Store& from) {
   Transaction snapshot(from.connection(), Transaction::Kind::kRead);
   Transaction transaction(into.connection(), Transaction::Kind::kWrite);
   Restorer restorer(into, from.uuid());
+  restorer.AddRegister(VersionsIn(from.connection()));
   for (const auto& campaign : from.Campaigns()) restorer.AddCampaign(campaign);
   VisitHistories(from.connection(), [&](const std::vector<Revision>& history) {
     restorer.Add(history);

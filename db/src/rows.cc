@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "register_rows.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/quantities.h"
 
@@ -18,6 +19,20 @@ using core::ContactRecord;
 using core::Estimate;
 using core::Interval;
 using core::Measured;
+
+[[noreturn]] void Refuse(std::string_view field, double value,
+                         std::string_view must) {
+  throw std::invalid_argument(
+      fmt::format("{} is {}, must be {}", field, value, must));
+}
+
+void RequireNumber(std::string_view field, double value) {
+  if (std::isnan(value)) {
+    Refuse(field, value, "a number, or absent with a reason");
+  }
+}
+
+}  // namespace
 
 void AddMeasured(Statement& statement, const Measured& measured) {
   if (!measured) {
@@ -57,6 +72,22 @@ std::string Placeholders(std::size_t count) {
   for (std::size_t i = 1; i < count; ++i) text += ", ?";
   return text;
 }
+
+void RequireMeasured(std::string_view field, const Measured& measured) {
+  if (!measured) return;
+  RequireNumber(field, measured->value);
+  if (!(measured->u >= 0.0)) {
+    Refuse(fmt::format("u of {}", field), measured->u, "at least 0");
+  }
+  if (measured->interval95 &&
+      !(measured->interval95->low <= measured->interval95->high)) {
+    Refuse(fmt::format("lower end of the interval of {}", field),
+           measured->interval95->low,
+           fmt::format("at most its upper end {}", measured->interval95->high));
+  }
+}
+
+namespace {
 
 // A word of a coded column; the file's CHECK lets no other in.
 template <class T>
@@ -152,32 +183,6 @@ ContactRecord TakeContact(Connection& connection, Statement& row) {
 
 // --- what may not enter ------------------------------------------------------
 
-[[noreturn]] void Refuse(std::string_view field, double value,
-                         std::string_view must) {
-  throw std::invalid_argument(
-      fmt::format("{} is {}, must be {}", field, value, must));
-}
-
-void RequireNumber(std::string_view field, double value) {
-  if (std::isnan(value)) {
-    Refuse(field, value, "a number, or absent with a reason");
-  }
-}
-
-void RequireMeasured(std::string_view field, const Measured& measured) {
-  if (!measured) return;
-  RequireNumber(field, measured->value);
-  if (!(measured->u >= 0.0)) {
-    Refuse(fmt::format("u of {}", field), measured->u, "at least 0");
-  }
-  if (measured->interval95 &&
-      !(measured->interval95->low <= measured->interval95->high)) {
-    Refuse(fmt::format("lower end of the interval of {}", field),
-           measured->interval95->low,
-           fmt::format("at most its upper end {}", measured->interval95->high));
-  }
-}
-
 void RequireBody(const core::Body& body) {
   for (const auto& quantity : kBodyQuantities) {
     RequireMeasured(fmt::format("body.{}", quantity.name),
@@ -215,6 +220,7 @@ void RequireStorable(const core::Trial& trial) {
   RequireBody(trial.body);
   RequireContact(trial.first);
   for (const auto& record : trial.later) RequireContact(record);
+  if (trial.conditions) RequireStorable(*trial.conditions);
   if (trial.set_angle_rad) RequireNumber("set_angle_rad", *trial.set_angle_rad);
   if (trial.set_speed_mps) RequireNumber("set_speed_mps", *trial.set_speed_mps);
   if (trial.clip.size_bytes < 0) {
@@ -327,7 +333,8 @@ std::string SelectRevisions(bool with_documents) {
       "SELECT r.uuid, r.kind, r.statement_id, t.uuid, ifnull(c.name, ''), "
       "t.origin, s.clip_path, ifnull(k.clip_id, ''), ifnull(k.sha256, ''), "
       "ifnull(k.size_bytes, 0), s.angle_kind, {}, s.set_angle_rad, "
-      "s.set_speed_mps, r.number, r.author, r.reason, r.recorded_at_utc, "
+      "s.set_speed_mps, r.conditions_id, r.number, r.author, r.reason, "
+      "r.recorded_at_utc, "
       "s.software_version, s.options_hash, r.exclusion_id IS NOT NULL, "
       "ifnull(x.reason, ''), {} "
       "FROM trials t "
@@ -392,6 +399,9 @@ RevisionRow TakeRevision(Connection& connection, Statement& row) {
   trial.body = TakeBody(row);
   trial.set_angle_rad = row.TakeOptionalReal();
   trial.set_speed_mps = row.TakeOptionalReal();
+  if (const auto conditions = row.TakeOptionalInteger()) {
+    trial.conditions = SelectConditions(connection, *conditions);
+  }
   trial.revision = row.TakeInteger();
   trial.author = row.TakeText();
   trial.reason = row.TakeText();

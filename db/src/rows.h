@@ -18,6 +18,19 @@ void InsertStatement(Connection& connection, std::int64_t revision_id,
 
 // The five columns of a measured number: value, _u, _low, _high, _absent.
 std::string MeasuredNames(std::string_view name);
+void AddMeasured(Statement& statement, const core::Measured& measured);
+core::Measured TakeMeasured(Statement& statement);
+// "?, ?, ?": `count` of them, at least one.
+std::string Placeholders(std::size_t count);
+
+// Throws std::invalid_argument naming `field` if the value is NaN, u negative
+// or the interval upside down.
+void RequireMeasured(std::string_view field, const core::Measured& measured);
+
+// For a person: "0.35 +- 0.001", "absent: not recorded"; "spring 3 (f81d4fae)",
+// "none".
+std::string MeasuredText(const core::Measured& measured);
+std::string RegisteredText(const core::Registered& entry);
 
 // Columns of a body, in the order in which AddBody and TakeBody go.
 std::string BodyNames(std::string_view prefix);
@@ -26,7 +39,8 @@ core::Body TakeBody(Statement& statement);
 
 // A query of trials: "SELECT <these> FROM <these>"; append WHERE and ORDER BY.
 // t = trials, c = campaigns, k = clips, r = revisions (any number of a trial),
-// s = statements in force, x = exclusions in force.
+// s = statements in force, x = exclusions in force. A trial's contacts, budgets
+// and conditions are fetched beside it.
 std::string SelectRevisions(bool with_documents);
 
 // The current revision of each trial that passes the filter. Parameters: the

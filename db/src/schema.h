@@ -15,14 +15,15 @@ inline constexpr std::int64_t kApplicationId = 0x54445354;
 // has a step from its predecessor in Upgrade and a fixture in tests/db/data.
 //   1  the first
 //   2  no clip, campaign or contact can be replaced by another program either
-inline constexpr std::int64_t kSchemaVersion = 2;
+//   3  the register is kept in versions; a revision knows its conditions
+inline constexpr std::int64_t kSchemaVersion = 3;
 
 // All tables, indexes and triggers of version kSchemaVersion.
 std::string SchemaSql();
 
-// Brings the tables of version `from_version` to the next one. Call inside a
-// write transaction. A step is frozen with the version it leads to: where a
-// later version changes what a step uses, the step keeps the text of its time.
+// Brings the tables of version `from_version` to this program's, step by step;
+// triggers are made anew at the end. Call inside a write transaction, foreign
+// keys off: tables go and come back meanwhile.
 void Upgrade(Connection& connection, std::int64_t from_version);
 
 // Makes the tables in a file that has none. Call inside a write transaction.

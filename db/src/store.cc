@@ -211,6 +211,8 @@ Logged Store::Impl::Log(const core::Trial& trial) {
   revision.recorded_at_utc = now;
   // Only a person includes again what a person excluded.
   revision.own_exclusion = !head || (trial.excluded && !head->exclusion_id);
+  // Whoever states none, as a re-analysis does, leaves those that were stated.
+  revision.own_conditions = trial.conditions.has_value();
   const std::int64_t number =
       AddRevision(connection, row->row, head, revision, trial);
   return {row->uuid, number, is_new};
@@ -298,6 +300,7 @@ Logged Store::Impl::Mark(std::string_view id, std::string_view who,
   revision.kind = excluded ? RevisionKind::kExcluded : RevisionKind::kIncluded;
   revision.recorded_at_utc = sources.now_utc();
   revision.own_statement = false;
+  revision.own_conditions = false;
   const std::int64_t number =
       AddRevision(connection, row->row, head, revision, act);
   transaction.Commit();

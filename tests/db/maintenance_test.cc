@@ -53,9 +53,9 @@ TEST(AppendOnly, NoOrdinaryStatementChangesOrRemovesEvidence) {
     Fill(store);
   }
   Tamper(path,
-         "INSERT INTO conditions (revision_id, anomaly, "
+         "INSERT INTO conditions (revision_id, anomaly, anomaly_note, "
          "temperature_k_absent, relative_humidity_absent) VALUES (1, "
-         "'none', 'not read', 'not read')");
+         "'none', '', 'not read', 'not read')");
   for (const std::string table :
        {"trials", "revisions", "statements", "contacts", "budget_lines",
         "exclusions", "conditions"}) {

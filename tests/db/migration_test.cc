@@ -14,6 +14,7 @@
 #include "tests/db/fixture.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::db {
 namespace {
@@ -93,6 +94,13 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   EXPECT_EQ(trials[2].first.contact.corner, core::Corner::kLeading);
   EXPECT_EQ(store.FindCampaign("asphalt")->theory_boundary_rad,
             11.8 * core::kDegree);
+  if (GetParam() >= 3) {
+    EXPECT_EQ(trials[0].conditions->spring.name, "S 3");
+    const auto springs = VersionsOf(store, RegisterKind::kSpring, "S 3");
+    ASSERT_EQ(springs.size(), 2u);
+    EXPECT_EQ(trials[0].conditions->spring.id, springs[0].id);
+    EXPECT_EQ(springs[1].measured.at("stiffness_n_per_m")->value, 1150.0);
+  }
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);
 }
@@ -107,6 +115,48 @@ TEST_P(MigrateFrom, EndsWithTodaysSchema) {
   Migrate(folder / "old.db");
   OpenFixed(folder / "new.db");
   EXPECT_EQ(SchemaOf(folder / "old.db"), SchemaOf(folder / "new.db"));
+}
+
+// Version 2 had tables for a register, which other programs could fill.
+TEST(Migrate, KeepsTheRegisterOfVersion2) {
+  Folder folder;
+  const auto path = folder / "lab.db";
+  Load(path, "v2.sql");
+  Tamper(path,
+         "PRAGMA foreign_keys = ON;"
+         "INSERT INTO rigs (id, uuid, name, note) VALUES "
+         "(7, '00000000-0000-4000-8000-000000000001', 'R1', 'the old one');"
+         "INSERT INTO springs (uuid, label, rig_id, coil_diameter_kind, "
+         "wire_diameter_m_absent, coil_diameter_m_absent, active_coils_absent, "
+         "shear_modulus_pa_absent, stiffness_n_per_m, stiffness_n_per_m_u) "
+         "VALUES ('00000000-0000-4000-8000-000000000002', 'S 3', 7, 'outer', "
+         "'?', '?', '?', '?', 1200.0, 2.0);"
+         "INSERT INTO calibrations (uuid, name, kind, made_at_utc, "
+         "document_json) VALUES ('00000000-0000-4000-8000-000000000003', "
+         "'C', 'lens', '2026-08-01T09:30:00.125Z', '{}');"
+         "INSERT INTO conditions (revision_id, rig_id, spring_id, surface_id, "
+         "anomaly, temperature_k, temperature_k_u, relative_humidity_absent) "
+         "VALUES (2, 7, 1, 1, 'light', 294.0, 0.5, 'broken')");
+  Migrate(path);
+  const Store store = Store::Open(path, OpenMode::kRead);
+  EXPECT_THAT(Check(store).problems, IsEmpty());
+  const auto spring = FindEntry(store, RegisterKind::kSpring, "S 3");
+  ASSERT_TRUE(spring);
+  EXPECT_EQ(spring->version, 1);
+  EXPECT_EQ(spring->recorded_at_utc, "2026-11-21T08:25:00.720Z");
+  EXPECT_EQ(spring->texts.at("coil_diameter_kind"), "outer");
+  EXPECT_EQ(spring->measured.at("stiffness_n_per_m")->value, 1200.0);
+  EXPECT_EQ(spring->entries.at("rig").name, "R1");
+  const auto calibration = FindEntry(store, RegisterKind::kCalibration, "C");
+  EXPECT_EQ(calibration->texts.at("contents"), "lens");
+  EXPECT_EQ(calibration->texts.at("document"), "{}");
+  const auto trials = store.Trials();
+  EXPECT_FALSE(trials[0].conditions);
+  ASSERT_TRUE(trials[1].conditions);  // stated with its first revision of three
+  EXPECT_EQ(trials[1].conditions->spring.id, spring->id);
+  EXPECT_EQ(trials[1].conditions->surface.name, "asphalt, dry");
+  EXPECT_EQ(trials[1].conditions->anomaly, core::Anomaly::kLight);
+  EXPECT_EQ(trials[1].conditions->temperature_k->value, 294.0);
 }
 
 // A step that fails half way leaves the old store.

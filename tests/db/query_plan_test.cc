@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "db/src/register_rows.h"
 #include "db/src/rows.h"
 #include "tests/db/fixture.h"
 
@@ -101,6 +102,16 @@ TEST_F(QueryPlan, OneTrialIsFoundByItsIndex) {
 
 TEST_F(QueryPlan, WhatWasLoggedOfAClipIsFoundByItsIndex) {
   EXPECT_THAT(Of(std::string(LastLoggedSql())), Not(HasSubstr("SCAN")));
+}
+
+TEST_F(QueryPlan, AnEntryInForceIsFoundByItsIndex) {
+  for (const RegisterKind kind : kRegisterKinds) {
+    const std::string table(TableOf(kind).table);
+    EXPECT_EQ(Of("SELECT id FROM " + table + " WHERE name = ? ORDER BY " +
+                 std::string(kInForceFirst) + " LIMIT 1"),
+              "SEARCH " + table + " USING COVERING INDEX " + table +
+                  "_by_name (name=?)\n");
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <sstream>
 #include <string>
 
+#include "app/report/register_json.h"
 #include "app/report/trial_json.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -11,6 +12,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   std::istringstream in{std::string(fuzz::Text(data, size))};
   fuzz::Answers([&] {
     report::ExportReader reader(in, "export.jsonl");
+    for (const auto& entry : reader.entries()) {
+      const std::string line = report::EntryJson(entry);
+      fuzz::Require(report::EntryJson(report::EntryFromJson(line)) == line,
+                    "a version of the register comes back the same");
+    }
     for (const auto& campaign : reader.campaigns()) {
       const std::string line = report::CampaignJson(campaign);
       fuzz::Require(

@@ -37,6 +37,7 @@ class RandomTrials {
     for (auto& later : trial.later) later = Contact();
     if (Below(2) == 0) trial.set_angle_rad = Number();
     if (Below(2) == 0) trial.set_speed_mps = Number();
+    if (Below(2) == 0) trial.conditions = Conditions();
     trial.author = "a" + Text();
     trial.reason = Text();
     trial.software_version = Text();
@@ -45,6 +46,25 @@ class RandomTrials {
     trial.excluded = Below(4) == 0;
     if (trial.excluded) trial.exclusion_reason = Text();
     return trial;
+  }
+
+  // Without names of a register, which a store would have to know.
+  core::Conditions Conditions() {
+    core::Conditions conditions;
+    const double share = static_cast<double>(engine_() >> 11) * 0x1p-53;
+    if (Below(2) == 0) {
+      conditions.temperature_k =
+          core::Estimate{250.0 + 60.0 * share, share, std::nullopt};
+    } else {
+      conditions.temperature_k = core::AbsentBecause(Text());
+    }
+    if (Below(2) == 0) {
+      conditions.relative_humidity =
+          core::Estimate{share, 0.0, core::Interval{0.0, share}};
+    }
+    conditions.anomaly = static_cast<core::Anomaly>(Below(10));
+    conditions.anomaly_note = "n" + Text();
+    return conditions;
   }
 
   core::Measured Measured() {

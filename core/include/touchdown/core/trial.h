@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "touchdown/core/body.h"
+#include "touchdown/core/conditions.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/words.h"
 
@@ -119,6 +120,8 @@ struct Trial {
 
   std::optional<double> set_angle_rad;  // set-point of the varied angle
   std::optional<double> set_speed_mps;  // set-point of the launch speed
+
+  std::optional<Conditions> conditions;  // nothing: none were ever stated
 
   std::int64_t revision = 0;     // 1 for the first, given by the store
   std::string author;            // program or person who states this

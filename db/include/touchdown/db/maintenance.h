@@ -12,6 +12,7 @@
 
 #include "touchdown/core/campaign.h"
 #include "touchdown/db/records.h"
+#include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::db {
@@ -34,6 +35,7 @@ struct CheckReport {
   // Files whose bytes are no longer those of the clip that was analysed: not a
   // fault of the store, but of the evidence.
   std::vector<std::string> clips_changed;
+  std::int64_t register_versions = 0;
   std::int64_t campaigns = 0;
   std::int64_t trials = 0;
   std::int64_t revisions = 0;
@@ -58,12 +60,16 @@ struct MergeReport {
   std::int64_t revisions_added = 0;  // those of new trials included
   std::int64_t revisions_known = 0;  // already here: a merge can be repeated
   std::int64_t campaigns_added = 0;
+  std::int64_t register_versions_added = 0;
   // One line each: what the two stores say differently, and what was done.
   // Nothing of either store is dropped.
   std::vector<std::string> conflicts;
 };
 
 // Adds everything that `from` holds and `into` does not, in one transaction.
+//   - Versions of the register's entries are all kept; where both stores
+//     changed an entry, that of the higher number, then the later one, is in
+//     force.
 //   - A campaign of the same name with other conventions comes in under the
 //     name "NAME (first 8 characters of the other store's id)".
 //   - Where a trial was revised in both stores, both chains are kept and the
@@ -73,10 +79,12 @@ struct MergeReport {
 MergeReport Merge(Store& into, const Store& from);
 
 // The same from anywhere: `next` gives the history of one trial after the
-// other, oldest revision first, and nothing at the end. `source` names the
-// other side in new campaign names.
+// other, oldest revision first, and nothing at the end; `entries` are versions
+// of the register in the order of AllVersions. `source` names the other side in
+// new campaign names.
 using NextHistory = std::function<std::optional<std::vector<Revision>>()>;
 MergeReport Restore(Store& into, std::string_view source,
+                    std::span<const Entry> entries,
                     std::span<const core::Campaign> campaigns,
                     const NextHistory& next);
 

@@ -1,0 +1,334 @@
+// register add|change|list|show: rigs, cameras, springs, calibrations, bodies,
+// surfaces, operators.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/command.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/cli/values.h"
+#include "app/report/edge_unit.h"
+#include "app/report/register_json.h"
+#include "touchdown/calib/calibration_file.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/db/register.h"
+#include "touchdown/rig/description.h"
+#include "touchdown/vision/clip_digest.h"
+
+namespace touchdown::cli {
+namespace {
+
+using db::Entry;
+using db::FieldType;
+using db::RegisterField;
+using db::RegisterKind;
+
+constexpr const char* kKindWords =
+    "rig, camera, spring, calibration, body, surface or operator";
+
+// --- what an entry says ------------------------------------------------------
+
+// What is taken from --file, and from nowhere else.
+bool IsOfFile(const RegisterField& field) {
+  return field.name == "document" || field.name == "sha256";
+}
+
+bool HasFile(RegisterKind kind) {
+  return std::ranges::any_of(db::FieldsOf(kind), IsOfFile);
+}
+
+std::string EdgeName(const RegisterField& field) {
+  const report::EdgeUnit unit = report::AtTheEdge(field.name);
+  return unit.stem + unit.suffix;
+}
+
+std::string FlagName(const RegisterField& field) {
+  std::string flag = "--" + EdgeName(field);
+  std::ranges::replace(flag, '_', '-');
+  return flag;
+}
+
+std::string Help(const RegisterField& field) {
+  std::string help(field.meaning);
+  if (field.type == FieldType::kWord) {
+    help +=
+        fmt::format(": {}, other, not applicable or not recorded", field.words);
+  } else if (field.type == FieldType::kMeasured) {
+    help += ", as 40+-0.02, or absent:REASON";
+  }
+  return help;
+}
+
+struct EntryFlags {
+  std::string db;
+  std::string name;
+  std::string by;
+  std::string why;
+  std::string file;
+  std::map<std::string, std::optional<std::string>, std::less<>> fields;
+  bool json = false;
+};
+
+std::string WholeText(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// rig.toml or a calibration file, whole; refused unless it can be read as one.
+void ApplyFile(const std::string& file, Entry& entry) {
+  if (entry.kind == RegisterKind::kRig) {
+    rig::ReadDescription(file);
+  } else {
+    const calib::Calibration calibration = calib::ReadCalibration(file);
+    const int parts = (calibration.lens ? 1 : 0) + (calibration.scale ? 1 : 0) +
+                      (calibration.ground ? 1 : 0);
+    entry.texts["contents"] = parts > 1           ? "several"
+                              : calibration.lens  ? "lens"
+                              : calibration.scale ? "scale"
+                                                  : "ground";
+    entry.texts["made_on"] = calibration.date;
+  }
+  entry.texts["document"] = WholeText(file);
+  entry.texts["sha256"] = vision::Sha256(file);
+}
+
+void Apply(const EntryFlags& flags, Entry& entry) {
+  if (!flags.file.empty()) ApplyFile(flags.file, entry);
+  for (const RegisterField& field : db::FieldsOf(entry.kind)) {
+    const auto given = flags.fields.find(field.name);
+    if (given == flags.fields.end() || !given->second) continue;
+    const std::string& text = *given->second;
+    const std::string key(field.name);
+    switch (field.type) {
+      case FieldType::kText:
+      case FieldType::kWord:
+        entry.texts[key] = text;
+        break;
+      case FieldType::kMeasured:
+        entry.measured.insert_or_assign(
+            key, ParseMeasured(FlagName(field), text,
+                               report::AtTheEdge(field.name).factor));
+        break;
+      case FieldType::kEntry:
+        entry.entries[key] = {text, ""};
+        break;
+    }
+  }
+  entry.author = flags.by;
+  entry.reason = flags.why;
+}
+
+// --- what is printed ---------------------------------------------------------
+
+std::string FieldText(const Entry& entry, const RegisterField& field) {
+  const std::string key(field.name);
+  switch (field.type) {
+    case FieldType::kMeasured: {
+      const core::Measured& number = entry.measured.at(key);
+      return number ? WithU(number, report::AtTheEdge(field.name).factor)
+                    : "absent: " + Printable(number.error().reason);
+    }
+    case FieldType::kEntry:
+      return Printable(entry.entries.at(key).name);
+    case FieldType::kText:
+    case FieldType::kWord:
+      break;
+  }
+  const std::string& text = entry.texts.at(key);
+  return field.name == "document" && !text.empty()
+             ? fmt::format("{} bytes, in --json", text.size())
+             : Printable(text);
+}
+
+std::string VersionText(const Entry& entry) {
+  return fmt::format("{}, {} by {}{}{}", entry.version, entry.recorded_at_utc,
+                     Printable(entry.author), entry.reason.empty() ? "" : ": ",
+                     Printable(entry.reason));
+}
+
+std::string EntryText(const Entry& entry) {
+  std::vector<std::vector<std::string>> rows = {
+      {std::string(Name(entry.kind)), Printable(entry.name)},
+      {"version", VersionText(entry)},
+      {"id", entry.id}};
+  for (const RegisterField& field : db::FieldsOf(entry.kind)) {
+    const std::string text = FieldText(entry, field);
+    if (!text.empty()) rows.push_back({EdgeName(field), text});
+  }
+  return Aligned(rows);
+}
+
+std::string HistoryText(const std::vector<Entry>& versions) {
+  std::string text = "history\n";
+  for (std::size_t i = 0; i < versions.size(); ++i) {
+    text += fmt::format("  {}\n", VersionText(versions[i]));
+    if (i == 0) continue;
+    for (const auto& change : db::Changes(versions[i - 1], versions[i])) {
+      text += fmt::format("       {}: {} -> {}\n", change.field,
+                          Printable(change.from), Printable(change.to));
+    }
+  }
+  return text;
+}
+
+void Print(const Entry& entry, bool json) {
+  if (json) {
+    fmt::print("{}\n", report::EntryJson(entry));
+  } else {
+    fmt::print("{}", EntryText(entry));
+  }
+}
+
+// --- commands ----------------------------------------------------------------
+
+int Add(const EntryFlags& flags, RegisterKind kind) {
+  Entry entry = db::NewEntry(kind, flags.name);
+  Apply(flags, entry);
+  // A store is made only for what has been found right.
+  db::RequireStorable(entry);
+  const bool refers = std::ranges::any_of(entry.entries, [](const auto& field) {
+    return !field.second.name.empty();
+  });
+  auto store = db::Store::Open(
+      flags.db, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
+  Print(db::AddEntry(store, entry), flags.json);
+  return 0;
+}
+
+Entry RequireEntry(const db::Store& store, RegisterKind kind,
+                   const std::string& name) {
+  if (auto entry = db::FindEntry(store, kind, name)) return *std::move(entry);
+  throw core::StoreError(
+      fmt::format("{}: there is no {} '{}'; see `touchdown register list`",
+                  store.path().string(), Name(kind), name));
+}
+
+int Change(const EntryFlags& flags, RegisterKind kind) {
+  auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  Entry entry = RequireEntry(store, kind, flags.name);
+  Apply(flags, entry);
+  Print(db::ChangeEntry(store, entry), flags.json);
+  return 0;
+}
+
+struct LookFlags {
+  std::string db;
+  std::string kind;
+  std::string name;
+  bool history = false;
+  bool json = false;
+};
+
+RegisterKind KindOf(const std::string& word) {
+  return ParseWord<RegisterKind>("KIND", word, db::ParseRegisterKind,
+                                 kKindWords);
+}
+
+int List(const LookFlags& flags) {
+  std::vector<RegisterKind> kinds(db::kRegisterKinds.begin(),
+                                  db::kRegisterKinds.end());
+  if (!flags.kind.empty()) kinds = {KindOf(flags.kind)};
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  std::vector<std::vector<std::string>> rows = {
+      {"kind", "name", "version", "since", "by"}};
+  for (const RegisterKind kind : kinds) {
+    for (const Entry& entry : db::Entries(store, kind)) {
+      if (flags.json) fmt::print("{}\n", report::EntryJson(entry));
+      rows.push_back({std::string(Name(kind)), Printable(entry.name),
+                      fmt::format("{}", entry.version), entry.recorded_at_utc,
+                      Printable(entry.author)});
+    }
+  }
+  if (!flags.json) fmt::print("{}", Aligned(rows));
+  return 0;
+}
+
+int Show(const LookFlags& flags) {
+  const RegisterKind kind = KindOf(flags.kind);
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  const Entry entry = RequireEntry(store, kind, flags.name);
+  const auto versions = db::VersionsOf(store, kind, flags.name);
+  if (flags.json && flags.history) {
+    for (const Entry& version : versions) Print(version, true);
+    return 0;
+  }
+  Print(entry, flags.json);
+  if (flags.history) fmt::print("{}", HistoryText(versions));
+  return 0;
+}
+
+// `register add` or `register change`, with a subcommand for each kind.
+void AddEntryCommands(CLI::App& parent, const std::string& verb,
+                      const std::string& about, Action& action,
+                      int (*run)(const EntryFlags&, RegisterKind)) {
+  CLI::App* command = parent.add_subcommand(verb, about);
+  command->require_subcommand(1);
+  for (const RegisterKind kind : db::kRegisterKinds) {
+    auto flags = std::make_shared<EntryFlags>();
+    CLI::App* one = command->add_subcommand(
+        std::string(Name(kind)), fmt::format("{} a {}", verb, Name(kind)));
+    one->add_option("NAME", flags->name, "as the lab calls it")->required();
+    AddDbFlag(*one, flags->db);
+    one->add_option("--by", flags->by, "who states this")->required();
+    one->add_option("--why", flags->why, "the reason")
+        ->required(verb == "change");
+    for (const RegisterField& field : db::FieldsOf(kind)) {
+      if (IsOfFile(field)) continue;
+      one->add_option(FlagName(field), flags->fields[std::string(field.name)],
+                      Help(field));
+    }
+    if (HasFile(kind)) {
+      one->add_option("--file", flags->file,
+                      kind == RegisterKind::kRig
+                          ? "its rig.toml, which is kept whole"
+                          : "a file of `touchdown calibrate`, which is kept "
+                            "whole");
+    }
+    one->add_flag("--json", flags->json, "one JSON line");
+    one->callback([flags, kind, run, &action] {
+      action = [flags, kind, run] { return run(*flags, kind); };
+    });
+  }
+}
+
+}  // namespace
+
+void AddRegister(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "register",
+      "the lab's rigs, cameras, springs, calibrations, bodies, surfaces and "
+      "operators");
+  command->require_subcommand(1);
+  AddEntryCommands(*command, "add", "a new entry", action, Add);
+  AddEntryCommands(*command, "change",
+                   "a further version of an entry; nothing is overwritten",
+                   action, Change);
+  auto flags = std::make_shared<LookFlags>();
+  CLI::App* list = command->add_subcommand("list", "what is in the register");
+  list->add_option("KIND", flags->kind, kKindWords);
+  AddDbFlag(*list, flags->db);
+  list->add_flag("--json", flags->json, "one JSON line for each");
+  list->callback(
+      [flags, &action] { action = [flags] { return List(*flags); }; });
+  CLI::App* show = command->add_subcommand("show", "one entry");
+  show->add_option("KIND", flags->kind, kKindWords)->required();
+  show->add_option("NAME", flags->name, "of the entry")->required();
+  AddDbFlag(*show, flags->db);
+  show->add_flag("--history", flags->history, "who changed what, when and why");
+  show->add_flag("--json", flags->json, "one JSON line for each version");
+  show->callback(
+      [flags, &action] { action = [flags] { return Show(*flags); }; });
+}
+
+}  // namespace touchdown::cli

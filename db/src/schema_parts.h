@@ -1,0 +1,14 @@
+// The parts of the schema, each a subject of its own.
+#pragma once
+
+#include <string>
+
+namespace touchdown::db {
+
+// The lab's register, and the conditions that refer to it.
+std::string RegisterSql();
+
+// What keeps evidence from being changed or removed.
+std::string TriggersSql();
+
+}  // namespace touchdown::db
