@@ -17,7 +17,8 @@ std::vector<Table> MakeTable1(std::span<const Group> groups,
 
 // The group's own pages (group_section.cc).
 Section MakeGroupSection(const Group& group, std::span<const Group> groups,
-                         std::span<const core::Trial> trials);
+                         std::span<const core::Trial> trials,
+                         const ReportInput& input);
 
 // The numbers of a group, in the order in which they should be read
 // (group_statistics.cc).
@@ -26,11 +27,14 @@ std::vector<Block> MakeStatistics(const Group& group);
 // Every trial of the group, its set-points, and what was left out
 // (trial_tables.cc).
 std::vector<Block> MakeTrialTables(const Group& group,
-                                   std::span<const core::Trial> trials);
+                                   std::span<const core::Trial> trials,
+                                   const ReportInput& input);
 
-// Labels of two kinds, budget, calibration and software (evidence_tables.cc).
+// Labels of two kinds, budget, rig, calibration and software
+// (evidence_tables.cc).
 std::vector<Block> MakeEvidence(const Group& group,
-                                std::span<const core::Trial> trials);
+                                std::span<const core::Trial> trials,
+                                const ReportInput& input);
 
 // The group's plot with its text (group_figure.cc). `index` makes identifiers
 // unique.

@@ -3,16 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 
 #include "app/report/boundary_json.h"
 #include "app/report/content.h"
 #include "app/report/document.h"
 #include "app/report/format.h"
+#include "app/report/text.h"
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -55,16 +54,6 @@ Section MakeFront(std::span<const Group> groups,
     out.push_back(MakeFigure(group, ++figures));
   }
   return section;
-}
-
-// FNV-1a, 64 bits: tells two sets of trials apart in print; no defence against
-// forgery.
-std::uint64_t Digest(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  }
-  return hash;
 }
 
 Section MakeMethods(const ReportInput& input, const std::string& csv) {
@@ -126,7 +115,7 @@ Report MakeReport(const ReportInput& input) {
     document.sections.push_back(MakeFront(same, trials, figures));
   }
   for (const Group& group : groups) {
-    document.sections.push_back(MakeGroupSection(group, groups, trials));
+    document.sections.push_back(MakeGroupSection(group, groups, trials, input));
   }
   document.sections.push_back(MakePaperSection());
   const std::string csv = MakeCsv(groups, trials);
