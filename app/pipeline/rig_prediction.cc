@@ -160,6 +160,9 @@ report::RigUsed PredictTrials(const std::filesystem::path& rig_file,
        fmt::format("{} to {} mm",
                    report::Plain(rig.muzzle_height_min_m / kMillimetre),
                    report::Plain(rig.muzzle_height_max_m / kMillimetre)));
+  if (rig.body) {
+    fact("its body", std::string(core::Name(rig.body->kind)));
+  }
   // One plan for all trials of one set-point: a campaign has few.
   std::map<std::tuple<double, double, core::AngleKind, core::BodyKind, int>,
            Planned>

@@ -35,6 +35,7 @@ td { border-bottom: 1px solid var(--line); padding: 3px 12px 3px 0;
   vertical-align: top; }
 th.num { text-align: right; }
 td.num { text-align: right; white-space: nowrap; }
+td.long { white-space: normal; min-width: 14ch; }
 td.muted { overflow-wrap: anywhere; min-width: 8ch; }
 td.muted:last-child { min-width: 16ch; }
 .slide { color: var(--slide); }
@@ -85,6 +86,8 @@ summary { cursor: pointer; color: var(--soft); }
 
 // Tables of so few rows are not split between pages.
 constexpr std::size_t kKeepTogether = 12;
+// Longer cells of numbers are reasons why there is none: they may be broken.
+constexpr std::size_t kLongNumber = 28;
 
 std::string_view ClassOf(Tone tone) {
   switch (tone) {
@@ -152,6 +155,7 @@ class Writer {
         std::string classes(ClassOf(row[i].tone));
         if (i < table.columns.size() && table.columns[i].numeric) {
           classes += classes.empty() ? "num" : " num";
+          if (row[i].text.size() > kLongNumber) classes += " long";
         }
         out_ += classes.empty() ? "<td>"
                                 : fmt::format("<td class=\"{}\">", classes);

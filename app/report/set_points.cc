@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
+#include <map>
 
 #include "app/report/evidence_page.h"
 #include "app/report/format.h"
@@ -93,6 +93,7 @@ Table MakePredictionTable(Members members, std::span<const core::Trial> trials,
     const auto found = input.rig.predictions.find(trial.id);
     if (found == input.rig.predictions.end()) continue;
     const ShotPrediction& p = found->second;
+    if (!p.launch_speed_mps && !p.approach_angle_rad) continue;
     const core::Measured& angle = trial.first.contact.approach_angle_rad;
     table.rows.push_back(
         {{WithUOrReason(p.launch_speed_mps, 1.0)},
@@ -104,6 +105,37 @@ Table MakePredictionTable(Members members, std::span<const core::Trial> trials,
          TrialCell(trial, input)});
   }
   return table;
+}
+
+// Why some trials have no prediction: "no set-point of the launch speed (9
+// trials)".
+std::string WhyNotPredicted(Members members,
+                            std::span<const core::Trial> trials,
+                            const ReportInput& input) {
+  std::map<std::string, int> reasons;
+  for (const std::size_t t : members) {
+    const auto found = input.rig.predictions.find(trials[t].id);
+    if (found == input.rig.predictions.end()) continue;
+    const core::Measured& speed = found->second.launch_speed_mps;
+    if (!speed) ++reasons[speed.error().reason];
+  }
+  // Every trial's own page has its reason; here the first tell what they are.
+  constexpr std::size_t kShown = 2;
+  std::string out;
+  std::size_t shown = 0;
+  int others = 0;
+  for (const auto& [reason, n] : reasons) {
+    if (++shown > kShown) {
+      others += n;
+      continue;
+    }
+    out += fmt::format("{}{} ({} trial{})", out.empty() ? "" : "; ", reason, n,
+                       n == 1 ? "" : "s");
+  }
+  if (others > 0) {
+    out += fmt::format("; for other reasons of this kind {} more", others);
+  }
+  return out;
 }
 
 std::vector<Block> MakeTables(Members members,
@@ -122,6 +154,10 @@ std::vector<Block> MakeTables(Members members,
         "from the muzzle added. E_n carries the expanded uncertainties of both "
         "sides; |E_n| up to 1 is compatible.",
         true});
+  }
+  const std::string why = WhyNotPredicted(members, trials, input);
+  if (!why.empty()) {
+    out.emplace_back(Paragraph{"No prediction of the rig: " + why + ".", true});
   }
   return out;
 }
