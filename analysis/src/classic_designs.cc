@@ -333,4 +333,56 @@ std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
   return out;
 }
 
+std::optional<double> CentredIsotonicMedian(
+    std::span<const Observation> trials) {
+  struct Block {
+    double level = 0.0;
+    double share = 0.0;
+    double n = 0.0;
+  };
+  std::vector<Observation> sorted = Decided(trials);
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return a.angle_rad < b.angle_rad;
+  });
+  std::vector<Block> blocks;
+  for (const Observation& o : sorted) {
+    if (blocks.empty() || o.angle_rad > blocks.back().level + kSameAngle_rad) {
+      blocks.push_back({o.angle_rad, 0.0, 0.0});
+    }
+    blocks.back().share += o.outcome == Outcome::kBounce ? 1.0 : 0.0;
+    blocks.back().n += 1.0;
+  }
+  for (Block& b : blocks) {
+    b.share = b.n < 2.0 ? b.share / b.n : (b.share + 0.5) / (b.n + 1.0);
+  }
+  // Equal shares are pooled too, but at 0 and 1, where a curve may be flat.
+  const auto rises = [](const Block& a, const Block& b) {
+    const bool flat_end =
+        a.share == b.share && (a.share == 0.0 || a.share == 1.0);
+    return b.share > a.share + 1e-9 || flat_end;
+  };
+  for (std::size_t i = 0; i + 1 < blocks.size();) {
+    Block& a = blocks[i];
+    const Block& b = blocks[i + 1];
+    if (rises(a, b)) {
+      ++i;
+      continue;
+    }
+    const double n = a.n + b.n;
+    a = {(a.level * a.n + b.level * b.n) / n,
+         (a.share * a.n + b.share * b.n) / n, n};
+    blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    if (i > 0) --i;
+  }
+  for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
+    const Block& a = blocks[i];
+    const Block& b = blocks[i + 1];
+    if (a.share <= 0.5 && 0.5 <= b.share && b.share > a.share) {
+      return a.level +
+             (0.5 - a.share) / (b.share - a.share) * (b.level - a.level);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace touchdown::analysis

@@ -124,6 +124,11 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
     input.rig = pipeline::PredictTrials(flags.rig, input.trials);
   }
   input.evidence_pages = flags.evidence;
+  if (!(flags.bin_deg >= 0.0 && flags.bin_deg <= 90.0)) {
+    throw std::invalid_argument(
+        fmt::format("--bin-deg: {}; expected 0 to 90", flags.bin_deg));
+  }
+  input.bin_width_rad = flags.bin_deg * kDegree;
   if (!flags.evidence_pictures.empty()) {
     input.pictures =
         pipeline::FindPictures(flags.evidence_pictures, input.trials);
@@ -144,7 +149,7 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         {"pictures", input.pictures.size()}};
     fmt::print("{}\n", document.dump(2));
   } else {
-    fmt::print("{} trials: {}\n", n, page);
+    fmt::print("{} trial{}: {}\n", n, n == 1 ? "" : "s", page);
   }
   return 0;
 }
@@ -168,6 +173,9 @@ void AddReport(CLI::App& app, Action& action) {
   command->add_option("--out", flags->out, "folder for the report")
       ->capture_default_str();
   command->add_option("--title", flags->title, "title of the report");
+  command->add_option("--bin-deg", flags->bin_deg,
+                      "width of the bins of the angle in Table 1 (default: one "
+                      "row an angle, bins where there are many)");
   command->add_option("--rig", flags->rig,
                       "rig.toml: its predictions beside the measurements");
   CLI::Option* evidence =

@@ -13,7 +13,8 @@ namespace touchdown::report {
 
 // The Table 1 of groups that share an origin (paper_table.cc).
 std::vector<Table> MakeTable1(std::span<const Group> groups,
-                              std::span<const core::Trial> trials);
+                              std::span<const core::Trial> trials,
+                              const ReportInput& input);
 
 // The group's own pages (group_section.cc).
 Section MakeGroupSection(const Group& group, std::span<const Group> groups,
@@ -52,6 +53,7 @@ std::string MakeCsv(std::span<const Group> groups,
 
 // table1.tex (report_latex.cc).
 std::string MakeLatex(std::span<const Group> groups,
-                      std::span<const core::Trial> trials);
+                      std::span<const core::Trial> trials,
+                      const ReportInput& input);
 
 }  // namespace touchdown::report

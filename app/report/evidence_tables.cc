@@ -42,11 +42,22 @@ std::vector<Block> MakeLabels(const Group& group) {
   table.rows.push_back({{"bounce"}, Number(count[1][0]), Number(count[1][1])});
   const analysis::McNemar test =
       analysis::McNemarTest(count[0][1], count[1][0]);
+  // The interval first: with few trials it says more than a p.
+  std::string agreement;
+  const int right = count[0][0] + count[1][1];
+  const int n = right + count[0][1] + count[1][0];
+  if (n > 0) {
+    const auto interval = analysis::WilsonInterval(right, n);
+    agreement =
+        fmt::format(" Both agree in {} of {}, 95 % {:.3f} to {:.3f} (Wilson).",
+                    right, n, interval.low, interval.high);
+  }
   std::string text = fmt::format(
       "{} trials bear both labels, because a person revised what the program "
-      "had said; they were chosen, not drawn. Discordant: {} against {}; "
+      "had said; they were chosen, not drawn.{} Discordant: {} against {}; "
       "McNemar exact p = {:.3g}, mid-p = {:.3g}.",
-      group.labels.size(), count[0][1], count[1][0], test.p_exact, test.p_mid);
+      group.labels.size(), agreement, count[0][1], count[1][0], test.p_exact,
+      test.p_mid);
   if (undecided > 0) {
     text += fmt::format(
         " {} of them, undecided by one of the two, {} not in the table.",

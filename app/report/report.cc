@@ -37,11 +37,12 @@ Section MakeQuestion(std::span<const Group> groups) {
 
 // Everything of page 1 for the groups of one origin: never pooled.
 Section MakeFront(std::span<const Group> groups,
-                  std::span<const core::Trial> trials, std::size_t& figures) {
+                  std::span<const core::Trial> trials, const ReportInput& input,
+                  std::size_t& figures) {
   Section section{groups.front().simulated(), {}};
   auto& out = section.blocks;
   for (const Group& group : groups) out.push_back(MakeVerdict(group, groups));
-  for (Table& table : MakeTable1(groups, trials)) {
+  for (Table& table : MakeTable1(groups, trials, input)) {
     out.push_back(std::move(table));
   }
   out.push_back(Paragraph{
@@ -112,7 +113,7 @@ Report MakeReport(const ReportInput& input) {
         groups.begin(), groups.end(), std::back_inserter(same),
         [origin](const Group& g) { return g.trials.origin == origin; });
     if (same.empty()) continue;
-    document.sections.push_back(MakeFront(same, trials, figures));
+    document.sections.push_back(MakeFront(same, trials, input, figures));
   }
   for (const Group& group : groups) {
     document.sections.push_back(MakeGroupSection(group, groups, trials, input));
@@ -124,7 +125,7 @@ Report MakeReport(const ReportInput& input) {
   out.markdown = ToMarkdown(document);
   out.csv = csv;
   out.html = ToHtml(document);
-  out.latex = MakeLatex(groups, trials);
+  out.latex = MakeLatex(groups, trials, input);
   out.json = ReportDocument(input, groups, trials).dump(1) + "\n";
   return out;
 }

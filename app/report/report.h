@@ -46,6 +46,8 @@ struct ReportInput {
   // and the pictures of the contacts where there are any, by trial id.
   bool evidence_pages = false;
   std::map<std::string, std::filesystem::path> pictures;
+  // Bins of the angle in Table 1; 0: a row an angle, or bins that fit a page.
+  double bin_width_rad = 0.0;
   std::string title = "Table 1: slide or bounce at touchdown";
   std::string software_version;
   std::string options;  // how the report was asked for

@@ -168,5 +168,25 @@ TEST(EstimateDixonMood, NothingWithOneOutcome) {
   EXPECT_FALSE(EstimateDixonMood(std::vector{Raw(1, true)}, 1.0).has_value());
 }
 
+TEST(CentredIsotonicMedian, GorlaEtAl2017) {
+  // Table 6, by hand: shares 0/1, 1.5/4, 2.5/6, 4.5/5 at 39 to 42.
+  std::vector<Observation> trials{Raw(39, false)};
+  const int bounced[] = {1, 2, 4};
+  const int thrown[] = {3, 5, 4};
+  for (int level = 0; level < 3; ++level) {
+    for (int i = 0; i < thrown[level]; ++i) {
+      trials.push_back(Raw(40 + level, i < bounced[level]));
+    }
+  }
+  EXPECT_NEAR(*CentredIsotonicMedian(trials), 41.17241, 5e-6);
+  // Shares that fall are pooled at their centre: here all into one.
+  const std::vector<Observation> falling{Raw(1, true), Raw(2, false)};
+  EXPECT_FALSE(CentredIsotonicMedian(falling).has_value());
+  EXPECT_FALSE(CentredIsotonicMedian({}).has_value());
+  const std::vector<Observation> sharp{Raw(1, false), Raw(2, false),
+                                       Raw(4, true), Raw(5, true)};
+  EXPECT_NEAR(*CentredIsotonicMedian(sharp), 3.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace touchdown::analysis

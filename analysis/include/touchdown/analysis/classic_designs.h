@@ -65,4 +65,15 @@ struct DixonMood {
 std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
                                            double step_rad);
 
+// The level at which centred isotonic regression crosses 1/2 (Oron and
+// Flournoy, Statistics in Biopharmaceutical Research 9, 258-267, 2017): the
+// shares of bounces by level, made to rise by pooling neighbours at their
+// common centre, joined by straight lines. Without a model and without an
+// interval of its own: a check of runs that sit on few levels. Shares of two
+// and more trials are first drawn towards 1/2 by one trial, against the bias of
+// sequential designs (Flournoy and Oron 2020). Nothing where the curve does not
+// cross 1/2.
+std::optional<double> CentredIsotonicMedian(
+    std::span<const Observation> trials);
+
 }  // namespace touchdown::analysis
