@@ -1,14 +1,12 @@
 #include "touchdown/analysis/next_angle.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <vector>
 
 #include "design.h"
+#include "feasible.h"
 #include "likelihood.h"
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/special_functions.h"
@@ -23,31 +21,6 @@ constexpr double kLeastReach_rad = 3.0 * core::kDegree;
 // Grid points with less weight than this are passed over: together they hold
 // less than a ten-thousandth of the posterior.
 constexpr double kNegligible = 1e-9;
-
-// Levels are printed to two decimals: 4.2 - 4.1 is no more than 0.1.
-constexpr double kSameGap = 1e-9;
-
-void Require(bool ok, const char* field, double value, const char* range) {
-  if (!ok) {
-    throw std::invalid_argument(
-        fmt::format("{} is {}; it must be {}", field, value, range));
-  }
-}
-
-void CheckFeasible(const core::Interval& feasible) {
-  Require(std::isfinite(feasible.low), "feasible_rad.low", feasible.low,
-          "finite");
-  Require(feasible.high >= feasible.low && std::isfinite(feasible.high),
-          "feasible_rad.high", feasible.high,
-          "finite and not below feasible_rad.low");
-}
-
-NextAngle Clipped(double angle_rad, const core::Interval& feasible) {
-  NextAngle out;
-  out.angle_rad = std::clamp(angle_rad, feasible.low, feasible.high);
-  out.clipped = out.angle_rad != angle_rad;
-  return out;
-}
 
 // Expected variance of theta after one trial at `angle`.
 double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
@@ -78,163 +51,6 @@ double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
 double Spread(int trial, double spread_rad) {
   const double turn = trial * (std::numbers::phi - 1.0);
   return spread_rad * (2.0 * (turn - std::floor(turn)) - 1.0);
-}
-
-double InformationWeight(double k) {
-  const double density = NormalDensity(k);
-  const double both = NormalCdf(k) * NormalCdf(-k);
-  return both > 0.0 ? density * density / both : 0.0;
-}
-
-// Neyer's D-optimal level: the one that adds most to the determinant of the
-// information on (mean, scatter).
-double DOptimal(std::span<const double> levels, double mean, double scatter) {
-  double b11 = 0.0;
-  double b12 = 0.0;
-  double b22 = 0.0;
-  for (const double x : levels) {
-    const double k = (x - mean) / scatter;
-    const double w = InformationWeight(k);
-    b11 += w;
-    b12 += w * k;
-    b22 += w * k * k;
-  }
-  const double side = b12 > 0.0 ? -1.0 : 1.0;
-  const auto gain = [&](double k) {
-    return InformationWeight(k) * (b11 * k * k - 2 * b12 * k + b22);
-  };
-  // A scan and a golden section around its best: beyond 8 nothing is gained.
-  constexpr double kFar = 8.0;
-  constexpr int kSteps = 400;
-  int best = 0;
-  double best_gain = gain(0.0);
-  for (int i = 1; i <= kSteps; ++i) {
-    const double g = gain(side * kFar * i / kSteps);
-    if (g > best_gain) {
-      best_gain = g;
-      best = i;
-    }
-  }
-  double low = kFar * std::max(best - 1, 0) / kSteps;
-  double high = kFar * (best + 1) / kSteps;
-  const double golden = (std::sqrt(5.0) - 1.0) / 2.0;
-  while (high - low > 1e-9) {
-    const double a = high - golden * (high - low);
-    const double b = low + golden * (high - low);
-    (gain(side * a) >= gain(side * b) ? high : low) =
-        gain(side * a) >= gain(side * b) ? b : a;
-  }
-  return mean + side * (low + high) / 2 * scatter;
-}
-
-// Greatest likelihood of (mean, scatter) for exact levels that overlap, by
-// Newton on (a, b) = (-mean / scatter, 1 / scatter) of standardised levels, in
-// which the log likelihood is concave. Nothing where it has no maximum.
-struct ProbitFit {
-  double mean = 0.0;
-  double scatter = 0.0;
-};
-std::optional<ProbitFit> FitProbit(std::span<const Observation> trials) {
-  double centre = 0.0;
-  double squares = 0.0;
-  for (const Observation& o : trials) centre += o.angle_rad;
-  centre /= static_cast<double>(trials.size());
-  for (const Observation& o : trials) {
-    squares += (o.angle_rad - centre) * (o.angle_rad - centre);
-  }
-  const double unit = std::sqrt(squares / static_cast<double>(trials.size()));
-  if (!(unit > 0.0)) return std::nullopt;
-  const auto log_likelihood = [&](double a, double b) {
-    double sum = 0.0;
-    for (const Observation& o : trials) {
-      const double z = a + b * (o.angle_rad - centre) / unit;
-      sum += LogNormalCdf(o.outcome == Outcome::kBounce ? z : -z);
-    }
-    return sum;
-  };
-  double a = 0.0;
-  double b = 1.0;
-  double value = log_likelihood(a, b);
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    double ga = 0.0;
-    double gb = 0.0;
-    double haa = 0.0;
-    double hab = 0.0;
-    double hbb = 0.0;
-    for (const Observation& o : trials) {
-      const double x = (o.angle_rad - centre) / unit;
-      const double sign = o.outcome == Outcome::kBounce ? 1.0 : -1.0;
-      const double z = sign * (a + b * x);
-      const double mills =
-          std::exp(std::log(NormalDensity(z)) - LogNormalCdf(z));
-      const double curvature = mills * (z + mills);
-      ga += sign * mills;
-      gb += sign * mills * x;
-      haa += curvature;
-      hab += curvature * x;
-      hbb += curvature * x * x;
-    }
-    const double determinant = haa * hbb - hab * hab;
-    if (!(determinant > 0.0)) return std::nullopt;
-    const double da = (hbb * ga - hab * gb) / determinant;
-    const double db = (haa * gb - hab * ga) / determinant;
-    double step = 1.0;
-    while (step > 1e-6 &&
-           !(log_likelihood(a + step * da, b + step * db) >= value)) {
-      step /= 2;
-    }
-    a += step * da;
-    b += step * db;
-    value = log_likelihood(a, b);
-    if (std::abs(da) + std::abs(db) < 1e-12 * (1 + std::abs(a) + std::abs(b))) {
-      break;
-    }
-  }
-  if (!(b > 0.0)) return std::nullopt;
-  return ProbitFit{centre - a / b * unit, unit / b};
-}
-
-struct Extent {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-};
-
-// One step of Neyer's rules after `trials`; `guess` shrinks on the way.
-double NeyerLevel(std::span<const Observation> trials,
-                  const NeyerOptions& options, double& guess) {
-  if (trials.empty()) {
-    return (options.guess_low_rad + options.guess_high_rad) / 2;
-  }
-  Extent all;
-  std::vector<double> levels;
-  for (const Observation& o : trials) {
-    levels.push_back(o.angle_rad);
-    all.low = std::min(all.low, o.angle_rad);
-    all.high = std::max(all.high, o.angle_rad);
-  }
-  const Counts counts = Count(trials);
-  if (counts.bounce == 0) {
-    return std::max({(options.guess_high_rad + all.high) / 2,
-                     all.high + 2 * guess, 2 * all.high - all.low});
-  }
-  if (counts.not_bounce == 0) {
-    return std::min({(options.guess_low_rad + all.low) / 2, all.low - 2 * guess,
-                     2 * all.low - all.high});
-  }
-  const Bracket bracket = FindBracket(trials);
-  const double gap = *bracket.high_rad - *bracket.low_rad;
-  const double middle = (*bracket.high_rad + *bracket.low_rad) / 2;
-  if (gap > guess * (1 + kSameGap)) return middle;
-  if (gap >= 0.0) {
-    const double scatter = std::min(guess, all.high - all.low);
-    guess *= 0.8;
-    return DOptimal(levels, middle, scatter);
-  }
-  const auto fit = FitProbit(trials);
-  const double mean = fit ? fit->mean : middle;
-  const double scatter = fit ? fit->scatter : all.high - all.low;
-  return DOptimal(levels, std::clamp(mean, all.low, all.high),
-                  std::min(scatter, all.high - all.low));
 }
 
 double HalfWidth(const BoundaryPosterior& posterior) {
@@ -315,75 +131,6 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
                         options.forecast_futures, options.design_scatter},
                        engine);
   }
-  return out;
-}
-
-NextAngle NextNeyer(std::span<const Observation> trials,
-                    const NeyerOptions& options) {
-  CheckFeasible(options.feasible_rad);
-  Require(options.guess_high_rad > options.guess_low_rad, "guess_high_rad",
-          options.guess_high_rad, "above guess_low_rad");
-  Require(options.guess_scatter_rad > 0.0, "guess_scatter_rad",
-          options.guess_scatter_rad, "positive");
-  std::vector<Observation> decided;
-  for (const Observation& o : trials) {
-    if (o.outcome != Outcome::kUndecided) decided.push_back(o);
-  }
-  // The guess of the scatter shrinks along the way, so the test is replayed;
-  // fits are needed only for the last level.
-  double guess = options.guess_scatter_rad;
-  const std::span<const Observation> all(decided);
-  for (std::size_t n = 1; n < all.size(); ++n) {
-    const auto before = all.first(n);
-    const Counts counts = Count(before);
-    if (counts.bounce == 0 || counts.not_bounce == 0) continue;
-    const Bracket bracket = FindBracket(before);
-    const double gap = *bracket.high_rad - *bracket.low_rad;
-    if (gap >= 0.0 && gap <= guess * (1 + kSameGap)) guess *= 0.8;
-  }
-  return Clipped(NeyerLevel(all, options, guess), options.feasible_rad);
-}
-
-NextAngle NextUpDown(std::span<const Observation> trials,
-                     const UpDownOptions& options) {
-  CheckFeasible(options.feasible_rad);
-  Require(options.step_rad > 0.0, "step_rad", options.step_rad, "positive");
-  if (trials.empty()) return Clipped(options.start_rad, options.feasible_rad);
-  const Observation& last = trials.back();
-  // The set-point where it is known: measured angles would wander off the
-  // steps.
-  double angle = last.set_angle_rad.value_or(last.angle_rad);
-  if (last.outcome == Outcome::kBounce) angle -= options.step_rad;
-  if (last.outcome == Outcome::kNotBounce) angle += options.step_rad;
-  return Clipped(angle, options.feasible_rad);
-}
-
-std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
-                                           double step_rad) {
-  Require(step_rad > 0.0, "step_rad", step_rad, "positive");
-  const Counts counts = Count(trials);
-  if (counts.bounce == 0 || counts.not_bounce == 0) return std::nullopt;
-  const Outcome rarer = counts.bounce <= counts.not_bounce
-                            ? Outcome::kBounce
-                            : Outcome::kNotBounce;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Observation& o : trials) {
-    if (o.outcome == rarer) lowest = std::min(lowest, o.angle_rad);
-  }
-  DixonMood out;
-  for (const Observation& o : trials) {
-    if (o.outcome != rarer) continue;
-    const int i =
-        static_cast<int>(std::lround((o.angle_rad - lowest) / step_rad));
-    ++out.n;
-    out.a += i;
-    out.b += i * i;
-  }
-  const double n = out.n;
-  out.mean_rad = lowest + step_rad * (out.a / n +
-                                      (rarer == Outcome::kBounce ? -0.5 : 0.5));
-  out.m = (n * out.b - static_cast<double>(out.a) * out.a) / (n * n);
-  if (out.m > 0.3) out.scatter_rad = 1.62 * step_rad * (out.m + 0.029);
   return out;
 }
 

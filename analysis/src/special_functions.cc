@@ -49,9 +49,9 @@ double BetaFraction(double a, double b, double x) {
 
 }  // namespace
 
-double NormalDensity(double z) {
-  return std::exp(-0.5 * z * z - kLogSqrtTwoPi);
-}
+double LogNormalDensity(double z) { return -0.5 * z * z - kLogSqrtTwoPi; }
+
+double NormalDensity(double z) { return std::exp(LogNormalDensity(z)); }
 
 double NormalCdf(double z) { return 0.5 * std::erfc(-z * kSqrtHalf); }
 

@@ -12,7 +12,10 @@
 
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
+#include "app/pipeline/pictures.h"
+#include "app/pipeline/rig_prediction.h"
 #include "app/report/boundary_json.h"
+#include "app/report/evidence_page.h"
 #include "app/report/format.h"
 #include "app/report/group.h"
 #include "app/report/report.h"
@@ -120,7 +123,21 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
   input.options = options;
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();
+  if (!flags.rig.empty()) {
+    input.rig = pipeline::PredictTrials(flags.rig, input.trials);
+  }
+  input.evidence_pages = flags.evidence;
+  if (!(flags.bin_deg >= 0.0 && flags.bin_deg <= 90.0)) {
+    throw std::invalid_argument(
+        fmt::format("--bin-deg: {}; expected 0 to 90", flags.bin_deg));
+  }
+  input.bin_width_rad = flags.bin_deg * kDegree;
+  if (!flags.evidence_pictures.empty()) {
+    input.pictures =
+        pipeline::FindPictures(flags.evidence_pictures, input.trials);
+  }
   report::WriteReport(report::MakeReport(input), flags.out);
+  if (flags.evidence) report::WriteEvidencePages(input, flags.out);
   const std::string page =
       (std::filesystem::path(flags.out) / "table1.html").string();
   if (flags.json) {
@@ -130,12 +147,14 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         {"folder", flags.out},
         {"files",
          {"table1.md", "table1.csv", "table1.html", "table1.tex",
-          "table1.json"}}};
+          "table1.json"}},
+        {"evidence_pages", flags.evidence ? n : 0},
+        {"pictures", input.pictures.size()}};
     fmt::print("{}\n",
                document.dump(2, ' ', false,
                              nlohmann::ordered_json::error_handler_t::replace));
   } else {
-    fmt::print("{} trials: {}\n", n, page);
+    fmt::print("{} trial{}: {}\n", n, n == 1 ? "" : "s", page);
   }
   return 0;
 }
@@ -159,7 +178,21 @@ void AddReport(CLI::App& app, Action& action) {
   command->add_option("--out", flags->out, "folder for the report")
       ->capture_default_str();
   command->add_option("--title", flags->title, "title of the report");
-  command->callback([flags, command, &action] {
+  command->add_option("--bin-deg", flags->bin_deg,
+                      "width of the bins of the angle in Table 1 (default: one "
+                      "row an angle, bins where there are many)");
+  command->add_option("--rig", flags->rig,
+                      "rig.toml: its predictions beside the measurements");
+  CLI::Option* evidence =
+      command
+          ->add_option("--evidence", flags->evidence_pictures,
+                       "a page of evidence for every trial, in evidence/; with "
+                       "a folder, with the pictures that analyze or batch put "
+                       "there (--out)")
+          ->expected(0, 1)
+          ->type_name("[FOLDER]");
+  command->callback([flags, command, evidence, &action] {
+    flags->evidence = evidence->count() > 0;
     // The options as asked for, without where the report goes.
     std::string options;
     for (const CLI::Option* option : command->get_options()) {

@@ -43,6 +43,9 @@ struct BoundaryFlags {
   std::string rig;
   double speed_mps = 0.0;  // at touchdown; 0: the middle of the campaign's band
   std::string corner;
+  double bin_deg = 0.0;           // of Table 1; 0: as many as fit a page
+  bool evidence = false;          // pages of evidence
+  std::string evidence_pictures;  // folder in which their pictures are sought
   std::string out = ".";
   std::string title;
   bool json = false;

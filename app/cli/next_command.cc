@@ -19,6 +19,7 @@
 #include "app/report/format.h"
 #include "app/report/group.h"
 #include "app/report/sentences.h"
+#include "touchdown/analysis/classic_designs.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/description.h"
 #include "touchdown/rig/setpoints.h"
@@ -57,18 +58,19 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
                               const report::Group& group) {
   if (flags.rule == "expected-variance") return group.study.next;
   analysis::NextAngle next;
-  if (flags.rule == "neyer") {
+  if (flags.rule == "neyer" || flags.rule == "3pod") {
     if (flags.guess.empty()) {
       throw std::invalid_argument(
-          "--rule neyer: needs --guess-deg LOW:HIGH, between which the "
-          "boundary "
-          "is believed to lie");
+          fmt::format("--rule {}: needs --guess-deg LOW:HIGH, between which "
+                      "the boundary is believed to lie",
+                      flags.rule));
     }
     const core::Interval guess = ParseRange("--guess-deg", flags.guess);
-    next = analysis::NextNeyer(
-        InOrder(as_given, group),
-        {guess.low, guess.high, flags.guess_scatter_deg * kDegree,
-         options.feasible_rad});
+    const auto rule =
+        flags.rule == "neyer" ? analysis::NextNeyer : analysis::NextThreePhase;
+    next = rule(InOrder(as_given, group),
+                {guess.low, guess.high, flags.guess_scatter_deg * kDegree,
+                 options.feasible_rad});
   } else if (flags.rule == "up-down") {
     next =
         analysis::NextUpDown(InOrder(as_given, group),
@@ -76,8 +78,8 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
                               flags.step_deg * kDegree, options.feasible_rad});
   } else {
     throw std::invalid_argument(
-        fmt::format("--rule: '{}'; expected expected-variance, neyer or "
-                    "up-down",
+        fmt::format("--rule: '{}'; expected expected-variance, neyer, "
+                    "3pod or up-down",
                     flags.rule));
   }
   // What there is to know does not depend on the rule.
@@ -290,13 +292,16 @@ void AddNext(CLI::App& app, Action& action) {
       app.add_subcommand("next", "The angle to throw next, and when to stop");
   AddBoundaryFlags(*command, *flags);
   command
-      ->add_option("--rule", flags->rule, "expected-variance, neyer or up-down")
+      ->add_option("--rule", flags->rule,
+                   "expected-variance, neyer, 3pod or up-down")
       ->capture_default_str();
-  command->add_option("--guess-deg", flags->guess,
-                      "neyer: LOW:HIGH, between which the boundary should lie");
+  command->add_option(
+      "--guess-deg", flags->guess,
+      "neyer, 3pod: LOW:HIGH, between which the boundary should "
+      "lie");
   command
       ->add_option("--guess-scatter-deg", flags->guess_scatter_deg,
-                   "neyer: guessed scatter")
+                   "neyer, 3pod: guessed scatter")
       ->capture_default_str();
   command->add_option("--start-deg", flags->start_deg, "up-down: first angle")
       ->capture_default_str();

@@ -10,9 +10,11 @@
 #include "app/pipeline/analyze.h"
 #include "app/pipeline/evidence.h"
 #include "app/pipeline/log_analysis.h"
+#include "app/pipeline/pictures.h"
 #include "app/pipeline/simulate.h"
 #include "app/pipeline/trial_selection.h"
 #include "app/pipeline/version.h"
+#include "app/report/evidence_page.h"
 #include "app/report/report.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/units.h"
@@ -170,7 +172,10 @@ DemoResult RunDemo(const DemoOptions& options) {
   input.campaigns = selection.campaigns;
   input.source = "the demo's store (rendered clips)";
   input.software_version = std::string(Version());
+  input.evidence_pages = true;
+  input.pictures = FindPictures(options.folder / "evidence", input.trials);
   report::WriteReport(report::MakeReport(input), options.folder / "report");
+  report::WriteEvidencePages(input, options.folder / "report");
   result.report = options.folder / "report" / "table1.html";
   return result;
 }

@@ -70,6 +70,7 @@ Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
             {"clopper_pearson95", Pair(t.clopper_pearson95)},
             {"kappa", t.kappa ? Json(t.kappa->kappa) : Json(nullptr)},
             {"kappa_ase", t.kappa ? Json(t.kappa->ase) : Json(nullptr)},
+            {"kappa_ase0", t.kappa ? Json(t.kappa->ase0) : Json(nullptr)},
             {"mcc", Optional(t.matthews)}}}};
 }
 

@@ -13,11 +13,13 @@ namespace touchdown::report {
 
 // The Table 1 of groups that share an origin (paper_table.cc).
 std::vector<Table> MakeTable1(std::span<const Group> groups,
-                              std::span<const core::Trial> trials);
+                              std::span<const core::Trial> trials,
+                              const ReportInput& input);
 
 // The group's own pages (group_section.cc).
 Section MakeGroupSection(const Group& group, std::span<const Group> groups,
-                         std::span<const core::Trial> trials);
+                         std::span<const core::Trial> trials,
+                         const ReportInput& input);
 
 // The numbers of a group, in the order in which they should be read
 // (group_statistics.cc).
@@ -26,11 +28,14 @@ std::vector<Block> MakeStatistics(const Group& group);
 // Every trial of the group, its set-points, and what was left out
 // (trial_tables.cc).
 std::vector<Block> MakeTrialTables(const Group& group,
-                                   std::span<const core::Trial> trials);
+                                   std::span<const core::Trial> trials,
+                                   const ReportInput& input);
 
-// Labels of two kinds, budget, calibration and software (evidence_tables.cc).
+// Labels of two kinds, budget, rig, calibration and software
+// (evidence_tables.cc).
 std::vector<Block> MakeEvidence(const Group& group,
-                                std::span<const core::Trial> trials);
+                                std::span<const core::Trial> trials,
+                                const ReportInput& input);
 
 // The group's plot with its text (group_figure.cc). `index` makes identifiers
 // unique.
@@ -48,6 +53,7 @@ std::string MakeCsv(std::span<const Group> groups,
 
 // table1.tex (report_latex.cc).
 std::string MakeLatex(std::span<const Group> groups,
-                      std::span<const core::Trial> trials);
+                      std::span<const core::Trial> trials,
+                      const ReportInput& input);
 
 }  // namespace touchdown::report

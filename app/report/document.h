@@ -13,6 +13,7 @@ enum class Tone { kPlain, kSlide, kBounce, kUndecided, kGood, kBad, kMuted };
 struct Cell {
   std::string text;
   Tone tone = Tone::kPlain;
+  std::string link = {};  // relative; empty: none
 };
 
 struct Column {
@@ -56,10 +57,23 @@ struct Figure {
   Table data;  // the numbers behind it
 };
 
+// A photograph, inside the page.
+struct Picture {
+  std::string png_base64;
+  std::string alt;
+  std::string caption;
+};
+
+// A way to another file of the report.
+struct Link {
+  std::string to;  // relative
+  std::string text;
+};
+
 struct PageBreak {};
 
-using Block =
-    std::variant<Heading, Paragraph, List, Callout, Table, Figure, PageBreak>;
+using Block = std::variant<Heading, Paragraph, List, Callout, Table, Figure,
+                           Picture, Link, PageBreak>;
 
 // Blocks about one subject. `simulated` puts the watermark on all of them.
 struct Section {

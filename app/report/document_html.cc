@@ -35,6 +35,7 @@ td { border-bottom: 1px solid var(--line); padding: 3px 12px 3px 0;
   vertical-align: top; }
 th.num { text-align: right; }
 td.num { text-align: right; white-space: nowrap; }
+td.long { white-space: normal; min-width: 14ch; }
 td.muted { overflow-wrap: anywhere; min-width: 8ch; }
 td.muted:last-child { min-width: 16ch; }
 .slide { color: var(--slide); }
@@ -56,6 +57,8 @@ font-size='46' font-weight='bold' fill='%23a3201d' fill-opacity='0.09'\
 %3ESIMULATED%3C/text%3E%3C/svg%3E"); -webkit-print-color-adjust: exact;
   print-color-adjust: exact; }
 figure { margin: 12px 0 16px; break-inside: avoid; }
+figure img { max-width: 100%; height: auto; display: block; }
+a { color: var(--slide); }
 figure svg { width: 100%; height: auto; display: block; }
 figure svg text { font-family: "Liberation Sans", Arial, sans-serif; }
 figcaption { font-size: 13px; color: var(--soft); max-width: 92ch; }
@@ -83,6 +86,8 @@ summary { cursor: pointer; color: var(--soft); }
 
 // Tables of so few rows are not split between pages.
 constexpr std::size_t kKeepTogether = 12;
+// Longer cells of numbers are reasons why there is none: they may be broken.
+constexpr std::size_t kLongNumber = 28;
 
 std::string_view ClassOf(Tone tone) {
   switch (tone) {
@@ -150,10 +155,11 @@ class Writer {
         std::string classes(ClassOf(row[i].tone));
         if (i < table.columns.size() && table.columns[i].numeric) {
           classes += classes.empty() ? "num" : " num";
+          if (row[i].text.size() > kLongNumber) classes += " long";
         }
         out_ += classes.empty() ? "<td>"
                                 : fmt::format("<td class=\"{}\">", classes);
-        out_ += HtmlEscape(row[i].text) + "</td>";
+        out_ += Linked(row[i].link, row[i].text) + "</td>";
       }
       out_ += "</tr>\n";
     }
@@ -170,6 +176,16 @@ class Writer {
       out_ += "</details>\n";
     }
   }
+  void operator()(const Picture& picture) {
+    out_ += fmt::format(
+        "<figure>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
+        "<figcaption>{}</figcaption>\n</figure>\n",
+        HtmlEscape(picture.alt), picture.png_base64,
+        HtmlEscape(picture.caption));
+  }
+  void operator()(const Link& link) {
+    out_ += "<p>" + Linked(link.to, link.text) + "</p>\n";
+  }
   void operator()(const PageBreak&) {
     out_ += "<div class=\"page-break\"></div>\n";
   }
@@ -177,6 +193,12 @@ class Writer {
   const std::string& html() const { return out_; }
 
  private:
+  static std::string Linked(const std::string& to, const std::string& text) {
+    if (to.empty()) return HtmlEscape(text);
+    return fmt::format("<a href=\"{}\">{}</a>", HtmlEscape(to),
+                       HtmlEscape(text));
+  }
+
   bool simulated_;
   std::string out_;
 };

@@ -45,7 +45,7 @@ class Writer {
     out_ += "|\n";
     for (const auto& row : table.rows) {
       for (const Cell& cell : row) {
-        out_ += "| " + MarkdownEscape(cell.text) + " ";
+        out_ += "| " + Linked(cell.link, cell.text) + " ";
       }
       out_ += "|\n";
     }
@@ -56,11 +56,23 @@ class Writer {
             MarkdownEscape(figure.caption) + "* " + MarkdownEscape(figure.alt) +
             "\n\n";
   }
+  void operator()(const Picture& picture) {
+    out_ += "*" + MarkdownEscape(picture.caption) + "* " +
+            MarkdownEscape(picture.alt) + "\n\n";
+  }
+  void operator()(const Link& link) {
+    out_ += Linked(link.to, link.text) + "\n\n";
+  }
   void operator()(const PageBreak&) { out_ += "---\n\n"; }
 
   const std::string& text() const { return out_; }
 
  private:
+  static std::string Linked(const std::string& to, const std::string& text) {
+    if (to.empty()) return MarkdownEscape(text);
+    return "[" + MarkdownEscape(text) + "](" + to + ")";
+  }
+
   bool simulated_;
   std::string out_;
 };

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 
+#include "app/report/analysis_facts.h"
 #include "app/report/content.h"
 #include "app/report/format.h"
+#include "app/report/set_points.h"
 #include "touchdown/analysis/agreement_statistics.h"
 #include "touchdown/core/units.h"
 
@@ -18,7 +18,6 @@ namespace touchdown::report {
 namespace {
 
 using core::kDegree;
-using Json = nlohmann::json;
 
 Cell Number(int n) { return {fmt::format("{}", n)}; }
 
@@ -43,11 +42,22 @@ std::vector<Block> MakeLabels(const Group& group) {
   table.rows.push_back({{"bounce"}, Number(count[1][0]), Number(count[1][1])});
   const analysis::McNemar test =
       analysis::McNemarTest(count[0][1], count[1][0]);
+  // The interval first: with few trials it says more than a p.
+  std::string agreement;
+  const int right = count[0][0] + count[1][1];
+  const int n = right + count[0][1] + count[1][0];
+  if (n > 0) {
+    const auto interval = analysis::WilsonInterval(right, n);
+    agreement =
+        fmt::format(" Both agree in {} of {}, 95 % {:.3f} to {:.3f} (Wilson).",
+                    right, n, interval.low, interval.high);
+  }
   std::string text = fmt::format(
       "{} trials bear both labels, because a person revised what the program "
-      "had said; they were chosen, not drawn. Discordant: {} against {}; "
+      "had said; they were chosen, not drawn.{} Discordant: {} against {}; "
       "McNemar exact p = {:.3g}, mid-p = {:.3g}.",
-      group.labels.size(), count[0][1], count[1][0], test.p_exact, test.p_mid);
+      group.labels.size(), agreement, count[0][1], count[1][0], test.p_exact,
+      test.p_mid);
   if (undecided > 0) {
     text += fmt::format(
         " {} of them, undecided by one of the two, {} not in the table.",
@@ -56,17 +66,47 @@ std::vector<Block> MakeLabels(const Group& group) {
   return {table, Paragraph{text, true}};
 }
 
+// Each trial's budget: one column a source, largest first.
+Table MakeTrialBudgets(
+    const Group& group, std::span<const core::Trial> trials,
+    const std::vector<std::pair<double, std::string>>& sources,
+    const ReportInput& input) {
+  Table table{
+      fmt::format("Budget of each trial's {} (u in deg)", AngleName(group)),
+      {},
+      {}};
+  for (const auto& [u, source] : sources) {
+    table.columns.push_back({source, true});
+  }
+  table.columns.push_back({"all", true});
+  table.columns.push_back({"clip or trial"});
+  for (const std::size_t t : group.members) {
+    const core::Budget& budget = AngleBudget(trials[t]);
+    if (budget.empty()) continue;
+    std::vector<Cell> row;
+    for (const auto& [rms, source] : sources) {
+      double square = 0.0;
+      for (const auto& line : budget) {
+        if (line.source == source) square += line.u * line.u;
+      }
+      row.push_back({fmt::format("{:.2g}", std::sqrt(square) / kDegree)});
+    }
+    const core::Measured& angle = core::ContactAngle(trials[t]);
+    row.push_back({angle ? fmt::format("{:.2g}", angle->u / kDegree) : ""});
+    row.push_back(TrialCell(trials[t], input));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 // Root mean square over the trials of each source, largest first.
 std::vector<Block> MakeBudget(const Group& group,
-                              std::span<const core::Trial> trials) {
+                              std::span<const core::Trial> trials,
+                              const ReportInput& input) {
   std::map<std::string, double> squares;
   int n = 0;
   for (const auto& o : group.trials.observations) {
-    const core::Contact& contact = trials[o.trial].first.contact;
-    const core::Budget& budget =
-        group.trials.angle_kind == core::AngleKind::kApproach
-            ? contact.approach_budget
-            : contact.attitude_budget;
+    const core::Budget& budget = AngleBudget(trials[o.trial]);
     if (budget.empty()) continue;
     ++n;
     for (const auto& line : budget) squares[line.source] += line.u * line.u;
@@ -92,6 +132,7 @@ std::vector<Block> MakeBudget(const Group& group,
     out.push_back(Paragraph{
         fmt::format("{} of {} trials have a budget.", n, total), true});
   }
+  out.push_back(MakeTrialBudgets(group, trials, lines, input));
   return out;
 }
 
@@ -119,30 +160,10 @@ class Tally {
   std::map<std::string, int> count_;
 };
 
-std::string TextAt(const Json& json, const char* object, const char* field) {
-  const auto outer = json.find(object);
-  if (outer == json.end() || !outer->is_object()) return "";
-  const auto inner = outer->find(field);
-  return inner != outer->end() && inner->is_string() ? inner->get<std::string>()
-                                                     : "";
-}
-
-std::string FramesPerSecond(const Json& json) {
-  const auto clip = json.find("clip");
-  if (clip == json.end() || !clip->is_object()) return "";
-  const auto base = clip->find("time_base");
-  if (base == clip->end() || !base->is_object()) return "";
-  const auto fps = base->find("fps");
-  if (fps == base->end() || !fps->is_number()) return "";
-  return fmt::format("{:g} frames/s, from the {}", fps->get<double>(),
-                     base->value("source", "file"));
-}
-
 std::vector<Block> MakeProvenance(const Group& group,
-                                  std::span<const core::Trial> trials) {
-  Tally scale;
-  Tally ground;
-  Tally frames;
+                                  std::span<const core::Trial> trials,
+                                  const ReportInput& input) {
+  std::vector<std::pair<std::string, Tally>> sources;
   Tally software;
   Tally options;
   Tally author;
@@ -151,35 +172,38 @@ std::vector<Block> MakeProvenance(const Group& group,
     software.Add(trial.software_version);
     options.Add(trial.options_hash);
     author.Add(trial.author);
-    if (trial.document_json.empty()) continue;
-    const Json json = Json::parse(trial.document_json, nullptr, false);
-    if (!json.is_object()) continue;
-    scale.Add(TextAt(json, "scale", "source"));
-    ground.Add(TextAt(json, "ground", "source"));
-    frames.Add(FramesPerSecond(json));
+    const auto facts = AnalysisSources(trial);
+    for (std::size_t i = 0; i < facts.size(); ++i) {
+      if (i == sources.size()) sources.emplace_back(facts[i].first, Tally());
+      sources[i].second.Add(facts[i].second);
+    }
   }
   Table table{"", {{"measured with"}, {""}}, {}};
-  const auto row = [&](const char* name, const Tally& tally) {
-    const std::string text = tally.Text();
+  const auto row = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) table.rows.push_back({{name}, {text}});
   };
-  row("scale from", scale);
-  row("ground line from", ground);
-  row("time base", frames);
-  row("analysed by version", software);
-  row("options of the analysis (digest)", options);
-  row("last stated by", author);
+  for (const auto& [name, value] : input.rig.facts) row(name, value);
+  for (const auto& [name, tally] : sources) row(name, tally.Text());
+  row("analysed by version", software.Text());
+  row("options of the analysis (digest)", options.Text());
+  row("last stated by", author.Text());
   if (table.rows.empty()) return {};
-  return {table};
+  std::vector<Block> out{table};
+  if (input.rig.facts.empty()) {
+    out.push_back(Paragraph{
+        "No description of the rig was given (--rig RIG.toml).", true});
+  }
+  return out;
 }
 
 }  // namespace
 
 std::vector<Block> MakeEvidence(const Group& group,
-                                std::span<const core::Trial> trials) {
+                                std::span<const core::Trial> trials,
+                                const ReportInput& input) {
   std::vector<Block> out;
-  for (auto part : {MakeLabels(group), MakeBudget(group, trials),
-                    MakeProvenance(group, trials)}) {
+  for (auto part : {MakeLabels(group), MakeBudget(group, trials, input),
+                    MakeProvenance(group, trials, input)}) {
     for (Block& block : part) out.push_back(std::move(block));
   }
   if (!out.empty()) out.insert(out.begin(), Heading{3, "What stands behind"});

@@ -127,7 +127,8 @@ Callout MakeVerdict(const Group& group, std::span<const Group> groups) {
 }
 
 Section MakeGroupSection(const Group& group, std::span<const Group> groups,
-                         std::span<const core::Trial> trials) {
+                         std::span<const core::Trial> trials,
+                         const ReportInput& input) {
   Section section{group.simulated(), {}};
   auto& out = section.blocks;
   out.push_back(PageBreak{});
@@ -138,10 +139,10 @@ Section MakeGroupSection(const Group& group, std::span<const Group> groups,
   }
   out.push_back(MakeVerdict(group, groups));
   for (Block& block : MakeStatistics(group)) out.push_back(std::move(block));
-  for (Block& block : MakeTrialTables(group, trials)) {
+  for (Block& block : MakeTrialTables(group, trials, input)) {
     out.push_back(std::move(block));
   }
-  for (Block& block : MakeEvidence(group, trials)) {
+  for (Block& block : MakeEvidence(group, trials, input)) {
     out.push_back(std::move(block));
   }
   return section;

@@ -62,7 +62,10 @@ Rows Collect(std::span<const Group> groups, std::span<const core::Trial> trials,
 }
 
 Rows CollectToFit(std::span<const Group> groups,
-                  std::span<const core::Trial> trials) {
+                  std::span<const core::Trial> trials, double bin_width_rad) {
+  if (bin_width_rad > 0.0) {
+    return Collect(groups, trials, bin_width_rad / kDegree, true);
+  }
   Rows rows = Collect(groups, trials, kRow_deg, false);
   for (const double width_deg : {1.0, 2.0, 5.0, 10.0}) {
     if (rows.cells.size() <= kMaxRows) break;
@@ -120,8 +123,8 @@ std::optional<bool> PaperBounces(core::BodyKind body, double angle_deg) {
 }
 
 Table MakeOne(std::span<const Group> groups, std::span<const Group> all,
-              std::span<const core::Trial> trials) {
-  const Rows rows = CollectToFit(groups, trials);
+              std::span<const core::Trial> trials, double bin_width_rad) {
+  const Rows rows = CollectToFit(groups, trials, bin_width_rad);
   bool any_set = false;
   std::vector<bool> with_paper(groups.size(), false);
   for (const auto& [key, row] : rows.cells) {
@@ -176,11 +179,13 @@ Table MakeOne(std::span<const Group> groups, std::span<const Group> all,
 }  // namespace
 
 std::vector<Table> MakeTable1(std::span<const Group> groups,
-                              std::span<const core::Trial> trials) {
+                              std::span<const core::Trial> trials,
+                              const ReportInput& input) {
   std::vector<Table> out;
   for (std::size_t i = 0; i < groups.size(); i += kGroupsAcross) {
     const std::size_t n = std::min(kGroupsAcross, groups.size() - i);
-    out.push_back(MakeOne(groups.subspan(i, n), groups, trials));
+    out.push_back(
+        MakeOne(groups.subspan(i, n), groups, trials, input.bin_width_rad));
   }
   return out;
 }

@@ -3,16 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 
 #include "app/report/boundary_json.h"
 #include "app/report/content.h"
 #include "app/report/document.h"
 #include "app/report/format.h"
+#include "app/report/text.h"
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -38,11 +37,12 @@ Section MakeQuestion(std::span<const Group> groups) {
 
 // Everything of page 1 for the groups of one origin: never pooled.
 Section MakeFront(std::span<const Group> groups,
-                  std::span<const core::Trial> trials, std::size_t& figures) {
+                  std::span<const core::Trial> trials, const ReportInput& input,
+                  std::size_t& figures) {
   Section section{groups.front().simulated(), {}};
   auto& out = section.blocks;
   for (const Group& group : groups) out.push_back(MakeVerdict(group, groups));
-  for (Table& table : MakeTable1(groups, trials)) {
+  for (Table& table : MakeTable1(groups, trials, input)) {
     out.push_back(std::move(table));
   }
   out.push_back(Paragraph{
@@ -55,16 +55,6 @@ Section MakeFront(std::span<const Group> groups,
     out.push_back(MakeFigure(group, ++figures));
   }
   return section;
-}
-
-// FNV-1a, 64 bits: tells two sets of trials apart in print; no defence against
-// forgery.
-std::uint64_t Digest(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  }
-  return hash;
 }
 
 Section MakeMethods(const ReportInput& input, const std::string& csv) {
@@ -123,10 +113,10 @@ Report MakeReport(const ReportInput& input) {
         groups.begin(), groups.end(), std::back_inserter(same),
         [origin](const Group& g) { return g.trials.origin == origin; });
     if (same.empty()) continue;
-    document.sections.push_back(MakeFront(same, trials, figures));
+    document.sections.push_back(MakeFront(same, trials, input, figures));
   }
   for (const Group& group : groups) {
-    document.sections.push_back(MakeGroupSection(group, groups, trials));
+    document.sections.push_back(MakeGroupSection(group, groups, trials, input));
   }
   document.sections.push_back(MakePaperSection());
   const std::string csv = MakeCsv(groups, trials);
@@ -135,7 +125,7 @@ Report MakeReport(const ReportInput& input) {
   out.markdown = ToMarkdown(document);
   out.csv = csv;
   out.html = ToHtml(document);
-  out.latex = MakeLatex(groups, trials);
+  out.latex = MakeLatex(groups, trials, input);
   out.json = ReportDocument(input, groups, trials)
                  .dump(1, ' ', false,
                        nlohmann::ordered_json::error_handler_t::replace) +

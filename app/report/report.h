@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "app/report/shot_prediction.h"
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/boundary_study.h"
 #include "touchdown/core/campaign.h"
@@ -38,6 +40,14 @@ struct ReportInput {
   // How boundaries are estimated; what depends on the campaign (theory, margin,
   // origin) is filled in.
   analysis::StudyOptions study;
+  // The rig that threw them; without facts none was given.
+  RigUsed rig;
+  // Whether every trial has a page of evidence (evidence_page.h) to link to,
+  // and the pictures of the contacts where there are any, by trial id.
+  bool evidence_pages = false;
+  std::map<std::string, std::filesystem::path> pictures;
+  // Bins of the angle in Table 1; 0: a row an angle, or bins that fit a page.
+  double bin_width_rad = 0.0;
   std::string title = "Table 1: slide or bounce at touchdown";
   std::string software_version;
   std::string options;  // how the report was asked for

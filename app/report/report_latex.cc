@@ -7,7 +7,8 @@
 namespace touchdown::report {
 
 std::string MakeLatex(std::span<const Group> groups,
-                      std::span<const core::Trial> trials) {
+                      std::span<const core::Trial> trials,
+                      const ReportInput& input) {
   std::string out = "% Needs nothing beyond LaTeX itself.\n";
   for (const core::Origin origin :
        {core::Origin::kRecorded, core::Origin::kManual,
@@ -17,7 +18,7 @@ std::string MakeLatex(std::span<const Group> groups,
       if (group.trials.origin == origin) same.push_back(group);
     }
     if (same.empty()) continue;
-    for (const Table& table : MakeTable1(same, trials)) {
+    for (const Table& table : MakeTable1(same, trials, input)) {
       if (origin == core::Origin::kSimulated) {
         out += fmt::format("% {}\n", kWatermark);
       }

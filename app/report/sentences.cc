@@ -147,7 +147,8 @@ std::string StatusSentence(const analysis::BoundaryStudy& study) {
       break;
     case DataStatus::kReversed:
       text =
-          "Inconsistent: bounces lie on the whole below slides. Check labels "
+          "Inconsistent: bounces lie on the whole no higher than slides. Check "
+          "labels "
           "and angles before using any number of this group.";
       break;
   }

@@ -104,4 +104,33 @@ std::string LatexEscape(std::string_view text) {
   return out;
 }
 
+std::string Base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group <<= 8;
+      if (i + k < bytes.size()) {
+        group |= static_cast<unsigned char>(bytes[i + k]);
+      }
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      out +=
+          i + k > bytes.size() ? '=' : kDigits[(group >> (18 - 6 * k)) & 63u];
+    }
+  }
+  return out;
+}
+
+std::uint64_t Digest(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  }
+  return hash;
+}
+
 }  // namespace touchdown::report

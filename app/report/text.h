@@ -1,6 +1,7 @@
 // Small text helpers of every report: escaping.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,12 @@ std::string CsvCell(std::string_view text);
 // Text that is safe in Markdown, table cells included: markup characters are
 // escaped, line breaks become spaces.
 std::string MarkdownEscape(std::string_view text);
+
+// RFC 4648, for what stands inside a page.
+std::string Base64(std::string_view bytes);
+
+// FNV-1a, 64 bits: tells two texts apart in print; no defence against forgery.
+std::uint64_t Digest(std::string_view text);
 
 // Text that is safe in LaTeX.
 std::string LatexEscape(std::string_view text);

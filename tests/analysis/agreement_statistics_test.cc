@@ -9,6 +9,7 @@
 
 #include "tests/analysis/reference_data.h"
 #include "tests/support/shared_data.h"
+#include "touchdown/analysis/special_functions.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -145,8 +146,25 @@ TEST(AgreementStatistics, EveryNumberOfTheReference) {
     } else if (statistic == "clopper_pearson95") {
       const auto interval = ClopperPearsonInterval(n[0], n[1]);
       value = quantity == "lo" ? interval.low : interval.high;
-    } else if (statistic == "clopper_pearson_onesided95" && quantity == "lo") {
-      value = ClopperPearsonLowerLimit(n[0], n[1]);
+    } else if (statistic == "clopper_pearson_onesided95") {
+      // The upper limit is that of the other outcome.
+      value = quantity == "lo"
+                  ? ClopperPearsonLowerLimit(n[0], n[1])
+                  : 1.0 - ClopperPearsonLowerLimit(n[1] - n[0], n[1]);
+    } else if (statistic == "jeffreys95") {
+      if ((n[0] == 0 && quantity == "lo") ||
+          (n[0] == n[1] && quantity == "hi")) {
+        continue;  // set to the end by convention
+      }
+      value = BetaQuantile(n[0] + 0.5, n[1] - n[0] + 0.5,
+                           quantity == "lo" ? 0.025 : 0.975);
+    } else if (statistic == "youden_J") {
+      value = n[0] / (n[0] + 1.0 * n[1]) - n[2] / (n[2] + 1.0 * n[3]);
+    } else if (statistic.starts_with("mcnemar_") && n.size() == 4) {
+      const McNemar test = McNemarTest(n[1], n[2]);
+      value = quantity == "p"               ? test.p_corrected
+              : statistic == "mcnemar_nocc" ? test.chi_square
+                                            : test.chi_square_corrected;
     } else if (statistic == "cohen_kappa" && n.size() == 4) {
       const Kappa kappa = CohenKappa(n, 2);
       value = quantity == "kappa" ? kappa.kappa

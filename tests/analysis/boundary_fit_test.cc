@@ -12,6 +12,7 @@
 
 #include "tests/analysis/reference_data.h"
 #include "tests/support/shared_data.h"
+#include "touchdown/analysis/likelihood_profile.h"
 #include "touchdown/analysis/paper_table1.h"
 #include "touchdown/core/units.h"
 
@@ -238,6 +239,24 @@ TEST(Classify, KnowsEveryKindOfData) {
   EXPECT_EQ(status({10, 10}, {1, 0}), DataStatus::kReversed);
   // gonogo06: means 10 and 10.33.
   EXPECT_EQ(status({10, 12, 11, 8}, {0, 1, 1, 1}), DataStatus::kOverlap);
+}
+
+TEST(Classify, ReferenceSets) {
+  const auto folder = testing::Shared("reference/data");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " not here";
+  const auto status = [&](const char* file) {
+    return Classify(ReadTrials(folder / file));
+  };
+  EXPECT_EQ(status("gonogo03_nooverlap8.csv"), DataStatus::kSeparated);
+  EXPECT_EQ(status("gonogo17_sep3.csv"), DataStatus::kSeparated);
+  EXPECT_EQ(status("gonogo19_sep4.csv"), DataStatus::kSeparated);
+  EXPECT_EQ(status("gonogo21_quasi3.csv"), DataStatus::kTouching);
+  EXPECT_EQ(status("gonogo23_quasi4.csv"), DataStatus::kTouching);
+  // Overlap, but the likelihood grows as the scatter does.
+  EXPECT_EQ(status("gonogo06_infsigma.csv"), DataStatus::kOverlap);
+  EXPECT_FALSE(ProfileLikelihood(ReadTrials(folder / "gonogo06_infsigma.csv"),
+                                 {.low_rad = 0.0, .high_rad = 90.0})
+                   .has_estimate);
 }
 
 TEST(FitBoundary, NoTrialsGiveThePrior) {

@@ -117,6 +117,18 @@ TEST(ProfileLikelihood, EveryProbitFitOfTheReference) {
   }
 }
 
+TEST(ProfileLikelihood, Psignifit) {
+  // psignifit's estimate (its prior included): threshold 0.897274, width
+  // 1.434103, which is 3.28971 scatters; tolerance 0.005.
+  const auto path = testing::Shared("reference/data/psignifit_yesno_norm.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  const auto p =
+      ProfileLikelihood(ReadGroups(path, true, [](double x) { return x; }),
+                        Wide(-1, 4, 1e-3, 10));
+  EXPECT_NEAR(p.estimate_rad, 0.897274, 0.005);
+  EXPECT_NEAR(p.scatter_rad, 1.434103 / 3.28971, 0.005);
+}
+
 TEST(ProfileLikelihood, PaperTable1) {
   // statistics.md 1.4: sphere [9.12, 36.82], rectangle [5.30, 19.04], on a grid
   // of 0.02 deg and with u = 0.5 deg.

@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/analysis/reference_data.h"
-#include "tests/support/shared_data.h"
 #include "touchdown/analysis/paper_table1.h"
 #include "touchdown/core/units.h"
 
@@ -17,97 +15,6 @@ namespace {
 
 using core::BodyKind;
 using core::kDegree;
-
-constexpr core::Interval kAnywhere{-1e9, 1e9};
-
-TEST(NextNeyer, PublishedLevelsOfNeyer1994) {
-  // Technometrics 36, Table 1; guesses 0.6, 1.4, 0.1; levels rounded to 0.01.
-  const double levels[] = {1.00, 1.20, 1.40, 1.80, 2.60, 4.20, 3.40,
-                           3.80, 4.00, 4.10, 4.28, 4.52, 5.55, 5.24,
-                           6.37, 6.08, 7.38, 7.09, 6.89, 6.74};
-  const int outcome[] = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0,
-                         0, 0, 1, 0, 1, 0, 1, 1, 1, 1};
-  // Before rounding, from the 11th on (gonogo).
-  const double exact[] = {4.280593, 4.522704, 5.546750, 5.243286, 6.371972,
-                          6.080507, 7.384474, 7.094228, 6.893248, 6.736075};
-  std::vector<Observation> trials;
-  for (std::size_t i = 0; i < std::size(levels); ++i) {
-    const NextAngle next = NextNeyer(trials, {0.6, 1.4, 0.1, kAnywhere});
-    EXPECT_NEAR(std::round(next.angle_rad * 100) / 100, levels[i], 1e-9)
-        << "level " << i + 1;
-    if (i >= 10) {
-      EXPECT_NEAR(next.angle_rad, exact[i - 10], 4e-6) << "level " << i + 1;
-    }
-    EXPECT_FALSE(next.clipped);
-    trials.push_back(Raw(levels[i], outcome[i] == 1));
-  }
-}
-
-TEST(NextNeyer, ClipsToWhatTheRigCanThrow) {
-  const NeyerOptions options{0.1, 0.3, 0.02, {0.0, 0.32}};
-  std::vector<Observation> trials;
-  for (const double x : {0.2, 0.25, 0.3}) trials.push_back(Raw(x, false));
-  const NextAngle next = NextNeyer(trials, options);
-  EXPECT_EQ(next.angle_rad, 0.32);
-  EXPECT_TRUE(next.clipped);
-}
-
-TEST(NextNeyer, NeverLeavesTheFiniteWhateverTheOutcomes) {
-  std::mt19937 engine(5);
-  std::bernoulli_distribution coin(0.5);
-  for (int run = 0; run < 20; ++run) {
-    std::vector<Observation> trials;
-    for (int i = 0; i < 30; ++i) {
-      const NextAngle next = NextNeyer(trials, {0.05, 0.5, 0.02, {0.0, 1.57}});
-      ASSERT_TRUE(std::isfinite(next.angle_rad));
-      trials.push_back(Raw(next.angle_rad, coin(engine)));
-    }
-  }
-}
-
-TEST(NextUpDown, OneStepDownAfterABounceUpAfterASlide) {
-  UpDownOptions options;
-  EXPECT_EQ(NextUpDown({}, options).angle_rad, options.start_rad);
-  std::vector<Observation> trials{Observe(0.35, 0.0, 1.0)};
-  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad,
-                   0.35 - options.step_rad);
-  trials.push_back(Observe(0.30, 0.0, 0.0));
-  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad,
-                   0.30 + options.step_rad);
-  trials.back().set_angle_rad = 0.29;
-  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad,
-                   0.29 + options.step_rad);
-  trials.push_back(Observe(0.30, 0.0, 0.6));
-  EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad, 0.30);
-}
-
-TEST(EstimateDixonMood, PublishedStaircases) {
-  const auto folder = testing::Shared("reference/data");
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " not here";
-  const auto t9 =
-      EstimateDixonMood(ReadTrials(folder / "gorla2017_t9_951.csv"), 1.0);
-  EXPECT_EQ(t9->n, 7);
-  EXPECT_EQ(t9->a, 9);
-  EXPECT_EQ(t9->b, 19);
-  EXPECT_NEAR(t9->mean_rad, 36.785714, 1e-6);
-  EXPECT_NEAR(t9->m, 1.061224, 1e-6);
-  EXPECT_NEAR(*t9->scatter_rad, 1.766164, 1e-6);
-  const auto t6 =
-      EstimateDixonMood(ReadTrials(folder / "gorla2017_t6_751.csv"), 1.0);
-  EXPECT_EQ(t6->n, 6);
-  EXPECT_EQ(t6->a, 8);
-  EXPECT_EQ(t6->b, 14);
-  EXPECT_NEAR(t6->mean_rad, 40.833333, 1e-6);
-  const auto dose =
-      EstimateDixonMood(ReadTrials(folder / "vanelstraete2008.csv"), 1.0);
-  EXPECT_EQ(dose->n, 21);
-  EXPECT_EQ(dose->a, 300);
-  EXPECT_NEAR(dose->mean_rad, 20.785714, 1e-6);
-}
-
-TEST(EstimateDixonMood, NothingWithOneOutcome) {
-  EXPECT_FALSE(EstimateDixonMood(std::vector{Raw(1, true)}, 1.0).has_value());
-}
 
 TEST(ChooseNextAngle, AfterTable1ItGoesIntoTheBracket) {
   const auto posterior =

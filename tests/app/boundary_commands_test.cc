@@ -176,6 +176,8 @@ TEST_F(BoundaryCommands, NextStaysFeasibleAndFollowsTheRule) {
   const Ran neyer = RunProgram(paper + "--rule neyer --guess-deg 5:20");
   EXPECT_NEAR(angle(neyer), 19.6, 1e-9);  // the middle of the bracket
   ExpectOneLine(RunProgram(paper + "--rule neyer"), 2, "--guess-deg");
+  const Ran three = RunProgram(paper + "--rule 3pod --guess-deg 5:20");
+  EXPECT_NEAR(angle(three), 19.6, 1e-9);
   ExpectOneLine(RunProgram(paper + "--rule magic"), 2, "magic");
 }
 
@@ -221,10 +223,19 @@ TEST_F(BoundaryCommands, ReportIsTheSameByteForByte) {
   const auto a = folder_.path() / "a";
   const auto b = folder_.path() / "b";
   for (const auto& out : {a, b}) {
-    const Ran ran =
-        RunProgram("report --db " + store + " --out " + out.string());
+    const Ran ran = RunProgram("report --evidence --db " + store + " --out " +
+                               out.string());
     ASSERT_EQ(ran.status, 0) << ran.err;
   }
+  int pages = 0;
+  for (const auto& page : std::filesystem::directory_iterator(a / "evidence")) {
+    const std::string text = ReadAll(page.path());
+    EXPECT_TRUE(text == ReadAll(b / "evidence" / page.path().filename()));
+    EXPECT_THAT(ReadAll(a / "table1.html"),
+                HasSubstr("evidence/" + page.path().filename().string()));
+    ++pages;
+  }
+  EXPECT_EQ(pages, 18);
   for (const char* name : {"table1.md", "table1.csv", "table1.html",
                            "table1.tex", "table1.json"}) {
     const std::string text = ReadAll(a / name);
@@ -247,6 +258,10 @@ TEST_F(BoundaryCommands, MistakesAreOneLine) {
   ExpectOneLine(RunProgram("boundary --paper-table1 --feasible-deg 9"), 2,
                 "LOW:HIGH");
   ExpectOneLine(RunProgram("report --trials " + Sharp()), 2, "--body");
+  ExpectOneLine(RunProgram("report --paper-table1 --rig /none.toml"), 3,
+                "/none.toml");
+  ExpectOneLine(RunProgram("report --paper-table1 --evidence /none"), 3,
+                "/none");
   ExpectOneLine(RunProgram("boundary --theory-deg 200 --trials " + Sharp()), 2,
                 "--theory-deg");
 }

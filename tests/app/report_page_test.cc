@@ -107,6 +107,23 @@ TEST(ReportPage, IsQuietAsksForNothingAndPrints) {
   EXPECT_LE(CountPages(visit.pdf), 9);
 }
 
+TEST(ReportPage, APageOfEvidenceIsQuietAndPrints) {
+  const std::string browser = FindBrowser();
+  if (browser.empty()) GTEST_SKIP() << "chromium is not installed";
+  const TemporaryFolder folder;
+  const auto ran = RunProgram("report --paper-table1 --evidence --out " +
+                              (folder.path() / "report").string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const std::filesystem::directory_iterator pages(folder.path() / "report" /
+                                                  "evidence");
+  const Visit visit = Print(browser, pages->path(), folder.path());
+  EXPECT_EQ(visit.status, 0) << ReadAll(folder.path() / "log");
+  EXPECT_THAT(visit.console, IsEmpty());
+  EXPECT_THAT(visit.requests, IsEmpty());
+  EXPECT_GE(CountPages(visit.pdf), 1);
+  EXPECT_LE(CountPages(visit.pdf), 2);
+}
+
 // That the test above can fail.
 TEST(ReportPage, ALoudPageIsHeard) {
   const std::string browser = FindBrowser();

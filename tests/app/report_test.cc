@@ -220,6 +220,7 @@ TEST(MakeReport, TwoLabelsOfTheSameTrialsAreCompared) {
   EXPECT_THAT(report.markdown, HasSubstr("7 trials bear both labels"));
   EXPECT_THAT(report.markdown, HasSubstr("McNemar exact p = 0.0313"));
   EXPECT_THAT(report.markdown, HasSubstr("1 of them, undecided"));
+  EXPECT_THAT(report.markdown, HasSubstr("Both agree in 0 of 6, 95 %"));
 }
 
 TEST(MakeReport, WhatStandsBehindTheTrialsIsSaid) {
@@ -259,6 +260,14 @@ TEST(MakeReport, ManyTrialsAreBinned) {
   }
   EXPECT_THAT(MakeReport(input).markdown,
               HasSubstr("set angle, bins of 1 deg"));
+}
+
+TEST(MakeReport, TheUserChoosesTheBins) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  input.bin_width_rad = 30 * kDegree;
+  const std::string text = MakeReport(input).markdown;
+  EXPECT_THAT(text, HasSubstr("set angle, bins of 30 deg"));
+  EXPECT_THAT(text, HasSubstr("slide 4, bounce 1"));
 }
 
 TEST(WriteReport, WritesFiveFilesAndNothingElse) {

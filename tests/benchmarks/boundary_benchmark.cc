@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "touchdown/analysis/boundary_fit.h"
+#include "touchdown/analysis/classic_designs.h"
 #include "touchdown/analysis/likelihood_profile.h"
 #include "touchdown/analysis/next_angle.h"
 #include "touchdown/core/units.h"

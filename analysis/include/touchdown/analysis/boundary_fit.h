@@ -77,7 +77,7 @@ enum class DataStatus {
   kSeparated,    // a bracket; the scatter cannot be told from 0
   kTouching,     // separated but for a shared angle
   kOverlap,      // slides above bounces: scatter is seen
-  kReversed      // bounces on the whole below slides: inconsistent
+  kReversed      // bounces on the whole no higher than slides: inconsistent
 };
 std::string_view Name(DataStatus status);
 

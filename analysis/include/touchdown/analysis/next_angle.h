@@ -82,44 +82,4 @@ struct ForecastOptions {
 int ForecastTrials(const BoundaryPosterior& posterior,
                    const ForecastOptions& options, std::mt19937_64& engine);
 
-// Neyer's D-optimal test (Technometrics 36, 61-70, 1994; MIL-STD-331): what the
-// operator believes before the first trial.
-struct NeyerOptions {
-  double guess_low_rad = 0.0;   // the boundary lies between these two
-  double guess_high_rad = 0.0;  //
-  double guess_scatter_rad = 0.0;
-  core::Interval feasible_rad{0.0, std::numbers::pi / 2};
-};
-
-// The next level after `trials`, in the order in which they were thrown;
-// undecided ones are passed over. The published example of 20 levels comes out
-// exactly. Throws std::invalid_argument unless low < high and scatter > 0.
-NextAngle NextNeyer(std::span<const Observation> trials,
-                    const NeyerOptions& options);
-
-// Up and down (Dixon and Mood 1948), for an operator without a computer: one
-// step down after a bounce, one step up after a slide, the same again after an
-// undecided trial.
-struct UpDownOptions {
-  double start_rad = 20.0 * core::kDegree;
-  double step_rad = 1.0 * core::kDegree;  // half to one and a half scatters
-  core::Interval feasible_rad{0.0, std::numbers::pi / 2};
-};
-NextAngle NextUpDown(std::span<const Observation> trials,
-                     const UpDownOptions& options = {});
-
-// Dixon and Mood's estimate from an up-and-down run with steps of `step`; a
-// historical check, spoilt by a long run-up. Nothing where one outcome is
-// missing.
-struct DixonMood {
-  int n = 0;  // trials of the rarer outcome
-  int a = 0;  // sum of i, levels above the lowest of that outcome
-  int b = 0;  // sum of i^2
-  double mean_rad = 0.0;
-  double m = 0.0;                     // (n b - a^2) / n^2
-  std::optional<double> scatter_rad;  // 1.62 step (m + 0.029), where m > 0.3
-};
-std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
-                                           double step_rad);
-
 }  // namespace touchdown::analysis

@@ -5,6 +5,7 @@ namespace touchdown::analysis {
 
 // Standard normal density and distribution function.
 double NormalDensity(double z);
+double LogNormalDensity(double z);
 double NormalCdf(double z);
 
 // log NormalCdf(z), accurate where NormalCdf underflows: the asymptotic series

@@ -1,0 +1,37 @@
+// What every rule for the next angle does with its options and its answer.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "touchdown/analysis/next_angle.h"
+
+namespace touchdown::analysis {
+
+inline void Require(bool ok, const char* field, double value,
+                    const char* range) {
+  if (!ok) {
+    throw std::invalid_argument(
+        fmt::format("{} is {}; it must be {}", field, value, range));
+  }
+}
+
+inline void CheckFeasible(const core::Interval& feasible) {
+  Require(std::isfinite(feasible.low), "feasible_rad.low", feasible.low,
+          "finite");
+  Require(feasible.high >= feasible.low && std::isfinite(feasible.high),
+          "feasible_rad.high", feasible.high,
+          "finite and not below feasible_rad.low");
+}
+
+inline NextAngle Clipped(double angle_rad, const core::Interval& feasible) {
+  NextAngle out;
+  out.angle_rad = std::clamp(angle_rad, feasible.low, feasible.high);
+  out.clipped = out.angle_rad != angle_rad;
+  return out;
+}
+
+}  // namespace touchdown::analysis

@@ -1,0 +1,270 @@
+#include "app/report/evidence_page.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "app/report/analysis_facts.h"
+#include "app/report/format.h"
+#include "app/report/group.h"
+#include "app/report/set_points.h"
+#include "app/report/text.h"
+#include "app/report/text_file.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+using core::kMillimetre;
+
+// A table of names and values; rows without a value are left out.
+class Facts {
+ public:
+  explicit Facts(std::string caption)
+      : table_{std::move(caption), {{""}, {""}}, {}} {}
+  void Add(std::string name, const std::string& value) {
+    if (!value.empty()) table_.rows.push_back({{std::move(name)}, {value}});
+  }
+  void Add(std::string name, const core::Measured& m, double unit,
+           const char* symbol) {
+    std::string text = WithUOrReason(m, unit);
+    if (m && *symbol != '\0') text += std::string(" ") + symbol;
+    Add(std::move(name), text);
+  }
+  void AddTo(std::vector<Block>& out) const {
+    if (!table_.rows.empty()) out.push_back(table_);
+  }
+
+ private:
+  Table table_;
+};
+
+void AddContact(const core::ContactRecord& record, core::AngleKind kind,
+                const std::string& caption, std::vector<Block>& out) {
+  const core::Contact& contact = record.contact;
+  Facts facts(caption);
+  if (!contact.found) facts.Add("contact", "not found: " + contact.reason);
+  const auto angle = [&](core::AngleKind which, const core::Measured& value) {
+    facts.Add(fmt::format("{} angle{}", core::Name(which),
+                          which == kind ? " (the contact angle)" : ""),
+              value, kDegree, "deg");
+  };
+  angle(core::AngleKind::kApproach, contact.approach_angle_rad);
+  angle(core::AngleKind::kRadius, contact.radius_angle_rad);
+  angle(core::AngleKind::kFace, contact.face_angle_rad);
+  if (contact.corner) {
+    facts.Add("corner", std::string(core::Name(*contact.corner)));
+  }
+  facts.Add("time", contact.time_s, 1.0, "s");
+  facts.Add("frame", contact.frame, 1.0, "(from 0 in the file)");
+  facts.Add("duration, touchdown to release", contact.duration_s, 1e-3, "ms");
+  facts.AddTo(out);
+}
+
+void AddState(const core::StateDecision& state, const std::string& caption,
+              std::vector<Block>& out) {
+  Facts facts(caption);
+  facts.Add("motion state",
+            fmt::format("{} (in the paper's two words: {})",
+                        core::Name(state.label), PaperWord(state.label)));
+  facts.Add("because", state.reason);
+  facts.Add("P(bounce)", state.p_bounce ? Plain(*state.p_bounce, 6)
+                                        : "the rebound was not filmed");
+  facts.Add("greatest gap", state.max_gap_m, kMillimetre, "mm");
+  facts.Add("bounce height", state.bounce_height_m, kMillimetre, "mm");
+  facts.Add("detectable gap", state.detectable_gap_m, kMillimetre, "mm");
+  if (state.micro_bounce) facts.Add("micro-bounce", "yes");
+  facts.AddTo(out);
+}
+
+void AddMotion(const core::Motion& m, const std::string& caption,
+               std::vector<Block>& out) {
+  Table table{caption,
+              {{""},
+               {fmt::format("at touchdown {} u", kPlusMinus), true},
+               {fmt::format("at release {} u", kPlusMinus), true}},
+              {}};
+  const auto row = [&](const char* name, const core::Measured& before,
+                       const core::Measured& after) {
+    table.rows.push_back(
+        {{name}, {WithUOrReason(before, 1.0)}, {WithUOrReason(after, 1.0)}});
+  };
+  row("speed of the centre (m/s)", m.before_speed_mps,
+      core::AbsentBecause("see its parts"));
+  table.rows.back()[2].text.clear();
+  row("along the normal (m/s)", m.before_normal_mps, m.after_normal_mps);
+  row("along the ground (m/s)", m.before_tangential_mps,
+      m.after_tangential_mps);
+  row("spin (rad/s)", m.before_omega_rad_per_s, m.after_omega_rad_per_s);
+  out.push_back(std::move(table));
+  Facts facts("");
+  facts.Add("restitution of the contact point", m.restitution, 1.0, "");
+  facts.Add("centre's rebound ratio", m.centre_rebound_ratio, 1.0, "");
+  facts.Add("impulse ratio", m.impulse_ratio, 1.0, "");
+  facts.Add("gravity, fitted freely", m.gravity_check_mps2, 1.0, "m/s\u00b2");
+  facts.AddTo(out);
+}
+
+void AddBudget(const core::Trial& trial, std::vector<Block>& out) {
+  const core::Budget& budget = AngleBudget(trial);
+  if (budget.empty()) {
+    out.push_back(Paragraph{
+        "No uncertainty budget of the contact angle was recorded.", true});
+    return;
+  }
+  double squares = 0.0;
+  for (const auto& line : budget) squares += line.u * line.u;
+  core::Budget sorted = budget;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.u > b.u; });
+  Table table{
+      fmt::format("Uncertainty budget of the {} angle",
+                  core::Name(trial.angle_kind)),
+      {{"source"}, {"u (deg)", true}, {"share of the variance (%)", true}},
+      {}};
+  for (const auto& line : sorted) {
+    table.rows.push_back(
+        {{line.source},
+         {fmt::format("{:.3g}", line.u / kDegree)},
+         {fmt::format("{:.1f}",
+                      squares > 0.0 ? 100 * line.u * line.u / squares : 0.0)}});
+  }
+  table.rows.push_back({{"root of the sum of squares"},
+                        {fmt::format("{:.3g}", std::sqrt(squares) / kDegree)},
+                        {""}});
+  out.push_back(std::move(table));
+}
+
+void AddRecord(const core::Trial& trial, std::vector<Block>& out) {
+  Facts facts("The record");
+  facts.Add("trial", trial.id);
+  facts.Add("campaign", trial.campaign.empty() ? "(none)" : trial.campaign);
+  facts.Add("origin", std::string(core::Name(trial.origin)));
+  facts.Add("revision", fmt::format("{}", trial.revision));
+  facts.Add("stated by", trial.author);
+  facts.Add("because", trial.reason);
+  facts.Add("at (UTC)", trial.recorded_at_utc);
+  if (trial.excluded) facts.Add("excluded", trial.exclusion_reason);
+  facts.Add("recording", trial.clip.path);
+  facts.Add("its digest", trial.clip.id);
+  facts.Add("its SHA-256", trial.clip.sha256);
+  facts.Add("analysed by version", trial.software_version);
+  facts.Add("options of the analysis (digest)", trial.options_hash);
+  facts.AddTo(out);
+}
+
+std::string ReadPicture(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file || bytes.empty()) {
+    throw core::InputError(fmt::format(
+        "{}: cannot be read; analyse the recording again with --out",
+        path.string()));
+  }
+  return bytes;
+}
+
+void AddPicture(const core::Trial& trial, const ReportInput& input,
+                std::vector<Block>& out) {
+  const auto found = input.pictures.find(trial.id);
+  if (found == input.pictures.end()) {
+    out.push_back(Paragraph{
+        trial.clip.path.empty()
+            ? "Logged by hand: there is no recording and no picture."
+            : "No picture of this analysis was found: analyze and batch write "
+              "one with --out FOLDER, and report takes it with --evidence "
+              "FOLDER.",
+        true});
+    return;
+  }
+  out.push_back(Picture{
+      Base64(ReadPicture(found->second)),
+      "Frames around the contact, with the body's outline, the ground line and "
+      "the fitted flights drawn in.",
+      "The frames around the contact. Drawn in: outline, ground line, the "
+      "flights before and after."});
+}
+
+}  // namespace
+
+std::string EvidencePageName(const core::Trial& trial) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           (c >= '0' && c <= '9') || c == '-';
+  };
+  if (!trial.id.empty() &&
+      std::all_of(trial.id.begin(), trial.id.end(), plain)) {
+    return trial.id + ".html";
+  }
+  std::string name = trial.id;
+  std::replace_if(
+      name.begin(), name.end(), [&](char c) { return !plain(c); }, '-');
+  // A path is limited to some 250 bytes, and names must differ.
+  constexpr std::size_t kLongest = 80;
+  return fmt::format("{}-{:016x}.html", name.substr(0, kLongest),
+                     Digest(trial.id));
+}
+
+std::string EvidenceLink(const ReportInput& input, const core::Trial& trial) {
+  return input.evidence_pages ? "evidence/" + EvidencePageName(trial) : "";
+}
+
+Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
+  const core::Measured& angle = core::ContactAngle(trial);
+  const core::StateDecision& state = trial.first.state;
+  Document document;
+  document.title = fmt::format(
+      "{}: {} angle {}, {}", TrialName(trial), core::Name(trial.angle_kind),
+      angle ? WithU(*angle, kDegree) + " deg" : "absent",
+      core::Name(state.label));
+  Section section{trial.origin == core::Origin::kSimulated, {}};
+  auto& out = section.blocks;
+  out.push_back(Link{"../table1.html", "The report"});
+  if (trial.excluded) {
+    out.push_back(Callout{"Excluded.", trial.exclusion_reason, Tone::kBad});
+  }
+  AddPicture(trial, input, out);
+  AddState(state, "What happened", out);
+  AddContact(trial.first, trial.angle_kind, "The contact", out);
+  AddBudget(trial, out);
+  AddMotion(trial.first.motion, "The motion", out);
+  for (Block& block : SetPointsOf(trial, input)) {
+    out.push_back(std::move(block));
+  }
+  for (std::size_t i = 0; i < trial.later.size(); ++i) {
+    out.push_back(Heading{2, fmt::format("Contact {}", i + 2)});
+    AddState(trial.later[i].state, "What happened", out);
+    AddContact(trial.later[i], trial.angle_kind, "The contact", out);
+    AddMotion(trial.later[i].motion, "The motion", out);
+  }
+  Facts seen("How it was seen");
+  for (const auto& [name, value] : AnalysisFacts(trial)) seen.Add(name, value);
+  seen.AddTo(out);
+  AddRecord(trial, out);
+  document.sections.push_back(std::move(section));
+  return document;
+}
+
+void WriteEvidencePages(const ReportInput& input,
+                        const std::filesystem::path& folder) {
+  const std::filesystem::path pages = folder / "evidence";
+  std::error_code trouble;
+  std::filesystem::create_directories(pages, trouble);
+  if (trouble) {
+    throw core::InputError(
+        fmt::format("{}: cannot be made: {}; give a folder that can",
+                    pages.string(), trouble.message()));
+  }
+  for (const core::Trial& trial : input.trials) {
+    WriteTextFile(pages / EvidencePageName(trial),
+                  ToHtml(MakeEvidencePage(trial, input)));
+  }
+}
+
+}  // namespace touchdown::report
