@@ -19,17 +19,17 @@ core::Expected<Setting> Driver::Set(const Setting& wanted) {
   RequireAtLeastZero("compression_m", wanted.compression_m);
   RequireFinite("elevation_rad", wanted.elevation_rad);
   RequireAtLeastZero("muzzle_height_m", wanted.muzzle_height_m);
-  if (stopped()) return core::AbsentBecause(kStopped);
+  if (is_stopped()) return core::AbsentBecause(kStopped);
   Disarm();
   setting_.reset();  // not known while it moves
   auto read = Move(wanted);
-  if (read && stopped()) return core::AbsentBecause(kStopped);
+  if (read && is_stopped()) return core::AbsentBecause(kStopped);
   if (read) setting_ = *read;
   return read;
 }
 
 core::Expected<Arming> Driver::Arm() {
-  if (stopped()) return core::AbsentBecause(kStopped);
+  if (is_stopped()) return core::AbsentBecause(kStopped);
   if (!setting_) return core::AbsentBecause("nothing is set yet: set it first");
   armed_.reset();
   const auto interlock = ReadInterlock();
@@ -39,7 +39,7 @@ core::Expected<Arming> Driver::Arm() {
   }
   const auto latched = Latch();
   if (!latched) return tl::unexpected(latched.error());
-  if (stopped()) return core::AbsentBecause(kStopped);
+  if (is_stopped()) return core::AbsentBecause(kStopped);
   armed_ = Arming{++armings_, *setting_};
   return *armed_;
 }
@@ -56,7 +56,7 @@ core::Expected<std::int64_t> Driver::Fire(
     throw std::invalid_argument(
         "by is empty, must name the person who confirms the shot");
   }
-  if (stopped()) return core::AbsentBecause(kStopped);
+  if (is_stopped()) return core::AbsentBecause(kStopped);
   if (!armed_) return core::AbsentBecause("not armed: arm it first");
   if (confirmation.arming != armed_->number) {
     return core::AbsentBecause(
@@ -71,7 +71,7 @@ core::Expected<std::int64_t> Driver::Fire(
   }
   // A Stop() from here on overtakes the shot in the hardware, which refuses
   // until it is reset.
-  if (stopped()) return core::AbsentBecause(kStopped);
+  if (is_stopped()) return core::AbsentBecause(kStopped);
   armed_.reset();  // used up, whatever comes
   return Release();
 }
@@ -80,11 +80,11 @@ DriverStatus Driver::Status() {
   DriverStatus status;
   status.setting = setting_;
   status.armed = armed_.has_value();
-  status.stopped = stopped();
+  status.stopped = is_stopped();
   if (status.stopped) return status;
   if (const auto interlock = ReadInterlock()) status.interlock = *interlock;
   status.shots = CountShots();
-  status.stopped = stopped();
+  status.stopped = is_stopped();
   return status;
 }
 

@@ -33,7 +33,7 @@ core::Expected<double> ManualDriver::Reading(const std::string& what,
   std::string question = order + "; it reads [as asked]:";
   for (int i = 0; i < options_.questions; ++i) {
     const auto answer = ask_(question);
-    if (stopped()) return core::AbsentBecause("stopped");
+    if (is_stopped()) return core::AbsentBecause("stopped");
     if (!answer) return core::AbsentBecause(kNoAnswer);
     const auto read =
         answer->empty() ? std::optional<double>(wanted) : Number(*answer);
@@ -72,7 +72,7 @@ core::Expected<Setting> ManualDriver::Move(const Setting& wanted) {
 core::Expected<bool> ManualDriver::Yes(const std::string& question) {
   for (int i = 0; i < options_.questions; ++i) {
     const auto answer = ask_(question + " [yes/no]:");
-    if (stopped()) return core::AbsentBecause("stopped");
+    if (is_stopped()) return core::AbsentBecause("stopped");
     if (!answer) return core::AbsentBecause(kNoAnswer);
     if (*answer == "yes") return true;
     if (*answer == "no") return false;

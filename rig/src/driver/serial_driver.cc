@@ -47,7 +47,7 @@ core::Expected<std::string> SerialDriver::Ask(const std::string& verb,
   const Request request{++number_, verb, argument};
   const std::string bytes = LineOf(request);
   for (int i = 0; i < tries; ++i) {
-    if (stopped() && !even_stopped) return core::AbsentBecause("stopped");
+    if (is_stopped() && !even_stopped) return core::AbsentBecause("stopped");
     line_.Send(bytes);
     const auto until = line_.Now() + options_.answer;
     while (const auto line = line_.Receive(until)) {
@@ -61,7 +61,7 @@ core::Expected<std::string> SerialDriver::Ask(const std::string& verb,
           fmt::format("the controller refuses '{}': {}", verb, answer->text));
     }
   }
-  if (stopped() && !even_stopped) return core::AbsentBecause("stopped");
+  if (is_stopped() && !even_stopped) return core::AbsentBecause("stopped");
   throw core::InputError(fmt::format(
       "{}: no answer to '{}' ({} tries of {} ms); look at the controller's "
       "power and cable",
@@ -137,7 +137,7 @@ core::Expected<Setting> SerialDriver::Move(const Setting& wanted) {
                                              options_.movement.count() / 1000));
     }
     line_.Pause(line_.Now() + options_.look);
-    if (stopped()) return core::AbsentBecause("stopped");
+    if (is_stopped()) return core::AbsentBecause("stopped");
   }
 }
 

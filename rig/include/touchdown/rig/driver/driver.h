@@ -70,11 +70,9 @@ class Driver {
   // Emergency stop: whatever is going on ends with a reason, and nothing moves
   // until Reset(). Async-signal-safe; may be called from any thread.
   void Stop() noexcept;
+  bool is_stopped() const noexcept { return stops_ != answered_; }
   // A person's word that all is well again.
   core::Expected<void> Reset(const std::string& by);
-
- protected:
-  bool stopped() const noexcept { return stops_.load() != answered_.load(); }
 
  private:
   virtual core::Expected<Setting> Move(const Setting& wanted) = 0;
