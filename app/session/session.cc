@@ -30,8 +30,9 @@ using core::kDegree;
 constexpr double kFileClock_s = 0.02;
 
 double WrittenAt_s(const fs::path& recording) {
-  const auto written =
-      std::chrono::file_clock::to_sys(pipeline::ExtentOf(recording).written);
+  const pipeline::Extent extent = pipeline::ExtentOf(recording);
+  if (extent.files == 0) return 0.0;  // it has gone
+  const auto written = std::chrono::file_clock::to_sys(extent.written);
   return std::chrono::duration<double>(written.time_since_epoch()).count();
 }
 
@@ -150,7 +151,10 @@ void Session::Plan() {
   file_.planned = true;
   file_.trials_before = CountTrials();
   const report::Group group = Now();
-  file_.boundary = report::BoundarySentence(group.study);
+  file_.boundary = fmt::format(
+      "{} ({} stayed down, {} bounced, {} undecided)",
+      report::BoundarySentence(group.study), group.study.counts.not_bounce,
+      group.study.counts.bounce, group.study.counts.undecided);
   const bool resumed = std::exchange(resumed_plan_, false);
   plan_lines_.clear();
   if (resumed ? file_.is_check : CheckIsDue()) {
@@ -348,14 +352,7 @@ void Session::Log(const fs::path& recording) {
     Say("  (recorded before these set-points were shown: logged without them)");
   }
   Plan();
-  if (!is_check) {
-    const report::Group group = Now();
-    Say(fmt::format(
-        "  boundary   {} ({} stayed down, {} bounced, {} "
-        "undecided)",
-        report::BoundarySentence(group.study), group.study.counts.not_bounce,
-        group.study.counts.bounce, group.study.counts.undecided));
-  }
+  if (!is_check) Say("  boundary   " + file_.boundary);
   SayPlan();
 }
 
