@@ -194,9 +194,11 @@ TEST_F(SessionTest, GoesOnWhereItWas) {
   // It was used up: a third has set-points only from a new plan.
   Begin();
   const auto old = bench_.Film("c.mraw", 22.0, 3);
-  std::filesystem::last_write_time(
-      old,
-      std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  for (const char* file : {"c.mraw", "c.cihx"}) {
+    std::filesystem::last_write_time(
+        bench_.films() / file,
+        std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  }
   EXPECT_THAT(Take(old), HasSubstr("logged without them"));
   EXPECT_FALSE(Trials()[2].set_angle_rad);
 }
