@@ -76,13 +76,14 @@ TEST_F(SessionCommand, TakesWhatComesAndEndsWhenTold) {
 
 TEST_F(SessionCommand, MistakesAreOneLine) {
   ExpectMistake(Arguments(), 2, "--operator is missing");
-  ExpectMistake(Arguments({"--operator", "A", "--quiet-s", "0"}), 2,
-                "--quiet-s is 0");
+  auto arguments = Arguments({"--operator", "A"});
+  arguments[11] = "0";
+  ExpectMistake(arguments, 2, "--quiet-s is 0");
   ExpectMistake(Arguments({"--operator", "A", "--check-height-mm", "0"}), 2,
                 "height");
   ExpectMistake(Arguments({"--operator", "A", "--driver", "/dev/null"}), 3,
                 "no serial port");
-  auto arguments = Arguments({"--operator", "A"});
+  arguments = Arguments({"--operator", "A"});
   arguments[5] = "concrete";
   ExpectMistake(arguments, 4, "there is no campaign 'concrete'");
   arguments = Arguments({"--operator", "A"});
