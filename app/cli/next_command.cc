@@ -110,9 +110,8 @@ void KeepFeasible(const BoundaryFlags& flags, const session::Thrower& thrower,
       group.study.posterior, group.study.counts.total(), options);
 }
 
-nlohmann::ordered_json SetPointsJson(
-    const session::Thrower& thrower,
-    const core::Expected<rig::SetPoint>& point) {
+nlohmann::ordered_json PlanJson(const session::Thrower& thrower,
+                                const core::Expected<rig::SetPoint>& point) {
   nlohmann::ordered_json out = session::SetPointsJson(thrower, point);
   if (point) out["contact"] = Json(point->contact);
   return out;
@@ -183,7 +182,7 @@ int RunNext(const BoundaryFlags& flags) {
     document["rule"] = flags.rule;
     if (thrower) {
       document["set_points"] =
-          SetPointsJson(*thrower, session::PlanNext(*thrower, next.angle_rad));
+          PlanJson(*thrower, session::PlanNext(*thrower, next.angle_rad));
     }
     fmt::print("{}\n", document.dump(2));
     return 0;
