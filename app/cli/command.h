@@ -24,6 +24,7 @@ void AddNext(CLI::App& app, Action& action);
 void AddRegister(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
+void AddSession(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
 void AddTheory(CLI::App& app, Action& action);
 void AddList(CLI::App& app, Action& action);

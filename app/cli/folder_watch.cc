@@ -41,14 +41,17 @@ void FolderWatch::AddFolders() {
   }
 }
 
-void FolderWatch::Wait(std::chrono::milliseconds longest) {
+bool FolderWatch::Wait(std::chrono::milliseconds longest, int other) {
   AddFolders();
-  pollfd events{inotify_, POLLIN, 0};  // a negative descriptor is passed over
-  poll(&events, 1, static_cast<int>(longest.count()));
-  if (inotify_ < 0) return;
+  // Negative descriptors are passed over.
+  std::array<pollfd, 2> events{pollfd{inotify_, POLLIN, 0},
+                               pollfd{other, POLLIN, 0}};
+  const int ready =
+      poll(events.data(), events.size(), static_cast<int>(longest.count()));
   std::array<char, 4096> told{};
-  while (read(inotify_, told.data(), told.size()) > 0) {
+  while (inotify_ >= 0 && read(inotify_, told.data(), told.size()) > 0) {
   }
+  return ready > 0 && events[1].revents != 0;
 }
 
 }  // namespace touchdown::cli

@@ -17,8 +17,9 @@ class FolderWatch {
   FolderWatch& operator=(const FolderWatch&) = delete;
 
   // Returns after something has happened, after `longest`, or early when a
-  // signal came. What happened before the call counts.
-  void Wait(std::chrono::milliseconds longest);
+  // signal came. What happened before the call counts. True: `other`, a file
+  // descriptor (-1: none), has something to read.
+  bool Wait(std::chrono::milliseconds longest, int other = -1);
 
  private:
   void AddFolders();

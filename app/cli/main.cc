@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   touchdown::cli::AddImport(app, action);
   touchdown::cli::AddExport(app, action);
   touchdown::cli::AddDb(app, action);
+  touchdown::cli::AddSession(app, action);
   touchdown::cli::AddRig(app, action);
   touchdown::cli::AddTheory(app, action);
   touchdown::cli::AddDemo(app, action);

@@ -6,7 +6,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,14 +13,13 @@
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/rig_print.h"
-#include "app/pipeline/rig_reach.h"
 #include "app/report/boundary_json.h"
 #include "app/report/format.h"
 #include "app/report/group.h"
 #include "app/report/sentences.h"
+#include "app/session/next_shot.h"
 #include "touchdown/analysis/classic_designs.h"
 #include "touchdown/core/units.h"
-#include "touchdown/rig/description.h"
 #include "touchdown/rig/setpoints.h"
 
 namespace touchdown::cli {
@@ -91,101 +89,43 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
   return next;
 }
 
-// The rig that throws, and what is asked of it.
-struct Thrower {
-  rig::Description rig;
-  rig::ContactWish wish;
-};
-
-Thrower MakeThrower(const BoundaryFlags& flags, const report::Group& group) {
-  Thrower out;
-  out.rig = rig::ReadDescription(flags.rig);
-  if (out.rig.body && out.rig.body->kind != group.campaign.body.kind) {
-    throw std::invalid_argument(fmt::format(
-        "--rig: the body of {} is a {}, the trials are of a {}", flags.rig,
-        core::Name(out.rig.body->kind), core::Name(group.campaign.body.kind)));
-  }
-  out.wish.kind = group.campaign.angle_kind;
-  const core::Campaign& campaign = group.campaign;
-  out.wish.speed_mps =
-      flags.speed_mps > 0.0
-          ? flags.speed_mps
-          : (campaign.speed_min_mps + campaign.speed_max_mps) / 2;
-  if (!(out.wish.speed_mps > 0.0)) {
-    throw std::invalid_argument(
-        "--rig: needs --speed-mps, the speed at touchdown: the campaign "
-        "declares no speed band");
-  }
+session::Thrower MakeThrower(const BoundaryFlags& flags,
+                             const report::Group& group) {
+  std::optional<core::Corner> corner;
   if (!flags.corner.empty()) {
-    out.wish.corner = core::ParseCorner(flags.corner);
-    if (!out.wish.corner) {
+    corner = core::ParseCorner(flags.corner);
+    if (!corner) {
       throw std::invalid_argument(fmt::format(
           "--corner: '{}'; expected leading, trailing or flush", flags.corner));
     }
   }
-  return out;
+  return session::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
+                              corner);
 }
 
 // The study once more, with the angles that the rig can throw.
-void KeepFeasible(const BoundaryFlags& flags, const Thrower& thrower,
+void KeepFeasible(const BoundaryFlags& flags, const session::Thrower& thrower,
                   report::Group& group, analysis::NextAngleOptions& options) {
   if (!flags.feasible.empty()) return;  // as the user says
-  const auto reach = pipeline::ReachableAngles(thrower.rig, thrower.wish);
-  if (!reach) {
-    throw std::invalid_argument(
-        fmt::format("--rig: {} cannot throw any {} angle at {:g} m/s: {}",
-                    flags.rig, core::Name(thrower.wish.kind),
-                    thrower.wish.speed_mps, reach.error().reason));
-  }
-  options.feasible_rad = *reach;
+  options.feasible_rad = session::RequireReach(thrower);
   group.study.next = analysis::ChooseNextAngle(
       group.study.posterior, group.study.counts.total(), options);
 }
 
-core::Expected<rig::SetPoint> PlanNext(const Thrower& thrower,
-                                       double angle_rad) {
-  // Enough for u to 1 %, and short beside the fit.
-  constexpr std::size_t kDraws = 10'000;
-  rig::ContactWish wish = thrower.wish;
-  wish.angle_rad = angle_rad;
-  std::mt19937_64 engine(1);
-  return rig::PlanContact(thrower.rig, wish, {kDraws}, engine);
-}
-
-nlohmann::ordered_json SetPointsJson(
-    const Thrower& thrower, const core::Expected<rig::SetPoint>& point) {
-  nlohmann::ordered_json out = {
-      {"rig", thrower.rig.name},
-      {"speed_mps", thrower.wish.speed_mps},
-      {"possible", point.has_value()},
-      {"reason", point ? nlohmann::ordered_json(nullptr)
-                       : nlohmann::ordered_json(point.error().reason)}};
-  if (point) {
-    out["elevation_deg"] = point->setting.elevation_rad / kDegree;
-    out["compression_mm"] = point->setting.compression_m / core::kMillimetre;
-    out["muzzle_height_mm"] =
-        point->setting.muzzle_height_m / core::kMillimetre;
-    out["contact"] = Json(point->contact);
-  }
+nlohmann::ordered_json PlanJson(const session::Thrower& thrower,
+                                const core::Expected<rig::SetPoint>& point) {
+  nlohmann::ordered_json out = session::SetPointsJson(thrower, point);
+  if (point) out["contact"] = Json(point->contact);
   return out;
 }
 
-void PrintSetPoints(const Thrower& thrower,
+void PrintSetPoints(const session::Thrower& thrower,
                     const core::Expected<rig::SetPoint>& point) {
-  if (!point) {
-    fmt::print("set-points        none: {}\n", point.error().reason);
-    return;
-  }
-  fmt::print(
-      "set-points        elevation {:.2f} deg, compression {:.2f} mm, muzzle "
-      "height {:.1f} mm ({}, {:g} m/s at touchdown)\n{}{}",
-      point->setting.elevation_rad / kDegree,
-      point->setting.compression_m / core::kMillimetre,
-      point->setting.muzzle_height_m / core::kMillimetre,
-      thrower.rig.name.empty() ? "the rig" : thrower.rig.name,
-      thrower.wish.speed_mps,
-      Line("launch speed", point->contact.launch_speed_mps, 1.0, "m/s"),
-      Text(point->contact.findings));
+  fmt::print("set-points        {}\n", session::SetPointsText(thrower, point));
+  if (!point) return;
+  fmt::print("{}{}",
+             Line("launch speed", point->contact.launch_speed_mps, 1.0, "m/s"),
+             Text(point->contact.findings));
 }
 
 // The campaign without a trial yet: the one asked for, or what the flags say.
@@ -223,17 +163,12 @@ int RunNext(const BoundaryFlags& flags) {
         groups.size(), names));
   }
   if (groups.empty()) {
-    // Before the first trial there is nothing but the prior.
-    report::Group group;
-    group.campaign = EmptyCampaign(flags, input);
-    analysis::StudyOptions study = input.study;
-    group.prior = study.fit.scatter;
-    group.study = analysis::StudyBoundary({}, study);
-    groups.push_back(std::move(group));
+    groups.push_back(
+        session::EmptyGroup(EmptyCampaign(flags, input), input.study));
   }
   report::Group& group = groups.front();
   analysis::NextAngleOptions options = MakeStudy(flags).next;
-  std::optional<Thrower> thrower;
+  std::optional<session::Thrower> thrower;
   if (!flags.rig.empty()) {
     thrower = MakeThrower(flags, group);
     KeepFeasible(flags, *thrower, group, options);
@@ -249,7 +184,7 @@ int RunNext(const BoundaryFlags& flags) {
     document["rule"] = flags.rule;
     if (thrower) {
       document["set_points"] =
-          SetPointsJson(*thrower, PlanNext(*thrower, next.angle_rad));
+          PlanJson(*thrower, session::PlanNext(*thrower, next.angle_rad));
     }
     fmt::print("{}\n",
                document.dump(2, ' ', false,
@@ -259,7 +194,7 @@ int RunNext(const BoundaryFlags& flags) {
   fmt::print("next angle        {} deg{}\n", Degrees(next.angle_rad),
              next.clipped ? " (the end of what is feasible)" : "");
   if (thrower) {
-    PrintSetPoints(*thrower, PlanNext(*thrower, next.angle_rad));
+    PrintSetPoints(*thrower, session::PlanNext(*thrower, next.angle_rad));
   }
   fmt::print("boundary now      {}\n", report::BoundarySentence(group.study));
   fmt::print("sd after it       {} deg expected, {} deg now\n",

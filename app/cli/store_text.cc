@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/cli/store_flags.h"
+#include "touchdown/core/units.h"
+
 namespace touchdown::cli {
 namespace {
 
@@ -61,6 +64,37 @@ std::string Aligned(const std::vector<std::vector<std::string>>& rows) {
     text += line + '\n';
   }
   return text;
+}
+
+std::string CampaignText(const core::Campaign& campaign) {
+  std::vector<std::vector<std::string>> rows = {
+      {"campaign", Printable(campaign.name)},
+      {"body", BodyText(campaign.body)},
+      {"surface", campaign.surface.empty() ? "-" : Printable(campaign.surface)},
+      {"varied angle", std::string(core::Name(campaign.angle_kind))},
+      {"bounce height, mm",
+       fmt::format("{:.4g}", campaign.bounce_height_m / core::kMillimetre)},
+      {"speed, m/s",
+       campaign.speed_max_mps > 0.0
+           ? fmt::format("{:.4g} to {:.4g}", campaign.speed_min_mps,
+                         campaign.speed_max_mps)
+           : "not declared"}};
+  std::string theory = "none declared";
+  if (!campaign.theory_name.empty()) {
+    theory = Printable(campaign.theory_name);
+    if (campaign.theory_boundary_rad) {
+      theory += fmt::format(", boundary {:.4g} deg",
+                            *campaign.theory_boundary_rad / core::kDegree);
+      if (campaign.theory_u_rad > 0.0) {
+        theory +=
+            fmt::format(" (u {:.2g})", campaign.theory_u_rad / core::kDegree);
+      }
+    }
+  }
+  rows.push_back({"theory", theory});
+  rows.push_back({"margin, deg",
+                  fmt::format("{:.4g}", campaign.margin_rad / core::kDegree)});
+  return Aligned(rows);
 }
 
 }  // namespace touchdown::cli

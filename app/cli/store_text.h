@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "touchdown/core/campaign.h"
 #include "touchdown/core/estimate.h"
 
 namespace touchdown::cli {
@@ -20,5 +21,8 @@ std::string WithU(const core::Measured& measured, double unit);
 // Columns aligned by character (UTF-8), two spaces between; the first row is
 // the heading.
 std::string Aligned(const std::vector<std::vector<std::string>>& rows);
+
+// The conventions of a campaign, a line each.
+std::string CampaignText(const core::Campaign& campaign);
 
 }  // namespace touchdown::cli

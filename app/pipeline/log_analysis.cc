@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "touchdown/core/errors.h"
 #include "touchdown/db/store.h"
 #include "touchdown/vision/clip_digest.h"
@@ -41,11 +43,12 @@ void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options) {
 }
 
 core::Trial LoggableTrial(const Analysis& analysis,
-                          const core::Campaign* campaign) {
+                          const core::Campaign* campaign, std::string sha256) {
   core::Trial trial = ToTrial(analysis);
   trial.clip.path = std::filesystem::absolute(analysis.clip.path).string();
   trial.clip.size_bytes = vision::SizeBytes(analysis.clip.path);
-  trial.clip.sha256 = vision::Sha256(analysis.clip.path);
+  trial.clip.sha256 =
+      sha256.empty() ? vision::Sha256(analysis.clip.path) : std::move(sha256);
   if (campaign != nullptr) {
     trial.campaign = campaign->name;
     if (!analysis.body) {

@@ -29,9 +29,11 @@ struct Logged {
 
 // The trial as the store takes it: with an absolute path and the clip's full
 // SHA-256; where the clip shows no body, it is still the campaign's (null: in
-// none) that was thrown. Throws core::InputError if the clip cannot be read.
+// none) that was thrown. `sha256`: where the caller has it already. Throws
+// core::InputError if the clip cannot be read.
 core::Trial LoggableTrial(const Analysis& analysis,
-                          const core::Campaign* campaign);
+                          const core::Campaign* campaign,
+                          std::string sha256 = {});
 
 // Logs the trial that `analysis` makes, with the clip's full SHA-256, in the
 // store at `db` (made where there is none): a new trial, or a further revision

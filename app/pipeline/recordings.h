@@ -22,7 +22,9 @@ std::vector<std::filesystem::path> FindRecordings(
 struct Extent {
   std::int64_t files = 0;
   std::uintmax_t bytes = 0;
-  std::filesystem::file_time_type written{};
+  // Of no file: before all others.
+  std::filesystem::file_time_type written =
+      std::filesystem::file_time_type::min();
 
   friend bool operator==(const Extent&, const Extent&) = default;
 };

@@ -1,12 +1,8 @@
 // batch as a user runs it: exits, what is on stdout, odd names, the watch.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +13,7 @@
 #include "tests/db/fixture.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/program.h"
+#include "tests/support/running_program.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown {
@@ -165,55 +162,10 @@ TEST_F(BatchCommand, ShardsOfTheirOwnStoresMerge) {
   EXPECT_EQ(db::Store::Open(Db(), db::OpenMode::kRead).Trials().size(), 3u);
 }
 
-// A program that runs while the test reads what it says.
-class Running {
- public:
-  explicit Running(std::vector<std::string> arguments) {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) return;
-    child_ = fork();
-    if (child_ == 0) {
-      dup2(ends[1], STDOUT_FILENO);
-      std::vector<char*> argv;
-      for (auto& argument : arguments) argv.push_back(argument.data());
-      argv.push_back(nullptr);
-      execv(argv[0], argv.data());
-      _exit(127);
-    }
-    close(ends[1]);
-    out_ = fdopen(ends[0], "r");
-  }
-  ~Running() {
-    if (out_ != nullptr) std::fclose(out_);
-  }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-
-  // Waits for the next line of stdout; empty at its end.
-  std::string Line() {
-    std::string line;
-    for (int c = std::fgetc(out_); c != EOF; c = std::fgetc(out_)) {
-      line += static_cast<char>(c);
-      if (c == '\n') break;
-    }
-    return line;
-  }
-  int End(int signal) {
-    kill(child_, signal);
-    int status = 0;
-    waitpid(child_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t child_ = -1;
-  FILE* out_ = nullptr;
-};
-
 TEST_F(BatchCommand, TheWatchTakesWhatComes) {
   pipeline::filmed::WriteSphere(folder_ / "films/a.mraw", 24.0, 1);
-  Running watch({TOUCHDOWN_BINARY, "batch", Films(), "--db", Db(), "--campaign",
-                 "asphalt", "--watch"});
+  testing::RunningProgram watch({TOUCHDOWN_BINARY, "batch", Films(), "--db",
+                                 Db(), "--campaign", "asphalt", "--watch"});
   EXPECT_THAT(watch.Line(), StartsWith("a.mraw  bounce  approach 2"));
   std::filesystem::create_directory(folder_ / "films/later");
   pipeline::filmed::WriteSphere(folder_ / "films/later/b.mraw", 20.0, 2);

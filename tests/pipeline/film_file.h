@@ -13,14 +13,10 @@
 
 namespace touchdown::pipeline::filmed {
 
-// A sphere of 24 mm at `angle_deg`, as `path` (.mraw) with its header. Another
-// seed is another recording of the same throw.
-inline void WriteSphere(const std::filesystem::path& path, double angle_deg,
-                        std::uint64_t seed) {
-  Film film = Default(core::BodyKind::kSphere);
-  const double angle = angle_deg * core::kDegree;
-  film.thrown.before = {1.3 * std::cos(angle), -1.3 * std::sin(angle), 0.0};
-  film.thrown.after = {1.1 * std::cos(angle), 0.8 * std::sin(angle), 0.0};
+// As `path` (.mraw) with its header. Another seed is another recording of the
+// same throw.
+inline void WriteFilm(const std::filesystem::path& path, const Film& film,
+                      std::uint64_t seed) {
   const auto clip = vision::OpenScene(SceneOf(film), seed);
   vision::MrawOptions options;
   options.fps = film.camera.fps;
@@ -29,6 +25,16 @@ inline void WriteSphere(const std::filesystem::path& path, double angle_deg,
     if (frame == clip->info().frames) return std::nullopt;
     return clip->Read(frame++);
   });
+}
+
+// A sphere of 24 mm at `angle_deg`.
+inline void WriteSphere(const std::filesystem::path& path, double angle_deg,
+                        std::uint64_t seed) {
+  Film film = Default(core::BodyKind::kSphere);
+  const double angle = angle_deg * core::kDegree;
+  film.thrown.before = {1.3 * std::cos(angle), -1.3 * std::sin(angle), 0.0};
+  film.thrown.after = {1.1 * std::cos(angle), 0.8 * std::sin(angle), 0.0};
+  WriteFilm(path, film, seed);
 }
 
 // Something that has the name of a recording and is none.

@@ -115,5 +115,17 @@ TEST(Watch, TakesARecordingWhenAllOfItIsThere) {
   EXPECT_THAT(taken, ElementsAre("a.mraw at step 4", "b.avi at step 6"));
 }
 
+TEST(ExtentOf, TellsWhenItWasWritten) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("a.avi", "12345");
+  const auto hour_ago =
+      std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+  std::filesystem::last_write_time(path, hour_ago);
+  EXPECT_EQ(ExtentOf(path).written, hour_ago);
+  const Extent before = ExtentOf(path);
+  folder.Write("a.avi", "54321");  // as long as before
+  EXPECT_NE(ExtentOf(path), before);
+}
+
 }  // namespace
 }  // namespace touchdown::pipeline

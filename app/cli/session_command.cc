@@ -1,0 +1,248 @@
+// session: a technician at the rig, a folder that recordings appear in.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "app/cli/analyze_flags.h"
+#include "app/cli/command.h"
+#include "app/cli/folder_watch.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/cli/terminal_lines.h"
+#include "app/cli/values.h"
+#include "app/pipeline/log_analysis.h"
+#include "app/pipeline/recordings.h"
+#include "app/session/session.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/driver/manual_driver.h"
+#include "touchdown/rig/driver/serial_driver.h"
+
+namespace touchdown::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Flags {
+  std::string db;
+  std::string campaign;
+  std::string rig;
+  std::string watch;
+  std::string operator_name;
+  double speed_mps = 0.0;
+  std::string corner;
+  std::string check_height = "300+-1";
+  std::string check_diameter;
+  bool no_check = false;
+  std::string driver = "manual";
+  int baud = 115200;
+  double quiet_s = 1.0;
+  AnalyzeFlags analyze;
+};
+
+// For the handlers of signals.
+volatile std::sig_atomic_t ended = 0;
+std::atomic<rig::Driver*> driven = nullptr;
+static_assert(std::atomic<rig::Driver*>::is_always_lock_free);
+
+// Whatever the signal, a rig that moves is stopped first. Ctrl-C does no more
+// than that while there is something to stop; the next one ends the session.
+void OnSignal(int signal) {
+  rig::Driver* const driver = driven.exchange(nullptr);
+  if (driver != nullptr) driver->Stop();
+  if (driver == nullptr || signal != SIGINT) ended = 1;
+}
+
+void CatchSignals() {
+  struct sigaction action = {};
+  action.sa_handler = OnSignal;  // without SA_RESTART: waiting ends
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
+                           const rig::Description& rig) {
+  session::CheckShot check;
+  check.body = flags.check_diameter.empty()
+                   ? campaign.body
+                   : core::Sphere(ParseEstimate("--check-diameter-mm",
+                                                flags.check_diameter,
+                                                core::kMillimetre));
+  if (!core::Size(check.body)) {
+    throw std::invalid_argument(
+        "--check-diameter-mm is missing: the campaign's body has no size");
+  }
+  check.height_m =
+      ParseEstimate("--check-height-mm", flags.check_height, core::kMillimetre);
+  check.gravity_mps2 = rig.gravity_mps2;
+  session::ExpectedSpeed(check);  // refuses what cannot be
+  return check;
+}
+
+std::unique_ptr<rig::Driver> DriverOf(const Flags& flags,
+                                      TerminalLines& lines) {
+  if (flags.driver == "manual") {
+    return std::make_unique<rig::ManualDriver>(
+        [&lines](const std::string& question) { return lines.Ask(question); });
+  }
+  rig::SerialOptions options;
+  options.baud = flags.baud;
+  return std::make_unique<rig::SerialDriver>(flags.driver, options);
+}
+
+// Hands over what comes, from the keyboard and from the folder, until the end.
+void Serve(const Flags& flags, session::Session& session, TerminalLines& lines,
+           rig::Driver* stoppable) {
+  FolderWatch changes(flags.watch);
+  pipeline::WatchOptions options;
+  options.quiet = std::chrono::milliseconds(
+      static_cast<std::int64_t>(flags.quiet_s * 1000.0));
+  options.now = [] { return std::chrono::steady_clock::now(); };
+  options.wait = [&](bool growing) {
+    // Of a network drive nothing is heard: look now and then.
+    constexpr std::chrono::milliseconds kNowAndThen{2000};
+    if (ended != 0) return false;
+    if (changes.Wait(growing ? options.quiet : kNowAndThen,
+                     TerminalLines::kDescriptor)) {
+      lines.Read();
+    }
+    while (const auto line = lines.Next()) {
+      if (!session.Obey(*line)) return false;
+      if (ended != 0) return false;
+    }
+    // A rig that was reset can be stopped again.
+    if (stoppable != nullptr && driven.load() == nullptr &&
+        !stoppable->is_stopped()) {
+      driven = stoppable;
+    }
+    return ended == 0 && !lines.at_end();
+  };
+  pipeline::Watch(flags.watch, options,
+                  [&](const std::vector<fs::path>& complete) {
+                    for (const fs::path& recording : complete) {
+                      if (ended == 0) session.Take(recording);
+                    }
+                  });
+}
+
+int Run(const Flags& flags) {
+  if (!fs::is_directory(flags.watch)) {
+    throw core::InputError(fmt::format(
+        "{}: there is no such folder; --watch expects the one that recordings "
+        "appear in",
+        flags.watch));
+  }
+  if (!(flags.quiet_s > 0.0 && flags.quiet_s <= 60.0)) {
+    throw std::invalid_argument(fmt::format(
+        "--quiet-s is {:g}, must be above 0, up to 60", flags.quiet_s));
+  }
+  std::optional<core::Corner> corner;
+  if (!flags.corner.empty()) {
+    corner =
+        ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
+                                "leading, trailing or flush");
+  }
+  session::SessionOptions options;
+  options.analyze = ToOptions(flags.analyze);
+  auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  const core::Campaign campaign =
+      pipeline::RequireCampaign(store, flags.campaign);
+  session::Thrower thrower =
+      session::MakeThrower(flags.rig, campaign, flags.speed_mps, corner);
+  if (!flags.no_check) options.check = CheckOf(flags, campaign, thrower.rig);
+  const session::SessionLock lock(flags.db);
+  const auto before = session::ReadSession(flags.db);
+  options.operator_name = flags.operator_name;
+  if (options.operator_name.empty() && before) {
+    options.operator_name = before->operator_name;
+  }
+  if (options.operator_name.empty()) {
+    throw std::invalid_argument(
+        "--operator is missing, must name who is at the rig");
+  }
+  TerminalLines lines;
+  const auto driver = DriverOf(flags, lines);
+  // Hands need no signal to stop.
+  rig::Driver* const stoppable =
+      flags.driver == "manual" ? nullptr : driver.get();
+  CatchSignals();
+  driven = stoppable;
+  session::SessionEnds ends;
+  ends.say = [](const std::string& line) {
+    fmt::print("{}\n", Printable(line));
+    std::fflush(stdout);
+  };
+  ends.now_s = [] {
+    return std::chrono::duration<double>(
+               std::chrono::system_clock::now().time_since_epoch())
+        .count();
+  };
+  ends.driver = driver.get();
+  fmt::print("{}", CampaignText(campaign));
+  session::Session session(store, campaign, std::move(thrower), options, ends,
+                           before);
+  session.Start();
+  Serve(flags, session, lines, stoppable);
+  driven = nullptr;
+  session.End();
+  return 0;
+}
+
+}  // namespace
+
+void AddSession(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = app.add_subcommand(
+      "session",
+      "at the rig: set-points, new recording, answer, next angle; can be "
+      "killed and started again");
+  AddDbFlag(*command, flags->db);
+  command->add_option("--campaign", flags->campaign, "what is thrown for")
+      ->required();
+  command->add_option("--rig", flags->rig, "rig.toml")->required();
+  command
+      ->add_option("--watch", flags->watch,
+                   "the folder that recordings appear in")
+      ->required();
+  command->add_option("--operator", flags->operator_name,
+                      "who is at the rig (as last time where not given)");
+  command->add_option("--speed-mps", flags->speed_mps,
+                      "speed at touchdown (default: the middle of the "
+                      "campaign's band)");
+  command->add_option("--corner", flags->corner,
+                      "corner that lands first, leading, trailing or flush");
+  command
+      ->add_option("--check-height-mm", flags->check_height,
+                   "daily check shot: the height that a body is dropped from, "
+                   "below it to the ground")
+      ->capture_default_str();
+  command->add_option("--check-diameter-mm", flags->check_diameter,
+                      "the sphere that is dropped (default: the campaign's "
+                      "body)");
+  command->add_flag("--no-check", flags->no_check, "ask for no check shot");
+  command
+      ->add_option("--driver", flags->driver,
+                   "manual, or the serial port of the rig's controller "
+                   "(/dev/ttyUSB0)")
+      ->capture_default_str();
+  command->add_option("--baud", flags->baud, "of the serial port")
+      ->capture_default_str();
+  command
+      ->add_option("--quiet-s", flags->quiet_s,
+                   "a recording is complete when it has not grown for so long; "
+                   "one taken too early is taken again")
+      ->capture_default_str();
+  AddAnalyzeFlags(*command, flags->analyze);
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,86 @@
+#include "app/session/check_shot.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "app/report/format.h"
+
+namespace touchdown::session {
+
+using core::kDegree;
+using core::kMillimetre;
+
+core::Estimate ExpectedSpeed(const CheckShot& check) {
+  const core::Estimate& h = check.height_m;
+  const core::Estimate& g = check.gravity_mps2;
+  for (const auto& [field, value] :
+       {std::pair{"height_m", h.value}, std::pair{"gravity_mps2", g.value}}) {
+    if (!(value > 0.0) || !std::isfinite(value)) {
+      throw std::invalid_argument(
+          fmt::format("{} is {:g}, must be positive and finite", field, value));
+    }
+  }
+  const double speed = std::sqrt(2.0 * g.value * h.value);
+  return {speed, speed / 2.0 * std::hypot(h.u / h.value, g.u / g.value),
+          std::nullopt};
+}
+
+core::Campaign CheckCampaign(const CheckShot& check) {
+  core::Campaign campaign;
+  const auto size = core::Size(check.body);
+  if (!size) {
+    throw std::invalid_argument(
+        "the body of the check shot has no size, must have one");
+  }
+  campaign.name =
+      fmt::format("check: {} {} mm from {} mm", core::Name(check.body.kind),
+                  report::Plain(size->value / kMillimetre),
+                  report::Plain(check.height_m.value / kMillimetre));
+  campaign.body = check.body;
+  campaign.surface = "check shot, dropped";
+  campaign.angle_kind = core::AngleKind::kApproach;
+  campaign.bounce_height_m = core::DefaultBounceHeight(size->value);
+  return campaign;
+}
+
+CheckResult Compare(const CheckShot& check, const core::Trial& trial) {
+  const core::Estimate known = ExpectedSpeed(check);
+  const core::Measured& speed = trial.first.motion.before_speed_mps;
+  const core::Measured& angle = trial.first.contact.approach_angle_rad;
+  const auto e_n = [](double difference, double u, double u_known) {
+    return difference / (2.0 * std::hypot(u, u_known));
+  };
+  CheckResult out;
+  if (speed) {
+    out.speed_e_n = e_n(speed->value - known.value, speed->u, known.u);
+  } else {
+    out.speed_e_n = core::AbsentBecause(speed.error().reason);
+  }
+  constexpr double kUpright = std::numbers::pi / 2.0;
+  if (angle) {
+    out.angle_e_n = e_n(angle->value - kUpright, angle->u, check.upright_u_rad);
+  } else {
+    out.angle_e_n = core::AbsentBecause(angle.error().reason);
+  }
+  const auto good = [](const core::Expected<double>& value) {
+    return value && std::abs(*value) <= 1.0;
+  };
+  out.agrees = good(out.speed_e_n) && good(out.angle_e_n);
+  const auto text = [](const core::Expected<double>& value) {
+    return value ? fmt::format("E_n {:.2f}", *value)
+                 : "absent: " + value.error().reason;
+  };
+  out.text = fmt::format(
+      "check shot {}: speed {} m/s, known {} m/s ({}); approach angle {} deg, "
+      "known 90 deg ({})",
+      out.agrees ? "agrees" : "DOES NOT AGREE",
+      report::WithUOrReason(speed, 1.0), report::WithU(known, 1.0),
+      text(out.speed_e_n), report::WithUOrReason(angle, kDegree),
+      text(out.angle_e_n));
+  return out;
+}
+
+}  // namespace touchdown::session

@@ -1,0 +1,389 @@
+#include "app/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <future>
+#include <stdexcept>
+#include <utility>
+
+#include "app/pipeline/log_analysis.h"
+#include "app/pipeline/recordings.h"
+#include "app/pipeline/triage.h"
+#include "app/report/format.h"
+#include "app/report/sentences.h"
+#include "app/report/trial_json.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/vision/clip_digest.h"
+
+namespace touchdown::session {
+namespace {
+
+namespace fs = std::filesystem;
+using core::kDegree;
+
+// Of the kernel's coarse clock, which dates files.
+constexpr double kFileClock_s = 0.02;
+
+double WrittenAt_s(const fs::path& recording) {
+  const pipeline::Extent extent = pipeline::ExtentOf(recording);
+  if (extent.files == 0) return 0.0;  // it has gone
+  const auto written = std::chrono::file_clock::to_sys(extent.written);
+  return std::chrono::duration<double>(written.time_since_epoch()).count();
+}
+
+// Pictures of a recording that has only grown stay where they were: the bytes
+// behind the header, which some programs write anew at the end. Empty for
+// folders and what is too short to say.
+std::string SomePictures(const fs::path& recording) {
+  constexpr std::streamoff kHeader = 64 << 10;
+  std::string bytes(64 << 10, '\0');
+  std::ifstream in(recording, std::ios::binary);
+  in.seekg(kHeader);
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+    return {};
+  }
+  return bytes;
+}
+
+std::string Short(const std::string& id) { return id.substr(0, 8); }
+
+}  // namespace
+
+Session::Session(db::Store& store, const core::Campaign& campaign,
+                 Thrower thrower, SessionOptions options, SessionEnds ends,
+                 const std::optional<SessionFile>& before)
+    : store_(store),
+      campaign_(campaign),
+      thrower_(std::move(thrower)),
+      options_(std::move(options)),
+      ends_(std::move(ends)),
+      reach_(RequireReach(thrower_)) {
+  options_.study.next.feasible_rad = reach_;
+  if (options_.check) check_campaign_ = CheckCampaign(*options_.check);
+  file_.campaign = campaign_.name;
+  file_.operator_name = options_.operator_name;
+  auto trials = store_.Trials({.campaign = campaign_.name});
+  file_.phase = trials.empty() ? Phase::kConventions : Phase::kShot;
+  if (!trials.empty()) {
+    core::Trial& trial = trials.back();
+    acts_.push_back({trial.excluded ? Act::kExcluded : Act::kLogged, trial.id});
+    last_ = LastTaken{"", 0, "", std::move(trial)};
+  }
+  if (!before || before->campaign != campaign_.name) return;
+  if (before->phase != Phase::kConventions) file_.phase = Phase::kShot;
+  file_.last = before->last;
+  // A shot that was waited for when the session ended, and was not logged.
+  resumed_plan_ = before->planned && before->trials_before == CountTrials() &&
+                  (!before->is_check || options_.check);
+  if (resumed_plan_) {
+    file_.planned_at_s = before->planned_at_s;
+    file_.angle_rad = before->angle_rad;
+    file_.is_check = before->is_check;
+  }
+}
+
+void Session::Start() {
+  if (file_.phase == Phase::kConventions) {
+    Say("These conventions are fixed with the first trial: press Enter to "
+        "accept them, or quit and change the campaign.");
+    Save();
+    return;
+  }
+  Plan();
+  SayPlan();
+}
+
+void Session::Save() { WriteSession(store_.path(), file_); }
+
+void Session::End() {
+  file_.phase =
+      file_.phase == Phase::kConventions ? Phase::kConventions : Phase::kEnded;
+  Save();
+}
+
+std::size_t Session::CountTrials() const {
+  db::TrialFilter filter;
+  filter.with_documents = false;
+  std::size_t count = 0;
+  for (const core::Campaign* one :
+       {&campaign_, check_campaign_ ? &*check_campaign_ : nullptr}) {
+    if (one == nullptr || !store_.FindCampaign(one->name)) continue;
+    filter.campaign = one->name;
+    count += store_.Trials(filter).size();
+  }
+  return count;
+}
+
+// Once in each day of the universal calendar, as the store dates trials.
+bool Session::CheckIsDue() const {
+  if (!check_campaign_ || check_skipped_) return false;
+  if (check_wanted_) return true;
+  if (!store_.FindCampaign(check_campaign_->name)) return true;
+  db::TrialFilter filter;
+  filter.campaign = check_campaign_->name;
+  filter.from_utc = store_.sources().now_utc().substr(0, 10);
+  filter.excluded = false;
+  filter.with_documents = false;
+  return store_.Trials(filter).empty();
+}
+
+report::Group Session::Now() const {
+  report::ReportInput input;
+  input.campaigns = {campaign_};
+  input.study = options_.study;
+  auto trials =
+      store_.Trials({.campaign = campaign_.name, .with_documents = false});
+  const auto origin =
+      trials.empty() ? core::Origin::kRecorded : trials.back().origin;
+  report::SortTrials(trials);
+  for (report::Group& group : report::MakeGroups(input, trials)) {
+    if (group.trials.origin == origin) return std::move(group);
+  }
+  return EmptyGroup(campaign_, options_.study);
+}
+
+void Session::Plan() {
+  file_.planned = true;
+  file_.trials_before = CountTrials();
+  const report::Group group = Now();
+  file_.boundary = fmt::format(
+      "{} ({} stayed down, {} bounced, {} undecided)",
+      report::BoundarySentence(group.study), group.study.counts.not_bounce,
+      group.study.counts.bounce, group.study.counts.undecided);
+  const bool resumed = std::exchange(resumed_plan_, false);
+  plan_lines_.clear();
+  if (resumed ? file_.is_check : CheckIsDue()) {
+    file_.phase = Phase::kCheck;
+    file_.is_check = true;
+    file_.set_points = nullptr;
+    setting_.reset();
+    plan_lines_ = {fmt::format(
+        "check shot: drop the {} from {} mm, upright; known: {} m/s and 90 deg "
+        "at touchdown (or: skip REASON)",
+        check_campaign_->name.substr(7,
+                                     check_campaign_->name.find(" from") - 7),
+        report::WithU(options_.check->height_m, core::kMillimetre),
+        report::WithU(ExpectedSpeed(*options_.check), 1.0))};
+  } else {
+    file_.phase = Phase::kShot;
+    file_.is_check = false;
+    if (!resumed) {
+      file_.angle_rad =
+          skipped_rad_.empty() ? group.study.next.angle_rad : AngleBesides();
+    }
+    PlanAngle();
+    if (group.study.next.stop != analysis::StopReason::kNone) {
+      plan_lines_.push_back(
+          "  enough     the boundary is known as well as was asked for; more "
+          "shots are welcome");
+    }
+  }
+  if (!resumed) file_.planned_at_s = ends_.now_s();
+  Save();
+}
+
+// The best angle that is not beside one that was skipped.
+double Session::AngleBesides() const {
+  const report::Group group = Now();
+  // Twice the repeatability of the ejector: another setting, not the same one
+  // by chance.
+  const double beside = 2.0 * options_.study.next.set_u_rad;
+  std::optional<analysis::NextAngle> best;
+  double low = reach_.low;
+  const auto consider = [&](double high) {
+    if (!(high > low)) return;
+    analysis::NextAngleOptions next = options_.study.next;
+    next.feasible_rad = {low, high};
+    const auto angle = analysis::ChooseNextAngle(
+        group.study.posterior, group.study.counts.total(), next);
+    if (!best || angle.expected_sd_rad < best->expected_sd_rad) best = angle;
+  };
+  for (const double skipped : skipped_rad_) {  // in order
+    consider(std::min(skipped - beside, reach_.high));
+    low = std::max(low, skipped + beside);
+  }
+  consider(reach_.high);
+  return best ? best->angle_rad : group.study.next.angle_rad;
+}
+
+void Session::PlanAngle() {
+  const auto point = PlanNext(thrower_, file_.angle_rad);
+  file_.set_points = SetPointsJson(thrower_, point);
+  setting_.reset();
+  plan_lines_ = {
+      fmt::format("next shot: {} angle {:.2f} deg",
+                  core::Name(campaign_.angle_kind), file_.angle_rad / kDegree),
+      "  set        " + SetPointsText(thrower_, point)};
+  if (!point) return;
+  setting_ = point->setting;
+  const rig::ContactPrediction& contact = point->contact;
+  const rig::Predicted& angle =
+      campaign_.angle_kind == core::AngleKind::kApproach
+          ? contact.approach_angle_rad
+      : campaign_.angle_kind == core::AngleKind::kRadius
+          ? contact.radius_angle_rad
+          : contact.face_angle_rad;
+  plan_lines_.push_back(fmt::format(
+      "  predicted  {} angle {} deg, {} m/s at touchdown",
+      core::Name(campaign_.angle_kind),
+      report::WithUOrReason(angle.first_order, kDegree),
+      report::WithUOrReason(contact.impact_speed_mps.first_order, 1.0)));
+  for (const rig::Finding& finding : contact.findings) {
+    plan_lines_.push_back((finding.severity == rig::Severity::kRefusal
+                               ? "  REFUSED    "
+                               : "  warning    ") +
+                          finding.what);
+  }
+}
+
+void Session::SayPlan() const {
+  for (const std::string& line : plan_lines_) Say(line);
+}
+
+bool Session::Belongs(const fs::path& recording) const {
+  return file_.planned &&
+         WrittenAt_s(recording) >= file_.planned_at_s - kFileClock_s;
+}
+
+std::optional<std::string> Session::KnownAs(const std::string& clip_id) const {
+  for (const core::Campaign* one :
+       {&campaign_, check_campaign_ ? &*check_campaign_ : nullptr}) {
+    if (one == nullptr) continue;
+    if (const auto logged = store_.FindLogged(one->name, clip_id)) {
+      return logged->trial_id;
+    }
+  }
+  return std::nullopt;
+}
+
+void Session::RequireSameConventions() const {
+  const auto now = store_.FindCampaign(campaign_.name);
+  if (!now || report::CampaignJson(*now) != report::CampaignJson(campaign_)) {
+    throw core::StoreError(
+        fmt::format("{}: the conventions of '{}' were changed during the "
+                    "session; start it again",
+                    store_.path().string(), campaign_.name));
+  }
+}
+
+void Session::Take(const fs::path& recording) {
+  if (file_.phase == Phase::kConventions) {
+    held_.push_back(recording);
+    return;
+  }
+  const Phase waiting = file_.phase;
+  try {
+    const std::string id = vision::ClipId(recording);
+    if (const auto known = KnownAs(id)) {
+      Say(fmt::format("{}: known, trial {}", recording.filename().string(),
+                      Short(*known)));
+      return;
+    }
+    file_.phase = Phase::kAnalysing;
+    file_.recording = recording.string();
+    Save();
+    Log(recording);
+  } catch (const core::StoreError&) {
+    throw;
+  } catch (const std::exception& error) {
+    Say(fmt::format("not logged: {}", error.what()));
+    file_.phase = waiting;
+    file_.recording.clear();
+    Save();
+  }
+}
+
+void Session::Log(const fs::path& recording) {
+  RequireSameConventions();
+  const bool belongs = Belongs(recording);
+  const bool is_check = belongs && file_.is_check;
+  if (is_check && !store_.FindCampaign(check_campaign_->name)) {
+    store_.AddCampaign(*check_campaign_);
+  }
+  const core::Campaign& campaign = is_check ? *check_campaign_ : campaign_;
+  pipeline::AnalyzeOptions analyze = options_.analyze;
+  if (is_check) {
+    // Another body than the one that the options may speak of.
+    analyze.body_kind.reset();
+    analyze.diameter_m = analyze.long_m = analyze.short_m = std::nullopt;
+    analyze.angle_kind.reset();
+    analyze.bounce_height_m.reset();
+  }
+  pipeline::FillFromCampaign(campaign, analyze);
+  // Both read the whole recording: at the same time is nearly twice as fast.
+  auto digest =
+      std::async(std::launch::async, [&] { return vision::Sha256(recording); });
+  const pipeline::Analysis analysis = pipeline::Analyze(recording, analyze);
+  core::Trial trial =
+      pipeline::LoggableTrial(analysis, &campaign, digest.get());
+  trial.author = options_.operator_name;
+  const std::string pictures = SomePictures(recording);
+  const bool grown = last_ && last_->path == trial.clip.path &&
+                     last_->bytes < trial.clip.size_bytes &&
+                     !pictures.empty() && pictures == last_->pictures;
+  if (grown) {
+    // The same shot. First the half one goes, so that at no instant both count.
+    if (!store_.Find(last_->trial.id)->excluded) {
+      store_.Exclude(last_->trial.id, options_.operator_name,
+                     "the recording was not complete when it was analysed");
+    }
+    trial.set_angle_rad = last_->trial.set_angle_rad;
+    trial.set_speed_mps = last_->trial.set_speed_mps;
+  } else if (is_check) {
+    trial.set_angle_rad = 90.0 * kDegree;
+    trial.reason = Compare(*options_.check, trial).text;
+  } else if (belongs) {
+    trial.set_angle_rad = file_.angle_rad;
+    if (setting_) trial.set_speed_mps = LaunchSpeedOfPlan();
+  }
+  trial.id = store_.LogTrial(trial).id;
+  last_ = LastTaken{trial.clip.path, trial.clip.size_bytes, pictures, trial};
+  acts_.push_back({Act::kLogged, trial.id});
+  file_.recording.clear();
+  skipped_rad_.clear();
+  if (is_check) check_wanted_ = false;
+  Answer(trial, ends_.now_s() - WrittenAt_s(recording), is_check);
+  if (!belongs) {
+    Say("  (recorded before these set-points were shown: logged without them)");
+  }
+  Plan();
+  if (!is_check) Say("  boundary   " + file_.boundary);
+  SayPlan();
+}
+
+double Session::LaunchSpeedOfPlan() const {
+  const auto muzzle =
+      rig::LaunchSpeed(rig::LaunchOf(thrower_.rig, setting_->elevation_rad),
+                       setting_->compression_m);
+  return muzzle ? muzzle->speed_mps : 0.0;
+}
+
+void Session::Answer(const core::Trial& trial, double seconds_since_written,
+                     bool is_check) {
+  const auto entry =
+      pipeline::TriageOf(trial.clip.path, pipeline::Done::kLogged, trial);
+  std::string text(core::Name(trial.first.state.label));
+  if (trial.first.state.p_bounce &&
+      trial.first.state.label == core::MotionState::kUndecided) {
+    text += fmt::format(", P(bounce) {:.3f}", *trial.first.state.p_bounce);
+  }
+  text += fmt::format(", {} angle {} deg", core::Name(trial.angle_kind),
+                      report::WithUOrReason(entry.angle_rad, kDegree));
+  if (trial.set_angle_rad && !is_check) {
+    text += fmt::format(" (set {:.2f})", *trial.set_angle_rad / kDegree);
+  }
+  Say(fmt::format("trial {}: {}", Short(trial.id), text));
+  if (is_check) Say("  " + trial.reason);
+  if (!entry.reason.empty()) Say("  look at    " + entry.reason);
+  Say(fmt::format("  {}, by {}, {:.1f} s after its last byte",
+                  fs::path(trial.clip.path).filename().string(), trial.author,
+                  seconds_since_written));
+  file_.last = {{"trial", trial.id}, {"text", text}, {"is_check", is_check}};
+}
+
+}  // namespace touchdown::session

@@ -1,0 +1,127 @@
+// A technician's session: plan -> set -> await the recording -> analyse -> log
+// -> answer, then the next plan.
+//
+// Lines come in (what a person types), recordings come in (once complete),
+// lines go out; terminal, folder watch and signals are the caller's. Each trial
+// is on the disk before a line speaks of it. A recording is logged at most
+// once: what the store has of it (its id, in the campaign or among the check
+// shots) is not analysed again. So a session that was killed at any instant
+// goes on by starting anew over the same folder.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/pipeline/analyze.h"
+#include "app/session/check_shot.h"
+#include "app/session/next_shot.h"
+#include "app/session/session_file.h"
+#include "touchdown/core/campaign.h"
+#include "touchdown/db/store.h"
+#include "touchdown/rig/driver/driver.h"
+
+namespace touchdown::session {
+
+struct SessionOptions {
+  std::string operator_name;
+  // As batch takes them; the campaign's conventions where not given.
+  pipeline::AnalyzeOptions analyze;
+  analysis::StudyOptions study;
+  // Nothing: none is asked for.
+  std::optional<CheckShot> check;
+};
+
+// The ends of a session that are not its own.
+struct SessionEnds {
+  std::function<void(const std::string& line)> say;
+  // Seconds since 1970, of the clock that dates files.
+  std::function<double()> now_s;
+  rig::Driver* driver = nullptr;  // nothing: hands only
+};
+
+class Session {
+ public:
+  // `before`: what an earlier session of this store left. Throws
+  // std::invalid_argument where the rig reaches no angle, and core::StoreError.
+  Session(db::Store& store, const core::Campaign& campaign, Thrower thrower,
+          SessionOptions options, SessionEnds ends,
+          const std::optional<SessionFile>& before);
+
+  // Says what is next; asks for what must be answered first.
+  void Start();
+  // A line that a person typed. False: the session is to end. What a person
+  // gets wrong is answered with a line and changes nothing.
+  bool Obey(const std::string& line);
+  // A complete recording. One that cannot be analysed is said and logged
+  // nowhere. Throws core::StoreError.
+  void Take(const std::filesystem::path& recording);
+  // Writes the file of the session a last time.
+  void End();
+
+  Phase phase() const { return file_.phase; }
+
+ private:
+  struct Act {
+    enum Kind { kLogged, kExcluded, kIncluded } kind;
+    std::string trial;
+  };
+  struct LastTaken {
+    std::string path;
+    std::int64_t bytes = 0;
+    std::string pictures;  // some of its bytes
+    core::Trial trial;
+  };
+
+  void Say(const std::string& line) const { ends_.say(line); }
+  void SayPlan() const;
+  void Save();
+  std::size_t CountTrials() const;
+  bool CheckIsDue() const;
+  report::Group Now() const;
+  // What is waited for now, from the store alone.
+  void Plan();
+  void PlanAngle();  // file_.angle_rad
+  double AngleBesides() const;
+  double LaunchSpeedOfPlan() const;
+  bool Belongs(const std::filesystem::path& recording) const;
+  std::optional<std::string> KnownAs(const std::string& clip_id) const;
+  void Log(const std::filesystem::path& recording);
+  void Answer(const core::Trial& trial, double seconds_since_written,
+              bool is_check);
+  void RequireSameConventions() const;
+
+  // Of session_acts.cc: one for each word.
+  void Help() const;
+  void Skip(const std::string& why);
+  void Repeat();
+  void Angle(const std::string& degrees);
+  void Exclude(const std::string& why);
+  void Include(const std::string& why);
+  void Undo();
+  void Operator(const std::string& name);
+  void Drive(const std::string& word, const std::string& rest);
+  const core::Trial& RequireLast() const;
+
+  db::Store& store_;
+  core::Campaign campaign_;
+  Thrower thrower_;
+  SessionOptions options_;
+  SessionEnds ends_;
+  std::optional<core::Campaign> check_campaign_;
+  core::Interval reach_;
+  SessionFile file_;
+  bool resumed_plan_ = false;
+  std::optional<rig::Setting> setting_;  // of the plan
+  std::vector<std::string> plan_lines_;  // as they were said
+  std::set<double> skipped_rad_;         // since the last shot
+  bool check_skipped_ = false;
+  bool check_wanted_ = false;  // beyond the daily one
+  std::optional<LastTaken> last_;
+  std::vector<Act> acts_;
+  std::vector<std::filesystem::path> held_;  // until conventions are accepted
+};
+
+}  // namespace touchdown::session

@@ -1,0 +1,257 @@
+// What a person may type.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "app/session/session.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::session {
+namespace {
+
+using core::kDegree;
+
+std::pair<std::string, std::string> Split(const std::string& line) {
+  const auto begin = line.find_first_not_of(" \t\r");
+  if (begin == std::string::npos) return {};
+  const auto end = line.find_last_not_of(" \t\r") + 1;
+  const std::string text = line.substr(begin, end - begin);
+  const auto space = text.find_first_of(" \t");
+  if (space == std::string::npos) return {text, ""};
+  return {text.substr(0, space),
+          text.substr(text.find_first_not_of(" \t", space))};
+}
+
+void RequireReason(const std::string& word, const std::string& why) {
+  if (why.empty()) {
+    throw std::invalid_argument(word + " wants a reason: " + word + " REASON");
+  }
+}
+
+std::optional<double> Number(const std::string& text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || !std::isfinite(value)) return {};
+  return value;
+}
+
+}  // namespace
+
+bool Session::Obey(const std::string& line) {
+  const auto [word, rest] = Split(line);
+  if (word == "quit") return false;
+  try {
+    if (file_.phase == Phase::kConventions) {
+      if (!word.empty()) {
+        Say("press Enter to accept the conventions, or quit");
+        return true;
+      }
+      file_.phase = Phase::kShot;
+      Plan();
+      SayPlan();
+      for (const auto& recording : std::exchange(held_, {})) Take(recording);
+      return true;
+    }
+    if (word.empty()) {
+      SayPlan();
+    } else if (word == "help") {
+      Help();
+    } else if (word == "skip") {
+      Skip(rest);
+    } else if (word == "repeat") {
+      Repeat();
+    } else if (word == "angle") {
+      Angle(rest);
+    } else if (word == "exclude") {
+      Exclude(rest);
+    } else if (word == "include") {
+      Include(rest);
+    } else if (word == "undo") {
+      Undo();
+    } else if (word == "operator") {
+      Operator(rest);
+    } else if (word == "check") {
+      if (!check_campaign_) {
+        throw std::invalid_argument(
+            "no check shot is declared: start with --check-height-mm");
+      }
+      check_wanted_ = true;
+      check_skipped_ = false;
+      Plan();
+      SayPlan();
+    } else if (word == "set" || word == "arm" || word == "fire" ||
+               word == "stop" || word == "reset" || word == "rig") {
+      Drive(word, rest);
+    } else {
+      Say(fmt::format("'{}' is no command; `help` lists them", word));
+    }
+  } catch (const std::invalid_argument& mistake) {
+    Say(mistake.what());
+  } catch (const core::InputError& trouble) {  // the rig's controller
+    Say(trouble.what());
+  }
+  return true;
+}
+
+void Session::Help() const {
+  for (const char* line :
+       {"Enter            what is waited for",
+        "skip [REASON]    another angle than this one; or no check shot today",
+        "repeat           the angle of the last shot once more",
+        "angle DEG        an angle of your own",
+        "exclude REASON   the last trial does not count (include REASON)",
+        "undo             take back the last log, exclude or include",
+        "operator NAME    who is at the rig now",
+        "check            a check shot now",
+        "set              bring the rig to the set-points",
+        "arm              latch the springs",
+        "fire N           fire arming N: your word that all are clear",
+        "stop, reset      emergency stop; and all is well again",
+        "rig              where the rig is",
+        "quit             end; starting again goes on here"}) {
+    Say(line);
+  }
+}
+
+void Session::Skip(const std::string& why) {
+  if (file_.is_check) {
+    RequireReason("skip", why);
+    check_skipped_ = true;
+    check_wanted_ = false;
+    Say("check shot skipped: " + why);
+  } else {
+    skipped_rad_.insert(file_.angle_rad);
+  }
+  Plan();
+  SayPlan();
+}
+
+void Session::Repeat() {
+  const core::Trial& last = RequireLast();
+  if (!last.set_angle_rad || last.campaign != campaign_.name) {
+    throw std::invalid_argument("the last trial has no set-points to repeat");
+  }
+  Angle(fmt::format("{}", *last.set_angle_rad / kDegree));
+}
+
+void Session::Angle(const std::string& degrees) {
+  const auto value = Number(degrees);
+  if (!value || *value * kDegree < reach_.low - 1e-9 ||
+      *value * kDegree > reach_.high + 1e-9) {
+    throw std::invalid_argument(fmt::format(
+        "angle is '{}', must be {:.2f} to {:.2f} deg, what the rig can throw",
+        degrees, reach_.low / kDegree, reach_.high / kDegree));
+  }
+  file_.angle_rad = *value * kDegree;
+  file_.is_check = false;
+  file_.phase = Phase::kShot;
+  PlanAngle();
+  file_.planned_at_s = ends_.now_s();
+  Save();
+  SayPlan();
+}
+
+const core::Trial& Session::RequireLast() const {
+  if (last_) return last_->trial;
+  throw std::invalid_argument("there is no trial yet");
+}
+
+void Session::Exclude(const std::string& why) {
+  RequireReason("exclude", why);
+  const core::Trial& last = RequireLast();
+  store_.Exclude(last.id, options_.operator_name, why);
+  acts_.push_back({Act::kExcluded, last.id});
+  Say(fmt::format("trial {} no longer counts: {}", last.id.substr(0, 8), why));
+  Plan();
+  SayPlan();
+}
+
+void Session::Include(const std::string& why) {
+  RequireReason("include", why);
+  const core::Trial& last = RequireLast();
+  store_.Include(last.id, options_.operator_name, why);
+  acts_.push_back({Act::kIncluded, last.id});
+  Say(fmt::format("trial {} counts again: {}", last.id.substr(0, 8), why));
+  Plan();
+  SayPlan();
+}
+
+// A revision, as all that is said of a trial: nothing is removed.
+void Session::Undo() {
+  if (acts_.empty()) throw std::invalid_argument("there is nothing to undo");
+  const Act act = acts_.back();
+  if (act.kind == Act::kExcluded) {
+    store_.Include(act.trial, options_.operator_name, "undo of the exclusion");
+  } else {
+    store_.Exclude(
+        act.trial, options_.operator_name,
+        act.kind == Act::kLogged ? "undo of the log" : "undo of the inclusion");
+  }
+  acts_.pop_back();
+  Say(fmt::format(
+      "trial {} {}", act.trial.substr(0, 8),
+      act.kind == Act::kExcluded ? "counts again" : "no longer counts"));
+  Plan();
+  SayPlan();
+}
+
+void Session::Operator(const std::string& name) {
+  if (name.empty()) throw std::invalid_argument("operator wants a name");
+  options_.operator_name = name;
+  file_.operator_name = name;
+  Save();
+  Say("operator: " + name);
+}
+
+void Session::Drive(const std::string& word, const std::string& rest) {
+  if (ends_.driver == nullptr) {
+    throw std::invalid_argument("no rig is driven: start with --driver");
+  }
+  rig::Driver& driver = *ends_.driver;
+  const auto refused = [&](const core::Absent& absent) {
+    Say(fmt::format("{}: refused: {}", word, absent.reason));
+  };
+  if (word == "stop") {
+    driver.Stop();
+    Say("STOPPED; `reset` when all is well");
+  } else if (word == "reset") {
+    const auto reset = driver.Reset(options_.operator_name);
+    if (!reset) return refused(reset.error());
+    Say("ready; set it again");
+  } else if (word == "rig") {
+    const rig::DriverStatus status = driver.Status();
+    Say(fmt::format(
+        "interlock {}, {}, {}, {} shots",
+        status.interlock == rig::Interlock::kClosed ? "closed" : "OPEN",
+        status.armed ? "ARMED" : "not armed",
+        status.stopped ? "STOPPED" : "not stopped", status.shots));
+  } else if (word == "set") {
+    if (!setting_) throw std::invalid_argument("there are no set-points now");
+    const auto read = driver.Set(*setting_);
+    if (!read) return refused(read.error());
+    Say(fmt::format("set: it reads elevation {:.2f} deg, compression {:.2f} mm",
+                    read->elevation_rad / kDegree,
+                    read->compression_m / core::kMillimetre));
+  } else if (word == "arm") {
+    const auto arming = driver.Arm();
+    if (!arming) return refused(arming.error());
+    Say(fmt::format("ARMED. When all are clear: fire {}", arming->number));
+  } else {
+    const auto number = Number(rest);
+    if (!number || *number < 1.0) {
+      throw std::invalid_argument("fire wants the number of the arming");
+    }
+    const auto shots = driver.Fire(
+        {options_.operator_name, static_cast<std::uint64_t>(*number)});
+    if (!shots) return refused(shots.error());
+    Say(fmt::format("fired ({} shots)", *shots));
+  }
+}
+
+}  // namespace touchdown::session

@@ -1,0 +1,313 @@
+// The rig's controller on the other end of a pseudo-terminal, well behaved or
+// not, and a clock that runs only where it stays silent.
+#pragma once
+
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>  // posix_openpt
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "touchdown/rig/driver/line_protocol.h"
+#include "touchdown/rig/driver/serial_line.h"
+
+namespace touchdown::rig {
+
+// What the controller makes of one request.
+enum class Act {
+  kAnswer,
+  kSilence,    // does it and says nothing
+  kDeafness,   // does nothing and says nothing
+  kGarbage,    // bytes that are no line
+  kHalf,       // the first half of the answer
+  kDamaged,    // an answer with one bit turned over
+  kLate,       // the answer when the next request comes, before that one's
+  kWrongEcho,  // "ok", with another value
+  kRefusal,    // "no"
+  kHangUp
+};
+
+class SimulatedController {
+ public:
+  SimulatedController() {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) {
+      throw std::runtime_error("no pseudo-terminal");
+    }
+    std::array<char, 128> name{};
+    ptsname_r(master_, name.data(), name.size());
+    port_ = name.data();
+    // Held open, so that a closed program is no hang-up of this end.
+    slave_ = open(port_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    end_ = eventfd(0, EFD_CLOEXEC);
+    silence_ = eventfd(0, EFD_NONBLOCK | EFD_SEMAPHORE | EFD_CLOEXEC);
+    thread_ = std::thread([this] { Run(); });
+  }
+  ~SimulatedController() {
+    StopListening();
+    if (master_ >= 0) close(master_);
+    close(slave_);
+    close(end_);
+    close(silence_);
+  }
+  SimulatedController(const SimulatedController&) = delete;
+  SimulatedController& operator=(const SimulatedController&) = delete;
+
+  const std::string& port() const { return port_; }
+  int master() const { return master_; }
+
+  // What becomes of the next requests with `verb`; afterwards it behaves.
+  void Script(const std::string& verb, std::deque<Act> acts) {
+    const std::lock_guard lock(mutex_);
+    script_[verb] = std::move(acts);
+  }
+  // Called as soon as a request with `verb` has come, before it is answered.
+  void When(const std::string& verb, std::function<void()> what) {
+    const std::lock_guard lock(mutex_);
+    when_[verb] = std::move(what);
+  }
+  void OpenInterlock(bool open = true) {
+    const std::lock_guard lock(mutex_);
+    interlock_open_ = open;
+    if (open) armed_ = false;
+  }
+  // How often a movement is looked at before it has ended; where it sticks.
+  void Moves(int looks, std::int64_t stuck_angle = -1) {
+    const std::lock_guard lock(mutex_);
+    looks_ = looks;
+    stuck_angle_ = stuck_angle;
+  }
+
+  std::int64_t shots() const { return Locked(shots_); }
+  bool armed() const { return Locked(armed_); }
+  bool stopped() const { return Locked(stopped_); }
+  int stop_bytes() const { return Locked(stop_bytes_); }
+  // Verbs in the order in which they came, repetitions too.
+  std::vector<std::string> heard() const { return Locked(heard_); }
+  long HowOften(const std::string& verb) const {
+    long n = 0;
+    for (const auto& one : heard()) n += one == verb ? 1 : 0;
+    return n;
+  }
+
+  void StopListening() {
+    if (!thread_.joinable()) return;
+    const std::uint64_t one = 1;
+    if (write(end_, &one, sizeof one) != sizeof one) std::abort();
+    thread_.join();
+  }
+
+  // Time that stands still while the controller has something to say.
+  SerialTime Time() {
+    SerialTime time;
+    time.now = [this] { return now_; };
+    time.wait = [this](int port, int wake, std::chrono::milliseconds longest) {
+      std::array<pollfd, 3> ends{pollfd{port, POLLIN, 0},
+                                 pollfd{wake, POLLIN, 0},
+                                 pollfd{silence_, POLLIN, 0}};
+      // Nothing is on its way where the port is not listened to. Else a limit
+      // that only a broken test reaches.
+      constexpr int kHang_ms = 20'000;
+      if (poll(ends.data(), ends.size(), port < 0 ? 0 : kHang_ms) < 0) return;
+      if (ends[0].revents != 0 || ends[1].revents != 0) return;
+      std::uint64_t count = 0;
+      if (port >= 0 && read(silence_, &count, sizeof count) < 0) {
+        throw std::runtime_error("the simulated controller hangs");
+      }
+      now_ += longest;
+    };
+    return time;
+  }
+
+ private:
+  template <class T>
+  T Locked(const T& member) const {
+    const std::lock_guard lock(mutex_);
+    return member;
+  }
+
+  void Run() {
+    std::string line;
+    while (true) {
+      std::array<pollfd, 2> ends{pollfd{master_, POLLIN, 0},
+                                 pollfd{end_, POLLIN, 0}};
+      poll(ends.data(), ends.size(), -1);
+      if (ends[1].revents != 0) return;
+      std::array<char, 256> bytes{};
+      const ssize_t n = read(master_, bytes.data(), bytes.size());
+      if (n <= 0) return;
+      for (ssize_t i = 0; i < n; ++i) {
+        const char c = bytes[static_cast<std::size_t>(i)];
+        if (c == kStopByte) {
+          line.clear();
+          const std::lock_guard lock(mutex_);
+          stopped_ = true;
+          armed_ = false;
+          ++stop_bytes_;
+        } else if (c != '\n') {
+          line += c;
+        } else {
+          const auto request = ParseRequest(line);
+          line.clear();
+          if (request && !Handle(*request)) return;
+        }
+      }
+    }
+  }
+
+  bool Handle(const Request& request) {
+    std::function<void()> what;
+    {
+      const std::lock_guard lock(mutex_);
+      heard_.push_back(request.verb);
+      if (const auto it = when_.find(request.verb); it != when_.end()) {
+        what = it->second;
+      }
+    }
+    if (what) what();
+    const std::lock_guard lock(mutex_);
+    Act act = Act::kAnswer;
+    if (auto& acts = script_[request.verb]; !acts.empty()) {
+      act = acts.front();
+      acts.pop_front();
+    }
+    const bool said = !late_.empty() && request.number == last_.number;
+    Say(late_);
+    late_.clear();
+    if (act == Act::kDeafness) return Silence();
+    if (act == Act::kHangUp) {
+      close(slave_);
+      close(master_);
+      slave_ = open("/dev/null", O_RDWR | O_CLOEXEC);
+      master_ = -1;
+      return false;
+    }
+    Answer answer = Done(request);
+    if (act == Act::kWrongEcho) answer.text = "99999";
+    if (act == Act::kRefusal)
+      answer = {request.number, false, request.verb, "worn"};
+    std::string bytes = LineOf(answer);
+    switch (act) {
+      case Act::kSilence:
+        return Silence();
+      case Act::kGarbage:
+        Say(std::string("\0\xff*\n*0000\n7 ok\n", 15) +
+            std::string(3 * kLongestLine, '#') + "\n");
+        return Silence();
+      case Act::kHalf:
+        Say(bytes.substr(0, bytes.size() / 2));
+        return Silence();
+      case Act::kDamaged:
+        bytes[3] = static_cast<char>(bytes[3] ^ 1);
+        Say(bytes);
+        return Silence();
+      case Act::kLate:
+        late_ = bytes;
+        return said || Silence();
+      default:
+        Say(bytes);
+        return true;
+    }
+  }
+
+  // A request that comes again is answered again, and not done again.
+  Answer Done(const Request& request) {
+    if (request.number == last_.number) return last_;
+    last_ = {request.number, true, request.verb, ""};
+    const auto refuse = [&](const char* why) {
+      last_.ok = false;
+      last_.text = why;
+    };
+    const std::string& verb = request.verb;
+    const bool moves = verb == "angle" || verb == "compress" || verb == "arm" ||
+                       verb == "fire";
+    if (moves && stopped_) {
+      refuse("stopped");
+    } else if (verb == "hello") {
+      last_.text = "touchdown-rig/1 simulated";
+    } else if (verb == "angle") {
+      angle_ = stuck_angle_ >= 0 ? stuck_angle_ : std::stoll(request.argument);
+      moving_ = looks_;
+      last_.text = request.argument;
+    } else if (verb == "compress") {
+      compress_ = std::stoll(request.argument);
+      last_.text = request.argument;
+    } else if (verb == "interlock") {
+      last_.text = interlock_open_ ? "open" : "closed";
+    } else if (verb == "arm") {
+      armed_ = !interlock_open_;
+      if (armed_) {
+        last_.text = "T" + std::to_string(++tokens_);
+      } else {
+        refuse("interlock open");
+      }
+    } else if (verb == "disarm") {
+      armed_ = false;
+    } else if (verb == "fire") {
+      if (!armed_ || request.argument != "T" + std::to_string(tokens_)) {
+        refuse(interlock_open_ ? "interlock open" : "not armed");
+      } else {
+        armed_ = false;
+        ++shots_;
+        last_.text = "shots=" + std::to_string(shots_);
+      }
+    } else if (verb == "reset") {
+      stopped_ = false;
+    } else if (verb == "status") {
+      last_.text = "angle=" + std::to_string(angle_) +
+                   " compress=" + std::to_string(compress_) +
+                   " moving=" + std::to_string(moving_ > 0 ? 1 : 0) +
+                   " armed=" + std::to_string(armed_ ? 1 : 0) +
+                   " stopped=" + std::to_string(stopped_ ? 1 : 0) +
+                   " shots=" + std::to_string(shots_);
+      if (moving_ > 0) --moving_;
+    } else {
+      refuse("unknown");
+    }
+    return last_;
+  }
+
+  void Say(const std::string& bytes) {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t n =
+          write(master_, bytes.data() + done, bytes.size() - done);
+      if (n <= 0) return;
+      done += static_cast<std::size_t>(n);
+    }
+  }
+  bool Silence() {
+    const std::uint64_t one = 1;
+    return write(silence_, &one, sizeof one) == sizeof one;
+  }
+
+  std::string port_;
+  int master_ = -1, slave_ = -1, end_ = -1, silence_ = -1;
+  SerialTime::Instant now_{};  // of the driver's thread
+
+  mutable std::mutex mutex_;
+  std::map<std::string, std::deque<Act>> script_;
+  std::map<std::string, std::function<void()>> when_;
+  std::string late_;
+  Answer last_;
+  std::int64_t angle_ = 0, compress_ = 0, shots_ = 0, tokens_ = 0;
+  std::int64_t stuck_angle_ = -1;
+  int looks_ = 0, moving_ = 0, stop_bytes_ = 0;
+  bool interlock_open_ = false, armed_ = false, stopped_ = false;
+  std::vector<std::string> heard_;
+  std::thread thread_;
+};
+
+}  // namespace touchdown::rig

@@ -1,0 +1,159 @@
+// session as a user runs it: typed lines, a folder, signals, and the end at any
+// instant. TOUCHDOWN_LONG_TESTS=1 runs the long form.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/session/session_file.h"
+#include "tests/session/bench.h"
+#include "tests/support/program.h"
+#include "tests/support/running_program.h"
+#include "touchdown/db/maintenance.h"
+
+namespace touchdown::session {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::RunningProgram;
+
+class SessionCommand : public ::testing::Test {
+ protected:
+  std::vector<std::string> Arguments(std::vector<std::string> more = {}) const {
+    std::vector<std::string> out = {TOUCHDOWN_BINARY, "session",
+                                    "--db",           bench_.db().string(),
+                                    "--campaign",     "asphalt",
+                                    "--rig",          bench_.rig().string(),
+                                    "--watch",        bench_.films().string(),
+                                    "--quiet-s",      "0.05"};
+    out.insert(out.end(), more.begin(), more.end());
+    return out;
+  }
+  void ExpectMistake(std::vector<std::string> arguments, int status,
+                     const std::string& says) const {
+    const testing::TemporaryFolder scratch;
+    const auto ran =
+        testing::RunProgram(std::move(arguments), scratch.path().string());
+    EXPECT_EQ(ran.status, status) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(says));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  std::vector<core::Trial> Trials() const {
+    return db::Store::Open(bench_.db(), db::OpenMode::kRead).Trials();
+  }
+
+  Bench bench_;
+};
+
+TEST_F(SessionCommand, TakesWhatComesAndEndsWhenTold) {
+  RunningProgram session(Arguments({"--operator", "A. Lee", "--no-check"}));
+  EXPECT_THAT(session.Until("press Enter"), HasSubstr("bounce height, mm"));
+  session.Type("");
+  EXPECT_THAT(session.Until("predicted"), HasSubstr("next shot: approach"));
+  bench_.Film("a.mraw", 24.0, 1);
+  EXPECT_THAT(session.Until("predicted"), HasSubstr("bounce, approach angle"));
+  ASSERT_EQ(Trials().size(), 1u);
+  session.Type("exclude it hit the frame");
+  session.Until("no longer counts");
+  // Of another program nothing is taken away.
+  ExpectMistake(Arguments({"--operator", "B"}), 4, "another session");
+  session.Type("quit");
+  EXPECT_EQ(session.End(0), 0);
+  EXPECT_TRUE(Trials()[0].excluded);
+  EXPECT_EQ(ReadSession(bench_.db())->phase, Phase::kEnded);
+
+  // The operator is the same as last time; the end of the input is the end.
+  RunningProgram again(Arguments({"--no-check"}));
+  again.Until("known, trial");
+  EXPECT_EQ(again.End(SIGTERM), 0);
+}
+
+TEST_F(SessionCommand, MistakesAreOneLine) {
+  ExpectMistake(Arguments(), 2, "--operator is missing");
+  auto arguments = Arguments({"--operator", "A"});
+  arguments[11] = "0";
+  ExpectMistake(arguments, 2, "--quiet-s is 0");
+  ExpectMistake(Arguments({"--operator", "A", "--check-height-mm", "0"}), 2,
+                "height");
+  ExpectMistake(Arguments({"--operator", "A", "--driver", "/dev/null"}), 3,
+                "no serial port");
+  arguments = Arguments({"--operator", "A"});
+  arguments[5] = "concrete";
+  ExpectMistake(arguments, 4, "there is no campaign 'concrete'");
+  arguments = Arguments({"--operator", "A"});
+  arguments[9] = bench_.rig().string();
+  ExpectMistake(arguments, 3, "there is no such folder");
+}
+
+TEST_F(SessionCommand, SurvivesAKillAtAnyInstant) {
+  const int rounds = std::getenv("TOUCHDOWN_LONG_TESTS") != nullptr ? 50 : 6;
+  std::mt19937_64 engine(20261121);
+  const testing::TemporaryFolder made;
+  std::set<std::string> reported;
+  const auto note = [&](const std::string& lines) {
+    for (std::size_t at = lines.find("\ntrial "); at != std::string::npos;
+         at = lines.find("\ntrial ", at + 1)) {
+      reported.insert(lines.substr(at + 7, 8));
+    }
+  };
+  const auto start = [&] {
+    return Arguments({"--operator", "A. Lee", "--no-check"});
+  };
+  for (int round = 0; round < rounds; ++round) {
+    SCOPED_TRACE(round);
+    const std::string name = "film" + std::to_string(round);
+    pipeline::filmed::WriteSphere(made / (name + ".mraw"), 24.0,
+                                  static_cast<std::uint64_t>(round + 1));
+    RunningProgram session(start());
+    session.Type("");
+    const auto wait = engine() % 4;
+    std::string lines = "\n";
+    if (wait == 1) lines += session.Line();
+    if (wait >= 2) lines += session.Until("next shot");
+    for (const char* extension : {".cihx", ".mraw"}) {
+      std::filesystem::rename(made / (name + extension),
+                              bench_.films() / (name + extension));
+    }
+    if (wait == 3) lines += session.Until(name + ".mraw");
+    // Up to about one analysis later.
+    const timespec pause{0, static_cast<long>(engine() % 300'000'000)};
+    nanosleep(&pause, nullptr);
+    EXPECT_EQ(session.End(SIGKILL), -1);
+    lines += session.Until("what is never said");
+    note(lines);
+    const auto store = db::Store::Open(bench_.db(), db::OpenMode::kWrite);
+    EXPECT_THAT(db::Check(store).problems, IsEmpty());
+    std::set<std::string> ids;
+    std::set<std::string> clips;
+    for (const auto& trial : store.Trials()) {
+      ids.insert(trial.id.substr(0, 8));
+      EXPECT_TRUE(clips.insert(trial.clip.id).second) << "logged twice";
+    }
+    for (const auto& id : reported) EXPECT_TRUE(ids.contains(id)) << id;
+    if (HasFailure()) return;
+  }
+  // What was recorded while nobody was there is taken now; each is named once.
+  RunningProgram last(start());
+  last.Type("");
+  for (int i = 0; i < rounds; ++i) last.Until(".mraw");
+  last.Type("quit");
+  EXPECT_EQ(last.End(0), 0);
+  const auto trials = Trials();
+  EXPECT_EQ(trials.size(), static_cast<std::size_t>(rounds));
+  std::set<std::string> paths;
+  for (const auto& trial : trials) {
+    EXPECT_FALSE(trial.excluded);
+    EXPECT_EQ(trial.revision, 1);
+    paths.insert(trial.clip.path);
+  }
+  EXPECT_EQ(paths.size(), trials.size());
+}
+
+}  // namespace
+}  // namespace touchdown::session

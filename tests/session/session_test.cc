@@ -1,0 +1,270 @@
+// A technician's session without a terminal: lines and recordings in, lines
+// and trials out.
+#include "app/session/session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+
+#include "tests/session/bench.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/rig/driver/manual_driver.h"
+
+namespace touchdown::session {
+namespace {
+
+using core::kDegree;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SessionTest : public ::testing::Test {
+ protected:
+  // Ends the session that is there, and begins another over the same store.
+  void Begin(bool with_check = false) {
+    session_.reset();
+    store_.emplace(db::Store::Open(bench_.db(), db::OpenMode::kWrite));
+    SessionOptions options;
+    options.operator_name = "A. Lee";
+    if (with_check) {
+      CheckShot check;
+      check.body = Bench::campaign().body;
+      options.check = check;
+    }
+    SessionEnds ends;
+    ends.say = [this](const std::string& line) { said_ += line + "\n"; };
+    ends.now_s = [] {
+      return std::chrono::duration<double>(
+                 std::chrono::system_clock::now().time_since_epoch())
+          .count();
+    };
+    ends.driver = &driver_;
+    session_.emplace(*store_, Bench::campaign(),
+                     MakeThrower(bench_.rig(), Bench::campaign()), options,
+                     ends, ReadSession(bench_.db()));
+    session_->Start();
+  }
+  std::string Obey(const std::string& line) {
+    said_.clear();
+    EXPECT_TRUE(session_->Obey(line));
+    return said_;
+  }
+  std::string Take(const std::filesystem::path& recording) {
+    said_.clear();
+    session_->Take(recording);
+    return said_;
+  }
+  std::vector<core::Trial> Trials(const std::string& campaign = "asphalt") {
+    return store_->Trials({.campaign = campaign});
+  }
+  double Planned_deg() { return ReadSession(bench_.db())->angle_rad / kDegree; }
+
+  Bench bench_;
+  std::vector<std::string> asked_;
+  rig::ManualDriver driver_{[this](const std::string& question) {
+    asked_.push_back(question);
+    return question.find("yes/no") == std::string::npos ? "" : "yes";
+  }};
+  std::string said_;
+  std::optional<db::Store> store_;
+  std::optional<Session> session_;
+};
+
+TEST_F(SessionTest, FromConventionsToTheSecondShot) {
+  Begin();
+  EXPECT_THAT(said_, HasSubstr("press Enter to accept"));
+  // What comes too early waits.
+  EXPECT_EQ(Take(bench_.Film("early.mraw", 24.0, 9)), "");
+  EXPECT_TRUE(Trials().empty());
+  EXPECT_THAT(Obey("begin"), HasSubstr("press Enter"));
+  EXPECT_THAT(Obey(""), HasSubstr("next shot: approach angle"));
+  ASSERT_EQ(Trials().size(), 1u);
+  EXPECT_FALSE(Trials()[0].set_angle_rad);
+
+  const double planned_deg = Planned_deg();
+  const std::string answer = Take(bench_.Film("a.mraw", 24.0, 1));
+  EXPECT_THAT(answer, HasSubstr("bounce, approach angle 2"));
+  EXPECT_THAT(answer, HasSubstr("by A. Lee"));
+  EXPECT_THAT(answer, HasSubstr("boundary"));
+  EXPECT_THAT(answer, HasSubstr("  set        elevation"));
+  EXPECT_THAT(answer, HasSubstr("  predicted  approach angle"));
+  ASSERT_EQ(Trials().size(), 2u);
+  const core::Trial trial = Trials()[1];
+  EXPECT_EQ(trial.author, "A. Lee");
+  EXPECT_DOUBLE_EQ(*trial.set_angle_rad, planned_deg * kDegree);
+  EXPECT_GT(*trial.set_speed_mps, 0.5);
+  EXPECT_EQ(trial.clip.sha256.size(), 64u);
+  EXPECT_EQ(ReadSession(bench_.db())->last["trial"], trial.id);
+  // The same recording under another name is no other shot.
+  std::filesystem::copy_file(bench_.films() / "a.mraw",
+                             bench_.films() / "copy.mraw");
+  std::filesystem::copy_file(bench_.films() / "a.cihx",
+                             bench_.films() / "copy.cihx");
+  EXPECT_THAT(Take(bench_.films() / "copy.mraw"), HasSubstr("known, trial"));
+  EXPECT_EQ(Trials().size(), 2u);
+  EXPECT_FALSE(session_->Obey("quit"));
+}
+
+TEST_F(SessionTest, TheDailyCheckShotIsAskedForComparedAndLogged) {
+  Begin(true);
+  EXPECT_THAT(Obey(""),
+              HasSubstr("check shot: drop the sphere 24 mm from 300"));
+  EXPECT_EQ(session_->phase(), Phase::kCheck);
+  EXPECT_THAT(Obey("skip"), HasSubstr("wants a reason"));
+  const std::string answer = Take(bench_.Drop("drop.mraw", 0.3));
+  EXPECT_THAT(answer, HasSubstr("check shot agrees"));
+  EXPECT_THAT(answer, HasSubstr("next shot: approach angle"));
+  EXPECT_TRUE(Trials().empty());
+  const auto checks = Trials("check: sphere 24 mm from 300 mm");
+  ASSERT_EQ(checks.size(), 1u);
+  EXPECT_THAT(checks[0].reason, HasSubstr("E_n"));
+  // Done for today; one more only when asked for.
+  Begin(true);
+  EXPECT_EQ(session_->phase(), Phase::kShot);
+  EXPECT_THAT(Obey("check"), HasSubstr("check shot: drop"));
+  EXPECT_THAT(Take(bench_.Drop("high.mraw", 0.4)), HasSubstr("DOES NOT AGREE"));
+  EXPECT_THAT(Obey("check"), HasSubstr("check shot: drop"));
+  EXPECT_THAT(Obey("skip no time"), HasSubstr("skipped: no time"));
+  EXPECT_EQ(session_->phase(), Phase::kShot);
+}
+
+TEST_F(SessionTest, APersonCorrectsInWords) {
+  Begin();
+  Obey("");
+  Obey("operator B. Ray");
+  Take(bench_.Film("a.mraw", 24.0, 1));
+  const std::string id = Trials()[0].id;
+  EXPECT_EQ(Trials()[0].author, "B. Ray");
+  EXPECT_THAT(Obey("exclude"), HasSubstr("wants a reason"));
+  EXPECT_THAT(Obey("exclude it hit the frame"), HasSubstr("no longer counts"));
+  EXPECT_EQ(Trials()[0].exclusion_reason, "it hit the frame");
+  EXPECT_THAT(Obey("exclude again"), HasSubstr("excluded already"));
+  EXPECT_THAT(Obey("undo"), HasSubstr("counts again"));
+  EXPECT_FALSE(Trials()[0].excluded);
+  EXPECT_THAT(Obey("undo"), HasSubstr("no longer counts"));
+  EXPECT_THAT(Obey("undo"), HasSubstr("nothing to undo"));
+  EXPECT_THAT(Obey("include it was good"), HasSubstr("counts again"));
+  const auto history = store_->History(id);
+  ASSERT_EQ(history.size(), 5u);  // nothing was removed
+  EXPECT_EQ(history[3].trial.reason, "undo of the log");
+  EXPECT_EQ(history[3].trial.author, "B. Ray");
+  // Whoever comes after an interruption can still take the last one back.
+  Begin();
+  EXPECT_THAT(Obey("undo"), HasSubstr("no longer counts"));
+  EXPECT_TRUE(Trials()[0].excluded);
+  EXPECT_THAT(Obey("nonsense"), HasSubstr("is no command"));
+  EXPECT_THAT(Obey("help"), HasSubstr("operator NAME"));
+}
+
+TEST_F(SessionTest, SkipsRepeatsAndTakesAnAngleOfOnesOwn) {
+  Begin();
+  EXPECT_THAT(Obey(""), HasSubstr("next shot"));
+  EXPECT_THAT(Obey("repeat"), HasSubstr("there is no trial yet"));
+  const double first = Planned_deg();
+  Obey("skip");
+  const double second = Planned_deg();
+  EXPECT_GE(std::abs(first - second), 1.0 - 1e-9);
+  Obey("skip");
+  EXPECT_GE(std::abs(first - Planned_deg()), 1.0 - 1e-9);
+  EXPECT_GE(std::abs(second - Planned_deg()), 1.0 - 1e-9);
+  Obey("angle 23.5");
+  EXPECT_NEAR(Planned_deg(), 23.5, 1e-9);
+  EXPECT_THAT(Obey("angle 100"), HasSubstr("what the rig can throw"));
+  EXPECT_THAT(Obey("angle x"), HasSubstr("angle is 'x'"));
+  Take(bench_.Film("a.mraw", 24.0, 1));
+  EXPECT_NEAR(*Trials()[0].set_angle_rad, 23.5 * kDegree, 1e-12);
+  Obey("repeat");
+  EXPECT_NEAR(Planned_deg(), 23.5, 1e-9);
+}
+
+TEST_F(SessionTest, GoesOnWhereItWas) {
+  Begin();
+  Obey("");
+  Take(bench_.Film("a.mraw", 24.0, 1));
+  Obey("angle 20.25");
+  // Nobody is there; the shot that was planned is made.
+  session_.reset();
+  bench_.Film("b.mraw", 20.0, 2);
+  Begin();
+  EXPECT_NEAR(Planned_deg(), 20.25, 1e-9);
+  EXPECT_THAT(Take(bench_.films() / "a.mraw"), HasSubstr("known, trial"));
+  EXPECT_THAT(Take(bench_.films() / "b.mraw"), HasSubstr("(set 20.25)"));
+  EXPECT_EQ(Trials().size(), 2u);
+  // It was used up: a third has set-points only from a new plan.
+  Begin();
+  const auto old = bench_.Film("c.mraw", 22.0, 3);
+  for (const char* file : {"c.mraw", "c.cihx"}) {
+    std::filesystem::last_write_time(
+        bench_.films() / file,
+        std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  }
+  EXPECT_THAT(Take(old), HasSubstr("logged without them"));
+  EXPECT_FALSE(Trials()[2].set_angle_rad);
+}
+
+TEST_F(SessionTest, WhatCannotBeAnalysedIsSaidAndTheShotStays) {
+  Begin();
+  Obey("");
+  const double planned = Planned_deg();
+  pipeline::filmed::WriteRubbish(bench_.films() / "bad.avi");
+  EXPECT_THAT(Take(bench_.films() / "bad.avi"), HasSubstr("not logged: "));
+  EXPECT_THAT(Take(bench_.films() / "gone.avi"), HasSubstr("not logged: "));
+  EXPECT_TRUE(Trials().empty());
+  EXPECT_EQ(session_->phase(), Phase::kShot);
+  EXPECT_EQ(Planned_deg(), planned);
+}
+
+TEST_F(SessionTest, ARecordingThatGrewIsNotLoggedTwice) {
+  Begin();
+  Obey("");
+  // The first 100 of 115 frames, then all.
+  pipeline::filmed::Film film =
+      pipeline::filmed::Default(core::BodyKind::kSphere);
+  film.frames = 100;
+  pipeline::filmed::WriteFilm(bench_.films() / "a.mraw", film, 1);
+  Take(bench_.films() / "a.mraw");
+  film.frames = 115;
+  pipeline::filmed::WriteFilm(bench_.films() / "a.mraw", film, 1);
+  Take(bench_.films() / "a.mraw");
+  const auto trials = Trials();
+  ASSERT_EQ(trials.size(), 2u);
+  EXPECT_TRUE(trials[0].excluded);
+  EXPECT_THAT(trials[0].exclusion_reason, HasSubstr("not complete"));
+  EXPECT_FALSE(trials[1].excluded);
+  EXPECT_EQ(trials[1].set_angle_rad, trials[0].set_angle_rad);
+  // Another shot under the same name is another shot.
+  bench_.Film("a.mraw", 20.0, 5);
+  Take(bench_.films() / "a.mraw");
+  ASSERT_EQ(Trials().size(), 3u);
+  EXPECT_FALSE(Trials()[1].excluded);
+}
+
+TEST_F(SessionTest, ConventionsThatChangeEndIt) {
+  Begin();
+  Obey("");
+  auto changed = Bench::campaign();
+  changed.bounce_height_m = 0.001;
+  store_->ChangeCampaign(changed);
+  const auto film = bench_.Film("a.mraw", 24.0, 1);
+  EXPECT_THROW(session_->Take(film), core::StoreError);
+  EXPECT_TRUE(Trials().empty());
+}
+
+TEST_F(SessionTest, TheRigFiresOnAPersonsWordOnly) {
+  Begin();
+  EXPECT_THAT(Obey(""), HasSubstr("next shot"));
+  EXPECT_THAT(Obey("fire 1"), HasSubstr("refused: not armed"));
+  EXPECT_THAT(Obey("set"), HasSubstr("it reads elevation"));
+  EXPECT_THAT(Obey("arm"), HasSubstr("fire 1"));
+  EXPECT_THAT(Obey("fire"), HasSubstr("wants the number"));
+  EXPECT_THAT(Obey("fire 2"), HasSubstr("refused"));
+  EXPECT_THAT(Obey("fire 1"), HasSubstr("fired (1 shots)"));
+  EXPECT_THAT(Obey("stop"), HasSubstr("STOPPED"));
+  EXPECT_THAT(Obey("arm"), HasSubstr("refused: the rig was stopped"));
+  EXPECT_THAT(Obey("reset"), HasSubstr("ready"));
+  EXPECT_THAT(Obey("rig"), HasSubstr("interlock closed, not armed"));
+}
+
+}  // namespace
+}  // namespace touchdown::session

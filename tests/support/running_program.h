@@ -1,0 +1,90 @@
+// A program that runs while the test types and reads what it says.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchdown::testing {
+
+class RunningProgram {
+ public:
+  explicit RunningProgram(std::vector<std::string> arguments) {
+    std::array<int, 2> out{};
+    std::array<int, 2> in{};
+    if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(in.data(), O_CLOEXEC) != 0) {
+      throw std::runtime_error("no pipe");
+    }
+    std::vector<char*> argv;
+    for (auto& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    std::fflush(nullptr);
+    child_ = fork();
+    if (child_ == 0) {
+      dup2(in[0], STDIN_FILENO);
+      dup2(out[1], STDOUT_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
+    close(out[1]);
+    close(in[0]);
+    out_ = fdopen(out[0], "r");
+    in_ = in[1];
+  }
+  ~RunningProgram() {
+    if (child_ > 0) End(SIGKILL);
+    std::fclose(out_);
+    close(in_);
+  }
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  // Waits for the next line of stdout; empty at its end.
+  std::string Line() {
+    std::string line;
+    for (int c = std::fgetc(out_); c != EOF; c = std::fgetc(out_)) {
+      line += static_cast<char>(c);
+      if (c == '\n') break;
+    }
+    return line;
+  }
+  // Waits for a line with `text` in it; all lines up to it. Ends where stdout
+  // does.
+  std::string Until(std::string_view text) {
+    std::string lines;
+    while (true) {
+      const std::string line = Line();
+      lines += line;
+      if (line.empty() || line.find(text) != std::string::npos) return lines;
+    }
+  }
+  void Type(const std::string& line) {
+    const std::string bytes = line + "\n";
+    if (write(in_, bytes.data(), bytes.size()) < 0) {
+      throw std::runtime_error("the program reads no more");
+    }
+  }
+  // Sends a signal (0: none) and waits for the end; -1 where a signal ended it.
+  int End(int signal) {
+    if (signal != 0) kill(child_, signal);
+    int status = 0;
+    waitpid(child_, &status, 0);
+    child_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t child_ = -1;
+  FILE* out_ = nullptr;
+  int in_ = -1;
+};
+
+}  // namespace touchdown::testing
