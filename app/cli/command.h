@@ -22,6 +22,7 @@ void AddBoundary(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddNext(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
+void AddReview(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
 void AddTheory(CLI::App& app, Action& action);

@@ -1,0 +1,62 @@
+// Which page is shown, and when it is shown anew.
+import {element, get, rememberWho, tell} from './parts.js';
+import {overview} from './overview.js';
+
+const pages = {overview};
+
+// What the page shown wants: `changed` is called when the store has changed,
+// `keys` gets key presses, `close` ends it.
+let shown = null;
+let stamp = null;
+
+function pageOf(hash) {
+  const [name, id] = hash.replace(/^#\//, '').split('/');
+  return {name: name || 'overview', id: id && decodeURIComponent(id)};
+}
+
+async function show() {
+  const {name, id} = pageOf(location.hash);
+  const page = pages[name] ?? pages.overview;
+  shown?.close?.();
+  shown = null;
+  tell('');
+  for (const link of document.querySelectorAll('nav a')) {
+    if (link.dataset.page === name) link.setAttribute('aria-current', 'page');
+    else link.removeAttribute('aria-current');
+  }
+  const main = document.getElementById('main');
+  main.replaceChildren(element('p', {text: 'Loading …'}));
+  try {
+    shown = await page(main, id) ?? {};
+  } catch (error) {
+    main.replaceChildren(element('p', {class: 'bad', role: 'alert',
+                                       text: error.message}));
+  }
+}
+
+// Every two seconds: cheap for the server, quick enough for two people at one
+// rig.
+const kAskEvery_ms = 2000;
+
+async function watch() {
+  try {
+    const now = (await get('/api/stamp')).stamp;
+    const changed = stamp !== null && now !== stamp;
+    stamp = now;
+    if (changed) await shown?.changed?.();
+  } catch (error) {
+    tell(error.message, true);
+  }
+  setTimeout(watch, kAskEvery_ms);
+}
+
+addEventListener('hashchange', show);
+addEventListener('keydown', event => {
+  const typing = event.target.closest?.('input, textarea, select');
+  if (!typing && !event.ctrlKey && !event.metaKey && !event.altKey) {
+    shown?.keys?.(event);
+  }
+});
+rememberWho();
+show();
+watch();
