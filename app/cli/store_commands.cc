@@ -10,6 +10,7 @@
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/statement.h"
 #include "app/report/trial_json.h"
 #include "app/report/trial_list.h"
 #include "touchdown/core/units.h"
@@ -52,7 +53,7 @@ db::TrialFilter FilterOf(const ListFlags& flags, bool campaign_given) {
   }
   if (!flags.state.empty()) {
     filter.state = ParseWord<core::MotionState>(
-        "--state", flags.state, core::ParseMotionState, kStateWords);
+        "--state", flags.state, core::ParseMotionState, pipeline::kStateWords);
   }
   if (!flags.from.empty()) filter.from_utc = flags.from;
   if (!flags.until.empty()) filter.until_utc = flags.until;
@@ -230,7 +231,7 @@ void AddList(CLI::App& app, Action& action) {
   command->add_option("--origin", flags->origin,
                       "recorded, simulated or manual");
   command->add_option("--body", flags->body, "sphere or rectangle");
-  command->add_option("--state", flags->state, kStateWords);
+  command->add_option("--state", flags->state, pipeline::kStateWords);
   command->add_option("--from", flags->from,
                       "first logged at or after, UTC, e.g. 2026-08-01");
   command->add_option("--until", flags->until, "first logged before, UTC");

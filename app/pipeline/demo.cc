@@ -10,9 +10,9 @@
 #include "app/pipeline/analyze.h"
 #include "app/pipeline/evidence.h"
 #include "app/pipeline/log_analysis.h"
+#include "app/pipeline/report_input.h"
 #include "app/pipeline/simulate.h"
 #include "app/pipeline/trial_selection.h"
-#include "app/pipeline/version.h"
 #include "app/report/report.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/units.h"
@@ -164,12 +164,8 @@ DemoResult RunDemo(const DemoOptions& options) {
 
   SelectionOptions select;
   select.store = result.store;
-  const Selection selection = SelectTrials(select);
-  report::ReportInput input;
-  input.trials = selection.trials;
-  input.campaigns = selection.campaigns;
+  report::ReportInput input = InputOf(SelectTrials(select));
   input.source = "the demo's store (rendered clips)";
-  input.software_version = std::string(Version());
   report::WriteReport(report::MakeReport(input), options.folder / "report");
   result.report = options.folder / "report" / "table1.html";
   return result;

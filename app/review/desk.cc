@@ -38,4 +38,13 @@ std::shared_ptr<const Statistics> Desk::StatisticsNow() {
   return statistics_;
 }
 
+std::string Desk::ClipOf(const std::string& id) {
+  const std::lock_guard lock(clips_guard_);
+  const auto known = clips_.find(id);
+  if (known != clips_.end()) return known->second;
+  const auto trial = Open(db::OpenMode::kRead).Find(id);
+  if (!trial) return "";
+  return clips_[id] = trial->clip.path;
+}
+
 }  // namespace touchdown::review

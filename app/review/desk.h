@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "app/review/clip_shelf.h"
 #include "app/review/statistics.h"
 #include "app/review/trial_list.h"
 #include "touchdown/db/store.h"
@@ -30,6 +32,11 @@ class Desk {
   std::shared_ptr<const Statistics> StatisticsNow();
 
   TriageMemory& triage() { return triage_; }
+  ClipShelf& shelf() { return shelf_; }
+
+  // Where the recording of a trial was last seen; empty where there is none.
+  // Asked for with every frame, so it is remembered.
+  std::string ClipOf(const std::string& id);
 
  private:
   std::filesystem::path store_;
@@ -39,6 +46,10 @@ class Desk {
   std::string statistics_stamp_;
   std::shared_ptr<const Statistics> statistics_;
   TriageMemory triage_;
+  ClipShelf shelf_;
+
+  std::mutex clips_guard_;
+  std::map<std::string, std::string> clips_;
 };
 
 }  // namespace touchdown::review

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "app/pipeline/trial_selection.h"
+#include "app/pipeline/report_input.h"
 #include "app/report/boundary_json.h"
 #include "app/report/content.h"
 #include "app/report/group.h"
@@ -83,10 +83,10 @@ Json Table1Json(std::span<const report::Group> groups,
 Statistics MakeStatistics(const std::filesystem::path& store) {
   pipeline::SelectionOptions options;
   options.store = store;
-  pipeline::Selection selection = pipeline::SelectTrials(options);
-  report::ReportInput input;
-  input.campaigns = std::move(selection.campaigns);
-  std::vector<core::Trial> trials = std::move(selection.trials);
+  report::ReportInput input =
+      pipeline::InputOf(pipeline::SelectTrials(options));
+  std::vector<core::Trial> trials = std::move(input.trials);
+  input.trials.clear();
   report::SortTrials(trials);
   const std::vector<report::Group> groups = report::MakeGroups(input, trials);
 

@@ -6,11 +6,13 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 
 #include "image_codecs.h"
 #include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/vision/encode_image.h"
 
 namespace touchdown::vision {
 namespace {
@@ -98,8 +100,10 @@ void ToLuma(const std::vector<std::uint8_t>& rgb, Image& image) {
   }
 }
 
+using Sink = std::function<void(std::span<const std::byte>)>;
+
 struct Writer {
-  OutputFile* file;
+  const Sink* sink;
   std::string* trouble;
 };
 
@@ -107,7 +111,7 @@ void OnWrite(png_structp png, png_bytep bytes, std::size_t count) {
   auto* const writer = static_cast<Writer*>(png_get_io_ptr(png));
   bool failed = false;
   try {
-    writer->file->Write({reinterpret_cast<const std::byte*>(bytes), count});
+    (*writer->sink)({reinterpret_cast<const std::byte*>(bytes), count});
   } catch (const core::InputError& error) {
     // No exception may pass through libpng.
     *writer->trouble = error.what();
@@ -151,11 +155,11 @@ bool WriteRows(png_structp png, png_infop png_info, const Rows& rows) {
   return true;
 }
 
-void Write(const std::filesystem::path& path, const Rows& rows) {
-  OutputFile file(path);
+// `name` stands for the file in messages.
+void Encode(const Rows& rows, const std::string& name, const Sink& sink) {
   Message message;
   std::string trouble;
-  Writer writer{&file, &trouble};
+  Writer writer{&sink, &trouble};
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message,
                                             OnError, OnWarning);
   if (png == nullptr) throw std::bad_alloc();
@@ -164,12 +168,27 @@ void Write(const std::filesystem::path& path, const Rows& rows) {
   const bool done = png_info != nullptr && WriteRows(png, png_info, rows);
   png_destroy_write_struct(&png, &png_info);
   if (!done) {
-    throw core::InputError(trouble.empty()
-                               ? fmt::format("{}: cannot be written: {}",
-                                             path.string(), message.text)
-                               : trouble);
+    throw core::InputError(
+        trouble.empty()
+            ? fmt::format("{}: cannot be written: {}", name, message.text)
+            : trouble);
   }
+}
+
+void Write(const std::filesystem::path& path, const Rows& rows) {
+  OutputFile file(path);
+  Encode(rows, path.string(),
+         [&](std::span<const std::byte> bytes) { file.Write(bytes); });
   file.Commit();
+}
+
+Rows RowsOf(const core::Frame& frame) {
+  return {reinterpret_cast<const std::uint8_t*>(frame.data),
+          frame.stride_bytes,
+          frame.width_px,
+          frame.height_px,
+          frame.bit_depth,
+          false};
 }
 
 }  // namespace
@@ -226,9 +245,15 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
 }
 
 void WritePng(const std::filesystem::path& path, const core::Frame& frame) {
-  Write(path,
-        {reinterpret_cast<const std::uint8_t*>(frame.data), frame.stride_bytes,
-         frame.width_px, frame.height_px, frame.bit_depth, false});
+  Write(path, RowsOf(frame));
+}
+
+std::string EncodePng(const core::Frame& frame) {
+  std::string file;
+  Encode(RowsOf(frame), "a picture", [&](std::span<const std::byte> bytes) {
+    file.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  });
+  return file;
 }
 
 void WritePngRgb(const std::filesystem::path& path, std::int32_t width_px,

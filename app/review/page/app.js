@@ -1,8 +1,11 @@
 // Which page is shown, and when it is shown anew.
 import {element, get, rememberWho, tell} from './parts.js';
+import {log} from './log.js';
 import {overview} from './overview.js';
+import {report} from './report.js';
+import {trial} from './trial.js';
 
-const pages = {overview};
+const pages = {log, overview, report, trial};
 
 // What the page shown wants: `changed` is called when the store has changed,
 // `keys` gets key presses, `close` ends it.
@@ -10,12 +13,12 @@ let shown = null;
 let stamp = null;
 
 function pageOf(hash) {
-  const [name, id] = hash.replace(/^#\//, '').split('/');
-  return {name: name || 'overview', id: id && decodeURIComponent(id)};
+  const [name, ...rest] = hash.replace(/^#\//, '').split('/');
+  return {name: name || 'overview', rest: rest.map(decodeURIComponent)};
 }
 
 async function show() {
-  const {name, id} = pageOf(location.hash);
+  const {name, rest} = pageOf(location.hash);
   const page = pages[name] ?? pages.overview;
   shown?.close?.();
   shown = null;
@@ -27,7 +30,7 @@ async function show() {
   const main = document.getElementById('main');
   main.replaceChildren(element('p', {text: 'Loading …'}));
   try {
-    shown = await page(main, id) ?? {};
+    shown = await page(main, ...rest) ?? {};
   } catch (error) {
     main.replaceChildren(element('p', {class: 'bad', role: 'alert',
                                        text: error.message}));
