@@ -81,6 +81,11 @@ Server::Server(const ServerOptions& options)
     : impl_(std::make_unique<Impl>(options)) {
   db::Store::Open(options.store, db::OpenMode::kWrite);
   httplib::Server& http = impl_->http;
+  // The library would share the port with whoever else asks for it.
+  http.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   constexpr const char* kHost = "127.0.0.1";
   if (options.port == 0) {
     impl_->port = http.bind_to_any_port(kHost);

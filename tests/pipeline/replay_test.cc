@@ -44,7 +44,9 @@ void ExpectSame(const core::ContactRecord& a, const core::ContactRecord& b,
     const core::Measured& y = db::At(b, quantity);
     ASSERT_EQ(x.has_value(), y.has_value()) << quantity.name;
     if (!x) continue;
-    EXPECT_NEAR(x->value, y->value, share * x->u + 1e-12) << quantity.name;
+    // A limit of detection has no u of its own.
+    const double tolerance = x->u > 0.0 ? share * x->u : 0.002 * x->value;
+    EXPECT_NEAR(x->value, y->value, tolerance) << quantity.name;
     EXPECT_NEAR(x->u, y->u, 0.01 * x->u) << quantity.name;
   }
   EXPECT_EQ(a.state.label, b.state.label);
@@ -95,15 +97,19 @@ TEST(Rejudge, TurnsTheAngleWithTheGroundLine) {
   const auto& was = analysis->contacts.first.contact.approach_angle_rad;
   const auto& now = turned.contacts.first.contact.approach_angle_rad;
   ASSERT_TRUE(was && now);
+  // Gravity stays along the line's normal, so it turns too: over the 20 to 30
+  // ms that are fitted its sine of 2 degrees bends the path by up to 9.8 sin(2
+  // deg) 0.015 s / 1.3 m/s = 0.2 deg.
   EXPECT_NEAR(std::abs(now->value - was->value), 2.0 * core::kDegree,
-              0.05 * core::kDegree);
+              0.2 * core::kDegree);
   EXPECT_GT(now->u, was->u);  // a hand is less sure than the fit
   EXPECT_THAT(turned.corrections,
               ::testing::ElementsAre(::testing::HasSubstr("ground line")));
 }
 
-// A correction and a fresh analysis with the same line agree: outlines apart,
-// which are then fitted again, it is one code.
+// A correction and a fresh analysis with the same line agree but for the
+// outlines, which the latter fits again with the pixels below the line left
+// out.
 TEST(Rejudge, AgreesWithAnAnalysisThatIsGivenTheLine) {
   Shot shot;
   auto analysis = Replay(shot.trial);
@@ -120,8 +126,8 @@ TEST(Rejudge, AgreesWithAnAnalysisThatIsGivenTheLine) {
   const auto& b = fresh.contacts.first.contact;
   ASSERT_TRUE(a.approach_angle_rad && b.approach_angle_rad);
   EXPECT_NEAR(a.approach_angle_rad->value, b.approach_angle_rad->value,
-              0.5 * b.approach_angle_rad->u);
-  EXPECT_NEAR(a.frame->value, b.frame->value, 0.5 * b.frame->u);
+              3.0 * b.approach_angle_rad->u);
+  EXPECT_NEAR(a.frame->value, b.frame->value, 3.0 * b.frame->u);
   EXPECT_EQ(corrected.contacts.first.state.label,
             fresh.contacts.first.state.label);
   EXPECT_EQ(corrected.options_hash, fresh.options_hash);

@@ -22,6 +22,7 @@ function scene() {
   const shot = JSON.parse(touchdown('simulate', '--example'));
   shot.lead_in_frames = 50;
   shot.frames = 130;
+  shot.thrown.start.gap_mm = 8.15;  // down between two frames, not at one
   return shot;
 }
 
@@ -49,9 +50,9 @@ export class Lab {
     return JSON.parse(touchdown('list', '--db', this.db, '--json')).trials;
   }
 
-  history(id = this.trial) {
-    return JSON.parse(touchdown('show', id, '--db', this.db, '--json'))
-        .revisions;
+  // touchdown.trial/1: the trial as it stands, and its `history`.
+  show(id = this.trial) {
+    return JSON.parse(touchdown('show', id, '--db', this.db, '--json'));
   }
 
   remove() { rmSync(this.folder, {recursive: true, force: true}); }
@@ -92,7 +93,7 @@ export async function sitDown(browser, review, name, size = {width: 1280,
                                                              height: 720}) {
   const context = await browser.newContext({viewport: size});
   const page = await context.newPage();
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(20_000);
   page.complaints = [];
   page.requested = [];
   page.on('console', message => {
@@ -133,4 +134,9 @@ export async function frameShown(page, frame) {
   await page.waitForFunction(
       n => document.querySelector('.picture')?.dataset.shown === String(n),
       frame);
+}
+
+// Waits until an element says `text`.
+export async function says(page, selector, text) {
+  await page.locator(selector, {hasText: text}).first().waitFor();
 }

@@ -5,7 +5,7 @@ import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 
 import {frameShown, kCampaign, Lab, openBrowser, picture, requireClean,
-        sitDown, startReview} from './lab.mjs';
+        says, sitDown, startReview} from './lab.mjs';
 
 let lab, review, browser;
 before(async () => {
@@ -109,7 +109,7 @@ test('the outline lies on the body', async () => {
 
 test('the ground line is moved, judged anew, stored with a reason, and the ' +
      'original is one click away', async () => {
-  const before = lab.history();
+  const before = lab.show().history;
   const page = await sitDown(browser, review, 'Grace');
   await openTrial(page);
   await frameShown(page, 89);
@@ -124,29 +124,24 @@ test('the ground line is moved, judged anew, stored with a reason, and the ' +
   await picture(page, 'correct');
   // Not without a reason; what was done stays.
   await page.click('text=Store this correction');
-  await page.waitForFunction(() => document.querySelector('.correct .bad')
-                                 .textContent.includes('reason'));
+  await says(page, '.correct .bad', 'reason');
   await page.fill('#why', 'the edge was not the board');
   await page.click('text=Store this correction');
-  await page.waitForFunction(
-      () => document.querySelector('.under')?.textContent.includes(
-          `of ${2}`));
-  const now = lab.history();
-  assert.equal(now.length, before.length + 1);
-  const last = now[now.length - 1];
+  await says(page, '.under', 'of 2');
+  const now = lab.show();
+  assert.equal(now.history.length, before.length + 1);
+  const last = now.history[now.history.length - 1];
   assert.equal(last.kind, 'corrected');
   assert.equal(last.author, 'Grace');
   assert.equal(last.reason, 'the edge was not the board');
-  assert.match(last.document_json ?? JSON.stringify(last),
-               /ground line through/);
+  assert.match(JSON.stringify(now.document), /ground line through/);
   // The original: a link away, unchanged, and stated again by one button.
   await page.click('.history a:has-text("revision 1")');
   await page.waitForFunction(
       was => document.querySelector('.said .angle')?.textContent === was,
       angle);
   await page.click('text=State this again');
-  await page.waitForFunction(
-      () => document.querySelector('.under')?.textContent.includes('of 3'));
+  await says(page, '.under', 'of 3');
   assert.equal(await page.textContent('.said .angle'), angle);
   await picture(page, 'history');
   requireClean(page, review);
@@ -175,16 +170,13 @@ test('the contact is moved, an outline is nudged and left out, the state is ' +
   await page.selectOption('#state', 'slide');
   await page.waitForSelector('.changes tbody tr');
   await page.fill('#why', 'seen by eye');
-  const revision = lab.history().length;
+  const revision = lab.show().history.length;
   await page.click('text=Store this correction');
-  await page.waitForFunction(
-      n => document.querySelector('.under').textContent.includes(
-          `revision ${n} of ${n}`), revision + 1);
+  await says(page, '.under', `revision ${revision + 1} of ${revision + 1}`);
   assert.match(await page.textContent('.said .state'), /^slide/);
   await page.fill('#why', 'somebody touched the camera');
   await page.click('text=Exclude this trial');
-  await page.waitForFunction(() => document.querySelector('.under')
-      .textContent.includes('EXCLUDED: somebody touched the camera'));
+  await says(page, '.under', 'EXCLUDED: somebody touched the camera');
   assert.equal(lab.list()[0].excluded, true);
   await page.fill('#why', 'it was another one');
   await page.click('text=Include it again');

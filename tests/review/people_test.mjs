@@ -6,7 +6,7 @@ import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 
 import {frameShown, kCampaign, Lab, openBrowser, picture, requireClean,
-        sitDown, startReview, touchdown} from './lab.mjs';
+        says, sitDown, startReview, touchdown} from './lab.mjs';
 
 let lab, review, browser;
 before(async () => {
@@ -38,26 +38,22 @@ test('two people see each other\'s changes and never overwrite one another',
   await grace.waitForSelector('.changes tbody tr');
   await ada.fill('#why', 'it slides');
   await ada.click('text=Store this correction');
-  await ada.waitForFunction(
-      () => document.querySelector('.under').textContent.includes('of 2'));
+  await says(ada, '.under', 'of 2');
   await grace.fill('#why', 'it rolls');
   await grace.click('text=Store this correction');
-  await grace.waitForFunction(() => document.querySelector('.correct .bad')
-      .textContent.includes('revision 2 was made meanwhile'));
+  await says(grace, '.correct .bad', 'revision 2 was made meanwhile');
   assert.match(await grace.textContent('.correct .bad'), /Ada: it slides/);
   assert.equal(await grace.inputValue('#why'), 'it rolls');  // nothing lost
   await picture(grace, 'conflict');
-  assert.equal(lab.history().length, 2);
+  assert.equal(lab.show().history.length, 2);
   await grace.click('text=Show what is there now');
-  await grace.waitForFunction(
-      () => document.querySelector('.under').textContent.includes('of 2'));
+  await says(grace, '.under', 'of 2');
   // Ada, who has nothing unsaved, sees what Grace does without asking.
   await grace.selectOption('#state', 'roll');
   await grace.waitForSelector('.changes tbody tr');
   await grace.fill('#why', 'it rolls');
   await grace.click('text=Store this correction');
-  await ada.waitForFunction(
-      () => document.querySelector('.under').textContent.includes('of 3'));
+  await says(ada, '.under', 'of 3');
   assert.match(await ada.textContent('.said .state'), /^roll/);
   requireClean(ada, review);
   await ada.context().close();

@@ -31,7 +31,7 @@ class Routes : public ::testing::Test {
     return Route(desk, request);
   }
   std::string Trial(const std::string& rest = "") {
-    return "/api/trials/" + lab.trial + rest;
+    return std::string("/api/trials/").append(lab.trial).append(rest);
   }
 
   Lab lab;

@@ -3,11 +3,11 @@
 #include "app/review/server.h"
 
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/review/client.h"
 #include "tests/review/lab.h"
 #include "touchdown/core/errors.h"
 

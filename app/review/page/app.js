@@ -28,9 +28,15 @@ async function show() {
     else link.removeAttribute('aria-current');
   }
   const main = document.getElementById('main');
-  main.replaceChildren(element('p', {text: 'Loading …'}));
+  // What was there stays until what is asked for is there.
+  if (main.childElementCount === 0) {
+    main.append(element('p', {text: 'Loading …'}));
+  }
   try {
     shown = await page(main, ...rest) ?? {};
+    if (document.activeElement === document.body) {
+      main.focus({preventScroll: true});
+    }
   } catch (error) {
     main.replaceChildren(element('p', {class: 'bad', role: 'alert',
                                        text: error.message}));

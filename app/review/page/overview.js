@@ -102,7 +102,7 @@ function moveInList(event, list) {
 
 export async function overview(main) {
   const list = element('div', {class: 'list'});
-  const said = element('div', {class: 'said'},
+  const said = element('div', {class: 'together'},
                        element('p', {text: 'Working out the boundary …'}));
   const campaigns = element('div');
   const filter = element('input', {
@@ -132,8 +132,8 @@ export async function overview(main) {
       list.querySelector(`tr[data-id="${focused}"] a`)?.focus();
     }
     heading.textContent = trials.to_look_at
-        ? `${trials.to_look_at} of ${trials.trials.length} trials need a look`
-        : `${trials.trials.length} trials, none needs a look`;
+        ? `Trials: ${trials.to_look_at} of ${trials.trials.length} to look at`
+        : `Trials: ${trials.trials.length}, none to look at`;
     return trials.stamp;
   }
 

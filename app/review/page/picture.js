@@ -56,10 +56,8 @@ export class Picture {
 
   // A pointer's place in the picture, px.
   place(event) {
-    const rect = this.node.getBoundingClientRect();
-    const {x, y, width, height} = this.box;
-    return {x: x + (event.clientX - rect.left) / rect.width * width,
-            y: y + (event.clientY - rect.top) / rect.height * height};
+    return new DOMPoint(event.clientX, event.clientY)
+        .matrixTransform(this.node.getScreenCTM().inverse());
   }
 
   onWheel(event) {

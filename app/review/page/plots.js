@@ -1,7 +1,7 @@
 // Plots over the frames: gap and residuals, with the frame that is shown.
 import {svg} from './parts.js';
 
-const kWidth = 560, kHeight = 170, kLeft = 52, kRight = 8, kTop = 20,
+const kWidth = 420, kHeight = 150, kLeft = 46, kRight = 8, kTop = 20,
       kBottom = 26;
 
 // Round steps for an axis of about `count` labels.
@@ -63,7 +63,7 @@ export class Plot {
                  svg('text', {x: kLeft - 5, y: y(t) + 4, class: 'axis end',
                               text: t}));
     }
-    for (const t of ticks(from, to, 7)) {
+    for (const t of ticks(from, to, 5)) {
       parts.push(svg('text', {x: x(t), y: kHeight - 8, class: 'axis middle',
                               text: t}));
     }
