@@ -114,10 +114,11 @@ test('the ground line is moved, judged anew, stored with a reason, and the ' +
   await openTrial(page);
   await frameShown(page, 89);
   const angle = await page.textContent('.said .angle');
-  // 3 degrees: one end of the line goes up by 27 px.
-  const handle = page.locator('.handle').first();
-  await handle.focus();
-  for (let i = 0; i < 27; ++i) await page.keyboard.press('Shift+ArrowUp');
+  // The line is turned about its middle by 8 px over 511 px: 0.9 degrees.
+  await page.locator('.handle').first().focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press('Shift+ArrowUp');
+  await page.locator('.handle').last().focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press('Shift+ArrowDown');
   await page.waitForFunction(
       was => document.querySelector('.said .angle').textContent !== was, angle);
   await page.waitForSelector('.changes tbody tr');

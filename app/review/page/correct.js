@@ -134,8 +134,10 @@ export class Correcting {
   showChanges(changes) {
     this.result.replaceChildren(changes.length === 0
         ? element('p', {class: 'hint', text: 'Nothing is changed yet.'})
-        : table('What would change', ['number', 'from', 'to'],
-                changes.map(c => [c.field, c.from, c.to]), {class: 'changes'}));
+        : element('div', {class: 'changes', tabindex: '0', role: 'region',
+                          'aria-label': 'What would change'},
+                  table('What would change', ['number', 'from', 'to'],
+                        changes.map(c => [c.field, c.from, c.to]))));
     this.result.dataset.changes = changes.length;
   }
 

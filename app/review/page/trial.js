@@ -176,7 +176,7 @@ export async function trial(main, id, revision) {
                   button('+', () => picture.zoom(0.7), 'zoom in'),
                   button('−', () => picture.zoom(1.4), 'zoom out'),
                   button('z', zoomToContact, 'zoom to the contact'),
-                  button('all', () => picture.showAll(), 'whole picture')),
+                  button('all', () => picture.showAll(), 'all of the picture')),
               element('p', {class: 'hint', text:
                   'Keys: ← → one frame, with Shift ten, Home, End, c contact, ' +
                   'z zoom to it, + − zoom, 0 whole picture, e reason'}),
