@@ -86,6 +86,71 @@ void DrawLevels(Levels& l, Drawer& draw) {
     case Hardship::kSlow:
       l.speed_px = draw.Level({0.2, 0.4});
       break;
+    case Hardship::kShaded:
+    case Hardship::kShadow:
+    case Hardship::kFlicker:
+    case Hardship::kWavy:
+    case Hardship::kSpecks:
+    case Hardship::kObstacle:
+      break;  // DrawTrouble
+  }
+}
+
+double NormalSpeed_px(const Levels& l) {
+  return l.speed_px * std::sin(l.angle_deg * core::kDegree);
+}
+
+// Gravity in px per frame^2, from which the frame rate follows: a flight that
+// curves visibly, and whose body was not at its apex when it entered.
+double Gravity_px(const Levels& l) {
+  return std::min(
+      0.02, 0.4 * NormalSpeed_px(l) / static_cast<double>(l.frames_before));
+}
+
+void DrawTrouble(Case& c, Drawer& draw) {
+  const Levels& l = c.levels;
+  vision::SceneTrouble& trouble = c.film.trouble;
+  switch (l.hardship) {
+    case Hardship::kShaded:
+      trouble.shading_x = draw.Uniform(-0.3, 0.3);
+      trouble.shading_y = draw.Uniform(-0.5, 0.0);
+      trouble.highlight_level = draw.Uniform(0.1, 0.3);
+      break;
+    case Hardship::kShadow:
+      trouble.shadow_depth = draw.Uniform(0.3, 0.8);
+      break;
+    case Hardship::kFlicker:
+      trouble.flicker_amplitude = 0.10;
+      // A period of 10 to 40 frames.
+      trouble.flicker_hz = c.film.camera.fps / draw.Uniform(10.0, 40.0);
+      break;
+    case Hardship::kWavy:
+      trouble.wave_amplitude_px = 1.0;
+      trouble.wave_length_px = draw.Uniform(20.0, 80.0);
+      break;
+    case Hardship::kSpecks:
+      trouble.specks = 5;
+      trouble.speck_diameter_px = draw.Uniform(0.08, 0.2) * l.size_px;
+      trouble.speck_speed_px = l.speed_px;
+      trouble.speck_seed = c.seed;
+      break;
+    case Hardship::kObstacle: {
+      // Half as wide as the body, on the first half of its way.
+      const vision::SceneCamera& camera = c.film.camera;
+      const double back = draw.Uniform(0.4, 0.9) * l.frames_before *
+                          l.speed_px * std::cos(l.angle_deg * core::kDegree);
+      const double x =
+          camera.ground_point.x_px + (camera.travels_left ? back : -back);
+      core::PixelRect& obstacle = trouble.obstacle.emplace();
+      obstacle.width = static_cast<std::int32_t>(std::ceil(0.5 * l.size_px));
+      obstacle.x =
+          static_cast<std::int32_t>(std::lround(x)) - obstacle.width / 2;
+      obstacle.height = camera.height_px;
+      trouble.obstacle_level = 0.5 * c.film.look.background_level;
+      break;
+    }
+    default:
+      break;
   }
 }
 
@@ -94,14 +159,10 @@ void DrawFilm(Case& c, Drawer& draw) {
   Levels& l = c.levels;
   const Hardship hardship = l.hardship;
 
-  // Gravity in px per frame^2 follows from the frame rate: a flight that curves
-  // visibly, and whose body was not at its apex when it entered.
   const double angle = l.angle_deg * core::kDegree;
-  const double vn = l.speed_px * std::sin(angle);
-  const double gravity_px =
-      std::min(0.02, 0.4 * vn / static_cast<double>(l.frames_before));
+  const double vn = NormalSpeed_px(l);
   const double fps =
-      std::sqrt(core::kStandardGravity_mps2 * kPxPerM / gravity_px);
+      std::sqrt(core::kStandardGravity_mps2 * kPxPerM / Gravity_px(l));
 
   pipeline::filmed::Film& film = c.film;
   Throw& t = film.thrown;
@@ -163,6 +224,7 @@ void DrawFilm(Case& c, Drawer& draw) {
   look.gradient_x = 0.06;
   look.texture_seed = c.seed;
   look.texture_amplitude = hardship == Hardship::kTexture ? 0.10 : 0.0;
+  DrawTrouble(c, draw);
 }
 
 }  // namespace
@@ -185,6 +247,18 @@ const char* Name(Hardship hardship) {
       return "texture";
     case Hardship::kSlow:
       return "slow";
+    case Hardship::kShaded:
+      return "shaded";
+    case Hardship::kShadow:
+      return "shadow";
+    case Hardship::kFlicker:
+      return "flicker";
+    case Hardship::kWavy:
+      return "wavy ground";
+    case Hardship::kSpecks:
+      return "specks";
+    case Hardship::kObstacle:
+      return "obstacle";
   }
   return "?";
 }
@@ -210,13 +284,11 @@ Case DrawRebound(std::uint64_t index) {
   Case c;
   c.seed = 1000 * (index + 1) + 999;
   Drawer draw(c.seed);
-  constexpr double kGravity_px = 0.02;  // per frame^2, as DrawFilm has it
   const double size_px = draw.Level({16.0, 24.0, 40.0});
   const double bounce_height_m = core::DefaultBounceHeight(size_px / kPxPerM);
   const bool stays = draw.Uniform(0.0, 1.0) < 0.25;
   c.rise_m =
       stays ? 0.0 : bounce_height_m * std::pow(10.0, draw.Uniform(-1.3, 1.0));
-  const double up_px = std::sqrt(2.0 * kGravity_px * *c.rise_m * kPxPerM);
   Levels levels;
   levels.size_px = size_px;
   levels.contrast = draw.Level({-0.2, -0.5, 0.2});
@@ -226,8 +298,10 @@ Case DrawRebound(std::uint64_t index) {
   levels.angle_deg = draw.Level({20.0, 40.0, 60.0});
   levels.bit_depth = draw.Level({8, 12});
   // Until it is well past its apex, or for long enough to see that it stays.
+  const double rise_px = *c.rise_m * kPxPerM;
   levels.frames_after =
-      8 + static_cast<int>(std::ceil(1.4 * up_px / kGravity_px));
+      8 + static_cast<int>(
+              std::ceil(1.4 * std::sqrt(2.0 * rise_px / Gravity_px(levels))));
   c.levels = levels;
   DrawFilm(c, draw);
   return c;
