@@ -126,7 +126,9 @@ export async function picture(page, name) {
   const folder = process.env.TOUCHDOWN_PICTURES;
   if (!folder) return;
   mkdirSync(folder, {recursive: true});
-  await page.screenshot({path: join(folder, name + '.png')});
+  // Camera noise makes PNGs large.
+  await page.screenshot({path: join(folder, name + '.jpg'), type: 'jpeg',
+                         quality: 72});
 }
 
 // The frame that is on the screen, once it is `frame`.
