@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -19,6 +22,9 @@
 
 namespace touchdown::cli {
 namespace {
+
+// How often a server that is only just beginning is told to end.
+constexpr std::chrono::milliseconds kStopEvery{20};
 
 struct ReviewFlags {
   std::string db;
@@ -74,12 +80,15 @@ int Run(const ReviewFlags& flags) {
   std::fflush(stdout);
   fmt::print(stderr, "touchdown: the page of {}; Ctrl-C ends it\n", flags.db);
   if (!flags.no_open && HasDesktop()) OpenBrowser(server.address());
+  std::atomic<bool> ended = false;
   std::thread waiter([&] {
     int signal = 0;
     sigwait(&signals, &signal);
-    server.Stop();
+    // A server that has not begun yet forgets that it is to end.
+    for (; !ended; std::this_thread::sleep_for(kStopEvery)) server.Stop();
   });
   server.Run();
+  ended = true;
   // Where the server ended by itself, the waiter is woken.
   pthread_kill(waiter.native_handle(), SIGTERM);
   waiter.join();

@@ -9,6 +9,7 @@
 #include "app/pipeline/judge.h"
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
+#include "app/review/fields.h"
 #include "app/review/trial_view.h"
 #include "touchdown/core/errors.h"
 
@@ -16,25 +17,6 @@ namespace touchdown::review {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string TextOf(const nlohmann::json& asked, const char* field) {
-  const auto found = asked.find(field);
-  return found == asked.end() || !found->is_string()
-             ? std::string()
-             : found->get<std::string>();
-}
-
-// Says no where the field is missing: nobody revises without a name and a
-// reason.
-std::string Required(const nlohmann::json& asked, const char* field,
-                     const char* what) {
-  std::string text = TextOf(asked, field);
-  if (text.find_first_not_of(" \t\n") == std::string::npos) {
-    throw pipeline::FieldError(field,
-                               fmt::format("is missing, must be {}", what));
-  }
-  return text;
-}
 
 pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
   pipeline::Correction correction;
@@ -131,8 +113,8 @@ Json PreviewJson(const core::Trial& seen, const nlohmann::json& asked) {
 
 db::Logged Revise(db::Store& store, const std::string& id,
                   const nlohmann::json& asked) {
-  const std::string who = Required(asked, "who", "your name");
-  const std::string why = Required(asked, "why", "the reason");
+  const std::string who = RequiredText(asked, "who", "your name");
+  const std::string why = RequiredText(asked, "why", "the reason");
   const auto expected = asked.at("revision").get<std::int64_t>();
   const auto history = store.History(id);
   if (history.empty()) {

@@ -40,6 +40,10 @@ std::shared_ptr<const Statistics> Desk::StatisticsNow() {
 
 std::string Desk::ClipOf(const std::string& id) {
   const std::lock_guard lock(clips_guard_);
+  if (std::string stamp = Stamp(); stamp != clips_stamp_) {
+    clips_stamp_ = std::move(stamp);
+    clips_.clear();
+  }
   const auto known = clips_.find(id);
   if (known != clips_.end()) return known->second;
   const auto trial = Open(db::OpenMode::kRead).Find(id);

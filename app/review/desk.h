@@ -49,6 +49,7 @@ class Desk {
   ClipShelf shelf_;
 
   std::mutex clips_guard_;
+  std::string clips_stamp_;
   std::map<std::string, std::string> clips_;
 };
 

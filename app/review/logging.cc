@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,48 +10,13 @@
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/report_input.h"
 #include "app/pipeline/statement.h"
+#include "app/review/fields.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {
 namespace {
 
 using pipeline::FieldError;
-
-std::string TextOf(const nlohmann::json& asked, const char* field) {
-  return asked.value(field, std::string());
-}
-
-std::string Flag(std::string field) {
-  for (char& c : field) c = c == '_' ? '-' : c;
-  return field;
-}
-
-// A number, or text that is one; nothing where it is empty.
-std::optional<double> NumberOf(const nlohmann::json& asked, const char* field) {
-  const auto found = asked.find(field);
-  if (found == asked.end() || found->is_null()) return std::nullopt;
-  if (found->is_number()) return found->get<double>();
-  const auto text = found->get<std::string>();
-  if (text.empty()) return std::nullopt;
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) {
-    throw FieldError(
-        Flag(field),
-        fmt::format("is '{}', must be a number with a decimal point", text));
-  }
-  return value;
-}
-
-std::string Required(const nlohmann::json& asked, const char* field,
-                     const char* what) {
-  std::string text = TextOf(asked, field);
-  if (text.empty()) {
-    throw FieldError(Flag(field), fmt::format("is missing, must be {}", what));
-  }
-  return text;
-}
 
 pipeline::Statement StatementOf(const nlohmann::json& asked) {
   pipeline::Statement out;
@@ -72,18 +35,19 @@ pipeline::Statement StatementOf(const nlohmann::json& asked) {
 db::Logged LogTyped(const std::filesystem::path& store,
                     const nlohmann::json& asked) {
   pipeline::ManualEntry entry;
-  entry.campaign = Required(asked, "campaign", "one of the campaigns");
-  entry.by = Required(asked, "who", "your name");
+  entry.campaign = RequiredText(asked, "campaign", "one of the campaigns");
+  entry.by = RequiredText(asked, "who", "your name");
   entry.statement = StatementOf(asked);
   return pipeline::LogByHand(store, entry);
 }
 
 db::Logged LogRecording(const std::filesystem::path& store,
                         const nlohmann::json& asked) {
-  const std::string name = Required(asked, "campaign", "one of the campaigns");
-  const std::string who = Required(asked, "who", "your name");
+  const std::string name =
+      RequiredText(asked, "campaign", "one of the campaigns");
+  const std::string who = RequiredText(asked, "who", "your name");
   const std::filesystem::path clip =
-      Required(asked, "clip", "the path of a recording on this machine");
+      RequiredText(asked, "clip", "the path of a recording on this machine");
   if (!std::filesystem::exists(clip)) {
     throw FieldError("clip", fmt::format("is '{}', must be a recording that "
                                          "is there",
