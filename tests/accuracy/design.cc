@@ -111,11 +111,16 @@ void DrawTrouble(Case& c, Drawer& draw) {
   const Levels& l = c.levels;
   vision::SceneTrouble& trouble = c.film.trouble;
   switch (l.hardship) {
-    case Hardship::kShaded:
-      trouble.shading_x = draw.Uniform(-0.3, 0.3);
-      trouble.shading_y = draw.Uniform(-0.5, 0.0);
-      trouble.highlight_level = draw.Uniform(0.1, 0.3);
+    case Hardship::kShaded: {
+      // Within the contrast: an end that is as bright as what lies behind it
+      // cannot be seen by anybody.
+      const double contrast = std::abs(l.contrast);
+      const double relative = std::min(contrast / c.film.look.body_level, 1.5);
+      trouble.shading_x = draw.Uniform(-0.3, 0.3) * relative;
+      trouble.shading_y = draw.Uniform(-0.5, 0.0) * relative;
+      trouble.highlight_level = draw.Uniform(0.3, 1.0) * contrast;
       break;
+    }
     case Hardship::kShadow:
       trouble.shadow_depth = draw.Uniform(0.3, 0.8);
       break;
