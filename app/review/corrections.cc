@@ -102,7 +102,7 @@ core::Trial Restated(const std::vector<db::Revision>& history,
 Json PreviewJson(const core::Trial& seen, const nlohmann::json& asked) {
   const Corrected corrected = MakeCorrected(seen, asked);
   Json json = {{"numbers", NumbersJson(corrected.trial)},
-               {"changes", ChangesJson(db::Changes(seen, corrected.trial))}};
+               {"changes", ChangesJson(seen, corrected.trial)}};
   if (corrected.analysis) {
     json["view"] = ViewJson(*corrected.analysis);
   } else {

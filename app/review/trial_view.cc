@@ -1,5 +1,6 @@
 #include "app/review/trial_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -223,11 +224,24 @@ Json NumbersJson(const core::Trial& trial) {
   return out;
 }
 
-Json ChangesJson(const std::vector<db::Change>& changes) {
+Json ChangesJson(const core::Trial& before, const core::Trial& after) {
   Json out = Json::array();
-  for (const auto& change : changes) {
-    out.push_back(
-        {{"field", change.field}, {"from", change.from}, {"to", change.to}});
+  for (const db::Change& change : db::Changes(before, after)) {
+    const auto quantity = std::find_if(
+        db::kContactQuantities.begin(), db::kContactQuantities.end(),
+        [&](const auto& candidate) { return candidate.name == change.field; });
+    if (quantity == db::kContactQuantities.end()) {
+      out.push_back(
+          {{"field", change.field}, {"from", change.from}, {"to", change.to}});
+      continue;
+    }
+    const report::EdgeUnit edge = report::AtTheEdge(quantity->name);
+    const auto text = [&](const core::Trial& trial) {
+      return report::WithUOrReason(db::At(trial.first, *quantity), edge.factor);
+    };
+    out.push_back({{"field", edge.stem + edge.suffix},
+                   {"from", text(before)},
+                   {"to", text(after)}});
   }
   return out;
 }
@@ -236,14 +250,14 @@ Json HistoryJson(const std::vector<db::Revision>& history) {
   Json out = Json::array();
   for (std::size_t i = 0; i < history.size(); ++i) {
     const core::Trial& trial = history[i].trial;
-    out.push_back({{"revision", trial.revision},
-                   {"kind", db::Name(history[i].kind)},
-                   {"who", trial.author},
-                   {"why", trial.reason},
-                   {"when", trial.recorded_at_utc},
-                   {"changes", i == 0 ? Json::array()
-                                      : ChangesJson(db::Changes(
-                                            history[i - 1].trial, trial))}});
+    out.push_back(
+        {{"revision", trial.revision},
+         {"kind", db::Name(history[i].kind)},
+         {"who", trial.author},
+         {"why", trial.reason},
+         {"when", trial.recorded_at_utc},
+         {"changes",
+          i == 0 ? Json::array() : ChangesJson(history[i - 1].trial, trial)}});
   }
   return out;
 }

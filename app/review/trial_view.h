@@ -25,7 +25,9 @@ nlohmann::ordered_json NumbersJson(const core::Trial& trial);
 // Who changed what, when and why; the oldest first.
 nlohmann::ordered_json HistoryJson(const std::vector<db::Revision>& history);
 
-// From what to what, for a person.
-nlohmann::ordered_json ChangesJson(const std::vector<db::Change>& changes);
+// What differs (db::Changes), for a person: degrees and millimetres, rounded to
+// what is known.
+nlohmann::ordered_json ChangesJson(const core::Trial& before,
+                                   const core::Trial& after);
 
 }  // namespace touchdown::review

@@ -93,7 +93,7 @@ export async function sitDown(browser, review, name, size = {width: 1280,
                                                              height: 720}) {
   const context = await browser.newContext({viewport: size});
   const page = await context.newPage();
-  page.setDefaultTimeout(20_000);
+  page.setDefaultTimeout(60_000);
   page.complaints = [];
   page.requested = [];
   page.on('console', message => {

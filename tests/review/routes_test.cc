@@ -105,7 +105,7 @@ TEST_F(Routes, JudgesACorrectionAndStoresNothing) {
   for (const auto& change : preview["changes"]) {
     fields.push_back(change["field"].get<std::string>());
   }
-  EXPECT_THAT(fields, Contains("approach_angle_rad"));
+  EXPECT_THAT(fields, Contains("approach_angle_deg"));
   EXPECT_EQ(lab.Now().revision, 1);
 }
 

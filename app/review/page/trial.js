@@ -48,8 +48,12 @@ function historyList(history, shown, id, restore) {
                   'State this again', onclick: () => restore(h.revision)})
               : null,
           h.changes.length === 0 ? null
-              : element('ul', {}, ...h.changes.map(c => element('li', {text:
-                    `${c.field}: ${c.from} → ${c.to}`}))))));
+              : element('details', {},
+                    element('summary', {text: `what changed: ` +
+                        h.changes.slice(0, 3).map(c => c.field).join(', ') +
+                        (h.changes.length > 3 ? ' …' : '')}),
+                    element('ul', {}, ...h.changes.map(c => element('li', {text:
+                        `${c.field}: ${c.from} → ${c.to}`})))))));
 }
 
 export async function trial(main, id, revision) {
@@ -141,7 +145,7 @@ export async function trial(main, id, revision) {
   const correcting = new Correcting(page);
 
   function zoomToContact() {
-    const at = view.contact?.touching_px ??
+    const at = view.contact?.centre_px ??
         view.poses?.find(p => p[0] === frame)?.slice(1, 3);
     if (!at || !picture) return;
     const body = view.body;
@@ -179,7 +183,8 @@ export async function trial(main, id, revision) {
                   button('all', () => picture.showAll(), 'all of the picture')),
               element('p', {class: 'hint', text:
                   'Keys: ← → one frame, with Shift ten, Home, End, c contact, ' +
-                  'z zoom to it, + − zoom, 0 whole picture, e reason'}),
+                  'z zoom to it, + − zoom, 0 whole picture, t touchdown is ' +
+                  'here, e reason'}),
               element('div', {class: 'plots'}, gaps.node, residuals.node)),
           element('div', {class: 'tell'}, summary,
               warnings.length === 0 ? '' : element('ul', {class: 'warnings'},
