@@ -14,6 +14,9 @@ namespace {
 // Visibly the same as the frame of a compressed recording.
 constexpr int kJpegQuality = 88;
 
+// A person looks so many frames back first.
+constexpr std::int64_t kNear = 20;
+
 // A folder of images tells no frame rate; pictures need none.
 constexpr double kAnyRate_hz = 1.0;
 
@@ -93,6 +96,7 @@ struct ClipShelf::Open {
   vision::ClipInfo info;
   std::uint32_t white = 255;
   bool warmed = false;  // guarded by the shelf
+  std::int64_t warm_from = 0;
   std::atomic<bool> closed = false;
 };
 
@@ -178,6 +182,7 @@ Picture ClipShelf::Frame(const std::filesystem::path& path,
     const std::lock_guard lock(guard_);
     if (!open->warmed) {
       open->warmed = true;
+      open->warm_from = index;
       to_warm_.push_front(open);
       wake_.notify_one();
     }
@@ -204,7 +209,12 @@ void ClipShelf::WarmUp() {
       // A reader of its own: the other one jumps to what is asked for.
       const auto clip = OpenFor(open->path);
       std::size_t made = 0;
-      for (std::int64_t i = 0; i < open->info.frames && !open->closed; ++i) {
+      // First what is near the frame that was asked for, then the rest.
+      const std::int64_t frames = open->info.frames;
+      const std::int64_t first =
+          std::max<std::int64_t>(0, open->warm_from - kNear);
+      for (std::int64_t k = 0; k < frames && !open->closed; ++k) {
+        const std::int64_t i = (first + k) % frames;
         const Key key{open->path.string(), i};
         const core::Frame frame = clip->Read(i);
         if (Find(key)) continue;
