@@ -50,6 +50,14 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
     options.ground =
         calib::GroundThrough({n[0], n[1]}, {n[2], n[3]}, flags.ground_u_px);
   }
+  if (flags.contact_frame) {
+    if (*flags.contact_frame < 0) {
+      throw std::invalid_argument("--contact-frame is " +
+                                  std::to_string(*flags.contact_frame) +
+                                  ", must be a frame, from 0 on");
+    }
+    options.contact_frame = flags.contact_frame;
+  }
   if (!flags.frames.empty()) {
     std::tie(options.first_frame, options.last_frame) =
         ParseFrames("--frames", flags.frames);
@@ -94,6 +102,9 @@ void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
       .add_option("--ground-u-px", flags.ground_u_px,
                   "standard uncertainty of each of these points, px")
       ->capture_default_str();
+  command.add_option("--contact-frame", flags.contact_frame,
+                     "touchdown is between this frame and the next, whatever "
+                     "else looks like a blow");
   command.add_option("--frames", flags.frames,
                      "only frames A up to but not including B, as A:B");
   command.add_option("--region", flags.region,

@@ -2,6 +2,7 @@
 // many.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -23,6 +24,7 @@ struct AnalyzeFlags {
   std::optional<double> fps;
   std::string ground;
   double ground_u_px = 0.5;
+  std::optional<std::int64_t> contact_frame;
   std::string frames;
   std::string region;
   std::string angle_kind;

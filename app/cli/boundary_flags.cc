@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "app/pipeline/version.h"
+#include "app/pipeline/report_input.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -129,15 +129,8 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
 report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   pipeline::SelectionOptions options = MakeSelection(flags);
   options.with_evidence = with_evidence;
-  pipeline::Selection selection = pipeline::SelectTrials(options);
-  report::ReportInput input;
-  input.trials = std::move(selection.trials);
-  input.campaigns = std::move(selection.campaigns);
-  for (const pipeline::TwoLabels& pair : selection.labels) {
-    input.labels.push_back({pair.trial, pair.by_program, pair.by_person});
-  }
-  input.source = std::move(selection.source);
-  input.software_version = std::string(pipeline::Version());
+  report::ReportInput input =
+      pipeline::InputOf(pipeline::SelectTrials(options));
   input.study = MakeStudy(flags);
   // A file of bare angles is compared with the published boundary of the body
   // that it is said to be of.

@@ -23,6 +23,7 @@ void AddCalibrate(CLI::App& app, Action& action);
 void AddNext(CLI::App& app, Action& action);
 void AddRegister(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
+void AddReview(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddSession(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);

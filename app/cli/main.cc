@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   touchdown::cli::AddBoundary(app, action);
   touchdown::cli::AddNext(app, action);
   touchdown::cli::AddReport(app, action);
+  touchdown::cli::AddReview(app, action);
   touchdown::cli::AddList(app, action);
   touchdown::cli::AddShow(app, action);
   touchdown::cli::AddLog(app, action);

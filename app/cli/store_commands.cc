@@ -10,7 +10,9 @@
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/statement.h"
 #include "app/report/trial_json.h"
+#include "app/report/trial_list.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
@@ -55,7 +57,7 @@ db::TrialFilter FilterOf(const ListFlags& flags, bool campaign_given) {
   }
   if (!flags.state.empty()) {
     filter.state = ParseWord<core::MotionState>(
-        "--state", flags.state, core::ParseMotionState, kStateWords);
+        "--state", flags.state, core::ParseMotionState, pipeline::kStateWords);
   }
   if (!flags.from.empty()) filter.from_utc = flags.from;
   if (!flags.until.empty()) filter.until_utc = flags.until;
@@ -65,50 +67,9 @@ db::TrialFilter FilterOf(const ListFlags& flags, bool campaign_given) {
   return filter;
 }
 
-Json EdgeJson(const core::Measured& measured, double unit) {
-  if (!measured) return nullptr;
-  Json json = {{"value", measured->value / unit}, {"u", measured->u / unit}};
-  if (measured->interval95) {
-    json["interval95"] = {measured->interval95->low / unit,
-                          measured->interval95->high / unit};
-  }
-  return json;
-}
-
-Json OptionalJson(const std::optional<double>& value, double unit) {
-  return value ? Json(*value / unit) : Json(nullptr);
-}
-
 std::string ListJson(const std::vector<core::Trial>& trials) {
   Json list = Json::array();
-  for (const auto& trial : trials) {
-    const auto& contact = trial.first.contact;
-    const auto& state = trial.first.state;
-    list.push_back(
-        {{"id", trial.id},
-         {"revision", trial.revision},
-         {"campaign", trial.campaign},
-         {"origin", core::Name(trial.origin)},
-         {"body",
-          {{"kind", core::Name(trial.body.kind)},
-           {"diameter_mm", EdgeJson(trial.body.diameter_m, kMillimetre)},
-           {"long_mm", EdgeJson(trial.body.long_m, kMillimetre)},
-           {"short_mm", EdgeJson(trial.body.short_m, kMillimetre)}}},
-         {"angle_kind", core::Name(trial.angle_kind)},
-         {"angle_deg", EdgeJson(core::ContactAngle(trial), kDegree)},
-         {"approach_angle_deg", EdgeJson(contact.approach_angle_rad, kDegree)},
-         {"set_angle_deg", OptionalJson(trial.set_angle_rad, kDegree)},
-         {"set_speed_mps", OptionalJson(trial.set_speed_mps, 1.0)},
-         {"state", core::Name(state.label)},
-         {"p_bounce", OptionalJson(state.p_bounce, 1.0)},
-         {"max_gap_mm", EdgeJson(state.max_gap_m, kMillimetre)},
-         {"micro_bounce", state.micro_bounce},
-         {"excluded", trial.excluded},
-         {"exclusion_reason", trial.exclusion_reason},
-         {"clip", {{"path", trial.clip.path}, {"id", trial.clip.id}}},
-         {"author", trial.author},
-         {"recorded_at_utc", trial.recorded_at_utc}});
-  }
+  for (const auto& trial : trials) list.push_back(report::TrialRowJson(trial));
   const Json json = {{"schema", "touchdown.list/1"},
                      {"trials", std::move(list)}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -300,7 +261,7 @@ void AddList(CLI::App& app, Action& action) {
   command->add_option("--origin", flags->origin,
                       "recorded, simulated or manual");
   command->add_option("--body", flags->body, "sphere or rectangle");
-  command->add_option("--state", flags->state, kStateWords);
+  command->add_option("--state", flags->state, pipeline::kStateWords);
   command->add_option("--from", flags->from,
                       "first logged at or after, UTC, e.g. 2026-08-01");
   command->add_option("--until", flags->until, "first logged before, UTC");

@@ -30,9 +30,6 @@ T ParseWord(const std::string& flag, const std::string& text,
   throw std::invalid_argument(flag + " is '" + text + "', must be " + words);
 }
 
-inline constexpr const char* kStateWords =
-    "bounce, slide, roll-slide, roll, stick, stays-down or undecided";
-
 // --body sphere --diameter-mm D, --body rectangle --sides-mm AxB; sizes may
 // bear their standard uncertainty: "40+-0.02", "60+-0.02x20+-0.02".
 struct BodyFlags {

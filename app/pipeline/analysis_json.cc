@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/pipeline/analyze.h"
+#include "app/pipeline/replay.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/units.h"
 
@@ -301,6 +302,10 @@ std::string ToJson(const Analysis& analysis) {
                       {"digest", 0.0},
                       {"frames_per_s", analysis.timing.frames_per_s}};
   json["absent"] = writer.TakeAbsent();
+  if (!analysis.corrections.empty()) {
+    json["corrections"] = analysis.corrections;
+  }
+  json["replay"] = ReplayJson(analysis);
   json["software"] = {{"version", std::string(Version())},
                       {"options_hash", analysis.options_hash}};
   // A path may hold bytes that are no UTF-8: they are replaced.

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "app/pipeline/clip_calibration.h"
-#include "app/pipeline/lens_uncertainty.h"
+#include "app/pipeline/judge.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/truth_file.h"
 #include "app/pipeline/version.h"
@@ -16,7 +16,6 @@
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/clip_digest.h"
 #include "touchdown/vision/frame_store.h"
-#include "touchdown/vision/lens_track.h"
 #include "touchdown/vision/steady_light.h"
 #include "touchdown/vision/tracker.h"
 
@@ -142,8 +141,9 @@ class Analyzer {
   Analysis Run();
 
  private:
-  vision::Track Seen(const vision::Track& track) const;
-  void AddLens();
+  vision::Track Seen(const vision::Track& track) const {
+    return SeenThrough(camera_, track);
+  }
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   void FindGroundAndContacts(const vision::Track& track);
   void DescribeScene();
@@ -157,31 +157,6 @@ class Analyzer {
   std::optional<core::Estimate> aspect_;  // short over long side, measured
   ClipCalibration camera_;
 };
-
-vision::Track Analyzer::Seen(const vision::Track& track) const {
-  return camera_.lens ? vision::Undistorted(track, *camera_.lens) : track;
-}
-
-void Analyzer::AddLens() {
-  if (!camera_.lens || !result_.plane ||
-      !result_.contacts.first.contact.found) {
-    return;
-  }
-  // The ground was seen in the image, too: at two points, or all along.
-  const calib::GroundLine& ideal = result_.plane->ground;
-  const auto seen =
-      SeenPoints(ideal, *camera_.lens, camera_.ideal_ground ? 2 : 33);
-  AddLensUncertainty(
-      result_.contacts, *camera_.lens, result_.calibration->lens->covariance,
-      [&](const calib::Lens& lens) {
-        const auto ground = ThroughPoints(seen, lens, ideal);
-        if (!ground) return vision::ContactResult{};
-        return vision::FindContacts(
-            vision::SeenFromGround(vision::Undistorted(*result_.track, lens),
-                                   *ground),
-            contact_options_);
-      });
-}
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
@@ -319,6 +294,8 @@ Analysis Analyzer::Run() {
   const std::optional<core::BodyKind> kind = KindOf(options_);
 
   result_.options_hash = OptionsHash(options_);
+  result_.options = options_;
+  result_.options.progress = nullptr;
   result_.clip = clip_->info();
   result_.warnings = result_.clip.warnings;
   const std::int64_t frames = result_.clip.frames;
@@ -348,7 +325,6 @@ Analysis Analyzer::Run() {
 
   camera_ = FitToClip(options_, result_.clip);
   result_.calibration = camera_.calibration;
-  contact_options_.gravity_mps2 = camera_.gravity_mps2;
   result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
                           camera_.warnings.end());
   auto lap = Clock::now();
@@ -386,10 +362,9 @@ Analysis Analyzer::Run() {
                 "--sides-mm";
     }
     result_.body = BodyOf(options_, seen.body, result_.scale);
-    contact_options_.scale = result_.scale;
-    contact_options_.bounce_height_m = options_.bounce_height_m;
+    contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
     FindGroundAndContacts(track);
-    AddLens();
+    AddLens(result_, camera_, contact_options_);
     result_.warnings.insert(result_.warnings.end(), seen.warnings.begin(),
                             seen.warnings.end());
     result_.warnings.insert(result_.warnings.end(),

@@ -30,6 +30,8 @@ struct AnalyzeOptions {
   std::optional<core::Estimate> long_m;        // both make it rectangle
   std::optional<core::Estimate> short_m;       //
   std::optional<calib::GroundLine> ground;     // nothing: found
+  std::optional<std::int64_t> contact_frame;   // nothing: found; else touchdown
+                                               // is between it and the next
   std::int64_t first_frame = 0;                // [first, last) is looked at
   std::int64_t last_frame = -1;                // -1: to the end
   core::PixelRect region;                      // width 0: whole picture
@@ -83,7 +85,9 @@ struct Analysis {
   SceneModel scene_model;
   std::vector<std::string> warnings;
   Timing timing;
+  AnalyzeOptions options;  // that it was made with
   std::string options_hash;
+  std::vector<std::string> corrections;  // by a person, one sentence each
 };
 
 // Analyses the clip at `path`. Where a colour recording shows nothing, or

@@ -11,9 +11,9 @@
 #include "app/pipeline/evidence.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/pictures.h"
+#include "app/pipeline/report_input.h"
 #include "app/pipeline/simulate.h"
 #include "app/pipeline/trial_selection.h"
-#include "app/pipeline/version.h"
 #include "app/report/evidence_page.h"
 #include "app/report/report.h"
 #include "touchdown/core/campaign.h"
@@ -166,12 +166,8 @@ DemoResult RunDemo(const DemoOptions& options) {
 
   SelectionOptions select;
   select.store = result.store;
-  const Selection selection = SelectTrials(select);
-  report::ReportInput input;
-  input.trials = selection.trials;
-  input.campaigns = selection.campaigns;
+  report::ReportInput input = InputOf(SelectTrials(select));
   input.source = "the demo's store (rendered clips)";
-  input.software_version = std::string(Version());
   input.evidence_pages = true;
   input.pictures = FindPictures(options.folder / "evidence", input.trials);
   report::WriteReport(report::MakeReport(input), options.folder / "report");

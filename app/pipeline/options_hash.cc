@@ -31,6 +31,7 @@ std::string OptionsHash(const AnalyzeOptions& o) {
                     o.ground->p1.y_px, o.ground->p2.x_px, o.ground->p2.y_px,
                     o.ground->u_offset_px, o.ground->u_angle_rad);
   }
+  if (o.contact_frame) text += fmt::format("contact={};", *o.contact_frame);
   if (o.calibration) text += calib::CalibrationText(*o.calibration);
   if (o.crop) text += fmt::format("crop={},{}", o.crop->x_px, o.crop->y_px);
   std::uint64_t hash = 14695981039346656037ull;

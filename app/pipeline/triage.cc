@@ -107,14 +107,13 @@ TriageEntry TriageOf(const std::string& clip, Done done,
   return entry;
 }
 
+bool NeedsMore(const TriageEntry& a, const TriageEntry& b) {
+  if (a.attention != b.attention) return a.attention < b.attention;
+  return a.urgency > b.urgency;
+}
+
 void SortByNeed(std::vector<TriageEntry>& entries) {
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const TriageEntry& a, const TriageEntry& b) {
-                     if (a.attention != b.attention) {
-                       return a.attention < b.attention;
-                     }
-                     return a.urgency > b.urgency;
-                   });
+  std::stable_sort(entries.begin(), entries.end(), NeedsMore);
 }
 
 TriageCounts Count(std::span<const TriageEntry> entries) {

@@ -56,6 +56,9 @@ struct TriageEntry {
 TriageEntry TriageOf(const std::string& clip, Done done,
                      const core::Trial& trial);
 
+// Whether a person should look at `a` before `b`.
+bool NeedsMore(const TriageEntry& a, const TriageEntry& b);
+
 // The most pressing first; what presses alike stays in the order given.
 void SortByNeed(std::vector<TriageEntry>& entries);
 

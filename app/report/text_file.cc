@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 
 #include "touchdown/core/errors.h"
 
@@ -29,6 +31,12 @@ void WriteTextFile(const std::filesystem::path& path, std::string_view text) {
   std::error_code trouble;
   std::filesystem::rename(part, path, trouble);
   if (trouble) fail(trouble.value());
+}
+
+std::optional<std::string> ReadTextFile(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace touchdown::report

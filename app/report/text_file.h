@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace touchdown::report {
@@ -10,5 +12,8 @@ namespace touchdown::report {
 // if it cannot be written (no such folder, no right, disk full); nothing is
 // left.
 void WriteTextFile(const std::filesystem::path& path, std::string_view text);
+
+// The whole of a file; nothing where there is none that can be read.
+std::optional<std::string> ReadTextFile(const std::filesystem::path& path);
 
 }  // namespace touchdown::report

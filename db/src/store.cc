@@ -124,7 +124,7 @@ struct Store::Impl {
   // Within a write transaction.
   Logged Log(const core::Trial& trial);
   Logged Mark(std::string_view id, std::string_view who, std::string_view why,
-              bool excluded);
+              bool excluded, std::optional<std::int64_t> seen);
 
   Connection connection;
   Sources sources;
@@ -240,6 +240,20 @@ std::vector<Logged> Store::LogTrials(std::span<const core::Trial> trials) {
   return logged;
 }
 
+namespace {
+
+// `seen` is the revision that a person looked at.
+void RequireLast(const std::filesystem::path& path, std::string_view id,
+                 std::int64_t last, std::int64_t seen) {
+  if (last == seen) return;
+  throw StoreError(fmt::format(
+      "{}: trial {} was revised meanwhile (revision {}, not {}); look at it "
+      "again and repeat",
+      path.string(), id, last, seen));
+}
+
+}  // namespace
+
 Logged Store::Correct(const core::Trial& seen, std::string_view who,
                       std::string_view why) {
   RequireStated(who, why);
@@ -256,12 +270,7 @@ Logged Store::Correct(const core::Trial& seen, std::string_view who,
         fmt::format("{}: there is no trial {}; see `touchdown list`",
                     path().string(), trial.id));
   }
-  if (head->number != seen.revision) {
-    throw StoreError(fmt::format(
-        "{}: trial {} was revised meanwhile (revision {}, not {}); look at it "
-        "again and repeat",
-        path().string(), trial.id, head->number, seen.revision));
-  }
+  RequireLast(path(), trial.id, head->number, seen.revision);
   // The campaign's kinds bind a correction too.
   CampaignOf(connection, trial);
   NewRevision revision;
@@ -276,7 +285,8 @@ Logged Store::Correct(const core::Trial& seen, std::string_view who,
 }
 
 Logged Store::Impl::Mark(std::string_view id, std::string_view who,
-                         std::string_view why, bool excluded) {
+                         std::string_view why, bool excluded,
+                         std::optional<std::int64_t> seen) {
   RequireStated(who, why);
   Transaction transaction(connection, Transaction::Kind::kWrite);
   const auto row = FindTrial(connection, id);
@@ -286,6 +296,7 @@ Logged Store::Impl::Mark(std::string_view id, std::string_view who,
         fmt::format("{}: there is no trial {}; see `touchdown list`",
                     connection.path().string(), id));
   }
+  if (seen) RequireLast(connection.path(), id, head->number, *seen);
   if (head->exclusion_id.has_value() == excluded) {
     throw std::invalid_argument(fmt::format(
         "trial {} is {} already", id, excluded ? "excluded" : "included"));
@@ -308,13 +319,13 @@ Logged Store::Impl::Mark(std::string_view id, std::string_view who,
 }
 
 Logged Store::Exclude(std::string_view id, std::string_view who,
-                      std::string_view why) {
-  return impl_->Mark(id, who, why, true);
+                      std::string_view why, std::optional<std::int64_t> seen) {
+  return impl_->Mark(id, who, why, true, seen);
 }
 
 Logged Store::Include(std::string_view id, std::string_view who,
-                      std::string_view why) {
-  return impl_->Mark(id, who, why, false);
+                      std::string_view why, std::optional<std::int64_t> seen) {
+  return impl_->Mark(id, who, why, false, seen);
 }
 
 std::vector<core::Trial> Store::Trials(const TrialFilter& filter) const {

@@ -212,6 +212,23 @@ double TakeOutSlope(PlaneTrack& track) {
   return slope;
 }
 
+// The blows, where a person says which is the first: at the last sample up to
+// `frame`. What was found up to the sample after it is that one, or is none.
+void BeginWith(std::int64_t frame, std::span<const PlaneSample> samples,
+               Blows& blows) {
+  const auto next = std::find_if(
+      samples.begin(), samples.end(),
+      [&](const PlaneSample& sample) { return sample.frame > frame; });
+  if (next == samples.begin() || next == samples.end()) return;
+  Kink first;
+  first.after = static_cast<std::size_t>(next - samples.begin()) - 1;
+  first.time_s = samples[first.after].time_s;
+  std::erase_if(blows.kinks, [&](const Kink& kink) {
+    return kink.after <= first.after + 1;
+  });
+  blows.kinks.insert(blows.kinks.begin(), first);
+}
+
 core::ContactRecord NoContact(const std::string& reason) {
   core::ContactRecord record;
   record.contact.reason = reason;
@@ -298,9 +315,11 @@ ContactResult FindContacts(const PlaneTrack& given,
     kink_options.gravity_px_per_s2 = context.flight.gravity_px_per_s2->value;
   }
   Blows blows = FindBlows(track, kink_options);
+  if (options.contact_frame) BeginWith(*options.contact_frame, samples, blows);
   for (const Kink& kink : blows.kinks) context.breaks.push_back(kink.after + 1);
 
-  const bool from_start = OnGroundFromStart(track, blows.kinks, context.flight);
+  const bool from_start = !options.contact_frame &&
+                          OnGroundFromStart(track, blows.kinks, context.flight);
   result.ground_refuted = blows.refuted;
   if (from_start) {
     const double slope = TakeOutSlope(track);

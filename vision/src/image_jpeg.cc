@@ -13,6 +13,7 @@
 #include "image_codecs.h"
 #include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/vision/encode_image.h"
 
 namespace touchdown::vision {
 namespace {
@@ -125,8 +126,7 @@ void DecodeJpeg(FileBytes file, const std::string& name, Image& image) {
   }
 }
 
-void WriteJpeg(const std::filesystem::path& path, const core::Frame& frame,
-               int quality) {
+std::string EncodeJpeg(const core::Frame& frame, int quality) {
   if (frame.bit_depth > 8) {
     throw std::invalid_argument(fmt::format(
         "bit_depth is {}, must be within 1 .. 8 for JPEG", frame.bit_depth));
@@ -135,7 +135,6 @@ void WriteJpeg(const std::filesystem::path& path, const core::Frame& frame,
     throw std::invalid_argument(
         fmt::format("quality is {}, must be within 1 .. 100", quality));
   }
-  OutputFile file(path);
   jpeg_compress_struct jpeg{};
   Trouble trouble;
   jpeg.err = Prepare(&trouble);
@@ -150,9 +149,16 @@ void WriteJpeg(const std::filesystem::path& path, const core::Frame& frame,
   } guard{&jpeg};
   if (!WriteRows(&jpeg, &trouble, frame, quality, &guard.memory, &guard.size)) {
     throw core::InputError(
-        fmt::format("{}: cannot be written: {}", path.string(), trouble.text));
+        fmt::format("a picture cannot be written as JPEG: {}", trouble.text));
   }
-  file.Write({reinterpret_cast<const std::byte*>(guard.memory), guard.size});
+  return {reinterpret_cast<const char*>(guard.memory), guard.size};
+}
+
+void WriteJpeg(const std::filesystem::path& path, const core::Frame& frame,
+               int quality) {
+  OutputFile file(path);
+  const std::string bytes = EncodeJpeg(frame, quality);
+  file.Write(std::as_bytes(std::span(bytes)));
   file.Commit();
 }
 

@@ -2,15 +2,18 @@
 // setjmp hold nothing with a destructor.
 #include <fmt/format.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 
 #include "image_codecs.h"
 #include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/vision/encode_image.h"
 
 namespace touchdown::vision {
 namespace {
@@ -98,8 +101,10 @@ void ToLuma(const std::vector<std::uint8_t>& rgb, Image& image) {
   }
 }
 
+using Sink = std::function<void(std::span<const std::byte>)>;
+
 struct Writer {
-  OutputFile* file;
+  const Sink* sink;
   std::string* trouble;
 };
 
@@ -107,7 +112,7 @@ void OnWrite(png_structp png, png_bytep bytes, std::size_t count) {
   auto* const writer = static_cast<Writer*>(png_get_io_ptr(png));
   bool failed = false;
   try {
-    writer->file->Write({reinterpret_cast<const std::byte*>(bytes), count});
+    (*writer->sink)({reinterpret_cast<const std::byte*>(bytes), count});
   } catch (const core::InputError& error) {
     // No exception may pass through libpng.
     *writer->trouble = error.what();
@@ -137,6 +142,12 @@ bool WriteRows(png_structp png, png_infop png_info, const Rows& rows) {
                PNG_FILTER_TYPE_BASE);
   // Camera noise hardly compresses: the fastest level is as good as any.
   png_set_compression_level(png, 1);
+  if (!rows.rgb && !wide) {
+    // Nor does it repeat: without filters and searching, a frame of 1280 x 800
+    // with noise of 3.5 levels takes 8.4 ms instead of 20, and a fifth less.
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    png_set_compression_strategy(png, Z_RLE);
+  }
   png_color_8 significant{};
   significant.gray = static_cast<png_byte>(rows.bit_depth);
   const bool scaled = wide && rows.bit_depth < 16;
@@ -151,11 +162,11 @@ bool WriteRows(png_structp png, png_infop png_info, const Rows& rows) {
   return true;
 }
 
-void Write(const std::filesystem::path& path, const Rows& rows) {
-  OutputFile file(path);
+// `name` stands for the file in messages.
+void Encode(const Rows& rows, const std::string& name, const Sink& sink) {
   Message message;
   std::string trouble;
-  Writer writer{&file, &trouble};
+  Writer writer{&sink, &trouble};
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message,
                                             OnError, OnWarning);
   if (png == nullptr) throw std::bad_alloc();
@@ -164,12 +175,27 @@ void Write(const std::filesystem::path& path, const Rows& rows) {
   const bool done = png_info != nullptr && WriteRows(png, png_info, rows);
   png_destroy_write_struct(&png, &png_info);
   if (!done) {
-    throw core::InputError(trouble.empty()
-                               ? fmt::format("{}: cannot be written: {}",
-                                             path.string(), message.text)
-                               : trouble);
+    throw core::InputError(
+        trouble.empty()
+            ? fmt::format("{}: cannot be written: {}", name, message.text)
+            : trouble);
   }
+}
+
+void Write(const std::filesystem::path& path, const Rows& rows) {
+  OutputFile file(path);
+  Encode(rows, path.string(),
+         [&](std::span<const std::byte> bytes) { file.Write(bytes); });
   file.Commit();
+}
+
+Rows RowsOf(const core::Frame& frame) {
+  return {reinterpret_cast<const std::uint8_t*>(frame.data),
+          frame.stride_bytes,
+          frame.width_px,
+          frame.height_px,
+          frame.bit_depth,
+          false};
 }
 
 }  // namespace
@@ -226,9 +252,15 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
 }
 
 void WritePng(const std::filesystem::path& path, const core::Frame& frame) {
-  Write(path,
-        {reinterpret_cast<const std::uint8_t*>(frame.data), frame.stride_bytes,
-         frame.width_px, frame.height_px, frame.bit_depth, false});
+  Write(path, RowsOf(frame));
+}
+
+std::string EncodePng(const core::Frame& frame) {
+  std::string file;
+  Encode(RowsOf(frame), "a picture", [&](std::span<const std::byte> bytes) {
+    file.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  });
+  return file;
 }
 
 void WritePngRgb(const std::filesystem::path& path, std::int32_t width_px,

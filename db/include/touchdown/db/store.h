@@ -84,11 +84,14 @@ class Store {
   // what.
   Logged Correct(const core::Trial& seen, std::string_view who,
                  std::string_view why);
-  // Takes a trial out of, or back into, what counts. Nothing is removed.
+  // Takes a trial out of, or back into, what counts. Nothing is removed. With
+  // `seen`, the revision that the person looked at, like Correct.
   Logged Exclude(std::string_view id, std::string_view who,
-                 std::string_view why);
+                 std::string_view why,
+                 std::optional<std::int64_t> seen = std::nullopt);
   Logged Include(std::string_view id, std::string_view who,
-                 std::string_view why);
+                 std::string_view why,
+                 std::optional<std::int64_t> seen = std::nullopt);
 
   // The current revision of each trial, in the order in which they were logged.
   std::vector<core::Trial> Trials(const TrialFilter& filter = {}) const;

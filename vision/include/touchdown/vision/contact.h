@@ -37,6 +37,11 @@ struct ContactOptions {
   // body's size.
   std::optional<double> bounce_height_m;
 
+  // A person says so: touchdown lies between this frame and the next that shows
+  // the body, whatever else looks like a blow before or beside it. Its instant
+  // is still where the flight meets the ground.
+  std::optional<std::int64_t> contact_frame;
+
   // Frames that leave the prediction of a flight by more than this many
   // standard deviations, two in a row, are no longer of it. 4: one false stop
   // in 1e8.

@@ -1,0 +1,116 @@
+// touchdown review: the local page on which a person looks at trials.
+#include <fmt/core.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "app/cli/command.h"
+#include "app/cli/store_flags.h"
+#include "app/review/server.h"
+
+namespace touchdown::cli {
+namespace {
+
+// How often a server that is only just beginning is told to end.
+constexpr std::chrono::milliseconds kStopEvery{20};
+
+struct ReviewFlags {
+  std::string db;
+  int port = 0;
+  bool no_open = false;
+  std::string reports;
+};
+
+// Shows the page in the user's browser where there is a desktop. Whether that
+// works is the desktop's business: the address has been printed.
+void OpenBrowser(const std::string& address) {
+  const pid_t child = fork();
+  if (child != 0) {
+    if (child > 0) waitpid(child, nullptr, 0);
+    return;
+  }
+  // A grandchild, so that nobody waits for the browser.
+  if (fork() != 0) _exit(0);
+  // Its words are not ours.
+  if (std::freopen("/dev/null", "w", stdout) == nullptr ||
+      std::freopen("/dev/null", "w", stderr) == nullptr) {
+    _exit(127);
+  }
+  execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
+  _exit(127);
+}
+
+bool HasDesktop() {
+  return std::getenv("DISPLAY") != nullptr ||
+         std::getenv("WAYLAND_DISPLAY") != nullptr;
+}
+
+int Run(const ReviewFlags& flags) {
+  if (flags.port < 0 || flags.port > 65535) {
+    throw std::invalid_argument(
+        fmt::format("--port is {}, must be in 0 .. 65535", flags.port));
+  }
+  review::ServerOptions options;
+  options.store = flags.db;
+  options.port = flags.port;
+  options.reports =
+      flags.reports.empty()
+          ? std::filesystem::absolute(flags.db).parent_path() / "report"
+          : std::filesystem::path(flags.reports);
+  // The server's threads leave these signals to the one that waits for them.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  review::Server server(options);
+  fmt::print("{}\n", server.address());
+  std::fflush(stdout);
+  fmt::print(stderr, "touchdown: the page of {}; Ctrl-C ends it\n", flags.db);
+  if (!flags.no_open && HasDesktop()) OpenBrowser(server.address());
+  std::atomic<bool> ended = false;
+  std::thread waiter([&] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    // A server that has not begun yet forgets that it is to end.
+    for (; !ended; std::this_thread::sleep_for(kStopEvery)) server.Stop();
+  });
+  server.Run();
+  ended = true;
+  // Where the server ended by itself, the waiter is woken.
+  pthread_kill(waiter.native_handle(), SIGTERM);
+  waiter.join();
+  return 0;
+}
+
+}  // namespace
+
+void AddReview(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<ReviewFlags>();
+  CLI::App* command = app.add_subcommand(
+      "review", "a local web page: look at trials, correct, log, report");
+  AddDbFlag(*command, flags->db);
+  command->add_option("--port", flags->port,
+                      "of 127.0.0.1 (default: any that is free)");
+  command->add_flag("--no-open", flags->no_open,
+                    "do not show the page in a browser");
+  command->add_option("--reports", flags->reports,
+                      "folder for reports built on the page (default: "
+                      "`report` beside the store)");
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,50 @@
+// The half of an analysis that reads no pixel: from a track and a ground line
+// to contacts. A track that was stored, or corrected by a person, is judged by
+// the same code as one that was just measured.
+#pragma once
+
+#include "app/pipeline/analyze.h"
+#include "app/pipeline/clip_calibration.h"
+#include "touchdown/vision/contact.h"
+#include "touchdown/vision/track.h"
+
+namespace touchdown::pipeline {
+
+// The track in the lens's ideal picture; itself without a lens.
+vision::Track SeenThrough(const ClipCalibration& camera,
+                          const vision::Track& track);
+
+// How contacts are found with these options and this scale.
+vision::ContactOptions ContactOptionsOf(
+    const AnalyzeOptions& options, const ClipCalibration& camera,
+    const std::optional<calib::Scale>& scale);
+
+// Adds what the lens's own uncertainty does to the contacts of `analysis`, of
+// which track, plane and contacts are there.
+void AddLens(Analysis& analysis, const ClipCalibration& camera,
+             const vision::ContactOptions& contact_options);
+
+// What a person changes in an analysis; what is not named stays.
+struct Correction {
+  std::optional<calib::GroundLine> ground;  // in the image as recorded
+  // The body touches down between this frame and the next.
+  std::optional<std::int64_t> contact_frame;
+  // Outlines moved by hand, in the image, px.
+  std::map<std::int64_t, core::PixelPoint> moved;
+  std::vector<std::int64_t> left_out;  // frames whose outline is wrong
+
+  bool empty() const {
+    return !ground && !contact_frame && moved.empty() && left_out.empty();
+  }
+};
+
+// How well a person places an outline or a line, px: a careful mouse click.
+inline constexpr double kByHand_px = 0.5;
+
+// `analysis` (as replay.h gives it) judged again with what the person changed.
+// Its document says what that was. Throws std::invalid_argument naming the
+// field where the correction is of frames that are not in the track, or leaves
+// fewer than five of them.
+Analysis Rejudge(Analysis analysis, const Correction& correction);
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,313 @@
+#include "app/pipeline/replay.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/pipeline/judge.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kColumns =
+    "frame time_s x_px y_px u_x_px u_y_px correlation angle_rad u_angle_rad "
+    "relative_size misfit";
+
+// --- values that may be absent ----------------------------------------------
+
+Json EstimateJson(const core::Estimate& e) {
+  Json json = {{"value", e.value}, {"u", e.u}};
+  if (e.interval95)
+    json["interval95"] = {e.interval95->low, e.interval95->high};
+  return json;
+}
+
+core::Estimate EstimateOf(const Json& json) {
+  core::Estimate e{json.at("value"), json.at("u"), std::nullopt};
+  if (json.contains("interval95")) {
+    e.interval95 =
+        core::Interval{json["interval95"].at(0), json["interval95"].at(1)};
+  }
+  return e;
+}
+
+void Put(Json& json, const char* name, const std::optional<double>& value) {
+  if (value) json[name] = *value;
+}
+void Put(Json& json, const char* name,
+         const std::optional<core::Estimate>& value) {
+  if (value) json[name] = EstimateJson(*value);
+}
+
+std::optional<core::Estimate> OptionalEstimate(const Json& json,
+                                               const char* name) {
+  if (!json.contains(name)) return std::nullopt;
+  return EstimateOf(json.at(name));
+}
+template <class T>
+std::optional<T> Optional(const Json& json, const char* name) {
+  if (!json.contains(name) || json.at(name).is_null()) return std::nullopt;
+  return json.at(name).get<T>();
+}
+
+// --- ground, options ---------------------------------------------------------
+
+Json GroundJson(const calib::GroundLine& g) {
+  return {{"p1_px", {g.p1.x_px, g.p1.y_px}},
+          {"p2_px", {g.p2.x_px, g.p2.y_px}},
+          {"reference_px", {g.reference.x_px, g.reference.y_px}},
+          {"u_offset_px", g.u_offset_px},
+          {"u_angle_rad", g.u_angle_rad},
+          {"source", calib::Name(g.source)}};
+}
+
+core::PixelPoint PointOf(const Json& json) { return {json.at(0), json.at(1)}; }
+
+// `name` is what Name() gives for one of `values`.
+template <class T, std::size_t N>
+T Named(const std::string& name, const T (&values)[N]) {
+  for (const T value : values) {
+    if (Name(value) == name) return value;
+  }
+  return values[0];
+}
+
+calib::GroundLine GroundOf(const Json& json) {
+  using enum calib::GroundSource;
+  calib::GroundLine g;
+  g.p1 = PointOf(json.at("p1_px"));
+  g.p2 = PointOf(json.at("p2_px"));
+  g.reference = PointOf(json.at("reference_px"));
+  g.u_offset_px = json.at("u_offset_px");
+  g.u_angle_rad = json.at("u_angle_rad");
+  g.source = Named(json.at("source").get<std::string>(),
+                   {kUser, kCalibration, kDetected, kContactPoints});
+  return g;
+}
+
+Json OptionsJson(const AnalyzeOptions& o) {
+  Json json = Json::object();
+  Put(json, "fps", o.fps);
+  Put(json, "scale_px_per_m", o.scale_px_per_m);
+  if (o.body_kind) json["body_kind"] = core::Name(*o.body_kind);
+  Put(json, "diameter_m", o.diameter_m);
+  Put(json, "long_m", o.long_m);
+  Put(json, "short_m", o.short_m);
+  if (o.ground) json["ground"] = GroundJson(*o.ground);
+  if (o.contact_frame) json["contact_frame"] = *o.contact_frame;
+  json["frames"] = {o.first_frame, o.last_frame};
+  json["region"] = {o.region.x, o.region.y, o.region.width, o.region.height};
+  if (o.angle_kind) json["angle_kind"] = core::Name(*o.angle_kind);
+  Put(json, "bounce_height_m", o.bounce_height_m);
+  if (o.calibration) {
+    json["calibration"] = Json::parse(calib::CalibrationText(*o.calibration));
+  }
+  if (o.crop) json["crop"] = {o.crop->x_px, o.crop->y_px};
+  return json;
+}
+
+AnalyzeOptions OptionsOf(const Json& json) {
+  AnalyzeOptions o;
+  o.fps = Optional<double>(json, "fps");
+  o.scale_px_per_m = OptionalEstimate(json, "scale_px_per_m");
+  if (json.contains("body_kind")) {
+    o.body_kind = core::ParseBodyKind(json["body_kind"].get<std::string>());
+  }
+  o.diameter_m = OptionalEstimate(json, "diameter_m");
+  o.long_m = OptionalEstimate(json, "long_m");
+  o.short_m = OptionalEstimate(json, "short_m");
+  if (json.contains("ground")) o.ground = GroundOf(json["ground"]);
+  o.contact_frame = Optional<std::int64_t>(json, "contact_frame");
+  o.first_frame = json.at("frames").at(0);
+  o.last_frame = json.at("frames").at(1);
+  const Json& r = json.at("region");
+  o.region = {r.at(0), r.at(1), r.at(2), r.at(3)};
+  if (json.contains("angle_kind")) {
+    o.angle_kind = core::ParseAngleKind(json["angle_kind"].get<std::string>());
+  }
+  o.bounce_height_m = Optional<double>(json, "bounce_height_m");
+  if (json.contains("calibration")) {
+    o.calibration = calib::ParseCalibration(json["calibration"].dump(),
+                                            "the calibration of the analysis");
+  }
+  if (json.contains("crop")) {
+    o.crop = calib::SensorCorner{json["crop"].at(0), json["crop"].at(1)};
+  }
+  return o;
+}
+
+// --- track -------------------------------------------------------------------
+
+Json TrackJson(const vision::Track& track) {
+  const vision::BodyImage& body = track.body;
+  Json json = {{"radius_px", EstimateJson(body.radius_px)},
+               {"half_long_px", EstimateJson(body.half_long_px)},
+               {"half_short_px", EstimateJson(body.half_short_px)},
+               {"whole_px", body.whole_px},
+               {"blur_px", body.blur_px},
+               {"contrast_dn", body.contrast_dn},
+               {"frames", {track.first_frame, track.last_frame}},
+               {"frame_interval_s", track.frame_interval_s},
+               {"known_background", track.known_background},
+               {"several_bodies", track.several_bodies},
+               {"columns", kColumns}};
+  Json rows = Json::array();
+  for (const vision::Pose& p : track.poses) {
+    rows.push_back(fmt::format(
+        "{} {} {:.5f} {:.5f} {:.4g} {:.4g} {:.4g} {:.7g} {:.4g} {:.6g} {:.4g}",
+        p.frame, p.time_s, p.centre.x_px, p.centre.y_px, p.u_x_px, p.u_y_px,
+        p.correlation_xy, p.angle_rad, p.u_angle_rad, p.relative_size,
+        p.misfit));
+  }
+  json["rows"] = std::move(rows);
+  return json;
+}
+
+vision::Track TrackOf(const Json& json, core::BodyKind kind) {
+  vision::Track track;
+  track.body.kind = kind;
+  track.body.radius_px = EstimateOf(json.at("radius_px"));
+  track.body.half_long_px = EstimateOf(json.at("half_long_px"));
+  track.body.half_short_px = EstimateOf(json.at("half_short_px"));
+  track.body.whole_px = json.at("whole_px");
+  track.body.blur_px = json.at("blur_px");
+  track.body.contrast_dn = json.at("contrast_dn");
+  track.first_frame = json.at("frames").at(0);
+  track.last_frame = json.at("frames").at(1);
+  track.frame_interval_s = json.at("frame_interval_s");
+  track.known_background = json.at("known_background");
+  track.several_bodies = json.at("several_bodies");
+  for (const Json& row : json.at("rows")) {
+    std::istringstream in(row.get<std::string>());
+    in.imbue(std::locale::classic());
+    vision::Pose p;
+    in >> p.frame >> p.time_s >> p.centre.x_px >> p.centre.y_px >> p.u_x_px >>
+        p.u_y_px >> p.correlation_xy >> p.angle_rad >> p.u_angle_rad >>
+        p.relative_size >> p.misfit;
+    if (!in) throw std::invalid_argument("a row of the track is damaged");
+    track.poses.push_back(p);
+  }
+  return track;
+}
+
+// --- the rest of an analysis, from the document's own fields
+// ------------------
+
+vision::ClipInfo ClipOf(const Json& json) {
+  using enum vision::FpsSource;
+  vision::ClipInfo clip;
+  clip.path = json.at("path").get<std::string>();
+  clip.format = json.at("format");
+  clip.width_px = json.at("width_px");
+  clip.height_px = json.at("height_px");
+  clip.bit_depth = json.at("bit_depth");
+  clip.frames = json.at("frames");
+  clip.first_camera_frame = json.at("first_camera_frame");
+  const Json& time = json.at("time_base");
+  clip.time_base.fps = time.at("fps");
+  clip.time_base.source =
+      Named(time.at("source").get<std::string>(), {kContainer, kHeader, kUser});
+  clip.time_base.uniform = time.at("uniform");
+  clip.time_base.trusted = time.at("trusted");
+  return clip;
+}
+
+Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
+  using enum calib::ScaleSource;
+  using enum vision::Channel;
+  const Json& replay = document.at("replay");
+  Analysis a;
+  a.clip = ClipOf(document.at("clip"));
+  a.channel = Named(document["clip"].at("channel").get<std::string>(),
+                    {kLuma, kBlueDifference, kRedDifference});
+  a.clip_id = trial.clip.id;
+  a.simulated = trial.origin == core::Origin::kSimulated;
+  a.options = OptionsOf(replay.at("options"));
+  if (const Json& corner = replay.at("sensor_origin"); !corner.is_null()) {
+    a.clip.sensor_origin = vision::SensorOrigin{corner.at(0), corner.at(1)};
+  }
+  if (const Json& scale = document.at("scale"); !scale.is_null()) {
+    a.scale = calib::Scale{EstimateOf(scale.at("px_per_m")),
+                           Named(scale.at("source").get<std::string>(),
+                                 {kUser, kCalibration, kBodySize})};
+  } else {
+    a.no_scale_reason = document.at("absent").at("scale");
+  }
+  if (const Json& ground = replay.at("ground"); !ground.is_null()) {
+    a.ground = GroundOf(ground);
+  }
+  a.body = trial.body;
+  a.angle_kind = trial.angle_kind;
+  a.track = TrackOf(replay.at("track"), trial.body.kind);
+  a.scene_model.used =
+      document.at("scene_model").at("used").get<std::vector<std::string>>();
+  a.scene_model.left_out = document["scene_model"]
+                               .at("left_out")
+                               .get<std::map<std::string, std::string>>();
+  a.warnings = document.at("warnings").get<std::vector<std::string>>();
+  if (document.contains("corrections")) {
+    a.corrections = document["corrections"].get<std::vector<std::string>>();
+  }
+  return a;
+}
+
+}  // namespace
+
+Json ReplayJson(const Analysis& analysis) {
+  Json json = {{"options", OptionsJson(analysis.options)}};
+  const auto& corner = analysis.clip.sensor_origin;
+  json["sensor_origin"] =
+      corner ? Json::array({corner->x_px, corner->y_px}) : Json(nullptr);
+  json["ground"] =
+      analysis.ground ? GroundJson(*analysis.ground) : Json(nullptr);
+  json["track"] = analysis.track ? TrackJson(*analysis.track) : Json(nullptr);
+  return json;
+}
+
+core::Expected<Analysis> Replay(const core::Trial& trial) {
+  if (trial.document_json.empty()) {
+    return core::AbsentBecause("the trial was logged by hand");
+  }
+  try {
+    const Json document = Json::parse(trial.document_json);
+    if (!document.contains("replay")) {
+      return core::AbsentBecause(
+          "an earlier program analysed it and kept no track; analyse the clip "
+          "again");
+    }
+    if (document["replay"].at("track").is_null()) {
+      return core::AbsentBecause("the analysis saw no body");
+    }
+    Analysis analysis = AnalysisOf(trial, document);
+    if (analysis.track->several_bodies) {
+      return core::AbsentBecause("several bodies move in it");
+    }
+    if (!analysis.ground) return analysis;
+    return Rejudge(std::move(analysis), {});
+  } catch (const Json::exception& error) {
+    return core::AbsentBecause(
+        fmt::format("its document cannot be read: {}", error.what()));
+  } catch (const std::invalid_argument& error) {
+    return core::AbsentBecause(
+        fmt::format("its document cannot be read: {}", error.what()));
+  } catch (const core::InputError& error) {
+    return core::AbsentBecause(error.what());
+  }
+}
+
+core::Trial WithAnalysis(const core::Trial& seen, const Analysis& analysis) {
+  core::Trial trial = seen;
+  const core::Trial judged = ToTrial(analysis);
+  trial.first = judged.first;
+  trial.later = judged.later;
+  trial.software_version = judged.software_version;
+  trial.options_hash = judged.options_hash;
+  trial.document_json = judged.document_json;
+  return trial;
+}
+
+}  // namespace touchdown::pipeline

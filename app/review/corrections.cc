@@ -1,0 +1,160 @@
+#include "app/review/corrections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "app/pipeline/judge.h"
+#include "app/pipeline/replay.h"
+#include "app/pipeline/statement.h"
+#include "app/review/fields.h"
+#include "app/review/trial_view.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
+  pipeline::Correction correction;
+  if (const auto ground = asked.find("ground_px");
+      ground != asked.end() && !ground->is_null()) {
+    const auto n = ground->get<std::vector<double>>();
+    if (n.size() != 4) {
+      throw std::invalid_argument(fmt::format(
+          "ground_px has {} numbers, must be two points x1, y1, x2, y2",
+          n.size()));
+    }
+    correction.ground =
+        calib::GroundThrough({n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px);
+  }
+  if (const auto frame = asked.find("contact_frame");
+      frame != asked.end() && !frame->is_null()) {
+    correction.contact_frame = frame->get<std::int64_t>();
+  }
+  if (const auto moved = asked.find("moved"); moved != asked.end()) {
+    for (const auto& [name, by] : moved->items()) {
+      std::int64_t frame = 0;
+      const char* const end = name.data() + name.size();
+      const auto [stop, error] = std::from_chars(name.data(), end, frame);
+      if (error != std::errc{} || stop != end) {
+        throw std::invalid_argument(
+            fmt::format("moved.{} is no frame, must be its number", name));
+      }
+      correction.moved[frame] = {by.at(0).get<double>(),
+                                 by.at(1).get<double>()};
+    }
+  }
+  if (const auto out = asked.find("left_out"); out != asked.end()) {
+    correction.left_out = out->get<std::vector<std::int64_t>>();
+  }
+  return correction;
+}
+
+struct Corrected {
+  core::Trial trial;
+  core::Expected<pipeline::Analysis> analysis;
+};
+
+Corrected MakeCorrected(const core::Trial& seen, const nlohmann::json& asked) {
+  Corrected out{seen, pipeline::Replay(seen)};
+  const pipeline::Correction correction = CorrectionOf(asked);
+  if (!correction.empty()) {
+    if (!out.analysis) {
+      throw std::invalid_argument("there is no track to correct: " +
+                                  out.analysis.error().reason);
+    }
+    out.analysis = pipeline::Rejudge(*std::move(out.analysis), correction);
+    out.trial = pipeline::WithAnalysis(seen, *out.analysis);
+  }
+  pipeline::Statement statement;
+  statement.state = TextOf(asked, "state");
+  statement.note = TextOf(asked, "note");
+  pipeline::Apply(statement, out.trial);
+  return out;
+}
+
+std::string ReasonOf(const db::Revision& last) {
+  return fmt::format("{} by {}{}{}", db::Name(last.kind), last.trial.author,
+                     last.trial.reason.empty() ? "" : ": ", last.trial.reason);
+}
+
+// What revision `number` stated, as a revision of `seen`.
+core::Trial Restated(const std::vector<db::Revision>& history,
+                     const core::Trial& seen, std::int64_t number) {
+  const auto found = std::find_if(
+      history.begin(), history.end(),
+      [&](const auto& revision) { return revision.trial.revision == number; });
+  if (found == history.end()) {
+    throw std::invalid_argument(fmt::format(
+        "restore is {}, must be a revision in 1 .. {}", number, seen.revision));
+  }
+  core::Trial trial = found->trial;
+  trial.revision = seen.revision;
+  return trial;
+}
+
+}  // namespace
+
+Json PreviewJson(const core::Trial& seen, const nlohmann::json& asked) {
+  const Corrected corrected = MakeCorrected(seen, asked);
+  Json json = {{"numbers", NumbersJson(corrected.trial)},
+               {"changes", ChangesJson(seen, corrected.trial)}};
+  if (corrected.analysis) {
+    json["view"] = ViewJson(*corrected.analysis);
+  } else {
+    json["view"] = {{"absent", corrected.analysis.error().reason}};
+  }
+  return json;
+}
+
+db::Logged Revise(db::Store& store, const std::string& id,
+                  const nlohmann::json& asked) {
+  const std::string who = RequiredText(asked, "who", "your name");
+  const std::string why = RequiredText(asked, "why", "the reason");
+  const auto expected = asked.at("revision").get<std::int64_t>();
+  const auto history = store.History(id);
+  if (history.empty()) {
+    throw core::StoreError(fmt::format("there is no trial {}", id));
+  }
+  const core::Trial& last = history.back().trial;
+  const auto require_last = [&] {
+    if (last.revision == expected) return;
+    throw Conflict(fmt::format(
+        "revision {} was made meanwhile ({}); look at it and correct again",
+        last.revision, ReasonOf(history.back())));
+  };
+  require_last();
+  if (asked.value("exclude", false)) {
+    return store.Exclude(id, who, why, expected);
+  }
+  if (asked.value("include", false)) {
+    return store.Include(id, who, why, expected);
+  }
+  core::Trial trial;
+  if (asked.contains("restore")) {
+    trial = Restated(history, last, asked["restore"].get<std::int64_t>());
+  } else {
+    trial = MakeCorrected(last, asked).trial;
+  }
+  if (db::Changes(last, trial).empty()) {
+    throw std::invalid_argument("nothing would change; correct something");
+  }
+  try {
+    return store.Correct(trial, who, why);
+  } catch (const core::StoreError&) {
+    // Between looking and writing somebody else may have been quicker.
+    const auto now = store.Find(id);
+    if (now && now->revision != expected) {
+      throw Conflict(fmt::format(
+          "revision {} was made meanwhile; look at it and correct again",
+          now->revision));
+    }
+    throw;
+  }
+}
+
+}  // namespace touchdown::review

@@ -1,0 +1,54 @@
+#include "app/review/desk.h"
+
+#include <fmt/format.h>
+
+namespace touchdown::review {
+
+Desk::Desk(std::filesystem::path store, std::filesystem::path reports)
+    : store_(std::move(store)), reports_(std::move(reports)) {}
+
+db::Store Desk::Open(db::OpenMode mode) const {
+  return db::Store::Open(store_, mode);
+}
+
+std::string Desk::Stamp() const {
+  // What is written goes to the log beside the store first.
+  std::string stamp;
+  for (const char* suffix : {"", "-wal"}) {
+    std::filesystem::path file = store_;
+    file += suffix;
+    std::error_code none;
+    const auto size = std::filesystem::file_size(file, none);
+    const auto time = std::filesystem::last_write_time(file, none);
+    stamp +=
+        none ? std::string("-.")
+             : fmt::format("{:x}.{:x}.", size, time.time_since_epoch().count());
+  }
+  return stamp;
+}
+
+std::shared_ptr<const Statistics> Desk::StatisticsNow() {
+  const std::lock_guard lock(statistics_guard_);
+  // Taken before reading: what changes meanwhile makes them stale.
+  const std::string stamp = Stamp();
+  if (!statistics_ || stamp != statistics_stamp_) {
+    statistics_ = std::make_shared<const Statistics>(MakeStatistics(store_));
+    statistics_stamp_ = stamp;
+  }
+  return statistics_;
+}
+
+std::string Desk::ClipOf(const std::string& id) {
+  const std::lock_guard lock(clips_guard_);
+  if (std::string stamp = Stamp(); stamp != clips_stamp_) {
+    clips_stamp_ = std::move(stamp);
+    clips_.clear();
+  }
+  const auto known = clips_.find(id);
+  if (known != clips_.end()) return known->second;
+  const auto trial = Open(db::OpenMode::kRead).Find(id);
+  if (!trial) return "";
+  return clips_[id] = trial->clip.path;
+}
+
+}  // namespace touchdown::review

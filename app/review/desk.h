@@ -1,0 +1,56 @@
+// What the server keeps between requests: where the store is, and answers that
+// are dear to make, for as long as the store does not change.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "app/review/clip_shelf.h"
+#include "app/review/statistics.h"
+#include "app/review/trial_list.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::review {
+
+class Desk {
+ public:
+  Desk(std::filesystem::path store, std::filesystem::path reports);
+
+  // A connection of the caller's own: one Store belongs to one thread.
+  db::Store Open(db::OpenMode mode) const;
+  const std::filesystem::path& store() const { return store_; }
+  const std::filesystem::path& reports() const { return reports_; }
+
+  // Differs whenever the store may have changed: size and time of its files.
+  std::string Stamp() const;
+
+  // Boundary, next angle and Table 1, made once for each state of the store.
+  // Whoever asks while it is being made waits for it.
+  std::shared_ptr<const Statistics> StatisticsNow();
+
+  TriageMemory& triage() { return triage_; }
+  ClipShelf& shelf() { return shelf_; }
+
+  // Where the recording of a trial was last seen; empty where there is none.
+  // Asked for with every frame, so it is remembered.
+  std::string ClipOf(const std::string& id);
+
+ private:
+  std::filesystem::path store_;
+  std::filesystem::path reports_;
+
+  std::mutex statistics_guard_;
+  std::string statistics_stamp_;
+  std::shared_ptr<const Statistics> statistics_;
+  TriageMemory triage_;
+  ClipShelf shelf_;
+
+  std::mutex clips_guard_;
+  std::string clips_stamp_;
+  std::map<std::string, std::string> clips_;
+};
+
+}  // namespace touchdown::review

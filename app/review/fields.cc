@@ -1,0 +1,54 @@
+#include "app/review/fields.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "app/pipeline/statement.h"
+
+namespace touchdown::review {
+namespace {
+
+using pipeline::FieldError;
+
+std::string Flag(std::string field) {
+  for (char& c : field) c = c == '_' ? '-' : c;
+  return field;
+}
+
+}  // namespace
+
+std::string TextOf(const nlohmann::json& asked, const char* field) {
+  const auto found = asked.find(field);
+  if (found == asked.end() || found->is_null()) return "";
+  if (!found->is_string()) throw FieldError(Flag(field), "must be text");
+  return found->get<std::string>();
+}
+
+std::string RequiredText(const nlohmann::json& asked, const char* field,
+                         const char* what) {
+  std::string text = TextOf(asked, field);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw FieldError(Flag(field), fmt::format("is missing, must be {}", what));
+  }
+  return text;
+}
+
+std::optional<double> NumberOf(const nlohmann::json& asked, const char* field) {
+  const auto found = asked.find(field);
+  if (found != asked.end() && found->is_number()) return found->get<double>();
+  const std::string text = TextOf(asked, field);
+  if (text.empty()) return std::nullopt;
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end) {
+    throw FieldError(
+        Flag(field),
+        fmt::format("is '{}', must be a number with a decimal point", text));
+  }
+  return value;
+}
+
+}  // namespace touchdown::review

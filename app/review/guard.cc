@@ -1,0 +1,131 @@
+#include "app/review/guard.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+namespace touchdown::review {
+
+Reply Refusal(int status, const std::string& what) {
+  Reply reply;
+  reply.status = status;
+  // A message may hold bytes of a file's name that are no UTF-8.
+  reply.body = nlohmann::json{{"error", what}}.dump(
+      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return reply;
+}
+
+const std::vector<std::pair<std::string, std::string>>& SafeHeaders() {
+  static const std::vector<std::pair<std::string, std::string>> kHeaders = {
+      {"Content-Security-Policy",
+       "default-src 'none'; script-src 'self'; style-src 'self'; img-src "
+       "'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+       "frame-ancestors 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Resource-Policy", "same-origin"}};
+  return kHeaders;
+}
+
+std::string CookieValue(const std::string& header, const std::string& name) {
+  std::string_view rest(header);
+  while (!rest.empty()) {
+    const std::size_t end = rest.find(';');
+    std::string_view pair = rest.substr(0, end);
+    rest = end == std::string_view::npos ? "" : rest.substr(end + 1);
+    while (!pair.empty() && pair.front() == ' ') pair.remove_prefix(1);
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == name) {
+      return std::string(pair.substr(equals + 1));
+    }
+  }
+  return "";
+}
+
+Guard::Guard(std::string token, int port)
+    : token_(std::move(token)), port_(port) {}
+
+std::string Guard::Address() const {
+  return fmt::format("http://127.0.0.1:{}/?token={}", port_, token_);
+}
+
+// Cookies are shared by all ports of a machine: two servers must not take each
+// other's away.
+std::string Guard::CookieName() const {
+  return fmt::format("touchdown_{}", port_);
+}
+
+bool Guard::IsOwnHost(const std::string& host) const {
+  return host == fmt::format("127.0.0.1:{}", port_) ||
+         host == fmt::format("localhost:{}", port_);
+}
+
+bool Guard::IsOurs(const std::string& token) const {
+  // As long for the first wrong character as for the last.
+  if (token.size() != token_.size()) return false;
+  unsigned different = 0;
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    different |= static_cast<unsigned char>(token[i] ^ token_[i]);
+  }
+  return different == 0;
+}
+
+std::optional<Reply> Guard::Refuse(const Request& request) const {
+  if (!IsOwnHost(request.host)) {
+    return Refusal(403,
+                   "this server answers under the address it printed only");
+  }
+  if (!request.origin.empty() && request.origin != "http://" + request.host) {
+    return Refusal(403, "requests from other pages are not answered");
+  }
+  // A link that a person follows into the page is `none` or a navigation; what
+  // other sites' pages fetch is not.
+  if (request.fetch_site == "cross-site" || request.fetch_site == "same-site") {
+    if (request.method != "GET" || request.path != "/") {
+      return Refusal(403, "requests from other pages are not answered");
+    }
+  }
+  if (!IsOurs(request.token) &&
+      !IsOurs(CookieValue(request.cookie, CookieName()))) {
+    return Refusal(403,
+                   "open the whole address that `touchdown review` printed: it "
+                   "holds the key of this session");
+  }
+  if (request.method != "GET" && request.method != "HEAD") {
+    if (request.content_type.rfind("application/json", 0) != 0) {
+      return Refusal(415, "a request that changes something must be JSON");
+    }
+    // Browsers send Origin with every POST; programs send the token's header.
+    if (request.origin.empty() && request.token.empty()) {
+      return Refusal(403, "the request does not say where it comes from");
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Reply> Guard::Welcome(const Request& request) const {
+  const auto given = request.query.find("token");
+  if (request.method != "GET" || request.path != "/" ||
+      given == request.query.end() || !IsOwnHost(request.host)) {
+    return std::nullopt;
+  }
+  if (!IsOurs(given->second)) {
+    return Refusal(403,
+                   "this address is of another session; open the one that "
+                   "`touchdown review` printed last");
+  }
+  Reply reply;
+  reply.status = 303;
+  reply.type = "text/plain";
+  reply.headers = {
+      {"Location", "/"},
+      {"Cache-Control", "no-store"},
+      {"Set-Cookie", fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict",
+                                 CookieName(), token_)}};
+  return reply;
+}
+
+}  // namespace touchdown::review

@@ -1,0 +1,83 @@
+#include "app/review/logging.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "app/pipeline/analyze.h"
+#include "app/pipeline/log_analysis.h"
+#include "app/pipeline/report_input.h"
+#include "app/pipeline/statement.h"
+#include "app/review/fields.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::review {
+namespace {
+
+using pipeline::FieldError;
+
+pipeline::Statement StatementOf(const nlohmann::json& asked) {
+  pipeline::Statement out;
+  out.angle_deg = NumberOf(asked, "angle_deg");
+  out.angle_u_deg = NumberOf(asked, "angle_u_deg");
+  out.state = TextOf(asked, "state");
+  out.corner = TextOf(asked, "corner");
+  out.set_angle_deg = NumberOf(asked, "set_angle_deg");
+  out.set_speed_mps = NumberOf(asked, "set_speed_mps");
+  out.note = TextOf(asked, "note");
+  return out;
+}
+
+}  // namespace
+
+db::Logged LogTyped(const std::filesystem::path& store,
+                    const nlohmann::json& asked) {
+  pipeline::ManualEntry entry;
+  entry.campaign = RequiredText(asked, "campaign", "one of the campaigns");
+  entry.by = RequiredText(asked, "who", "your name");
+  entry.statement = StatementOf(asked);
+  return pipeline::LogByHand(store, entry);
+}
+
+db::Logged LogRecording(const std::filesystem::path& store,
+                        const nlohmann::json& asked) {
+  const std::string name =
+      RequiredText(asked, "campaign", "one of the campaigns");
+  const std::string who = RequiredText(asked, "who", "your name");
+  const std::filesystem::path clip =
+      RequiredText(asked, "clip", "the path of a recording on this machine");
+  if (!std::filesystem::exists(clip)) {
+    throw FieldError("clip", fmt::format("is '{}', must be a recording that "
+                                         "is there",
+                                         clip.string()));
+  }
+  pipeline::Statement setting;
+  setting.set_angle_deg = NumberOf(asked, "set_angle_deg");
+  setting.set_speed_mps = NumberOf(asked, "set_speed_mps");
+  core::Trial rehearsal;
+  pipeline::Apply(setting, rehearsal);  // before the work, not after it
+  pipeline::AnalyzeOptions options;
+  const core::Campaign campaign = pipeline::RequireCampaign(
+      db::Store::Open(store, db::OpenMode::kRead), name);
+  pipeline::FillFromCampaign(campaign, options);
+  core::Trial trial =
+      pipeline::LoggableTrial(pipeline::Analyze(clip, options), &campaign);
+  pipeline::Apply(setting, trial);
+  trial.reason = "logged on the review page by " + who;
+  return db::Store::Open(store, db::OpenMode::kWrite).LogTrial(trial);
+}
+
+std::size_t BuildReport(const std::filesystem::path& store,
+                        const std::filesystem::path& folder) {
+  pipeline::SelectionOptions options;
+  options.store = store;
+  options.with_evidence = true;
+  const report::ReportInput input =
+      pipeline::InputOf(pipeline::SelectTrials(options));
+  report::WriteReport(report::MakeReport(input), folder);
+  return input.trials.size();
+}
+
+}  // namespace touchdown::review

@@ -1,0 +1,172 @@
+// What a person changes of a trial: drawn and worked out anew at once, stored
+// with a reason as a revision.
+import {element, post, Refused, table, tell, who} from './parts.js';
+
+const kStates = ['bounce', 'slide', 'roll-slide', 'roll', 'stick', 'stays-down',
+                 'undecided'];
+const kStep_px = 0.25;  // half of what a hand places an outline to
+
+function empty() {
+  return {ground_px: null, contact_frame: null, moved: {}, left_out: [],
+          state: '', note: ''};
+}
+
+export class Correcting {
+  // page: {id, data, frame(), preview(view), reset(), saved(revision)}
+  constructor(page) {
+    this.page = page;
+    this.asked = empty();
+    this.busy = false;
+    this.again = false;
+    this.node = element('section', {class: 'correct', 'aria-label': 'Correct'});
+    this.build();
+  }
+
+  build() {
+    const button = (text, act, attributes = {}) =>
+        element('button', {type: 'button', text, onclick: act, ...attributes});
+    const has = this.page.data.view.absent === undefined;
+    this.state = element('select', {id: 'state', onchange: () => this.changed()},
+        element('option', {value: '', text: 'as judged'}),
+        ...kStates.map(s => element('option', {value: s, text: s})));
+    this.why = element('input', {id: 'why', size: 34,
+                                 placeholder: 'what was wrong, and how you know'});
+    this.result = element('div', {role: 'status', 'aria-live': 'polite'});
+    this.trouble = element('p', {class: 'bad', role: 'alert'});
+    this.save = button('Store this correction', () => this.store({}),
+                       {class: 'main'});
+    const move = (text, label, dx, dy) =>
+        button(text, () => this.move(dx, dy), {'aria-label': label});
+    const excluded = this.page.data.row.excluded;
+    this.node.replaceChildren(
+        element('h2', {text: 'Correct'}),
+        has ? element('div', {},
+            element('p', {class: 'hint', text:
+                'Ground line: drag its two points, or focus one and use the ' +
+                'arrow keys (0.1 px; with Shift 1 px).'}),
+            element('p', {},
+                button('Touchdown is between this frame and the next (t)',
+                       () => this.setContact())),
+            element('p', {}, 'This outline, by 0.25 px: ',
+                move('←', 'move the outline left', -kStep_px, 0),
+                move('→', 'move the outline right', kStep_px, 0),
+                move('↑', 'move the outline up', 0, -kStep_px),
+                move('↓', 'move the outline down', 0, kStep_px),
+                button('Leave it out', () => this.leaveOut())))
+            : element('p', {class: 'hint',
+                            text: 'Nothing to draw on: ' +
+                                this.page.data.view.absent}),
+        element('p', {},
+            element('label', {for: 'state', text: 'Motion state '}), this.state),
+        this.result,
+        element('p', {},
+            element('label', {for: 'why', text: 'Reason '}), this.why),
+        this.trouble,
+        element('p', {class: 'buttons'}, this.save,
+            button('Start over', () => this.startOver()),
+            button(excluded ? 'Include it again' : 'Exclude this trial',
+                   () => this.store(excluded ? {include: true}
+                                             : {exclude: true}))));
+    this.showChanges([]);
+  }
+
+  // Whether something would be lost by going away.
+  pending() {
+    const a = this.asked;
+    return a.ground_px !== null || a.contact_frame !== null ||
+        Object.keys(a.moved).length > 0 || a.left_out.length > 0 ||
+        this.state.value !== '';
+  }
+
+  setGround(p1, p2) {
+    this.asked.ground_px = [...p1, ...p2];
+    this.changed();
+  }
+  setContact() {
+    this.asked.contact_frame = this.page.frame();
+    this.changed();
+  }
+  move(dx, dy) {
+    const frame = this.page.frame();
+    const [x, y] = this.asked.moved[frame] ?? [0, 0];
+    this.asked.moved[frame] = [x + dx, y + dy];
+    this.changed();
+  }
+  leaveOut() {
+    const frame = this.page.frame();
+    if (!this.asked.left_out.includes(frame)) this.asked.left_out.push(frame);
+    this.changed();
+  }
+  startOver() {
+    this.asked = empty();
+    this.state.value = '';
+    this.trouble.textContent = '';
+    this.showChanges([]);
+    this.page.reset();
+  }
+
+  body() { return {...this.asked, state: this.state.value}; }
+
+  // One request at a time; the last change is always asked for.
+  async changed() {
+    if (this.busy) {
+      this.again = true;
+      return;
+    }
+    this.busy = true;
+    do {
+      this.again = false;
+      try {
+        const said = await post(`/api/trials/${this.page.id}/preview`,
+                                this.body());
+        this.trouble.textContent = '';
+        if (!this.again) {
+          this.showChanges(said.changes);
+          this.page.preview(said);
+        }
+      } catch (error) {
+        this.trouble.textContent = error.message;
+      }
+    } while (this.again);
+    this.busy = false;
+  }
+
+  showChanges(changes) {
+    this.result.replaceChildren(changes.length === 0
+        ? element('p', {class: 'hint', text: 'Nothing is changed yet.'})
+        : element('div', {class: 'changes', tabindex: '0', role: 'region',
+                          'aria-label': 'What would change'},
+                  table('What would change', ['number', 'from', 'to'],
+                        changes.map(c => [c.field, c.from, c.to]))));
+    this.result.dataset.changes = changes.length;
+  }
+
+  async store(instead) {
+    this.trouble.textContent = '';
+    const correction = Object.keys(instead).length === 0 ? this.body() : instead;
+    try {
+      const logged = await post(`/api/trials/${this.page.id}/revisions`, {
+        ...correction, revision: this.page.data.last_revision,
+        who: who(), why: this.why.value});
+      tell(`Stored as revision ${logged.revision}. What was there before is ` +
+           'kept in the history.');
+      await this.page.saved();
+    } catch (error) {
+      this.refused(error);
+    }
+  }
+
+  refused(error) {
+    const problem = error instanceof Refused ? error.answer.problem : null;
+    const field = {who: 'Your name (above)', why: 'The reason'}[
+        error.answer?.field];
+    this.trouble.textContent = field ? `${field} ${problem}` : error.message;
+    if (error.answer?.field === 'who') document.getElementById('who').focus();
+    if (error.answer?.field === 'why') this.why.focus();
+    if (error.status === 409) {
+      this.trouble.append(' ', element('button', {
+        type: 'button', text: 'Show what is there now',
+        onclick: () => this.page.saved()}));
+    }
+  }
+}

@@ -1,0 +1,283 @@
+#include "app/review/routes.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+#include "app/pipeline/replay.h"
+#include "app/pipeline/statement.h"
+#include "app/report/text_file.h"
+#include "app/report/trial_list.h"
+#include "app/review/corrections.h"
+#include "app/review/logging.h"
+#include "app/review/page_files.h"
+#include "app/review/trial_view.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A path, a number or a trial that there is not.
+class NotThere : public std::runtime_error {
+ public:
+  explicit NotThere(const std::string& path)
+      : std::runtime_error(path + ": there is nothing here") {}
+};
+
+Reply JsonReply(const Json& json) {
+  Reply reply;
+  reply.body = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return reply;
+}
+
+std::string TypeOf(std::string_view name) {
+  if (name.ends_with(".html")) return "text/html; charset=utf-8";
+  if (name.ends_with(".css")) return "text/css; charset=utf-8";
+  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
+  if (name.ends_with(".json")) return "application/json";
+  return "text/plain; charset=utf-8";
+}
+
+Reply PageReply(const std::string& name) {
+  const auto file = PageFile(name);
+  if (!file) throw NotThere("/page/" + name);
+  Reply reply;
+  reply.type = TypeOf(name);
+  reply.body = *file;
+  return reply;
+}
+
+// The part of `path` after `prefix`; nothing where it begins otherwise.
+std::optional<std::string> After(const std::string& path,
+                                 std::string_view prefix) {
+  if (!path.starts_with(prefix)) return std::nullopt;
+  return path.substr(prefix.size());
+}
+
+std::int64_t NumberIn(const std::string& text, const std::string& path) {
+  std::int64_t n = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, n);
+  if (error != std::errc{} || stop != end || n < 0) throw NotThere(path);
+  return n;
+}
+
+Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
+  const auto n = static_cast<std::size_t>(NumberIn(text, request.path));
+  const auto statistics = desk.StatisticsNow();
+  if (n >= statistics->plots.size()) throw NotThere(request.path);
+  Reply reply;
+  reply.type = "image/svg+xml";
+  reply.body = statistics->plots[n];
+  return reply;
+}
+
+// --- one trial ---------------------------------------------------------------
+
+core::Trial RevisionOf(const std::vector<db::Revision>& history,
+                       const Request& request) {
+  const auto asked = request.query.find("revision");
+  if (asked == request.query.end()) return history.back().trial;
+  const std::int64_t n = NumberIn(asked->second, request.path);
+  for (const auto& revision : history) {
+    if (revision.trial.revision == n) return revision.trial;
+  }
+  throw NotThere(request.path + "?revision=" + asked->second);
+}
+
+Json ClipJson(Desk& desk, const core::Trial& trial) {
+  if (trial.clip.path.empty()) return {{"absent", "logged by hand"}};
+  try {
+    const vision::ClipInfo info = desk.shelf().Info(trial.clip.path);
+    return {{"width_px", info.width_px},
+            {"height_px", info.height_px},
+            {"frames", info.frames},
+            {"format", info.format},
+            {"bit_depth", info.bit_depth}};
+  } catch (const core::InputError& error) {
+    return {{"absent", error.what()}};
+  }
+}
+
+Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
+  const db::Store store = desk.Open(db::OpenMode::kRead);
+  const auto history = store.History(id);
+  if (history.empty()) throw NotThere(request.path);
+  const core::Trial trial = RevisionOf(history, request);
+  Json json = {{"schema", "touchdown.review.trial/1"},
+               {"row", report::TrialRowJson(trial)},
+               {"last_revision", history.back().trial.revision},
+               {"simulated", trial.origin == core::Origin::kSimulated},
+               {"numbers", NumbersJson(trial)},
+               {"history", HistoryJson(history)},
+               {"clip", ClipJson(desk, trial)}};
+  const auto analysis = pipeline::Replay(trial);
+  json["view"] = analysis ? ViewJson(*analysis)
+                          : Json{{"absent", analysis.error().reason}};
+  return JsonReply(json);
+}
+
+Reply FrameReply(Desk& desk, const Request& request, const std::string& id,
+                 const std::string& number) {
+  const std::int64_t n = NumberIn(number, request.path);
+  const std::string clip = desk.ClipOf(id);
+  if (clip.empty()) throw NotThere(request.path);
+  const Picture picture = desk.shelf().Frame(clip, n);
+  Reply reply;
+  reply.type = picture.type;
+  reply.body = *picture.bytes;
+  // A frame stays what it is as long as a person looks at it.
+  reply.headers = {{"Cache-Control", "private, max-age=600"}};
+  return reply;
+}
+
+core::Trial RequireTrial(const db::Store& store, const std::string& id,
+                         const Request& request) {
+  auto trial = store.Find(id);
+  if (!trial) throw NotThere(request.path);
+  return *std::move(trial);
+}
+
+// /api/trials/ID/...
+struct TrialPath {
+  std::string id;
+  std::string rest;  // after the next slash; empty: none
+};
+
+std::optional<TrialPath> TrialPathOf(const std::string& path) {
+  const auto rest = After(path, "/api/trials/");
+  if (!rest) return std::nullopt;
+  const std::size_t slash = rest->find('/');
+  if (slash == std::string::npos) return TrialPath{*rest, ""};
+  return TrialPath{rest->substr(0, slash), rest->substr(slash + 1)};
+}
+
+// --- report ------------------------------------------------------------------
+
+Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
+  // The five files that a report is, and no other of the folder.
+  static constexpr std::string_view kNames[] = {
+      "table1.html", "table1.md", "table1.csv", "table1.tex", "table1.json"};
+  if (std::find(std::begin(kNames), std::end(kNames), name) ==
+      std::end(kNames)) {
+    throw NotThere(request.path);
+  }
+  const auto text = report::ReadTextFile(desk.reports() / name);
+  if (!text) throw NotThere(request.path);
+  Reply reply;
+  reply.type = TypeOf(name);
+  reply.body = *text;
+  // As the report says of itself: styles stand in it, nothing is loaded.
+  reply.headers = {{"Content-Security-Policy",
+                    "default-src 'none'; style-src 'unsafe-inline'; img-src "
+                    "data:; frame-ancestors 'self'; sandbox"}};
+  if (!name.ends_with(".html")) {
+    reply.headers.emplace_back("Content-Disposition",
+                               fmt::format("attachment; filename={}", name));
+  }
+  return reply;
+}
+
+Reply Get(Desk& desk, const Request& request) {
+  const std::string& path = request.path;
+  if (path == "/") return PageReply("index.html");
+  if (const auto name = After(path, "/page/")) return PageReply(*name);
+  if (path == "/api/stamp") return JsonReply({{"stamp", desk.Stamp()}});
+  if (path == "/api/trials") {
+    const std::string stamp = desk.Stamp();
+    Json json = TrialListJson(desk.Open(db::OpenMode::kRead), desk.triage());
+    json["stamp"] = stamp;
+    return JsonReply(json);
+  }
+  if (path == "/api/statistics") {
+    Reply reply;
+    reply.body = desk.StatisticsNow()->json;
+    return reply;
+  }
+  if (const auto n = After(path, "/api/plots/")) {
+    return PlotReply(desk, request, *n);
+  }
+  if (const auto trial = TrialPathOf(path)) {
+    if (trial->rest.empty()) return TrialReply(desk, request, trial->id);
+    if (const auto n = After(trial->rest, "frames/")) {
+      return FrameReply(desk, request, trial->id, *n);
+    }
+  }
+  if (const auto name = After(path, "/report/")) {
+    return ReportFile(desk, request, *name);
+  }
+  throw NotThere(path);
+}
+
+Json LoggedJson(const db::Logged& logged) {
+  return {{"id", logged.id},
+          {"revision", logged.revision},
+          {"is_new", logged.is_new}};
+}
+
+Reply Post(Desk& desk, const Request& request) {
+  const auto asked = nlohmann::json::parse(request.body);
+  const std::string& path = request.path;
+  if (const auto trial = TrialPathOf(path)) {
+    if (trial->rest == "preview") {
+      const db::Store store = desk.Open(db::OpenMode::kRead);
+      return JsonReply(
+          PreviewJson(RequireTrial(store, trial->id, request), asked));
+    }
+    if (trial->rest == "revisions") {
+      db::Store store = desk.Open(db::OpenMode::kWrite);
+      RequireTrial(store, trial->id, request);
+      return JsonReply(LoggedJson(Revise(store, trial->id, asked)));
+    }
+  }
+  if (path == "/api/log") {
+    return JsonReply(LoggedJson(LogTyped(desk.store(), asked)));
+  }
+  if (path == "/api/recordings") {
+    return JsonReply(LoggedJson(LogRecording(desk.store(), asked)));
+  }
+  if (path == "/api/report") {
+    return JsonReply({{"trials", BuildReport(desk.store(), desk.reports())},
+                      {"folder", desk.reports().string()}});
+  }
+  throw NotThere(path);
+}
+
+}  // namespace
+
+Reply Route(Desk& desk, const Request& request) {
+  try {
+    const bool reads = request.method == "GET" || request.method == "HEAD";
+    return reads ? Get(desk, request) : Post(desk, request);
+  } catch (const NotThere& error) {
+    return Refusal(404, error.what());
+  } catch (const Conflict& error) {
+    return Refusal(409, error.what());
+  } catch (const pipeline::FieldError& error) {
+    Reply reply = Refusal(400, error.what());
+    reply.body =
+        nlohmann::json{{"error", error.what()},
+                       {"field", error.field()},
+                       {"problem", error.problem()}}
+            .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return reply;
+  } catch (const nlohmann::json::exception& error) {
+    return Refusal(
+        400, fmt::format("the request is not understood: {}", error.what()));
+  } catch (const std::invalid_argument& error) {
+    return Refusal(400, error.what());
+  } catch (const core::InputError& error) {
+    return Refusal(422, error.what());
+  } catch (const core::StoreError& error) {
+    return Refusal(503, error.what());
+  } catch (const std::exception& error) {
+    return Refusal(500, error.what());
+  }
+}
+
+}  // namespace touchdown::review

@@ -1,0 +1,39 @@
+// The review page's server: HTTP on 127.0.0.1.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace touchdown::review {
+
+struct ServerOptions {
+  std::filesystem::path store;
+  int port = 0;  // 0: any that is free
+  // Where reports go that the page builds.
+  std::filesystem::path reports;
+};
+
+class Server {
+ public:
+  // Opens the store once to see that it can be, and takes the port. Throws
+  // core::StoreError, or core::InputError where the port is taken.
+  explicit Server(const ServerOptions& options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  int port() const;
+  // What a person opens; holds the key of this session.
+  std::string address() const;
+
+  // Answers until Stop(), which may be called from any thread.
+  void Run();
+  void Stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace touchdown::review

@@ -1,0 +1,106 @@
+#include "app/review/trial_list.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <vector>
+
+#include "app/report/trial_list.h"
+
+namespace touchdown::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using pipeline::Attention;
+using pipeline::TriageEntry;
+
+// Beyond so many that are not known yet, all documents are read in one query.
+constexpr std::size_t kOneByOne = 20;
+
+Json CampaignsJson(const db::Store& store,
+                   const std::vector<core::Trial>& trials) {
+  Json out = Json::array();
+  const auto count = [&](const std::string& name) {
+    return std::count_if(
+        trials.begin(), trials.end(),
+        [&](const core::Trial& trial) { return trial.campaign == name; });
+  };
+  for (const core::Campaign& campaign : store.Campaigns()) {
+    out.push_back({{"name", campaign.name},
+                   {"body", core::Name(campaign.body.kind)},
+                   {"surface", campaign.surface},
+                   {"angle_kind", core::Name(campaign.angle_kind)},
+                   {"theory", campaign.theory_name},
+                   {"trials", count(campaign.name)}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<TriageEntry> TriageMemory::Of(
+    const db::Store& store, const std::vector<core::Trial>& trials) {
+  const std::lock_guard lock(guard_);
+  const auto key = [](const core::Trial& trial) {
+    return std::pair(trial.id, trial.revision);
+  };
+  const auto learn = [&](const core::Trial& trial) {
+    known_[key(trial)] =
+        pipeline::TriageOf(trial.clip.path, pipeline::Done::kKnown, trial);
+  };
+  std::vector<const core::Trial*> unknown;
+  for (const core::Trial& trial : trials) {
+    if (!known_.contains(key(trial))) unknown.push_back(&trial);
+  }
+  if (unknown.size() > kOneByOne) {
+    for (const core::Trial& trial : store.Trials()) learn(trial);
+  } else {
+    for (const core::Trial* trial : unknown) {
+      if (const auto whole = store.Find(trial->id)) learn(*whole);
+    }
+  }
+  std::vector<TriageEntry> out;
+  out.reserve(trials.size());
+  for (const core::Trial& trial : trials) {
+    // One revised at this moment is known by its new revision.
+    const auto found = known_.find(key(trial));
+    out.push_back(found != known_.end()
+                      ? found->second
+                      : pipeline::TriageOf(trial.clip.path,
+                                           pipeline::Done::kKnown, trial));
+    if (trial.excluded) out.back().attention = Attention::kNone;
+  }
+  return out;
+}
+
+Json TrialListJson(const db::Store& store, TriageMemory& memory) {
+  db::TrialFilter filter;
+  filter.with_documents = false;
+  const std::vector<core::Trial> trials = store.Trials(filter);
+  const std::vector<TriageEntry> triage = memory.Of(store, trials);
+  // The order of SortByNeed, of positions.
+  std::vector<std::size_t> order(trials.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) {
+                     return pipeline::NeedsMore(triage[a], triage[b]);
+                   });
+  Json rows = Json::array();
+  std::size_t to_look_at = 0;
+  for (const std::size_t i : order) {
+    Json row = report::TrialRowJson(trials[i]);
+    const bool look = triage[i].attention != Attention::kNone;
+    to_look_at += look ? 1 : 0;
+    row["attention"] =
+        look ? Json(pipeline::Name(triage[i].attention)) : Json(nullptr);
+    row["why"] = triage[i].reason;
+    rows.push_back(std::move(row));
+  }
+  return {{"schema", "touchdown.review.trials/1"},
+          {"store", store.path().filename().string()},
+          {"to_look_at", to_look_at},
+          {"campaigns", CampaignsJson(store, trials)},
+          {"trials", std::move(rows)}};
+}
+
+}  // namespace touchdown::review

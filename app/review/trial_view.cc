@@ -1,0 +1,265 @@
+#include "app/review/trial_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/report/format.h"
+#include "app/report/trial_csv_columns.h"
+#include "touchdown/core/units.h"
+#include "touchdown/db/quantities.h"
+#include "touchdown/vision/flight.h"
+
+namespace touchdown::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using core::kDegree;
+
+// Pieces of a drawn curve: a flight is a parabola, a lens bends a line little.
+constexpr int kPieces = 40;
+
+Json PointJson(core::PixelPoint p) { return {p.x_px, p.y_px}; }
+
+// Ideal points to where the camera saw them.
+class ToPicture {
+ public:
+  explicit ToPicture(const pipeline::Analysis& analysis) {
+    if (analysis.calibration && analysis.calibration->lens) {
+      lens_ = analysis.calibration->lens->lens;
+    }
+  }
+  Json operator()(core::PixelPoint ideal) const {
+    return PointJson(lens_ ? calib::Distort(*lens_, ideal) : ideal);
+  }
+
+ private:
+  std::optional<calib::Lens> lens_;
+};
+
+// The line across the whole picture, and the two points that a person drags.
+Json GroundJson(const pipeline::Analysis& analysis, const ToPicture& seen) {
+  const calib::GroundLine& g = *analysis.ground;
+  const double angle = calib::ImageAngle(g);
+  const double from = -g.reference.x_px;
+  const double to = analysis.clip.width_px - 1 - g.reference.x_px;
+  const auto at = [&](double share) {
+    const double x = from + share * (to - from);
+    return core::PixelPoint{g.reference.x_px + x,
+                            g.reference.y_px + x * std::tan(angle)};
+  };
+  Json line = Json::array();
+  for (int i = 0; i <= kPieces; ++i) {
+    line.push_back(seen(at(static_cast<double>(i) / kPieces)));
+  }
+  return {{"p1_px", seen(at(0.1))},
+          {"p2_px", seen(at(0.9))},
+          {"line_px", std::move(line)},
+          {"u_offset_px", g.u_offset_px},
+          {"u_angle_deg", g.u_angle_rad / kDegree},
+          {"source", calib::Name(g.source)}};
+}
+
+Json FlightJson(const vision::PlaneTrack& plane, const vision::Flight& flight,
+                double from_s, double to_s, const ToPicture& seen) {
+  Json points = Json::array();
+  for (int i = 0; i <= kPieces; ++i) {
+    const auto s = flight.At(from_s + (to_s - from_s) * i / kPieces);
+    points.push_back(seen(vision::ToImage(plane, s.along_px, s.height_px)));
+  }
+  return points;
+}
+
+// Distances of the poses from the fitted flight, along and above the ground.
+void AddResiduals(const vision::PlaneTrack& plane, const vision::Flight& flight,
+                  const char* which, double unit, Json& rows) {
+  for (const vision::PlaneSample& s : plane.samples) {
+    if (s.frame < flight.first_frame || s.frame > flight.last_frame) continue;
+    const auto fitted = flight.At(s.time_s);
+    rows.push_back({s.frame, which, (s.along_px - fitted.along_px) * unit,
+                    s.u_along_px * unit,
+                    (s.height_px - fitted.height_px) * unit,
+                    s.u_height_px * unit});
+  }
+}
+
+Json ContactJson(const vision::PlaneTrack& plane,
+                 const vision::ContactEvidence& e, const ToPicture& seen) {
+  const auto s = e.before->At(e.time_s);
+  const double speed = std::max(1e-12, std::hypot(s.v_t, s.v_n));
+  const double reach = 1.6 * plane.half_long_px;  // beyond the outline
+  return {{"centre_px", seen(e.centre)},
+          {"touching_px", seen(e.touching)},
+          // The direction of approach through the centre.
+          {"approach_px",
+           {seen(vision::ToImage(plane, s.along_px - reach * s.v_t / speed,
+                                 s.height_px - reach * s.v_n / speed)),
+            seen(vision::ToImage(plane, s.along_px + reach * s.v_t / speed,
+                                 s.height_px + reach * s.v_n / speed))}}};
+}
+
+Json BudgetJson(const core::Budget& budget) {
+  Json out = Json::array();
+  for (const auto& line : budget) {
+    out.push_back({{"source", line.source}, {"u_deg", line.u / kDegree}});
+  }
+  return out;
+}
+
+Json QuantitiesJson(const core::ContactRecord& record) {
+  Json out = Json::array();
+  for (const auto& quantity : db::kContactQuantities) {
+    const core::Measured& measured = db::At(record, quantity);
+    const report::EdgeUnit edge = report::AtTheEdge(quantity.name);
+    Json row = {{"name", edge.stem + edge.suffix}};
+    if (measured) {
+      row["text"] = report::WithU(*measured, edge.factor);
+      if (const auto& interval = measured->interval95) {
+        row["interval95"] = {interval->low / edge.factor,
+                             interval->high / edge.factor};
+      }
+    } else {
+      row["absent"] = measured.error().reason;
+    }
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+Json RecordJson(const core::ContactRecord& record) {
+  const core::StateDecision& state = record.state;
+  return {{"found", record.contact.found},
+          {"reason", record.contact.reason},
+          {"state", core::Name(state.label)},
+          {"state_reason", state.reason},
+          {"p_bounce", state.p_bounce ? Json(*state.p_bounce) : Json(nullptr)},
+          {"micro_bounce", state.micro_bounce},
+          {"corner", record.contact.corner
+                         ? Json(core::Name(*record.contact.corner))
+                         : Json(nullptr)},
+          {"frame", record.contact.frame ? Json(record.contact.frame->value)
+                                         : Json(nullptr)},
+          {"quantities", QuantitiesJson(record)},
+          {"approach_budget", BudgetJson(record.contact.approach_budget)},
+          {"attitude_budget", BudgetJson(record.contact.attitude_budget)}};
+}
+
+}  // namespace
+
+Json ViewJson(const pipeline::Analysis& analysis) {
+  const vision::Track& track = *analysis.track;
+  const vision::BodyImage& body = track.body;
+  const ToPicture seen(analysis);
+  Json poses = Json::array();
+  for (const vision::Pose& p : track.poses) {
+    poses.push_back({p.frame, p.centre.x_px, p.centre.y_px,
+                     p.angle_rad / kDegree, p.relative_size});
+  }
+  Json view = {{"body",
+                {{"kind", core::Name(body.kind)},
+                 {"radius_px", body.radius_px.value},
+                 {"half_long_px", body.half_long_px.value},
+                 {"half_short_px", body.half_short_px.value}}},
+               {"fps", analysis.clip.time_base.fps},
+               {"poses", std::move(poses)},
+               {"warnings", analysis.warnings},
+               {"corrections", analysis.corrections}};
+  if (!analysis.plane) {
+    view["ground"] = nullptr;
+    return view;
+  }
+  const vision::PlaneTrack& plane = *analysis.plane;
+  view["ground"] = GroundJson(analysis, seen);
+  const double unit =
+      analysis.scale
+          ? 1.0 / (analysis.scale->px_per_m.value * core::kMillimetre)
+          : 1.0;
+  view["length_unit"] = analysis.scale ? "mm" : "px";
+  Json gaps = Json::array();
+  for (const vision::PlaneSample& s : plane.samples) {
+    gaps.push_back({s.frame, s.gap_px * unit, s.u_gap_px * unit});
+  }
+  view["gaps"] = std::move(gaps);
+  view["refuted"] = analysis.contacts.ground_refuted;
+  Json flights = Json::array();
+  Json residuals = Json::array();
+  const auto& evidence = analysis.contacts.evidence;
+  if (!evidence.empty() && evidence.front().before) {
+    const vision::ContactEvidence& e = evidence.front();
+    const double dt = plane.frame_interval_s;
+    const auto frames = static_cast<double>(e.before->frames);
+    flights.push_back(
+        {{"which", "before"},
+         {"points_px", FlightJson(plane, *e.before, e.time_s - frames * dt,
+                                  e.time_s, seen)}});
+    AddResiduals(plane, *e.before, "before", unit, residuals);
+    if (e.after) {
+      flights.push_back(
+          {{"which", "after"},
+           {"points_px",
+            FlightJson(plane, *e.after, e.release_s,
+                       e.release_s + (e.after->frames - 1) * dt, seen)}});
+      AddResiduals(plane, *e.after, "after", unit, residuals);
+    }
+    view["contact"] = ContactJson(plane, e, seen);
+  }
+  view["flights"] = std::move(flights);
+  view["residuals"] = std::move(residuals);
+  return view;
+}
+
+Json NumbersJson(const core::Trial& trial) {
+  Json out = RecordJson(trial.first);
+  core::Measured angle = core::ContactAngle(trial);
+  out["angle_kind"] = core::Name(trial.angle_kind);
+  if (angle && trial.angle_kind == core::AngleKind::kFace) {
+    angle->value = std::abs(angle->value);  // the kind is a magnitude
+  }
+  out["angle"] = angle ? Json(report::WithU(*angle, kDegree) + " deg")
+                       : Json("absent: " + angle.error().reason);
+  Json later = Json::array();
+  for (const auto& record : trial.later) later.push_back(RecordJson(record));
+  out["later"] = std::move(later);
+  return out;
+}
+
+Json ChangesJson(const core::Trial& before, const core::Trial& after) {
+  Json out = Json::array();
+  for (const db::Change& change : db::Changes(before, after)) {
+    const auto quantity = std::find_if(
+        db::kContactQuantities.begin(), db::kContactQuantities.end(),
+        [&](const auto& candidate) { return candidate.name == change.field; });
+    if (quantity == db::kContactQuantities.end()) {
+      out.push_back(
+          {{"field", change.field}, {"from", change.from}, {"to", change.to}});
+      continue;
+    }
+    const report::EdgeUnit edge = report::AtTheEdge(quantity->name);
+    const auto text = [&](const core::Trial& trial) {
+      return report::WithUOrReason(db::At(trial.first, *quantity), edge.factor);
+    };
+    out.push_back({{"field", edge.stem + edge.suffix},
+                   {"from", text(before)},
+                   {"to", text(after)}});
+  }
+  return out;
+}
+
+Json HistoryJson(const std::vector<db::Revision>& history) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const core::Trial& trial = history[i].trial;
+    out.push_back(
+        {{"revision", trial.revision},
+         {"kind", db::Name(history[i].kind)},
+         {"who", trial.author},
+         {"why", trial.reason},
+         {"when", trial.recorded_at_utc},
+         {"changes",
+          i == 0 ? Json::array() : ChangesJson(history[i - 1].trial, trial)}});
+  }
+  return out;
+}
+
+}  // namespace touchdown::review

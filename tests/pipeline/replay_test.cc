@@ -1,0 +1,204 @@
+// An analysis out of its document again: the same numbers from the stored
+// track, and corrections of it judged by the same code as a fresh analysis.
+#include "app/pipeline/replay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/pipeline/judge.h"
+#include "tests/pipeline/film_file.h"
+#include "tests/support/temporary_folder.h"
+#include "touchdown/db/quantities.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+struct Shot {
+  explicit Shot(core::BodyKind kind = core::BodyKind::kSphere) {
+    filmed::Film film = filmed::Default(kind);
+    options.body_kind = kind;
+    if (kind == core::BodyKind::kSphere) {
+      options.diameter_m = core::Estimate{0.024, 2e-5, std::nullopt};
+    } else {
+      options.long_m = core::Estimate{0.040, 2e-5, std::nullopt};
+      options.short_m = core::Estimate{0.016, 2e-5, std::nullopt};
+    }
+    analysis = AnalyzeClip(vision::OpenScene(SceneOf(film), 1), options);
+    analysis.clip.path = "shot.mraw";
+    trial = ToTrial(analysis);
+    trial.clip.id = "id";
+  }
+
+  AnalyzeOptions options;
+  Analysis analysis;
+  core::Trial trial;
+};
+
+// Both there or both absent; values within `share` of their u.
+void ExpectSame(const core::ContactRecord& a, const core::ContactRecord& b,
+                double share) {
+  for (const auto& quantity : db::kContactQuantities) {
+    const core::Measured& x = db::At(a, quantity);
+    const core::Measured& y = db::At(b, quantity);
+    ASSERT_EQ(x.has_value(), y.has_value()) << quantity.name;
+    if (!x) continue;
+    // A limit of detection has no u of its own.
+    const double tolerance = x->u > 0.0 ? share * x->u : 0.002 * x->value;
+    EXPECT_NEAR(x->value, y->value, tolerance) << quantity.name;
+    EXPECT_NEAR(x->u, y->u, 0.01 * x->u) << quantity.name;
+  }
+  EXPECT_EQ(a.state.label, b.state.label);
+}
+
+class EachBody : public ::testing::TestWithParam<core::BodyKind> {};
+
+TEST_P(EachBody, SaysTheSameFromItsDocument) {
+  const Shot shot(GetParam());
+  ASSERT_TRUE(shot.trial.first.contact.found);
+  const auto again = Replay(shot.trial);
+  ASSERT_TRUE(again) << again.error().reason;
+  // Poses are stored to 1e-5 px, of which some thousandths are known.
+  ExpectSame(shot.trial.first, again->contacts.first, 0.01);
+  EXPECT_EQ(again->track->poses.size(), shot.analysis.track->poses.size());
+  EXPECT_EQ(again->options_hash, shot.analysis.options_hash);
+}
+
+TEST_P(EachBody, SaysExactlyTheSameASecondTime) {
+  const Shot shot(GetParam());
+  const auto once = Replay(shot.trial);
+  ASSERT_TRUE(once);
+  const core::Trial stored = WithAnalysis(shot.trial, *once);
+  const auto twice = Replay(stored);
+  ASSERT_TRUE(twice) << twice.error().reason;
+  EXPECT_EQ(once->contacts.first, twice->contacts.first);
+  EXPECT_EQ(once->contacts.later, twice->contacts.later);
+}
+
+INSTANTIATE_TEST_SUITE_P(Replay, EachBody,
+                         ::testing::Values(core::BodyKind::kSphere,
+                                           core::BodyKind::kRectangle));
+
+TEST(Rejudge, TurnsTheAngleWithTheGroundLine) {
+  const Shot shot;
+  auto analysis = Replay(shot.trial);
+  ASSERT_TRUE(analysis);
+  const calib::GroundLine& g = *analysis->ground;
+  // The line turned by 2 degrees about the point of contact.
+  const core::PixelPoint at = analysis->contacts.evidence.front().touching;
+  const double angle = calib::ImageAngle(g) + 2.0 * core::kDegree;
+  Correction correction;
+  correction.ground = calib::GroundThrough(
+      {at.x_px - 100 * std::cos(angle), at.y_px - 100 * std::sin(angle)},
+      {at.x_px + 100 * std::cos(angle), at.y_px + 100 * std::sin(angle)},
+      kByHand_px);
+  const Analysis turned = Rejudge(*analysis, correction);
+  const auto& was = analysis->contacts.first.contact.approach_angle_rad;
+  const auto& now = turned.contacts.first.contact.approach_angle_rad;
+  ASSERT_TRUE(was && now);
+  // Gravity stays along the line's normal, so it turns too: over the 20 to 30
+  // ms that are fitted its sine of 2 degrees bends the path by up to 9.8 sin(2
+  // deg) 0.015 s / 1.3 m/s = 0.2 deg.
+  EXPECT_NEAR(std::abs(now->value - was->value), 2.0 * core::kDegree,
+              0.2 * core::kDegree);
+  EXPECT_GT(now->u, was->u);  // a hand is less sure than the fit
+  EXPECT_THAT(turned.corrections,
+              ::testing::ElementsAre(::testing::HasSubstr("ground line")));
+}
+
+// A correction and a fresh analysis with the same line agree but for the
+// outlines, which the latter fits again with the pixels below the line left
+// out.
+TEST(Rejudge, AgreesWithAnAnalysisThatIsGivenTheLine) {
+  Shot shot;
+  auto analysis = Replay(shot.trial);
+  ASSERT_TRUE(analysis);
+  const auto line = calib::GroundThrough({10.0, 97.5}, {230.0, 98.9}, 0.5);
+  Correction correction;
+  correction.ground = line;
+  const Analysis corrected = Rejudge(*analysis, correction);
+  shot.options.ground = line;
+  const Analysis fresh = AnalyzeClip(
+      vision::OpenScene(SceneOf(filmed::Default(core::BodyKind::kSphere)), 1),
+      shot.options);
+  const auto& a = corrected.contacts.first.contact;
+  const auto& b = fresh.contacts.first.contact;
+  ASSERT_TRUE(a.approach_angle_rad && b.approach_angle_rad);
+  EXPECT_NEAR(a.approach_angle_rad->value, b.approach_angle_rad->value,
+              3.0 * b.approach_angle_rad->u);
+  EXPECT_NEAR(a.frame->value, b.frame->value, 3.0 * b.frame->u);
+  EXPECT_EQ(corrected.contacts.first.state.label,
+            fresh.contacts.first.state.label);
+  EXPECT_EQ(corrected.options_hash, fresh.options_hash);
+}
+
+TEST(Rejudge, TakesTheContactWhereAPersonSaysItIs) {
+  const Shot shot;
+  auto analysis = Replay(shot.trial);
+  ASSERT_TRUE(analysis);
+  const double frame = analysis->contacts.first.contact.frame->value;
+  Correction same;
+  same.contact_frame = static_cast<std::int64_t>(std::floor(frame));
+  const Analysis confirmed = Rejudge(*analysis, same);
+  ExpectSame(analysis->contacts.first, confirmed.contacts.first, 0.05);
+  EXPECT_EQ(confirmed.contacts.later.size(), analysis->contacts.later.size());
+  Correction other;
+  other.contact_frame = *same.contact_frame - 6;
+  const Analysis moved = Rejudge(*analysis, other);
+  EXPECT_NE(moved.contacts.first, analysis->contacts.first);
+}
+
+TEST(Rejudge, MovesAndLeavesOutOutlines) {
+  const Shot shot;
+  auto analysis = Replay(shot.trial);
+  ASSERT_TRUE(analysis);
+  const std::int64_t frame = analysis->track->poses[20].frame;
+  Correction correction;
+  correction.moved[frame] = {0.0, -3.0};
+  correction.left_out = {analysis->track->poses[30].frame};
+  const Analysis corrected = Rejudge(*analysis, correction);
+  EXPECT_EQ(corrected.track->poses.size(), analysis->track->poses.size() - 1);
+  EXPECT_NEAR(corrected.plane->samples[20].gap_px,
+              analysis->plane->samples[20].gap_px + 3.0, 0.01);
+  EXPECT_GE(corrected.track->poses[20].u_y_px, kByHand_px);
+}
+
+TEST(Rejudge, RefusesFramesWithoutABody) {
+  const Shot shot;
+  const auto analysis = Replay(shot.trial);
+  ASSERT_TRUE(analysis);
+  Correction correction;
+  correction.moved[3] = {1.0, 1.0};
+  EXPECT_THROW(Rejudge(*analysis, correction), std::invalid_argument);
+  correction = {};
+  correction.left_out = {3};
+  EXPECT_THROW(Rejudge(*analysis, correction), std::invalid_argument);
+  correction = {};
+  correction.contact_frame = 3;
+  EXPECT_THROW(Rejudge(*analysis, correction), std::invalid_argument);
+  correction = {};
+  for (const auto& pose : analysis->track->poses) {
+    correction.left_out.push_back(pose.frame);
+  }
+  EXPECT_THROW(Rejudge(*analysis, correction), std::invalid_argument);
+}
+
+TEST(Replay, SaysWhyThereIsNothingToReplay) {
+  Shot shot;
+  core::Trial trial = shot.trial;
+  trial.document_json.clear();
+  EXPECT_THAT(Replay(trial).error().reason, ::testing::HasSubstr("by hand"));
+  trial.document_json = R"({"schema": "touchdown.analysis/1"})";
+  EXPECT_THAT(Replay(trial).error().reason,
+              ::testing::HasSubstr("earlier program"));
+  trial.document_json = "{";
+  EXPECT_THAT(Replay(trial).error().reason,
+              ::testing::HasSubstr("cannot be read"));
+  trial.document_json = R"({"replay": {"track": 3}})";
+  EXPECT_THAT(Replay(trial).error().reason,
+              ::testing::HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace touchdown::pipeline

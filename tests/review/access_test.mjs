@@ -1,0 +1,78 @@
+// For everybody: axe-core finds nothing serious on any page, at the size of a
+// small laptop and of a tablet, and nothing needs a mouse.
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {after, before, test} from 'node:test';
+
+import {frameShown, Lab, openBrowser, picture, sitDown, startReview}
+    from './lab.mjs';
+
+const axe = readFileSync(
+    createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+let lab, review, browser;
+before(async () => {
+  lab = new Lab();
+  review = await startReview(lab.db);
+  browser = await openBrowser();
+});
+after(async () => {
+  await browser?.close();
+  await review?.stop();
+  lab?.remove();
+});
+
+async function findings(page) {
+  await page.evaluate(axe);
+  const {violations} = await page.evaluate(() => globalThis.axe.run());
+  return violations.filter(v => v.impact === 'serious' ||
+                                v.impact === 'critical')
+      .map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' | ')}`);
+}
+
+const kSizes = {laptop: {width: 1280, height: 720},
+                tablet: {width: 820, height: 1180}};
+
+for (const [name, size] of Object.entries(kSizes)) {
+  test(`axe-core has nothing serious to say (${name})`, async () => {
+    const page = await sitDown(browser, review, 'Ada', size);
+    await page.waitForSelector('.card .next');
+    assert.deepEqual(await findings(page), []);
+    await page.goto(`${review.origin}/#/trial/${lab.trial}`);
+    await frameShown(page, 89);
+    assert.deepEqual(await findings(page), []);
+    await picture(page, `trial-${name}`);
+    // Nothing is cut off at the side.
+    assert.ok(await page.evaluate(
+        () => document.documentElement.scrollWidth <= innerWidth));
+    await page.goto(`${review.origin}/#/log`);
+    await page.waitForSelector('form');
+    assert.deepEqual(await findings(page), []);
+    await page.goto(`${review.origin}/#/report`);
+    await page.waitForSelector('text=Build the report');
+    assert.deepEqual(await findings(page), []);
+    await page.context().close();
+  });
+}
+
+test('everything is reached by the Tab key', async () => {
+  const page = await sitDown(browser, review, 'Ada');
+  await page.goto(`${review.origin}/#/trial/${lab.trial}`);
+  await frameShown(page, 89);
+  await page.locator('.skip').focus();
+  const reached = new Set();
+  for (let i = 0; i < 60; ++i) {
+    await page.keyboard.press('Tab');
+    reached.add(await page.evaluate(() => {
+      const e = document.activeElement;
+      return e.id || e.getAttribute('aria-label') || e.textContent;
+    }));
+  }
+  for (const wanted of ['scrub', 'state', 'why', 'Store this correction',
+                        'move the outline left', 'Exclude this trial']) {
+    assert.ok(reached.has(wanted), wanted);
+  }
+  assert.ok([...reached].some(r => r.startsWith('ground line, left point')));
+  await page.context().close();
+});

@@ -1,0 +1,100 @@
+#include "app/review/clip_shelf.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/pipeline/film_file.h"
+#include "tests/support/temporary_folder.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/image_file.h"
+
+namespace touchdown::review {
+namespace {
+
+using pipeline::filmed::WriteSphere;
+
+vision::Image Decode(const Picture& picture,
+                     const testing::TemporaryFolder& folder) {
+  const auto file = folder.Write(
+      picture.type == "image/png" ? "a.png" : "a.jpg", *picture.bytes);
+  return vision::ReadImage(file);
+}
+
+TEST(ClipShelf, GivesTheSamplesOfARawRecording) {
+  const testing::TemporaryFolder folder;
+  WriteSphere(folder / "a.mraw", 25.0, 1);
+  ClipShelf shelf;
+  const Picture picture = shelf.Frame(folder / "a.mraw", 70);
+  EXPECT_EQ(picture.type, "image/png");
+  const vision::Image image = Decode(picture, folder);
+  const auto clip = vision::OpenClip(folder / "a.mraw");
+  const core::Frame frame = clip->Read(70);
+  ASSERT_EQ(image.width_px, frame.width_px);
+  ASSERT_EQ(image.height_px, frame.height_px);
+  for (int y = 0; y < frame.height_px; ++y) {
+    for (int x = 0; x < frame.width_px; ++x) {
+      ASSERT_EQ(image.View().at(x, y), frame.at(x, y)) << x << ", " << y;
+    }
+  }
+  EXPECT_EQ(shelf.bytes(), 0u);  // it is as quickly made again
+}
+
+// A compressed recording of `frames` frames, each of one level of its own.
+void WriteLevels(const std::filesystem::path& path, int frames) {
+  vision::VideoOptions options;
+  options.codec = vision::VideoCodec::kH264;
+  options.key_frame_distance = 25;
+  options.fps = 100.0;
+  std::vector<std::byte> pixels(64 * 48);
+  std::int64_t n = 0;
+  vision::WriteVideo(path, options, [&]() -> std::optional<core::Frame> {
+    if (n == frames) return std::nullopt;
+    std::fill(pixels.begin(), pixels.end(), static_cast<std::byte>(20 + 3 * n));
+    core::Frame frame;
+    frame.data = pixels.data();
+    frame.stride_bytes = 64;
+    frame.width_px = 64;
+    frame.height_px = 48;
+    frame.index = n++;
+    return frame;
+  });
+}
+
+TEST(ClipShelf, GivesEachFrameOfACompressedRecordingInAnyOrder) {
+  const testing::TemporaryFolder folder;
+  WriteLevels(folder / "a.mp4", 60);
+  ClipShelf shelf;
+  for (const int n : {59, 0, 30, 29, 31, 5, 58, 30}) {
+    const Picture picture = shelf.Frame(folder / "a.mp4", n);
+    EXPECT_EQ(picture.type, "image/jpeg");
+    const auto level = Decode(picture, folder).View().at(32, 24);
+    EXPECT_NEAR(static_cast<double>(level), 20 + 3 * n, 4.0) << n;
+  }
+}
+
+TEST(ClipShelf, KeepsNoMoreThanItMay) {
+  const testing::TemporaryFolder folder;
+  WriteLevels(folder / "a.mp4", 60);
+  WriteLevels(folder / "b.mp4", 60);
+  ShelfOptions options;
+  options.most_bytes = 4000;
+  options.most_open = 1;
+  ClipShelf shelf(options);
+  for (int n = 0; n < 60; ++n) {
+    shelf.Frame(folder / (n % 2 == 0 ? "a.mp4" : "b.mp4"), n);
+    EXPECT_LE(shelf.bytes(), options.most_bytes);
+  }
+}
+
+TEST(ClipShelf, SaysWhatIsWrong) {
+  const testing::TemporaryFolder folder;
+  ClipShelf shelf;
+  EXPECT_THROW(shelf.Frame(folder / "none.mraw", 0), core::InputError);
+  WriteSphere(folder / "a.mraw", 25.0, 1);
+  EXPECT_THROW(shelf.Frame(folder / "a.mraw", 100'000), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::review

@@ -1,0 +1,82 @@
+// The server over a socket: it answers this machine alone, and with the guard's
+// header fields.
+#include "app/review/server.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/review/client.h"
+#include "tests/review/lab.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::review {
+namespace {
+
+struct Running {
+  explicit Running(const ServerOptions& options) : server(options) {
+    thread = std::thread([this] { server.Run(); });
+    const std::string address = server.address();
+    token = address.substr(address.find("token=") + 6);
+  }
+  ~Running() {
+    // Stop() before Run() has begun would be forgotten: wait for an answer.
+    httplib::Client("127.0.0.1", server.port()).Get("/");
+    server.Stop();
+    thread.join();
+  }
+
+  Server server;
+  std::string token;
+  std::thread thread;
+};
+
+TEST(Server, AnswersWithTheKeyOnly) {
+  const Lab lab;
+  Running running({lab.store, 0, lab.folder / "report"});
+  httplib::Client client("127.0.0.1", running.server.port());
+  const auto none = client.Get("/api/trials");
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->status, 403);
+  EXPECT_NE(none->get_header_value("Content-Security-Policy"), "");
+  const auto entered = client.Get("/?token=" + running.token);
+  ASSERT_TRUE(entered);
+  EXPECT_EQ(entered->status, 303);
+  const std::string cookie = entered->get_header_value("Set-Cookie");
+  const auto page =
+      client.Get("/", {{"Cookie", cookie.substr(0, cookie.find(';'))}});
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->status, 200);
+  const auto list =
+      client.Get("/api/trials", {{"X-Touchdown-Token", running.token}});
+  ASSERT_TRUE(list);
+  EXPECT_EQ(nlohmann::json::parse(list->body)["trials"].size(), 1u);
+}
+
+TEST(Server, IsNotThereForOtherMachines) {
+  const Lab lab;
+  Running running({lab.store, 0, lab.folder / "report"});
+  // Another address of this machine's loopback.
+  httplib::Client client("127.0.0.2", running.server.port());
+  client.set_connection_timeout(1);
+  EXPECT_FALSE(client.Get("/"));
+}
+
+TEST(Server, GivesEachSessionAKeyOfItsOwn) {
+  const Lab lab;
+  Running one({lab.store, 0, lab.folder / "report"});
+  Running two({lab.store, 0, lab.folder / "report"});
+  EXPECT_NE(one.token, two.token);
+  EXPECT_NE(one.server.port(), two.server.port());
+  EXPECT_GE(one.token.size(), 32u);
+  EXPECT_THROW(Server({lab.store, one.server.port(), {}}), core::InputError);
+}
+
+TEST(Server, NeedsAStore) {
+  const testing::TemporaryFolder folder;
+  EXPECT_THROW(Server({folder / "none.db", 0, {}}), core::StoreError);
+}
+
+}  // namespace
+}  // namespace touchdown::review
