@@ -190,8 +190,8 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
     in_image =
         SeenNear(vision::SeenFromGround(Seen(track), ground), *camera_.lens);
   }
-  judged.track =
-      vision::Refine(*clip_, background_, track, {in_image, aspect_});
+  judged.track = vision::Refine(*clip_, background_, track,
+                                {in_image, aspect_, options_.decoder_threads});
   judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
@@ -350,6 +350,7 @@ Analysis Analyzer::Run() {
   track_options.region = options_.region;
   track_options.kind = kind;
   track_options.ground = camera_.image_ground;
+  track_options.threads = options_.decoder_threads;
   track_options.progress = options_.progress;
   auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
