@@ -33,6 +33,9 @@ double EdgeInformation(double contrast, double blur2, double variance) {
          (2.0 * std::sqrt(std::numbers::pi * blur2) * variance);
 }
 
+// What follows is written apart from vision's own fit on purpose: a bound that
+// shared its parameters would share its mistakes.
+//
 // Poses are (along, height, angle, half long or radius, half short).
 constexpr int kPose = 5;
 using PoseMatrix = Eigen::Matrix<double, kPose, kPose>;

@@ -89,19 +89,26 @@ void DrawLevels(Levels& l, Drawer& draw) {
   }
 }
 
+double NormalSpeed_px(const Levels& l) {
+  return l.speed_px * std::sin(l.angle_deg * core::kDegree);
+}
+
+// Gravity in px per frame^2, from which the frame rate follows: a flight that
+// curves visibly, and whose body was not at its apex when it entered.
+double Gravity_px(const Levels& l) {
+  return std::min(
+      0.02, 0.4 * NormalSpeed_px(l) / static_cast<double>(l.frames_before));
+}
+
 // The whole case but its seed, from levels that are drawn here.
 void DrawFilm(Case& c, Drawer& draw) {
   Levels& l = c.levels;
   const Hardship hardship = l.hardship;
 
-  // Gravity in px per frame^2 follows from the frame rate: a flight that curves
-  // visibly, and whose body was not at its apex when it entered.
   const double angle = l.angle_deg * core::kDegree;
-  const double vn = l.speed_px * std::sin(angle);
-  const double gravity_px =
-      std::min(0.02, 0.4 * vn / static_cast<double>(l.frames_before));
+  const double vn = NormalSpeed_px(l);
   const double fps =
-      std::sqrt(core::kStandardGravity_mps2 * kPxPerM / gravity_px);
+      std::sqrt(core::kStandardGravity_mps2 * kPxPerM / Gravity_px(l));
 
   pipeline::filmed::Film& film = c.film;
   Throw& t = film.thrown;
@@ -210,13 +217,11 @@ Case DrawRebound(std::uint64_t index) {
   Case c;
   c.seed = 1000 * (index + 1) + 999;
   Drawer draw(c.seed);
-  constexpr double kGravity_px = 0.02;  // per frame^2, as DrawFilm has it
   const double size_px = draw.Level({16.0, 24.0, 40.0});
   const double bounce_height_m = core::DefaultBounceHeight(size_px / kPxPerM);
   const bool stays = draw.Uniform(0.0, 1.0) < 0.25;
   c.rise_m =
       stays ? 0.0 : bounce_height_m * std::pow(10.0, draw.Uniform(-1.3, 1.0));
-  const double up_px = std::sqrt(2.0 * kGravity_px * *c.rise_m * kPxPerM);
   Levels levels;
   levels.size_px = size_px;
   levels.contrast = draw.Level({-0.2, -0.5, 0.2});
@@ -226,8 +231,10 @@ Case DrawRebound(std::uint64_t index) {
   levels.angle_deg = draw.Level({20.0, 40.0, 60.0});
   levels.bit_depth = draw.Level({8, 12});
   // Until it is well past its apex, or for long enough to see that it stays.
+  const double rise_px = *c.rise_m * kPxPerM;
   levels.frames_after =
-      8 + static_cast<int>(std::ceil(1.4 * up_px / kGravity_px));
+      8 + static_cast<int>(
+              std::ceil(1.4 * std::sqrt(2.0 * rise_px / Gravity_px(levels))));
   c.levels = levels;
   DrawFilm(c, draw);
   return c;

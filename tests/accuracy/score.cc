@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/pipeline/analyze.h"
+#include "touchdown/analysis/agreement_statistics.h"
 #include "touchdown/vision/render.h"
 
 namespace touchdown::accuracy {
@@ -76,6 +77,11 @@ double Sum::MeanZBand() const {
   return kNormal995 * std::sqrt(variance / n);
 }
 
+core::Interval Sum::CoverageBand() const {
+  return analysis::WilsonInterval(static_cast<int>(covered),
+                                  static_cast<int>(measured), 0.99);
+}
+
 void Add(Sum& sum, const Outcome& outcome, Quantity quantity) {
   const auto& reading = outcome.readings[quantity];
   if (!reading && outcome.reasons[quantity].empty()) return;
@@ -103,18 +109,6 @@ void Add(States& states, const Outcome& outcome) {
   states.false_bounces += clear && bounce && off < 0.0;
   states.missed_bounces += clear && !bounce && !undecided && off > 0.0;
   states.undecided += far && undecided;
-}
-
-Share Wilson99(std::size_t hits, std::size_t n) {
-  constexpr double kNormal995 = 2.5758293035489;
-  const double total = static_cast<double>(n);
-  const double p = static_cast<double>(hits) / total;
-  const double z2 = kNormal995 * kNormal995 / total;
-  const double centre = (p + 0.5 * z2) / (1.0 + z2);
-  const double half = kNormal995 *
-                      std::sqrt(p * (1.0 - p) / total + 0.25 * z2 / total) /
-                      (1.0 + z2);
-  return {centre - half, centre + half};
 }
 
 }  // namespace touchdown::accuracy

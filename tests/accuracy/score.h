@@ -57,6 +57,7 @@ struct Sum {
   // Mean of error / u, and half its 99 % band (2.576 standard errors).
   double MeanZ() const;
   double MeanZBand() const;
+  core::Interval CoverageBand() const;  // Wilson, 99 %
 };
 void Add(Sum& sum, const Outcome& outcome, Quantity quantity);
 
@@ -71,12 +72,5 @@ struct States {
   std::size_t undecided = 0;       // of the far ones
 };
 void Add(States& states, const Outcome& outcome);
-
-// The Wilson interval of a share at 99 %.
-struct Share {
-  double low = 0.0;
-  double high = 0.0;
-};
-Share Wilson99(std::size_t hits, std::size_t n);
 
 }  // namespace touchdown::accuracy

@@ -20,6 +20,7 @@
 #include "tests/accuracy/score.h"
 #ifdef TOUCHDOWN_HAS_PEERS
 #include "tests/benchmarks/peers.h"
+#include "tests/support/statistics.h"
 #endif
 #include "touchdown/core/units.h"
 
@@ -84,7 +85,7 @@ void PrintTable(const std::vector<Outcome>& outcomes, const LevelOf& level_of) {
       const Sum& s = of_level[static_cast<std::size_t>(q)];
       if (s.measured < 2) continue;
       const bool is_time = q == kFrame;
-      const Share band = Wilson99(s.covered, s.measured);
+      const core::Interval band = s.CoverageBand();
       fmt::print(stderr,
                  "| {} | {} | {} | {} | {:.4g} {} | {:.2f} | {:+.2f} +- {:.2f} "
                  "| {:.3f} ({:.3f} to {:.3f}) |\n",
@@ -106,12 +107,6 @@ struct Method {
   std::size_t failures = 0;
 };
 
-double RmsOf(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v * v;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 // 95 % interval of the root mean square: bootstrap over the clips.
 std::string RmsText(const std::vector<double>& errors) {
   if (errors.empty()) return "-";
@@ -123,10 +118,10 @@ std::string RmsText(const std::vector<double>& errors) {
   drawn.reserve(kDraws);
   for (int i = 0; i < kDraws; ++i) {
     for (double& v : sample) v = errors[any(engine)];
-    drawn.push_back(RmsOf(sample));
+    drawn.push_back(testing::Rms(sample));
   }
   std::sort(drawn.begin(), drawn.end());
-  return fmt::format("{:.3g} ({:.3g} to {:.3g})", RmsOf(errors),
+  return fmt::format("{:.3g} ({:.3g} to {:.3g})", testing::Rms(errors),
                      drawn[kDraws / 40], drawn[kDraws - 1 - kDraws / 40]);
 }
 

@@ -37,7 +37,7 @@ TEST(Accuracy, RegularClipsAreNearTheCramerRaoBound) {
     EXPECT_LT(s.RmseOverBound(), 1.5 * (1.0 + few));
     EXPECT_GT(s.RmseOverBound(), 1.0 - few);  // nobody beats the bound
     EXPECT_LE(std::abs(s.MeanZ()), 1.5 * s.MeanZBand());
-    EXPECT_GE(Wilson99(s.covered, s.measured).high, 0.95);
+    EXPECT_GE(s.CoverageBand().high, 0.95);
   }
 }
 
@@ -55,7 +55,7 @@ TEST(Accuracy, HardClipsAreHonest) {
   }
   EXPECT_GE(approach, 25U);  // of 28: a few may be absent, with a reason
   ASSERT_GE(all.measured, 60U);
-  EXPECT_GE(Wilson99(all.covered, all.measured).high, 0.95);
+  EXPECT_GE(all.CoverageBand().high, 0.95);
 }
 
 // Rebounds from none to ten times the bounce height: where the gap is off it by

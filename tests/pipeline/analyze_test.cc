@@ -9,18 +9,17 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <random>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "app/pipeline/analysis_text.h"
 #include "app/pipeline/evidence.h"
+#include "tests/pipeline/analyzed_film.h"
+#include "tests/pipeline/document.h"
 #include "tests/pipeline/filmed.h"
 #include "tests/support/csv.h"
 #include "tests/support/statistics.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/vision/composite_clip.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/clip_writer.h"
@@ -30,30 +29,14 @@ namespace {
 
 using core::BodyKind;
 using core::MotionState;
+using filmed::AnalyzeFilm;
 using filmed::Default;
+using filmed::ExpectDocument;
+using filmed::ExpectMeasured;
 using filmed::Film;
 using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
-
-AnalyzeOptions Known(const Film& film) {
-  AnalyzeOptions options;
-  options.scale_px_per_m = core::Estimate{
-      film.camera.px_per_m, 1e-4 * film.camera.px_per_m, std::nullopt};
-  return options;
-}
-
-Analysis AnalyzeFilm(const Film& film, std::uint64_t seed = 1) {
-  return AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), seed),
-                     Known(film));
-}
-
-// |error| within 4 standard uncertainties.
-void ExpectMeasured(const core::Measured& measured, double truth,
-                    const char* what) {
-  ASSERT_TRUE(measured) << what << ": " << measured.error().reason;
-  EXPECT_NEAR(measured->value, truth, 4.0 * measured->u) << what;
-}
 
 void ExpectTruth(const Analysis& analysis, const Film& film) {
   const vision::synthetic::Throw& t = film.thrown;
@@ -163,308 +146,6 @@ TEST(AnalyzeSpheres, UncertaintiesAreHonest) {
     EXPECT_LT(testing::Rms(z), band.high);
     EXPECT_GT(testing::Rms(z), band.low);
   }
-}
-
-// ---- The document -------------------------------------------------------
-
-using Visit = std::function<void(const std::string&, const json&)>;
-void Walk(const json& value, const std::string& path, const Visit& visit) {
-  visit(path, value);
-  if (value.is_object()) {
-    for (const auto& [key, child] : value.items()) {
-      Walk(child, path.empty() ? key : path + "." + key, visit);
-    }
-  } else if (value.is_array()) {
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      Walk(value[i], path + "[" + std::to_string(i) + "]", visit);
-    }
-  }
-}
-
-// The document of DESIGN.md section 4, whatever was found: every key is there;
-// null where absent, with its reason under "absent", and nothing else there.
-json ExpectDocument(const Analysis& analysis) {
-  json document;
-  try {
-    document = json::parse(ToJson(analysis));
-  } catch (const json::exception& error) {
-    ADD_FAILURE() << error.what();
-    return document;
-  }
-  EXPECT_EQ(document["schema"], "touchdown.analysis/1");
-  const char* const keys[] = {"/clip/path",
-                              "/clip/id",
-                              "/clip/sha256",
-                              "/clip/format",
-                              "/clip/width_px",
-                              "/clip/height_px",
-                              "/clip/bit_depth",
-                              "/clip/frames",
-                              "/clip/first_camera_frame",
-                              "/clip/time_base/fps",
-                              "/clip/time_base/source",
-                              "/clip/time_base/uniform",
-                              "/clip/time_base/trusted",
-                              "/scale",
-                              "/ground",
-                              "/body",
-                              "/contact/found",
-                              "/contact/time_s",
-                              "/contact/frame",
-                              "/contact/angle_kind",
-                              "/contact/angle_deg",
-                              "/contact/approach_angle_deg",
-                              "/contact/radius_angle_deg",
-                              "/contact/face_angle_deg",
-                              "/contact/corner",
-                              "/contact/duration_s",
-                              "/contact/budget",
-                              "/state/label",
-                              "/state/p_bounce",
-                              "/state/reason",
-                              "/state/max_gap_mm",
-                              "/state/bounce_height_mm",
-                              "/state/detectable_gap_mm",
-                              "/state/micro_bounce",
-                              "/later_contacts",
-                              "/motion/before/speed_mps",
-                              "/motion/before/normal_mps",
-                              "/motion/before/tangential_mps",
-                              "/motion/before/omega_rad_per_s",
-                              "/motion/after/normal_mps",
-                              "/motion/after/tangential_mps",
-                              "/motion/after/omega_rad_per_s",
-                              "/motion/restitution",
-                              "/motion/centre_rebound_ratio",
-                              "/motion/impulse_ratio",
-                              "/motion/gravity_check_mps2",
-                              "/scene_model/used",
-                              "/scene_model/left_out",
-                              "/warnings",
-                              "/timing_s/total",
-                              "/timing_s/decode",
-                              "/timing_s/track",
-                              "/timing_s/digest",
-                              "/absent",
-                              "/software/version",
-                              "/software/options_hash"};
-  for (const char* key : keys) {
-    EXPECT_TRUE(document.contains(json::json_pointer(key))) << key;
-  }
-  if (document["scale"].is_object()) {
-    for (const char* key :
-         {"/scale/px_per_m/value", "/scale/px_per_m/u", "/scale/source"}) {
-      EXPECT_TRUE(document.contains(json::json_pointer(key))) << key;
-    }
-  }
-  if (document["ground"].is_object()) {
-    for (const char* key :
-         {"/ground/x1_px", "/ground/y1_px", "/ground/x2_px", "/ground/y2_px",
-          "/ground/u_angle_deg", "/ground/source"}) {
-      EXPECT_TRUE(document.contains(json::json_pointer(key))) << key;
-    }
-  }
-  if (document["body"].is_object()) {
-    for (const char* key : {"/body/kind", "/body/diameter_mm", "/body/long_mm",
-                            "/body/short_mm"}) {
-      EXPECT_TRUE(document.contains(json::json_pointer(key))) << key;
-    }
-  }
-  std::set<std::string> nulls;
-  Walk(document, "", [&](const std::string& path, const json& value) {
-    if (path.rfind("absent", 0) == 0) return;
-    if (value.is_null()) {
-      nulls.insert(path);
-      EXPECT_TRUE(document["absent"].contains(path))
-          << path << " is null without a reason";
-    }
-    if (value.is_number()) {
-      EXPECT_TRUE(std::isfinite(value.get<double>()));
-    }
-    // A measured number has its uncertainty.
-    if (value.is_object() && value.contains("value")) {
-      EXPECT_TRUE(value["value"].is_number()) << path;
-      EXPECT_TRUE(value["u"].is_number()) << path;
-      EXPECT_GE(value["u"].get<double>(), 0.0) << path;
-    }
-  });
-  for (const auto& [path, reason] : document["absent"].items()) {
-    EXPECT_TRUE(nulls.contains(path)) << path << " is said to be absent";
-    EXPECT_FALSE(reason.get<std::string>().empty()) << path;
-  }
-  return document;
-}
-
-TEST(AnalyzeDocument, OfABounce) {
-  const Film film = Default(kSphere);
-  const Analysis analysis = AnalyzeFilm(film);
-  const json document = ExpectDocument(analysis);
-  EXPECT_EQ(document["contact"]["found"], true);
-  EXPECT_EQ(document["contact"]["angle_kind"], "approach");
-  EXPECT_EQ(document["contact"]["angle_deg"],
-            document["contact"]["approach_angle_deg"]);
-  EXPECT_NEAR(document["contact"]["angle_deg"]["value"].get<double>(),
-              film.thrown.ContactAngle() / core::kDegree, 0.3);
-  EXPECT_EQ(document["state"]["label"], "bounce");
-  EXPECT_GT(document["state"]["p_bounce"].get<double>(), 0.975);
-  EXPECT_EQ(document["state"]["bounce_height_mm"].get<double>(), 0.5);
-  EXPECT_EQ(document["body"]["kind"], "sphere");
-  EXPECT_NEAR(document["body"]["diameter_mm"]["value"].get<double>(), 24.0,
-              0.1);
-  EXPECT_TRUE(document["contact"]["radius_angle_deg"].is_null());
-  EXPECT_THAT(document["absent"]["contact.radius_angle_deg"].get<std::string>(),
-              HasSubstr("sphere"));
-  EXPECT_EQ(document["ground"]["source"], "detected");
-  EXPECT_EQ(document["scale"]["source"], "user");
-  EXPECT_EQ(document["clip"]["width_px"], 240);
-  EXPECT_EQ(document["clip"]["frames"], film.frames);
-  EXPECT_GT(document["timing_s"]["total"].get<double>(), 0.0);
-  EXPECT_FALSE(document["contact"]["budget"].empty());
-  for (const json& line : document["contact"]["budget"]) {
-    EXPECT_TRUE(line.contains("source"));
-    EXPECT_TRUE(line.contains("u_deg"));
-  }
-  // For a person.
-  const std::string text = ToText(analysis);
-  for (const char* word : {"sphere", "bounce", "approach angle", "deg", "mm",
-                           "ground", "speed", "frames/s"}) {
-    EXPECT_THAT(text, HasSubstr(word));
-  }
-  EXPECT_THAT(text, ::testing::Not(HasSubstr("nan")));
-  // The trial for the store says the same.
-  const core::Trial trial = ToTrial(analysis);
-  EXPECT_EQ(trial.first, analysis.contacts.first);
-  EXPECT_EQ(trial.origin, core::Origin::kRecorded);
-  EXPECT_EQ(json::parse(trial.document_json)["state"]["label"], "bounce");
-}
-
-TEST(AnalyzeDocument, OfABlockItsAngleIsTheRadiusAngleUnlessAskedOtherwise) {
-  const Film film = Default(kBlock);
-  AnalyzeOptions options = Known(film);
-  for (const auto& [kind, key] :
-       std::vector<std::pair<std::optional<core::AngleKind>, std::string>>{
-           {std::nullopt, "radius"},
-           {core::AngleKind::kApproach, "approach"},
-           {core::AngleKind::kFace, "face"}}) {
-    options.angle_kind = kind;
-    const Analysis analysis =
-        AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 3), options);
-    const json document = ExpectDocument(analysis);
-    const json& contact = document["contact"];
-    EXPECT_EQ(contact["angle_kind"], key);
-    EXPECT_EQ(contact["angle_deg"], contact[key + "_angle_deg"]);
-    EXPECT_EQ(contact["corner"], "trailing");
-    EXPECT_TRUE(document["absent"].contains("body.diameter_mm"));
-    EXPECT_THAT(ToText(analysis), HasSubstr("(" + key + " angle)"));
-  }
-}
-
-TEST(AnalyzeDocument, NothingMoves) {
-  Film film = Default(kSphere);
-  film.lead_in = film.frames + 10;
-  const Analysis analysis = AnalyzeFilm(film);
-  EXPECT_FALSE(analysis.body);
-  const json document = ExpectDocument(analysis);
-  EXPECT_EQ(document["contact"]["found"], false);
-  EXPECT_EQ(document["state"]["label"], "undecided");
-  EXPECT_TRUE(document["state"]["p_bounce"].is_null());
-  EXPECT_THAT(document["contact"]["reason"].get<std::string>(),
-              HasSubstr("nothing moves"));
-  EXPECT_THAT(ToText(analysis), HasSubstr("nothing moves"));
-}
-
-TEST(AnalyzeDocument, TwoBodies) {
-  Film film = Default(kSphere);
-  Film other = film;
-  other.thrown.before = {-1.6, -0.1, 0.0};
-  other.thrown.after = {-1.5, 0.1, 0.0};
-  other.thrown.x_m = 0.01;
-  auto clip = std::make_unique<vision::synthetic::Darker>(
-      vision::OpenScene(filmed::SceneOf(film), 1), [&] {
-        vision::Scene scene = filmed::SceneOf(other);
-        const auto pose = scene.pose;
-        scene.pose = [pose](double t) {
-          vision::ScenePose p = pose(t);
-          p.centre.y_m += 0.05;  // above the other
-          return p;
-        };
-        return vision::OpenScene(scene, 2);
-      }());
-  const Analysis analysis = AnalyzeClip(std::move(clip), Known(film));
-  const json document = ExpectDocument(analysis);
-  EXPECT_EQ(document["contact"]["found"], false);
-  EXPECT_EQ(document["state"]["label"], "undecided");
-  EXPECT_THAT(document["state"]["reason"].get<std::string>(),
-              HasSubstr("several bodies"));
-}
-
-TEST(AnalyzeDocument, NoContactWithinTheClip) {
-  Film film = Default(kSphere);
-  film.frames = 74;
-  const Analysis analysis = AnalyzeFilm(film);
-  ASSERT_TRUE(analysis.body);
-  const json document = ExpectDocument(analysis);
-  EXPECT_EQ(document["contact"]["found"], false);
-  EXPECT_EQ(document["state"]["label"], "undecided");
-  EXPECT_TRUE(document["state"]["p_bounce"].is_null());
-}
-
-TEST(AnalyzeDocument, ReboundNotFilmedIsUndecided) {
-  for (const std::int64_t frames : {81, 82}) {
-    Film film = Default(kSphere);
-    film.frames = frames;
-    const Analysis analysis = AnalyzeFilm(film);
-    const json document = ExpectDocument(analysis);
-    EXPECT_EQ(document["contact"]["found"], true) << frames;
-    EXPECT_EQ(document["state"]["label"], "undecided") << frames;
-    EXPECT_TRUE(document["state"]["p_bounce"].is_null()) << frames;
-    EXPECT_THAT(document["state"]["reason"].get<std::string>(),
-                HasSubstr("no rebound was filmed"))
-        << frames;
-    ExpectMeasured(analysis.contacts.first.contact.approach_angle_rad,
-                   film.thrown.ContactAngle(), "approach");
-  }
-}
-
-TEST(AnalyzeDocument, WithoutAScale) {
-  const Film film = Default(kSphere);
-  const Analysis analysis =
-      AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 1), {});
-  const json document = ExpectDocument(analysis);
-  EXPECT_TRUE(document["scale"].is_null());
-  EXPECT_THAT(document["absent"]["scale"].get<std::string>(),
-              HasSubstr("--scale-px-per-m"));
-  EXPECT_TRUE(document["motion"]["before"]["speed_mps"].is_null());
-  EXPECT_EQ(document["contact"]["found"], true);
-  ExpectMeasured(analysis.contacts.first.contact.approach_angle_rad,
-                 film.thrown.ContactAngle(), "approach");
-  EXPECT_EQ(document["state"]["label"], "bounce");
-}
-
-TEST(AnalyzeDocument, SlideOfABlock) {
-  Film film = Default(kBlock);
-  film.thrown.face_rad = 0.0;
-  film.thrown.before = {1.2, -0.25, 0.0};
-  film.thrown.after = {1.1, 0.0, 0.0};
-  film.thrown.stays = true;
-  film.frames = 130;
-  const Analysis analysis = AnalyzeFilm(film);
-  const json document = ExpectDocument(analysis);
-  EXPECT_EQ(document["contact"]["found"], true);
-  EXPECT_EQ(document["state"]["label"], "slide") << document["state"];
-  EXPECT_EQ(document["contact"]["corner"], "flush");
-  ExpectMeasured(analysis.contacts.first.contact.approach_angle_rad,
-                 film.thrown.ContactAngle(), "approach");
-  // On the ground from the first frame: approach angle 0.
-  film.contact_frame = -400.0;
-  film.thrown.x_m = -0.58;
-  const Analysis down = AnalyzeFilm(film);
-  const json from_start = ExpectDocument(down);
-  EXPECT_EQ(from_start["contact"]["found"], true);
-  EXPECT_EQ(from_start["contact"]["from_start"], true);
-  EXPECT_EQ(from_start["contact"]["approach_angle_deg"]["value"], 0.0);
-  EXPECT_TRUE(from_start["contact"]["time_s"].is_null());
-  EXPECT_EQ(from_start["state"]["label"], "slide");
 }
 
 // ---- Options ------------------------------------------------------------

@@ -1,8 +1,4 @@
 // touchdown/vision/clip.h on video files: numbers, times, turns and damage.
-extern "C" {
-#include <libavformat/avformat.h>
-}
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,9 +8,9 @@ extern "C" {
 #include <map>
 #include <random>
 
-#include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
+#include "tests/vision/video_helpers.h"
 #include "touchdown/vision/clip.h"
 #include "touchdown/vision/clip_writer.h"
 
@@ -26,63 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using touchdown::testing::ReadAll;
-using touchdown::testing::Shared;
 using touchdown::testing::TemporaryFolder;
-
-constexpr std::int32_t kWidth = 48;
-constexpr std::int32_t kHeight = 32;
-
-Image Plain(std::int64_t i) { return Pattern(kWidth, kHeight, 8, i); }
-
-void WritePlain(const std::filesystem::path& path, std::int64_t frames,
-                VideoOptions options,
-                const std::function<Image(std::int64_t)>& make = Plain) {
-  std::int64_t i = 0;
-  Image image;
-  WriteVideo(path, options, [&]() -> std::optional<core::Frame> {
-    if (i == frames) return std::nullopt;
-    image = make(i++);
-    return image.View();
-  });
-}
-
-VideoOptions Lossless(VideoCodec codec, double fps = 500.0) {
-  VideoOptions options;
-  options.codec = codec;
-  options.fps = fps;
-  if (codec == VideoCodec::kH264) options.quality = 0;
-  options.key_frame_distance = 10;
-  return options;
-}
-
-// Copies the packets of a video into another file after `change` of each.
-void Remux(const std::filesystem::path& from, const std::filesystem::path& to,
-           const std::function<void(AVPacket&)>& change) {
-  AVFormatContext* in = nullptr;
-  ASSERT_EQ(avformat_open_input(&in, from.c_str(), nullptr, nullptr), 0);
-  ASSERT_GE(avformat_find_stream_info(in, nullptr), 0);
-  AVFormatContext* out = nullptr;
-  ASSERT_GE(avformat_alloc_output_context2(&out, nullptr, nullptr, to.c_str()),
-            0);
-  AVStream* const stream = avformat_new_stream(out, nullptr);
-  avcodec_parameters_copy(stream->codecpar, in->streams[0]->codecpar);
-  stream->codecpar->codec_tag = 0;
-  stream->time_base = in->streams[0]->time_base;
-  ASSERT_GE(avio_open(&out->pb, to.c_str(), AVIO_FLAG_WRITE), 0);
-  ASSERT_GE(avformat_write_header(out, nullptr), 0);
-  AVPacket* packet = av_packet_alloc();
-  while (av_read_frame(in, packet) >= 0) {
-    change(*packet);
-    av_packet_rescale_ts(packet, in->streams[0]->time_base, stream->time_base);
-    packet->pos = -1;
-    ASSERT_EQ(av_interleaved_write_frame(out, packet), 0);
-  }
-  ASSERT_EQ(av_write_trailer(out), 0);
-  av_packet_free(&packet);
-  avio_closep(&out->pb);
-  avformat_free_context(out);
-  avformat_close_input(&in);
-}
 
 // --- times
 // ---------------------------------------------------------------------
@@ -354,159 +294,6 @@ TEST(VideoDamage, MutatedHeadersNeverCrash) {
       }
       ErrorOf(folder.Write(std::string("m_") + kind.name, bytes));
     }
-  }
-}
-
-// --- real recordings (facts: footage/README.md)
-// --------------------------------------
-
-struct Recording {
-  const char* name;
-  const char* format;
-  std::int32_t width, height, bit_depth;
-  std::int64_t frames, first_camera_frame;
-  double fps;
-  bool trusted;
-};
-class VideoFootage : public ::testing::TestWithParam<Recording> {};
-
-TEST_P(VideoFootage, IsWhatItsReadmeSays) {
-  const Recording& expected = GetParam();
-  const auto path = Shared(std::string("footage/") + expected.name);
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-  const auto clip = OpenClip(path);
-  const ClipInfo& info = clip->info();
-  EXPECT_EQ(info.format, expected.format);
-  EXPECT_EQ(info.width_px, expected.width);
-  EXPECT_EQ(info.height_px, expected.height);
-  EXPECT_EQ(info.bit_depth, expected.bit_depth);
-  EXPECT_EQ(info.frames, expected.frames);
-  EXPECT_EQ(info.first_camera_frame, expected.first_camera_frame);
-  EXPECT_NEAR(info.time_base.fps, expected.fps, 1e-4);
-  EXPECT_TRUE(info.time_base.uniform);
-  EXPECT_EQ(info.time_base.trusted, expected.trusted);
-  const bool packed = info.format == "cine" && info.bit_depth == 10;
-  EXPECT_EQ(info.warnings.size(), expected.trusted && !packed ? 0u : 1u);
-  for (std::int64_t i = 0; i < info.frames; ++i) {
-    EXPECT_EQ(clip->Read(i).index, i);
-  }
-  ExpectWindowsAreCrops(*clip, info.frames / 2);
-}
-INSTANTIATE_TEST_SUITE_P(
-    Clips, VideoFootage,
-    ::testing::Values(
-        Recording{"red_ball.mp4", "mp4", 1080, 1920, 8, 65, 0, 29.97003, false},
-        Recording{"galileo_projectile.mp4", "mp4", 640, 480, 8, 33, 0, 30.0,
-                  false},
-        Recording{"bouncing_cart.mov", "mov", 640, 480, 8, 328, 0, 30.0, false},
-        Recording{"data_small_cine.cine", "cine", 256, 32, 10, 235, 0, 100.0,
-                  true},
-        Recording{"cine_781.cine", "cine", 256, 256, 12, 15, -5417, 90000.0,
-                  true},
-        Recording{"cine_legacy.cine", "cine", 128, 128, 14, 97, -7722, 35087.0,
-                  true}));
-
-TEST(VideoFootageOrder, BackwardsIsForwards) {
-  for (const char* name :
-       {"footage/galileo_projectile.mp4", "footage/cine_781.cine"}) {
-    const auto path = Shared(name);
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-    ExpectOrderDoesNotMatter(path);
-  }
-}
-
-TEST(VideoFootageRedBall, TheFirstTwoFramesAreIdentical) {
-  const auto path = Shared("footage/red_ball.mp4");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-  const auto clip = OpenClip(path);
-  const auto samples = [&](std::int64_t i) { return Samples(clip->Read(i)); };
-  const auto first = samples(0);
-  const auto second = samples(1);
-  const auto third = samples(2);
-  const auto distance = [](const auto& a, const auto& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      sum += std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
-    }
-    return sum / static_cast<double>(a.size());
-  };
-  EXPECT_LT(distance(first, second), 0.1 * distance(second, third));
-}
-
-// A second reader of uncompressed .cine, by the format's own layout: the
-// offsets of the frames stand in a table, each frame begins with the length of
-// its annotation, and rows of 16-bit samples run upwards.
-TEST(VideoFootageCine, SamplesAreThoseInTheFile) {
-  for (const char* name :
-       {"footage/cine_781.cine", "footage/cine_legacy.cine"}) {
-    const auto path = Shared(name);
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-    const std::string bytes = ReadAll(path);
-    const auto number = [&](std::size_t at, std::size_t size) {
-      std::uint64_t value = 0;
-      std::memcpy(&value, bytes.data() + at, size);
-      return value;
-    };
-    const std::size_t image_header = number(24, 4);    // OffImageHeader
-    const std::size_t setup = number(28, 4);           // OffSetup
-    const std::size_t table = number(32, 4);           // OffImageOffsets
-    const bool flipped = number(setup + 760, 4) != 0;  // bFlipV
-    const auto width = static_cast<std::int32_t>(number(image_header + 4, 4));
-    const auto height = static_cast<std::int32_t>(number(image_header + 8, 4));
-    const auto clip = OpenClip(path);
-    ASSERT_EQ(clip->info().width_px, width);
-    ASSERT_EQ(clip->info().height_px, height);
-    for (std::int64_t i = 0; i < clip->info().frames; i += 7) {
-      const std::size_t at = number(table + 8 * static_cast<std::size_t>(i), 8);
-      const std::size_t pixels = at + number(at, 4);
-      const core::Frame frame = clip->Read(i);
-      for (std::int32_t y = 0; y < height; ++y) {
-        for (std::int32_t x = 0; x < width; ++x) {
-          const auto row =
-              static_cast<std::size_t>(flipped ? y : height - 1 - y);
-          ASSERT_EQ(frame.at(x, y),
-                    number(pixels + 2 * (row * static_cast<std::size_t>(width) +
-                                         static_cast<std::size_t>(x)),
-                           2))
-              << name << " frame " << i << " at " << x << "," << y;
-        }
-      }
-    }
-  }
-}
-
-// Two readers of the same pictures: libjpeg in the folder, libav in a Motion
-// JPEG made of the same files. Their inverse transforms may differ by a level.
-TEST(VideoFootageHoop, LibavAndLibjpegAgree) {
-  const auto path = Shared("footage/roll_slip_42.4");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-  const TemporaryFolder folder;
-  std::vector<std::string> files;
-  for (int i = 4; i <= 26; ++i) {
-    files.push_back(
-        ReadAll(path / ("RollSlip42." + std::string(i < 10 ? "0" : "") +
-                        std::to_string(i) + ".jpg")));
-  }
-  WritePlain(folder / "carrier.avi", 23, Lossless(VideoCodec::kMjpeg, 30.0));
-  Remux(folder / "carrier.avi", folder / "a.avi", [&](AVPacket& packet) {
-    const std::string& file = files[static_cast<std::size_t>(packet.pts)];
-    const std::int64_t pts = packet.pts;
-    av_packet_unref(&packet);
-    av_new_packet(&packet, static_cast<int>(file.size()));
-    std::memcpy(packet.data, file.data(), file.size());
-    packet.pts = packet.dts = pts;
-    packet.duration = 1;
-    packet.flags = AV_PKT_FLAG_KEY;
-  });
-  const auto pictures = OpenClip(path, {.fps = 30.0});
-  const auto video = OpenClip(folder / "a.avi", {.fps = 30.0});
-  ASSERT_EQ(pictures->info().frames, 23);
-  ASSERT_EQ(video->info().frames, 23);
-  for (std::int64_t i = 0; i < 23; i += 11) {
-    const auto a = Samples(pictures->Read(i));
-    const auto b = Samples(video->Read(i));
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 1.0);
   }
 }
 

@@ -6,13 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <map>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "tests/support/statistics.h"
+#include "tests/vision/contact_sweep.h"
 #include "tests/vision/synthetic_track.h"
 
 namespace touchdown::vision {
@@ -20,165 +18,20 @@ namespace {
 
 using namespace core::literals;  // NOLINT
 using core::MotionState;
+using synthetic::Block;
+using synthetic::ExpectFinite;
+using synthetic::ExpectHonest;
 using synthetic::Filming;
 using synthetic::FilmPlane;
+using synthetic::Numbers;
 using synthetic::Rebound;
+using synthetic::Shoot;
+using synthetic::Sweep;
 using synthetic::Throw;
 using synthetic::WithScale;
 using ::testing::HasSubstr;
-using touchdown::testing::Largest;
 using touchdown::testing::Rms;
 using touchdown::testing::RmsBand9999;
-
-// Every number of a record, by name, where it is present.
-std::map<std::string, core::Estimate> Numbers(
-    const core::ContactRecord& record) {
-  std::map<std::string, core::Estimate> numbers;
-  const auto add = [&](const char* name, const core::Measured& m) {
-    if (m) {
-      numbers[name] = *m;
-    } else {
-      EXPECT_FALSE(m.error().reason.empty()) << name;
-    }
-  };
-  const core::Contact& c = record.contact;
-  add("time", c.time_s);
-  add("frame", c.frame);
-  add("approach", c.approach_angle_rad);
-  add("radius", c.radius_angle_rad);
-  add("face", c.face_angle_rad);
-  add("duration", c.duration_s);
-  add("max gap", record.state.max_gap_m);
-  add("bounce height", record.state.bounce_height_m);
-  add("detectable gap", record.state.detectable_gap_m);
-  const core::Motion& m = record.motion;
-  add("speed", m.before_speed_mps);
-  add("vn", m.before_normal_mps);
-  add("vt", m.before_tangential_mps);
-  add("omega", m.before_omega_rad_per_s);
-  add("vn'", m.after_normal_mps);
-  add("vt'", m.after_tangential_mps);
-  add("omega'", m.after_omega_rad_per_s);
-  add("e", m.restitution);
-  add("centre ratio", m.centre_rebound_ratio);
-  add("impulse ratio", m.impulse_ratio);
-  add("gravity", m.gravity_check_mps2);
-  return numbers;
-}
-
-void ExpectFinite(const ContactResult& result) {
-  std::vector<core::ContactRecord> records = {result.first};
-  records.insert(records.end(), result.later.begin(), result.later.end());
-  for (const core::ContactRecord& record : records) {
-    for (const auto& [name, e] : Numbers(record)) {
-      EXPECT_TRUE(std::isfinite(e.value)) << name;
-      EXPECT_TRUE(std::isfinite(e.u)) << name;
-      EXPECT_GE(e.u, 0.0) << name;
-    }
-    if (record.state.p_bounce) {
-      EXPECT_GE(*record.state.p_bounce, 0.0);
-      EXPECT_LE(*record.state.p_bounce, 1.0);
-    }
-    EXPECT_FALSE(record.state.reason.empty());
-    EXPECT_EQ(record.contact.found, record.contact.reason.empty());
-  }
-}
-
-// What is true of a throw's first contact.
-std::map<std::string, double> TruthOf(const Throw& t, const Filming& filming) {
-  std::map<std::string, double> truth;
-  truth["time"] = t.contact_s;
-  truth["frame"] = t.contact_s * filming.camera.fps;
-  truth["approach"] = t.ContactAngle();
-  truth["duration"] = t.duration_s;
-  truth["speed"] = std::hypot(t.before.vx, t.before.vy);
-  truth["vn"] = t.before.vy;
-  truth["vt"] = t.before.vx;
-  truth["gravity"] = t.gravity_mps2;
-  if (t.kind == core::BodyKind::kRectangle) {
-    const double arm = t.Arm();
-    truth["face"] = t.face_rad;
-    truth["radius"] = std::atan2(t.Support(t.face_rad), std::abs(arm));
-    truth["omega"] = t.before.omega;
-  }
-  if (!t.stays) {
-    const double arm = t.Arm();
-    truth["vn'"] = t.after.vy;
-    truth["vt'"] = t.after.vx;
-    truth["e"] = -(t.after.vy + t.after.omega * arm) /
-                 (t.before.vy + t.before.omega * arm);
-    truth["centre ratio"] = -t.after.vy / t.before.vy;
-    truth["impulse ratio"] =
-        std::abs(t.after.vx - t.before.vx) / (t.after.vy - t.before.vy);
-    if (t.kind == core::BodyKind::kRectangle) truth["omega'"] = t.after.omega;
-  }
-  return truth;
-}
-
-struct Sweep {
-  std::map<std::string, std::vector<double>> z;
-  std::map<std::string, int> missing;
-  std::map<MotionState, int> states;
-  int not_found = 0;
-  int later = 0;
-  std::vector<double> u_approach;
-};
-
-// The same throw filmed `seeds` times, contact anywhere between two frames.
-Sweep Shoot(Throw thrown, Filming filming, int seeds = 60) {
-  Sweep sweep;
-  const double contact_s = thrown.contact_s;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    filming.seed = static_cast<std::uint64_t>(seed);
-    thrown.contact_s =
-        contact_s + std::fmod(0.618034 * seed, 1.0) / filming.camera.fps;
-    const PlaneTrack plane = FilmPlane(thrown, filming);
-    const ContactResult result = FindContacts(plane, WithScale(filming));
-    ExpectFinite(result);
-    if (!result.first.contact.found) {
-      ++sweep.not_found;
-      ADD_FAILURE() << "seed " << seed << ": " << result.first.contact.reason;
-      continue;
-    }
-    ++sweep.states[result.first.state.label];
-    sweep.later += static_cast<int>(result.later.size());
-    auto measured = Numbers(result.first);
-    for (const auto& [name, truth] : TruthOf(thrown, filming)) {
-      if (!measured.contains(name)) {
-        ++sweep.missing[name];
-        continue;
-      }
-      const core::Estimate e = measured[name];
-      if (name == "duration" && truth == 0.0) {
-        EXPECT_LE(e.value, 4.0 * e.u);
-        continue;
-      }
-      sweep.z[name].push_back((e.value - truth) / e.u);
-    }
-    sweep.u_approach.push_back(measured["approach"].u);
-  }
-  return sweep;
-}
-
-// Every error within 4 u, and none of the uncertainties too small; stated
-// uncertainties may be too wide by a factor of two (they hold the gravity of
-// the place, which the tracks here have exactly).
-void ExpectHonest(const Sweep& sweep) {
-  for (const auto& [name, z] : sweep.z) {
-    EXPECT_LT(Largest(z), 4.2) << name;
-    EXPECT_LT(Rms(z), RmsBand9999(z.size()).high) << name;
-    EXPECT_GT(Rms(z), 0.45 * RmsBand9999(z.size()).low) << name;
-  }
-}
-
-Throw Block(double face_rad) {
-  Throw thrown;
-  thrown.kind = core::BodyKind::kRectangle;
-  thrown.half_long_m = 0.03;
-  thrown.half_short_m = 0.01;
-  thrown.face_rad = face_rad;
-  return thrown;
-}
 
 TEST(Contact, BounceBetweenFrames) {
   for (const double angle : {5.0_deg, 20.0_deg, 45.0_deg, 80.0_deg, 90.0_deg}) {
@@ -527,188 +380,6 @@ TEST(Contact, WithoutAScale) {
     EXPECT_LT(Rms(z), RmsBand9999(60).high);
     EXPECT_GT(Rms(z), 0.7 * RmsBand9999(60).low);
   }
-}
-
-// DESIGN.md section 5: the same answer wherever the picture's origin lies.
-TEST(Contact, OriginFarAway) {
-  for (const bool rectangle : {false, true}) {
-    Throw thrown = rectangle ? Block(0.3) : Throw{};
-    thrown.before = {1.2, -0.9, rectangle ? 5.0 : 0.0};
-    thrown.after = {1.0, 0.45, 0.0};
-    if (rectangle) Rebound(thrown, 0.5);
-    Filming filming;
-    filming.frames = 42;
-    Track track = synthetic::FilmTrack(
-        thrown, [&](double t) { return thrown.At(t); }, filming);
-    calib::GroundLine ground = synthetic::FilmGround(filming);
-    const auto reference = Numbers(
-        FindContacts(SeenFromGround(track, ground), WithScale(filming)).first);
-    for (const double far : {1e3, 1e6}) {
-      Track moved = track;
-      for (Pose& pose : moved.poses) {
-        pose.centre.x_px += far;
-        pose.centre.y_px -= far;
-      }
-      calib::GroundLine line = ground;
-      for (core::PixelPoint* p : {&line.p1, &line.p2, &line.reference}) {
-        p->x_px += far;
-        p->y_px -= far;
-      }
-      const auto shifted = Numbers(
-          FindContacts(SeenFromGround(moved, line), WithScale(filming)).first);
-      ASSERT_EQ(reference.size(), shifted.size());
-      for (const auto& [name, e] : reference) {
-        EXPECT_NEAR(shifted.at(name).value, e.value, 1e-3 * e.u + 1e-9) << name;
-        EXPECT_NEAR(shifted.at(name).u, e.u, 1e-3 * e.u + 1e-9) << name;
-      }
-    }
-  }
-}
-
-TEST(Contact, MirroredThrowIsTheSame) {
-  for (const bool rectangle : {false, true}) {
-    Throw thrown = rectangle ? Block(0.3) : Throw{};
-    thrown.before = {1.2, -0.9, rectangle ? 5.0 : 0.0};
-    thrown.after = {1.0, 0.45, 0.0};
-    if (rectangle) Rebound(thrown, 0.5);
-    Filming filming;
-    filming.frames = 42;
-    Track track = synthetic::FilmTrack(
-        thrown, [&](double t) { return thrown.At(t); }, filming);
-    calib::GroundLine ground = synthetic::FilmGround(filming);
-    const auto reference = Numbers(
-        FindContacts(SeenFromGround(track, ground), WithScale(filming)).first);
-    for (Pose& pose : track.poses) {
-      pose.centre.x_px = 640.0 - pose.centre.x_px;
-      pose.angle_rad = -pose.angle_rad;
-      pose.correlation_xy = -pose.correlation_xy;
-    }
-    std::swap(ground.p1, ground.p2);
-    for (core::PixelPoint* p : {&ground.p1, &ground.p2, &ground.reference}) {
-      p->x_px = 640.0 - p->x_px;
-    }
-    const auto mirrored = Numbers(
-        FindContacts(SeenFromGround(track, ground), WithScale(filming)).first);
-    ASSERT_EQ(reference.size(), mirrored.size());
-    for (const auto& [name, e] : reference) {
-      EXPECT_NEAR(mirrored.at(name).value, e.value, 1e-3 * e.u + 1e-9) << name;
-    }
-  }
-}
-
-// Seconds or hours into the recording, and whatever the unit of time.
-TEST(Contact, ClockChangesNothing) {
-  Throw thrown;
-  Filming filming;
-  const PlaneTrack plane = FilmPlane(thrown, filming);
-  const auto reference = Numbers(FindContacts(plane, WithScale(filming)).first);
-  PlaneTrack late = plane;
-  for (PlaneSample& s : late.samples) s.time_s += 1e3;
-  const auto shifted = Numbers(FindContacts(late, WithScale(filming)).first);
-  for (const auto& [name, e] : reference) {
-    const double offset = name == "time" ? 1e3 : 0.0;
-    EXPECT_NEAR(shifted.at(name).value - offset, e.value, 1e-3 * e.u + 1e-9)
-        << name;
-  }
-}
-
-// Slow-motion cameras and far ones: time and length by any factor.
-TEST(Contact, ScaledTimeAndLength) {
-  Throw thrown;
-  Filming filming;
-  const PlaneTrack plane = FilmPlane(thrown, filming);
-  const auto reference = Numbers(FindContacts(plane, {}).first);
-  for (const double time : {1e-3, 1e3}) {
-    PlaneTrack scaled = plane;
-    scaled.frame_interval_s *= time;
-    for (PlaneSample& s : scaled.samples) s.time_s *= time;
-    const auto numbers = Numbers(FindContacts(scaled, {}).first);
-    for (const char* name : {"frame", "approach", "e", "centre ratio"}) {
-      EXPECT_NEAR(numbers.at(name).value, reference.at(name).value,
-                  1e-3 * reference.at(name).u)
-          << name << " " << time;
-    }
-    EXPECT_NEAR(numbers.at("time").value / time, reference.at("time").value,
-                1e-3 * reference.at("time").u);
-  }
-}
-
-// Few frames on either side, contact near the first and the last frame: a
-// number with an honest u, or a reason; never NaN.
-TEST(Contact, FewFramesOnEitherSide) {
-  int found = 0;
-  std::vector<double> z;
-  for (int before = 1; before <= 9; ++before) {
-    for (int after = 0; after <= 9; ++after) {
-      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        for (const bool rectangle : {false, true}) {
-          Throw thrown = rectangle ? Block(0.35) : Throw{};
-          thrown.before = {1.2, -0.9, 0.0};
-          thrown.after = {1.0, 0.45, 0.0};
-          if (rectangle) Rebound(thrown, 0.5);
-          Filming filming;
-          filming.seed = seed;
-          thrown.contact_s = (before - 0.6) / 2000.0;
-          filming.frames = before + after;
-          const ContactResult result =
-              FindContacts(FilmPlane(thrown, filming), WithScale(filming));
-          SCOPED_TRACE(before);
-          SCOPED_TRACE(after);
-          ExpectFinite(result);
-          if (!result.first.contact.found || result.first.contact.from_start) {
-            continue;
-          }
-          const auto n = Numbers(result.first);
-          ++found;
-          z.push_back((n.at("approach").value - thrown.ContactAngle()) /
-                      n.at("approach").u);
-          EXPECT_LT(std::abs(z.back()), 5.0)
-              << n.at("approach").value << " +- " << n.at("approach").u;
-          EXPECT_LT(std::abs(n.at("time").value - thrown.contact_s),
-                    5.0 * n.at("time").u);
-          if (after < 3) {
-            EXPECT_EQ(result.first.state.label, MotionState::kUndecided);
-          }
-        }
-      }
-    }
-  }
-  EXPECT_GT(found, 200);
-  EXPECT_LT(Rms(z), 1.2);
-}
-
-TEST(Contact, TooFewFramesIsSaid) {
-  Filming filming;
-  for (int frames = 0; frames < 5; ++frames) {
-    filming.frames = frames;
-    const ContactResult result =
-        FindContacts(FilmPlane(Throw{}, filming), WithScale(filming));
-    EXPECT_FALSE(result.first.contact.found);
-    EXPECT_THAT(result.first.contact.reason, HasSubstr("frames"));
-  }
-}
-
-// Frames that the tracker lost, also at the contact itself.
-TEST(Contact, MissingFrames) {
-  Throw thrown;
-  std::vector<double> z;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    Filming filming;
-    filming.seed = seed;
-    PlaneTrack plane = FilmPlane(thrown, filming);
-    std::erase_if(plane.samples, [&](const PlaneSample& s) {
-      return (s.frame >= 29 && s.frame <= 32) ||
-             (s.frame + static_cast<std::int64_t>(seed)) % 7 == 0;
-    });
-    const ContactResult result = FindContacts(plane, WithScale(filming));
-    ExpectFinite(result);
-    ASSERT_TRUE(result.first.contact.found);
-    const auto n = Numbers(result.first);
-    EXPECT_NEAR(n.at("time").value, thrown.contact_s, 4.2 * n.at("time").u);
-    z.push_back((n.at("approach").value - thrown.ContactAngle()) /
-                n.at("approach").u);
-  }
-  EXPECT_LT(Rms(z), RmsBand9999(30).high);
 }
 
 // A line that is not the ground: the body turns back well above it.

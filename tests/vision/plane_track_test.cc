@@ -11,6 +11,7 @@ namespace touchdown::vision {
 namespace {
 
 using namespace core::literals;  // NOLINT
+using synthetic::Block;
 using synthetic::FilmGround;
 using synthetic::Filming;
 using synthetic::FilmTrack;
@@ -21,15 +22,6 @@ Filming Exact() {
   Filming filming;
   filming.noise = false;
   return filming;
-}
-
-Throw Block(double face_rad) {
-  Throw thrown;
-  thrown.kind = core::BodyKind::kRectangle;
-  thrown.half_long_m = 0.03;
-  thrown.half_short_m = 0.01;
-  thrown.face_rad = face_rad;
-  return thrown;
 }
 
 // Through the camera and back: plane coordinates are those of the motion, in

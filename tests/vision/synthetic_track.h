@@ -89,6 +89,16 @@ struct Throw {
   }
 };
 
+// 60 x 20 mm.
+inline Throw Block(double face_rad) {
+  Throw thrown;
+  thrown.kind = core::BodyKind::kRectangle;
+  thrown.half_long_m = 0.03;
+  thrown.half_short_m = 0.01;
+  thrown.face_rad = face_rad;
+  return thrown;
+}
+
 // Gives a rectangle the velocities after a frictionless impact at its lowest
 // point with restitution `e` (impulse J along the normal; unit mass, k^2 =
 // (a^2 + b^2)/3 for half sides a, b):

@@ -10,17 +10,17 @@
 #include "contact_record.h"
 #include "kinks.h"
 #include "touchdown/vision/state.h"
+#include "track_noise.h"
+#include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
 
 double MedianGap(std::span<const PlaneSample> samples) {
   std::vector<double> gaps;
+  gaps.reserve(samples.size());
   for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
-  const auto middle =
-      gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  return *middle;
+  return Median(std::move(gaps));
 }
 
 double UncertaintyOfLine(const PlaneTrack& track, const PlaneSample& s) {
@@ -179,7 +179,6 @@ double TakeOutSlope(PlaneTrack& track) {
   auto& samples = track.samples;
   double offset = MedianGap(samples);
   double slope = 0.0;
-  double scatter = 0.0;
   const double middle = samples[samples.size() / 2].along_px;
   for (int iteration = 0; iteration < 15; ++iteration) {
     std::vector<double> off;
@@ -188,9 +187,7 @@ double TakeOutSlope(PlaneTrack& track) {
       off.push_back(
           std::abs(s.gap_px - offset - slope * (s.along_px - middle)));
     }
-    const auto at = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-    std::nth_element(off.begin(), at, off.end());
-    scatter = std::max(1.4826 * *at, 1e-6);
+    const double scatter = std::max(1.4826 * Median(std::move(off)), 1e-6);
     double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (const PlaneSample& s : samples) {
       const double x = s.along_px - middle;

@@ -16,9 +16,8 @@ namespace touchdown::vision {
 
 struct Event {
   std::size_t begin = 0;  // first sample that may belong to the flight before
-  std::size_t after_last = 0;  // samples [begin, first_after) precede the blow
-  std::size_t first_after = 0;
-  std::size_t end = 0;  // one past the last sample before the next blow
+  std::size_t first_after = 0;  // samples [begin, first_after) precede the blow
+  std::size_t end = 0;          // one past the last sample before the next blow
 
   std::optional<Flight> before;
   std::optional<Flight> after;   // nothing where the body stays down
@@ -55,10 +54,5 @@ struct FlightGap {
   double u_px = 0.0;
 };
 FlightGap GapOf(const PlaneTrack& track, const Flight& flight, double time_s);
-
-// The noise of a track, judged by its own scatter: where second differences
-// exceed what the poses claim, the claims are widened. Returns the factor for
-// heights.
-double WidenToScatter(PlaneTrack& track);
 
 }  // namespace touchdown::vision

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "touchdown/vision/state.h"
+#include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
@@ -388,11 +389,9 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
 
   // The ground's height is that of the body's lowest point, half of the time.
   std::vector<double> gaps;
+  gaps.reserve(samples.size());
   for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
-  const auto middle =
-      gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  const double level = *middle;
+  const double level = Median(std::move(gaps));
   const double u_level = samples[samples.size() / 2].u_gap_px /
                          std::sqrt(static_cast<double>(samples.size()));
 

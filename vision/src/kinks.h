@@ -1,5 +1,6 @@
-// Instants at which the centre's normal velocity jumps upward: what a blow from
-// the ground leaves in a track. Needs no ground line.
+// Instants at which a normal velocity jumps upward, the centre's or a block's
+// lowest corner's: what a blow from the ground leaves in a track. Needs no
+// ground line.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +34,11 @@ struct KinkOptions {
   double least_effect_px = 0.05;
 };
 
-// All kinks by time. Windows of several lengths on both sides are tried, each
-// side a parabola where frames allow, else lines with one curvature.
+// All kinks by time, of the centre's height and, of a body that turns, of its
+// gap. Windows of several lengths on both sides are tried: both sides in free
+// flight where gravity is known, else with one curvature or, where frames
+// allow, one of each. A blow must explain more than rest and more than one
+// flight.
 std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
                             const KinkOptions& options = {});
 

@@ -8,9 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "outline_model.h"
+#include "outline_pixels.h"
+#include "outline_smear.h"
+#include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
@@ -27,24 +32,6 @@ void Polynomial(double xi, double eta, int terms, double* f) {
   std::copy(all, all + terms, f);
 }
 
-// One pixel of the neighbourhood of the outline.
-struct Pixel {
-  double x = 0.0;
-  double y = 0.0;
-  double value = 0.0;       // DN
-  double background = 0.0;  // DN
-  double variance = 1.0;    // DN^2
-};
-
-double Extent(const Outline& o) {
-  return o.kind == core::BodyKind::kSphere
-             ? o.radius_px
-             : std::hypot(o.half_long_px, o.half_short_px);
-}
-double SmallestHalf(const Outline& o) {
-  return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_short_px;
-}
-
 class Fitter {
  public:
   Fitter(const core::Frame& frame, const Background& background,
@@ -52,17 +39,11 @@ class Fitter {
       : frame_(frame),
         background_(background),
         options_(options),
+        usable_(options.ground, options.ground_margin_px),
         outline_(start),
         blur_(options.blur_px),
-        open_(options.open) {
-    if (options.ground) {
-      ground_offset_ = calib::HeightAbove(*options.ground, {0.0, 0.0});
-      ground_x_ =
-          calib::HeightAbove(*options.ground, {1.0, 0.0}) - ground_offset_;
-      ground_y_ =
-          calib::HeightAbove(*options.ground, {0.0, 1.0}) - ground_offset_;
-      ground_offset_ -= options.ground_margin_px;
-    }
+        open_(options.open),
+        smear_(options.travel_px) {
     geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
     // A body of a few pixels cannot tell shading from shape.
     constexpr double kSmallBody_px = 5.0;
@@ -74,21 +55,14 @@ class Fitter {
 
  private:
   void CollectPixels();
-  Coverage StillCoverage(const Outline& outline, double blur,
-                         const Pixel& p) const {
-    return outline.kind == core::BodyKind::kSphere
-               ? DiscCoverage(outline, blur, p.x, p.y)
-               : RectangleCoverage(outline, blur, p.x, p.y, cosine_, sine_);
+  std::string Gather();
+  Coverage CoverageAt(const OutlinePixel& p) const {
+    return smear_.At(outline_, p.x, p.y, cosine_, sine_);
   }
-  Coverage CoverageAt(const Pixel& p) const;
-  void SetNodes();
-  double Way() const {
-    return open_ * std::hypot(options_.travel_px.x_px, options_.travel_px.y_px);
+  void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
+  double Visible() const {
+    return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
   }
-  bool Usable(double x, double y) const {
-    return ground_x_ * x + ground_y_ * y + ground_offset_ >= 0.0;
-  }
-  double VisibleShare() const;
   void SolveLevels();
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
   // One pixel's share of the normal equations: by far most of the time goes
@@ -112,19 +86,14 @@ class Fitter {
   bool Free(int k) const;
   bool HasPrior() const { return options_.shading && interior_ == 6; }
 
-  // Pixels with a negative value of this plane lie below the ground's margin.
-  double ground_x_ = 0.0;
-  double ground_y_ = 0.0;
-  double ground_offset_ = 0.0;
-
   const core::Frame& frame_;
   const Background& background_;
   const OutlineOptions& options_;
+  UsableSide usable_;
   Outline outline_;
   double blur_;
   double open_;
-  int nodes_ = 1;           // places along the way that stand for all of it
-  double node_blur_ = 0.0;  // their blur: each stands for a short way
+  Smear smear_;
   int geometry_ = 3;
   int interior_ = 6;
   int outer_ = 0;
@@ -132,7 +101,7 @@ class Fitter {
   double cosine_ = 1.0;
   double sine_ = 0.0;
   Vector levels_;  // interior then outer polynomial coefficients, DN
-  std::vector<Pixel> pixels_;
+  std::vector<OutlinePixel> pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
   std::array<double, std::size_t{kMaxParameters} * kMaxParameters> sums_{};
@@ -144,114 +113,28 @@ class Fitter {
   double inliers_ = 0.0;
 };
 
-// The mean along the way: `nodes_` places, each with the blur of its own share
-// of the way (of variance step^2 / 12). Steps of 0.7 w leave an error of 1e-4
-// of the contrast.
-void Fitter::SetNodes() {
-  constexpr double kStep = 0.7;         // of the blur
-  constexpr double kNegligible = 0.15;  // of the blur: its square adds 0.2 %
-  const double way = Way();
-  nodes_ = 1;
-  if (way > kNegligible * blur_ || options_.fit_open) {
-    constexpr int kMost = 96;
-    nodes_ = std::clamp(static_cast<int>(std::ceil(way / (kStep * blur_))), 2,
-                        kMost);
-  }
-  const double step = way / nodes_;
-  node_blur_ = std::sqrt(blur_ * blur_ + step * step / 12.0);
-}
-
-Coverage Fitter::CoverageAt(const Pixel& p) const {
-  if (nodes_ == 1) return StillCoverage(outline_, node_blur_, p);
-  Coverage mean;
-  Outline shifted = outline_;
-  const core::PixelPoint& travel = options_.travel_px;
-  const double share = 1.0 / nodes_;
-  for (int i = 0; i < nodes_; ++i) {
-    const double s = (i + 0.5) * share - 0.5;
-    shifted.centre.x_px = outline_.centre.x_px + s * open_ * travel.x_px;
-    shifted.centre.y_px = outline_.centre.y_px + s * open_ * travel.y_px;
-    const Coverage c = StillCoverage(shifted, node_blur_, p);
-    mean.value += share * c.value;
-    for (int k = 0; k < 6; ++k) mean.d[k] += share * c.d[k];
-    mean.xi += share * c.xi;
-    mean.eta += share * c.eta;
-    mean.d_open += share * s * (c.d[0] * travel.x_px + c.d[1] * travel.y_px);
-  }
-  mean.d[5] *= blur_ / node_blur_;
-  return mean;
-}
-
 void Fitter::CollectPixels() {
-  SetNodes();
-  // The body and a band around it that holds the blurred edge and some of what
-  // lies outside; of a large body only a band inside the edge, wide enough to
-  // tell the interior's level.
+  SetSmear();
+  PixelBand band;
   constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
-  const double margin = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * Way();
-  const double inner =
-      saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
-  const bool large = SmallestHalf(outline_) > 2.0 * margin;
-  const double reach = Extent(outline_) + margin;
-  const auto x0 = std::max<std::int32_t>(
-      frame_.origin_x_px,
-      static_cast<std::int32_t>(std::ceil(outline_.centre.x_px - reach)));
-  const auto y0 = std::max<std::int32_t>(
-      frame_.origin_y_px,
-      static_cast<std::int32_t>(std::ceil(outline_.centre.y_px - reach)));
-  const auto x1 = std::min<std::int32_t>(
-      frame_.origin_x_px + frame_.width_px - 1,
-      static_cast<std::int32_t>(std::floor(outline_.centre.x_px + reach)));
-  const auto y1 = std::min<std::int32_t>(
-      frame_.origin_y_px + frame_.height_px - 1,
-      static_cast<std::int32_t>(std::floor(outline_.centre.y_px + reach)));
-  pixels_.clear();
-  for (std::int32_t y = y0; y <= y1; ++y) {
-    for (std::int32_t x = x0; x <= x1; ++x) {
-      if (!Usable(x, y)) continue;
-      if (outer_ == 0 && !background_.known_at(x, y)) continue;
-      Pixel p;
-      p.x = x;
-      p.y = y;
-      const double depth = DepthInside(outline_, x, y, cosine_, sine_);
-      if (depth < -margin || depth > inner) continue;
-      // Deep inside there is only the shading to learn: every third pixel.
-      if (large && depth > margin && (x + y) % 3 != 0) continue;
-      p.value = frame_.at(x - frame_.origin_x_px, y - frame_.origin_y_px);
-      p.background = static_cast<double>(background_.at(x, y));
-      p.variance = background_.Variance(p.value);
-      pixels_.push_back(p);
-    }
-  }
+  band.margin_px = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * smear_.way_px();
+  band.inner_px = saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
+  band.known_background = outer_ == 0;
+  CollectOutlinePixels(frame_, background_, outline_, cosine_, sine_, usable_,
+                       band, pixels_);
 }
 
-double Fitter::VisibleShare() const {
-  constexpr int kProbes = 72;
-  int seen = 0;
-  for (int i = 0; i < kProbes; ++i) {
-    const double phi = 2.0 * std::numbers::pi * i / kProbes;
-    double x = 0.0;
-    double y = 0.0;
-    if (outline_.kind == core::BodyKind::kSphere) {
-      x = outline_.radius_px * std::cos(phi);
-      y = outline_.radius_px * std::sin(phi);
-    } else {
-      // Where the ray at phi leaves the rectangle.
-      const double c = std::cos(phi);
-      const double s = std::sin(phi);
-      const double t =
-          std::min(outline_.half_long_px / std::max(std::abs(c), 1e-9),
-                   outline_.half_short_px / std::max(std::abs(s), 1e-9));
-      x = t * (c * cosine_ - s * sine_);
-      y = t * (c * sine_ + s * cosine_);
-    }
-    x += outline_.centre.x_px;
-    y += outline_.centre.y_px;
-    seen += x >= frame_.origin_x_px && y >= frame_.origin_y_px &&
-            x <= frame_.origin_x_px + frame_.width_px - 1 &&
-            y <= frame_.origin_y_px + frame_.height_px - 1 && Usable(x, y);
+// Collects the pixels; why they are too few, or nothing.
+std::string Fitter::Gather() {
+  constexpr double kLeastVisible = 1.0 / 3.0;
+  if (Visible() < kLeastVisible) {
+    return "less than a third of the outline is visible";
   }
-  return static_cast<double>(seen) / kProbes;
+  CollectPixels();
+  if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
+    return "too few pixels of the outline are visible";
+  }
+  return {};
 }
 
 bool Fitter::Free(int k) const {
@@ -269,7 +152,7 @@ void Fitter::SolveLevels() {
   Vector b = Vector::Zero(n);
   Vector row(n);
   double f[6];
-  for (const Pixel& p : pixels_) {
+  for (const OutlinePixel& p : pixels_) {
     const Coverage c = CoverageAt(p);
     Polynomial(c.xi, c.eta, interior_, f);
     for (int k = 0; k < interior_; ++k) row[k] = c.value * f[k];
@@ -313,7 +196,7 @@ double Fitter::Accumulate(bool robust) {
   double square = 0.0;
   double in_count = 0.0;
   const double cut = 4.685 * robust_scale_;  // Tukey: 95 % efficient
-  for (const Pixel& p : pixels_) {
+  for (const OutlinePixel& p : pixels_) {
     const Coverage c = CoverageAt(p);
     Polynomial(c.xi, c.eta, interior_, fi);
     double in = 0.0;
@@ -430,27 +313,22 @@ bool Fitter::Step(double& geometric_step) {
                      std::max(2.0 * options_.blur_px, 0.5 * size));
   open_ = std::clamp(open_ + step[OpenAt()], 0.0, 1.0);
   levels_ += step.tail(interior_ + outer_);
-  SetNodes();
+  SetSmear();
   return true;
 }
 
 core::Expected<OutlineFit> Fitter::Run() {
   cosine_ = std::cos(outline_.angle_rad);
   sine_ = std::sin(outline_.angle_rad);
-  constexpr double kLeastVisible = 1.0 / 3.0;
-  if (VisibleShare() < kLeastVisible) {
-    return core::AbsentBecause("less than a third of the outline is visible");
-  }
-  CollectPixels();
-  if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
-    return core::AbsentBecause("too few pixels of the outline are visible");
+  if (const std::string why = Gather(); !why.empty()) {
+    return core::AbsentBecause(why);
   }
   // Where the surround is saturated, the outer half of the edge's tail is cut
   // off; its inner half must then not pass for shading, which would shift the
   // edge outwards: one level for the whole body.
   double outside = 0.0;
   double full = 0.0;
-  for (const Pixel& p : pixels_) {
+  for (const OutlinePixel& p : pixels_) {
     if (DepthInside(outline_, p.x, p.y, cosine_, sine_) > -2.0) continue;
     outside += 1.0;
     full += p.value >= background_.full_scale_dn;
@@ -471,12 +349,11 @@ core::Expected<OutlineFit> Fitter::Run() {
     std::vector<double> sizes(residuals_.size());
     std::transform(residuals_.begin(), residuals_.end(), sizes.begin(),
                    [](double r) { return std::abs(r); });
-    const auto middle =
-        sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
     // Held after a few rounds: a scale that follows the weights never settles.
     constexpr int kSettled = 5;
-    if (iteration < kSettled) robust_scale_ = std::max(1.0, 1.4826 * *middle);
+    if (iteration < kSettled) {
+      robust_scale_ = std::max(1.0, 1.4826 * Median(std::move(sizes)));
+    }
     if (!Step(step)) {
       return core::AbsentBecause("the outline's fit is degenerate");
     }
@@ -488,15 +365,10 @@ core::Expected<OutlineFit> Fitter::Run() {
     if (std::hypot(outline_.centre.x_px - collected.x_px,
                    outline_.centre.y_px - collected.y_px) > 0.5 ||
         iteration < 3) {
-      if (VisibleShare() < kLeastVisible) {
-        return core::AbsentBecause(
-            "less than a third of the outline is visible");
+      if (const std::string why = Gather(); !why.empty()) {
+        return core::AbsentBecause(why);
       }
-      CollectPixels();
       collected = outline_.centre;
-      if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
-        return core::AbsentBecause("too few pixels of the outline are visible");
-      }
     }
   }
   // Oscillation of a hundredth of a pixel comes from robust weights; more is no
@@ -562,7 +434,7 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.contrast_dn = contrast_;
   fit.misfit = misfit_;
   fit.inliers = inliers_;
-  fit.visible = VisibleShare();
+  fit.visible = Visible();
   fit.pixels = static_cast<int>(pixels_.size());
   fit.iterations = iteration + 1;
   // Known to no better than half its size it is no outline.

@@ -70,8 +70,7 @@ struct OutlineOptions {
 
   // Pixels lower than this above the ground line are left out: there the body
   // hides its own shadow and the ground's edge. 2 px: beyond the blur of both
-  // (without it angles were off by two to five standard uncertainties). At
-  // least 2.5 w.
+  // (without it angles were off by two to five standard uncertainties).
   std::optional<calib::GroundLine> ground;
   double ground_margin_px = 2.0;
 

@@ -63,9 +63,11 @@ struct RefineOptions {
 };
 
 // Fits the outlines again with the ground line known, from the track's own
-// poses: pixels of the ground leave the fit, the size is taken once more, and
-// then held, so that the lowest point no longer depends on a free size in each
-// frame.
+// poses. Pixels of the ground leave the fit, to 2.5 w above the line (at most
+// half of the smallest size). What all frames share is learnt first: size,
+// blur, the share of the frame interval that is exposed, and the body's
+// shading; then it is held, so that a pose no longer depends on what is free in
+// each frame.
 Track Refine(Clip& clip, const Background& background, const Track& track,
              const RefineOptions& options);
 
