@@ -136,7 +136,7 @@ int Merit(const vision::ContactResult& result) {
 class Analyzer {
  public:
   Analyzer(std::unique_ptr<vision::Clip> clip, const AnalyzeOptions& options)
-      : options_(options), clip_(vision::KeepFrames(std::move(clip))) {}
+      : options_(options), clip_(std::move(clip)) {}
 
   Analysis Run();
 
@@ -344,6 +344,13 @@ Analysis Analyzer::Run() {
   result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
                           camera_.warnings.end());
   auto lap = Clock::now();
+  vision::FrameStoreOptions store_options;
+  store_options.first = options_.first_frame;
+  store_options.last = last;
+  store_options.region = options_.region;
+  store_options.threads = options_.decoder_threads;
+  store_options.progress = options_.progress;
+  clip_ = vision::KeepFrames(std::move(clip_), store_options);
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;

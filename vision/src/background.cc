@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 
+#include "kept_pixels.h"
 #include "mid_mean.h"
 #include "parallel.h"
 
@@ -20,7 +20,7 @@ namespace {
 // Sampled frames: views of the clip's own memory where they last, else copies.
 struct Samples {
   std::vector<core::Frame> frames;
-  std::vector<std::unique_ptr<std::byte[]>> copies;
+  std::vector<KeptPixels> copies;
 
   std::size_t size() const { return frames.size(); }
   std::uint32_t At(std::size_t k, std::size_t pixel) const {
@@ -33,17 +33,8 @@ struct Samples {
 void AddSample(Clip& clip, std::int64_t index, Samples& samples) {
   core::Frame frame = clip.Read(index);
   if (!clip.views_last()) {
-    const std::size_t row_bytes =
-        static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
-    samples.copies.emplace_back(
-        new std::byte[row_bytes * static_cast<std::size_t>(frame.height_px)]);
-    std::byte* const copy = samples.copies.back().get();
-    for (std::int32_t y = 0; y < frame.height_px; ++y) {
-      std::memcpy(copy + static_cast<std::size_t>(y) * row_bytes,
-                  frame.row<std::byte>(y), row_bytes);
-    }
-    frame.data = copy;
-    frame.stride_bytes = static_cast<std::ptrdiff_t>(row_bytes);
+    samples.copies.emplace_back(frame);
+    frame = samples.copies.back().View();
   }
   samples.frames.push_back(frame);
 }
@@ -318,11 +309,15 @@ Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
         fmt::format("frames is {}:{}, must be a range within 0:{}", first, last,
                     info.frames));
   }
+  return BackgroundOf(clip, BackgroundFrames(first, last, options.samples),
+                      options);
+}
+
+Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
+                        const BackgroundOptions& options) {
+  const ClipInfo& info = clip.info();
   Samples samples;
-  for (const std::int64_t index :
-       BackgroundFrames(first, last, options.samples)) {
-    AddSample(clip, index, samples);
-  }
+  for (const std::int64_t index : frames) AddSample(clip, index, samples);
   Background background;
   background.width_px = info.width_px;
   background.height_px = info.height_px;

@@ -32,7 +32,7 @@ class Watcher {
     }
   }
 
-  // The blobs of frame `index`, and the time of it.
+  // The blobs of frame `index`, and its time where there are any.
   std::vector<Blob> Look(std::int64_t index, double& time_s) {
     if (!scout_) {
       const core::Frame frame = clip_.Read(index);
@@ -42,7 +42,6 @@ class Watcher {
     Changes changes;
     if (const Changes* known = clip_.ChangesIn(index)) {
       changes = *known;
-      time_s = clip_.Read(index, {0, 0, 1, 1}).time_s;
     } else {
       const core::Frame frame = clip_.Read(index);
       time_s = frame.time_s;
@@ -52,8 +51,9 @@ class Watcher {
     detect.noise = changes.noise;
     std::vector<Blob> blobs;
     for (const core::PixelRect& rect : changes.where) {
-      const auto more =
-          DetectBlobs(clip_.Read(index, rect), background_, detect);
+      const core::Frame window = clip_.Read(index, rect);
+      time_s = window.time_s;
+      const auto more = DetectBlobs(window, background_, detect);
       blobs.insert(blobs.end(), more.begin(), more.end());
     }
     KeepLargest(blobs, detect_);
@@ -206,6 +206,10 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
 
 }  // namespace
 
+std::int64_t EndPart(std::int64_t first, std::int64_t last) {
+  return std::max<std::int64_t>(3, (last - first) / 8);
+}
+
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
                   const TrackOptions& options, Surround surround) {
   constexpr std::size_t kProbes = 9;
@@ -282,8 +286,7 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                           {.threads = options.threads}),
                        options, Detector::kDifference, last);
   constexpr double kWellFitted = 4.0;
-  const std::int64_t part =
-      std::max<std::int64_t>(3, (last - options.first) / 8);
+  const std::int64_t part = EndPart(options.first, last);
   for (int attempt = 0; attempt < 3 && best.choice.badness > kWellFitted;
        ++attempt) {
     Background background = best.background;

@@ -37,6 +37,10 @@ struct Look {
   std::vector<Fitted> fits;  // of the best chain
 };
 
+// Frames at either end of a range of which a background is made where the body
+// is part of the background of them all.
+std::int64_t EndPart(std::int64_t first, std::int64_t last);
+
 // Absent where nothing moves, or nothing with an outline.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                std::int64_t last);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 
+#include "kept_pixels.h"
 #include "parallel.h"
 
 namespace touchdown::vision {
@@ -15,23 +15,16 @@ constexpr std::size_t kBatch = 64;
 
 struct Window {
   core::Frame frame;
-  std::vector<std::byte> copy;  // where the clip's own view does not last
+  KeptPixels copy;  // where the clip's own view does not last
 };
 
 Window Take(Clip& clip, std::int64_t index, const core::PixelRect& rect) {
   Window window;
   window.frame = clip.Read(index, rect);
-  if (clip.views_last()) return window;
-  core::Frame& frame = window.frame;
-  const std::size_t row_bytes =
-      static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
-  window.copy.resize(row_bytes * static_cast<std::size_t>(frame.height_px));
-  for (std::int32_t y = 0; y < frame.height_px; ++y) {
-    std::memcpy(window.copy.data() + static_cast<std::size_t>(y) * row_bytes,
-                frame.row<std::byte>(y), row_bytes);
+  if (!clip.views_last()) {
+    window.copy = KeptPixels(window.frame);
+    window.frame = window.copy.View();
   }
-  frame.data = window.copy.data();
-  frame.stride_bytes = static_cast<std::ptrdiff_t>(row_bytes);
   return window;
 }
 

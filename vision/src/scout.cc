@@ -1,8 +1,11 @@
 #include "scout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <utility>
 
 namespace touchdown::vision {
 namespace {
@@ -39,27 +42,37 @@ core::PixelRect Both(const core::PixelRect& a, const core::PixelRect& b) {
           std::max(a.y + a.height, b.y + b.height) - y};
 }
 
+struct Region {
+  core::PixelRect rect;
+  double strength = 0.0;  // sum of its differences, in standard deviations
+};
+
 // Until none meets another.
-void Join(std::vector<core::PixelRect>& rects) {
-  for (std::size_t i = 0; i < rects.size(); ++i) {
-    for (std::size_t j = i + 1; j < rects.size();) {
-      if (!Meet(rects[i], rects[j])) {
-        ++j;
-        continue;
-      }
-      rects[i] = Both(rects[i], rects[j]);
-      rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(j));
-      j = i + 1;  // it has grown: ask those before again
-      for (std::size_t k = 0; k < i; ++k) {
-        if (Meet(rects[k], rects[i])) {
-          std::swap(rects[k], rects[i]);
-          i = k;
-          j = i + 1;
-          break;
-        }
-      }
+void Join(std::vector<Region>& regions) {
+  for (std::size_t i = 0; i < regions.size();) {
+    const auto meets = std::find_if(
+        regions.begin() + static_cast<std::ptrdiff_t>(i) + 1, regions.end(),
+        [&](const Region& other) { return Meet(regions[i].rect, other.rect); });
+    if (meets == regions.end()) {
+      ++i;
+      continue;
     }
+    regions[i].rect = Both(regions[i].rect, meets->rect);
+    regions[i].strength += meets->strength;
+    regions.erase(meets);
+    // It has grown: all are asked again.
+    std::swap(regions[0], regions[i]);
+    i = 0;
   }
+}
+
+double Quantile(std::vector<float>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(
+                           share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return static_cast<double>(*at);
 }
 
 }  // namespace
@@ -84,59 +97,87 @@ Scout::Scout(const Background& still, const ScoutOptions& options)
   }
 }
 
-// 1, or more where the frame's differences are larger than the still picture's
-// noise: flicker, or noise that neighbours share (compression). From every 31st
-// sum.
+// How far a sum is off the still picture's, in standard deviations.
 template <class Sample>
-double Scout::NoiseOf(const core::Frame& frame) const {
-  constexpr std::size_t kStep = 31;
+float Scout::Off(const Sample* samples, const Segment& still) const {
+  return std::abs(static_cast<float>(SumOf(samples)) - still.sum) *
+         still.one_over_u;
+}
+
+// 1, or more where the frame's differences are larger than the still picture's
+// noise: flicker, or noise that neighbours share (compression). From every 7th
+// sum: the median, and the median over parts of the picture of the 98 % point,
+// which a body in a few of the parts does not change.
+template <class Sample>
+Scout::Noise Scout::NoiseOf(const core::Frame& frame) const {
+  constexpr std::size_t kStep = 7;
+  constexpr std::int32_t kParts = 4;  // across and down
+  constexpr double kMedianOfNormal = 0.6745;
+  constexpr double kHighOfNormal = 2.3263;
+  const auto all_rows = static_cast<std::int32_t>(
+      still_.size() / static_cast<std::size_t>(std::max(1, segments_)));
   std::vector<float> off;
-  off.reserve(still_.size() / kStep + 1);
+  std::array<std::vector<float>, std::size_t{kParts} * kParts> parts;
   for (std::size_t k = 0; k < still_.size(); k += kStep) {
     const auto row = static_cast<std::int32_t>(k) / segments_;
     const auto segment = static_cast<std::int32_t>(k) % segments_;
-    const auto sum = static_cast<float>(
-        SumOf(frame.row<Sample>(kFirstRow_px + row * kRowStep_px) +
-              segment * kSegment_px));
-    off.push_back(std::abs(sum - still_[k].sum) * still_[k].one_over_u);
+    off.push_back(Off(frame.row<Sample>(kFirstRow_px + row * kRowStep_px) +
+                          std::ptrdiff_t{segment} * kSegment_px,
+                      still_[k]));
+    parts[static_cast<std::size_t>(row * kParts / all_rows * kParts +
+                                   segment * kParts / segments_)]
+        .push_back(off.back());
   }
-  if (off.empty()) return 1.0;
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  return std::max(1.0, 1.4826 * static_cast<double>(*middle));
+  std::vector<float> high;
+  for (std::vector<float>& part : parts) {
+    if (!part.empty()) high.push_back(static_cast<float>(Quantile(part, 0.98)));
+  }
+  Noise noise;
+  noise.typical = std::max(1.0, Quantile(off, 0.5) / kMedianOfNormal);
+  noise.tail = std::max(noise.typical, Quantile(high, 0.5) / kHighOfNormal);
+  return noise;
 }
 
 template <class Sample>
-void Scout::Flag(const core::Frame& frame, double threshold,
-                 std::vector<std::uint8_t>& cells) const {
-  const auto most = static_cast<float>(threshold);
+Changes Scout::LookAt(const core::Frame& frame) const {
+  std::vector<float> cells(
+      static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
+      0.0F);
+  const Noise noise = NoiseOf<Sample>(frame);
+  const auto most = static_cast<float>(options_.threshold_sigmas * noise.tail);
   const Segment* still = still_.data();
   for (std::int32_t y = kFirstRow_px; y < height_px_; y += kRowStep_px) {
     const Sample* const row = frame.row<Sample>(y);
-    std::uint8_t* const flags = &cells[static_cast<std::size_t>(y / kCell_px) *
-                                       static_cast<std::size_t>(columns_)];
+    float* const flags = &cells[static_cast<std::size_t>(y / kCell_px) *
+                                static_cast<std::size_t>(columns_)];
     for (std::int32_t s = 0; s < segments_; ++s, ++still) {
-      const auto sum = static_cast<float>(SumOf(row + s * kSegment_px));
-      if (std::abs(sum - still->sum) * still->one_over_u > most) {
-        flags[s * kSegment_px / kCell_px] = 1;
-      }
+      const float off = Off(row + std::ptrdiff_t{s} * kSegment_px, *still);
+      if (off > most) flags[s * kSegment_px / kCell_px] += off;
     }
   }
+  return {Regions(std::move(cells)), noise.typical};
 }
 
 // The boxes of connected cells, with their margin, joined where they meet.
-std::vector<core::PixelRect> Scout::Regions(
-    std::vector<std::uint8_t> cells) const {
+std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
   core::PixelRect all{0, 0, width_px_, height_px_};
   const core::PixelRect& wanted = options_.region;
   if (wanted.width > 0) all = wanted;
-  std::vector<core::PixelRect> rects;
+  std::vector<Region> regions;
+  for (const core::PixelRect& rect : options_.always) {
+    regions.push_back({rect, std::numeric_limits<double>::infinity()});
+  }
   std::vector<std::int32_t> open;
   for (std::int32_t start = 0; start < columns_ * rows_; ++start) {
-    if (cells[static_cast<std::size_t>(start)] == 0) continue;
+    if (cells[static_cast<std::size_t>(start)] == 0.0F) continue;
     std::int32_t x0 = columns_, y0 = rows_, x1 = -1, y1 = -1;
-    open.assign(1, start);
-    cells[static_cast<std::size_t>(start)] = 0;
+    double strength = 0.0;
+    const auto visit = [&](std::int32_t cell) {
+      strength += static_cast<double>(
+          std::exchange(cells[static_cast<std::size_t>(cell)], 0.0F));
+      open.push_back(cell);
+    };
+    visit(start);
     while (!open.empty()) {
       const std::int32_t x = open.back() % columns_;
       const std::int32_t y = open.back() / columns_;
@@ -150,9 +191,7 @@ std::vector<core::PixelRect> Scout::Regions(
         for (std::int32_t u = std::max(0, x - 1);
              u <= std::min(columns_ - 1, x + 1); ++u) {
           const std::int32_t next = v * columns_ + u;
-          if (cells[static_cast<std::size_t>(next)] == 0) continue;
-          cells[static_cast<std::size_t>(next)] = 0;
-          open.push_back(next);
+          if (cells[static_cast<std::size_t>(next)] != 0.0F) visit(next);
         }
       }
     }
@@ -162,43 +201,40 @@ std::vector<core::PixelRect> Scout::Regions(
     const core::PixelRect rect{
         left, top, std::min(all.x + all.width, (x1 + m + 1) * kCell_px) - left,
         std::min(all.y + all.height, (y1 + m + 1) * kCell_px) - top};
-    if (rect.width > 0 && rect.height > 0) rects.push_back(rect);
+    if (rect.width > 0 && rect.height > 0) regions.push_back({rect, strength});
   }
-  Join(rects);
+  Join(regions);
+  std::stable_sort(
+      regions.begin(), regions.end(),
+      [](const Region& a, const Region& b) { return a.strength > b.strength; });
+  if (regions.size() > options_.most_regions) {
+    regions.resize(options_.most_regions);
+  }
+  std::vector<core::PixelRect> rects;
+  for (const Region& region : regions) rects.push_back(region.rect);
   return rects;
 }
 
 Changes Scout::Look(const core::Frame& frame) const {
-  Changes changes;
-  std::vector<std::uint8_t> cells(
-      static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
-  if (frame.is_16_bit()) {
-    changes.noise = NoiseOf<std::uint16_t>(frame);
-    Flag<std::uint16_t>(frame, options_.threshold_sigmas * changes.noise,
-                        cells);
-  } else {
-    changes.noise = NoiseOf<std::uint8_t>(frame);
-    Flag<std::uint8_t>(frame, options_.threshold_sigmas * changes.noise, cells);
-  }
-  changes.where = Regions(std::move(cells));
-  return changes;
+  return frame.is_16_bit() ? LookAt<std::uint16_t>(frame)
+                           : LookAt<std::uint8_t>(frame);
 }
 
-std::vector<core::PixelRect> Scout::Differences(const Scout& other) const {
-  std::vector<std::uint8_t> cells(
-      static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
+bool Scout::Differs(const Scout& other) const {
   for (std::size_t k = 0; k < still_.size(); ++k) {
-    const auto row = static_cast<std::int32_t>(k) / segments_;
-    const auto segment = static_cast<std::int32_t>(k) % segments_;
     const float off =
         std::abs(still_[k].sum - other.still_[k].sum) * still_[k].one_over_u;
-    if (static_cast<double>(off) > 0.5 * options_.threshold_sigmas) {
-      cells[static_cast<std::size_t>((kFirstRow_px + row * kRowStep_px) /
-                                         kCell_px * columns_ +
-                                     segment * kSegment_px / kCell_px)] = 1;
+    if (static_cast<double>(off) <= 0.5 * options_.threshold_sigmas) continue;
+    const core::PixelRect segment{
+        static_cast<std::int32_t>(k) % segments_ * kSegment_px,
+        kFirstRow_px + static_cast<std::int32_t>(k) / segments_ * kRowStep_px,
+        kSegment_px, 1};
+    if (std::none_of(options_.always.begin(), options_.always.end(),
+                     [&](const auto& rect) { return Meet(rect, segment); })) {
+      return true;
     }
   }
-  return Regions(std::move(cells));
+  return false;
 }
 
 }  // namespace touchdown::vision

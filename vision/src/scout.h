@@ -17,35 +17,49 @@ struct ScoutOptions {
 
   // A sum must differ by this many of its standard deviations. 5: of the 32 000
   // sums of a 1280 x 800 frame 0.02 do so by chance, and a region for nothing
-  // costs little. A body of 8 px and of twice the noise is seen (5.7).
+  // costs little. A body of 8 px and of twice the noise is seen (5.7). Where
+  // large differences are more frequent than those of normal noise
+  // (compression), as many times more as they are larger.
   double threshold_sigmas = 5.0;
 
   // Cells of 16 px added around those that differ: at least 16 px of
   // surround, for a blob's rim.
   std::int32_t margin_cells = 1;
+
+  // The strongest regions are kept; detect.h keeps as many blobs.
+  std::size_t most_regions = 12;
+
+  // Always among the regions.
+  std::vector<core::PixelRect> always;
 };
 
 class Scout {
  public:
   Scout(const Background& still, const ScoutOptions& options = {});
 
-  // `frame` is a whole picture.
+  // `frame` is a whole picture. The strongest regions come first.
   Changes Look(const core::Frame& frame) const;
 
-  // Where two still pictures differ by half the threshold.
-  std::vector<core::PixelRect> Differences(const Scout& other) const;
+  // True if two still pictures differ anywhere by half the threshold, but for
+  // what is always among the regions.
+  bool Differs(const Scout& other) const;
 
  private:
   struct Segment {
     float sum = 0.0F;         // of the still picture's eight samples
     float one_over_u = 0.0F;  // one over the standard deviation of a frame's
   };
+  struct Noise {
+    double typical = 1.0;  // Changes::noise
+    double tail = 1.0;     // as many times as large are rare differences
+  };
   template <class Sample>
-  void Flag(const core::Frame& frame, double threshold,
-            std::vector<std::uint8_t>& cells) const;
+  Noise NoiseOf(const core::Frame& frame) const;
   template <class Sample>
-  double NoiseOf(const core::Frame& frame) const;
-  std::vector<core::PixelRect> Regions(std::vector<std::uint8_t> cells) const;
+  Changes LookAt(const core::Frame& frame) const;
+  template <class Sample>
+  float Off(const Sample* samples, const Segment& still) const;
+  std::vector<core::PixelRect> Regions(std::vector<float> cells) const;
 
   ScoutOptions options_;
   std::int32_t width_px_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "touchdown/vision/clip.h"
@@ -69,6 +70,10 @@ struct Background {
 // std::invalid_argument if the range is empty or outside the clip.
 Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
                               const BackgroundOptions& options = {});
+
+// The same of given frames, at least one.
+Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
+                        const BackgroundOptions& options = {});
 
 // Where the body is in one frame.
 struct Cover {

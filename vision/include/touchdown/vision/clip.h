@@ -123,6 +123,9 @@ class Clip {
   virtual core::Frame ReadWindow(std::int64_t index,
                                  const core::PixelRect& window) = 0;
 
+  // Reading that was done elsewhere than in Read.
+  void AddReading(double seconds) { reading_s_ += seconds; }
+
  private:
   double reading_s_ = 0.0;
 };
