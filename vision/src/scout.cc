@@ -104,29 +104,22 @@ float Scout::Off(const Sample* samples, const Segment& still) const {
          still.one_over_u;
 }
 
-// 1, or more where the frame's differences are larger than the still picture's
-// noise: flicker, or noise that neighbours share (compression). From every 7th
-// sum: the median, and the median over parts of the picture of the 98 % point,
-// which a body in a few of the parts does not change.
-template <class Sample>
-Scout::Noise Scout::NoiseOf(const core::Frame& frame) const {
-  constexpr std::size_t kStep = 7;
+// 1, or more where the differences are larger than the still picture's noise:
+// flicker, or noise that neighbours share (compression). `off`: of every
+// `step`-th sum. The median, and the median over parts of the picture of the
+// 98 % point, which a body in a few of the parts does not change.
+Scout::Noise Scout::NoiseOf(std::vector<float> off, std::size_t step) const {
   constexpr std::int32_t kParts = 4;  // across and down
   constexpr double kMedianOfNormal = 0.6745;
   constexpr double kHighOfNormal = 2.3263;
   const auto all_rows = static_cast<std::int32_t>(
       still_.size() / static_cast<std::size_t>(std::max(1, segments_)));
-  std::vector<float> off;
   std::array<std::vector<float>, std::size_t{kParts} * kParts> parts;
-  for (std::size_t k = 0; k < still_.size(); k += kStep) {
-    const auto row = static_cast<std::int32_t>(k) / segments_;
-    const auto segment = static_cast<std::int32_t>(k) % segments_;
-    off.push_back(Off(frame.row<Sample>(kFirstRow_px + row * kRowStep_px) +
-                          std::ptrdiff_t{segment} * kSegment_px,
-                      still_[k]));
-    parts[static_cast<std::size_t>(row * kParts / all_rows * kParts +
-                                   segment * kParts / segments_)]
-        .push_back(off.back());
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    const auto k = static_cast<std::int32_t>(i * step);
+    parts[static_cast<std::size_t>(k / segments_ * kParts / all_rows * kParts +
+                                   k % segments_ * kParts / segments_)]
+        .push_back(off[i]);
   }
   std::vector<float> high;
   for (std::vector<float>& part : parts) {
@@ -143,7 +136,17 @@ Changes Scout::LookAt(const core::Frame& frame) const {
   std::vector<float> cells(
       static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
       0.0F);
-  const Noise noise = NoiseOf<Sample>(frame);
+  constexpr std::size_t kStep = 7;
+  std::vector<float> some;
+  some.reserve(still_.size() / kStep + 1);
+  for (std::size_t k = 0; k < still_.size(); k += kStep) {
+    const auto at = static_cast<std::int32_t>(k);
+    some.push_back(
+        Off(frame.row<Sample>(kFirstRow_px + at / segments_ * kRowStep_px) +
+                std::ptrdiff_t{at % segments_} * kSegment_px,
+            still_[k]));
+  }
+  const Noise noise = NoiseOf(std::move(some), kStep);
   const auto most = static_cast<float>(options_.threshold_sigmas * noise.tail);
   const Segment* still = still_.data();
   for (std::int32_t y = kFirstRow_px; y < height_px_; y += kRowStep_px) {
@@ -221,16 +224,31 @@ Changes Scout::Look(const core::Frame& frame) const {
 }
 
 bool Scout::Differs(const Scout& other) const {
+  std::vector<float> off;
   for (std::size_t k = 0; k < still_.size(); ++k) {
-    const float off =
-        std::abs(still_[k].sum - other.still_[k].sum) * still_[k].one_over_u;
-    if (static_cast<double>(off) <= 0.5 * options_.threshold_sigmas) continue;
-    const core::PixelRect segment{
-        static_cast<std::int32_t>(k) % segments_ * kSegment_px,
-        kFirstRow_px + static_cast<std::int32_t>(k) / segments_ * kRowStep_px,
-        kSegment_px, 1};
-    if (std::none_of(options_.always.begin(), options_.always.end(),
-                     [&](const auto& rect) { return Meet(rect, segment); })) {
+    off.push_back(std::abs(still_[k].sum - other.still_[k].sum) *
+                  still_[k].one_over_u);
+  }
+  const double most = options_.threshold_sigmas * NoiseOf(off, 1).tail;
+  std::vector<int> cells(
+      static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
+  for (std::size_t k = 0; k < still_.size(); ++k) {
+    if (static_cast<double>(off[k]) <= most) continue;
+    const std::int32_t x =
+        static_cast<std::int32_t>(k) % segments_ * kSegment_px;
+    const std::int32_t y =
+        kFirstRow_px + static_cast<std::int32_t>(k) / segments_ * kRowStep_px;
+    if (std::any_of(options_.always.begin(), options_.always.end(),
+                    [&](const auto& rect) {
+                      return Meet(rect, {x, y, kSegment_px, 1});
+                    })) {
+      continue;
+    }
+    // Key frames of compressed video differ here and there from the others; a
+    // ghost does so in all of its area.
+    constexpr int kMany = 3;  // of the eight sums of a cell
+    if (++cells[static_cast<std::size_t>(y / kCell_px * columns_ +
+                                         x / kCell_px)] >= kMany) {
       return true;
     }
   }

@@ -40,8 +40,8 @@ class Scout {
   // `frame` is a whole picture. The strongest regions come first.
   Changes Look(const core::Frame& frame) const;
 
-  // True if two still pictures differ anywhere by half the threshold, but for
-  // what is always among the regions.
+  // True if two still pictures differ anywhere, by as much and by more than
+  // here and there, but for what is always among the regions.
   bool Differs(const Scout& other) const;
 
  private:
@@ -53,8 +53,7 @@ class Scout {
     double typical = 1.0;  // Changes::noise
     double tail = 1.0;     // as many times as large are rare differences
   };
-  template <class Sample>
-  Noise NoiseOf(const core::Frame& frame) const;
+  Noise NoiseOf(std::vector<float> off, std::size_t step) const;
   template <class Sample>
   Changes LookAt(const core::Frame& frame) const;
   template <class Sample>
