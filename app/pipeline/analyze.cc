@@ -17,6 +17,7 @@
 #include "touchdown/vision/clip_digest.h"
 #include "touchdown/vision/frame_store.h"
 #include "touchdown/vision/lens_track.h"
+#include "touchdown/vision/steady_light.h"
 #include "touchdown/vision/tracker.h"
 
 namespace touchdown::pipeline {
@@ -150,6 +151,7 @@ class Analyzer {
   const AnalyzeOptions& options_;
   std::unique_ptr<vision::Clip> clip_;
   Analysis result_;
+  std::optional<double> light_spread_;  // relative, where it was taken out
   vision::Background background_;
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
@@ -289,6 +291,12 @@ void Analyzer::DescribeScene() {
   scene.used.push_back(
       track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
   scene.used.push_back("quadratic shading");
+  if (light_spread_) {
+    scene.used.push_back(
+        fmt::format("flicker of {:.1f} % taken out", 100.0 * *light_spread_));
+  } else {
+    scene.left_out["flicker"] = "the light is steady to 0.2 %";
+  }
   if (result_.plane) {
     scene.used.push_back(result_.scale ? "free flight with known gravity"
                                        : "free flight with gravity fitted");
@@ -344,6 +352,10 @@ Analysis Analyzer::Run() {
   result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
                           camera_.warnings.end());
   auto lap = Clock::now();
+  vision::SteadyLight light =
+      vision::SteadyLightOf(std::move(clip_), options_.first_frame, last);
+  clip_ = std::move(light.clip);
+  if (light.corrected) light_spread_ = light.spread;
   vision::FrameStoreOptions store_options;
   store_options.first = options_.first_frame;
   store_options.last = last;

@@ -192,6 +192,39 @@ vision::SceneLook ReadLook(Object object) {
   return look;
 }
 
+vision::SceneTrouble ReadTrouble(Object object) {
+  vision::SceneTrouble trouble;
+  object.Number("shading_x", 1.0, trouble.shading_x);
+  object.Number("shading_y", 1.0, trouble.shading_y);
+  object.Number("highlight_level", 1.0, trouble.highlight_level);
+  object.Number("highlight_x", 1.0, trouble.highlight_x);
+  object.Number("highlight_y", 1.0, trouble.highlight_y);
+  object.Number("highlight_sigma", 1.0, trouble.highlight_sigma);
+  object.Number("shadow_depth", 1.0, trouble.shadow_depth);
+  object.Number("flicker_amplitude", 1.0, trouble.flicker_amplitude);
+  object.Number("flicker_hz", 1.0, trouble.flicker_hz);
+  object.Number("wave_amplitude_px", 1.0, trouble.wave_amplitude_px);
+  object.Number("wave_length_px", 1.0, trouble.wave_length_px);
+  object.Whole("specks", 0, 10000, trouble.specks);
+  object.Number("speck_diameter_px", 1.0, trouble.speck_diameter_px);
+  object.Number("speck_speed_px", 1.0, trouble.speck_speed_px);
+  object.Whole("speck_seed", 0, std::numeric_limits<std::int64_t>::max(),
+               trouble.speck_seed);
+  if (object.Has("obstacle")) {
+    Object rect = object.Child("obstacle");
+    core::PixelRect& r = trouble.obstacle.emplace();
+    constexpr std::int64_t kFar = 65536;
+    r.x = static_cast<std::int32_t>(rect.Whole("x", -kFar, kFar));
+    r.y = static_cast<std::int32_t>(rect.Whole("y", -kFar, kFar));
+    r.width = static_cast<std::int32_t>(rect.Whole("width", 1, kFar));
+    r.height = static_cast<std::int32_t>(rect.Whole("height", 1, kFar));
+    rect.Done();
+  }
+  object.Number("obstacle_level", 1.0, trouble.obstacle_level);
+  object.Done();
+  return trouble;
+}
+
 // Height of the centre above the lowest outline point.
 double CentreHeight(const core::Body& body, double angle_rad) {
   return -vision::Gap(body, {{0.0, 0.0}, angle_rad});
@@ -291,6 +324,9 @@ Shot ReadShot(const json& document, const std::string& source,
   shot.name = object.Has("name") ? object.Word("name") : default_name;
   if (object.Has("camera")) shot.camera = ReadCamera(object.Child("camera"));
   if (object.Has("look")) shot.look = ReadLook(object.Child("look"));
+  if (object.Has("trouble")) {
+    shot.trouble = ReadTrouble(object.Child("trouble"));
+  }
   if (object.Has("noise")) {
     Object noise = object.Child("noise");
     noise.Number("read_dn", 1.0, shot.noise.read_dn);

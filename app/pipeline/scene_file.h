@@ -21,6 +21,11 @@
 //   look        body_level, background_level, ground_level, gradient_x,
 //               gradient_y, texture_amplitude, texture_correlation_px,
 //               texture_seed
+//   trouble     shading_x, shading_y, highlight_level, highlight_x,
+//               highlight_y, highlight_sigma, shadow_depth, flicker_amplitude,
+//               flicker_hz, wave_amplitude_px, wave_length_px, specks,
+//               speck_diameter_px, speck_speed_px, speck_seed, obstacle
+//               ({"x", "y", "width", "height"}), obstacle_level
 //   noise       read_dn, shot_dn2_per_dn
 #pragma once
 

@@ -78,6 +78,32 @@ ordered_json SceneJson(const Shot& shot) {
                    {"texture_amplitude", look.texture_amplitude},
                    {"texture_correlation_px", look.texture_correlation_px},
                    {"texture_seed", look.texture_seed}};
+  if (vision::HasTrouble(shot.trouble)) {
+    const vision::SceneTrouble& t = shot.trouble;
+    ordered_json& trouble = scene["trouble"];
+    trouble = {{"shading_x", t.shading_x},
+               {"shading_y", t.shading_y},
+               {"highlight_level", t.highlight_level},
+               {"highlight_x", t.highlight_x},
+               {"highlight_y", t.highlight_y},
+               {"highlight_sigma", t.highlight_sigma},
+               {"shadow_depth", t.shadow_depth},
+               {"flicker_amplitude", t.flicker_amplitude},
+               {"flicker_hz", t.flicker_hz},
+               {"wave_amplitude_px", t.wave_amplitude_px},
+               {"wave_length_px", t.wave_length_px},
+               {"specks", t.specks},
+               {"speck_diameter_px", t.speck_diameter_px},
+               {"speck_speed_px", t.speck_speed_px},
+               {"speck_seed", t.speck_seed},
+               {"obstacle_level", t.obstacle_level}};
+    if (t.obstacle) {
+      trouble["obstacle"] = {{"x", t.obstacle->x},
+                             {"y", t.obstacle->y},
+                             {"width", t.obstacle->width},
+                             {"height", t.obstacle->height}};
+    }
+  }
   scene["noise"] = {{"read_dn", shot.noise.read_dn},
                     {"shot_dn2_per_dn", shot.noise.shot_dn2_per_dn}};
   return scene;

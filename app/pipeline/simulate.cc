@@ -221,6 +221,7 @@ vision::Scene SceneOf(const Shot& shot, const analysis::RigidMotion& motion) {
   scene.frames = shot.frames;
   scene.camera = shot.camera;
   scene.look = shot.look;
+  scene.trouble = shot.trouble;
   scene.noise = shot.noise;
   const auto shared = std::make_shared<const analysis::RigidMotion>(motion);
   // Exposures are no longer than a frame: none sees it come into sight.

@@ -32,6 +32,7 @@ struct Shot {
   std::int64_t frames = 1;  // in all
   vision::SceneCamera camera;
   vision::SceneLook look;
+  vision::SceneTrouble trouble;
   vision::SensorNoise noise;
 };
 

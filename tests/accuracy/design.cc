@@ -86,6 +86,13 @@ void DrawLevels(Levels& l, Drawer& draw) {
     case Hardship::kSlow:
       l.speed_px = draw.Level({0.2, 0.4});
       break;
+    case Hardship::kShaded:
+    case Hardship::kShadow:
+    case Hardship::kFlicker:
+    case Hardship::kWavy:
+    case Hardship::kSpecks:
+    case Hardship::kObstacle:
+      break;  // DrawTrouble
   }
 }
 
@@ -98,6 +105,58 @@ double NormalSpeed_px(const Levels& l) {
 double Gravity_px(const Levels& l) {
   return std::min(
       0.02, 0.4 * NormalSpeed_px(l) / static_cast<double>(l.frames_before));
+}
+
+void DrawTrouble(Case& c, Drawer& draw) {
+  const Levels& l = c.levels;
+  vision::SceneTrouble& trouble = c.film.trouble;
+  switch (l.hardship) {
+    case Hardship::kShaded: {
+      // Within the contrast: an end that is as bright as what lies behind it
+      // cannot be seen by anybody.
+      const double contrast = std::abs(l.contrast);
+      const double relative = std::min(contrast / c.film.look.body_level, 1.5);
+      trouble.shading_x = draw.Uniform(-0.3, 0.3) * relative;
+      trouble.shading_y = draw.Uniform(-0.5, 0.0) * relative;
+      trouble.highlight_level = draw.Uniform(0.3, 1.0) * contrast;
+      break;
+    }
+    case Hardship::kShadow:
+      trouble.shadow_depth = draw.Uniform(0.3, 0.8);
+      break;
+    case Hardship::kFlicker:
+      trouble.flicker_amplitude = 0.10;
+      // A period of 10 to 40 frames.
+      trouble.flicker_hz = c.film.camera.fps / draw.Uniform(10.0, 40.0);
+      break;
+    case Hardship::kWavy:
+      trouble.wave_amplitude_px = 1.0;
+      trouble.wave_length_px = draw.Uniform(20.0, 80.0);
+      break;
+    case Hardship::kSpecks:
+      trouble.specks = 5;
+      trouble.speck_diameter_px = draw.Uniform(0.08, 0.2) * l.size_px;
+      trouble.speck_speed_px = l.speed_px;
+      trouble.speck_seed = c.seed;
+      break;
+    case Hardship::kObstacle: {
+      // Half as wide as the body, on the first half of its way.
+      const vision::SceneCamera& camera = c.film.camera;
+      const double back = draw.Uniform(0.4, 0.9) * l.frames_before *
+                          l.speed_px * std::cos(l.angle_deg * core::kDegree);
+      const double x =
+          camera.ground_point.x_px + (camera.travels_left ? back : -back);
+      core::PixelRect& obstacle = trouble.obstacle.emplace();
+      obstacle.width = static_cast<std::int32_t>(std::ceil(0.5 * l.size_px));
+      obstacle.x =
+          static_cast<std::int32_t>(std::lround(x)) - obstacle.width / 2;
+      obstacle.height = camera.height_px;
+      trouble.obstacle_level = 0.5 * c.film.look.background_level;
+      break;
+    }
+    default:
+      break;
+  }
 }
 
 // The whole case but its seed, from levels that are drawn here.
@@ -170,6 +229,7 @@ void DrawFilm(Case& c, Drawer& draw) {
   look.gradient_x = 0.06;
   look.texture_seed = c.seed;
   look.texture_amplitude = hardship == Hardship::kTexture ? 0.10 : 0.0;
+  DrawTrouble(c, draw);
 }
 
 }  // namespace
@@ -192,6 +252,18 @@ const char* Name(Hardship hardship) {
       return "texture";
     case Hardship::kSlow:
       return "slow";
+    case Hardship::kShaded:
+      return "shaded";
+    case Hardship::kShadow:
+      return "shadow";
+    case Hardship::kFlicker:
+      return "flicker";
+    case Hardship::kWavy:
+      return "wavy ground";
+    case Hardship::kSpecks:
+      return "specks";
+    case Hardship::kObstacle:
+      return "obstacle";
   }
   return "?";
 }

@@ -23,12 +23,20 @@ enum class Hardship {
   kLongExposure,  // open for 0.9 of the frame interval
   kTexture,       // ground of 10 % texture
   kSlow,          // 0.2 to 0.4 px a frame
+  kShaded,        // a shaded body with a highlight
+  kShadow,        // its shadow touches it
+  kFlicker,       // mains: 10 %
+  kWavy,          // the ground's edge goes up and down by 1 px
+  kSpecks,        // five specks fly about
+  kObstacle,      // it flies behind something on its way
 };
 const char* Name(Hardship hardship);
 inline constexpr Hardship kHardships[] = {
-    Hardship::kSmall, Hardship::kDim,          Hardship::kFewFrames,
-    Hardship::kFast,  Hardship::kLongExposure, Hardship::kTexture,
-    Hardship::kSlow};
+    Hardship::kSmall,   Hardship::kDim,          Hardship::kFewFrames,
+    Hardship::kFast,    Hardship::kLongExposure, Hardship::kTexture,
+    Hardship::kSlow,    Hardship::kShaded,       Hardship::kShadow,
+    Hardship::kFlicker, Hardship::kWavy,         Hardship::kSpecks,
+    Hardship::kObstacle};
 
 // Levels of one clip, as chosen; the table is broken down by them.
 struct Levels {

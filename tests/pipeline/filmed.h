@@ -15,6 +15,7 @@ struct Film {
   vision::synthetic::Throw thrown;
   vision::SceneCamera camera;
   vision::SceneLook look;
+  vision::SceneTrouble trouble;
   double noise = 0.006;       // of full scale
   std::int64_t lead_in = 50;  // frames before the body is seen
   std::int64_t frames = 115;  // in all
@@ -52,6 +53,7 @@ inline vision::Scene SceneOf(Film film) {
   film.thrown.contact_s = film.contact_frame / film.camera.fps;
   scene.camera = film.camera;
   scene.look = film.look;
+  scene.trouble = film.trouble;
   const double full = (1 << film.camera.bit_depth) - 1;
   scene.noise.read_dn = film.noise * full;
   scene.frames = film.frames;

@@ -11,6 +11,7 @@
 #include "coverage.h"
 #include "gaussian.h"
 #include "lens_silhouette.h"
+#include "render_trouble.h"
 
 namespace touchdown::vision {
 namespace {
@@ -261,10 +262,14 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
                                               {width + margin, height + margin},
                                               {-margin, height + margin}};
   CoverageMap coverage({0, 0, width, height}, camera.psf_sigma_px);
-  coverage.Add(camera.lens
-                   ? GroundThroughLens(camera, margin)
-                   : PolygonOutline(ClipPolygon(picture, Ground(camera))),
-               1.0);
+  const SceneTrouble& trouble = scene_.trouble;
+  if (camera.lens) {
+    coverage.Add(GroundThroughLens(camera, margin), 1.0);
+  } else if (trouble.wave_amplitude_px > 0.0) {
+    coverage.Add(PolygonOutline(WavyGround(camera, trouble, margin)), 1.0);
+  } else {
+    coverage.Add(PolygonOutline(ClipPolygon(picture, Ground(camera))), 1.0);
+  }
   coverage.Finish();
 
   const auto pixels =
@@ -274,6 +279,10 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
   background_ = {width, height, std::vector<float>(pixels)};
   ground_.resize(pixels);
   light_.resize(pixels);
+  if (HasTrouble(trouble)) {
+    trouble_ = std::make_shared<TroubleRenderer>(scene_);
+    ground_share_.resize(pixels);
+  }
   for (int y = 0; y < height; ++y) {
     const double* covered = coverage.row(y);
     for (int x = 0; x < width; ++x) {
@@ -288,6 +297,7 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
       }
       const double contrast = light * (ground - look.background_level);
       light_[i] = static_cast<float>(light);
+      if (trouble_) ground_share_[i] = static_cast<float>(covered[x]);
       ground_[i] = static_cast<float>(contrast);
       background_.dn[i] = static_cast<float>(light * look.background_level +
                                              contrast * covered[x]);
@@ -326,6 +336,7 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
   below.Finish();
 
   CleanImage image = background_;
+  const bool wavy = scene_.trouble.wave_amplitude_px > 0.0;
   const double contrast = scene_.look.body_level - scene_.look.background_level;
   for (std::int32_t y = window.y; y < window.y + window.height; ++y) {
     const double* covered = body.row(y);
@@ -337,11 +348,18 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
       const std::size_t i = first + static_cast<std::size_t>(x);
       double change = static_cast<double>(light_[i]) * contrast * covered[x];
       // Where the body hides ground instead of background.
-      if (hidden != nullptr) {
+      if (wavy) {
+        change -=
+            static_cast<double>(ground_[i] * ground_share_[i]) * covered[x];
+      } else if (hidden != nullptr) {
         change -= static_cast<double>(ground_[i]) * hidden[x];
       }
       image.dn[i] += static_cast<float>(change);
     }
+  }
+  if (trouble_) {
+    trouble_->Draw(scene_, middle_s, {light_, ground_, ground_share_, body},
+                   image);
   }
   return image;
 }

@@ -29,7 +29,51 @@ void RequireSize(const core::Measured& size, const char* field) {
 
 bool IsLevel(double value) { return value >= 0.0 && value <= 1.0; }
 
+void Validate(const SceneTrouble& trouble, bool lens) {
+  Require(std::abs(trouble.shading_x) <= 1.0, "trouble.shading_x",
+          trouble.shading_x, "-1 .. 1");
+  Require(std::abs(trouble.shading_y) <= 1.0, "trouble.shading_y",
+          trouble.shading_y, "-1 .. 1");
+  Require(IsLevel(std::abs(trouble.highlight_level)), "trouble.highlight_level",
+          trouble.highlight_level, "-1 .. 1");
+  Require(std::isfinite(trouble.highlight_x), "trouble.highlight_x",
+          trouble.highlight_x, "finite");
+  Require(std::isfinite(trouble.highlight_y), "trouble.highlight_y",
+          trouble.highlight_y, "finite");
+  Require(trouble.highlight_sigma > 0.0 && trouble.highlight_sigma <= 10.0,
+          "trouble.highlight_sigma", trouble.highlight_sigma,
+          "more than 0, at most 10");
+  Require(IsLevel(trouble.shadow_depth), "trouble.shadow_depth",
+          trouble.shadow_depth, "0 .. 1");
+  Require(IsLevel(trouble.flicker_amplitude), "trouble.flicker_amplitude",
+          trouble.flicker_amplitude, "0 .. 1");
+  Require(trouble.flicker_hz >= 0.0 && std::isfinite(trouble.flicker_hz),
+          "trouble.flicker_hz", trouble.flicker_hz, "at least 0 and finite");
+  Require(trouble.wave_amplitude_px >= 0.0 && trouble.wave_amplitude_px <= 1e3,
+          "trouble.wave_amplitude_px", trouble.wave_amplitude_px, "0 .. 1000");
+  Require(trouble.wave_length_px >= 2.0 && trouble.wave_length_px <= 1e5,
+          "trouble.wave_length_px", trouble.wave_length_px, "2 .. 100000");
+  Require(!lens ||
+              (trouble.wave_amplitude_px == 0.0 && trouble.shadow_depth == 0.0),
+          "camera.lens", 1.0, "absent where there is a shadow or a wave");
+  Require(trouble.specks >= 0 && trouble.specks <= 10000, "trouble.specks",
+          trouble.specks, "0 .. 10000");
+  Require(trouble.speck_diameter_px > 0.0 && trouble.speck_diameter_px <= 1e3,
+          "trouble.speck_diameter_px", trouble.speck_diameter_px,
+          "more than 0, at most 1000");
+  Require(std::abs(trouble.speck_speed_px) <= 1e4, "trouble.speck_speed_px",
+          trouble.speck_speed_px, "-10000 .. 10000");
+  Require(IsLevel(trouble.obstacle_level), "trouble.obstacle_level",
+          trouble.obstacle_level, "0 .. 1");
+}
+
 }  // namespace
+
+bool HasTrouble(const SceneTrouble& t) {
+  return t.shading_x != 0.0 || t.shading_y != 0.0 || t.highlight_level != 0.0 ||
+         t.shadow_depth > 0.0 || t.flicker_amplitude > 0.0 ||
+         t.wave_amplitude_px > 0.0 || t.specks > 0 || t.obstacle;
+}
 
 void Validate(const Scene& scene) {
   const SceneCamera& camera = scene.camera;
@@ -81,6 +125,7 @@ void Validate(const Scene& scene) {
       look.texture_correlation_px >= 0.0 && look.texture_correlation_px <= 1e3,
       "look.texture_correlation_px", look.texture_correlation_px, "0 .. 1000");
 
+  Validate(scene.trouble, camera.lens.has_value());
   Require(scene.noise.read_dn >= 0.0 && std::isfinite(scene.noise.read_dn),
           "noise.read_dn", scene.noise.read_dn, "at least 0 and finite");
   Require(scene.noise.shot_dn2_per_dn >= 0.0 &&

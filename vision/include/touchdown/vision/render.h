@@ -52,6 +52,8 @@ struct SensorImage {
   core::Frame view() const;  // valid as long as this
 };
 
+class TroubleRenderer;  // src/render_trouble.h
+
 // Renders the frames of one scene over a background that is drawn once. Safe
 // to use from several threads if scene.pose is.
 class SceneRenderer {
@@ -70,9 +72,11 @@ class SceneRenderer {
 
  private:
   Scene scene_;
-  CleanImage background_;      // in DN
-  std::vector<float> ground_;  // ground minus background, in DN, textured
-  std::vector<float> light_;   // illumination times full scale, in DN
+  CleanImage background_;            // in DN
+  std::vector<float> ground_;        // ground minus background, in DN, textured
+  std::vector<float> light_;         // illumination times full scale, in DN
+  std::vector<float> ground_share_;  // of each pixel, where trouble needs it
+  std::shared_ptr<const TroubleRenderer> trouble_;  // or nothing
 };
 
 // One frame of a scene. To render many, keep a SceneRenderer.

@@ -13,6 +13,7 @@
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/points.h"
+#include "touchdown/vision/scene_trouble.h"
 
 namespace touchdown::vision {
 
@@ -80,6 +81,7 @@ struct Scene {
   std::int64_t frames = 1;
   SceneCamera camera;
   SceneLook look;
+  SceneTrouble trouble;
   SensorNoise noise;
 };
 
