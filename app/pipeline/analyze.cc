@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <stdexcept>
 
 #include "app/pipeline/clip_calibration.h"
@@ -442,8 +443,17 @@ Analysis Analyze(const std::filesystem::path& path,
   clip_options.fps = options.fps;
   clip_options.decoder_threads = options.decoder_threads;
   auto clip = vision::OpenClip(path, clip_options);
-  const std::string id = vision::ClipId(path);
   const double open_s = Since(start);
+  // Beside the analysis, where more than one thread is allowed.
+  double digest_s = 0.0;
+  auto id = std::async(options.decoder_threads == 1 ? std::launch::deferred
+                                                    : std::launch::async,
+                       [&path, &digest_s] {
+                         const auto begun = Clock::now();
+                         std::string digest = vision::ClipId(path);
+                         digest_s = Since(begun);
+                         return digest;
+                       });
   Analysis analysis = AnalyzeClip(std::move(clip), options);
   if (analysis.clip.has_colour && !OneBody(analysis)) {
     for (const vision::Channel channel :
@@ -461,7 +471,8 @@ Analysis Analyze(const std::filesystem::path& path,
       break;
     }
   }
-  analysis.clip_id = id;
+  analysis.clip_id = id.get();
+  analysis.timing.digest_s = digest_s;
   analysis.simulated = HasTruthFile(path);
   analysis.timing.open_s = open_s;
   analysis.timing.total_s = Since(start);
