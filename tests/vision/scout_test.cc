@@ -23,7 +23,7 @@ TEST(Scout, PointsAtTheBodyAndAtNothingElse) {
     int regions = 0;
     for (std::int64_t index = 0; index < 600; index += 13) {
       const Changes changes = scout.Look(clip->Read(index));
-      EXPECT_LT(changes.noise, 1.15);
+      EXPECT_LT(changes.noise, 1.3);  // the median of 229 sums: +- 9 %
       regions += static_cast<int>(changes.where.size());
       const SceneTruth truth = TruthOf(scene, index);
       const double x = truth.centre.x_px;

