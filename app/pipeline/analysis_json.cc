@@ -299,7 +299,7 @@ std::string ToJson(const Analysis& analysis) {
                       {"decode", analysis.timing.decode_s},
                       {"track", analysis.timing.track_s},
                       {"contact", analysis.timing.contact_s},
-                      {"digest", 0.0},
+                      {"digest", analysis.timing.digest_s},
                       {"frames_per_s", analysis.timing.frames_per_s}};
   json["absent"] = writer.TakeAbsent();
   if (!analysis.corrections.empty()) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <stdexcept>
 
 #include "app/pipeline/clip_calibration.h"
@@ -136,7 +137,7 @@ int Merit(const vision::ContactResult& result) {
 class Analyzer {
  public:
   Analyzer(std::unique_ptr<vision::Clip> clip, const AnalyzeOptions& options)
-      : options_(options), clip_(vision::KeepFrames(std::move(clip))) {}
+      : options_(options), clip_(std::move(clip)) {}
 
   Analysis Run();
 
@@ -167,8 +168,8 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
     in_image =
         SeenNear(vision::SeenFromGround(Seen(track), ground), *camera_.lens);
   }
-  judged.track =
-      vision::Refine(*clip_, background_, track, {in_image, aspect_});
+  judged.track = vision::Refine(*clip_, background_, track,
+                                {in_image, aspect_, options_.decoder_threads});
   judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
   judged.contacts = vision::FindContacts(judged.plane, contact_options_);
   return judged;
@@ -332,12 +333,20 @@ Analysis Analyzer::Run() {
       vision::SteadyLightOf(std::move(clip_), options_.first_frame, last);
   clip_ = std::move(light.clip);
   if (light.corrected) light_spread_ = light.spread;
+  vision::FrameStoreOptions store_options;
+  store_options.first = options_.first_frame;
+  store_options.last = last;
+  store_options.region = options_.region;
+  store_options.threads = options_.decoder_threads;
+  store_options.progress = options_.progress;
+  clip_ = vision::KeepFrames(std::move(clip_), store_options);
   vision::TrackOptions track_options;
   track_options.first = options_.first_frame;
   track_options.last = last;
   track_options.region = options_.region;
   track_options.kind = kind;
   track_options.ground = camera_.image_ground;
+  track_options.threads = options_.decoder_threads;
   track_options.progress = options_.progress;
   auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(lap);
@@ -409,8 +418,17 @@ Analysis Analyze(const std::filesystem::path& path,
   clip_options.fps = options.fps;
   clip_options.decoder_threads = options.decoder_threads;
   auto clip = vision::OpenClip(path, clip_options);
-  const std::string id = vision::ClipId(path);
   const double open_s = Since(start);
+  // Beside the analysis, where more than one thread is allowed.
+  double digest_s = 0.0;
+  auto id = std::async(options.decoder_threads == 1 ? std::launch::deferred
+                                                    : std::launch::async,
+                       [&path, &digest_s] {
+                         const auto begun = Clock::now();
+                         std::string digest = vision::ClipId(path);
+                         digest_s = Since(begun);
+                         return digest;
+                       });
   Analysis analysis = AnalyzeClip(std::move(clip), options);
   if (analysis.clip.has_colour && !OneBody(analysis)) {
     for (const vision::Channel channel :
@@ -428,7 +446,8 @@ Analysis Analyze(const std::filesystem::path& path,
       break;
     }
   }
-  analysis.clip_id = id;
+  analysis.clip_id = id.get();
+  analysis.timing.digest_s = digest_s;
   analysis.simulated = HasTruthFile(path);
   analysis.timing.open_s = open_s;
   analysis.timing.total_s = Since(start);

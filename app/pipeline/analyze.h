@@ -61,6 +61,7 @@ struct Timing {
   double decode_s = 0.0;  // inside Clip::Read
   double track_s = 0.0;   // reading and fitting
   double contact_s = 0.0;
+  double digest_s = 0.0;  // of clip_id, beside the rest
   double frames_per_s = 0.0;
 };
 

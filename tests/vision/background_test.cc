@@ -153,17 +153,22 @@ TEST(Background, BehindASlowBody) {
   double most = 0.0;
   const Background behind = EstimateBackgroundBehind(
       *clip, 0, 60,
-      [&](std::int64_t frame, std::vector<std::uint8_t>& mask) {
+      [&](std::int64_t frame) {
         ++asked;
-        if (frame == 0) return false;  // its place is not known here
+        Cover cover;
+        if (frame == 0) {  // its place is not known here
+          cover.known = false;
+          return cover;
+        }
         const SceneTruth at = TruthOf(scene, frame);
+        cover.box = {0, 0, 160, 80};
         for (int y = 0; y < 80; ++y) {
           for (int x = 0; x < 160; ++x) {
-            mask[static_cast<std::size_t>(y * 160 + x)] =
-                std::hypot(x - at.centre.x_px, y - at.centre.y_px) < 14.0;
+            cover.mask.push_back(
+                std::hypot(x - at.centre.x_px, y - at.centre.y_px) < 14.0);
           }
         }
-        return true;
+        return cover;
       },
       ghost, {}, &most);
   EXPECT_EQ(asked, 33);

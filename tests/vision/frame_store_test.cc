@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "tests/vision/long_clip.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/vision/tracker.h"
 
 namespace touchdown::vision {
 namespace {
@@ -148,6 +150,63 @@ TEST(FrameStore, DamagedFrameIsSaidEachTime) {
   ExpectFrame(clip->Read(4), 4, {0, 0, 17, 11}, 1);
   EXPECT_THROW(clip->Read(6), std::invalid_argument);
   EXPECT_THROW(clip->Read(0, {10, 0, 8, 11}), std::invalid_argument);
+}
+
+// Of a clip that does not fit, the range is decoded once, and a few key frames.
+TEST(FrameStore, LongClipsAreDecodedOnce) {
+  const Scene scene = testing::LongScene(600);
+  const auto same = OpenScene(scene, 1);
+  for (const std::int64_t group : {1, 40, 250}) {
+    std::map<std::int64_t, int> decoded;
+    FrameStoreOptions options;
+    // A quarter of its pictures; of three key frames, which cannot tell what is
+    // still, windows at the body's place in each are kept, too.
+    options.most_bytes = 320 * 160 * (group < 250 ? 150 : 450);
+    const auto clip = KeepFrames(std::make_unique<testing::InGroups>(
+                                     OpenScene(scene, 1), group, decoded),
+                                 options);
+    const auto result = TrackBody(*clip);
+    ASSERT_TRUE(result) << result.error().reason;
+    int times = 0;
+    for (const auto& [index, count] : decoded) times += count;
+    EXPECT_LE(times, 600 + 33 + 3) << group;
+    // What it hands out are the frames.
+    for (const Pose& pose : result->track.poses) {
+      ASSERT_NE(clip->ChangesIn(pose.frame), nullptr);
+      for (const core::PixelRect& rect : clip->ChangesIn(pose.frame)->where) {
+        const core::Frame kept = clip->Read(pose.frame, rect);
+        const core::Frame frame = same->Read(pose.frame, rect);
+        for (int y = 0; y < rect.height; y += 5) {
+          for (int x = 0; x < rect.width; ++x) {
+            ASSERT_EQ(kept.at(x, y), frame.at(x, y)) << pose.frame;
+          }
+        }
+      }
+    }
+  }
+}
+
+// The answer is that of a clip whose every pixel can be looked at.
+TEST(FrameStore, WindowsAreEnough) {
+  const Scene scene = testing::LongScene(600);
+  const auto whole = OpenScene(scene, 1);
+  const auto expected = TrackBody(*whole);
+  std::map<std::int64_t, int> decoded;
+  FrameStoreOptions options;
+  options.most_bytes = 320 * 160 * 150;
+  const auto clip = KeepFrames(
+      std::make_unique<testing::InGroups>(OpenScene(scene, 1), 100, decoded),
+      options);
+  const auto result = TrackBody(*clip);
+  ASSERT_TRUE(expected && result);
+  ASSERT_EQ(result->track.poses.size(), expected->track.poses.size());
+  for (std::size_t i = 0; i < result->track.poses.size(); ++i) {
+    const Pose& a = result->track.poses[i];
+    const Pose& b = expected->track.poses[i];
+    EXPECT_EQ(a.frame, b.frame);
+    EXPECT_NEAR(a.centre.x_px, b.centre.x_px, 0.05 * b.u_x_px);
+    EXPECT_NEAR(a.centre.y_px, b.centre.y_px, 0.05 * b.u_y_px);
+  }
 }
 
 TEST(FrameStore, MappedClipsAreLeftAsTheyAre) {

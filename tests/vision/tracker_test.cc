@@ -10,6 +10,7 @@
 
 #include "tests/support/statistics.h"
 #include "tests/vision/composite_clip.h"
+#include "tests/vision/long_clip.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/render.h"
@@ -140,6 +141,37 @@ TEST(Tracker, AngleIsContinuousOverManyTurns) {
   const double truth =
       -0.15 * static_cast<double>(poses.back().frame - poses.front().frame);
   EXPECT_NEAR(turned, truth, 0.01);
+}
+
+// Looked at in every fourth frame first, or in every one: the same frames are
+// measured, and alike.
+TEST(Tracker, SparseLooksMeasureTheSame) {
+  const auto clip = OpenScene(testing::LongScene(800), 3);
+  TrackOptions every;
+  every.first_looks = 100000;
+  const auto closely = TrackBody(*clip, every);
+  TrackOptions sparse;
+  sparse.first_looks = 200;
+  const auto coarsely = TrackBody(*clip, sparse);
+  ASSERT_TRUE(closely && coarsely);
+  const auto& a = closely->track.poses;
+  const auto& b = coarsely->track.poses;
+  EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 4);
+  std::size_t j = 0;
+  std::size_t both = 0;
+  for (const Pose& pose : a) {
+    while (j < b.size() && b[j].frame < pose.frame) ++j;
+    if (j == b.size() || b[j].frame != pose.frame) continue;
+    ++both;
+    // Cut by the picture's border, size and place are one.
+    if (std::abs(pose.centre.x_px - 159.5) > 159.5 - 12.0) continue;
+    EXPECT_NEAR(b[j].centre.x_px, pose.centre.x_px, 0.1 * pose.u_x_px);
+    EXPECT_NEAR(b[j].centre.y_px, pose.centre.y_px, 0.1 * pose.u_y_px);
+  }
+  EXPECT_GE(both + 4, a.size());
+  EXPECT_NEAR(coarsely->track.body.radius_px.value,
+              closely->track.body.radius_px.value,
+              0.1 * closely->track.body.radius_px.u);
 }
 
 TEST(Tracker, NothingMoves) {

@@ -5,65 +5,173 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
 #include <stdexcept>
+
+#include "kept_pixels.h"
+#include "mid_mean.h"
+#include "parallel.h"
 
 namespace touchdown::vision {
 namespace {
 
-// Sampled frames as 16-bit numbers, pixel-interleaved by frame: one plane each.
+// Sampled frames: views of the clip's own memory where they last, else copies.
 struct Samples {
-  std::size_t pixels = 0;
-  std::vector<std::vector<std::uint16_t>> planes;
+  std::vector<core::Frame> frames;
+  std::vector<KeptPixels> copies;
+
+  std::size_t size() const { return frames.size(); }
+  std::uint32_t At(std::size_t k, std::size_t pixel) const {
+    const auto width = static_cast<std::size_t>(frames[k].width_px);
+    return frames[k].at(static_cast<std::int32_t>(pixel % width),
+                        static_cast<std::int32_t>(pixel / width));
+  }
 };
 
-std::vector<std::uint16_t> CopyPlane(const core::Frame& frame) {
-  std::vector<std::uint16_t> plane;
-  plane.reserve(static_cast<std::size_t>(frame.width_px) *
-                static_cast<std::size_t>(frame.height_px));
-  for (std::int32_t y = 0; y < frame.height_px; ++y) {
-    if (frame.is_16_bit()) {
-      const auto* row = frame.row<std::uint16_t>(y);
-      plane.insert(plane.end(), row, row + frame.width_px);
-    } else {
-      const auto* row = frame.row<std::uint8_t>(y);
-      plane.insert(plane.end(), row, row + frame.width_px);
+void AddSample(Clip& clip, std::int64_t index, Samples& samples) {
+  core::Frame frame = clip.Read(index);
+  if (!clip.views_last()) {
+    samples.copies.emplace_back(frame);
+    frame = samples.copies.back().View();
+  }
+  samples.frames.push_back(frame);
+}
+
+// Row `y` of sample k from column `x` on, up to kLanes of it.
+template <class Sample>
+void LoadLanes(const core::Frame& frame, std::int32_t x, std::int32_t y,
+               Sample* lanes) {
+  const auto count = std::min<std::size_t>(
+      kLanes, static_cast<std::size_t>(frame.width_px - x));
+  std::memcpy(lanes, frame.row<Sample>(y) + x, count * sizeof(Sample));
+}
+
+// The mid-mean of all samples, into rows [begin, end) of `level`.
+template <class Sample>
+void MidMeanOfRows(const Samples& samples, const SortingNetwork& network,
+                   std::int64_t begin, std::int64_t end, float* level) {
+  const std::size_t n = samples.size();
+  const std::size_t cut = MidBegin(n);
+  const std::int32_t width = samples.frames.front().width_px;
+  std::vector<Sample> lanes(n * kLanes);
+  std::array<std::uint32_t, kLanes> sums{};
+  for (std::int64_t y = begin; y < end; ++y) {
+    for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
+      for (std::size_t k = 0; k < n; ++k) {
+        LoadLanes(samples.frames[k], x, static_cast<std::int32_t>(y),
+                  &lanes[k * kLanes]);
+      }
+      network.Sort(lanes.data());
+      sums.fill(0);
+      for (std::size_t k = cut; k < n - cut; ++k) {
+        const Sample* const row = &lanes[k * kLanes];
+        for (std::size_t i = 0; i < kLanes; ++i) sums[i] += row[i];
+      }
+      const auto count =
+          std::min<std::size_t>(kLanes, static_cast<std::size_t>(width - x));
+      float* const out = level + y * width + x;
+      for (std::size_t i = 0; i < count; ++i) {
+        out[i] = static_cast<float>(static_cast<double>(sums[i]) /
+                                    static_cast<double>(n - 2 * cut));
+      }
     }
   }
-  return plane;
+}
+
+template <class Sample>
+void MidMeanOf(const Samples& samples, int threads, std::vector<float>& level) {
+  const SortingNetwork network(samples.size(), SortingNetwork::Order::kMiddle);
+  InParallel(samples.frames.front().height_px, threads,
+             [&](std::int64_t begin, std::int64_t end) {
+               MidMeanOfRows<Sample>(samples, network, begin, end,
+                                     level.data());
+             });
+}
+
+// Where the body was in the samples: the boxes' masks, and for each pixel how
+// many of them cover it.
+struct Covers {
+  std::vector<Cover> of;              // of each sample
+  std::vector<std::uint8_t> touched;  // 1 where any cover, used or not, lies
+  bool Covered(std::size_t k, std::int32_t x, std::int32_t y) const {
+    const Cover& cover = of[k];
+    const core::PixelRect& box = cover.box;
+    return x >= box.x && y >= box.y && x < box.x + box.width &&
+           y < box.y + box.height &&
+           cover.mask[static_cast<std::size_t>(y - box.y) *
+                          static_cast<std::size_t>(box.width) +
+                      static_cast<std::size_t>(x - box.x)] != 0;
+  }
+};
+
+// The mid-mean of what is not covered, in the pixels that anything covers.
+// Covered samples are moved alternately to the two ends of the order, where
+// they change nothing in the middle. Returns the most that any pixel is
+// covered.
+template <class Sample>
+std::size_t MidMeanBehind(const Samples& samples, const Covers& covers,
+                          Background& background) {
+  // Fewer samples than this are no background: noise, or the body's rim.
+  constexpr std::size_t kLeastSamples = 3;
+  const std::size_t n = samples.size();
+  const SortingNetwork network(n, SortingNetwork::Order::kFull);
+  std::vector<Sample> lanes(n * kLanes);
+  std::array<std::size_t, kLanes> low{};   // samples moved below the others
+  std::array<std::size_t, kLanes> high{};  // above
+  std::size_t most = 0;
+  const std::int32_t width = background.width_px;
+  for (std::int32_t y = 0; y < background.height_px; ++y) {
+    for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
+      const auto count =
+          std::min<std::size_t>(kLanes, static_cast<std::size_t>(width - x));
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+          static_cast<std::size_t>(x);
+      const auto* const touched = &covers.touched[at];
+      if (std::none_of(touched, touched + count,
+                       [](std::uint8_t t) { return t != 0; })) {
+        continue;
+      }
+      low.fill(0);
+      high.fill(0);
+      for (std::size_t k = 0; k < n; ++k) {
+        Sample* const row = &lanes[k * kLanes];
+        LoadLanes(samples.frames[k], x, y, row);
+        for (std::size_t i = 0; i < count; ++i) {
+          if (!covers.Covered(k, x + static_cast<std::int32_t>(i), y)) continue;
+          const bool down = low[i] == high[i];
+          row[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
+          ++(down ? low : high)[i];
+        }
+      }
+      network.Sort(lanes.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        if (touched[i] == 0) continue;
+        most = std::max(most, low[i] + high[i]);
+        const std::size_t left = n - low[i] - high[i];
+        if (left < kLeastSamples) {
+          background.unknown[at + i] = 1;
+          continue;
+        }
+        const std::size_t cut = MidBegin(left);
+        double sum = 0.0;
+        for (std::size_t k = low[i] + cut; k < low[i] + left - cut; ++k) {
+          sum += lanes[k * kLanes + i];
+        }
+        background.level[at + i] =
+            static_cast<float>(sum / static_cast<double>(left - 2 * cut));
+      }
+    }
+  }
+  return most;
 }
 
 // Evenly over the range, both ends included.
 std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
                          std::int64_t n) {
   return n == 1 ? first : first + (k * (last - first - 1)) / (n - 1);
-}
-
-Samples ReadSamples(Clip& clip, std::int64_t first, std::int64_t last,
-                    int wanted) {
-  const std::int64_t n =
-      std::min<std::int64_t>(last - first, std::max(wanted, 1));
-  Samples samples;
-  for (std::int64_t k = 0; k < n; ++k) {
-    const std::int64_t index = SampleIndex(first, last, k, n);
-    samples.planes.push_back(CopyPlane(clip.Read(index)));
-  }
-  samples.pixels = samples.planes.front().size();
-  return samples;
-}
-
-// Mean of the middle half of `values` (reorders them).
-float MidMean(std::vector<std::uint16_t>& values) {
-  const std::size_t n = values.size();
-  if (n <= 2) {
-    double sum = 0.0;
-    for (const auto v : values) sum += v;
-    return static_cast<float>(sum / static_cast<double>(n));
-  }
-  std::sort(values.begin(), values.end());
-  const std::size_t cut = n / 4;
-  double sum = 0.0;
-  for (std::size_t i = cut; i < n - cut; ++i) sum += values[i];
-  return static_cast<float>(sum / static_cast<double>(n - 2 * cut));
 }
 
 // Least squares of variance on level over bins of pixels of like level. In each
@@ -73,29 +181,29 @@ void EstimateNoise(const Samples& samples, Background& background) {
   constexpr std::size_t kBins = 24;
   constexpr std::size_t kPixelsWanted = 40000;  // enough for 1 % of sigma
   constexpr std::size_t kMinimumPerBin = 200;
-  if (samples.planes.size() < 2) return;
-  const std::size_t step =
-      std::max<std::size_t>(1, samples.pixels / kPixelsWanted);
+  if (samples.size() < 2) return;
+  const std::size_t pixels = background.level.size();
+  const std::size_t step = std::max<std::size_t>(1, pixels / kPixelsWanted);
   float low = background.level[0];
   float high = low;
-  for (std::size_t i = 0; i < samples.pixels; i += step) {
+  for (std::size_t i = 0; i < pixels; i += step) {
     low = std::min(low, background.level[i]);
     high = std::max(high, background.level[i]);
   }
   const double width = std::max(1e-6, static_cast<double>(high - low));
   std::array<std::vector<float>, kBins> bins;
-  for (std::size_t k = 0; k + 1 < samples.planes.size(); k += 2) {
-    const auto& a = samples.planes[k];
-    const auto& b = samples.planes[k + 1];
-    for (std::size_t i = 0; i < samples.pixels; i += step) {
+  for (std::size_t k = 0; k + 1 < samples.size(); k += 2) {
+    for (std::size_t i = 0; i < pixels; i += step) {
+      const std::uint32_t a = samples.At(k, i);
       // A clipped sample has no noise to tell of.
-      if (a[i] >= background.full_scale_dn || a[i] == 0) continue;
+      if (a >= background.full_scale_dn || a == 0) continue;
+      const std::uint32_t b = samples.At(k + 1, i);
       const auto bin = std::min(
           kBins - 1,
           static_cast<std::size_t>(
               (static_cast<double>(background.level[i] - low) / width) *
               static_cast<double>(kBins)));
-      bins[bin].push_back(static_cast<float>(a[i]) - static_cast<float>(b[i]));
+      bins[bin].push_back(static_cast<float>(a) - static_cast<float>(b));
     }
   }
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -142,6 +250,17 @@ void EstimateNoise(const Samples& samples, Background& background) {
 
 }  // namespace
 
+std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
+                                           std::int64_t last, int samples) {
+  const std::int64_t n =
+      std::min<std::int64_t>(last - first, std::max(samples, 1));
+  std::vector<std::int64_t> frames;
+  for (std::int64_t k = 0; k < n; ++k) {
+    frames.push_back(SampleIndex(first, last, k, n));
+  }
+  return frames;
+}
+
 Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
                                     std::int64_t last,
                                     const CoverFunction& covers,
@@ -149,39 +268,34 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
                                     const BackgroundOptions& options,
                                     double* most_covered) {
   Samples samples;
-  std::vector<std::vector<std::uint8_t>> masks;
-  const std::int64_t n =
-      std::min<std::int64_t>(last - first, std::max(options.samples, 1));
-  for (std::int64_t k = 0; k < n; ++k) {
-    const std::int64_t index = SampleIndex(first, last, k, n);
-    std::vector<std::uint8_t> mask(fallback.level.size(), 0);
-    if (!covers(index, mask)) continue;
-    samples.planes.push_back(CopyPlane(clip.Read(index)));
-    masks.push_back(std::move(mask));
+  Covers all;
+  all.touched.assign(fallback.level.size(), 0);
+  for (const std::int64_t index :
+       BackgroundFrames(first, last, options.samples)) {
+    Cover cover = covers(index);
+    const core::PixelRect& box = cover.box;
+    for (std::int32_t y = 0; y < box.height; ++y) {
+      const std::uint8_t* const mask =
+          cover.mask.data() + static_cast<std::ptrdiff_t>(y) * box.width;
+      std::uint8_t* const touched =
+          all.touched.data() +
+          static_cast<std::ptrdiff_t>(box.y + y) * fallback.width_px + box.x;
+      for (std::int32_t x = 0; x < box.width; ++x) touched[x] |= mask[x];
+    }
+    if (!cover.known) continue;
+    AddSample(clip, index, samples);
+    all.of.push_back(std::move(cover));
   }
   Background background = fallback;
-  if (samples.planes.size() < 2) return background;
-  samples.pixels = fallback.level.size();
-  background.unknown.assign(samples.pixels, 0);
-  // Fewer samples than this are no background: noise, or the body's rim.
-  constexpr std::size_t kLeastSamples = 3;
-  std::vector<std::uint16_t> values;
-  std::size_t most = 0;
-  for (std::size_t i = 0; i < samples.pixels; ++i) {
-    values.clear();
-    for (std::size_t k = 0; k < samples.planes.size(); ++k) {
-      if (masks[k][i] == 0) values.push_back(samples.planes[k][i]);
-    }
-    most = std::max(most, samples.planes.size() - values.size());
-    if (values.size() < kLeastSamples) {
-      background.unknown[i] = 1;
-    } else {
-      background.level[i] = MidMean(values);
-    }
-  }
+  if (samples.size() < 2) return background;
+  background.unknown.assign(fallback.level.size(), 0);
+  const std::size_t most =
+      samples.frames.front().is_16_bit()
+          ? MidMeanBehind<std::uint16_t>(samples, all, background)
+          : MidMeanBehind<std::uint8_t>(samples, all, background);
   if (most_covered != nullptr) {
     *most_covered =
-        static_cast<double>(most) / static_cast<double>(samples.planes.size());
+        static_cast<double>(most) / static_cast<double>(samples.size());
   }
   EstimateNoise(samples, background);
   return background;
@@ -195,17 +309,25 @@ Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
         fmt::format("frames is {}:{}, must be a range within 0:{}", first, last,
                     info.frames));
   }
-  Samples samples = ReadSamples(clip, first, last, options.samples);
+  return BackgroundOf(clip, BackgroundFrames(first, last, options.samples),
+                      options);
+}
+
+Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
+                        const BackgroundOptions& options) {
+  const ClipInfo& info = clip.info();
+  Samples samples;
+  for (const std::int64_t index : frames) AddSample(clip, index, samples);
   Background background;
   background.width_px = info.width_px;
   background.height_px = info.height_px;
   background.full_scale_dn = static_cast<double>((1u << info.bit_depth) - 1u);
-  background.level.resize(samples.pixels);
-  std::vector<std::uint16_t> values;
-  for (std::size_t i = 0; i < samples.pixels; ++i) {
-    values.clear();
-    for (const auto& plane : samples.planes) values.push_back(plane[i]);
-    background.level[i] = MidMean(values);
+  background.level.resize(static_cast<std::size_t>(info.width_px) *
+                          static_cast<std::size_t>(info.height_px));
+  if (samples.frames.front().is_16_bit()) {
+    MidMeanOf<std::uint16_t>(samples, options.threads, background.level);
+  } else {
+    MidMeanOf<std::uint8_t>(samples, options.threads, background.level);
   }
   EstimateNoise(samples, background);
   return background;

@@ -60,6 +60,12 @@ class VideoClip final : public Clip {
 
   const ClipInfo& info() const override { return info_; }
 
+  std::int64_t EntryFrame(std::int64_t index) const override {
+    if (index_.pts.empty()) return 0;
+    const std::size_t key = index_.KeyPacketFor(index);
+    return index_.FrameAt(index_.packets[key].pts).value_or(0);
+  }
+
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {

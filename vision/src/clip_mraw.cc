@@ -69,6 +69,11 @@ class MrawClip final : public Clip {
 
   const ClipInfo& info() const override { return info_; }
 
+  bool views_last() const override {
+    return header_.stored_bits == 8 ||
+           (header_.stored_bits == 16 && shift_ == 0);
+  }
+
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {

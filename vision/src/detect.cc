@@ -18,24 +18,14 @@ cv::Rect SearchRegion(const core::Frame& frame, const core::PixelRect& wanted) {
                         wanted.height);
 }
 
-// Standard deviation of the smoothed difference: at least what the noise of
-// single pixels gives after a 3 x 3 mean, more where noise is correlated
-// (compression): the median absolute value of the picture itself.
-double SmoothedSigma(const cv::Mat& smooth, const Background& background) {
-  std::vector<float> sample;
-  for (int y = 0; y < smooth.rows; y += 5) {
-    const float* row = smooth.ptr<float>(y);
-    for (int x = y % 7; x < smooth.cols; x += 7) {
-      sample.push_back(std::abs(row[x]));
-    }
-  }
-  const auto middle =
-      sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  const double typical = std::sqrt(background.Variance(static_cast<double>(
-                             background.level[background.level.size() / 2]))) /
-                         3.0;
-  return std::max(typical, 1.4826 * static_cast<double>(*middle));
+// Standard deviation of the smoothed difference: what the noise of single
+// pixels gives after a 3 x 3 mean, as many times as the frame's is larger.
+double SmoothedSigma(const Background& background,
+                     const DetectOptions& options) {
+  return options.noise *
+         std::sqrt(background.Variance(static_cast<double>(
+             background.level[background.level.size() / 2]))) /
+         3.0;
 }
 
 // A blob from one outer contour; holes (specular spots) count as body.
@@ -78,16 +68,6 @@ Blob FromContour(const std::vector<cv::Point>& contour,
   return blob;
 }
 
-void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
-  std::sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
-    return a.area_px2 * std::abs(a.contrast_dn) >
-           b.area_px2 * std::abs(b.contrast_dn);
-  });
-  if (blobs.size() > static_cast<std::size_t>(options.most_blobs)) {
-    blobs.resize(static_cast<std::size_t>(options.most_blobs));
-  }
-}
-
 std::vector<Blob> FromDifference(const core::Frame& frame,
                                  const Background& background,
                                  const DetectOptions& options) {
@@ -104,7 +84,7 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
   cv::Mat smooth;
   cv::blur(difference, smooth, {3, 3});
   const double threshold =
-      options.threshold_sigmas * SmoothedSigma(smooth, background);
+      options.threshold_sigmas * SmoothedSigma(background, options);
   cv::Mat magnitude = cv::abs(smooth);
   cv::Mat mask = magnitude > threshold;
   std::vector<std::vector<cv::Point>> regions;
@@ -183,6 +163,16 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
 }
 
 }  // namespace
+
+void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
+  std::sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
+    return a.area_px2 * std::abs(a.contrast_dn) >
+           b.area_px2 * std::abs(b.contrast_dn);
+  });
+  if (blobs.size() > static_cast<std::size_t>(options.most_blobs)) {
+    blobs.resize(static_cast<std::size_t>(options.most_blobs));
+  }
+}
 
 std::vector<Blob> DetectBlobs(const core::Frame& frame,
                               const Background& background,

@@ -31,6 +31,9 @@ struct DetectOptions {
   Detector detector = Detector::kDifference;
   core::PixelRect region;  // searched; whole picture by default (width 0)
 
+  // The frame's differences over the background's noise (Changes::noise).
+  double noise = 1.0;
+
   // A region must differ by this many standard deviations of the smoothed
   // difference. 6: one false pixel in 1e9, none in a clip.
   double threshold_sigmas = 6.0;
@@ -45,9 +48,13 @@ struct DetectOptions {
   int most_blobs = 12;           // the largest ones are kept
 };
 
+// `frame` may be a window of the picture.
 std::vector<Blob> DetectBlobs(const core::Frame& frame,
                               const Background& background,
                               const DetectOptions& options);
+
+// The strongest ones (area times contrast), options.most_blobs of them.
+void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options);
 
 // Start of the outline's fit for a body of `kind`.
 Outline StartFrom(const Blob& blob, core::BodyKind kind);

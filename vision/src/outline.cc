@@ -24,6 +24,8 @@ namespace {
 // outer polynomial terms.
 constexpr int kMaxParameters = 5 + 2 + 6 + 6;
 constexpr double kTukey = 4.685;  // 95 % efficient
+constexpr std::size_t kPadded = 20;  // to whole fours
+static_assert(kPadded >= kMaxParameters && kPadded % 4 == 0);
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
@@ -64,16 +66,22 @@ class Fitter {
   void SolveLevels();
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
   // One pixel's share of the normal equations: by far most of the time goes
-  // here, so plain loops over the lower triangle.
-  void AddRow(const std::array<double, kMaxParameters>& row, double weight,
+  // here, so plain loops over the lower triangle, in fours (the rows are padded
+  // with zeros) that the compiler makes vectors of.
+  void AddRow(const std::array<double, kPadded>& row, double weight,
               double residual) {
     const auto n = static_cast<std::size_t>(Parameters());
     for (std::size_t i = 0; i < n; ++i) {
       const double w = weight * row[i];
       if (w == 0.0) continue;
       sums_gradient_[i] += w * residual;
-      double* sums = &sums_[i * kMaxParameters];
-      for (std::size_t j = 0; j <= i; ++j) sums[j] += w * row[j];
+      double* const sums = &sums_[i * kPadded];
+      for (std::size_t j = 0; j <= i; j += 4) {
+        sums[j] += w * row[j];
+        sums[j + 1] += w * row[j + 1];
+        sums[j + 2] += w * row[j + 2];
+        sums[j + 3] += w * row[j + 3];
+      }
     }
   }
   double Accumulate(bool robust);
@@ -103,7 +111,7 @@ class Fitter {
   std::vector<OutlinePixel> pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
-  std::array<double, std::size_t{kMaxParameters} * kMaxParameters> sums_{};
+  std::array<double, kMaxParameters * kPadded> sums_{};
   std::array<double, kMaxParameters> sums_gradient_{};
   Matrix normal_;
   Vector gradient_;
@@ -186,7 +194,7 @@ double Fitter::Accumulate(bool robust) {
   sums_.fill(0.0);
   sums_gradient_.fill(0.0);
   residuals_.clear();
-  std::array<double, kMaxParameters> row{};
+  std::array<double, kPadded> row{};
   double fi[6];
   double fo[6];
   double cost = 0.0;
@@ -245,7 +253,7 @@ double Fitter::Accumulate(bool robust) {
   for (int i = 0; i < n; ++i) {
     gradient_[i] = sums_gradient_[static_cast<std::size_t>(i)];
     for (int j = 0; j <= i; ++j) {
-      normal_(i, j) = normal_(j, i) = sums_[At(i) * kMaxParameters + At(j)];
+      normal_(i, j) = normal_(j, i) = sums_[At(i) * kPadded + At(j)];
     }
   }
   if (HasPrior()) {

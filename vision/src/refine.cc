@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "outline_batch.h"
 #include "touchdown/vision/tracker.h"
 #include "track_shape.h"
 
@@ -122,7 +123,10 @@ class Refiner {
  public:
   Refiner(Clip& clip, const Background& background, const Track& track,
           const RefineOptions& refine)
-      : clip_(clip), background_(background), track_(track) {
+      : clip_(clip),
+        background_(background),
+        track_(track),
+        threads_(refine.threads) {
     options_.surround =
         track.known_background ? Surround::kBackground : Surround::kPolynomial;
     options_.blur_px = track.body.blur_px;
@@ -145,20 +149,25 @@ class Refiner {
   // The size once more, now that the ground is left out: a body that lies on it
   // had the ground's edge taken for its own. With it blur, exposure, shading.
   void LearnShape(Track& refined);
-  void FitPoses(Track& refined);
+  void MeasurePoses(Track& refined);
 
  private:
-  core::Expected<OutlineFit> FitPose(const BodyImage& body, std::size_t i) {
-    const Pose& pose = track_.poses[i];
-    options_.travel_px = travel_[i];
-    const core::Frame frame = clip_.Read(pose.frame);
-    return FitOutline(frame, background_, OutlineAt(body, pose), options_);
+  // Of every `step`-th pose.
+  std::vector<std::optional<Fitted>> FitPoses(const BodyImage& body,
+                                              std::size_t step) {
+    std::vector<OutlineJob> jobs;
+    for (std::size_t i = 0; i < track_.poses.size(); i += step) {
+      const Pose& pose = track_.poses[i];
+      jobs.push_back({pose.frame, OutlineAt(body, pose), travel_[i]});
+    }
+    return FitOutlines(clip_, background_, jobs, options_, threads_);
   }
   std::vector<Fitted> Sample(const BodyImage& body);
 
   Clip& clip_;
   const Background& background_;
   const Track& track_;
+  int threads_;
   OutlineOptions options_;
   std::vector<core::PixelPoint> travel_;
 };
@@ -167,12 +176,7 @@ std::vector<Fitted> Refiner::Sample(const BodyImage& body) {
   constexpr std::size_t kEnough = 80;  // frames; u falls as 1/sqrt
   const std::size_t step =
       std::max<std::size_t>(1, track_.poses.size() / kEnough);
-  std::vector<Fitted> all;
-  for (std::size_t i = 0; i < track_.poses.size(); i += step) {
-    const auto fit = FitPose(body, i);
-    const Pose& pose = track_.poses[i];
-    if (fit) all.push_back({pose.frame, pose.time_s, *fit});
-  }
+  std::vector<Fitted> all = Found(FitPoses(body, step));
   DropStrangers(all);
   return all;
 }
@@ -215,16 +219,15 @@ void Refiner::LearnShape(Track& refined) {
   refined.body.half_short_px = shape.half_short_px;
 }
 
-void Refiner::FitPoses(Track& refined) {
+void Refiner::MeasurePoses(Track& refined) {
   options_.fit_size = false;
   options_.fit_blur = false;
   refined.poses.clear();
-  for (std::size_t i = 0; i < track_.poses.size(); ++i) {
-    const auto fit = FitPose(refined.body, i);
-    if (!fit) continue;
-    const Pose& pose = track_.poses[i];
-    Pose better = PoseOf({pose.frame, pose.time_s, *fit});
-    better.relative_size = pose.relative_size;
+  const auto fits = FitPoses(refined.body, 1);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i]) continue;
+    Pose better = PoseOf(*fits[i]);
+    better.relative_size = track_.poses[i].relative_size;
     refined.poses.push_back(better);
   }
 }
@@ -248,7 +251,7 @@ Track Refine(Clip& clip, const Background& background, const Track& track,
         {a.value * ratio.value,
          std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});
   }
-  refiner.FitPoses(refined);
+  refiner.MeasurePoses(refined);
   Unwrap(refined);
   return refined;
 }

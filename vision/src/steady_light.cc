@@ -90,6 +90,10 @@ class CorrectedClip final : public Clip {
 
   const ClipInfo& info() const override { return info_; }
 
+  std::int64_t EntryFrame(std::int64_t index) const override {
+    return clip_->EntryFrame(index);
+  }
+
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {

@@ -212,7 +212,11 @@ BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind) {
 double Roughness(const std::vector<Fitted>& all) {
   std::vector<double> jumps;
   for (std::size_t i = 3; i < all.size(); ++i) {
-    if (all[i].frame - all[i - 3].frame != 3) continue;
+    const std::int64_t gap = all[i].frame - all[i - 1].frame;
+    if (all[i - 1].frame - all[i - 2].frame != gap ||
+        all[i - 2].frame - all[i - 3].frame != gap) {
+      continue;
+    }
     const auto third = [&](double core::PixelPoint::*value) {
       const auto at = [&](std::size_t k) {
         return all[k].fit.outline.centre.*value;

@@ -32,7 +32,7 @@ core::Estimate RobustMean(const std::vector<double>& values,
 void DropStrangers(std::vector<Fitted>& all);
 
 // How much a track jumps about: the robust scatter of third differences of the
-// centre over consecutive frames, as the standard deviation of one position,
+// centre over frames of equal gaps, as the standard deviation of one position,
 // px; blind to any parabola. A large number where there are too few frames to
 // tell.
 double Roughness(const std::vector<Fitted>& all);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "touchdown/vision/clip.h"
@@ -15,7 +16,13 @@ struct BackgroundOptions {
   // own noise (1/sqrt) and cost reading time; below 8 a slow body leaves a
   // ghost. 33 keeps the background's variance under 5 % of a frame's.
   int samples = 33;
+
+  int threads = 0;  // 0: one for each core; affects speed only
 };
+
+// The frames of [first, last) that are sampled.
+std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
+                                           std::int64_t last, int samples);
 
 // Frames are gray; levels in DN (the file's own numbers).
 struct Background {
@@ -64,16 +71,25 @@ struct Background {
 Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
                               const BackgroundOptions& options = {});
 
+// The same of given frames, at least one.
+Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
+                        const BackgroundOptions& options = {});
+
+// Where the body is in one frame.
+struct Cover {
+  // False: not known, or not known well enough: the frame is left out, and the
+  // mask tells where the body may be.
+  bool known = true;
+  core::PixelRect box;             // within the picture; width 0: nowhere
+  std::vector<std::uint8_t> mask;  // of the box, row by row; 1 = covered
+};
+using CoverFunction = std::function<Cover(std::int64_t frame)>;
+
 // The same from frames in which the body's place is known: what it covers is
-// left out, so that a slow or large body leaves no ghost. Frames for which
-// `covers(frame)` gives no mask are left out whole.
-//
-// `covers` fills a mask (height, width; 1 = covered) for a frame of the clip,
-// and returns false where the body's place is not known. `most_covered` (may be
-// null) receives the largest share of samples in which any one pixel was
-// covered.
-using CoverFunction =
-    std::function<bool(std::int64_t frame, std::vector<std::uint8_t>& mask)>;
+// left out, so that a slow or large body leaves no ghost. Pixels that no
+// frame's mask covers keep the level of `fallback`, the mid-mean of the same
+// frames. `most_covered` (may be null) receives the largest share of samples in
+// which any one pixel was covered.
 Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
                                     std::int64_t last,
                                     const CoverFunction& covers,

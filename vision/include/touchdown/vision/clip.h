@@ -73,6 +73,12 @@ struct ClipOptions {
   std::int32_t decoder_threads = 0;
 };
 
+// Where a frame differs from the still picture.
+struct Changes {
+  std::vector<core::PixelRect> where;  // apart from each other
+  double noise = 1.0;  // of the frame's differences, over the still picture's
+};
+
 // An open recording. Not safe to share between threads.
 class Clip {
  public:
@@ -94,6 +100,20 @@ class Clip {
   core::Frame Read(std::int64_t index);
   core::Frame Read(std::int64_t index, const core::PixelRect& window);
 
+  // True: the views that Read returns stay valid as long as the clip.
+  virtual bool views_last() const { return false; }
+
+  // The last frame up to `index` from which reading can begin: itself where
+  // each frame is stored alone, else a key frame.
+  virtual std::int64_t EntryFrame(std::int64_t index) const { return index; }
+
+  // Where frame `index` may differ from the still picture, if the clip has
+  // looked (frame_store.h): elsewhere nothing needs to be looked at, and
+  // reading there may be slow. Null: it has not.
+  virtual const Changes* ChangesIn(std::int64_t /*index*/) const {
+    return nullptr;
+  }
+
   // Wall time spent inside Read so far, in seconds: decoding and waiting for
   // the disk (of memory-mapped clips the disk is waited for later, where pixels
   // are used).
@@ -102,6 +122,9 @@ class Clip {
  protected:
   virtual core::Frame ReadWindow(std::int64_t index,
                                  const core::PixelRect& window) = 0;
+
+  // Reading that was done elsewhere than in Read.
+  void AddReading(double seconds) { reading_s_ += seconds; }
 
  private:
   double reading_s_ = 0.0;

@@ -28,6 +28,14 @@ struct TrackOptions {
   // Pixels below it are left out of the outline's fit.
   std::optional<calib::GroundLine> ground;
 
+  // About so many frames of a long clip are looked at to find the body's stay,
+  // at the least every eighth; what is shorter is looked at in every frame.
+  // More cost time; a body that is in view for fewer than eight frames is
+  // found at a second look, in every frame, only if nothing else was seen.
+  std::int64_t first_looks = 250;
+
+  int threads = 0;  // 0: one for each core; affects speed only
+
   // Called now and then with the share done, 0..1; may be empty.
   std::function<void(double)> progress;
 };
@@ -50,6 +58,8 @@ struct RefineOptions {
   // Short over long side of a rectangle, where a person measured both: a block
   // that lies on the ground hides one of its edges.
   std::optional<core::Estimate> aspect;
+
+  int threads = 0;  // 0: one for each core; affects speed only
 };
 
 // Fits the outlines again with the ground line known, from the track's own

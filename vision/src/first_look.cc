@@ -1,0 +1,336 @@
+#include "first_look.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "detect.h"
+#include "outline_batch.h"
+#include "scout.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::vision {
+namespace {
+
+using Surround = OutlineOptions::Surround;
+
+// Looks at frames one by one.
+class Watcher {
+ public:
+  Watcher(Clip& clip, const Background& background, const TrackOptions& options,
+          Detector detector)
+      : clip_(clip), background_(background) {
+    detect_.detector = detector;
+    detect_.region = options.region;
+    if (detector == Detector::kDifference) {
+      ScoutOptions scout;
+      scout.region = options.region;
+      scout_.emplace(background, scout);
+    }
+  }
+
+  // The blobs of frame `index`, and its time where there are any.
+  std::vector<Blob> Look(std::int64_t index, double& time_s) {
+    if (!scout_) {
+      const core::Frame frame = clip_.Read(index);
+      time_s = frame.time_s;
+      return DetectBlobs(frame, background_, detect_);
+    }
+    Changes changes;
+    if (const Changes* known = clip_.ChangesIn(index)) {
+      changes = *known;
+    } else {
+      const core::Frame frame = clip_.Read(index);
+      time_s = frame.time_s;
+      changes = scout_->Look(frame);
+    }
+    DetectOptions detect = detect_;
+    detect.noise = changes.noise;
+    std::vector<Blob> blobs;
+    for (const core::PixelRect& rect : changes.where) {
+      const core::Frame window = clip_.Read(index, rect);
+      time_s = window.time_s;
+      const auto more = DetectBlobs(window, background_, detect);
+      blobs.insert(blobs.end(), more.begin(), more.end());
+    }
+    KeepLargest(blobs, detect_);
+    return blobs;
+  }
+
+ private:
+  Clip& clip_;
+  const Background& background_;
+  DetectOptions detect_;
+  std::optional<Scout> scout_;
+};
+
+struct Range {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+};
+
+// Every `step`-th frame of the range, and its last one. `seen` receives the
+// range in which anything was seen.
+Detections DetectIn(Clip& clip, const Background& background,
+                    const TrackOptions& options, Detector detector,
+                    const Range& range, std::int64_t step, Range& seen) {
+  Watcher watcher(clip, background, options, detector);
+  LinkOptions link;
+  link.most_missing *= static_cast<int>(step);
+  ChainBuilder builder(link);
+  Detections found;
+  found.last = range.last;
+  found.step = step;
+  seen = {range.last, range.first};
+  for (std::int64_t index = range.first; index < range.last; index += step) {
+    try {
+      double time_s = 0.0;
+      const std::vector<Blob> blobs = watcher.Look(index, time_s);
+      builder.Add(index, time_s, blobs);
+      if (!blobs.empty()) {
+        seen.first = std::min(seen.first, index);
+        seen.last = index + 1;
+      }
+    } catch (const core::InputError&) {
+      if (index == range.first) throw;
+      std::string reason;
+      found.last = FirstUnreadable(clip, index - step + 1, index + 1, reason);
+      found.warning = fmt::format("frames from {} on cannot be read: {}",
+                                  found.last, reason);
+      break;
+    }
+    if (options.progress) {
+      options.progress(static_cast<double>(index - options.first) /
+                       static_cast<double>(range.last - options.first));
+    }
+  }
+  found.chains = builder.Finish();
+  return found;
+}
+
+// True if so few looks follow the body's path: between two of them it moves so
+// far that what lies between is no good start, or there are few of them.
+bool TooCoarse(const Chain& chain) {
+  constexpr std::size_t kEnough = 96;  // links
+  constexpr double kMostMotion = 0.5;  // of the size, in one step
+  if (chain.links.size() < kEnough) return true;
+  std::vector<double> moved;
+  for (std::size_t i = 1; i < chain.links.size(); ++i) {
+    const core::PixelPoint& a = chain.links[i - 1].blob.centre;
+    const core::PixelPoint& b = chain.links[i].blob.centre;
+    moved.push_back(std::hypot(b.x_px - a.x_px, b.y_px - a.y_px));
+  }
+  const auto high =
+      moved.begin() + static_cast<std::ptrdiff_t>(moved.size() * 9 / 10);
+  std::nth_element(moved.begin(), high, moved.end());
+  return *high > kMostMotion * std::sqrt(chain.Area());
+}
+
+Detections Detect(Clip& clip, const Background& background,
+                  const TrackOptions& options, Detector detector,
+                  std::int64_t last) {
+  constexpr std::int64_t kLargestStep = 8;
+  const std::int64_t frames = last - options.first;
+  std::int64_t step =
+      std::clamp<std::int64_t>(frames / options.first_looks, 1, kLargestStep);
+  Range range{options.first, last};
+  Range seen;
+  Detections found =
+      DetectIn(clip, background, options, detector, range, step, seen);
+  while (step > 1 &&
+         (found.chains.empty() || TooCoarse(found.chains.front()))) {
+    if (seen.last > seen.first) {
+      range = {std::max(range.first, seen.first - step),
+               std::min(range.last, seen.last + step)};
+    }
+    step /= 2;
+    Detections closer =
+        DetectIn(clip, background, options, detector, range, step, seen);
+    closer.last = std::min(
+        found.last, closer.last == range.last ? found.last : closer.last);
+    if (closer.warning.empty()) closer.warning = found.warning;
+    found = std::move(closer);
+  }
+  return found;
+}
+
+// How badly an outline explains the pixels: residuals over noise, dearer where
+// many pixels had to be left out.
+double Badness(const std::optional<Fitted>& fitted) {
+  constexpr double kNoFit = 50.0;
+  if (!fitted) return kNoFit;
+  const OutlineFit& fit = fitted->fit;
+  return fit.misfit / std::max(0.05, fit.inliers * fit.inliers);
+}
+
+// Badness of the outlines; dearer where the body was seen in few frames.
+double CostOf(const Look& look) {
+  if (look.found.chains.empty()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return look.choice.badness /
+         std::sqrt(static_cast<double>(look.found.chains.front().links.size()));
+}
+
+// Outlines fitted to a ghost's edge jump about, however well they fit: a track
+// of as many frames that is four times smoother is the body's.
+bool MuchSmoother(const Look& look, const Look& other) {
+  constexpr double kSmoother = 0.25;
+  constexpr double kAsManyFrames = 0.9;
+  return Roughness(look.fits) < kSmoother * Roughness(other.fits) &&
+         static_cast<double>(look.fits.size()) >=
+             kAsManyFrames * static_cast<double>(other.fits.size());
+}
+
+// Detection against a background that may hold the body's ghost.
+Look LookWith(Clip& clip, Background background, const TrackOptions& options,
+              Detector detector, std::int64_t last) {
+  Look look;
+  look.background = std::move(background);
+  look.surround = detector == Detector::kDifference ? Surround::kBackground
+                                                    : Surround::kPolynomial;
+  look.found = Detect(clip, look.background, options, detector, last);
+  if (!look.found.chains.empty()) {
+    const Chain& chain = look.found.chains.front();
+    look.choice =
+        ChooseKind(clip, look.background, chain, options, look.surround);
+    look.fits = FitChain(clip, look.background, chain, look.choice, options,
+                         look.surround);
+    DropStrangers(look.fits);
+  }
+  return look;
+}
+
+}  // namespace
+
+std::int64_t EndPart(std::int64_t first, std::int64_t last) {
+  return std::max<std::int64_t>(3, (last - first) / 8);
+}
+
+Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
+                  const TrackOptions& options, Surround surround) {
+  constexpr std::size_t kProbes = 9;
+  std::vector<const Link*> inside;
+  for (const Link& link : chain.links) {
+    if (!link.blob.at_border) inside.push_back(&link);
+  }
+  if (inside.empty()) {
+    for (const Link& link : chain.links) inside.push_back(&link);
+  }
+  std::vector<const Link*> probes;
+  const std::size_t n = std::min(kProbes, inside.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    probes.push_back(inside[(2 * k + 1) * inside.size() / (2 * n)]);
+  }
+  std::vector<core::BodyKind> kinds = {core::BodyKind::kSphere,
+                                       core::BodyKind::kRectangle};
+  if (options.kind) kinds = {*options.kind};
+  Choice best;
+  for (const core::BodyKind kind : kinds) {
+    std::vector<double> badness;
+    std::vector<double> blur;
+    std::vector<OutlineJob> jobs;
+    for (const Link* link : probes) {
+      jobs.push_back({link->frame, StartFrom(link->blob, kind)});
+    }
+    OutlineOptions fit_options;
+    fit_options.surround = surround;
+    fit_options.ground = options.ground;
+    for (const auto& fit :
+         FitOutlines(clip, background, jobs, fit_options, options.threads)) {
+      badness.push_back(Badness(fit));
+      if (fit) blur.push_back(fit->fit.blur_px);
+    }
+    // The mean of the better half: a frame in contact or half hidden must not
+    // decide.
+    std::sort(badness.begin(), badness.end());
+    badness.resize((badness.size() + 1) / 2);
+    double sum = 0.0;
+    for (const double b : badness) sum += b;
+    const double mean = sum / static_cast<double>(badness.size());
+    if (mean < best.badness) {
+      best.badness = mean;
+      best.kind = kind;
+      best.blur_px = blur.empty() ? 0.8 : Median(blur);
+    }
+  }
+  return best;
+}
+
+std::vector<Fitted> FitChain(Clip& clip, const Background& background,
+                             const Chain& chain, const Choice& choice,
+                             const TrackOptions& options, Surround surround) {
+  OutlineOptions fit_options;
+  fit_options.surround = surround;
+  fit_options.ground = options.ground;
+  fit_options.blur_px = choice.blur_px;
+  std::vector<OutlineJob> jobs;
+  for (const Link& link : chain.links) {
+    jobs.push_back({link.frame, StartFrom(link.blob, choice.kind)});
+  }
+  return Found(
+      FitOutlines(clip, background, jobs, fit_options, options.threads));
+}
+
+// A body that stays long where it is leaves its ghost in the mean of all
+// frames, and outlines fit badly. Then the picture may be empty at the
+// beginning, or at the end; where it never is, the frame's own two levels must
+// do.
+core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
+                               std::int64_t last) {
+  Look best = LookWith(clip,
+                       EstimateBackground(clip, options.first, last,
+                                          {.threads = options.threads}),
+                       options, Detector::kDifference, last);
+  constexpr double kWellFitted = 4.0;
+  const std::int64_t part = EndPart(options.first, last);
+  for (int attempt = 0; attempt < 3 && best.choice.badness > kWellFitted;
+       ++attempt) {
+    Background background = best.background;
+    if (attempt == 0) {
+      background = EstimateBackground(clip, options.first,
+                                      std::min(options.first + part, last),
+                                      {.threads = options.threads});
+    } else if (attempt == 1) {
+      background = EstimateBackground(
+          clip, std::max(options.first, best.found.last - part),
+          best.found.last, {.threads = options.threads});
+    }
+    Look look =
+        LookWith(clip, std::move(background), options,
+                 attempt == 2 ? Detector::kLevels : Detector::kDifference,
+                 best.found.last);
+    look.found.warning = best.found.warning;
+    if (MuchSmoother(look, best) ||
+        (CostOf(look) < CostOf(best) && !MuchSmoother(best, look))) {
+      best = std::move(look);
+    }
+  }
+  if (best.found.chains.empty()) {
+    return core::AbsentBecause("nothing moves in these frames");
+  }
+  constexpr std::size_t kLeastFrames = 3;
+  if (best.fits.size() < kLeastFrames) {
+    return core::AbsentBecause(
+        "something moves, but no outline of a sphere or rectangle fits it");
+  }
+  return best;
+}
+
+std::int64_t FirstUnreadable(Clip& clip, std::int64_t first, std::int64_t last,
+                             std::string& reason) {
+  for (std::int64_t index = first; index < last; ++index) {
+    try {
+      clip.Read(index);
+    } catch (const core::InputError& error) {
+      reason = error.what();
+      return index;
+    }
+  }
+  return last;
+}
+
+}  // namespace touchdown::vision

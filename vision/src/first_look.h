@@ -1,0 +1,64 @@
+// The first look at a clip: what moves in it, of what kind it is, and its
+// outline in the frames looked at. Coarse to fine in time: a long clip is
+// looked at in every eighth frame first, and more closely only as long as the
+// body is there for few of these looks or moves far between them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "chain.h"
+#include "touchdown/vision/tracker.h"
+#include "track_shape.h"
+
+namespace touchdown::vision {
+
+// What was detected in the frames looked at.
+struct Detections {
+  std::vector<Chain> chains;  // the best one first
+  std::int64_t last = 0;      // frames [first, last) could be read
+  std::int64_t step = 1;      // every so many frames were looked at
+  std::string warning;
+};
+
+// What to fit, with the evidence.
+struct Choice {
+  core::BodyKind kind = core::BodyKind::kSphere;
+  double badness = 1e9;
+  double blur_px = 0.8;
+};
+
+struct Look {
+  Background background;
+  Detections found;
+  Choice choice;
+  OutlineOptions::Surround surround = OutlineOptions::Surround::kBackground;
+  std::vector<Fitted> fits;  // of the best chain
+};
+
+// Frames at either end of a range of which a background is made where the body
+// is part of the background of them all.
+std::int64_t EndPart(std::int64_t first, std::int64_t last);
+
+// Absent where nothing moves, or nothing with an outline.
+core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
+                               std::int64_t last);
+
+// Tries the kinds on a few frames spread over the chain, away from the border.
+Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
+                  const TrackOptions& options,
+                  OutlineOptions::Surround surround);
+
+// The outlines of a chain's links.
+std::vector<Fitted> FitChain(Clip& clip, const Background& background,
+                             const Chain& chain, const Choice& choice,
+                             const TrackOptions& options,
+                             OutlineOptions::Surround surround);
+
+// The first frame of [first, last) that cannot be read, with the reason; `last`
+// where all can.
+std::int64_t FirstUnreadable(Clip& clip, std::int64_t first, std::int64_t last,
+                             std::string& reason);
+
+}  // namespace touchdown::vision

@@ -1,0 +1,106 @@
+#include "outline_batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "kept_pixels.h"
+#include "parallel.h"
+
+namespace touchdown::vision {
+namespace {
+
+// Windows that are held at once: a few MiB for bodies of any size.
+constexpr std::size_t kBatch = 64;
+
+struct Window {
+  core::Frame frame;
+  KeptPixels copy;  // where the clip's own view does not last
+};
+
+Window Take(Clip& clip, std::int64_t index, const core::PixelRect& rect) {
+  Window window;
+  window.frame = clip.Read(index, rect);
+  if (!clip.views_last()) {
+    window.copy = KeptPixels(window.frame);
+    window.frame = window.copy.View();
+  }
+  return window;
+}
+
+}  // namespace
+
+core::PixelRect WindowFor(const Outline& start, const OutlineOptions& options,
+                          const ClipInfo& info) {
+  // The fit may move by a quarter of the size and double its blur, and looks
+  // three blurs and half the way beyond the edge (outline.cc).
+  const double size = start.kind == core::BodyKind::kSphere
+                          ? start.radius_px
+                          : std::hypot(start.half_long_px, start.half_short_px);
+  constexpr double kMayMove = 0.5;
+  constexpr double kBlurs = 6.0;
+  constexpr double kSpare_px = 6.0;
+  const double reach =
+      (1.0 + kMayMove) * size + kBlurs * std::max(options.blur_px, 0.5) +
+      0.5 * std::hypot(options.travel_px.x_px, options.travel_px.y_px) +
+      kSpare_px;
+  const auto from = [&](double centre, std::int32_t end) {
+    return static_cast<std::int32_t>(
+        std::clamp(std::floor(centre - reach), 0.0, end - 1.0));
+  };
+  const auto to = [&](double centre, std::int32_t end) {
+    return static_cast<std::int32_t>(
+        std::clamp(std::ceil(centre + reach), 0.0, end - 1.0));
+  };
+  core::PixelRect rect;
+  rect.x = from(start.centre.x_px, info.width_px);
+  rect.y = from(start.centre.y_px, info.height_px);
+  rect.width = to(start.centre.x_px, info.width_px) - rect.x + 1;
+  rect.height = to(start.centre.y_px, info.height_px) - rect.y + 1;
+  return rect;
+}
+
+std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
+                                               const Background& background,
+                                               std::span<const OutlineJob> jobs,
+                                               const OutlineOptions& options,
+                                               int threads) {
+  std::vector<std::optional<Fitted>> fits(jobs.size());
+  std::vector<Window> windows;
+  for (std::size_t begin = 0; begin < jobs.size(); begin += kBatch) {
+    const std::span<const OutlineJob> batch =
+        jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
+    windows.clear();
+    for (const OutlineJob& job : batch) {
+      OutlineOptions own = options;
+      own.travel_px = job.travel_px;
+      windows.push_back(
+          Take(clip, job.frame, WindowFor(job.start, own, clip.info())));
+    }
+    InParallel(
+        static_cast<std::int64_t>(batch.size()), threads,
+        [&](std::int64_t from, std::int64_t to) {
+          OutlineOptions own = options;
+          for (auto i = static_cast<std::size_t>(from);
+               i < static_cast<std::size_t>(to); ++i) {
+            own.travel_px = batch[i].travel_px;
+            const core::Frame& frame = windows[i].frame;
+            const auto fit = FitOutline(frame, background, batch[i].start, own);
+            if (fit) {
+              fits[begin + i] = Fitted{batch[i].frame, frame.time_s, *fit};
+            }
+          }
+        });
+  }
+  return fits;
+}
+
+std::vector<Fitted> Found(const std::vector<std::optional<Fitted>>& fits) {
+  std::vector<Fitted> found;
+  for (const auto& fit : fits) {
+    if (fit) found.push_back(*fit);
+  }
+  return found;
+}
+
+}  // namespace touchdown::vision
