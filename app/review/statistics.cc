@@ -58,7 +58,8 @@ Json TableJson(const report::Table& table) {
 
 // Trials of different origins are never in one table.
 Json Table1Json(std::span<const report::Group> groups,
-                std::span<const core::Trial> trials) {
+                std::span<const core::Trial> trials,
+                const report::ReportInput& input) {
   Json out = Json::array();
   for (const core::Origin origin :
        {core::Origin::kRecorded, core::Origin::kManual,
@@ -69,7 +70,7 @@ Json Table1Json(std::span<const report::Group> groups,
                    return group.trials.origin == origin;
                  });
     if (same.empty()) continue;
-    for (const auto& table : report::MakeTable1(same, trials)) {
+    for (const auto& table : report::MakeTable1(same, trials, input)) {
       Json json = TableJson(table);
       json["origin"] = core::Name(origin);
       out.push_back(std::move(json));
@@ -109,7 +110,7 @@ Statistics MakeStatistics(const std::filesystem::path& store) {
     out.plots.push_back(std::move(figure.svg));
     json["groups"].push_back(std::move(one));
   }
-  json["table1"] = Table1Json(groups, trials);
+  json["table1"] = Table1Json(groups, trials, input);
   json["without_trials"] = Json::array();
   for (const core::Campaign& campaign : input.campaigns) {
     const bool thrown =
