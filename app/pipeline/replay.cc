@@ -227,7 +227,8 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   a.clip_id = trial.clip.id;
   a.simulated = trial.origin == core::Origin::kSimulated;
   a.options = OptionsOf(replay.at("options"));
-  if (const Json& corner = replay.at("sensor_origin"); !corner.is_null()) {
+  if (replay.contains("sensor_origin")) {
+    const Json& corner = replay["sensor_origin"];
     a.clip.sensor_origin = vision::SensorOrigin{corner.at(0), corner.at(1)};
   }
   if (const Json& scale = document.at("scale"); !scale.is_null()) {
@@ -237,9 +238,7 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   } else {
     a.no_scale_reason = document.at("absent").at("scale");
   }
-  if (const Json& ground = replay.at("ground"); !ground.is_null()) {
-    a.ground = GroundOf(ground);
-  }
+  if (replay.contains("ground")) a.ground = GroundOf(replay["ground"]);
   a.body = trial.body;
   a.angle_kind = trial.angle_kind;
   a.track = TrackOf(replay.at("track"), trial.body.kind);
@@ -259,12 +258,11 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
 
 Json ReplayJson(const Analysis& analysis) {
   Json json = {{"options", OptionsJson(analysis.options)}};
-  const auto& corner = analysis.clip.sensor_origin;
-  json["sensor_origin"] =
-      corner ? Json::array({corner->x_px, corner->y_px}) : Json(nullptr);
-  json["ground"] =
-      analysis.ground ? GroundJson(*analysis.ground) : Json(nullptr);
-  json["track"] = analysis.track ? TrackJson(*analysis.track) : Json(nullptr);
+  if (const auto& corner = analysis.clip.sensor_origin) {
+    json["sensor_origin"] = {corner->x_px, corner->y_px};
+  }
+  if (analysis.ground) json["ground"] = GroundJson(*analysis.ground);
+  if (analysis.track) json["track"] = TrackJson(*analysis.track);
   return json;
 }
 
@@ -279,7 +277,7 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
           "an earlier program analysed it and kept no track; analyse the clip "
           "again");
     }
-    if (document["replay"].at("track").is_null()) {
+    if (!document["replay"].contains("track")) {
       return core::AbsentBecause("the analysis saw no body");
     }
     Analysis analysis = AnalysisOf(trial, document);

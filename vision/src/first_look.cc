@@ -17,6 +17,18 @@ namespace {
 
 using Surround = OutlineOptions::Surround;
 
+// Short looks pay where there is much to look at. What is shorter is seen
+// whole, in every frame: shadows and reflections, which make luma a bad
+// witness, are too faint for a short look in compressed pictures.
+bool IsLong(const ClipInfo& info, const TrackOptions& options) {
+  constexpr double kLong_px = 200e6;  // a second or two of detection
+  const std::int64_t last = options.last < 0 ? info.frames : options.last;
+  return static_cast<double>(last - options.first) *
+             static_cast<double>(info.width_px) *
+             static_cast<double>(info.height_px) >
+         kLong_px;
+}
+
 // Looks at frames one by one.
 class Watcher {
  public:
@@ -25,7 +37,7 @@ class Watcher {
       : clip_(clip), background_(background) {
     detect_.detector = detector;
     detect_.region = options.region;
-    if (detector == Detector::kDifference) {
+    if (detector == Detector::kDifference && IsLong(clip.info(), options)) {
       ScoutOptions scout;
       scout.region = options.region;
       scout_.emplace(background, scout);
@@ -134,8 +146,11 @@ Detections Detect(Clip& clip, const Background& background,
                   std::int64_t last) {
   constexpr std::int64_t kLargestStep = 8;
   const std::int64_t frames = last - options.first;
-  std::int64_t step =
-      std::clamp<std::int64_t>(frames / options.first_looks, 1, kLargestStep);
+  std::int64_t step = 1;
+  if (IsLong(clip.info(), options)) {
+    step =
+        std::clamp<std::int64_t>(frames / options.first_looks, 1, kLargestStep);
+  }
   Range range{options.first, last};
   Range seen;
   Detections found =

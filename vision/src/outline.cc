@@ -23,7 +23,7 @@ namespace {
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
 constexpr int kMaxParameters = 5 + 2 + 6 + 6;
-constexpr double kTukey = 4.685;  // 95 % efficient
+constexpr double kTukey = 4.685;     // 95 % efficient
 constexpr std::size_t kPadded = 20;  // to whole fours
 static_assert(kPadded >= kMaxParameters && kPadded % 4 == 0);
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
@@ -377,23 +377,10 @@ bool Fitter::SetAsideUnexplained() {
   if (robust_scale_ > kWellModelled) return false;
   constexpr double kClear = 1.5;  // of the blur, inside the edge
   constexpr double kReach = 4.0;  // of the blur: where its tail is 1e-4
-  const double clear = kClear * blur_ + 0.5 * smear_.way_px();
-  const double cut = kTukey * robust_scale_;
-  std::vector<core::PixelPoint> unexplained;
-  std::size_t inside = 0;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const OutlinePixel& p = pixels_[i];
-    if (DepthInside(outline_, p.x, p.y, cosine_, sine_) < clear) continue;
-    ++inside;
-    if (std::abs(residuals_[i]) > cut) unexplained.push_back({p.x, p.y});
-  }
-  constexpr double kLeastShare = 0.02;  // fewer are dust, or noise
-  constexpr std::size_t kLeast = 4;
-  if (unexplained.size() <
-      std::max(kLeast, static_cast<std::size_t>(kLeastShare *
-                                                static_cast<double>(inside)))) {
-    return false;
-  }
+  const std::vector<core::PixelPoint> unexplained =
+      Unexplained(pixels_, residuals_, kTukey * robust_scale_, outline_,
+                  cosine_, sine_, kClear * blur_ + 0.5 * smear_.way_px());
+  if (unexplained.empty()) return false;
   before_aside_ = Visible();
   usable_.Without(unexplained, kReach * blur_ + 1.0);
   return true;

@@ -90,6 +90,27 @@ bool IsSurroundSaturated(const std::vector<OutlinePixel>& pixels,
   return full > 0.5 * outside;
 }
 
+std::vector<core::PixelPoint> Unexplained(
+    const std::vector<OutlinePixel>& pixels,
+    const std::vector<double>& residuals, double cut, const Outline& outline,
+    double cosine, double sine, double clear_px) {
+  std::vector<core::PixelPoint> unexplained;
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const OutlinePixel& p = pixels[i];
+    if (DepthInside(outline, p.x, p.y, cosine, sine) < clear_px) continue;
+    ++inside;
+    if (std::abs(residuals[i]) > cut) unexplained.push_back({p.x, p.y});
+  }
+  constexpr double kLeastShare = 0.02;
+  constexpr std::size_t kLeast = 4;
+  const auto least = std::max(
+      kLeast,
+      static_cast<std::size_t>(kLeastShare * static_cast<double>(inside)));
+  if (unexplained.size() < least) unexplained.clear();
+  return unexplained;
+}
+
 void CollectOutlinePixels(const core::Frame& frame,
                           const Background& background, const Outline& outline,
                           double cosine, double sine, const UsablePart& usable,

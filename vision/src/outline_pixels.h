@@ -67,6 +67,14 @@ bool IsSurroundSaturated(const std::vector<OutlinePixel>& pixels,
                          const Outline& outline, double cosine, double sine,
                          double full_scale_dn);
 
+// Pixels deeper than `clear_px` inside whose residual is beyond `cut`; none
+// where there are too few of them to be more than dust or the tail of the
+// noise.
+std::vector<core::PixelPoint> Unexplained(
+    const std::vector<OutlinePixel>& pixels,
+    const std::vector<double>& residuals, double cut, const Outline& outline,
+    double cosine, double sine, double clear_px);
+
 double Extent(const Outline& outline);        // px, centre to farthest point
 double SmallestHalf(const Outline& outline);  // px
 double Area(const Outline& outline);          // px^2
