@@ -76,9 +76,12 @@ TEST_F(SessionTest, FromConventionsToTheSecondShot) {
   EXPECT_THAT(said_, HasSubstr("press Enter to accept"));
   // What comes too early waits.
   const auto early = bench_.Film("early.mraw", 24.0, 9);
-  std::filesystem::last_write_time(
-      early,
-      std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1));
+  const auto minute_ago =
+      std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1);
+  for (const auto& file :
+       std::filesystem::directory_iterator(early.parent_path())) {
+    std::filesystem::last_write_time(file.path(), minute_ago);
+  }
   EXPECT_EQ(Take(early), "");
   EXPECT_TRUE(Trials().empty());
   EXPECT_THAT(Obey("begin"), HasSubstr("press Enter"));

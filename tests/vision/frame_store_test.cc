@@ -190,7 +190,9 @@ TEST(FrameStore, LongClipsAreDecodedOnce) {
 TEST(FrameStore, WindowsAreEnough) {
   const Scene scene = testing::LongScene(600);
   const auto whole = OpenScene(scene, 1);
-  const auto expected = TrackBody(*whole);
+  TrackOptions as_long;
+  as_long.seen_whole_px = 0.0;
+  const auto expected = TrackBody(*whole, as_long);
   std::map<std::int64_t, int> decoded;
   FrameStoreOptions options;
   options.most_bytes = 320 * 160 * 150;

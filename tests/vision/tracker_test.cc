@@ -152,6 +152,7 @@ TEST(Tracker, SparseLooksMeasureTheSame) {
   const auto closely = TrackBody(*clip, every);
   TrackOptions sparse;
   sparse.first_looks = 200;
+  sparse.seen_whole_px = 0.0;
   const auto coarsely = TrackBody(*clip, sparse);
   ASSERT_TRUE(closely && coarsely);
   const auto& a = closely->track.poses;

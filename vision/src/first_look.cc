@@ -17,16 +17,15 @@ namespace {
 
 using Surround = OutlineOptions::Surround;
 
-// Short looks pay where there is much to look at. What is shorter is seen
-// whole, in every frame: shadows and reflections, which make luma a bad
-// witness, are too faint for a short look in compressed pictures.
-bool IsLong(const ClipInfo& info, const TrackOptions& options) {
-  constexpr double kLong_px = 200e6;  // a second or two of detection
+// Short looks pay where there is much to look at.
+bool IsLong(const Clip& clip, const TrackOptions& options) {
+  const ClipInfo& info = clip.info();
   const std::int64_t last = options.last < 0 ? info.frames : options.last;
-  return static_cast<double>(last - options.first) *
-             static_cast<double>(info.width_px) *
-             static_cast<double>(info.height_px) >
-         kLong_px;
+  return clip.ChangesIn(options.first) != nullptr ||
+         static_cast<double>(last - options.first) *
+                 static_cast<double>(info.width_px) *
+                 static_cast<double>(info.height_px) >
+             options.seen_whole_px;
 }
 
 // Looks at frames one by one.
@@ -37,7 +36,7 @@ class Watcher {
       : clip_(clip), background_(background) {
     detect_.detector = detector;
     detect_.region = options.region;
-    if (detector == Detector::kDifference && IsLong(clip.info(), options)) {
+    if (detector == Detector::kDifference && IsLong(clip, options)) {
       ScoutOptions scout;
       scout.region = options.region;
       scout_.emplace(background, scout);
@@ -147,7 +146,7 @@ Detections Detect(Clip& clip, const Background& background,
   constexpr std::int64_t kLargestStep = 8;
   const std::int64_t frames = last - options.first;
   std::int64_t step = 1;
-  if (IsLong(clip.info(), options)) {
+  if (IsLong(clip, options)) {
     step =
         std::clamp<std::int64_t>(frames / options.first_looks, 1, kLargestStep);
   }

@@ -28,6 +28,11 @@ struct TrackOptions {
   // Pixels below it are left out of the outline's fit.
   std::optional<calib::GroundLine> ground;
 
+  // Clips of no more pixels, in all frames together, are seen whole, in every
+  // frame: shadows and reflections, which tell that luma is a bad witness, are
+  // too faint for a short look in compressed pictures. 2e8: a second or two.
+  double seen_whole_px = 2e8;
+
   // About so many frames of a long clip are looked at to find the body's stay,
   // at the least every eighth; what is shorter is looked at in every frame.
   // More cost time; a body that is in view for fewer than eight frames is
