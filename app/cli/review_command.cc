@@ -89,7 +89,9 @@ int Run(const ReviewFlags& flags) {
   });
   server.Run();
   ended = true;
-  // Where the server ended by itself, the waiter is woken.
+  // Where the server ended by itself, the waiter is woken: it waits for the
+  // signal, which is blocked everywhere.
+  // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
   pthread_kill(waiter.native_handle(), SIGTERM);
   waiter.join();
   return 0;

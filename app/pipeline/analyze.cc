@@ -421,14 +421,14 @@ Analysis Analyze(const std::filesystem::path& path,
   const double open_s = Since(start);
   // Beside the analysis, where more than one thread is allowed.
   double digest_s = 0.0;
-  auto id = std::async(options.decoder_threads == 1 ? std::launch::deferred
-                                                    : std::launch::async,
-                       [&path, &digest_s] {
-                         const auto begun = Clock::now();
-                         std::string digest = vision::ClipId(path);
-                         digest_s = Since(begun);
-                         return digest;
-                       });
+  auto id = std::async(
+      options.decoder_threads == 1 ? std::launch::deferred : std::launch::async,
+      [&path, &digest_s] {
+        const auto begun = Clock::now();
+        std::string digest = vision::ClipId(path);
+        digest_s = Since(begun);
+        return digest;
+      });
   Analysis analysis = AnalyzeClip(std::move(clip), options);
   if (analysis.clip.has_colour && !OneBody(analysis)) {
     for (const vision::Channel channel :
