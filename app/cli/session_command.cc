@@ -49,16 +49,44 @@ struct Flags {
 
 // For the handlers of signals.
 volatile std::sig_atomic_t ended = 0;
+volatile std::sig_atomic_t stopped = 0;  // the rig, and nobody was told
 std::atomic<rig::Driver*> driven = nullptr;
 static_assert(std::atomic<rig::Driver*>::is_always_lock_free);
 
 // Whatever the signal, a rig that moves is stopped first. Ctrl-C does no more
 // than that while there is something to stop; the next one ends the session.
 void OnSignal(int signal) {
-  rig::Driver* const driver = driven.exchange(nullptr);
-  if (driver != nullptr) driver->Stop();
-  if (driver == nullptr || signal != SIGINT) ended = 1;
+  rig::Driver* const driver = driven.load();
+  const bool moves = driver != nullptr && !driver->is_stopped();
+  if (moves) {
+    driver->Stop();
+    stopped = 1;
+  }
+  if (!moves || signal != SIGINT) ended = 1;
 }
+
+// While it lives, a signal stops the rig. However it ends, nobody is left with
+// latched springs that no program watches.
+class Driving {
+ public:
+  explicit Driving(rig::Driver* stoppable) : stoppable_(stoppable) {
+    driven = stoppable;
+  }
+  Driving(const Driving&) = delete;
+  Driving& operator=(const Driving&) = delete;
+  ~Driving() {
+    driven = nullptr;
+    if (stoppable_ == nullptr || !stoppable_->is_armed()) return;
+    try {
+      stoppable_->Disarm();
+    } catch (const std::exception&) {  // it does not answer
+      stoppable_->Stop();
+    }
+  }
+
+ private:
+  rig::Driver* stoppable_;
+};
 
 void CatchSignals() {
   struct sigaction action = {};
@@ -99,8 +127,8 @@ std::unique_ptr<rig::Driver> DriverOf(const Flags& flags,
 }
 
 // Hands over what comes, from the keyboard and from the folder, until the end.
-void Serve(const Flags& flags, session::Session& session, TerminalLines& lines,
-           rig::Driver* stoppable) {
+void Serve(const Flags& flags, session::Session& session,
+           TerminalLines& lines) {
   FolderWatch changes(flags.watch);
   pipeline::WatchOptions options;
   options.quiet = std::chrono::milliseconds(
@@ -118,10 +146,10 @@ void Serve(const Flags& flags, session::Session& session, TerminalLines& lines,
       if (!session.Obey(*line)) return false;
       if (ended != 0) return false;
     }
-    // A rig that was reset can be stopped again.
-    if (stoppable != nullptr && driven.load() == nullptr &&
-        !stoppable->is_stopped()) {
-      driven = stoppable;
+    if (stopped != 0) {
+      stopped = 0;
+      fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
+      std::fflush(stdout);
     }
     return ended == 0 && !lines.at_end();
   };
@@ -174,7 +202,7 @@ int Run(const Flags& flags) {
   rig::Driver* const stoppable =
       flags.driver == "manual" ? nullptr : driver.get();
   CatchSignals();
-  driven = stoppable;
+  const Driving driving(stoppable);
   session::SessionEnds ends;
   ends.say = [](const std::string& line) {
     fmt::print("{}\n", Printable(line));
@@ -190,8 +218,7 @@ int Run(const Flags& flags) {
   session::Session session(store, campaign, std::move(thrower), options, ends,
                            before);
   session.Start();
-  Serve(flags, session, lines, stoppable);
-  driven = nullptr;
+  Serve(flags, session, lines);
   session.End();
   return 0;
 }

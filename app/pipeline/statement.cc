@@ -60,19 +60,9 @@ void Apply(const Statement& statement, core::Trial& trial) {
     const bool face = trial.angle_kind == core::AngleKind::kFace;
     RequireAngle("angle-deg", *statement.angle_deg, face ? -90.0 : 0.0);
     RequireAngle("angle-u-deg", *statement.angle_u_deg, 0.0);
-    const core::Estimate angle{*statement.angle_deg * kDegree,
-                               *statement.angle_u_deg * kDegree, std::nullopt};
-    switch (trial.angle_kind) {
-      case core::AngleKind::kApproach:
-        contact.approach_angle_rad = angle;
-        break;
-      case core::AngleKind::kRadius:
-        contact.radius_angle_rad = angle;
-        break;
-      case core::AngleKind::kFace:
-        contact.face_angle_rad = angle;
-        break;
-    }
+    core::Angle(contact, trial.angle_kind) =
+        core::Estimate{*statement.angle_deg * kDegree,
+                       *statement.angle_u_deg * kDegree, std::nullopt};
   }
   if (!statement.state.empty()) {
     trial.first.state.label = WordOf<core::MotionState>(

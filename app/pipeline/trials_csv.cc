@@ -72,18 +72,8 @@ core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
   trial.origin = what.origin;
   core::Contact& contact = trial.first.contact;
   contact.found = true;
-  const core::Estimate angle{angle_deg * kDegree, u_deg * kDegree};
-  switch (what.angle_kind) {
-    case core::AngleKind::kApproach:
-      contact.approach_angle_rad = angle;
-      break;
-    case core::AngleKind::kRadius:
-      contact.radius_angle_rad = angle;
-      break;
-    case core::AngleKind::kFace:
-      contact.face_angle_rad = angle;
-      break;
-  }
+  core::Angle(contact, what.angle_kind) =
+      core::Estimate{angle_deg * kDegree, u_deg * kDegree};
   core::StateDecision& state = trial.first.state;
   state.p_bounce = p_bounce;
   state.max_gap_m = core::AbsentBecause("not in the file");

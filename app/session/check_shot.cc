@@ -28,21 +28,34 @@ core::Estimate ExpectedSpeed(const CheckShot& check) {
           std::nullopt};
 }
 
-core::Campaign CheckCampaign(const CheckShot& check) {
-  core::Campaign campaign;
+namespace {
+
+core::Estimate RequireSize(const CheckShot& check) {
   const auto size = core::Size(check.body);
   if (!size) {
     throw std::invalid_argument(
         "the body of the check shot has no size, must have one");
   }
+  return *size;
+}
+
+}  // namespace
+
+std::string DroppedBody(const CheckShot& check) {
+  return fmt::format("{} {} mm", core::Name(check.body.kind),
+                     report::Plain(RequireSize(check).value / kMillimetre));
+}
+
+core::Campaign CheckCampaign(const CheckShot& check) {
+  core::Campaign campaign;
   campaign.name =
-      fmt::format("check: {} {} mm from {} mm", core::Name(check.body.kind),
-                  report::Plain(size->value / kMillimetre),
+      fmt::format("check: {} from {} mm", DroppedBody(check),
                   report::Plain(check.height_m.value / kMillimetre));
   campaign.body = check.body;
   campaign.surface = "check shot, dropped";
   campaign.angle_kind = core::AngleKind::kApproach;
-  campaign.bounce_height_m = core::DefaultBounceHeight(size->value);
+  campaign.bounce_height_m =
+      core::DefaultBounceHeight(RequireSize(check).value);
   return campaign;
 }
 

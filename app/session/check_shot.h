@@ -30,6 +30,10 @@ struct CheckShot {
 // where the body outweighs 1000 times the air in the path it sweeps.
 core::Estimate ExpectedSpeed(const CheckShot& check);
 
+// The body in words: "sphere 40 mm". Throws std::invalid_argument where it has
+// no size.
+std::string DroppedBody(const CheckShot& check);
+
 // The campaign that check shots are logged in, so that they are never pooled
 // with others: its name says body and height.
 core::Campaign CheckCampaign(const CheckShot& check);

@@ -165,8 +165,7 @@ void Session::Plan() {
     plan_lines_ = {fmt::format(
         "check shot: drop the {} from {} mm, upright; known: {} m/s and 90 deg "
         "at touchdown (or: skip REASON)",
-        check_campaign_->name.substr(7,
-                                     check_campaign_->name.find(" from") - 7),
+        DroppedBody(*options_.check),
         report::WithU(options_.check->height_m, core::kMillimetre),
         report::WithU(ExpectedSpeed(*options_.check), 1.0))};
   } else {

@@ -3,25 +3,15 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
-import {frameShown, Lab, openBrowser, picture, sitDown, startReview}
+import {browser, frameShown, lab, picture, review, sitDown, useLaboratory}
     from './lab.mjs';
 
 const axe = readFileSync(
     createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
-let lab, review, browser;
-before(async () => {
-  lab = new Lab();
-  review = await startReview(lab.db);
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  await review?.stop();
-  lab?.remove();
-});
+useLaboratory();
 
 async function findings(page) {
   await page.evaluate(axe);

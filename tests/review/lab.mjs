@@ -6,6 +6,7 @@ import {mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createInterface} from 'node:readline';
+import {after, before} from 'node:test';
 
 import {chromium} from 'playwright-core';
 
@@ -84,6 +85,21 @@ export function openBrowser() {
   return chromium.launch({
     executablePath: process.env.TOUCHDOWN_CHROMIUM,
     args: ['--no-sandbox', '--disable-dev-shm-usage'],
+  });
+}
+
+// What the tests of one file share, from their first to their last.
+export let lab, review, browser;
+export function useLaboratory() {
+  before(async () => {
+    lab = new Lab();
+    review = await startReview(lab.db);
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    await review?.stop();
+    lab?.remove();
   });
 }
 

@@ -2,22 +2,12 @@
 import assert from 'node:assert/strict';
 import {existsSync} from 'node:fs';
 import {join} from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
-import {frameShown, kCampaign, Lab, openBrowser, picture, requireClean,
-        says, sitDown, startReview} from './lab.mjs';
+import {browser, frameShown, kCampaign, lab, picture, requireClean, review,
+        says, sitDown, useLaboratory} from './lab.mjs';
 
-let lab, review, browser;
-before(async () => {
-  lab = new Lab();
-  review = await startReview(lab.db);
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  await review?.stop();
-  lab?.remove();
-});
+useLaboratory();
 
 async function openTrial(page, id = lab.trial) {
   await page.goto(`${review.origin}/#/trial/${id}`);

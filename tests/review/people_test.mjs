@@ -3,22 +3,13 @@ import assert from 'node:assert/strict';
 import http from 'node:http';
 import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
-import {frameShown, kCampaign, Lab, openBrowser, picture, requireClean,
-        says, sitDown, startReview, touchdown} from './lab.mjs';
+import {browser, frameShown, kCampaign, lab, picture, requireClean, review,
+        says, sitDown, touchdown, useLaboratory}
+    from './lab.mjs';
 
-let lab, review, browser;
-before(async () => {
-  lab = new Lab();
-  review = await startReview(lab.db);
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  await review?.stop();
-  lab?.remove();
-});
+useLaboratory();
 
 async function openTrial(page) {
   await page.goto(`${review.origin}/#/trial/${lab.trial}`);

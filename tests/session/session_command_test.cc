@@ -5,12 +5,14 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <memory>
 #include <random>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "app/session/session_file.h"
+#include "tests/rig/driver/simulated_controller.h"
 #include "tests/session/bench.h"
 #include "tests/support/program.h"
 #include "tests/support/running_program.h"
@@ -72,6 +74,102 @@ TEST_F(SessionCommand, TakesWhatComesAndEndsWhenTold) {
   RunningProgram again(Arguments({"--no-check"}));
   again.Until("known, trial");
   EXPECT_EQ(again.End(SIGTERM), 0);
+}
+
+class SessionAtASerialPort : public SessionCommand {
+ protected:
+  // A session with the springs latched.
+  std::unique_ptr<RunningProgram> Armed() {
+    auto session = std::make_unique<RunningProgram>(
+        Arguments({"--operator", "A. Lee", "--no-check", "--driver",
+                   controller_.port()}));
+    session->Type("");
+    session->Until("predicted");
+    session->Type("set");
+    EXPECT_THAT(session->Until("it reads"), HasSubstr("elevation"));
+    session->Type("arm");
+    EXPECT_THAT(session->Until("fire"), HasSubstr("ARMED"));
+    EXPECT_TRUE(controller_.armed());
+    return session;
+  }
+
+  rig::SimulatedController controller_;
+};
+
+TEST_F(SessionAtASerialPort, ThrowsWhenAPersonSaysSo) {
+  const auto session = Armed();
+  session->Type("fire 1");
+  EXPECT_THAT(session->Until("fired"), HasSubstr("1 shots"));
+  EXPECT_EQ(controller_.shots(), 1);
+  session->Type("fire 1");
+  EXPECT_THAT(session->Until("refused"), HasSubstr("not armed"));
+  session->Type("quit");
+  EXPECT_EQ(session->End(0), 0);
+  EXPECT_EQ(controller_.shots(), 1);
+}
+
+TEST_F(SessionAtASerialPort, ControlCStopsTheRigAndThenTheSession) {
+  const auto session = Armed();
+  session->Signal(SIGINT);
+  EXPECT_THAT(session->Until("STOPPED"), HasSubstr("reset"));
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_FALSE(controller_.armed());
+  session->Type("fire 1");
+  EXPECT_THAT(session->Until("refused"), HasSubstr("stopped"));
+  session->Type("reset");
+  session->Until("ready");
+  EXPECT_FALSE(controller_.stopped());
+  session->Signal(SIGINT);
+  session->Until("STOPPED");
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_EQ(session->End(SIGINT), 0);
+  EXPECT_EQ(controller_.shots(), 0);
+}
+
+TEST_F(SessionAtASerialPort, IsNeverLeftArmed) {
+  {
+    const auto session = Armed();
+    session->Type("quit");
+    EXPECT_EQ(session->End(0), 0);
+    EXPECT_FALSE(controller_.armed());
+    EXPECT_FALSE(controller_.stopped());
+  }
+  {
+    const auto session = Armed();
+    EXPECT_EQ(session->End(SIGTERM), 0);
+    EXPECT_TRUE(controller_.BecomesStopped());
+    EXPECT_FALSE(controller_.armed());
+  }
+}
+
+TEST_F(SessionAtASerialPort, AFaultOfTheStoreDisarmsIt) {
+  const auto session = Armed();
+  auto changed = Bench::campaign();
+  changed.bounce_height_m = 0.001;
+  db::Store::Open(bench_.db(), db::OpenMode::kWrite).ChangeCampaign(changed);
+  bench_.Film("a.mraw", 24.0, 1);
+  EXPECT_EQ(session->End(0), 4);
+  EXPECT_FALSE(controller_.armed());
+  EXPECT_TRUE(Trials().empty());
+}
+
+TEST_F(SessionAtASerialPort, WhoNoLongerAnswersIsStopped) {
+  const auto session = Armed();
+  controller_.Script("disarm", {rig::Act::kDeafness, rig::Act::kDeafness,
+                                rig::Act::kDeafness, rig::Act::kDeafness});
+  session->Type("quit");
+  EXPECT_EQ(session->End(0), 0);
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_FALSE(controller_.armed());
+}
+
+TEST_F(SessionAtASerialPort, WhatRefusesToDisarmIsStopped) {
+  const auto session = Armed();
+  controller_.Script("disarm", {rig::Act::kRefusal});
+  session->Type("quit");
+  EXPECT_EQ(session->End(0), 0);
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_FALSE(controller_.armed());
 }
 
 TEST_F(SessionCommand, MistakesAreOneLine) {

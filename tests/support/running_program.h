@@ -72,6 +72,7 @@ class RunningProgram {
       throw std::runtime_error("the program reads no more");
     }
   }
+  void Signal(int signal) { kill(child_, signal); }
   // Sends a signal (0: none) and waits for the end; -1 where a signal ended it.
   int End(int signal) {
     if (signal != 0) kill(child_, signal);

@@ -40,15 +40,7 @@ double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
 
 }  // namespace
 
-std::optional<Pose> PoseIn(const Track& track, std::int64_t frame) {
-  const auto after = std::lower_bound(
-      track.poses.begin(), track.poses.end(), frame,
-      [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
-  if (after == track.poses.end()) return std::nullopt;
-  if (after->frame == frame) return *after;
-  if (after == track.poses.begin()) return std::nullopt;
-  const Pose& a = *(after - 1);
-  const Pose& b = *after;
+Pose OnTheWay(const Pose& a, const Pose& b, std::int64_t frame) {
   const double share = static_cast<double>(frame - a.frame) /
                        static_cast<double>(b.frame - a.frame);
   Pose pose = a;
@@ -57,6 +49,16 @@ std::optional<Pose> PoseIn(const Track& track, std::int64_t frame) {
   pose.centre.y_px += share * (b.centre.y_px - a.centre.y_px);
   pose.angle_rad += share * (b.angle_rad - a.angle_rad);
   return pose;
+}
+
+std::optional<Pose> PoseIn(const Track& track, std::int64_t frame) {
+  const auto after = std::lower_bound(
+      track.poses.begin(), track.poses.end(), frame,
+      [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
+  if (after == track.poses.end()) return std::nullopt;
+  if (after->frame == frame) return *after;
+  if (after == track.poses.begin()) return std::nullopt;
+  return OnTheWay(*(after - 1), *after, frame);
 }
 
 BodyCover::BodyCover(Clip& clip, const Track& track)

@@ -10,6 +10,10 @@
 
 namespace touchdown::vision {
 
+// On the straight way from pose `a` to pose `b`, or beyond: what `frame` would
+// see at a steady pace. All else is as in `a`.
+Pose OnTheWay(const Pose& a, const Pose& b, std::int64_t frame);
+
 // The pose in a frame: measured, or between two measured ones; nothing outside
 // the track.
 std::optional<Pose> PoseIn(const Track& track, std::int64_t frame);

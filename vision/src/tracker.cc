@@ -29,14 +29,7 @@ Pose Expected(const Track& track, std::int64_t frame) {
   const bool before = frame < poses.front().frame;
   const Pose& end = before ? poses.front() : poses.back();
   const Pose& next = before ? poses[1] : poses[poses.size() - 2];
-  const double share = static_cast<double>(frame - end.frame) /
-                       static_cast<double>(next.frame - end.frame);
-  Pose pose = end;
-  pose.frame = frame;
-  pose.centre.x_px += share * (next.centre.x_px - end.centre.x_px);
-  pose.centre.y_px += share * (next.centre.y_px - end.centre.y_px);
-  pose.angle_rad += share * (next.angle_rad - end.angle_rad);
-  return pose;
+  return OnTheWay(end, next, frame);
 }
 
 // Fits again from the track's own poses.

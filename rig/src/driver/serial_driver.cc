@@ -162,7 +162,9 @@ core::Expected<void> SerialDriver::Latch() {
   return {};
 }
 
-void SerialDriver::Unlatch() { (void)Ask("disarm"); }
+void SerialDriver::Unlatch() {
+  if (!Ask("disarm")) Stop();  // what cannot be disarmed must not be fired
+}
 
 core::Expected<std::int64_t> SerialDriver::Release() {
   try {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -94,6 +95,12 @@ class SimulatedController {
   bool armed() const { return Locked(armed_); }
   bool stopped() const { return Locked(stopped_); }
   int stop_bytes() const { return Locked(stop_bytes_); }
+  // Bytes that a program of its own has sent may still be on their way.
+  bool BecomesStopped() {
+    std::unique_lock lock(mutex_);
+    return stop_heard_.wait_for(lock, std::chrono::seconds(20),
+                                [this] { return stopped_; });
+  }
   // Verbs in the order in which they came, repetitions too.
   std::vector<std::string> heard() const { return Locked(heard_); }
   long HowOften(const std::string& verb) const {
@@ -156,6 +163,7 @@ class SimulatedController {
           stopped_ = true;
           armed_ = false;
           ++stop_bytes_;
+          stop_heard_.notify_all();
         } else if (c != '\n') {
           line += c;
         } else {
@@ -298,6 +306,7 @@ class SimulatedController {
   SerialTime::Instant now_{};  // of the driver's thread
 
   mutable std::mutex mutex_;
+  std::condition_variable stop_heard_;
   std::map<std::string, std::deque<Act>> script_;
   std::map<std::string, std::function<void()>> when_;
   std::string late_;

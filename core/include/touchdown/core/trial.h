@@ -49,6 +49,10 @@ inline const Measured& Angle(const Contact& contact, AngleKind kind) {
   }
   return contact.approach_angle_rad;
 }
+inline Measured& Angle(Contact& contact, AngleKind kind) {
+  const Contact& same = contact;
+  return const_cast<Measured&>(Angle(same, kind));
+}
 
 // The motion state by the one rule of words.h, with its evidence.
 struct StateDecision {

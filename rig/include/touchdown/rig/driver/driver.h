@@ -60,6 +60,7 @@ class Driver {
   // Latches the springs at the last Set(); only with the interlock closed.
   core::Expected<Arming> Arm();
   void Disarm();
+  bool is_armed() const noexcept { return armed_.has_value(); }
   // Fires. Returns the count of shots. Refused where the confirmation means
   // another arming than the last, or the interlock is not closed at this
   // moment (then it is disarmed). Sent once: a lost answer is never made good
