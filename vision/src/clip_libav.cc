@@ -32,7 +32,7 @@ class VideoClip final : public Clip {
                      : static_cast<std::int32_t>(
                            std::max(1u, std::thread::hardware_concurrency()))),
         source_(OpenVideoSource(path, threads_)),
-        packet_(av_packet_alloc()),
+        packet_(Libav().av_packet_alloc()),
         frame_(av_frame_alloc()) {
     info_.path = path;
     info_.format = FormatName(*source_.format);
@@ -116,7 +116,7 @@ class VideoClip final : public Clip {
     bad_from_ = bad_to_ = -1;
     have_packet_ = false;
     draining_ = false;
-    av_packet_unref(packet_.get());
+    Libav().av_packet_unref(packet_.get());
   }
 
   // Moves to packet number `key` or to a key packet before it; false if where
@@ -126,11 +126,11 @@ class VideoClip final : public Clip {
     const std::int64_t time =
         wanted.dts != AV_NOPTS_VALUE ? wanted.dts : wanted.pts;
     if (time == AV_NOPTS_VALUE ||
-        av_seek_frame(source_.format.get(), source_.stream->index, time,
-                      AVSEEK_FLAG_BACKWARD) < 0) {
+        Libav().av_seek_frame(source_.format.get(), source_.stream->index, time,
+                              AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
     }
-    avcodec_flush_buffers(source_.codec.get());
+    Libav().avcodec_flush_buffers(source_.codec.get());
     Rewind();
     if (!ReadPacket()) return false;
     const VideoPacket got = Describe(*packet_);
@@ -148,13 +148,14 @@ class VideoClip final : public Clip {
   bool ReadPacket() {
     if (have_packet_) return true;
     int result = 0;
-    while ((result = av_read_frame(source_.format.get(), packet_.get())) >= 0) {
+    while ((result = Libav().av_read_frame(source_.format.get(),
+                                           packet_.get())) >= 0) {
       if (packet_->stream_index == source_.stream->index && packet_->size > 0 &&
           (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0) {
         have_packet_ = true;
         return true;
       }
-      av_packet_unref(packet_.get());
+      Libav().av_packet_unref(packet_.get());
     }
     if (result != AVERROR_EOF) trouble_ = LibavError(result);
     return false;
@@ -164,13 +165,14 @@ class VideoClip final : public Clip {
   void Feed() {
     if (!ReadPacket()) {
       draining_ = true;
-      avcodec_send_packet(source_.codec.get(), nullptr);
+      Libav().avcodec_send_packet(source_.codec.get(), nullptr);
       return;
     }
-    const int sent = avcodec_send_packet(source_.codec.get(), packet_.get());
+    const int sent =
+        Libav().avcodec_send_packet(source_.codec.get(), packet_.get());
     if (sent == AVERROR(EAGAIN)) return;  // it wants to be emptied first
     if (sent < 0) NoteLostFrame(sent);
-    av_packet_unref(packet_.get());
+    Libav().av_packet_unref(packet_.get());
     have_packet_ = false;
     ++sent_;
   }
@@ -184,7 +186,7 @@ class VideoClip final : public Clip {
   bool DecodeNext() {
     for (;;) {
       const int result =
-          avcodec_receive_frame(source_.codec.get(), frame_.get());
+          Libav().avcodec_receive_frame(source_.codec.get(), frame_.get());
       if (result == AVERROR_EOF) return false;
       if (result == AVERROR(EAGAIN)) {
         if (draining_) return false;
@@ -249,7 +251,7 @@ class VideoClip final : public Clip {
                       name != nullptr ? name : "unknown"));
     }
     Orientation orientation;
-    if (const std::uint8_t* const matrix = av_stream_get_side_data(
+    if (const std::uint8_t* const matrix = Libav().av_stream_get_side_data(
             source_.stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr)) {
       if (const auto turned =
               OrientationOf(reinterpret_cast<const std::int32_t*>(matrix))) {
@@ -287,7 +289,7 @@ class VideoClip final : public Clip {
       info_.bit_depth = 8;
     }
     if (cine) info_.first_camera_frame = CineFirstFrame(path_);
-    const AVRational aspect = av_guess_sample_aspect_ratio(
+    const AVRational aspect = Libav().av_guess_sample_aspect_ratio(
         source_.format.get(), source_.stream, frame_.get());
     if (aspect.num > 0 && aspect.num != aspect.den) {
       info_.warnings.push_back(fmt::format(

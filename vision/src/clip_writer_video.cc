@@ -21,8 +21,8 @@ namespace {
 
 struct MuxerDelete {
   void operator()(AVFormatContext* context) const {
-    if (context->pb != nullptr) avio_closep(&context->pb);
-    avformat_free_context(context);
+    if (context->pb != nullptr) Libav().avio_closep(&context->pb);
+    Libav().avformat_free_context(context);
   }
 };
 
@@ -87,7 +87,7 @@ class VideoWriter {
       : container_(ContainerOf(path)),
         options_(options),
         name_(path),
-        packet_(av_packet_alloc()),
+        packet_(Libav().av_packet_alloc()),
         picture_(av_frame_alloc()) {
     CheckFps(options.fps);
     // libav writes faster ones as 600 fps in .avi, and to the nearest
@@ -131,16 +131,16 @@ class VideoWriter {
                       static_cast<std::size_t>((frame.height_px + 1) / 2));
     }
     picture_->pts = index;
-    Check(avcodec_send_frame(codec_.get(), picture_.get()));
+    Check(Libav().avcodec_send_frame(codec_.get(), picture_.get()));
     Drain();
   }
 
   void Finish() {
-    Check(avcodec_send_frame(codec_.get(), nullptr));
+    Check(Libav().avcodec_send_frame(codec_.get(), nullptr));
     Drain();
-    Check(av_write_trailer(format_.get()));
+    Check(Libav().av_write_trailer(format_.get()));
     const int failed = format_->pb->error;
-    const int closed = avio_closep(&format_->pb);
+    const int closed = Libav().avio_closep(&format_->pb);
     Check(failed);
     Check(closed);
     name_.Commit();
@@ -157,24 +157,25 @@ class VideoWriter {
   void Start(const core::Frame& frame) {
     const CodecChoice choice = ChoiceOf(options_.codec);
     const AVPixelFormat pixels = PixelFormatOf(options_.codec, frame.bit_depth);
-    const AVCodec* const codec = avcodec_find_encoder_by_name(choice.encoder);
+    const AVCodec* const codec =
+        Libav().avcodec_find_encoder_by_name(choice.encoder);
     if (codec == nullptr) {
       throw core::InputError(fmt::format(
           "{}: cannot be written: this libavcodec has no encoder {}",
           name_.target().string(), choice.encoder));
     }
     AVFormatContext* format = nullptr;
-    Check(
-        avformat_alloc_output_context2(&format, nullptr, container_, nullptr));
+    Check(Libav().avformat_alloc_output_context2(&format, nullptr, container_,
+                                                 nullptr));
     format_.reset(format);
-    if (avformat_query_codec(format->oformat, codec->id,
-                             FF_COMPLIANCE_NORMAL) == 0) {
+    if (Libav().avformat_query_codec(format->oformat, codec->id,
+                                     FF_COMPLIANCE_NORMAL) == 0) {
       throw std::invalid_argument(
           fmt::format("codec is {}, which a {} file cannot hold; take .avi or "
                       ".mkv",
                       choice.encoder, container_));
     }
-    codec_.reset(avcodec_alloc_context3(codec));
+    codec_.reset(Libav().avcodec_alloc_context3(codec));
     codec_->width = frame.width_px;
     codec_->height = frame.height_px;
     codec_->pix_fmt = pixels;
@@ -201,27 +202,29 @@ class VideoWriter {
     if ((format_->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
       codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     }
-    Check(avcodec_open2(codec_.get(), codec, nullptr));
+    Check(Libav().avcodec_open2(codec_.get(), codec, nullptr));
 
     picture_->format = pixels;
     picture_->width = frame.width_px;
     picture_->height = frame.height_px;
     Check(av_frame_get_buffer(picture_.get(), 0));
 
-    stream_ = avformat_new_stream(format_.get(), nullptr);
+    stream_ = Libav().avformat_new_stream(format_.get(), nullptr);
     if (stream_ == nullptr) Check(AVERROR(ENOMEM));
-    Check(avcodec_parameters_from_context(stream_->codecpar, codec_.get()));
+    Check(Libav().avcodec_parameters_from_context(stream_->codecpar,
+                                                  codec_.get()));
     stream_->time_base = codec_->time_base;
     stream_->avg_frame_rate = codec_->framerate;
     if (options_.turn_quarters % 4 != 0) {
       auto* const matrix =
-          reinterpret_cast<std::int32_t*>(av_stream_new_side_data(
+          reinterpret_cast<std::int32_t*>(Libav().av_stream_new_side_data(
               stream_, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(std::int32_t)));
       if (matrix == nullptr) Check(AVERROR(ENOMEM));
       av_display_rotation_set(matrix, -90.0 * options_.turn_quarters);
     }
-    Check(avio_open(&format_->pb, ("file:" + name_.path().string()).c_str(),
-                    AVIO_FLAG_WRITE));
+    Check(Libav().avio_open(&format_->pb,
+                            ("file:" + name_.path().string()).c_str(),
+                            AVIO_FLAG_WRITE));
     if (options_.codec == VideoCodec::kRaw && frame.bit_depth == 16 &&
         std::string_view(container_) != "avi") {
       throw std::invalid_argument(
@@ -229,24 +232,25 @@ class VideoWriter {
           "take "
           ".avi");
     }
-    Check(avformat_init_output(format_.get(), nullptr));
+    Check(Libav().avformat_init_output(format_.get(), nullptr));
     if (options_.codec == VideoCodec::kRaw && frame.bit_depth == 16) {
       // Initialising clears the tag by which readers know 16-bit gray.
       stream_->codecpar->codec_tag = MKTAG('Y', '1', '6', ' ');
     }
-    Check(avformat_write_header(format_.get(), nullptr));
+    Check(Libav().avformat_write_header(format_.get(), nullptr));
   }
 
   void Drain() {
     for (;;) {
-      const int got = avcodec_receive_packet(codec_.get(), packet_.get());
+      const int got =
+          Libav().avcodec_receive_packet(codec_.get(), packet_.get());
       if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
       Check(got);
       packet_->stream_index = stream_->index;
       packet_->duration = 1;
-      av_packet_rescale_ts(packet_.get(), codec_->time_base,
-                           stream_->time_base);
-      Check(av_interleaved_write_frame(format_.get(), packet_.get()));
+      Libav().av_packet_rescale_ts(packet_.get(), codec_->time_base,
+                                   stream_->time_base);
+      Check(Libav().av_interleaved_write_frame(format_.get(), packet_.get()));
       Check(format_->pb->error);
     }
   }

@@ -11,11 +11,28 @@ extern "C" {
 
 namespace touchdown::vision {
 
+// What we call of libavformat and libavcodec. The two bring a hundred libraries
+// with them, half of the start-up of a command that needs no video, so they are
+// not linked but loaded when the first video is opened. libavutil, which comes
+// alone, is linked.
+struct LibavFunctions {
+  // Throws core::InputError where a library is not installed, or is of another
+  // version than was compiled for.
+  LibavFunctions();
+
+#define TOUCHDOWN_LIBAV_FUNCTION(name) decltype(&::name) name = nullptr;
+#include "libav_functions.inc"
+#undef TOUCHDOWN_LIBAV_FUNCTION
+};
+const LibavFunctions& Libav();
+
 struct LibavDelete {
-  void operator()(AVFormatContext* c) const { avformat_close_input(&c); }
-  void operator()(AVCodecContext* c) const { avcodec_free_context(&c); }
+  void operator()(AVFormatContext* c) const {
+    Libav().avformat_close_input(&c);
+  }
+  void operator()(AVCodecContext* c) const { Libav().avcodec_free_context(&c); }
   void operator()(AVFrame* f) const { av_frame_free(&f); }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(AVPacket* p) const { Libav().av_packet_free(&p); }
   void operator()(AVDictionary* d) const { av_dict_free(&d); }
 };
 template <class T>

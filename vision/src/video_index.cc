@@ -56,19 +56,21 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
 // and the file has room for the last.
 std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
                                       AVRational declared) {
-  const int count = avformat_index_get_entries_count(&stream);
+  const int count = Libav().avformat_index_get_entries_count(&stream);
   const std::int64_t frames =
       stream.nb_frames > 0 ? stream.nb_frames : stream.duration;
   if (stream.codecpar->codec_id != AV_CODEC_ID_RAWVIDEO || count < 2 ||
       count != frames) {
     return std::nullopt;
   }
-  const std::int64_t size = format.pb == nullptr ? 0 : avio_size(format.pb);
+  const std::int64_t size =
+      format.pb == nullptr ? 0 : Libav().avio_size(format.pb);
   VideoIndex index;
   std::int64_t before = 0;
   std::int64_t end = 0;
   for (int i = 0; i < count; ++i) {
-    const AVIndexEntry* const entry = avformat_index_get_entry(&stream, i);
+    const AVIndexEntry* const entry =
+        Libav().avformat_index_get_entry(&stream, i);
     // .cine lists no sizes; elsewhere an empty chunk stands for a lost frame.
     const bool sizes = std::string_view(format.iformat->name) != "cine";
     const bool in_order =
@@ -139,7 +141,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
                       AVRational declared) {
   if (auto listed = IndexByList(format, stream, declared)) return *listed;
   VideoIndex index;
-  const LibavPtr<AVPacket> packet(av_packet_alloc());
+  const LibavPtr<AVPacket> packet(Libav().av_packet_alloc());
   std::vector<std::int64_t> pts;
   std::vector<std::int64_t> damaged;  // their presentation times
   std::vector<std::int64_t> damaged_numbers;
@@ -147,13 +149,13 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
   std::int64_t last_dts = AV_NOPTS_VALUE;
   bool timed = true;
   int result = 0;
-  while ((result = av_read_frame(&format, packet.get())) >= 0) {
+  while ((result = Libav().av_read_frame(&format, packet.get())) >= 0) {
     const bool whole = (packet->flags & AV_PKT_FLAG_CORRUPT) == 0;
     if (packet->stream_index == stream.index && packet->size > 0) {
       if (!whole) {
         // The file ends within this frame.
         index.ended_early = "the last frame is cut";
-        av_packet_unref(packet.get());
+        Libav().av_packet_unref(packet.get());
         break;
       }
       index.packets.push_back(Describe(*packet));
@@ -175,7 +177,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
       }
       last_dts = packet->dts;
     }
-    av_packet_unref(packet.get());
+    Libav().av_packet_unref(packet.get());
   }
   if (result < 0 && result != AVERROR_EOF) {
     index.ended_early = LibavError(result);

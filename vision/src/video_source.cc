@@ -31,7 +31,7 @@ LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
   av_dict_set(&options, "protocol_whitelist", "file", 0);
   AVFormatContext* format = nullptr;
   // The prefix keeps a name like "http:a.avi" a name.
-  const int opened = avformat_open_input(
+  const int opened = Libav().avformat_open_input(
       &format, ("file:" + path.string()).c_str(), nullptr, &options);
   av_dict_free(&options);
   if (opened < 0) {
@@ -50,15 +50,17 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
       parameters.codec_tag == MKTAG('Y', '1', '6', ' ')) {
     // 16-bit gray of machine-vision cameras, which libav does not know in .avi.
     parameters.codec_id = AV_CODEC_ID_RAWVIDEO;
-    parameters.codec_tag = avcodec_pix_fmt_to_codec_tag(AV_PIX_FMT_GRAY16LE);
+    parameters.codec_tag =
+        Libav().avcodec_pix_fmt_to_codec_tag(AV_PIX_FMT_GRAY16LE);
   }
-  const AVCodec* const codec = avcodec_find_decoder(parameters.codec_id);
+  const AVCodec* const codec =
+      Libav().avcodec_find_decoder(parameters.codec_id);
   if (codec == nullptr) {
     Fail(path, fmt::format("there is no decoder for its video ({})",
-                           avcodec_get_name(parameters.codec_id)));
+                           Libav().avcodec_get_name(parameters.codec_id)));
   }
-  LibavPtr<AVCodecContext> context(avcodec_alloc_context3(codec));
-  avcodec_parameters_to_context(context.get(), &parameters);
+  LibavPtr<AVCodecContext> context(Libav().avcodec_alloc_context3(codec));
+  Libav().avcodec_parameters_to_context(context.get(), &parameters);
   context->pkt_timebase = stream.time_base;
   context->thread_count = threads;
   context->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
@@ -66,10 +68,10 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
   context->max_pixels = std::int64_t{1} << 28;
   // A frame with errors is an error, not something the decoder makes up.
   context->err_recognition |= AV_EF_CRCCHECK | AV_EF_EXPLODE;
-  if (const int opened = avcodec_open2(context.get(), codec, nullptr);
+  if (const int opened = Libav().avcodec_open2(context.get(), codec, nullptr);
       opened < 0) {
     Fail(path, fmt::format("its video ({}) cannot be decoded ({})",
-                           avcodec_get_name(parameters.codec_id),
+                           Libav().avcodec_get_name(parameters.codec_id),
                            LibavError(opened)));
   }
   return context;
@@ -87,13 +89,13 @@ VideoSource OpenVideoSource(const std::filesystem::path& path,
   for (unsigned i = 0; i < format.nb_streams; ++i) {
     declared.push_back(format.streams[i]->avg_frame_rate);
   }
-  if (const int found = avformat_find_stream_info(&format, nullptr);
+  if (const int found = Libav().avformat_find_stream_info(&format, nullptr);
       found < 0) {
     Fail(path,
          fmt::format("damaged before its first frame ({})", LibavError(found)));
   }
-  const int best =
-      av_find_best_stream(&format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  const int best = Libav().av_find_best_stream(&format, AVMEDIA_TYPE_VIDEO, -1,
+                                               -1, nullptr, 0);
   for (unsigned i = 0; i < format.nb_streams; ++i) {
     AVStream* const stream = format.streams[i];
     if (static_cast<int>(i) == best &&

@@ -70,7 +70,7 @@ struct RegisterField {
   std::string_view meaning;
   // kWord: one of these, "dry, damp, wet", or other, not applicable or not
   // recorded. `other` needs a note.
-  std::string_view words;
+  std::string_view words = {};
   RegisterKind entry = RegisterKind::kRig;  // kEntry: of which kind
 };
 std::span<const RegisterField> FieldsOf(RegisterKind kind);
