@@ -153,6 +153,7 @@ class Analyzer {
   std::unique_ptr<vision::Clip> clip_;
   Analysis result_;
   std::optional<double> light_spread_;  // relative, where it was taken out
+  bool light_told_ = true;
   vision::Background background_;
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
@@ -271,7 +272,9 @@ void Analyzer::DescribeScene() {
     scene.used.push_back(
         fmt::format("flicker of {:.1f} % taken out", 100.0 * *light_spread_));
   } else {
-    scene.left_out["flicker"] = "the light is steady to 1 %";
+    scene.left_out["flicker"] =
+        light_told_ ? "the light is steady to 1 %"
+                    : "most of the picture is at full scale: not to be told";
   }
   if (result_.plane) {
     scene.used.push_back(result_.scale ? "free flight with known gravity"
@@ -332,6 +335,7 @@ Analysis Analyzer::Run() {
   vision::SteadyLight light =
       vision::SteadyLightOf(std::move(clip_), options_.first_frame, last);
   clip_ = std::move(light.clip);
+  light_told_ = light.told;
   if (light.corrected) light_spread_ = light.spread;
   vision::FrameStoreOptions store_options;
   store_options.first = options_.first_frame;

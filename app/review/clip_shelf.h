@@ -18,6 +18,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "touchdown/vision/clip.h"
 
@@ -56,11 +57,7 @@ class ClipShelf {
 
  private:
   struct Open;
-  struct Key {
-    std::string path;
-    std::int64_t frame;
-    friend auto operator<=>(const Key&, const Key&) = default;
-  };
+  using Key = std::pair<std::string, std::int64_t>;  // path and frame
   struct Kept {
     Picture picture;
     std::list<Key>::iterator place;

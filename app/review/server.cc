@@ -46,7 +46,7 @@ void Send(const Reply& reply, httplib::Response& response) {
   }
   // What an answer says of itself stands; the rest is the same for all.
   for (const auto& [name, value] : SafeHeaders()) {
-    if (!response.has_header(name.c_str())) response.set_header(name, value);
+    if (!response.has_header(name)) response.set_header(name, value);
   }
   if (!response.has_header("Cache-Control")) {
     response.set_header("Cache-Control", "no-store");

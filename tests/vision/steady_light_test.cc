@@ -103,6 +103,20 @@ TEST(SteadyLight, FullScaleStaysFullScale) {
   }
 }
 
+// What is left of a picture at full scale is the body, whose motion is no
+// flicker.
+TEST(SteadyLight, CannotBeToldBehindABacklitBody) {
+  for (const std::int64_t frames : {6, 15, 40}) {
+    Film film = Default(core::BodyKind::kSphere);
+    film.look.background_level = film.look.ground_level = 1.0;
+    film.look.gradient_x = film.look.gradient_y = 0.0;
+    film.noise = 0.0;
+    const SteadyLight light = SteadyLightOf(Open(film), 0, frames);
+    EXPECT_FALSE(light.told);
+    EXPECT_FALSE(light.corrected) << light.spread;
+  }
+}
+
 TEST(SteadyLight, WindowsAreCrops) {
   const Film film = Flickering(0.1, 8);
   const SteadyLight light = SteadyLightOf(Open(film), 0, film.frames);

@@ -120,11 +120,17 @@ class VideoClip final : public Clip {
   }
 
   // Moves to packet number `key` or to a key packet before it; false if where
-  // the container went to is not certain.
+  // the container went to is not certain. Some containers look for the time at
+  // which a packet is shown (asked for the time of decoding they go back to the
+  // key packet before), others for that of decoding (asked for the later time
+  // they may go too far).
   bool SeekTo(std::size_t key) {
     const VideoPacket& wanted = index_.packets[key];
-    const std::int64_t time =
-        wanted.dts != AV_NOPTS_VALUE ? wanted.dts : wanted.pts;
+    return SeekToTime(wanted.pts, key) ||
+           (wanted.dts != wanted.pts && SeekToTime(wanted.dts, key));
+  }
+
+  bool SeekToTime(std::int64_t time, std::size_t key) {
     if (time == AV_NOPTS_VALUE ||
         Libav().av_seek_frame(source_.format.get(), source_.stream->index, time,
                               AVSEEK_FLAG_BACKWARD) < 0) {

@@ -247,6 +247,7 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
     std::vector<double> badness;
     std::vector<double> blur;
     std::vector<OutlineJob> jobs;
+    jobs.reserve(probes.size());
     for (const Link* link : probes) {
       jobs.push_back({link->frame, StartFrom(link->blob, kind)});
     }

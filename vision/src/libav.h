@@ -20,6 +20,7 @@ struct LibavFunctions {
   // version than was compiled for.
   LibavFunctions();
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): it declares
 #define TOUCHDOWN_LIBAV_FUNCTION(name) decltype(&::name) name = nullptr;
 #include "libav_functions.inc"
 #undef TOUCHDOWN_LIBAV_FUNCTION

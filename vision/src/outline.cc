@@ -56,8 +56,8 @@ class Fitter {
   std::string Gather();
   std::string Iterate(int& iterations);
   bool SetAsideUnexplained();
-  Coverage CoverageAt(const OutlinePixel& p) const {
-    return smear_.At(outline_, p.x, p.y, cosine_, sine_);
+  SmearedImage Image() const {
+    return smear_.ImageOf(outline_, cosine_, sine_);
   }
   void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
   double Visible() const {
@@ -65,12 +65,11 @@ class Fitter {
   }
   void SolveLevels();
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
-  // One pixel's share of the normal equations: by far most of the time goes
-  // here, so plain loops over the lower triangle, in fours (the rows are padded
-  // with zeros) that the compiler makes vectors of.
-  void AddRow(const std::array<double, kPadded>& row, double weight,
-              double residual) {
-    const auto n = static_cast<std::size_t>(Parameters());
+  // One pixel's share of the normal equations of the n free parameters: much of
+  // the time goes here, so plain loops over the lower triangle, in fours (the
+  // rows are padded with zeros) that the compiler makes vectors of.
+  void AddRow(const std::array<double, kPadded>& row, std::size_t n,
+              double weight, double residual) {
     for (std::size_t i = 0; i < n; ++i) {
       const double w = weight * row[i];
       if (w == 0.0) continue;
@@ -118,6 +117,7 @@ class Fitter {
   double contrast_ = 0.0;
   double misfit_ = 0.0;
   double inliers_ = 0.0;
+  bool converged_ = false;
   double before_aside_ = 0.0;  // visible share, where something was set aside
 };
 
@@ -159,21 +159,23 @@ void Fitter::SolveLevels() {
   Matrix a = Matrix::Zero(n, n);
   Vector b = Vector::Zero(n);
   Vector row(n);
-  double f[6];
+  std::array<double, 6> f{};
+  const SmearedImage image = Image();
   for (const OutlinePixel& p : pixels_) {
-    const Coverage c = CoverageAt(p);
-    Polynomial(c.xi, c.eta, interior_, f);
-    for (int k = 0; k < interior_; ++k) row[k] = c.value * f[k];
+    const Coverage c = image.At(p.x, p.y);
+    Polynomial(c.xi, c.eta, f);
+    for (int k = 0; k < interior_; ++k) row[k] = c.value * f[At(k)];
     double known = 0.0;
     if (outer_ > 0) {
-      Polynomial(c.xi, c.eta, outer_, f);
-      for (int k = 0; k < outer_; ++k)
-        row[interior_ + k] = (1 - c.value) * f[k];
+      for (int k = 0; k < outer_; ++k) {
+        row[interior_ + k] = (1 - c.value) * f[At(k)];
+      }
     } else {
       known = (1 - c.value) * p.background;
     }
-    a.noalias() += row * row.transpose() / p.variance;
-    b.noalias() += row * ((p.value - known) / p.variance);
+    const double weight = p.per_noise * p.per_noise;
+    a.noalias() += weight * row * row.transpose();
+    b.noalias() += weight * (p.value - known) * row;
   }
   if (HasPrior()) {
     for (int k = 0; k < interior_; ++k) {
@@ -191,12 +193,20 @@ void Fitter::SolveLevels() {
 // Builds the normal equations; returns the (robust) cost per pixel.
 double Fitter::Accumulate(bool robust) {
   const int n = Parameters();
+  // What is held has no row. Free are some of x, y, size(s), angle, blur and
+  // open share, and all levels.
+  std::array<int, kMaxParameters> free{};
+  std::size_t n_free = 0;
+  for (int k = 0; k < n; ++k) {
+    if (k >= LevelsBegin() || Free(k)) free[n_free++] = k;
+  }
+  const std::size_t of_shape = n_free - At(interior_ + outer_);
   sums_.fill(0.0);
   sums_gradient_.fill(0.0);
   residuals_.clear();
   std::array<double, kPadded> row{};
-  double fi[6];
-  double fo[6];
+  std::array<double, 6> f{};
+  const SmearedImage image = Image();
   double cost = 0.0;
   double weight_sum = 0.0;
   double contrast = 0.0;
@@ -205,39 +215,36 @@ double Fitter::Accumulate(bool robust) {
   double in_count = 0.0;
   const double cut = kTukey * robust_scale_;
   for (const OutlinePixel& p : pixels_) {
-    const Coverage c = CoverageAt(p);
-    Polynomial(c.xi, c.eta, interior_, fi);
+    const Coverage c = image.At(p.x, p.y);
+    Polynomial(c.xi, c.eta, f);
     double in = 0.0;
-    for (int k = 0; k < interior_; ++k) in += levels_[k] * fi[k];
+    for (int k = 0; k < interior_; ++k) in += levels_[k] * f[At(k)];
     double out = p.background;
     if (outer_ > 0) {
-      Polynomial(c.xi, c.eta, outer_, fo);
       out = 0.0;
-      for (int k = 0; k < outer_; ++k) out += levels_[interior_ + k] * fo[k];
+      for (int k = 0; k < outer_; ++k) out += levels_[interior_ + k] * f[At(k)];
     }
-    const double sigma = std::sqrt(p.variance);
-    const double residual = (p.value - out - c.value * (in - out)) / sigma;
+    const double residual =
+        (p.value - out - c.value * (in - out)) * p.per_noise;
     residuals_.push_back(residual);
     double weight = 1.0;
     if (robust && cut > 0.0) {
       const double t = residual / cut;
       weight = std::abs(t) < 1.0 ? (1 - t * t) * (1 - t * t) : 0.0;
     }
-    const double step = (in - out) / sigma;
-    // d[0..4] are x, y, size(s), angle; a sphere uses the first three.
-    for (int k = 0; k < geometry_; ++k) row[At(k)] = step * c.d[k];
-    row[At(geometry_)] = step * c.d[5];
-    row[At(OpenAt())] = step * c.d_open;
-    for (int k = 0; k < interior_; ++k) {
-      row[At(LevelsBegin() + k)] = c.value * fi[k] / sigma;
+    const double step = (in - out) * p.per_noise;
+    for (std::size_t i = 0; i < of_shape; ++i) {
+      const int k = free[i];
+      row[i] = step * (k < geometry_   ? c.d[k]
+                       : k == OpenAt() ? c.d_open
+                                       : c.d[5]);
     }
-    for (int k = 0; k < outer_; ++k) {
-      row[At(LevelsBegin() + interior_ + k)] = (1 - c.value) * fo[k] / sigma;
-    }
-    for (int k = 0; k < LevelsBegin(); ++k) {
-      if (!Free(k)) row[At(k)] = 0.0;
-    }
-    AddRow(row, weight, residual);
+    std::size_t at = of_shape;
+    const double inside = c.value * p.per_noise;
+    for (int k = 0; k < interior_; ++k) row[at++] = inside * f[At(k)];
+    const double outside = (1 - c.value) * p.per_noise;
+    for (int k = 0; k < outer_; ++k) row[at++] = outside * f[At(k)];
+    AddRow(row, n_free, weight, residual);
     cost += weight * residual * residual;
     weight_sum += weight;
     if (weight > 0.5) {
@@ -250,10 +257,11 @@ double Fitter::Accumulate(bool robust) {
   }
   normal_ = Matrix::Zero(n, n);
   gradient_ = Vector::Zero(n);
-  for (int i = 0; i < n; ++i) {
-    gradient_[i] = sums_gradient_[static_cast<std::size_t>(i)];
-    for (int j = 0; j <= i; ++j) {
-      normal_(i, j) = normal_(j, i) = sums_[At(i) * kPadded + At(j)];
+  for (std::size_t i = 0; i < n_free; ++i) {
+    gradient_[free[i]] = sums_gradient_[i];
+    for (std::size_t j = 0; j <= i; ++j) {
+      normal_(free[i], free[j]) = normal_(free[j], free[i]) =
+          sums_[i * kPadded + j];
     }
   }
   if (HasPrior()) {
@@ -327,42 +335,53 @@ bool Fitter::Step(double& geometric_step) {
 
 // Gauss-Newton to convergence; why it fails, or nothing.
 std::string Fitter::Iterate(int& iterations) {
-  double step = 0.0;
-  bool converged = false;
+  double step = std::numeric_limits<double>::infinity();
+  converged_ = false;
   core::PixelPoint collected = outline_.centre;
+  double collected_blur = blur_;
+  int robust_rounds = 0;
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     ++iterations;
-    Accumulate(iteration >= 2);
-    // At least the expected noise, more where the model is crude.
-    std::vector<double> sizes(residuals_.size());
-    std::transform(residuals_.begin(), residuals_.end(), sizes.begin(),
-                   [](double r) { return std::abs(r); });
-    // Held after a few rounds: a scale that follows the weights never settles.
+    // Before the outline is nearly in place, its residuals are no outliers.
+    constexpr double kNear_px = 0.1;
+    const bool robust = iteration >= 2 || step < kNear_px;
+    Accumulate(robust);
+    robust_rounds += robust ? 1 : 0;
+    // At least the expected noise, more where the model is crude. Held after a
+    // few rounds: a scale that follows the weights never settles.
     constexpr int kSettled = 5;
     if (iteration < kSettled) {
+      std::vector<double> sizes(residuals_.size());
+      std::transform(residuals_.begin(), residuals_.end(), sizes.begin(),
+                     [](double r) { return std::abs(r); });
       robust_scale_ = std::max(1.0, 1.4826 * Median(std::move(sizes)));
     }
     if (!Step(step)) {
       return "the outline's fit is degenerate";
     }
-    if (step < options_.tolerance_px && iteration >= 3) {
-      converged = true;
+    if (step < options_.tolerance_px && robust_rounds >= 2) {
+      converged_ = true;
       break;
     }
-    // Follow the body with the set of pixels while it still moves.
-    if (std::hypot(outline_.centre.x_px - collected.x_px,
-                   outline_.centre.y_px - collected.y_px) > 0.5 ||
-        iteration < 3) {
-      if (const std::string why = Gather(); !why.empty()) {
+    // Follow the body with the set of pixels while it still moves; at first
+    // closely, so that what is fitted to does not depend on the start.
+    constexpr double kSamePlace_px = 0.003;
+    const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
+                                    outline_.centre.y_px - collected.y_px);
+    const double spread = std::abs(blur_ - collected_blur);
+    if (moved > 0.5 ||
+        (iteration < 3 && std::max({moved, spread, step}) > kSamePlace_px)) {
+      if (std::string why = Gather(); !why.empty()) {
         return why;
       }
       collected = outline_.centre;
+      collected_blur = blur_;
     }
   }
   // Oscillation of a hundredth of a pixel comes from robust weights; more is no
   // outline.
   constexpr double kUsableStep_px = 0.02;
-  if (!converged && !(step < kUsableStep_px)) {
+  if (!converged_ && !(step < kUsableStep_px)) {
     return "the outline's fit does not converge";
   }
   return {};
@@ -389,7 +408,7 @@ bool Fitter::SetAsideUnexplained() {
 core::Expected<OutlineFit> Fitter::Run() {
   cosine_ = std::cos(outline_.angle_rad);
   sine_ = std::sin(outline_.angle_rad);
-  if (const std::string why = Gather(); !why.empty()) {
+  if (std::string why = Gather(); !why.empty()) {
     return core::AbsentBecause(why);
   }
   // Where the surround is saturated, the outer half of the edge's tail is cut
@@ -409,7 +428,8 @@ core::Expected<OutlineFit> Fitter::Run() {
     if (why.empty()) why = Iterate(iterations);
   }
   if (!why.empty()) return core::AbsentBecause(why);
-  Accumulate(true);
+  // What was summed a step of less than the tolerance ago is as good.
+  if (!converged_) Accumulate(true);
   const double level = pixels_[pixels_.size() / 2].background;
   const double noise = std::sqrt(background_.Variance(level));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel

@@ -29,6 +29,10 @@ class NormalTable {
                      kInverseSqrt2Pi * std::exp(-0.5 * z * z)};
     }
   }
+  static const NormalTable& Shared() {
+    static const NormalTable table;
+    return table;
+  }
   Value At(double z) const {
     const double at = (z + kReach) * kPerUnit;
     if (!(at > 0.0)) return {0.0, 0.0};
@@ -46,11 +50,6 @@ class NormalTable {
   std::array<Value, 2 * 6 * 512 + 1> entries_;
 };
 
-inline NormalTable::Value Normal(double z) {
-  static const NormalTable table;
-  return table.At(z);
-}
-
 // Coverage of one pixel and its derivatives by (x, y, size1, size2, angle, w).
 struct Coverage {
   double value = 0.0;
@@ -60,10 +59,9 @@ struct Coverage {
   double eta = 0.0;
 };
 
-// The first `terms` (1 or 6) of what the levels are polynomials of.
-inline void Polynomial(double xi, double eta, int terms, double* f) {
-  const double all[6] = {1.0, xi, eta, xi * xi, xi * eta, eta * eta};
-  std::copy(all, all + terms, f);
+// What the levels are polynomials of.
+inline void Polynomial(double xi, double eta, std::array<double, 6>& f) {
+  f = {1.0, xi, eta, xi * xi, xi * eta, eta * eta};
 }
 
 // A blurred disc's value at distance r from its centre, with its derivatives.
@@ -74,32 +72,12 @@ struct DiscProfile {
   double d_w = 0.0;
 };
 
-// As a series in e = w/R, s = (r - R)/w, from the heat equation
-// u_t = u_rr + u_r/r with 2 t = w^2:
-//   Phi(-s) + phi(s) (-e/2 + 3/8 e^2 s - e^3 (1 + 5 s^2)/16) + O(e^4)
-inline DiscProfile DiscSeries(double r, double radius, double w) {
-  const double s = (r - radius) / w;
-  const double e = w / radius;
-  const NormalTable::Value normal = Normal(-s);
-  const double g =
-      e * (-0.5 + e * (0.375 * s - e * (1.0 + 5.0 * s * s) / 16.0));
-  const double g_s = e * e * (0.375 - 0.625 * e * s);
-  const double g_e = -0.5 + e * (0.75 * s - 0.1875 * e * (1.0 + 5.0 * s * s));
-  const double by_s = normal.pdf * (-1.0 - s * g + g_s);
-  const double by_e = normal.pdf * g_e;
-  DiscProfile p;
-  p.value = normal.cdf + normal.pdf * g;
-  p.d_r = by_s / w;
-  p.d_radius = -by_s / w - by_e * e / radius;
-  p.d_w = -by_s * s / w + by_e / radius;
-  return p;
-}
-
 // By quadrature over chords, for discs of a few w, where the series does not
 // see the far side of the edge:
 //   2 int_0^(pi/2) phi_w(R sin t) (Phi((r + h)/w) - Phi((r - h)/w)) h dt,
 // h = R cos t; its derivative by R is the blurred circle itself.
-inline DiscProfile SmallDisc(double r, double radius, double w) {
+inline DiscProfile SmallDisc(const NormalTable& normal, double r, double radius,
+                             double w) {
   // Gauss-Legendre, 10 nodes on [0, 1].
   constexpr double kNode[10] = {0.0130467357414141, 0.0674683166555077,
                                 0.1602952158504878, 0.2833023029353764,
@@ -117,10 +95,10 @@ inline DiscProfile SmallDisc(double r, double radius, double w) {
     const double t = kHalfPi * kNode[i];
     const double h = radius * std::cos(t);
     const double y = radius * std::sin(t);
-    const NormalTable::Value far = Normal((r + h) / w);
-    const NormalTable::Value near = Normal((r - h) / w);
+    const NormalTable::Value far = normal.At((r + h) / w);
+    const NormalTable::Value near = normal.At((r - h) / w);
     const double weight =
-        2.0 * kHalfPi * kWeight[i] * h * Normal(y / w).pdf / w;
+        2.0 * kHalfPi * kWeight[i] * h * normal.At(y / w).pdf / w;
     p.value += weight * (far.cdf - near.cdf);
     p.d_r += weight * (far.pdf - near.pdf) / w;
     const auto on_circle = [&](double cosine) {
@@ -136,58 +114,107 @@ inline DiscProfile SmallDisc(double r, double radius, double w) {
   return p;
 }
 
-inline Coverage DiscCoverage(const Outline& o, double w, double px, double py) {
-  Coverage c;
-  const double dx = px - o.centre.x_px;
-  const double dy = py - o.centre.y_px;
-  const double r = std::sqrt(dx * dx + dy * dy);
-  const double radius = o.radius_px;
-  constexpr double kSeriesFrom = 4.0;  // R/w; there the series is good to 3e-4
-  const DiscProfile p = radius < kSeriesFrom * w ? SmallDisc(r, radius, w)
-                                                 : DiscSeries(r, radius, w);
-  c.value = p.value;
-  if (r > 1e-9) {
-    c.d[0] = -p.d_r * dx / r;
-    c.d[1] = -p.d_r * dy / r;
-  }
-  c.d[2] = p.d_radius;
-  c.d[5] = p.d_w;
-  c.xi = dx / radius;
-  c.eta = dy / radius;
-  return c;
-}
+// The image of a body at rest, blurred by w. What is the same for all pixels is
+// worked out once.
+class StillImage {
+ public:
+  StillImage(const Outline& outline, double w, double cosine, double sine)
+      : normal_(NormalTable::Shared()),
+        sphere_(outline.kind == core::BodyKind::kSphere),
+        centre_(outline.centre),
+        a_(sphere_ ? outline.radius_px : outline.half_long_px),
+        b_(outline.half_short_px),
+        w_(w),
+        cosine_(cosine),
+        sine_(sine),
+        per_w_(1.0 / w),
+        per_a_(1.0 / a_),
+        per_b_(1.0 / b_) {}
 
-inline Coverage RectangleCoverage(const Outline& o, double w, double px,
-                                  double py, double cosine, double sine) {
-  Coverage c;
-  const double dx = px - o.centre.x_px;
-  const double dy = py - o.centre.y_px;
-  const double u = dx * cosine + dy * sine;
-  const double v = -dx * sine + dy * cosine;
-  const double a = o.half_long_px;
-  const double b = o.half_short_px;
-  const double up = (u + a) / w, um = (u - a) / w;
-  const double vp = (v + b) / w, vm = (v - b) / w;
-  const NormalTable::Value nup = Normal(up), num = Normal(um);
-  const NormalTable::Value nvp = Normal(vp), nvm = Normal(vm);
-  const double pup = nup.pdf, pum = num.pdf;
-  const double pvp = nvp.pdf, pvm = nvm.pdf;
-  const double along = nup.cdf - num.cdf;
-  const double across = nvp.cdf - nvm.cdf;
-  const double d_u = (pup - pum) / w * across;
-  const double d_v = (pvp - pvm) / w * along;
-  c.value = along * across;
-  c.d[0] = -d_u * cosine + d_v * sine;
-  c.d[1] = -d_u * sine - d_v * cosine;
-  c.d[2] = (pup + pum) / w * across;
-  c.d[3] = (pvp + pvm) / w * along;
-  c.d[4] = d_u * v - d_v * u;
-  c.d[5] =
-      -((up * pup - um * pum) * across + (vp * pvp - vm * pvm) * along) / w;
-  c.xi = u / a;
-  c.eta = v / b;
-  return c;
-}
+  Coverage At(double x_px, double y_px) const {
+    return sphere_ ? Disc(x_px - centre_.x_px, y_px - centre_.y_px)
+                   : Rectangle(x_px - centre_.x_px, y_px - centre_.y_px);
+  }
+
+ private:
+  // As a series in e = w/R, s = (r - R)/w, from the heat equation
+  // u_t = u_rr + u_r/r with 2 t = w^2:
+  //   Phi(-s) + phi(s) (-e/2 + 3/8 e^2 s - e^3 (1 + 5 s^2)/16) + O(e^4)
+  DiscProfile DiscSeries(double r) const {
+    const double s = (r - a_) * per_w_;
+    const double e = w_ * per_a_;
+    const NormalTable::Value normal = normal_.At(-s);
+    const double square = 0.0625 * (1.0 + 5.0 * s * s);
+    const double g = e * (-0.5 + e * (0.375 * s - e * square));
+    const double g_s = e * e * (0.375 - 0.625 * e * s);
+    const double g_e = -0.5 + e * (0.75 * s - 3.0 * e * square);
+    const double by_s = normal.pdf * (-1.0 - s * g + g_s) * per_w_;
+    const double by_e = normal.pdf * g_e * per_a_;
+    DiscProfile p;
+    p.value = normal.cdf + normal.pdf * g;
+    p.d_r = by_s;
+    p.d_radius = -by_s - by_e * e;
+    p.d_w = -by_s * s + by_e;
+    return p;
+  }
+
+  Coverage Disc(double dx, double dy) const {
+    Coverage c;
+    const double r = std::sqrt(dx * dx + dy * dy);
+    constexpr double kSeriesFrom = 4.0;  // R/w; the series is good to 3e-4
+    const DiscProfile p =
+        a_ < kSeriesFrom * w_ ? SmallDisc(normal_, r, a_, w_) : DiscSeries(r);
+    c.value = p.value;
+    if (r > 1e-9) {
+      const double outwards = -p.d_r / r;
+      c.d[0] = outwards * dx;
+      c.d[1] = outwards * dy;
+    }
+    c.d[2] = p.d_radius;
+    c.d[5] = p.d_w;
+    c.xi = dx * per_a_;
+    c.eta = dy * per_a_;
+    return c;
+  }
+
+  Coverage Rectangle(double dx, double dy) const {
+    Coverage c;
+    const double u = dx * cosine_ + dy * sine_;
+    const double v = -dx * sine_ + dy * cosine_;
+    const double up = (u + a_) * per_w_, um = (u - a_) * per_w_;
+    const double vp = (v + b_) * per_w_, vm = (v - b_) * per_w_;
+    const NormalTable::Value nup = normal_.At(up), num = normal_.At(um);
+    const NormalTable::Value nvp = normal_.At(vp), nvm = normal_.At(vm);
+    const double pup = nup.pdf * per_w_, pum = num.pdf * per_w_;
+    const double pvp = nvp.pdf * per_w_, pvm = nvm.pdf * per_w_;
+    const double along = nup.cdf - num.cdf;
+    const double across = nvp.cdf - nvm.cdf;
+    const double d_u = (pup - pum) * across;
+    const double d_v = (pvp - pvm) * along;
+    c.value = along * across;
+    c.d[0] = -d_u * cosine_ + d_v * sine_;
+    c.d[1] = -d_u * sine_ - d_v * cosine_;
+    c.d[2] = (pup + pum) * across;
+    c.d[3] = (pvp + pvm) * along;
+    c.d[4] = d_u * v - d_v * u;
+    c.d[5] = -((up * pup - um * pum) * across + (vp * pvp - vm * pvm) * along);
+    c.xi = u * per_a_;
+    c.eta = v * per_b_;
+    return c;
+  }
+
+  const NormalTable& normal_;
+  bool sphere_;
+  core::PixelPoint centre_;
+  double a_;  // radius, or half the long side
+  double b_;  // half the short side
+  double w_;
+  double cosine_;
+  double sine_;
+  double per_w_;
+  double per_a_;
+  double per_b_;
+};
 
 // DepthInside of outline.h with the cosine and sine of the angle at hand.
 inline double DepthInside(const Outline& outline, double x_px, double y_px,

@@ -145,7 +145,7 @@ void CollectOutlinePixels(const core::Frame& frame,
       p.y = y;
       p.value = frame.at(x - frame.origin_x_px, y - frame.origin_y_px);
       p.background = static_cast<double>(background.at(x, y));
-      p.variance = background.Variance(p.value);
+      p.per_noise = 1.0 / std::sqrt(background.Variance(p.value));
       pixels.push_back(p);
     }
   }

@@ -18,7 +18,7 @@ struct OutlinePixel {
   double y = 0.0;
   double value = 0.0;       // DN
   double background = 0.0;  // DN
-  double variance = 1.0;    // DN^2
+  double per_noise = 1.0;   // one over its standard deviation, 1/DN
 };
 
 // What lies above the ground line by a margin, or everything without a line,

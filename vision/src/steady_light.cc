@@ -40,6 +40,17 @@ class Grid {
 
   void SetSteady(std::vector<float> steady) { steady_ = std::move(steady); }
 
+  // Whether enough of the picture is below full scale to tell the light. Behind
+  // a backlit body all is saturated: what is left is the body, and it moves.
+  bool Tells() const {
+    constexpr double kLeast = 0.25;  // share of the points
+    const auto usable =
+        std::count_if(steady_.begin(), steady_.end(),
+                      [this](float r) { return IsUsable(0.0F, r); });
+    return static_cast<double>(usable) >=
+           kLeast * static_cast<double>(steady_.size());
+  }
+
   // Least squares of v = g r without points off by more than 4 sigma.
   double GainOf(const std::vector<float>& levels) const {
     double gain = 1.0;
@@ -51,7 +62,7 @@ class Grid {
       for (std::size_t i = 0; i < levels.size(); ++i) {
         const double v = static_cast<double>(levels[i]);
         const double r = static_cast<double>(steady_[i]);
-        if (v >= full_ || r <= 0.0) continue;
+        if (!IsUsable(levels[i], steady_[i])) continue;
         const double residual = std::abs(v - gain * r);
         if (residual > most_off) continue;
         over += v * r;
@@ -61,7 +72,7 @@ class Grid {
       gain = over / under;
       for (std::size_t i = 0; i < levels.size(); ++i) {
         const double v = static_cast<double>(levels[i]);
-        if (v >= full_) continue;
+        if (!IsUsable(levels[i], steady_[i])) continue;
         off.push_back(std::abs(v - gain * static_cast<double>(steady_[i])));
       }
       // Half a level: what rounding alone leaves.
@@ -71,6 +82,11 @@ class Grid {
   }
 
  private:
+  bool IsUsable(float level, float steady) const {
+    return level < static_cast<float>(full_) && steady > 0.0F &&
+           steady < static_cast<float>(full_);
+  }
+
   static constexpr int kRounds = 5;
   std::int32_t step_ = 1;
   std::int32_t width_ = 0;
@@ -151,10 +167,14 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
   }
   Grid grid(info, options.points);
   std::vector<std::vector<float>> looks;
-  constexpr std::int64_t kEvery = 3;
-  const std::int64_t end =
-      std::min<std::int64_t>(last, first + std::max(options.frames, 1));
-  for (std::int64_t index = first; index < end; index += kEvery) {
+  const auto frames = static_cast<std::int64_t>(
+      std::clamp<double>(std::ceil(options.look_s * info.time_base.fps),
+                         options.least_frames, options.most_frames));
+  // So many looks give the spread to an eighth.
+  constexpr std::int64_t kLooks = 34;
+  const std::int64_t step = std::max<std::int64_t>(1, frames / kLooks);
+  const std::int64_t end = std::min<std::int64_t>(last, first + frames);
+  for (std::int64_t index = first; index < end; index += step) {
     try {
       looks.push_back(grid.Look(clip->Read(index)));
     } catch (const core::InputError&) {
@@ -172,6 +192,11 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
     steady[i] = static_cast<float>(Median(column));
   }
   grid.SetSteady(std::move(steady));
+  light.told = grid.Tells();
+  if (!light.told) {
+    light.clip = std::move(clip);
+    return light;
+  }
   std::vector<double> gains;
   gains.reserve(looks.size());
   for (const auto& look : looks) gains.push_back(grid.GainOf(look));

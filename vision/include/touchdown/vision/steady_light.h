@@ -10,11 +10,14 @@
 namespace touchdown::vision {
 
 struct SteadyLightOptions {
-  // Frames from the first on that are looked at, every third, to tell whether
-  // the light flickers: at 10 000 frames/s one period of lamps on 50 Hz mains.
-  // More of them cost time in compressed clips, which are read from there
-  // again.
-  int frames = 100;
+  // How long is looked, from the first frame on, to tell whether the light
+  // flickers: one period of lamps on 50 Hz mains. More costs time in compressed
+  // clips, which are read from there again.
+  double look_s = 0.010;
+  // At least and at most so many frames, where that is too few to tell or too
+  // many to wait for.
+  int least_frames = 30;
+  int most_frames = 100;
   // Points of the picture, on a grid, from which a frame's light is told. The
   // light is then known to noise / (level sqrt(points)): 2e-4 for 1 %.
   int points = 4096;
@@ -28,6 +31,8 @@ struct SteadyLightOptions {
 struct SteadyLight {
   std::unique_ptr<Clip> clip;  // the one given, or one that corrects it
   double spread = 0.0;         // of the light, relative: standard deviation
+  bool told = true;  // false: less than a quarter of the picture is below full
+                     // scale, and the clip is the one given
   bool corrected = false;
 };
 
