@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/pipeline/judge.h"
+#include "app/pipeline/whole_number.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::pipeline {
@@ -53,6 +54,8 @@ std::optional<T> Optional(const Json& json, const char* name) {
   if (!json.contains(name) || json.at(name).is_null()) return std::nullopt;
   return json.at(name).get<T>();
 }
+
+std::int32_t Int32(const Json& json) { return WholeNumber<std::int32_t>(json); }
 
 // --- ground, options ---------------------------------------------------------
 
@@ -121,11 +124,13 @@ AnalyzeOptions OptionsOf(const Json& json) {
   o.long_m = OptionalEstimate(json, "long_m");
   o.short_m = OptionalEstimate(json, "short_m");
   if (json.contains("ground")) o.ground = GroundOf(json["ground"]);
-  o.contact_frame = Optional<std::int64_t>(json, "contact_frame");
-  o.first_frame = json.at("frames").at(0);
-  o.last_frame = json.at("frames").at(1);
+  if (json.contains("contact_frame")) {
+    o.contact_frame = WholeNumber(json["contact_frame"]);
+  }
+  o.first_frame = WholeNumber(json.at("frames").at(0));
+  o.last_frame = WholeNumber(json.at("frames").at(1));
   const Json& r = json.at("region");
-  o.region = {r.at(0), r.at(1), r.at(2), r.at(3)};
+  o.region = {Int32(r.at(0)), Int32(r.at(1)), Int32(r.at(2)), Int32(r.at(3))};
   if (json.contains("angle_kind")) {
     o.angle_kind = core::ParseAngleKind(json["angle_kind"].get<std::string>());
   }
@@ -135,7 +140,8 @@ AnalyzeOptions OptionsOf(const Json& json) {
                                             "the calibration of the analysis");
   }
   if (json.contains("crop")) {
-    o.crop = calib::SensorCorner{json["crop"].at(0), json["crop"].at(1)};
+    o.crop = calib::SensorCorner{Int32(json["crop"].at(0)),
+                                 Int32(json["crop"].at(1))};
   }
   return o;
 }
@@ -176,8 +182,8 @@ vision::Track TrackOf(const Json& json, core::BodyKind kind) {
   track.body.whole_px = json.at("whole_px");
   track.body.blur_px = json.at("blur_px");
   track.body.contrast_dn = json.at("contrast_dn");
-  track.first_frame = json.at("frames").at(0);
-  track.last_frame = json.at("frames").at(1);
+  track.first_frame = WholeNumber(json.at("frames").at(0));
+  track.last_frame = WholeNumber(json.at("frames").at(1));
   track.frame_interval_s = json.at("frame_interval_s");
   track.known_background = json.at("known_background");
   track.several_bodies = json.at("several_bodies");
@@ -202,11 +208,11 @@ vision::ClipInfo ClipOf(const Json& json) {
   vision::ClipInfo clip;
   clip.path = json.at("path").get<std::string>();
   clip.format = json.at("format");
-  clip.width_px = json.at("width_px");
-  clip.height_px = json.at("height_px");
-  clip.bit_depth = json.at("bit_depth");
-  clip.frames = json.at("frames");
-  clip.first_camera_frame = json.at("first_camera_frame");
+  clip.width_px = Int32(json.at("width_px"));
+  clip.height_px = Int32(json.at("height_px"));
+  clip.bit_depth = Int32(json.at("bit_depth"));
+  clip.frames = WholeNumber(json.at("frames"));
+  clip.first_camera_frame = WholeNumber(json.at("first_camera_frame"));
   const Json& time = json.at("time_base");
   clip.time_base.fps = time.at("fps");
   clip.time_base.source =
@@ -229,7 +235,8 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   a.options = OptionsOf(replay.at("options"));
   if (replay.contains("sensor_origin")) {
     const Json& corner = replay["sensor_origin"];
-    a.clip.sensor_origin = vision::SensorOrigin{corner.at(0), corner.at(1)};
+    a.clip.sensor_origin =
+        vision::SensorOrigin{Int32(corner.at(0)), Int32(corner.at(1))};
   }
   if (const Json& scale = document.at("scale"); !scale.is_null()) {
     a.scale = calib::Scale{EstimateOf(scale.at("px_per_m")),

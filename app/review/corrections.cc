@@ -9,6 +9,7 @@
 #include "app/pipeline/judge.h"
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
+#include "app/pipeline/whole_number.h"
 #include "app/review/fields.h"
 #include "app/review/trial_view.h"
 #include "touchdown/core/errors.h"
@@ -33,7 +34,7 @@ pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
   }
   if (const auto frame = asked.find("contact_frame");
       frame != asked.end() && !frame->is_null()) {
-    correction.contact_frame = frame->get<std::int64_t>();
+    correction.contact_frame = pipeline::WholeNumber(*frame);
   }
   if (const auto moved = asked.find("moved"); moved != asked.end()) {
     for (const auto& [name, by] : moved->items()) {
@@ -49,7 +50,9 @@ pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
     }
   }
   if (const auto out = asked.find("left_out"); out != asked.end()) {
-    correction.left_out = out->get<std::vector<std::int64_t>>();
+    for (const auto& frame : *out) {
+      correction.left_out.push_back(pipeline::WholeNumber(frame));
+    }
   }
   return correction;
 }
@@ -115,7 +118,7 @@ db::Logged Revise(db::Store& store, const std::string& id,
                   const nlohmann::json& asked) {
   const std::string who = RequiredText(asked, "who", "your name");
   const std::string why = RequiredText(asked, "why", "the reason");
-  const auto expected = asked.at("revision").get<std::int64_t>();
+  const auto expected = pipeline::WholeNumber(asked.at("revision"));
   const auto history = store.History(id);
   if (history.empty()) {
     throw core::StoreError(fmt::format("there is no trial {}", id));
@@ -136,7 +139,7 @@ db::Logged Revise(db::Store& store, const std::string& id,
   }
   core::Trial trial;
   if (asked.contains("restore")) {
-    trial = Restated(history, last, asked["restore"].get<std::int64_t>());
+    trial = Restated(history, last, pipeline::WholeNumber(asked["restore"]));
   } else {
     trial = MakeCorrected(last, asked).trial;
   }

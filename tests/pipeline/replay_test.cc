@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "app/pipeline/judge.h"
 #include "tests/pipeline/film_file.h"
@@ -198,6 +199,23 @@ TEST(Replay, SaysWhyThereIsNothingToReplay) {
   trial.document_json = R"({"replay": {"track": 3}})";
   EXPECT_THAT(Replay(trial).error().reason,
               ::testing::HasSubstr("cannot be read"));
+}
+
+// Found by the fuzzer: a number that no frame can have was converted, which is
+// undefined.
+TEST(Replay, FramesAreWholeNumbers) {
+  Shot shot;
+  for (const auto& wrong :
+       {nlohmann::json(2.8e98), nlohmann::json(1.5), nlohmann::json("1"),
+        nlohmann::json(nullptr), nlohmann::json(18446744073709551615ULL)}) {
+    core::Trial trial = shot.trial;
+    auto document = nlohmann::ordered_json::parse(trial.document_json);
+    document["replay"]["track"]["frames"][1] = wrong;
+    trial.document_json = document.dump();
+    const auto replayed = Replay(trial);
+    ASSERT_FALSE(replayed) << wrong;
+    EXPECT_THAT(replayed.error().reason, ::testing::HasSubstr("whole number"));
+  }
 }
 
 }  // namespace

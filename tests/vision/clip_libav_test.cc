@@ -136,6 +136,34 @@ TEST(VideoNumbers, JumpsAreExactWhateverTheThreads) {
 
 // Rotating by a quarter turn anticlockwise takes stored (x, y) to shown
 // (y, width - 1 - x).
+// Only where each frame is stored alone is a second reader of use.
+TEST(VideoNumbers, AnotherReaderReadsTheSame) {
+  const testing::TemporaryFolder folder;
+  for (const VideoCodec codec : {VideoCodec::kFfv1, VideoCodec::kMjpeg}) {
+    const auto path = folder / (codec == VideoCodec::kFfv1 ? "a.mkv" : "a.avi");
+    VideoOptions options = Lossless(codec);
+    options.key_frame_distance = 1;
+    WritePlain(path, 20, options);
+    const auto clip = OpenClip(path);
+    const auto other = clip->Another();
+    ASSERT_NE(other, nullptr);
+    EXPECT_EQ(other->info().frames, 20);
+    for (const std::int64_t i : {13, 14, 3, 19, 0}) {
+      const core::Frame a = clip->Read(i);
+      const core::Frame b = other->Read(i);
+      EXPECT_EQ(b.index, i);
+      EXPECT_EQ(a.time_s, b.time_s);
+      for (std::int32_t y = 0; y < kHeight; ++y) {
+        for (std::int32_t x = 0; x < kWidth; ++x) {
+          ASSERT_EQ(a.at(x, y), b.at(x, y)) << i;
+        }
+      }
+    }
+  }
+  WritePlain(folder / "b.mkv", 20, Lossless(VideoCodec::kH264));
+  EXPECT_EQ(OpenClip(folder / "b.mkv")->Another(), nullptr);
+}
+
 TEST(VideoRotation, UpIsUp) {
   const TemporaryFolder folder;
   for (const char* name : {"a.mp4", "a.mov"}) {

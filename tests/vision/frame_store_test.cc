@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -208,6 +209,56 @@ TEST(FrameStore, WindowsAreEnough) {
     EXPECT_EQ(a.frame, b.frame);
     EXPECT_NEAR(a.centre.x_px, b.centre.x_px, 0.05 * b.u_x_px);
     EXPECT_NEAR(a.centre.y_px, b.centre.y_px, 0.05 * b.u_y_px);
+  }
+}
+
+// A clip whose frames are stored alone, each reader with its own count.
+class Alone : public Clip {
+ public:
+  Alone(const Scene& scene, std::atomic<int>& decoded)
+      : scene_(scene), clip_(OpenScene(scene, 1)), decoded_(decoded) {}
+  const ClipInfo& info() const override { return clip_->info(); }
+  std::unique_ptr<Clip> Another() const override {
+    return std::make_unique<Alone>(scene_, decoded_);
+  }
+
+ private:
+  core::Frame ReadWindow(std::int64_t index,
+                         const core::PixelRect& window) override {
+    ++decoded_;
+    return clip_->Read(index, window);
+  }
+
+  const Scene& scene_;
+  std::unique_ptr<Clip> clip_;
+  std::atomic<int>& decoded_;
+};
+
+// Frames that are stored alone are decoded by several readers, each once, and
+// the answer does not depend on how many there are.
+TEST(FrameStore, ManyReadersGiveTheSameAnswer) {
+  const Scene scene = testing::LongScene(600);
+  std::vector<Pose> alone;
+  for (const int threads : {1, 2, 3, 5}) {
+    SCOPED_TRACE(threads);
+    std::atomic<int> decoded = 0;
+    FrameStoreOptions options;
+    options.most_bytes = 320 * 160 * 150;
+    options.threads = threads;
+    const auto clip =
+        KeepFrames(std::make_unique<Alone>(scene, decoded), options);
+    EXPECT_EQ(decoded, 600);
+    const auto result = TrackBody(*clip);
+    ASSERT_TRUE(result) << result.error().reason;
+    const std::vector<Pose>& poses = result->track.poses;
+    if (threads == 1) alone = poses;
+    ASSERT_EQ(poses.size(), alone.size());
+    if (threads == 1) continue;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      ASSERT_EQ(poses[i].frame, alone[i].frame);
+      ASSERT_EQ(poses[i].centre.x_px, alone[i].centre.x_px);
+      ASSERT_EQ(poses[i].centre.y_px, alone[i].centre.y_px);
+    }
   }
 }
 

@@ -57,7 +57,13 @@ class ImageFolderClip final : public Clip {
     WarnOfGaps();
   }
 
+  explicit ImageFolderClip(const ImageFolderClip& like)
+      : files_(like.files_), info_(like.info_) {}
+
   const ClipInfo& info() const override { return info_; }
+  std::unique_ptr<Clip> Another() const override {
+    return std::make_unique<ImageFolderClip>(*this);
+  }
 
  protected:
   core::Frame ReadWindow(std::int64_t index,

@@ -58,7 +58,30 @@ class VideoClip final : public Clip {
     SetTimeBase(options);
   }
 
+  // Reads what `like` reads, with one thread.
+  explicit VideoClip(const VideoClip& like)
+      : path_(like.path_),
+        threads_(1),
+        source_(OpenVideoSource(path_, threads_)),
+        packet_(Libav().av_packet_alloc()),
+        frame_(av_frame_alloc()),
+        index_(like.index_),
+        info_(like.info_),
+        reader_(like.reader_),
+        chroma_(like.chroma_),
+        stored_width_(like.stored_width_),
+        stored_height_(like.stored_height_),
+        can_seek_(like.can_seek_) {}
+
   const ClipInfo& info() const override { return info_; }
+
+  std::unique_ptr<Clip> Another() const override {
+    const bool alone =
+        can_seek_ && !index_.pts.empty() &&
+        std::all_of(index_.packets.begin(), index_.packets.end(),
+                    [](const VideoPacket& packet) { return packet.key; });
+    return alone ? std::make_unique<VideoClip>(*this) : nullptr;
+  }
 
   std::int64_t EntryFrame(std::int64_t index) const override {
     if (index_.pts.empty()) return 0;

@@ -1,12 +1,14 @@
 #include "touchdown/vision/frame_store.h"
 
 #include <algorithm>
+#include <atomic>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "first_look.h"
 #include "kept_pixels.h"
+#include "parallel.h"
 #include "scout.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/background.h"
@@ -97,7 +99,8 @@ class WindowStore final : public Clip {
       // Damaged: what was kept is right; the frame is read again by whoever
       // asks for it, and says then what is wrong.
     }
-    AddReading(clip_->reading_s());
+    // Some of it through this clip.
+    AddReading(clip_->reading_s() - reading_s());
   }
 
   const ClipInfo& info() const override { return clip_->info(); }
@@ -160,16 +163,21 @@ class WindowStore final : public Clip {
     keys.erase(keys.begin(), keys.lower_bound(options_.first));
     if (keys.empty()) keys.insert(options_.first);
     const std::vector<std::int64_t> frames(keys.begin(), keys.end());
+    for (const std::int64_t frame : frames) {
+      if (!whole_.contains(frame)) continue;
+      frames_[static_cast<std::size_t>(frame)].windows.emplace_back(
+          clip_->Read(frame));
+    }
     BackgroundOptions background;
     background.threads = options_.threads;
-    Background still = BackgroundOf(*clip_, frames, background);
+    Background still = BackgroundOf(*this, frames, background);
     // A mid-mean of up to three is a mean: where they differ, any of them may
     // show the body, and all frames are kept there.
     constexpr std::size_t kRobust = 4;
     if (frames.size() < kRobust) {
       const Scout scout(still, scout_);
       for (const std::int64_t frame : frames) {
-        const Changes changes = scout.Look(clip_->Read(frame));
+        const Changes changes = scout.Look(Read(frame));
         scout_.always.insert(scout_.always.end(), changes.where.begin(),
                              changes.where.end());
       }
@@ -183,23 +191,75 @@ class WindowStore final : public Clip {
     return EstimateBackground(*this, options_.first, options_.last, background);
   }
 
-  // One pass over the range.
+  // One pass over the range. Where frames are stored alone, in parts that do
+  // not depend on the number of threads.
   void Decode(const Background& still) {
     const Scout scout(still, scout_);
-    for (Kept& kept : frames_) kept = {};
-    std::size_t left = options_.most_bytes;
-    left -= std::min(left, whole_.size() * FrameBytes(info()));
-    for (std::int64_t index = options_.first; index < options_.last; ++index) {
-      const core::Frame frame = clip_->Read(index);
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if (!whole_.contains(static_cast<std::int64_t>(i))) frames_[i] = {};
+    }
+    const std::size_t whole_bytes = whole_.size() * FrameBytes(info());
+    const std::size_t room =
+        options_.most_bytes - std::min(options_.most_bytes, whole_bytes);
+    left_bytes_ = room;
+    const std::int64_t frames = options_.last - options_.first;
+    std::int64_t parts = 1;
+    std::vector<std::unique_ptr<Clip>> others;
+    if (AreStoredAlone()) {
+      parts = 16;  // enough for the cores of a workstation
+      const auto readers =
+          std::min<std::int64_t>(ThreadsOf(options_.threads), parts);
+      while (static_cast<std::int64_t>(others.size()) + 1 < readers) {
+        auto other = clip_->Another();
+        if (!other) break;
+        others.push_back(std::move(other));
+      }
+    }
+    std::atomic<std::size_t> next = 0;
+    InParallel(parts, static_cast<int>(others.size()) + 1,
+               [&](std::int64_t from, std::int64_t to) {
+                 const std::size_t mine = next++;
+                 Clip& clip = mine == 0 ? *clip_ : *others[mine - 1];
+                 for (std::int64_t part = from; part < to; ++part) {
+                   DecodePart(clip, scout,
+                              {options_.first + part * frames / parts,
+                               options_.first + (part + 1) * frames / parts,
+                               room / static_cast<std::size_t>(parts)});
+                 }
+               });
+  }
+
+  bool AreStoredAlone() const {
+    for (std::int64_t i = options_.first; i < options_.last; ++i) {
+      if (clip_->EntryFrame(i) != i) return false;
+    }
+    return true;
+  }
+
+  struct Part {
+    std::int64_t first = 0;
+    std::int64_t last = 0;
+    std::size_t bytes = 0;  // its share of the room
+  };
+
+  void DecodePart(Clip& clip, const Scout& scout, Part part) {
+    const core::PixelRect whole = Whole(info());
+    for (std::int64_t index = part.first; index < part.last; ++index) {
       Kept& kept = frames_[static_cast<std::size_t>(index)];
+      const bool is_here =
+          !kept.windows.empty() && kept.windows.front().Holds(whole);
+      const core::Frame frame =
+          is_here ? kept.windows.front().View() : clip.Read(index);
       kept.changes = scout.Look(frame);
       kept.seen = true;
-      if (whole_.contains(index)) {
-        kept.windows.emplace_back(frame);
-      } else {
-        KeepWindows(frame, left, options_.last - index, kept);
+      if (!is_here) {
+        if (whole_.contains(index)) {
+          kept.windows.emplace_back(frame);
+        } else {
+          KeepWindows(frame, part.bytes, part.last - index, kept);
+        }
       }
-      if (options_.progress) {
+      if (options_.progress && &clip == clip_.get()) {
         options_.progress(static_cast<double>(index - options_.first) /
                           static_cast<double>(options_.last - options_.first));
       }
@@ -207,10 +267,10 @@ class WindowStore final : public Clip {
   }
 
   // The strongest window in any case, the others as far as each frame's share
-  // of what is left goes: those that are not kept are not changes.
-  void KeepWindows(const core::Frame& frame, std::size_t& left,
-                   std::int64_t frames, Kept& kept) const {
-    std::size_t share = left / static_cast<std::size_t>(frames);
+  // of the part's bytes goes: those that are not kept are not changes.
+  void KeepWindows(const core::Frame& frame, std::size_t& part_bytes,
+                   std::int64_t frames, Kept& kept) {
+    std::size_t share = part_bytes / static_cast<std::size_t>(frames);
     std::vector<core::PixelRect>& where = kept.changes.where;
     std::vector<core::PixelRect> held;
     for (const core::PixelRect& rect : where) {
@@ -219,11 +279,20 @@ class WindowStore final : public Clip {
       if (!held.empty() && bytes > share) continue;
       held.push_back(rect);
       share -= std::min(share, bytes);
-      if (bytes > left) continue;  // it is read again
-      left -= bytes;
+      part_bytes -= std::min(part_bytes, bytes);
+      if (!TakeRoom(bytes)) continue;  // it is read again
       kept.windows.emplace_back(window);
     }
     where = std::move(held);
+  }
+
+  // Of the room of all parts; false if there is not so much.
+  bool TakeRoom(std::size_t bytes) {
+    std::size_t left = left_bytes_;
+    while (bytes <= left) {
+      if (left_bytes_.compare_exchange_weak(left, left - bytes)) return true;
+    }
+    return false;
   }
 
   std::unique_ptr<Clip> clip_;
@@ -231,6 +300,7 @@ class WindowStore final : public Clip {
   ScoutOptions scout_;
   std::set<std::int64_t> whole_;
   std::vector<Kept> frames_;
+  std::atomic<std::size_t> left_bytes_ = 0;
 };
 
 }  // namespace

@@ -55,7 +55,9 @@ std::vector<core::PixelPoint> WavyGround(const SceneCamera& camera,
   const double reach = camera.width_px + camera.height_px + margin;
   // Straight pieces of a fortieth of a wave: 0.3 % of its height.
   const double step = trouble.wave_length_px / 40.0;
-  for (double along = -reach; along <= reach; along += step) {
+  const auto pieces = static_cast<int>(std::floor(2.0 * reach / step));
+  for (int i = 0; i <= pieces; ++i) {
+    const double along = i * step - reach;
     const double up =
         trouble.wave_amplitude_px *
         std::sin(2.0 * std::numbers::pi * along / trouble.wave_length_px);

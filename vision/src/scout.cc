@@ -214,6 +214,7 @@ std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
     regions.resize(options_.most_regions);
   }
   std::vector<core::PixelRect> rects;
+  rects.reserve(regions.size());
   for (const Region& region : regions) rects.push_back(region.rect);
   return rects;
 }

@@ -124,7 +124,7 @@ class CorrectedClip final : public Clip {
         const auto v = static_cast<std::int32_t>(raw.at(x, y));
         const double steady = v >= full_ ? kFull : factor * v;
         samples_[i++] =
-            static_cast<std::uint16_t>(std::min(steady, kFull) + 0.5);
+            static_cast<std::uint16_t>(std::lround(std::min(steady, kFull)));
       }
     }
     core::Frame frame = raw;

@@ -107,6 +107,10 @@ class Clip {
   // each frame is stored alone, else a key frame.
   virtual std::int64_t EntryFrame(std::int64_t index) const { return index; }
 
+  // Another reader of the same recording, for another thread; null where each
+  // frame is not stored alone, so that two readers would decode the same ones.
+  virtual std::unique_ptr<Clip> Another() const { return nullptr; }
+
   // Where frame `index` may differ from the still picture, if the clip has
   // looked (frame_store.h): elsewhere nothing needs to be looked at, and
   // reading there may be slow. Null: it has not.

@@ -33,11 +33,12 @@ struct FrameStoreOptions {
 // A clip that hands out the same frames as `clip`. Raw clips, which are mapped
 // into memory, are returned as they are. A clip whose pictures all fit is kept
 // whole, as it is read. Of a longer one the range is decoded here, once and in
-// order: the frames that a background is made of are kept whole, of the others
-// the windows that differ from the still picture (Clip::ChangesIn). The still
-// picture is that of key frames, which are decoded first; where it turns out to
-// hold a ghost of the body, the range is decoded a second time with the right
-// one. A damaged frame ends the pass; reading it says what is wrong.
+// order (by several readers where each frame is stored alone): the frames that
+// a background is made of are kept whole, of the others the windows that differ
+// from the still picture (Clip::ChangesIn). The still picture is that of key
+// frames, which are decoded first; where it turns out to hold a ghost of the
+// body, the range is decoded a second time with the right one. A damaged frame
+// ends the pass; reading it says what is wrong.
 std::unique_ptr<Clip> KeepFrames(std::unique_ptr<Clip> clip,
                                  const FrameStoreOptions& options = {});
 
