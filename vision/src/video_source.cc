@@ -26,12 +26,13 @@ constexpr char kContainers[] =
 }
 
 LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
+  const LibavFunctions& libav = Libav();  // before there is what may leak
   AVDictionary* options = nullptr;
   av_dict_set(&options, "format_whitelist", kContainers, 0);
   av_dict_set(&options, "protocol_whitelist", "file", 0);
   AVFormatContext* format = nullptr;
   // The prefix keeps a name like "http:a.avi" a name.
-  const int opened = Libav().avformat_open_input(
+  const int opened = libav.avformat_open_input(
       &format, ("file:" + path.string()).c_str(), nullptr, &options);
   av_dict_free(&options);
   if (opened < 0) {
