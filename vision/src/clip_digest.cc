@@ -1,20 +1,18 @@
 #include "touchdown/vision/clip_digest.h"
 
-extern "C" {
-#include <libavutil/mem.h>
-#include <libavutil/sha.h>
-}
-
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <openssl/evp.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -30,29 +28,32 @@ constexpr std::int64_t kBlocks = 64;
 
 class Sha {
  public:
-  Sha() : context_(av_sha_alloc()) {
+  Sha() : context_(EVP_MD_CTX_new()) {
     if (!context_) throw std::bad_alloc();
-    av_sha_init(context_.get(), 256);
+    Require(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
   }
   void Add(const std::uint8_t* bytes, std::size_t count) {
-    av_sha_update(context_.get(), bytes, count);
+    Require(EVP_DigestUpdate(context_.get(), bytes, count));
   }
   void Add(std::string_view text) {
     Add(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   }
   std::string Hex() {
-    std::uint8_t digest[32];
-    av_sha_final(context_.get(), digest);
+    std::array<std::uint8_t, 32> digest{};
+    Require(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
     std::string hex;
     for (const std::uint8_t byte : digest) hex += fmt::format("{:02x}", byte);
     return hex;
   }
 
  private:
+  static void Require(int done) {
+    if (done != 1) throw std::logic_error("SHA-256 is not to be had");
+  }
   struct Free {
-    void operator()(AVSHA* context) const { av_free(context); }
+    void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
   };
-  std::unique_ptr<AVSHA, Free> context_;
+  std::unique_ptr<EVP_MD_CTX, Free> context_;
 };
 
 // One file of a clip, read by pieces.
