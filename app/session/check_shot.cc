@@ -9,6 +9,18 @@
 #include "app/report/format.h"
 
 namespace touchdown::session {
+namespace {
+
+core::Estimate RequireSize(const CheckShot& check) {
+  const auto size = core::Size(check.body);
+  if (!size) {
+    throw std::invalid_argument(
+        "the body of the check shot has no size, must have one");
+  }
+  return *size;
+}
+
+}  // namespace
 
 using core::kDegree;
 using core::kMillimetre;
@@ -27,19 +39,6 @@ core::Estimate ExpectedSpeed(const CheckShot& check) {
   return {speed, speed / 2.0 * std::hypot(h.u / h.value, g.u / g.value),
           std::nullopt};
 }
-
-namespace {
-
-core::Estimate RequireSize(const CheckShot& check) {
-  const auto size = core::Size(check.body);
-  if (!size) {
-    throw std::invalid_argument(
-        "the body of the check shot has no size, must have one");
-  }
-  return *size;
-}
-
-}  // namespace
 
 std::string DroppedBody(const CheckShot& check) {
   return fmt::format("{} {} mm", core::Name(check.body.kind),

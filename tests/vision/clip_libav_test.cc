@@ -134,8 +134,6 @@ TEST(VideoNumbers, JumpsAreExactWhateverTheThreads) {
 // --- display rotation
 // --------------------------------------------------------------
 
-// Rotating by a quarter turn anticlockwise takes stored (x, y) to shown
-// (y, width - 1 - x).
 // Only where each frame is stored alone is a second reader of use.
 TEST(VideoNumbers, AnotherReaderReadsTheSame) {
   const testing::TemporaryFolder folder;
@@ -164,6 +162,8 @@ TEST(VideoNumbers, AnotherReaderReadsTheSame) {
   EXPECT_EQ(OpenClip(folder / "b.mkv")->Another(), nullptr);
 }
 
+// Rotating by a quarter turn anticlockwise takes stored (x, y) to shown
+// (y, width - 1 - x).
 TEST(VideoRotation, UpIsUp) {
   const TemporaryFolder folder;
   for (const char* name : {"a.mp4", "a.mov"}) {

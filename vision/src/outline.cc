@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "normal_sums.h"
 #include "outline_model.h"
 #include "outline_pixels.h"
 #include "outline_smear.h"
@@ -23,9 +24,7 @@ namespace {
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
 constexpr int kMaxParameters = 5 + 2 + 6 + 6;
-constexpr double kTukey = 4.685;     // 95 % efficient
-constexpr std::size_t kPadded = 20;  // to whole fours
-static_assert(kPadded >= kMaxParameters && kPadded % 4 == 0);
+constexpr double kTukey = 4.685;  // 95 % efficient
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
@@ -65,24 +64,6 @@ class Fitter {
   }
   void SolveLevels();
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
-  // One pixel's share of the normal equations of the n free parameters: much of
-  // the time goes here, so plain loops over the lower triangle, in fours (the
-  // rows are padded with zeros) that the compiler makes vectors of.
-  void AddRow(const std::array<double, kPadded>& row, std::size_t n,
-              double weight, double residual) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const double w = weight * row[i];
-      if (w == 0.0) continue;
-      sums_gradient_[i] += w * residual;
-      double* const sums = &sums_[i * kPadded];
-      for (std::size_t j = 0; j <= i; j += 4) {
-        sums[j] += w * row[j];
-        sums[j + 1] += w * row[j + 1];
-        sums[j + 2] += w * row[j + 2];
-        sums[j + 3] += w * row[j + 3];
-      }
-    }
-  }
   double Accumulate(bool robust);
   Matrix Regular() const;
   bool Step(double& geometric_step);
@@ -110,8 +91,7 @@ class Fitter {
   std::vector<OutlinePixel> pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
-  std::array<double, kMaxParameters * kPadded> sums_{};
-  std::array<double, kMaxParameters> sums_gradient_{};
+  NormalSums<kMaxParameters> sums_;
   Matrix normal_;
   Vector gradient_;
   double contrast_ = 0.0;
@@ -201,10 +181,9 @@ double Fitter::Accumulate(bool robust) {
     if (k >= LevelsBegin() || Free(k)) free[n_free++] = k;
   }
   const std::size_t of_shape = n_free - At(interior_ + outer_);
-  sums_.fill(0.0);
-  sums_gradient_.fill(0.0);
+  sums_.Clear();
   residuals_.clear();
-  std::array<double, kPadded> row{};
+  NormalSums<kMaxParameters>::Row row{};
   std::array<double, 6> f{};
   const SmearedImage image = Image();
   double cost = 0.0;
@@ -244,7 +223,7 @@ double Fitter::Accumulate(bool robust) {
     for (int k = 0; k < interior_; ++k) row[at++] = inside * f[At(k)];
     const double outside = (1 - c.value) * p.per_noise;
     for (int k = 0; k < outer_; ++k) row[at++] = outside * f[At(k)];
-    AddRow(row, n_free, weight, residual);
+    sums_.Add(row, n_free, weight, residual);
     cost += weight * residual * residual;
     weight_sum += weight;
     if (weight > 0.5) {
@@ -258,10 +237,9 @@ double Fitter::Accumulate(bool robust) {
   normal_ = Matrix::Zero(n, n);
   gradient_ = Vector::Zero(n);
   for (std::size_t i = 0; i < n_free; ++i) {
-    gradient_[free[i]] = sums_gradient_[i];
+    gradient_[free[i]] = sums_.gradient(i);
     for (std::size_t j = 0; j <= i; ++j) {
-      normal_(free[i], free[j]) = normal_(free[j], free[i]) =
-          sums_[i * kPadded + j];
+      normal_(free[i], free[j]) = normal_(free[j], free[i]) = sums_.at(i, j);
     }
   }
   if (HasPrior()) {
