@@ -55,7 +55,9 @@ std::optional<T> Optional(const Json& json, const char* name) {
   return json.at(name).get<T>();
 }
 
-std::int32_t Int32(const Json& json) { return WholeNumber<std::int32_t>(json); }
+std::int32_t Int32(const Json& json, const char* name) {
+  return WholeNumber<std::int32_t>(json, name);
+}
 
 // --- ground, options ---------------------------------------------------------
 
@@ -125,12 +127,13 @@ AnalyzeOptions OptionsOf(const Json& json) {
   o.short_m = OptionalEstimate(json, "short_m");
   if (json.contains("ground")) o.ground = GroundOf(json["ground"]);
   if (json.contains("contact_frame")) {
-    o.contact_frame = WholeNumber(json["contact_frame"]);
+    o.contact_frame = WholeNumber(json["contact_frame"], "contact_frame");
   }
-  o.first_frame = WholeNumber(json.at("frames").at(0));
-  o.last_frame = WholeNumber(json.at("frames").at(1));
+  o.first_frame = WholeNumber(json.at("frames").at(0), "frames");
+  o.last_frame = WholeNumber(json.at("frames").at(1), "frames");
   const Json& r = json.at("region");
-  o.region = {Int32(r.at(0)), Int32(r.at(1)), Int32(r.at(2)), Int32(r.at(3))};
+  o.region = {Int32(r.at(0), "region"), Int32(r.at(1), "region"),
+              Int32(r.at(2), "region"), Int32(r.at(3), "region")};
   if (json.contains("angle_kind")) {
     o.angle_kind = core::ParseAngleKind(json["angle_kind"].get<std::string>());
   }
@@ -140,8 +143,8 @@ AnalyzeOptions OptionsOf(const Json& json) {
                                             "the calibration of the analysis");
   }
   if (json.contains("crop")) {
-    o.crop = calib::SensorCorner{Int32(json["crop"].at(0)),
-                                 Int32(json["crop"].at(1))};
+    o.crop = calib::SensorCorner{Int32(json["crop"].at(0), "crop"),
+                                 Int32(json["crop"].at(1), "crop")};
   }
   return o;
 }
@@ -182,8 +185,8 @@ vision::Track TrackOf(const Json& json, core::BodyKind kind) {
   track.body.whole_px = json.at("whole_px");
   track.body.blur_px = json.at("blur_px");
   track.body.contrast_dn = json.at("contrast_dn");
-  track.first_frame = WholeNumber(json.at("frames").at(0));
-  track.last_frame = WholeNumber(json.at("frames").at(1));
+  track.first_frame = WholeNumber(json.at("frames").at(0), "frames");
+  track.last_frame = WholeNumber(json.at("frames").at(1), "frames");
   track.frame_interval_s = json.at("frame_interval_s");
   track.known_background = json.at("known_background");
   track.several_bodies = json.at("several_bodies");
@@ -208,11 +211,12 @@ vision::ClipInfo ClipOf(const Json& json) {
   vision::ClipInfo clip;
   clip.path = json.at("path").get<std::string>();
   clip.format = json.at("format");
-  clip.width_px = Int32(json.at("width_px"));
-  clip.height_px = Int32(json.at("height_px"));
-  clip.bit_depth = Int32(json.at("bit_depth"));
-  clip.frames = WholeNumber(json.at("frames"));
-  clip.first_camera_frame = WholeNumber(json.at("first_camera_frame"));
+  clip.width_px = Int32(json.at("width_px"), "width_px");
+  clip.height_px = Int32(json.at("height_px"), "height_px");
+  clip.bit_depth = Int32(json.at("bit_depth"), "bit_depth");
+  clip.frames = WholeNumber(json.at("frames"), "frames");
+  clip.first_camera_frame =
+      WholeNumber(json.at("first_camera_frame"), "first_camera_frame");
   const Json& time = json.at("time_base");
   clip.time_base.fps = time.at("fps");
   clip.time_base.source =
@@ -236,7 +240,8 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   if (replay.contains("sensor_origin")) {
     const Json& corner = replay["sensor_origin"];
     a.clip.sensor_origin =
-        vision::SensorOrigin{Int32(corner.at(0)), Int32(corner.at(1))};
+        vision::SensorOrigin{Int32(corner.at(0), "sensor_origin"),
+                             Int32(corner.at(1), "sensor_origin")};
   }
   if (const Json& scale = document.at("scale"); !scale.is_null()) {
     a.scale = calib::Scale{EstimateOf(scale.at("px_per_m")),

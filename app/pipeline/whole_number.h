@@ -10,9 +10,10 @@
 
 namespace touchdown::pipeline {
 
-// Throws std::invalid_argument unless `json` is a whole number that a T holds.
+// `name`: of the field, for the message. Throws std::invalid_argument unless
+// `json` is a whole number that a T holds.
 template <class T = std::int64_t, class Json>
-T WholeNumber(const Json& json) {
+T WholeNumber(const Json& json, const char* name) {
   constexpr std::int64_t kLeast = std::numeric_limits<T>::min();
   constexpr std::int64_t kMost = std::numeric_limits<T>::max();
   const bool too_large =
@@ -22,8 +23,9 @@ T WholeNumber(const Json& json) {
     const auto value = json.template get<std::int64_t>();
     if (value >= kLeast && value <= kMost) return static_cast<T>(value);
   }
-  throw std::invalid_argument(fmt::format(
-      "{} must be a whole number from {} to {}", json.dump(), kLeast, kMost));
+  throw std::invalid_argument(
+      fmt::format("{} is {}, must be a whole number from {} to {}", name,
+                  json.dump(), kLeast, kMost));
 }
 
 }  // namespace touchdown::pipeline

@@ -34,7 +34,7 @@ pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
   }
   if (const auto frame = asked.find("contact_frame");
       frame != asked.end() && !frame->is_null()) {
-    correction.contact_frame = pipeline::WholeNumber(*frame);
+    correction.contact_frame = pipeline::WholeNumber(*frame, "contact_frame");
   }
   if (const auto moved = asked.find("moved"); moved != asked.end()) {
     for (const auto& [name, by] : moved->items()) {
@@ -51,7 +51,7 @@ pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
   }
   if (const auto out = asked.find("left_out"); out != asked.end()) {
     for (const auto& frame : *out) {
-      correction.left_out.push_back(pipeline::WholeNumber(frame));
+      correction.left_out.push_back(pipeline::WholeNumber(frame, "left_out"));
     }
   }
   return correction;
@@ -118,7 +118,7 @@ db::Logged Revise(db::Store& store, const std::string& id,
                   const nlohmann::json& asked) {
   const std::string who = RequiredText(asked, "who", "your name");
   const std::string why = RequiredText(asked, "why", "the reason");
-  const auto expected = pipeline::WholeNumber(asked.at("revision"));
+  const auto expected = pipeline::WholeNumber(asked.at("revision"), "revision");
   const auto history = store.History(id);
   if (history.empty()) {
     throw core::StoreError(fmt::format("there is no trial {}", id));
@@ -139,7 +139,8 @@ db::Logged Revise(db::Store& store, const std::string& id,
   }
   core::Trial trial;
   if (asked.contains("restore")) {
-    trial = Restated(history, last, pipeline::WholeNumber(asked["restore"]));
+    trial = Restated(history, last,
+                     pipeline::WholeNumber(asked["restore"], "restore"));
   } else {
     trial = MakeCorrected(last, asked).trial;
   }

@@ -214,7 +214,9 @@ TEST(Replay, FramesAreWholeNumbers) {
     trial.document_json = document.dump();
     const auto replayed = Replay(trial);
     ASSERT_FALSE(replayed) << wrong;
-    EXPECT_THAT(replayed.error().reason, ::testing::HasSubstr("whole number"));
+    EXPECT_THAT(replayed.error().reason,
+                ::testing::HasSubstr("frames is " + wrong.dump() +
+                                     ", must be a whole number"));
   }
 }
 

@@ -202,6 +202,7 @@ class WindowStore final : public Clip {
     const std::size_t room =
         options_.most_bytes - std::min(options_.most_bytes, whole_bytes);
     left_bytes_ = room;
+    done_ = 0;
     const std::int64_t frames = options_.last - options_.first;
     std::int64_t parts = 1;
     std::vector<std::unique_ptr<Clip>> others;
@@ -259,8 +260,9 @@ class WindowStore final : public Clip {
           KeepWindows(frame, part.bytes, part.last - index, kept);
         }
       }
+      const std::int64_t done = ++done_;
       if (options_.progress && &clip == clip_.get()) {
-        options_.progress(static_cast<double>(index - options_.first) /
+        options_.progress(static_cast<double>(done) /
                           static_cast<double>(options_.last - options_.first));
       }
     }
@@ -301,6 +303,7 @@ class WindowStore final : public Clip {
   std::set<std::int64_t> whole_;
   std::vector<Kept> frames_;
   std::atomic<std::size_t> left_bytes_ = 0;
+  std::atomic<std::int64_t> done_ = 0;  // frames of this pass, by all readers
 };
 
 }  // namespace
