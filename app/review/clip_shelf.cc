@@ -1,7 +1,6 @@
 #include "app/review/clip_shelf.h"
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
 #include <vector>
 
@@ -61,83 +60,57 @@ vision::Image ToEightBits(const core::Frame& frame, std::uint32_t white) {
   return image;
 }
 
+bool IsCompressed(const vision::ClipInfo& info) {
+  return info.format != "mraw" && !info.format.ends_with("-folder");
+}
+
+Picture Encode(const core::Frame& frame, const vision::ClipInfo& info) {
+  if (IsCompressed(info)) {
+    return {"image/jpeg", std::make_shared<const std::string>(
+                              vision::EncodeJpeg(frame, kJpegQuality))};
+  }
+  return {"image/png",
+          std::make_shared<const std::string>(vision::EncodePng(frame))};
+}
+
+Picture Encode(const core::Frame& frame, const vision::ClipInfo& info,
+               std::uint32_t white) {
+  if (!frame.is_16_bit()) return Encode(frame, info);
+  const vision::Image image = ToEightBits(frame, white);
+  return Encode(image.View(), info);
+}
+
 }  // namespace
 
-// One recording, its reader used by one thread at a time.
-struct ClipShelf::Open {
-  explicit Open(const std::filesystem::path& p)
-      : path(p), clip(OpenFor(p)), info(clip->info()) {
-    if (info.bit_depth > 8) white = WhiteOf(clip->Read(0));
-  }
-
-  bool compressed() const {
-    return info.format != "mraw" && !info.format.ends_with("-folder");
-  }
-
-  Picture Encode(const core::Frame& frame) const {
-    if (frame.is_16_bit()) {
-      const vision::Image image = ToEightBits(frame, white);
-      return EncodeEight(image.View());
-    }
-    return EncodeEight(frame);
-  }
-  Picture EncodeEight(const core::Frame& frame) const {
-    if (compressed()) {
-      return {"image/jpeg", std::make_shared<const std::string>(
-                                vision::EncodeJpeg(frame, kJpegQuality))};
-    }
-    return {"image/png",
-            std::make_shared<const std::string>(vision::EncodePng(frame))};
-  }
-
-  std::filesystem::path path;
-  std::mutex guard;  // of the reader
-  std::unique_ptr<vision::Clip> clip;
-  vision::ClipInfo info;
-  std::uint32_t white = 255;
-  bool warmed = false;  // guarded by the shelf
-  std::int64_t warm_from = 0;
-  std::atomic<bool> closed = false;
-};
-
 ClipShelf::ClipShelf(const ShelfOptions& options)
-    : options_(options), warmer_([this] { WarmUp(); }) {}
+    : options_(options),
+      readers_(options.most_open, OpenFor),
+      warmer_([this] { WarmUp(); }) {}
 
 ClipShelf::~ClipShelf() {
   {
     const std::lock_guard lock(guard_);
     ending_ = true;
-    for (const auto& open : to_warm_) open->closed = true;
-    for (const auto& open : open_) open->closed = true;
+    asked_.clear();
   }
   wake_.notify_all();
   warmer_.join();
 }
 
-std::shared_ptr<ClipShelf::Open> ClipShelf::Get(
-    const std::filesystem::path& path) {
-  {
-    const std::lock_guard lock(guard_);
-    const auto found =
-        std::find_if(open_.begin(), open_.end(),
-                     [&](const auto& open) { return open->path == path; });
-    if (found != open_.end()) {
-      open_.splice(open_.begin(), open_, found);
-      return open_.front();
-    }
-  }
-  // Opening takes a while; others go on. Two may open the same: one is kept.
-  auto opened = std::make_shared<Open>(path);
+std::optional<ClipShelf::Known> ClipShelf::Recall(
+    const std::string& path) const {
   const std::lock_guard lock(guard_);
-  for (const auto& open : open_) {
-    if (open->path == path) return open;
-  }
-  open_.push_front(opened);
-  while (open_.size() > options_.most_open) {
-    open_.back()->closed = true;
-    open_.pop_back();
-  }
-  return opened;
+  const auto found = known_.find(path);
+  if (found == known_.end()) return std::nullopt;
+  return found->second;
+}
+
+ClipShelf::Known ClipShelf::Learn(const std::string& path, vision::Clip& clip) {
+  if (const auto known = Recall(path)) return *known;
+  Known known = {clip.info(), 255};
+  if (known.info.bit_depth > 8) known.white = WhiteOf(clip.Read(0));
+  const std::lock_guard lock(guard_);
+  return known_.emplace(path, std::move(known)).first->second;
 }
 
 std::optional<Picture> ClipShelf::Find(const Key& key) {
@@ -170,64 +143,89 @@ std::size_t ClipShelf::bytes() const {
 }
 
 vision::ClipInfo ClipShelf::Info(const std::filesystem::path& path) {
-  return Get(path)->info;
+  if (const auto known = Recall(path.string())) return known->info;
+  const ReaderPool::Lease reader = readers_.Take(path);
+  return Learn(path.string(), reader.clip()).info;
 }
 
 Picture ClipShelf::Frame(const std::filesystem::path& path,
                          std::int64_t index) {
   const Key key{path.string(), index};
   if (const auto kept = Find(key)) return *kept;
-  const std::shared_ptr<Open> open = Get(path);
-  if (open->compressed()) {
-    const std::lock_guard lock(guard_);
-    if (!open->warmed) {
-      open->warmed = true;
-      open->warm_from = index;
-      to_warm_.push_front(open);
-      wake_.notify_one();
-    }
-  }
-  Picture picture;
-  {
-    const std::lock_guard lock(open->guard);
-    picture = open->Encode(open->clip->Read(index));
-  }
+  const ReaderPool::Lease reader = readers_.Take(path);
+  // Somebody else, or the thread, may have made it while this one waited.
+  if (const auto kept = Find(key)) return *kept;
+  const Known known = Learn(key.first, reader.clip());
+  const bool compressed = IsCompressed(known.info);
+  if (compressed) Ask(key.first, index);
+  const Picture picture =
+      Encode(reader.clip().Read(index), known.info, known.white);
   // A raw frame is made again as quickly as it is found.
-  if (open->compressed()) Keep(key, picture);
+  if (compressed) Keep(key, picture);
   return picture;
+}
+
+void ClipShelf::Ask(const std::string& path, std::int64_t index) {
+  const std::lock_guard lock(guard_);
+  const auto found =
+      std::find_if(asked_.begin(), asked_.end(),
+                   [&](const Asked& asked) { return asked.path == path; });
+  if (found != asked_.end()) {
+    asked_.splice(asked_.begin(), asked_, found);
+    return;
+  }
+  asked_.push_front({path, index});
+  if (asked_.size() > options_.most_open) asked_.pop_back();
+  wake_.notify_one();
+}
+
+bool ClipShelf::IsAsked(const std::string& path) const {
+  const std::lock_guard lock(guard_);
+  return std::any_of(asked_.begin(), asked_.end(),
+                     [&](const Asked& asked) { return asked.path == path; });
 }
 
 void ClipShelf::WarmUp() {
   std::unique_lock lock(guard_);
   for (;;) {
-    wake_.wait(lock, [this] { return ending_ || !to_warm_.empty(); });
+    const auto next =
+        std::find_if(asked_.begin(), asked_.end(),
+                     [](const Asked& asked) { return !asked.taken; });
     if (ending_) return;
-    const std::shared_ptr<Open> open = to_warm_.front();
-    to_warm_.pop_front();
+    if (next == asked_.end()) {
+      wake_.wait(lock);
+      continue;
+    }
+    next->taken = true;
+    const Asked asked = *next;
     lock.unlock();
     try {
-      // A reader of its own: the other one jumps to what is asked for.
-      const auto clip = OpenFor(open->path);
-      std::size_t made = 0;
-      // First what is near the frame that was asked for, then the rest.
-      const std::int64_t frames = open->info.frames;
-      const std::int64_t first =
-          std::max<std::int64_t>(0, open->warm_from - kNear);
-      for (std::int64_t k = 0; k < frames && !open->closed; ++k) {
-        const std::int64_t i = (first + k) % frames;
-        const Key key{open->path.string(), i};
-        const core::Frame frame = clip->Read(i);
-        if (Find(key)) continue;
-        const Picture picture = open->Encode(frame);
-        made += picture.bytes->size();
-        // More would push out what was just made.
-        if (made > options_.most_bytes / 2) break;
-        Keep(key, picture);
-      }
+      Decode(asked);
     } catch (const std::exception&) {
       // Whoever asks for the damaged frame is told.
     }
     lock.lock();
+  }
+}
+
+// Makes the pictures of a recording as long as it is among those asked for.
+void ClipShelf::Decode(const Asked& asked) {
+  // A reader of its own: the other one jumps to what is asked for.
+  const auto clip = OpenFor(asked.path);
+  const Known known = Learn(asked.path, *clip);
+  // First what is near the frame that was asked for, then the rest.
+  const std::int64_t frames = known.info.frames;
+  const std::int64_t first = std::max<std::int64_t>(0, asked.from - kNear);
+  std::size_t made = 0;
+  for (std::int64_t k = 0; k < frames && IsAsked(asked.path); ++k) {
+    const Key key{asked.path, (first + k) % frames};
+    const core::Frame frame = clip->Read(key.second);
+    if (Find(key)) continue;
+    const Picture picture = Encode(frame, known.info, known.white);
+    made += picture.bytes->size();
+    // More would push out what was just made.
+    if (made > options_.most_bytes / 2) break;
+    Keep(key, picture);
   }
 }
 

@@ -6,6 +6,8 @@
 // from the first request on a thread decodes the recording once, beginning near
 // what was asked for, and keeps the pictures; a frame that is not there yet is
 // decoded from the nearest key frame.
+//
+// Memory: the pictures kept, most_open readers, and one more of the thread.
 #pragma once
 
 #include <condition_variable>
@@ -20,6 +22,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/review/reader_pool.h"
 #include "touchdown/vision/clip.h"
 
 namespace touchdown::review {
@@ -28,9 +31,10 @@ struct ShelfOptions {
   // Encoded pictures kept, bytes. 128 MiB: some 500 frames of a compressed clip
   // of 1280 x 800, the whole of most shots.
   std::size_t most_bytes = std::size_t{128} << 20;
-  // Recordings open at once. A decoder of 1280 x 800 holds some 30 MB; with six
-  // of them and ten recordings looked at in turn the server held 364 MB.
-  std::size_t most_open = 3;
+  // Recordings open at once, in use or not. A decoder of 1280 x 800 holds some
+  // 30 MB. With fewer of them than pages that step through recordings of their
+  // own, each step opens its recording again until it has been decoded.
+  std::size_t most_open = 6;
 };
 
 struct Picture {
@@ -56,27 +60,42 @@ class ClipShelf {
   std::size_t bytes() const;  // of the pictures kept
 
  private:
-  struct Open;
   using Key = std::pair<std::string, std::int64_t>;  // path and frame
   struct Kept {
     Picture picture;
     std::list<Key>::iterator place;
   };
+  // What stays known of a recording when its reader is closed.
+  struct Known {
+    vision::ClipInfo info;
+    std::uint32_t white = 255;  // the level that is shown as white
+  };
+  // A compressed recording that was asked for.
+  struct Asked {
+    std::string path;
+    std::int64_t from = 0;  // the frame asked for first
+    bool taken = false;     // the thread has begun with it
+  };
 
-  std::shared_ptr<Open> Get(const std::filesystem::path& path);
+  std::optional<Known> Recall(const std::string& path) const;
+  Known Learn(const std::string& path, vision::Clip& clip);
+  void Ask(const std::string& path, std::int64_t index);
+  bool IsAsked(const std::string& path) const;
   std::optional<Picture> Find(const Key& key);
   void Keep(const Key& key, const Picture& picture);
   void WarmUp();
+  void Decode(const Asked& asked);
 
   const ShelfOptions options_;
+  ReaderPool readers_;
   mutable std::mutex guard_;
-  std::list<std::shared_ptr<Open>> open_;  // the last used first
+  std::map<std::string, Known> known_;
   std::map<Key, Kept> kept_;
   std::list<Key> order_;  // the last used first
   std::size_t bytes_ = 0;
 
   std::condition_variable wake_;
-  std::list<std::shared_ptr<Open>> to_warm_;  // the last asked for first
+  std::list<Asked> asked_;  // the last asked for first, most_open of them
   bool ending_ = false;
   std::thread warmer_;
 };

@@ -1,0 +1,67 @@
+#include "app/review/reader_pool.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace touchdown::review {
+
+ReaderPool::ReaderPool(std::size_t most, OpenClip open)
+    : most_(std::max<std::size_t>(1, most)), open_(std::move(open)) {}
+
+ReaderPool::Lease::Lease(Lease&& other) noexcept
+    : pool_(std::exchange(other.pool_, nullptr)), reader_(other.reader_) {}
+
+ReaderPool::Lease::~Lease() {
+  if (pool_ != nullptr) pool_->Return(reader_);
+}
+
+ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
+  std::list<Lease::Reader> closing;  // outside the lock, after it
+  std::unique_lock lock(guard_);
+  for (;;) {
+    const auto own =
+        std::find_if(readers_.begin(), readers_.end(),
+                     [&](const auto& reader) { return reader.path == path; });
+    if (own != readers_.end() && !own->in_use) {
+      own->in_use = true;
+      readers_.splice(readers_.begin(), readers_, own);
+      return {*this, readers_.begin()};
+    }
+    if (own == readers_.end()) {
+      if (readers_.size() < most_) break;
+      const auto idle =
+          std::find_if(readers_.rbegin(), readers_.rend(),
+                       [](const auto& reader) { return !reader.in_use; });
+      if (idle != readers_.rend()) {
+        closing.splice(closing.begin(), readers_, std::next(idle).base());
+        break;
+      }
+    }
+    freed_.wait(lock);
+  }
+  // The place is taken first, so that nobody opens the same one or one more.
+  readers_.push_front({path, nullptr});
+  const auto reader = readers_.begin();
+  lock.unlock();
+  closing.clear();
+  try {
+    reader->clip = open_(path);
+  } catch (...) {
+    lock.lock();
+    readers_.erase(reader);
+    lock.unlock();
+    freed_.notify_all();
+    throw;
+  }
+  return {*this, reader};
+}
+
+void ReaderPool::Return(std::list<Lease::Reader>::iterator reader) {
+  {
+    const std::lock_guard lock(guard_);
+    reader->in_use = false;
+  }
+  freed_.notify_all();
+}
+
+}  // namespace touchdown::review
