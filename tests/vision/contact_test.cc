@@ -184,6 +184,17 @@ TEST(Contact, OnTheGroundFromTheStart) {
   }
 }
 
+TEST(Contact, NoneWhereTheGroundLineLiesAboveTheBody) {
+  Throw thrown;
+  Filming filming;
+  PlaneTrack track = FilmPlane(thrown, filming);
+  for (auto& sample : track.samples) sample.gap_px -= 1000.0;
+  const ContactResult result = FindContacts(track, WithScale(filming));
+  ExpectFinite(result);
+  EXPECT_FALSE(result.first.contact.found);
+  EXPECT_THAT(result.first.contact.reason, HasSubstr("below the ground line"));
+}
+
 TEST(Contact, NoneWhereTheClipEndsBefore) {
   Throw thrown;
   Filming filming;

@@ -270,14 +270,19 @@ std::optional<Event> ContactAtEnd(const PlaneTrack& track,
   constexpr std::size_t kFewFrames = 3;
   if (samples.size() - down > kFewFrames) down = samples.size();
   event.first_after = down;
-  const double lowest =
-      std::min_element(samples.begin(), samples.end(),
-                       [](const PlaneSample& a, const PlaneSample& b) {
-                         return a.gap_px < b.gap_px;
-                       })
-          ->gap_px;
+  const auto [lowest, highest] =
+      std::minmax_element(samples.begin(), samples.end(),
+                          [](const PlaneSample& a, const PlaneSample& b) {
+                            return a.gap_px < b.gap_px;
+                          });
   reason =
-      fmt::format("the gap never reaches zero: its least is {:.1f} px", lowest);
+      highest->gap_px < 0.0
+          ? fmt::format(
+                "the body is below the ground line in every frame: its "
+                "greatest gap is {:.1f} px",
+                highest->gap_px)
+          : fmt::format("the gap never reaches zero: its least is {:.1f} px",
+                        lowest->gap_px);
   if (!MeasureEvent(track, event, options)) return std::nullopt;
   const double dt = track.frame_interval_s;
   const double late = event.time_s.value - samples.back().time_s;
