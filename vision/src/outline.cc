@@ -12,10 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "normal_sums.h"
-#include "outline_model.h"
+#include "outline_image.h"
 #include "outline_pixels.h"
-#include "outline_smear.h"
+#include "outline_sums.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
@@ -23,11 +22,25 @@ namespace {
 
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
-constexpr int kMaxParameters = 5 + 2 + 6 + 6;
+constexpr int kMaxParameters = kMostTerms;
 constexpr double kTukey = 4.685;  // 95 % efficient
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
+
+// 1.4826 times the median of the residuals' sizes, and at least 1.
+double RobustScale(const std::vector<double>& residuals) {
+  constexpr double kPerMedian = 1.4826;
+  // Most often they are as small as the noise: then counting them is enough.
+  const auto large =
+      std::count_if(residuals.begin(), residuals.end(),
+                    [](double r) { return std::abs(r) > 1.0 / kPerMedian; });
+  if (2 * large < static_cast<std::ptrdiff_t>(residuals.size())) return 1.0;
+  std::vector<double> sizes(residuals.size());
+  std::transform(residuals.begin(), residuals.end(), sizes.begin(),
+                 [](double r) { return std::abs(r); });
+  return std::max(1.0, kPerMedian * Median(std::move(sizes)));
+}
 
 class Fitter {
  public:
@@ -55,16 +68,15 @@ class Fitter {
   std::string Gather();
   std::string Iterate(int& iterations);
   bool SetAsideUnexplained();
-  SmearedImage Image() const {
-    return smear_.ImageOf(outline_, cosine_, sine_);
-  }
   void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
   double Visible() const {
     return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
   }
   void SolveLevels();
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
-  double Accumulate(bool robust);
+  void Accumulate(bool robust);
+  void Sum(const OutlineRound& round);
+  OutlineRound Round() const;
   Matrix Regular() const;
   bool Step(double& geometric_step);
   int OpenAt() const { return geometry_ + 1; }
@@ -88,10 +100,10 @@ class Fitter {
   double cosine_ = 1.0;
   double sine_ = 0.0;
   Vector levels_;  // interior then outer polynomial coefficients, DN
-  std::vector<OutlinePixel> pixels_;
+  OutlinePixels pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
-  NormalSums<kMaxParameters> sums_;
+  OutlineSums sums_;
   Matrix normal_;
   Vector gradient_;
   double contrast_ = 0.0;
@@ -119,7 +131,7 @@ std::string Fitter::Gather() {
     return "less than a third of the outline is visible";
   }
   CollectPixels();
-  if (static_cast<int>(pixels_.size()) < 2 * Parameters()) {
+  if (static_cast<int>(pixels_.size) < 2 * Parameters()) {
     return "too few pixels of the outline are visible";
   }
   return {};
@@ -132,129 +144,71 @@ bool Fitter::Free(int k) const {
   return !(k == 2 || (geometry_ == 5 && k == 3));
 }
 
+// Adds up the pixels and spreads the sums over all parameters: what is held has
+// no row.
+void Fitter::Sum(const OutlineRound& round) {
+  sums_.Of(pixels_, OutlineImage(outline_, smear_), round, residuals_);
+  std::array<int, kMostTerms> at{};
+  for (std::size_t k = 0; k < round.shapes; ++k) {
+    at[k] = round.shape[k] == OutlineRound::kBlur ? geometry_
+            : round.shape[k] == OutlineRound::kOpen
+                ? OpenAt()
+                : static_cast<int>(round.shape[k]);
+  }
+  for (std::size_t k = round.shapes; k < round.terms(); ++k) {
+    at[k] = LevelsBegin() + static_cast<int>(k - round.shapes);
+  }
+  normal_ = Matrix::Zero(Parameters(), Parameters());
+  gradient_ = Vector::Zero(Parameters());
+  for (std::size_t i = 0; i < round.terms(); ++i) {
+    gradient_[at[i]] = sums_.gradient(i);
+    for (std::size_t j = 0; j <= i; ++j) {
+      normal_(at[i], at[j]) = normal_(at[j], at[i]) = sums_.normal(i, j);
+    }
+  }
+  if (!HasPrior()) return;
+  for (int k = 0; k < interior_; ++k) {
+    const double u = options_.shading->u[At(k)];
+    const int row = LevelsBegin() + k;
+    normal_(row, row) += 1.0 / (u * u);
+    gradient_[row] +=
+        (options_.shading->level[At(k)] - round.levels[At(k)]) / (u * u);
+  }
+}
+
+OutlineRound Fitter::Round() const {
+  OutlineRound round;
+  round.interior = At(interior_);
+  round.outer = At(outer_);
+  return round;
+}
+
 // The levels that fit best at the present geometry: linear least squares, for a
 // start from which the joint iteration is tame.
 void Fitter::SolveLevels() {
+  Sum(Round());
   const int n = interior_ + outer_;
-  Matrix a = Matrix::Zero(n, n);
-  Vector b = Vector::Zero(n);
-  Vector row(n);
-  std::array<double, 6> f{};
-  const SmearedImage image = Image();
-  for (const OutlinePixel& p : pixels_) {
-    const Coverage c = image.At(p.x, p.y);
-    Polynomial(c.xi, c.eta, f);
-    for (int k = 0; k < interior_; ++k) row[k] = c.value * f[At(k)];
-    double known = 0.0;
-    if (outer_ > 0) {
-      for (int k = 0; k < outer_; ++k) {
-        row[interior_ + k] = (1 - c.value) * f[At(k)];
-      }
-    } else {
-      known = (1 - c.value) * p.background;
-    }
-    const double weight = p.per_noise * p.per_noise;
-    a.noalias() += weight * row * row.transpose();
-    b.noalias() += weight * (p.value - known) * row;
-  }
-  if (HasPrior()) {
-    for (int k = 0; k < interior_; ++k) {
-      const double w =
-          1.0 / (options_.shading->u[At(k)] * options_.shading->u[At(k)]);
-      a(k, k) += w;
-      b[k] += w * options_.shading->level[At(k)];
-    }
-  }
+  Matrix a = normal_.bottomRightCorner(n, n);
   // A trace of ridge keeps an unseen polynomial term at zero.
   a.diagonal().array() += 1e-9 * (1e-12 + a.diagonal().maxCoeff());
-  levels_ = a.ldlt().solve(b);
+  levels_ = a.ldlt().solve(gradient_.tail(n));
 }
 
-// Builds the normal equations; returns the (robust) cost per pixel.
-double Fitter::Accumulate(bool robust) {
-  const int n = Parameters();
-  // What is held has no row. Free are some of x, y, size(s), angle, blur and
-  // open share, and all levels.
-  std::array<int, kMaxParameters> free{};
-  std::size_t n_free = 0;
-  for (int k = 0; k < n; ++k) {
-    if (k >= LevelsBegin() || Free(k)) free[n_free++] = k;
+// Builds the normal equations.
+void Fitter::Accumulate(bool robust) {
+  OutlineRound round = Round();
+  for (int k = 0; k < geometry_; ++k) {
+    if (Free(k)) round.shape[round.shapes++] = At(k);
   }
-  const std::size_t of_shape = n_free - At(interior_ + outer_);
-  sums_.Clear();
-  residuals_.clear();
-  NormalSums<kMaxParameters>::Row row{};
-  std::array<double, 6> f{};
-  const SmearedImage image = Image();
-  double cost = 0.0;
-  double weight_sum = 0.0;
-  double contrast = 0.0;
-  double contrast_weight = 0.0;
-  double square = 0.0;
-  double in_count = 0.0;
-  const double cut = kTukey * robust_scale_;
-  for (const OutlinePixel& p : pixels_) {
-    const Coverage c = image.At(p.x, p.y);
-    Polynomial(c.xi, c.eta, f);
-    double in = 0.0;
-    for (int k = 0; k < interior_; ++k) in += levels_[k] * f[At(k)];
-    double out = p.background;
-    if (outer_ > 0) {
-      out = 0.0;
-      for (int k = 0; k < outer_; ++k) out += levels_[interior_ + k] * f[At(k)];
-    }
-    const double residual =
-        (p.value - out - c.value * (in - out)) * p.per_noise;
-    residuals_.push_back(residual);
-    double weight = 1.0;
-    if (robust && cut > 0.0) {
-      const double t = residual / cut;
-      weight = std::abs(t) < 1.0 ? (1 - t * t) * (1 - t * t) : 0.0;
-    }
-    const double step = (in - out) * p.per_noise;
-    for (std::size_t i = 0; i < of_shape; ++i) {
-      const int k = free[i];
-      row[i] = step * (k < geometry_   ? c.d[k]
-                       : k == OpenAt() ? c.d_open
-                                       : c.d[5]);
-    }
-    std::size_t at = of_shape;
-    const double inside = c.value * p.per_noise;
-    for (int k = 0; k < interior_; ++k) row[at++] = inside * f[At(k)];
-    const double outside = (1 - c.value) * p.per_noise;
-    for (int k = 0; k < outer_; ++k) row[at++] = outside * f[At(k)];
-    sums_.Add(row, n_free, weight, residual);
-    cost += weight * residual * residual;
-    weight_sum += weight;
-    if (weight > 0.5) {
-      square += residual * residual;
-      in_count += 1.0;
-    }
-    const double edge = c.value * (1 - c.value);
-    contrast += edge * (in - out);
-    contrast_weight += edge;
-  }
-  normal_ = Matrix::Zero(n, n);
-  gradient_ = Vector::Zero(n);
-  for (std::size_t i = 0; i < n_free; ++i) {
-    gradient_[free[i]] = sums_.gradient(i);
-    for (std::size_t j = 0; j <= i; ++j) {
-      normal_(free[i], free[j]) = normal_(free[j], free[i]) = sums_.at(i, j);
-    }
-  }
-  if (HasPrior()) {
-    for (int k = 0; k < interior_; ++k) {
-      const double u = options_.shading->u[At(k)];
-      const int at = LevelsBegin() + k;
-      normal_(at, at) += 1.0 / (u * u);
-      gradient_[at] += (options_.shading->level[At(k)] - levels_[k]) / (u * u);
-    }
-  }
-  contrast_ = contrast_weight > 0.0 ? contrast / contrast_weight : 0.0;
-  inliers_ = in_count / static_cast<double>(pixels_.size());
-  misfit_ = in_count > n ? std::sqrt(square / (in_count - n)) : 0.0;
-  return weight_sum > 0.0 ? cost / weight_sum
-                          : std::numeric_limits<double>::infinity();
+  if (Free(geometry_)) round.shape[round.shapes++] = OutlineRound::kBlur;
+  if (Free(OpenAt())) round.shape[round.shapes++] = OutlineRound::kOpen;
+  std::copy(levels_.begin(), levels_.end(), round.levels.begin());
+  if (robust) round.cut = kTukey * robust_scale_;
+  Sum(round);
+  contrast_ = sums_.contrast_dn;
+  inliers_ = sums_.inliers / static_cast<double>(pixels_.size);
+  const double spare = sums_.inliers - Parameters();
+  misfit_ = spare > 0.0 ? std::sqrt(sums_.square / spare) : 0.0;
 }
 
 // The normal equations with what is held held, and a trace of ridge.
@@ -329,10 +283,7 @@ std::string Fitter::Iterate(int& iterations) {
     // few rounds: a scale that follows the weights never settles.
     constexpr int kSettled = 5;
     if (iteration < kSettled) {
-      std::vector<double> sizes(residuals_.size());
-      std::transform(residuals_.begin(), residuals_.end(), sizes.begin(),
-                     [](double r) { return std::abs(r); });
-      robust_scale_ = std::max(1.0, 1.4826 * Median(std::move(sizes)));
+      robust_scale_ = RobustScale(residuals_);
     }
     if (!Step(step)) {
       return "the outline's fit is degenerate";
@@ -408,7 +359,7 @@ core::Expected<OutlineFit> Fitter::Run() {
   if (!why.empty()) return core::AbsentBecause(why);
   // What was summed a step of less than the tolerance ago is as good.
   if (!converged_) Accumulate(true);
-  const double level = pixels_[pixels_.size() / 2].background;
+  const double level = pixels_.background[pixels_.size / 2];
   const double noise = std::sqrt(background_.Variance(level));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel
   // Noise has blobs of a pixel or two as bright as that: all of the body
@@ -458,7 +409,7 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.inliers = inliers_;
   fit.visible = Visible();
   fit.hidden = std::max(0.0, before_aside_ - fit.visible);
-  fit.pixels = static_cast<int>(pixels_.size());
+  fit.pixels = static_cast<int>(pixels_.size);
   fit.iterations = iterations;
   // Known to no better than half its size it is no outline.
   const double vague = 0.5 * SmallestHalf(outline_);

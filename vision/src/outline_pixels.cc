@@ -5,9 +5,24 @@
 #include <cstdint>
 #include <numbers>
 
-#include "outline_model.h"
-
 namespace touchdown::vision {
+namespace {
+
+inline double Depth(const Outline& outline, double x_px, double y_px,
+                    double cosine, double sine) {
+  const double dx = x_px - outline.centre.x_px;
+  const double dy = y_px - outline.centre.y_px;
+  if (outline.kind == core::BodyKind::kSphere) {
+    return outline.radius_px - std::sqrt(dx * dx + dy * dy);
+  }
+  const double out_u = std::abs(dx * cosine + dy * sine) - outline.half_long_px;
+  const double out_v =
+      std::abs(-dx * sine + dy * cosine) - outline.half_short_px;
+  return out_u > 0.0 && out_v > 0.0 ? -std::sqrt(out_u * out_u + out_v * out_v)
+                                    : -std::max(out_u, out_v);
+}
+
+}  // namespace
 
 UsablePart::UsablePart(const std::optional<calib::GroundLine>& ground,
                        double margin_px) {
@@ -60,6 +75,11 @@ bool UsablePart::IsAside(double x_px, double y_px) const {
                 static_cast<std::size_t>(x)] != 0;
 }
 
+double DepthInside(const Outline& outline, double x_px, double y_px,
+                   double cosine, double sine) {
+  return Depth(outline, x_px, y_px, cosine, sine);
+}
+
 double Extent(const Outline& o) {
   return o.kind == core::BodyKind::kSphere
              ? o.radius_px
@@ -76,31 +96,33 @@ double Area(const Outline& o) {
              : 4.0 * o.half_long_px * o.half_short_px;
 }
 
-bool IsSurroundSaturated(const std::vector<OutlinePixel>& pixels,
-                         const Outline& outline, double cosine, double sine,
-                         double full_scale_dn) {
+bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
+                         double cosine, double sine, double full_scale_dn) {
   constexpr double kClear_px = 2.0;
   double outside = 0.0;
   double full = 0.0;
-  for (const OutlinePixel& p : pixels) {
-    if (DepthInside(outline, p.x, p.y, cosine, sine) > -kClear_px) continue;
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    if (Depth(outline, pixels.x[i], pixels.y[i], cosine, sine) > -kClear_px) {
+      continue;
+    }
     outside += 1.0;
-    full += p.value >= full_scale_dn;
+    full += pixels.value[i] >= full_scale_dn;
   }
   return full > 0.5 * outside;
 }
 
-std::vector<core::PixelPoint> Unexplained(
-    const std::vector<OutlinePixel>& pixels,
-    const std::vector<double>& residuals, double cut, const Outline& outline,
-    double cosine, double sine, double clear_px) {
+std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
+                                          const std::vector<double>& residuals,
+                                          double cut, const Outline& outline,
+                                          double cosine, double sine,
+                                          double clear_px) {
   std::vector<core::PixelPoint> unexplained;
   std::size_t inside = 0;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const OutlinePixel& p = pixels[i];
-    if (DepthInside(outline, p.x, p.y, cosine, sine) < clear_px) continue;
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    const core::PixelPoint p = {pixels.x[i], pixels.y[i]};
+    if (Depth(outline, p.x_px, p.y_px, cosine, sine) < clear_px) continue;
     ++inside;
-    if (std::abs(residuals[i]) > cut) unexplained.push_back({p.x, p.y});
+    if (std::abs(residuals[i]) > cut) unexplained.push_back(p);
   }
   constexpr double kLeastShare = 0.02;
   constexpr std::size_t kLeast = 4;
@@ -114,8 +136,7 @@ std::vector<core::PixelPoint> Unexplained(
 void CollectOutlinePixels(const core::Frame& frame,
                           const Background& background, const Outline& outline,
                           double cosine, double sine, const UsablePart& usable,
-                          const PixelBand& band,
-                          std::vector<OutlinePixel>& pixels) {
+                          const PixelBand& band, OutlinePixels& pixels) {
   const double margin = band.margin_px;
   const bool large = SmallestHalf(outline) > 2.0 * margin;
   const double reach = Extent(outline) + margin;
@@ -131,24 +152,21 @@ void CollectOutlinePixels(const core::Frame& frame,
   const auto y1 = std::min<std::int32_t>(
       frame.origin_y_px + frame.height_px - 1,
       static_cast<std::int32_t>(std::floor(outline.centre.y_px + reach)));
-  pixels.clear();
+  pixels.Clear();
   for (std::int32_t y = y0; y <= y1; ++y) {
     for (std::int32_t x = x0; x <= x1; ++x) {
       if (!usable.Holds(x, y)) continue;
       if (band.known_background && !background.known_at(x, y)) continue;
-      const double depth = DepthInside(outline, x, y, cosine, sine);
+      const double depth = Depth(outline, x, y, cosine, sine);
       if (depth < -margin || depth > band.inner_px) continue;
       // Deep inside there is only the shading to learn: every third pixel.
       if (large && depth > margin && (x + y) % 3 != 0) continue;
-      OutlinePixel p;
-      p.x = x;
-      p.y = y;
-      p.value = frame.at(x - frame.origin_x_px, y - frame.origin_y_px);
-      p.background = static_cast<double>(background.at(x, y));
-      p.per_noise = 1.0 / std::sqrt(background.Variance(p.value));
-      pixels.push_back(p);
+      pixels.Add(x, y, frame.at(x - frame.origin_x_px, y - frame.origin_y_px),
+                 static_cast<double>(background.at(x, y)));
     }
   }
+  pixels.Finish(background.noise_floor_dn2, background.noise_slope_dn,
+                Background::kVarianceFloor_dn2);
 }
 
 double VisibleShare(const core::Frame& frame, const Outline& outline,

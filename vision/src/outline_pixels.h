@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "outline_sums.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/frame.h"
 #include "touchdown/core/points.h"
@@ -12,14 +13,6 @@
 #include "touchdown/vision/outline.h"
 
 namespace touchdown::vision {
-
-struct OutlinePixel {
-  double x = 0.0;
-  double y = 0.0;
-  double value = 0.0;       // DN
-  double background = 0.0;  // DN
-  double per_noise = 1.0;   // one over its standard deviation, 1/DN
-};
 
 // What lies above the ground line by a margin, or everything without a line,
 // and is not set aside.
@@ -54,8 +47,7 @@ struct PixelBand {
 void CollectOutlinePixels(const core::Frame& frame,
                           const Background& background, const Outline& outline,
                           double cosine, double sine, const UsablePart& usable,
-                          const PixelBand& band,
-                          std::vector<OutlinePixel>& pixels);
+                          const PixelBand& band, OutlinePixels& pixels);
 
 // Share of the outline that lies in the frame and is usable.
 double VisibleShare(const core::Frame& frame, const Outline& outline,
@@ -63,17 +55,21 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
 
 // Whether more than half of the pixels clear outside the outline are at full
 // scale.
-bool IsSurroundSaturated(const std::vector<OutlinePixel>& pixels,
-                         const Outline& outline, double cosine, double sine,
-                         double full_scale_dn);
+bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
+                         double cosine, double sine, double full_scale_dn);
 
 // Pixels deeper than `clear_px` inside whose residual is beyond `cut`; none
 // where there are too few of them to be more than dust or the tail of the
 // noise.
-std::vector<core::PixelPoint> Unexplained(
-    const std::vector<OutlinePixel>& pixels,
-    const std::vector<double>& residuals, double cut, const Outline& outline,
-    double cosine, double sine, double clear_px);
+std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
+                                          const std::vector<double>& residuals,
+                                          double cut, const Outline& outline,
+                                          double cosine, double sine,
+                                          double clear_px);
+
+// DepthInside of outline.h with the cosine and sine of the angle at hand.
+double DepthInside(const Outline& outline, double x_px, double y_px,
+                   double cosine, double sine);
 
 double Extent(const Outline& outline);        // px, centre to farthest point
 double SmallestHalf(const Outline& outline);  // px

@@ -1,0 +1,37 @@
+// Loops over many numbers that the compiler makes vector instructions of, for
+// the widest that the processor has: GCC and clang build such a function once
+// for each set of instructions, and the program chooses when it starts.
+//
+// Results do not depend on the choice: sums are kept in eight places whatever
+// the width, and multiply-add is not fused (avx2 without fma).
+#pragma once
+
+#include <cstdint>
+
+// Sanitizers come up after the choice would be made.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+#define TOUCHDOWN_WIDEST __attribute__((target_clones("avx2", "default")))
+#else
+#define TOUCHDOWN_WIDEST
+#endif
+
+// What such a function calls must be part of it.
+#define TOUCHDOWN_INLINE inline __attribute__((always_inline))
+
+namespace touchdown::vision {
+
+// Four numbers at a time, as GCC and clang have them in the language: one
+// instruction of avx2, two of older processors.
+using Four = double __attribute__((vector_size(32), may_alias));
+using FourBits = std::uint64_t __attribute__((vector_size(32)));
+
+// The four that begin at `first`, which lies on a multiple of 32 bytes.
+TOUCHDOWN_INLINE const Four& FourAt(const double* first) {
+  return *reinterpret_cast<const Four*>(first);
+}
+TOUCHDOWN_INLINE Four& FourAt(double* first) {
+  return *reinterpret_cast<Four*>(first);
+}
+
+}  // namespace touchdown::vision

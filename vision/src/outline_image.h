@@ -1,0 +1,67 @@
+// The blurred coverage of pixels by a disc or a rectangle that may move while
+// the shutter is open, with its derivatives: the model that outline.cc fits.
+// By far most of a fit's time is here and in outline_sums.h, so pixels are
+// taken in blocks (lanes.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "touchdown/core/points.h"
+#include "touchdown/vision/outline.h"
+
+namespace touchdown::vision {
+
+// Pixels are worked on so many at a time: their numbers stay in the processor's
+// nearest cache.
+inline constexpr std::size_t kBlock = 64;
+using BlockColumn = std::array<double, kBlock>;
+
+// The coverage of each pixel of a block and its derivatives.
+struct alignas(64) CoverBlock {
+  BlockColumn value;
+  std::array<BlockColumn, 5> d_shape;  // by x, y, size, other size, angle
+  BlockColumn d_blur;
+  BlockColumn d_open;  // by the share of the frame interval that is exposed
+  BlockColumn xi;      // position in the body, in units of its size
+  BlockColumn eta;
+};
+
+// How the exposure is divided into places at which the body rests. Each place
+// has the blur of its own share of the way (of variance step^2 / 12); steps of
+// 0.7 w leave an error of 1e-4 of the contrast.
+class Smear {
+ public:
+  // `travel_px`: of the body in one frame interval.
+  explicit Smear(const core::PixelPoint& travel_px) : travel_px_(travel_px) {}
+
+  // `open`: the share of the frame interval that is exposed. With `resolved`
+  // even a way that adds nothing is divided, for its derivative.
+  void Set(double blur_px, double open, bool resolved);
+
+  double way_px() const;  // during the exposure
+
+ private:
+  friend class OutlineImage;
+
+  core::PixelPoint travel_px_;
+  double blur_px_ = 1.0;
+  double open_ = 0.0;
+  int places_ = 1;
+  double place_blur_px_ = 1.0;
+};
+
+// The image of a body: the mean along its way.
+class OutlineImage {
+ public:
+  OutlineImage(const Outline& outline, const Smear& smear);
+
+  // Of the pixels at (x[i], y[i]), i < kBlock.
+  void Cover(const double* x, const double* y, CoverBlock& out) const;
+
+ private:
+  Outline outline_;
+  Smear smear_;
+};
+
+}  // namespace touchdown::vision

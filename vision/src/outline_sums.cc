@@ -1,0 +1,263 @@
+#include "outline_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lanes.h"
+
+namespace touchdown::vision {
+namespace {
+
+template <std::size_t kCount>
+double SumOf(const std::array<double, kCount>& lanes) {
+  return std::accumulate(lanes.begin(), lanes.end(), 0.0);
+}
+
+}  // namespace
+
+void OutlinePixels::Clear() {
+  size = 0;
+  for (auto* const column : {&x, &y, &value, &background, &per_noise}) {
+    column->clear();
+  }
+}
+
+void OutlinePixels::Add(double x_px, double y_px, double value_dn,
+                        double background_dn) {
+  x.push_back(x_px);
+  y.push_back(y_px);
+  value.push_back(value_dn);
+  background.push_back(background_dn);
+}
+
+void OutlinePixels::Finish(double floor_dn2, double slope_dn, double least) {
+  size = x.size();
+  const std::size_t padded = (size + kBlock - 1) / kBlock * kBlock;
+  per_noise.resize(padded);
+  for (std::size_t i = 0; i < size; ++i) {
+    per_noise[i] =
+        1.0 / std::sqrt(std::max(least, floor_dn2 + slope_dn * value[i]));
+  }
+  std::fill(per_noise.begin() + static_cast<std::ptrdiff_t>(size),
+            per_noise.end(), 0.0);
+  for (auto* const column : {&x, &y, &value, &background}) {
+    column->resize(padded, size == 0 ? 0.0 : column->back());
+  }
+}
+
+// One block of a round.
+struct OutlineBlock {
+  const double* value;
+  const double* background;
+  const double* per_noise;
+  double* residuals;
+
+  using Lanes = OutlineSums::Lanes;
+  using Totals = OutlineSums::Totals;
+  static constexpr std::size_t kLanes = OutlineSums::kLanes;
+  static constexpr std::size_t kPadded = OutlineSums::kPadded;
+
+  // Adds a . b to each of four sums.
+  TOUCHDOWN_INLINE static void AddProducts(const BlockColumn& a,
+                                           const std::array<BlockColumn, 4>& b,
+                                           Lanes* sums) {
+    Four s[4][2];
+    for (std::size_t j = 0; j < 4; ++j) {
+      s[j][0] = FourAt(sums[j].data());
+      s[j][1] = FourAt(sums[j].data() + 4);
+    }
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      const Four a0 = FourAt(&a[k]);
+      const Four a1 = FourAt(&a[k + 4]);
+      for (std::size_t j = 0; j < 4; ++j) {
+        s[j][0] += a0 * FourAt(&b[j][k]);
+        s[j][1] += a1 * FourAt(&b[j][k + 4]);
+      }
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      FourAt(sums[j].data()) = s[j][0];
+      FourAt(sums[j].data() + 4) = s[j][1];
+    }
+  }
+
+  TOUCHDOWN_INLINE static void AddProduct(const BlockColumn& a,
+                                          const BlockColumn& b, Lanes& sum) {
+    Four s0 = FourAt(sum.data());
+    Four s1 = FourAt(sum.data() + 4);
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      s0 += FourAt(&a[k]) * FourAt(&b[k]);
+      s1 += FourAt(&a[k + 4]) * FourAt(&b[k + 4]);
+    }
+    FourAt(sum.data()) = s0;
+    FourAt(sum.data() + 4) = s1;
+  }
+
+  TOUCHDOWN_INLINE static void Add(const BlockColumn& from, Lanes& sum) {
+    Four s0 = FourAt(sum.data());
+    Four s1 = FourAt(sum.data() + 4);
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      s0 += FourAt(&from[k]);
+      s1 += FourAt(&from[k + 4]);
+    }
+    FourAt(sum.data()) = s0;
+    FourAt(sum.data() + 4) = s1;
+  }
+
+  TOUCHDOWN_INLINE static void Multiply(const BlockColumn& a,
+                                        const BlockColumn& b,
+                                        BlockColumn& product) {
+    for (std::size_t k = 0; k < kBlock; k += 4) {
+      FourAt(&product[k]) = FourAt(&a[k]) * FourAt(&b[k]);
+    }
+  }
+
+  // 1, xi, eta, xi^2, xi eta, eta^2 times their levels.
+  TOUCHDOWN_INLINE static void Levels(const CoverBlock& cover,
+                                      const double* level, std::size_t count,
+                                      BlockColumn& sum) {
+    if (count == 1) {
+      sum.fill(level[0]);
+      return;
+    }
+    for (std::size_t k = 0; k < kBlock; k += 4) {
+      const Four xi = FourAt(&cover.xi[k]);
+      const Four eta = FourAt(&cover.eta[k]);
+      FourAt(&sum[k]) = level[0] + xi * level[1] + eta * level[2] +
+                        xi * (xi * level[3] + eta * level[4]) +
+                        eta * eta * level[5];
+    }
+  }
+
+  TOUCHDOWN_INLINE static void Terms(const CoverBlock& cover,
+                                     const BlockColumn& factor,
+                                     std::size_t count, BlockColumn* rows) {
+    rows[0] = factor;
+    if (count == 1) return;
+    for (std::size_t k = 0; k < kBlock; k += 4) {
+      const Four xi = FourAt(&cover.xi[k]);
+      const Four eta = FourAt(&cover.eta[k]);
+      const Four x = FourAt(&factor[k]) * xi;
+      const Four y = FourAt(&factor[k]) * eta;
+      FourAt(&rows[1][k]) = x;
+      FourAt(&rows[2][k]) = y;
+      FourAt(&rows[3][k]) = x * xi;
+      FourAt(&rows[4][k]) = x * eta;
+      FourAt(&rows[5][k]) = y * eta;
+    }
+  }
+
+  TOUCHDOWN_WIDEST void AddTo(const OutlineRound& round,
+                              const CoverBlock& cover, Totals& totals) const;
+};
+
+void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
+                         Totals& totals) const {
+  struct alignas(64) Work {
+    std::array<std::array<BlockColumn, 4>, kPadded / 4> rows;
+    BlockColumn in, out, step, inside, outside, residual, weight, weighted;
+    BlockColumn cost, inlier, square, contrast, contrast_weight;
+  };
+  Work w;
+  const std::size_t n = round.terms();
+  const double per_cut = round.cut > 0.0 ? 1.0 / round.cut : 0.0;
+  const bool known = round.outer == 0;
+  Levels(cover, round.levels.data(), round.interior, w.in);
+  if (known) {
+    std::copy_n(background, kBlock, w.out.begin());
+  } else {
+    Levels(cover, round.levels.data() + round.interior, round.outer, w.out);
+  }
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const double covered = cover.value[i];
+    const double noise = per_noise[i];
+    const double rise = w.in[i] - w.out[i];
+    const double residual = (value[i] - w.out[i] - covered * rise) * noise;
+    const double present = noise > 0.0 ? 1.0 : 0.0;
+    const double t = residual * per_cut;
+    const double inner = 1.0 - t * t;
+    const double q = inner > 0.0 ? inner : 0.0;
+    const double weight = present * q * q;
+    const double edge = present * covered * (1.0 - covered);
+    const double inlier = weight > 0.5 ? 1.0 : 0.0;
+    w.residual[i] = residual;
+    w.weight[i] = weight;
+    w.step[i] = rise * noise;
+    w.inside[i] = covered * noise;
+    w.outside[i] = (1.0 - covered) * noise;
+    w.cost[i] = weight * residual * residual;
+    w.inlier[i] = inlier;
+    w.square[i] = inlier * residual * residual;
+    w.contrast[i] = edge * rise;
+    w.contrast_weight[i] = edge;
+  }
+  std::copy(w.residual.begin(), w.residual.end(), residuals);
+  Add(w.cost, totals.cost);
+  Add(w.weight, totals.weights);
+  Add(w.inlier, totals.inliers);
+  Add(w.square, totals.square);
+  Add(w.contrast, totals.contrast);
+  Add(w.contrast_weight, totals.contrast_weight);
+
+  BlockColumn* const rows = w.rows[0].data();
+  for (std::size_t k = 0; k < round.shapes; ++k) {
+    const BlockColumn& d = round.shape[k] == OutlineRound::kBlur ? cover.d_blur
+                           : round.shape[k] == OutlineRound::kOpen
+                               ? cover.d_open
+                               : cover.d_shape[round.shape[k]];
+    Multiply(w.step, d, rows[k]);
+  }
+  Terms(cover, w.inside, round.interior, rows + round.shapes);
+  if (!known) {
+    Terms(cover, w.outside, round.outer, rows + round.shapes + round.interior);
+  }
+  for (std::size_t k = n; k < (n + 3) / 4 * 4; ++k) rows[k].fill(0.0);
+
+  for (std::size_t i = 0; i < n; ++i) {
+    Multiply(w.weight, rows[i], w.weighted);
+    Lanes* const sums = &totals.normal[i * kPadded];
+    for (std::size_t j = 0; j <= i; j += 4) {
+      AddProducts(w.weighted, w.rows[j / 4], sums + j);
+    }
+    AddProduct(w.weighted, w.residual, totals.gradient[i]);
+  }
+}
+
+void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
+                     const OutlineRound& round,
+                     std::vector<double>& residuals) {
+  const std::size_t n = round.terms();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::fill_n(
+        totals_.normal.begin() + static_cast<std::ptrdiff_t>(i * kPadded),
+        (i + 4) / 4 * 4, Lanes{});
+    totals_.gradient[i] = {};
+  }
+  totals_.cost = totals_.weights = totals_.inliers = {};
+  totals_.square = totals_.contrast = totals_.contrast_weight = {};
+  residuals.resize(pixels.x.size());
+  CoverBlock cover;
+  for (std::size_t begin = 0; begin < pixels.x.size(); begin += kBlock) {
+    image.Cover(&pixels.x[begin], &pixels.y[begin], cover);
+    const OutlineBlock block = {&pixels.value[begin], &pixels.background[begin],
+                                &pixels.per_noise[begin], &residuals[begin]};
+    block.AddTo(round, cover, totals_);
+  }
+  residuals.resize(pixels.size);
+  cost = SumOf(totals_.cost);
+  weights = SumOf(totals_.weights);
+  inliers = SumOf(totals_.inliers);
+  square = SumOf(totals_.square);
+  const double edge = SumOf(totals_.contrast_weight);
+  contrast_dn = edge > 0.0 ? SumOf(totals_.contrast) / edge : 0.0;
+}
+
+double OutlineSums::normal(std::size_t i, std::size_t j) const {
+  return SumOf(totals_.normal[i * kPadded + j]);
+}
+
+double OutlineSums::gradient(std::size_t i) const {
+  return SumOf(totals_.gradient[i]);
+}
+
+}  // namespace touchdown::vision
