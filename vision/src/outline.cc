@@ -28,13 +28,14 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
 
-// 1.4826 times the median of the residuals' sizes, and at least 1.
+// 1.4826 times the median of the residuals' sizes, and at least 1. Less than a
+// twentieth more is not told from 1, so that counting is mostly enough.
 double RobustScale(const std::vector<double>& residuals) {
   constexpr double kPerMedian = 1.4826;
-  // Most often they are as small as the noise: then counting them is enough.
+  constexpr double kTold = 1.05;
   const auto large =
       std::count_if(residuals.begin(), residuals.end(),
-                    [](double r) { return std::abs(r) > 1.0 / kPerMedian; });
+                    [](double r) { return std::abs(r) > kTold / kPerMedian; });
   if (2 * large < static_cast<std::ptrdiff_t>(residuals.size())) return 1.0;
   std::vector<double> sizes(residuals.size());
   std::transform(residuals.begin(), residuals.end(), sizes.begin(),
@@ -294,7 +295,7 @@ std::string Fitter::Iterate(int& iterations) {
     }
     // Follow the body with the set of pixels while it still moves; at first
     // closely, so that what is fitted to does not depend on the start.
-    constexpr double kSamePlace_px = 0.003;
+    constexpr double kSamePlace_px = 0.02;
     const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
                                     outline_.centre.y_px - collected.y_px);
     const double spread = std::abs(blur_ - collected_blur);

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "kept_pixels.h"
+#include "lanes.h"
 #include "parallel.h"
 
 namespace touchdown::vision {
@@ -20,12 +21,21 @@ struct Window {
 
 Window Take(Clip& clip, std::int64_t index, const core::PixelRect& rect) {
   Window window;
+  clip.WillRead(index, rect);
   window.frame = clip.Read(index, rect);
   if (!clip.views_last()) {
     window.copy = KeptPixels(window.frame);
     window.frame = window.copy.View();
   }
   return window;
+}
+
+void PrefetchRows(const core::Frame& frame) {
+  const std::size_t bytes =
+      static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
+  for (std::int32_t y = 0; y < frame.height_px; ++y) {
+    Prefetch(frame.data + y * frame.stride_bytes, bytes);
+  }
 }
 
 }  // namespace
@@ -84,6 +94,9 @@ std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
           for (auto i = static_cast<std::size_t>(from);
                i < static_cast<std::size_t>(to); ++i) {
             own.travel_px = batch[i].travel_px;
+            if (i + 1 < static_cast<std::size_t>(to)) {
+              PrefetchRows(windows[i + 1].frame);
+            }
             const core::Frame& frame = windows[i].frame;
             const auto fit = FitOutline(frame, background, batch[i].start, own);
             if (fit) {

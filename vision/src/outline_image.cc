@@ -1,6 +1,7 @@
 #include "outline_image.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +11,8 @@
 
 namespace touchdown::vision {
 namespace {
+
+constexpr double kInverseSqrt2Pi = 0.3989422804014327;
 
 // exp(-y), 0 <= y <= 700, to 1e-9 of itself: 2^-n exp(-r), |r| <= ln(2)/2. The
 // sum with 1.5 * 2^52 rounds to a whole number, whose bits are then at hand.
@@ -34,7 +37,6 @@ TOUCHDOWN_INLINE void ExpOfMinus(const Four& y, Four& result) {
 // The normal distribution to 7.5e-8 (Abramowitz and Stegun 26.2.17) and its
 // density: two thirds of a fit's time went into erfc and exp.
 TOUCHDOWN_INLINE void NormalAt(const Four& z, Four& cdf, Four& pdf) {
-  constexpr double kInverseSqrt2Pi = 0.3989422804014327;
   constexpr Four kMost = {37.0, 37.0, 37.0, 37.0};  // the density is 1e-298
   const Four size = z < 0.0 ? -z : z;
   const Four near = size < kMost ? size : kMost;
@@ -64,55 +66,6 @@ struct Place {
   double d_open_y = 0.0;
 };
 
-// A blurred disc's value at distance r from its centre, with its derivatives.
-struct DiscProfile {
-  double value = 0.0;
-  double d_r = 0.0;
-  double d_radius = 0.0;
-  double d_w = 0.0;
-};
-
-// By quadrature over chords, for discs of a few w, where the series does not
-// see the far side of the edge:
-//   2 int_0^(pi/2) phi_w(R sin t) (Phi((r + h)/w) - Phi((r - h)/w)) h dt,
-// h = R cos t; its derivative by R is the blurred circle itself.
-DiscProfile SmallDisc(double r, double radius, double w) {
-  // Gauss-Legendre, 10 nodes on [0, 1].
-  constexpr double kNode[10] = {0.0130467357414141, 0.0674683166555077,
-                                0.1602952158504878, 0.2833023029353764,
-                                0.4255628305091844, 0.5744371694908156,
-                                0.7166976970646236, 0.8397047841495122,
-                                0.9325316833444923, 0.9869532642585859};
-  constexpr double kWeight[10] = {0.0333356721543441, 0.0747256745752903,
-                                  0.1095431812579910, 0.1346333596549982,
-                                  0.1477621123573764, 0.1477621123573764,
-                                  0.1346333596549982, 0.1095431812579910,
-                                  0.0747256745752903, 0.0333356721543441};
-  constexpr double kHalfPi = 0.5 * std::numbers::pi;
-  DiscProfile p;
-  for (int i = 0; i < 10; ++i) {
-    const double t = kHalfPi * kNode[i];
-    const double cosine = std::cos(t);
-    const double h = radius * cosine;
-    const double y = radius * std::sin(t);
-    Four cdf;
-    Four pdf;
-    NormalAt(Four{(r + h) / w, (r - h) / w, y / w, 0.0}, cdf, pdf);
-    const double weight = 2.0 * kHalfPi * kWeight[i] * h * pdf[2] / w;
-    p.value += weight * (cdf[0] - cdf[1]);
-    p.d_r += weight * (pdf[0] - pdf[1]) / w;
-    const auto on_circle = [&](double c) {
-      const double apart2 = r * r + radius * radius - 2.0 * r * radius * c;
-      return std::exp(-0.5 * apart2 / (w * w));
-    };
-    p.d_radius += kWeight[i] * 0.5 * radius / (w * w) *
-                  (on_circle(cosine) + on_circle(-cosine));
-  }
-  // It depends on r/w and R/w alone.
-  p.d_w = -(r * p.d_r + radius * p.d_radius) / w;
-  return p;
-}
-
 // Adds the numbers of a disc at four pixels from number i on.
 struct FourOfDisc {
   Four dx, dy;
@@ -139,6 +92,15 @@ struct alignas(64) Distances {
   BlockColumn r;
 };
 
+TOUCHDOWN_INLINE void Measure(const Place& place, const double* x,
+                              const double* y, Distances& at) {
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    at.dx[i] = x[i] - place.x_px;
+    at.dy[i] = y[i] - place.y_px;
+    at.r[i] = std::sqrt(at.dx[i] * at.dx[i] + at.dy[i] * at.dy[i]);
+  }
+}
+
 constexpr double kAtCentre_px = 1e-12;  // no direction there, and no edge
 
 // As a series in e = w/R, s = (r - R)/w, from the heat equation
@@ -148,11 +110,7 @@ TOUCHDOWN_WIDEST
 void AddLargeDisc(const Place& place, const double* x, const double* y,
                   CoverBlock& out) {
   Distances at;
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    at.dx[i] = x[i] - place.x_px;
-    at.dy[i] = y[i] - place.y_px;
-    at.r[i] = std::sqrt(at.dx[i] * at.dx[i] + at.dy[i] * at.dy[i]);
-  }
+  Measure(place, x, y, at);
   const double per_w = 1.0 / place.w_px;
   const double e = place.w_px / place.long_px;
   for (std::size_t i = 0; i < kBlock; i += 4) {
@@ -178,21 +136,95 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
   }
 }
 
-void AddSmallDisc(const Place& place, const double* x, const double* y,
-                  CoverBlock& out) {
+// Gauss-Legendre in ten nodes over a quarter of a circle.
+struct QuarterCircle {
+  std::array<double, 10> cosine;
+  std::array<double, 10> sine;
+  std::array<double, 10> weight;  // they add up to 1
+};
+const QuarterCircle& Nodes() {
+  static const QuarterCircle nodes = [] {
+    constexpr std::array<double, 10> kNode = {
+        0.0130467357414141, 0.0674683166555077, 0.1602952158504878,
+        0.2833023029353764, 0.4255628305091844, 0.5744371694908156,
+        0.7166976970646236, 0.8397047841495122, 0.9325316833444923,
+        0.9869532642585859};
+    constexpr std::array<double, 10> kWeight = {
+        0.0333356721543441, 0.0747256745752903, 0.1095431812579910,
+        0.1346333596549982, 0.1477621123573764, 0.1477621123573764,
+        0.1346333596549982, 0.1095431812579910, 0.0747256745752903,
+        0.0333356721543441};
+    QuarterCircle q;
+    for (std::size_t i = 0; i < kNode.size(); ++i) {
+      const double t = 0.5 * std::numbers::pi * kNode[i];
+      q.cosine[i] = std::cos(t);
+      q.sine[i] = std::sin(t);
+      q.weight[i] = kWeight[i];
+    }
+    return q;
+  }();
+  return nodes;
+}
+
+// By quadrature over chords, for discs of a few w, where the series does not
+// see the far side of the edge:
+//   2 int_0^(pi/2) phi_w(R sin t) (Phi((r + h)/w) - Phi((r - h)/w)) h dt,
+// h = R cos t; its derivative by R is the blurred circle itself; by w it
+// follows from the others, as it depends on r/w and R/w alone. Of four
+// distances r.
+TOUCHDOWN_WIDEST
+void SmallDisc(double radius, double w, const QuarterCircle& nodes,
+               SmallDiscTable::Columns& table, std::size_t i) {
+  constexpr Four kMost = {700.0, 700.0, 700.0, 700.0};  // for ExpOfMinus
+  const double per_w = 1.0 / w;
+  const Four r = FourAt(&table.r[i]);
+  Four value = r - r;
+  Four d_r = value;
+  Four d_radius = value;
+  for (std::size_t k = 0; k < nodes.cosine.size(); ++k) {
+    const double h = radius * nodes.cosine[k];
+    const double across = radius * nodes.sine[k] * per_w;
+    const Four there = r - r + 0.5 * across * across;
+    Four on_chord;
+    ExpOfMinus(there < kMost ? there : kMost, on_chord);
+    const Four weight = on_chord * (nodes.weight[k] * h * per_w *
+                                    std::numbers::pi * kInverseSqrt2Pi);
+    Four cdf_far, pdf_far, cdf_near, pdf_near;
+    NormalAt((r + h) * per_w, cdf_far, pdf_far);
+    NormalAt((r - h) * per_w, cdf_near, pdf_near);
+    value += weight * (cdf_far - cdf_near);
+    d_r += weight * (pdf_far - pdf_near) * per_w;
+    const Four square = (r * r + radius * radius) * (0.5 * per_w * per_w);
+    const Four product = r * (h * per_w * per_w);
+    const Four nearest = square - product;
+    const Four farthest = square + product;
+    Four at_near, at_far;
+    ExpOfMinus(nearest < kMost ? nearest : kMost, at_near);
+    ExpOfMinus(farthest < kMost ? farthest : kMost, at_far);
+    d_radius +=
+        (at_near + at_far) * (nodes.weight[k] * 0.5 * radius * per_w * per_w);
+  }
+  FourAt(&table.value[i]) = value;
+  FourAt(&table.d_r[i]) = d_r;
+  FourAt(&table.d_radius[i]) = d_radius;
+}
+
+void AddSmallDisc(const Place& place, const SmallDiscTable& table,
+                  const double* x, const double* y, CoverBlock& out) {
+  Distances at;
+  Measure(place, x, y, at);
   for (std::size_t i = 0; i < kBlock; i += 4) {
     FourOfDisc disc;
     for (std::size_t l = 0; l < 4; ++l) {
-      disc.dx[l] = x[i + l] - place.x_px;
-      disc.dy[l] = y[i + l] - place.y_px;
-      const double r =
-          std::sqrt(disc.dx[l] * disc.dx[l] + disc.dy[l] * disc.dy[l]);
-      const DiscProfile p = SmallDisc(r, place.long_px, place.w_px);
-      disc.outwards[l] = -p.d_r / (r + kAtCentre_px);
+      const SmallDiscTable::Profile p = table.At(at.r[i + l]);
+      disc.outwards[l] = -p.d_r / (at.r[i + l] + kAtCentre_px);
       disc.value[l] = p.value;
       disc.d_radius[l] = p.d_radius;
-      disc.d_w[l] = p.d_w;
+      disc.d_w[l] =
+          -(at.r[i + l] * p.d_r + place.long_px * p.d_radius) / place.w_px;
     }
+    disc.dx = FourAt(&at.dx[i]);
+    disc.dy = FourAt(&at.dy[i]);
     AddDisc(place, disc, i, out);
   }
 }
@@ -271,8 +303,42 @@ void Smear::Set(double blur_px, double open, bool resolved) {
   place_blur_px_ = std::sqrt(blur_px * blur_px + step * step / 12.0);
 }
 
+SmallDiscTable::SmallDiscTable(double radius_px, double w_px)
+    : per_step_(kPerBlur / w_px) {
+  for (std::size_t i = 0; i < kCount; ++i) {
+    columns_.r[i] = static_cast<double>(i) / per_step_;
+  }
+  for (std::size_t i = 0; i < kCount; i += 4) {
+    SmallDisc(radius_px, w_px, Nodes(), columns_, i);
+  }
+}
+
+SmallDiscTable::Profile SmallDiscTable::At(double r_px) const {
+  const double at = r_px * per_step_;
+  if (!(at < static_cast<double>(kCount - 1))) return {};
+  const auto i = static_cast<std::size_t>(at);
+  const double t = at - static_cast<double>(i);
+  const auto between = [&](const std::array<double, kCount>& column) {
+    return column[i] + t * (column[i + 1] - column[i]);
+  };
+  // The value by cubics that have the slopes of both ends.
+  const double low = columns_.value[i];
+  const double rise = columns_.value[i + 1] - low;
+  const double begin = columns_.d_r[i] / per_step_;
+  const double end = columns_.d_r[i + 1] / per_step_;
+  return {low + t * (begin + t * (3.0 * rise - 2.0 * begin - end +
+                                  t * (begin + end - 2.0 * rise))),
+          between(columns_.d_r), between(columns_.d_radius)};
+}
+
 OutlineImage::OutlineImage(const Outline& outline, const Smear& smear)
-    : outline_(outline), smear_(smear) {}
+    : outline_(outline), smear_(smear) {
+  constexpr double kSeriesFrom = 4.0;  // R/w; the series is good to 3e-4
+  if (outline.kind == core::BodyKind::kSphere &&
+      outline.radius_px < kSeriesFrom * smear.place_blur_px_) {
+    small_.emplace(outline.radius_px, smear.place_blur_px_);
+  }
+}
 
 void OutlineImage::Cover(const double* x, const double* y,
                          CoverBlock& out) const {
@@ -288,16 +354,14 @@ void OutlineImage::Cover(const double* x, const double* y,
   const int places = smear_.places_;
   const double share = 1.0 / places;
   place.w_px = smear_.place_blur_px_;
-  constexpr double kSeriesFrom = 4.0;  // R/w; the series is good to 3e-4
-  const bool small = sphere && place.long_px < kSeriesFrom * place.w_px;
   for (int i = 0; i < places; ++i) {
     const double s = places == 1 ? 0.0 : (i + 0.5) * share - 0.5;
     place.d_open_x = s * smear_.travel_px_.x_px;
     place.d_open_y = s * smear_.travel_px_.y_px;
     place.x_px = outline_.centre.x_px + smear_.open_ * place.d_open_x;
     place.y_px = outline_.centre.y_px + smear_.open_ * place.d_open_y;
-    if (small) {
-      AddSmallDisc(place, x, y, out);
+    if (small_) {
+      AddSmallDisc(place, *small_, x, y, out);
     } else if (sphere) {
       AddLargeDisc(place, x, y, out);
     } else {

@@ -98,6 +98,12 @@ double Area(const Outline& o) {
 
 bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
                          double cosine, double sine, double full_scale_dn) {
+  const auto end =
+      pixels.value.begin() + static_cast<std::ptrdiff_t>(pixels.size);
+  if (std::none_of(pixels.value.begin(), end,
+                   [&](double value) { return value >= full_scale_dn; })) {
+    return false;
+  }
   constexpr double kClear_px = 2.0;
   double outside = 0.0;
   double full = 0.0;
@@ -117,6 +123,11 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
                                           double cosine, double sine,
                                           double clear_px) {
   std::vector<core::PixelPoint> unexplained;
+  constexpr std::size_t kLeast = 4;
+  const auto beyond = std::count_if(
+      residuals.begin(), residuals.end(),
+      [cut](double residual) { return std::abs(residual) > cut; });
+  if (beyond < static_cast<std::ptrdiff_t>(kLeast)) return unexplained;
   std::size_t inside = 0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const core::PixelPoint p = {pixels.x[i], pixels.y[i]};
@@ -125,13 +136,53 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
     if (std::abs(residuals[i]) > cut) unexplained.push_back(p);
   }
   constexpr double kLeastShare = 0.02;
-  constexpr std::size_t kLeast = 4;
   const auto least = std::max(
       kLeast,
       static_cast<std::size_t>(kLeastShare * static_cast<double>(inside)));
   if (unexplained.size() < least) unexplained.clear();
   return unexplained;
 }
+
+namespace {
+
+// Half the width of a disc's row at distance dy from its centre; negative where
+// it has none.
+double HalfWidth(double radius, double dy) {
+  if (!(radius > std::abs(dy))) return -1.0;
+  return std::sqrt(radius * radius - dy * dy);
+}
+
+class Collector {
+ public:
+  Collector(const core::Frame& frame, const Background& background,
+            const UsablePart& usable, bool known_background,
+            OutlinePixels& pixels)
+      : frame_(frame),
+        background_(background),
+        usable_(usable),
+        ask_known_(known_background && !background.unknown.empty()),
+        pixels_(pixels) {}
+
+  void Take(std::int32_t x, std::int32_t y) {
+    if (!usable_.Holds(x, y)) return;
+    if (ask_known_ && !background_.known_at(x, y)) return;
+    pixels_.Add(x, y, frame_.at(x - frame_.origin_x_px, y - frame_.origin_y_px),
+                static_cast<double>(background_.at(x, y)));
+  }
+
+ private:
+  const core::Frame& frame_;
+  const Background& background_;
+  const UsablePart& usable_;
+  bool ask_known_;
+  OutlinePixels& pixels_;
+};
+
+// Deep inside a large body there is only the shading to learn: every third
+// pixel.
+bool IsLeftOut(std::int32_t x, std::int32_t y) { return (x + y) % 3 != 0; }
+
+}  // namespace
 
 void CollectOutlinePixels(const core::Frame& frame,
                           const Background& background, const Outline& outline,
@@ -140,29 +191,43 @@ void CollectOutlinePixels(const core::Frame& frame,
   const double margin = band.margin_px;
   const bool large = SmallestHalf(outline) > 2.0 * margin;
   const double reach = Extent(outline) + margin;
-  const auto x0 = std::max<std::int32_t>(
-      frame.origin_x_px,
-      static_cast<std::int32_t>(std::ceil(outline.centre.x_px - reach)));
-  const auto y0 = std::max<std::int32_t>(
-      frame.origin_y_px,
-      static_cast<std::int32_t>(std::ceil(outline.centre.y_px - reach)));
-  const auto x1 = std::min<std::int32_t>(
-      frame.origin_x_px + frame.width_px - 1,
-      static_cast<std::int32_t>(std::floor(outline.centre.x_px + reach)));
-  const auto y1 = std::min<std::int32_t>(
-      frame.origin_y_px + frame.height_px - 1,
-      static_cast<std::int32_t>(std::floor(outline.centre.y_px + reach)));
-  pixels.Clear();
+  const core::PixelPoint& centre = outline.centre;
+  const auto first = [](double at, std::int32_t least) {
+    return std::max(least, static_cast<std::int32_t>(std::ceil(at)));
+  };
+  const auto last = [](double at, std::int32_t most) {
+    return std::min(most, static_cast<std::int32_t>(std::floor(at)));
+  };
+  const std::int32_t left = frame.origin_x_px;
+  const std::int32_t right = frame.origin_x_px + frame.width_px - 1;
+  const std::int32_t x0 = first(centre.x_px - reach, left);
+  const std::int32_t x1 = last(centre.x_px + reach, right);
+  const std::int32_t y0 = first(centre.y_px - reach, frame.origin_y_px);
+  const std::int32_t y1 =
+      last(centre.y_px + reach, frame.origin_y_px + frame.height_px - 1);
+  pixels.Clear(static_cast<std::size_t>(std::max(0, x1 - x0 + 1)) *
+               static_cast<std::size_t>(std::max(0, y1 - y0 + 1)));
+  Collector collector(frame, background, usable, band.known_background, pixels);
   for (std::int32_t y = y0; y <= y1; ++y) {
+    if (outline.kind == core::BodyKind::kSphere) {
+      const double dy = y - centre.y_px;
+      const double radius = outline.radius_px;
+      const double outer = HalfWidth(radius + margin, dy);
+      const double thin = large ? HalfWidth(radius - margin, dy) : -1.0;
+      const double inner = HalfWidth(radius - band.inner_px, dy);
+      const std::int32_t end = last(centre.x_px + outer, right);
+      for (std::int32_t x = first(centre.x_px - outer, left); x <= end; ++x) {
+        const double dx = std::abs(x - centre.x_px);
+        if (dx < inner || (dx < thin && IsLeftOut(x, y))) continue;
+        collector.Take(x, y);
+      }
+      continue;
+    }
     for (std::int32_t x = x0; x <= x1; ++x) {
-      if (!usable.Holds(x, y)) continue;
-      if (band.known_background && !background.known_at(x, y)) continue;
       const double depth = Depth(outline, x, y, cosine, sine);
       if (depth < -margin || depth > band.inner_px) continue;
-      // Deep inside there is only the shading to learn: every third pixel.
-      if (large && depth > margin && (x + y) % 3 != 0) continue;
-      pixels.Add(x, y, frame.at(x - frame.origin_x_px, y - frame.origin_y_px),
-                 static_cast<double>(background.at(x, y)));
+      if (large && depth > margin && IsLeftOut(x, y)) continue;
+      collector.Take(x, y);
     }
   }
   pixels.Finish(background.noise_floor_dn2, background.noise_slope_dn,

@@ -16,33 +16,26 @@ double SumOf(const std::array<double, kCount>& lanes) {
 
 }  // namespace
 
-void OutlinePixels::Clear() {
+void OutlinePixels::Clear(std::size_t room) {
   size = 0;
+  if (x.size() >= room + kBlock) return;
   for (auto* const column : {&x, &y, &value, &background, &per_noise}) {
-    column->clear();
+    column->resize(room + kBlock);
   }
 }
 
-void OutlinePixels::Add(double x_px, double y_px, double value_dn,
-                        double background_dn) {
-  x.push_back(x_px);
-  y.push_back(y_px);
-  value.push_back(value_dn);
-  background.push_back(background_dn);
-}
-
-void OutlinePixels::Finish(double floor_dn2, double slope_dn, double least) {
-  size = x.size();
-  const std::size_t padded = (size + kBlock - 1) / kBlock * kBlock;
-  per_noise.resize(padded);
+void OutlinePixels::Finish(double floor_dn2, double slope_dn,
+                           double least_dn2) {
   for (std::size_t i = 0; i < size; ++i) {
-    per_noise[i] =
-        1.0 / std::sqrt(std::max(least, floor_dn2 + slope_dn * value[i]));
+    const double variance = floor_dn2 + slope_dn * value[i];
+    per_noise[i] = 1.0 / std::sqrt(variance > least_dn2 ? variance : least_dn2);
   }
-  std::fill(per_noise.begin() + static_cast<std::ptrdiff_t>(size),
-            per_noise.end(), 0.0);
-  for (auto* const column : {&x, &y, &value, &background}) {
-    column->resize(padded, size == 0 ? 0.0 : column->back());
+  for (std::size_t i = size; i < padded(); ++i) {
+    x[i] = x[size - 1];
+    y[i] = y[size - 1];
+    value[i] = value[size - 1];
+    background[i] = background[size - 1];
+    per_noise[i] = 0.0;
   }
 }
 
@@ -235,9 +228,9 @@ void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
   }
   totals_.cost = totals_.weights = totals_.inliers = {};
   totals_.square = totals_.contrast = totals_.contrast_weight = {};
-  residuals.resize(pixels.x.size());
+  residuals.resize(pixels.padded());
   CoverBlock cover;
-  for (std::size_t begin = 0; begin < pixels.x.size(); begin += kBlock) {
+  for (std::size_t begin = 0; begin < pixels.padded(); begin += kBlock) {
     image.Cover(&pixels.x[begin], &pixels.y[begin], cover);
     const OutlineBlock block = {&pixels.value[begin], &pixels.background[begin],
                                 &pixels.per_noise[begin], &residuals[begin]};

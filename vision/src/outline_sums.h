@@ -11,7 +11,8 @@
 
 namespace touchdown::vision {
 
-// The pixels of a fit, column by column, each padded to whole blocks.
+// The pixels of a fit, column by column, padded to whole blocks. Columns may be
+// longer than that.
 struct OutlinePixels {
   std::size_t size = 0;  // without the padding
   std::vector<double> x;
@@ -20,11 +21,19 @@ struct OutlinePixels {
   std::vector<double> background;  // DN
   std::vector<double> per_noise;   // 1/DN; 0: padding
 
-  void Clear();
-  void Add(double x_px, double y_px, double value_dn, double background_dn);
-  // When all are there. `read` and `shot`: the noise's variance is read^2 +
-  // shot * value, at least `least`.
-  void Finish(double read2, double shot, double least);
+  std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
+  // None yet, and room for so many.
+  void Clear(std::size_t room);
+  void Add(double x_px, double y_px, double value_dn, double background_dn) {
+    x[size] = x_px;
+    y[size] = y_px;
+    value[size] = value_dn;
+    background[size] = background_dn;
+    ++size;
+  }
+  // When all are there. The noise's variance is floor + slope * value, at least
+  // `least`.
+  void Finish(double floor_dn2, double slope_dn, double least_dn2);
 };
 
 // What stands in the normal equations' columns, in this order: up to seven
