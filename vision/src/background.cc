@@ -31,6 +31,8 @@ struct Samples {
 };
 
 void AddSample(Clip& clip, std::int64_t index, Samples& samples) {
+  const ClipInfo& info = clip.info();
+  clip.WillRead(index, {0, 0, info.width_px, info.height_px});
   core::Frame frame = clip.Read(index);
   if (!clip.views_last()) {
     samples.copies.emplace_back(frame);
@@ -179,11 +181,12 @@ std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
 // neighbouring samples' differences, with a correction for whole numbers.
 void EstimateNoise(const Samples& samples, Background& background) {
   constexpr std::size_t kBins = 24;
-  constexpr std::size_t kPixelsWanted = 40000;  // enough for 1 % of sigma
+  constexpr std::size_t kWanted = 160'000;  // differences: 1 % of sigma a bin
   constexpr std::size_t kMinimumPerBin = 200;
   if (samples.size() < 2) return;
   const std::size_t pixels = background.level.size();
-  const std::size_t step = std::max<std::size_t>(1, pixels / kPixelsWanted);
+  const std::size_t step =
+      std::max<std::size_t>(1, pixels * (samples.size() / 2) / kWanted);
   float low = background.level[0];
   float high = low;
   for (std::size_t i = 0; i < pixels; i += step) {

@@ -43,6 +43,12 @@ class Watcher {
     }
   }
 
+  // Where a clip can be glimpsed at, whether frame `index` may show anything.
+  bool CanGlimpse() const { return scout_ && clip_.windows_are_cheap(); }
+  bool Glimpse(std::int64_t index, int phase) const {
+    return scout_->Glimpse(clip_, index, phase);
+  }
+
   // The blobs of frame `index`, and its time where there are any.
   std::vector<Blob> Look(std::int64_t index, double& time_s) {
     if (!scout_) {
@@ -54,9 +60,7 @@ class Watcher {
     if (const Changes* known = clip_.ChangesIn(index)) {
       changes = *known;
     } else {
-      const core::Frame frame = clip_.Read(index);
-      time_s = frame.time_s;
-      changes = scout_->Look(frame);
+      changes = scout_->Look(clip_, index);
     }
     DetectOptions detect = detect_;
     detect.noise = changes.noise;
@@ -83,11 +87,42 @@ struct Range {
   std::int64_t last = 0;
 };
 
+// Which of every `step`-th frame of the range are worth a look: those within
+// four glimpses of one that saw anything. All, where none did.
+std::vector<bool> WorthALook(const Watcher& watcher, const Range& range,
+                             std::int64_t step, std::int64_t first_looks) {
+  const auto count =
+      static_cast<std::size_t>((range.last - range.first + step - 1) / step);
+  std::vector<bool> worth(count, true);
+  if (!watcher.CanGlimpse()) return worth;
+  constexpr std::int64_t kPhases = 4;
+  constexpr std::int64_t kLargestStep = 32;  // frames
+  const std::int64_t stride =
+      std::clamp((range.last - range.first) / first_looks, step, kLargestStep);
+  std::vector<bool> seen(count, false);
+  for (std::int64_t index = range.first, k = 0; index < range.last;
+       index += stride, ++k) {
+    if (!watcher.Glimpse(index, static_cast<int>(k % kPhases))) continue;
+    const std::int64_t reach = kPhases * stride;
+    const std::int64_t from = std::max<std::int64_t>(
+        0, (index - reach - range.first + step - 1) / step);
+    const auto to = std::min(
+        count,
+        static_cast<std::size_t>((index + reach - range.first) / step) + 1);
+    std::fill(seen.begin() + static_cast<std::ptrdiff_t>(from),
+              seen.begin() + static_cast<std::ptrdiff_t>(to), true);
+  }
+  const bool any =
+      std::any_of(seen.begin(), seen.end(), [](bool s) { return s; });
+  return any ? seen : worth;
+}
+
 // Every `step`-th frame of the range, and its last one. `seen` receives the
-// range in which anything was seen.
+// range in which anything was seen. `first`: nothing is known of it yet.
 Detections DetectIn(Clip& clip, const Background& background,
                     const TrackOptions& options, Detector detector,
-                    const Range& range, std::int64_t step, Range& seen) {
+                    const Range& range, std::int64_t step, bool first,
+                    Range& seen) {
   Watcher watcher(clip, background, options, detector);
   LinkOptions link;
   link.most_missing *= static_cast<int>(step);
@@ -96,7 +131,11 @@ Detections DetectIn(Clip& clip, const Background& background,
   found.last = range.last;
   found.step = step;
   seen = {range.last, range.first};
+  std::vector<bool> worth;  // empty: all are
+  if (first) worth = WorthALook(watcher, range, step, options.first_looks);
   for (std::int64_t index = range.first; index < range.last; index += step) {
+    const auto look = static_cast<std::size_t>((index - range.first) / step);
+    if (!worth.empty() && !worth[look]) continue;
     try {
       double time_s = 0.0;
       const std::vector<Blob> blobs = watcher.Look(index, time_s);
@@ -125,8 +164,8 @@ Detections DetectIn(Clip& clip, const Background& background,
 // True if so few looks follow the body's path: between two of them it moves so
 // far that what lies between is no good start, or there are few of them.
 bool TooCoarse(const Chain& chain) {
-  constexpr std::size_t kEnough = 96;  // links
-  constexpr double kMostMotion = 0.5;  // of the size, in one step
+  constexpr std::size_t kEnough = 48;  // links
+  constexpr double kMostMotion = 0.6;  // of the size, in one step
   if (chain.links.size() < kEnough) return true;
   std::vector<double> moved;
   for (std::size_t i = 1; i < chain.links.size(); ++i) {
@@ -153,7 +192,7 @@ Detections Detect(Clip& clip, const Background& background,
   Range range{options.first, last};
   Range seen;
   Detections found =
-      DetectIn(clip, background, options, detector, range, step, seen);
+      DetectIn(clip, background, options, detector, range, step, true, seen);
   while (step > 1 &&
          (found.chains.empty() || TooCoarse(found.chains.front()))) {
     if (seen.last > seen.first) {
@@ -162,7 +201,7 @@ Detections Detect(Clip& clip, const Background& background,
     }
     step /= 2;
     Detections closer =
-        DetectIn(clip, background, options, detector, range, step, seen);
+        DetectIn(clip, background, options, detector, range, step, false, seen);
     closer.last = std::min(
         found.last, closer.last == range.last ? found.last : closer.last);
     if (closer.warning.empty()) closer.warning = found.warning;

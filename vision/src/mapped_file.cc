@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -53,6 +54,19 @@ MappedFile::~MappedFile() {
     ::munmap(const_cast<std::byte*>(data_),
              static_cast<std::size_t>(size_bytes_));
   }
+}
+
+void MappedFile::WillRead(std::int64_t begin, std::int64_t end) const {
+#ifdef MADV_POPULATE_READ
+  // A fault costs some 20 us where machines are virtual, a page got in advance
+  // a tenth of that. An older kernel refuses; nothing is lost.
+  static const std::int64_t page = ::sysconf(_SC_PAGESIZE);
+  begin = std::max<std::int64_t>(begin, 0) / page * page;
+  end = std::min(end, size_bytes_);
+  if (begin >= end) return;
+  ::madvise(const_cast<std::byte*>(data_) + begin,
+            static_cast<std::size_t>(end - begin), MADV_POPULATE_READ);
+#endif
 }
 
 }  // namespace touchdown::vision

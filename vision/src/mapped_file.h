@@ -22,6 +22,9 @@ class MappedFile {
   const std::byte* data() const { return data_; }
   std::int64_t size_bytes() const { return size_bytes_; }
 
+  // A hint: bytes [begin, end) are going to be used.
+  void WillRead(std::int64_t begin, std::int64_t end) const;
+
  private:
   const std::byte* data_ = nullptr;  // null if the file is empty
   std::int64_t size_bytes_ = 0;

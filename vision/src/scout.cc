@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "lanes.h"
+
 namespace touchdown::vision {
 namespace {
 
@@ -15,19 +17,33 @@ constexpr std::int32_t kSegment_px = 8;
 constexpr std::int32_t kRowStep_px = 4;
 constexpr std::int32_t kFirstRow_px = 2;  // rows 2, 6, 10, ...
 
-// Sum of eight bytes: pairs, then all four by one product.
-std::uint32_t SumOf(const std::uint8_t* samples) {
+// How far the sums of eight samples of a row are off those of the still
+// picture, in standard deviations.
+TOUCHDOWN_WIDEST
+void OffInRow(const std::uint8_t* __restrict row, std::size_t count,
+              const float* __restrict sum, const float* __restrict per_u,
+              float* __restrict off) {
   constexpr std::uint64_t kEven = 0x00FF00FF00FF00FFULL;
-  std::uint64_t eight = 0;
-  std::memcpy(&eight, samples, sizeof eight);
-  const std::uint64_t pairs = (eight & kEven) + (eight >> 8 & kEven);
-  return static_cast<std::uint32_t>(pairs * 0x0001000100010001ULL >> 48);
+  for (std::size_t s = 0; s < count; ++s) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, row + s * kSegment_px, sizeof eight);
+    std::uint64_t sums = (eight & kEven) + (eight >> 8 & kEven);
+    sums += sums >> 32;
+    sums += sums >> 16;
+    const auto all = static_cast<std::int32_t>(sums & 0xFFFF);
+    off[s] = std::abs(static_cast<float>(all) - sum[s]) * per_u[s];
+  }
 }
 
-std::uint32_t SumOf(const std::uint16_t* samples) {
-  std::uint32_t sum = 0;
-  for (int i = 0; i < kSegment_px; ++i) sum += samples[i];
-  return sum;
+TOUCHDOWN_WIDEST
+void OffInRow(const std::uint16_t* __restrict row, std::size_t count,
+              const float* __restrict sum, const float* __restrict per_u,
+              float* __restrict off) {
+  for (std::size_t s = 0; s < count; ++s) {
+    std::int32_t all = 0;
+    for (int i = 0; i < kSegment_px; ++i) all += row[s * kSegment_px + i];
+    off[s] = std::abs(static_cast<float>(all) - sum[s]) * per_u[s];
+  }
 }
 
 bool Meet(const core::PixelRect& a, const core::PixelRect& b) {
@@ -92,73 +108,156 @@ Scout::Scout(const Background& still, const ScoutOptions& options)
       }
       const double u =
           std::sqrt(kSegment_px * still.Variance(sum / kSegment_px));
-      still_.push_back({static_cast<float>(sum), static_cast<float>(1.0 / u)});
+      sum_.push_back(static_cast<float>(sum));
+      per_u_.push_back(static_cast<float>(1.0 / u));
     }
   }
 }
 
-// How far a sum is off the still picture's, in standard deviations.
-template <class Sample>
-float Scout::Off(const Sample* samples, const Segment& still) const {
-  return std::abs(static_cast<float>(SumOf(samples)) - still.sum) *
-         still.one_over_u;
-}
-
 // 1, or more where the differences are larger than the still picture's noise:
-// flicker, or noise that neighbours share (compression). `off`: of every
-// `step`-th sum. The median, and the median over parts of the picture of the
-// 98 % point, which a body in a few of the parts does not change.
-Scout::Noise Scout::NoiseOf(std::vector<float> off, std::size_t step) const {
-  constexpr std::int32_t kParts = 4;  // across and down
+// flicker, or noise that neighbours share (compression). Of every seventh sum:
+// the median, and the median over parts of the picture of the 98 % point, which
+// a body in a few of the parts does not change. Less than a tenth more is not
+// told from 1, so that counting is mostly enough.
+Scout::Noise Scout::NoiseOf(const std::vector<float>& off) const {
+  constexpr std::size_t kStep = 7;
+  constexpr std::size_t kParts = 4;  // across and down
   constexpr double kMedianOfNormal = 0.6745;
   constexpr double kHighOfNormal = 2.3263;
-  const auto all_rows = static_cast<std::int32_t>(
-      still_.size() / static_cast<std::size_t>(std::max(1, segments_)));
-  std::array<std::vector<float>, std::size_t{kParts} * kParts> parts;
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    const auto k = static_cast<std::int32_t>(i * step);
-    parts[static_cast<std::size_t>(k / segments_ * kParts / all_rows * kParts +
-                                   k % segments_ * kParts / segments_)]
-        .push_back(off[i]);
+  constexpr double kHigh = 0.98;
+  constexpr double kTold = 1.1;
+  const std::size_t segments = At(segments_);
+  const std::size_t all_rows = off.size() / std::max<std::size_t>(1, segments);
+  std::array<std::vector<float>, kParts * kParts> parts;
+  std::size_t large = 0;
+  std::size_t count = 0;
+  for (std::size_t row = 0, s = 0; row < all_rows; ++row) {
+    const std::size_t down = row * kParts / all_rows * kParts;
+    for (; s < segments; s += kStep) {
+      const float value = off[row * segments + s];
+      parts[down + s * kParts / segments].push_back(value);
+      large += value > static_cast<float>(kTold * kMedianOfNormal);
+      ++count;
+    }
+    s -= segments;
+  }
+  Noise noise;
+  if (count == 0) return noise;
+  if (2 * large >= count) {
+    std::vector<float> some;
+    for (const auto& part : parts) {
+      some.insert(some.end(), part.begin(), part.end());
+    }
+    noise.typical = Quantile(some, 0.5) / kMedianOfNormal;
   }
   std::vector<float> high;
   for (std::vector<float>& part : parts) {
-    if (!part.empty()) high.push_back(static_cast<float>(Quantile(part, 0.98)));
+    if (part.empty()) continue;
+    const auto beyond =
+        std::count_if(part.begin(), part.end(), [](float value) {
+          return value > static_cast<float>(kTold * kHighOfNormal);
+        });
+    const double share =
+        static_cast<double>(beyond) / static_cast<double>(part.size());
+    high.push_back(
+        share < 1.0 - kHigh ? 1.0F : static_cast<float>(Quantile(part, kHigh)));
   }
-  Noise noise;
-  noise.typical = std::max(1.0, Quantile(off, 0.5) / kMedianOfNormal);
   noise.tail = std::max(noise.typical, Quantile(high, 0.5) / kHighOfNormal);
   return noise;
 }
 
-template <class Sample>
-Changes Scout::LookAt(const core::Frame& frame) const {
-  std::vector<float> cells(
-      static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
-      0.0F);
-  constexpr std::size_t kStep = 7;
-  std::vector<float> some;
-  some.reserve(still_.size() / kStep + 1);
-  for (std::size_t k = 0; k < still_.size(); k += kStep) {
-    const auto at = static_cast<std::int32_t>(k);
-    some.push_back(
-        Off(frame.row<Sample>(kFirstRow_px + at / segments_ * kRowStep_px) +
-                std::ptrdiff_t{at % segments_} * kSegment_px,
-            still_[k]));
+// `row_of(y)`: the samples of row y of the picture, valid until the next.
+template <class RowOf>
+std::vector<float> Scout::Off(const Rows& rows, const RowOf& row_of) const {
+  const std::size_t segments = At(segments_);
+  std::vector<float> off;
+  off.reserve(sum_.size() / rows.step + segments);
+  for (std::size_t k = rows.first; k < rows_looked_at(); k += rows.step) {
+    const auto* const row =
+        row_of(kFirstRow_px + static_cast<std::int32_t>(k) * kRowStep_px);
+    off.resize(off.size() + segments);
+    OffInRow(row, segments, &sum_[k * segments], &per_u_[k * segments],
+             &off[off.size() - segments]);
   }
-  const Noise noise = NoiseOf(std::move(some), kStep);
+  return off;
+}
+
+std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
+                              const Rows& rows) const {
+  clip.WillRead(index, {0, 0, width_px_, height_px_});
+  if (clip.views_last()) {
+    const core::Frame frame = clip.Read(index);
+    const auto ahead = static_cast<std::int32_t>(rows.step) * kRowStep_px;
+    const std::size_t bytes = At(width_px_) * (frame.is_16_bit() ? 2 : 1);
+    const auto prefetch = [&](std::int32_t y) {
+      if (y + ahead < height_px_) {
+        Prefetch(frame.data + (y + ahead) * frame.stride_bytes, bytes);
+      }
+    };
+    if (frame.is_16_bit()) {
+      return Off(rows, [&](std::int32_t y) {
+        prefetch(y);
+        return frame.row<std::uint16_t>(y);
+      });
+    }
+    return Off(rows, [&](std::int32_t y) {
+      prefetch(y);
+      return frame.row<std::uint8_t>(y);
+    });
+  }
+  core::Frame row;
+  const auto read = [&](std::int32_t y) {
+    row = clip.Read(index, {0, y, width_px_, 1});
+  };
+  if (clip.info().bit_depth > 8) {
+    return Off(rows, [&](std::int32_t y) {
+      read(y);
+      return row.row<std::uint16_t>(0);
+    });
+  }
+  return Off(rows, [&](std::int32_t y) {
+    read(y);
+    return row.row<std::uint8_t>(0);
+  });
+}
+
+Changes Scout::ChangesOf(const std::vector<float>& off) const {
+  const Noise noise = NoiseOf(off);
   const auto most = static_cast<float>(options_.threshold_sigmas * noise.tail);
-  const Segment* still = still_.data();
-  for (std::int32_t y = kFirstRow_px; y < height_px_; y += kRowStep_px) {
-    const Sample* const row = frame.row<Sample>(y);
-    float* const flags = &cells[static_cast<std::size_t>(y / kCell_px) *
-                                static_cast<std::size_t>(columns_)];
-    for (std::int32_t s = 0; s < segments_; ++s, ++still) {
-      const float off = Off(row + std::ptrdiff_t{s} * kSegment_px, *still);
-      if (off > most) flags[s * kSegment_px / kCell_px] += off;
+  std::vector<float> cells(At(columns_) * At(rows_), 0.0F);
+  const std::size_t segments = At(segments_);
+  for (std::size_t row = 0; row * segments < off.size(); ++row) {
+    const std::size_t y = At(kFirstRow_px) + row * At(kRowStep_px);
+    float* const flags = &cells[y / At(kCell_px) * At(columns_)];
+    for (std::size_t s = 0; s < segments; ++s) {
+      const float value = off[row * segments + s];
+      if (value > most) flags[s * At(kSegment_px) / At(kCell_px)] += value;
     }
   }
   return {Regions(std::move(cells)), noise.typical};
+}
+
+Changes Scout::Look(const core::Frame& frame) const {
+  if (frame.is_16_bit()) {
+    return ChangesOf(Off(
+        Rows{}, [&](std::int32_t y) { return frame.row<std::uint16_t>(y); }));
+  }
+  return ChangesOf(
+      Off(Rows{}, [&](std::int32_t y) { return frame.row<std::uint8_t>(y); }));
+}
+
+Changes Scout::Look(Clip& clip, std::int64_t index) const {
+  return ChangesOf(Off(clip, index, Rows{}));
+}
+
+bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
+  constexpr std::size_t kPhases = 4;
+  const std::vector<float> off =
+      Off(clip, index, {static_cast<std::size_t>(phase) % kPhases, kPhases});
+  const auto most =
+      static_cast<float>(options_.threshold_sigmas * NoiseOf(off).tail);
+  return std::any_of(off.begin(), off.end(),
+                     [most](float value) { return value > most; });
 }
 
 // The boxes of connected cells, with their margin, joined where they meet.
@@ -219,21 +318,14 @@ std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
   return rects;
 }
 
-Changes Scout::Look(const core::Frame& frame) const {
-  return frame.is_16_bit() ? LookAt<std::uint16_t>(frame)
-                           : LookAt<std::uint8_t>(frame);
-}
-
 bool Scout::Differs(const Scout& other) const {
   std::vector<float> off;
-  for (std::size_t k = 0; k < still_.size(); ++k) {
-    off.push_back(std::abs(still_[k].sum - other.still_[k].sum) *
-                  still_[k].one_over_u);
+  for (std::size_t k = 0; k < sum_.size(); ++k) {
+    off.push_back(std::abs(sum_[k] - other.sum_[k]) * per_u_[k]);
   }
-  const double most = options_.threshold_sigmas * NoiseOf(off, 1).tail;
-  std::vector<int> cells(
-      static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
-  for (std::size_t k = 0; k < still_.size(); ++k) {
+  const double most = options_.threshold_sigmas * NoiseOf(off).tail;
+  std::vector<int> cells(At(columns_) * At(rows_), 0);
+  for (std::size_t k = 0; k < sum_.size(); ++k) {
     if (static_cast<double>(off[k]) <= most) continue;
     const std::int32_t x =
         static_cast<std::int32_t>(k) % segments_ * kSegment_px;

@@ -39,25 +39,35 @@ class Scout {
 
   // `frame` is a whole picture. The strongest regions come first.
   Changes Look(const core::Frame& frame) const;
+  // The same of frame `index`, of which only the rows looked at are read.
+  Changes Look(Clip& clip, std::int64_t index) const;
+
+  // Whether anything differs on every sixteenth row, beginning with another one
+  // for each `phase`, 0 to 3: four glimpses see what a look sees.
+  bool Glimpse(Clip& clip, std::int64_t index, int phase) const;
 
   // True if two still pictures differ anywhere, by as much and by more than
   // here and there, but for what is always among the regions.
   bool Differs(const Scout& other) const;
 
  private:
-  struct Segment {
-    float sum = 0.0F;         // of the still picture's eight samples
-    float one_over_u = 0.0F;  // one over the standard deviation of a frame's
-  };
   struct Noise {
     double typical = 1.0;  // Changes::noise
     double tail = 1.0;     // as many times as large are rare differences
   };
-  Noise NoiseOf(std::vector<float> off, std::size_t step) const;
-  template <class Sample>
-  Changes LookAt(const core::Frame& frame) const;
-  template <class Sample>
-  float Off(const Sample* samples, const Segment& still) const;
+  // Rows first, first + step, ... of those looked at.
+  struct Rows {
+    std::size_t first = 0;
+    std::size_t step = 1;
+  };
+  std::size_t rows_looked_at() const { return sum_.size() / At(segments_); }
+  static std::size_t At(std::int32_t i) { return static_cast<std::size_t>(i); }
+  Noise NoiseOf(const std::vector<float>& off) const;
+  Changes ChangesOf(const std::vector<float>& off) const;
+  template <class RowOf>
+  std::vector<float> Off(const Rows& rows, const RowOf& row_of) const;
+  std::vector<float> Off(Clip& clip, std::int64_t index,
+                         const Rows& rows) const;
   std::vector<core::PixelRect> Regions(std::vector<float> cells) const;
 
   ScoutOptions options_;
@@ -65,8 +75,11 @@ class Scout {
   std::int32_t height_px_;
   std::int32_t columns_;  // of cells
   std::int32_t rows_;
-  std::int32_t segments_;       // in a row of the picture
-  std::vector<Segment> still_;  // (looked-at rows, segments_)
+  std::int32_t segments_;  // in a row of the picture
+  // (looked-at rows, segments_): of the still picture's eight samples, and one
+  // over the standard deviation of a frame's.
+  std::vector<float> sum_;
+  std::vector<float> per_u_;
 };
 
 }  // namespace touchdown::vision

@@ -103,6 +103,15 @@ class Clip {
   // True: the views that Read returns stay valid as long as the clip.
   virtual bool views_last() const { return false; }
 
+  // True: a window costs what its own samples cost, and nothing else of the
+  // frame is touched.
+  virtual bool windows_are_cheap() const { return false; }
+
+  // A hint, before many samples of a window are used: a mapped file's pages
+  // are then got at once, not one by one as they are touched.
+  virtual void WillRead(std::int64_t /*index*/,
+                        const core::PixelRect& /*window*/) {}
+
   // The last frame up to `index` from which reading can begin: itself where
   // each frame is stored alone, else a key frame.
   virtual std::int64_t EntryFrame(std::int64_t index) const { return index; }

@@ -35,9 +35,11 @@ struct TrackOptions {
 
   // About so many frames of a long clip are looked at to find the body's stay,
   // at the least every eighth; what is shorter is looked at in every frame.
-  // More cost time; a body that is in view for fewer than eight frames is
-  // found at a second look, in every frame, only if nothing else was seen.
-  std::int64_t first_looks = 250;
+  // Of raw clips some rows of as many frames, at the least every 32nd, are
+  // glimpsed at first. More cost time; a body that is in view for fewer than
+  // eight frames (32 of a raw clip) is found at a second look only if nothing
+  // else was seen, or something near it in time.
+  std::int64_t first_looks = 125;
 
   int threads = 0;  // 0: one for each core; affects speed only
 
