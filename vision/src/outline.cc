@@ -295,7 +295,7 @@ std::string Fitter::Iterate(int& iterations) {
     }
     // Follow the body with the set of pixels while it still moves; at first
     // closely, so that what is fitted to does not depend on the start.
-    constexpr double kSamePlace_px = 0.02;
+    constexpr double kSamePlace_px = 0.003;
     const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
                                     outline_.centre.y_px - collected.y_px);
     const double spread = std::abs(blur_ - collected_blur);

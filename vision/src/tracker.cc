@@ -56,9 +56,6 @@ std::string FitBetween(Clip& clip, const Background& background,
   fit_options.surround =
       track.known_background ? Surround::kBackground : Surround::kPolynomial;
   fit_options.blur_px = track.body.blur_px;
-  // Where to start from, for Refine.
-  constexpr double kStart_px = 0.01;
-  fit_options.tolerance_px = kStart_px;
   Stretch stretch;
   stretch.first = std::max(options.first, track.poses.front().frame - step + 1);
   stretch.last =
