@@ -10,38 +10,35 @@
 #include <limits>
 #include <stdexcept>
 
-#include "kept_pixels.h"
+#include "frame_samples.h"
 #include "mid_mean.h"
 #include "parallel.h"
 
 namespace touchdown::vision {
 namespace {
 
-// Sampled frames: views of the clip's own memory where they last, else copies.
-struct Samples {
-  std::vector<core::Frame> frames;
-  std::vector<KeptPixels> copies;
+// The picture is worked on in bands of so many rows: those of all samples stay
+// in a processor's own cache.
+constexpr std::int32_t kBandRows = 8;
 
-  std::size_t size() const { return frames.size(); }
-  std::uint32_t At(std::size_t k, std::size_t pixel) const {
-    const auto width = static_cast<std::size_t>(frames[k].width_px);
-    return frames[k].at(static_cast<std::int32_t>(pixel % width),
-                        static_cast<std::int32_t>(pixel / width));
+// Neighbouring samples' values at every `step`-th pixel, for the noise.
+struct NoisePairs {
+  std::size_t step = 1;               // pixels
+  std::size_t per_pixel = 0;          // pairs
+  std::vector<std::uint16_t> values;  // of pixel, pair, sample
+
+  NoisePairs(std::size_t pixels, std::size_t samples) {
+    constexpr std::size_t kWanted = 160'000;  // pairs: 1 % of sigma a bin
+    per_pixel = samples / 2;
+    step = std::max<std::size_t>(1, pixels * per_pixel / kWanted);
+    values.resize((pixels + step - 1) / step * per_pixel * 2);
+  }
+  std::uint16_t* At(std::size_t pixel) {
+    return &values[pixel / step * per_pixel * 2];
   }
 };
 
-void AddSample(Clip& clip, std::int64_t index, Samples& samples) {
-  const ClipInfo& info = clip.info();
-  clip.WillRead(index, {0, 0, info.width_px, info.height_px});
-  core::Frame frame = clip.Read(index);
-  if (!clip.views_last()) {
-    samples.copies.emplace_back(frame);
-    frame = samples.copies.back().View();
-  }
-  samples.frames.push_back(frame);
-}
-
-// Row `y` of sample k from column `x` on, up to kLanes of it.
+// Row `y` of a window from its column `x` on, up to kLanes of it.
 template <class Sample>
 void LoadLanes(const core::Frame& frame, std::int32_t x, std::int32_t y,
                Sample* lanes) {
@@ -52,43 +49,61 @@ void LoadLanes(const core::Frame& frame, std::int32_t x, std::int32_t y,
 
 // The mid-mean of all samples, into rows [begin, end) of `level`.
 template <class Sample>
-void MidMeanOfRows(const Samples& samples, const SortingNetwork& network,
-                   std::int64_t begin, std::int64_t end, float* level) {
-  const std::size_t n = samples.size();
+void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
+                   std::size_t n, std::int32_t width, std::int64_t begin,
+                   std::int64_t end, float* level, NoisePairs& pairs) {
   const std::size_t cut = MidBegin(n);
-  const std::int32_t width = samples.frames.front().width_px;
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::uint32_t, kLanes> sums{};
-  for (std::int64_t y = begin; y < end; ++y) {
-    for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
-      for (std::size_t k = 0; k < n; ++k) {
-        LoadLanes(samples.frames[k], x, static_cast<std::int32_t>(y),
-                  &lanes[k * kLanes]);
+  for (auto top = static_cast<std::int32_t>(begin); top < end;
+       top += kBandRows) {
+    const std::int32_t rows =
+        std::min(kBandRows, static_cast<std::int32_t>(end) - top);
+    const std::vector<core::Frame>& windows =
+        reader.Read({0, top, width, rows});
+    for (std::int32_t y = 0; y < rows; ++y) {
+      float* const out = level + static_cast<std::ptrdiff_t>(top + y) * width;
+      for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
+        for (std::size_t k = 0; k < n; ++k) {
+          LoadLanes(windows[k], x, y, &lanes[k * kLanes]);
+        }
+        network.Sort(lanes.data());
+        sums.fill(0);
+        for (std::size_t k = cut; k < n - cut; ++k) {
+          const Sample* const row = &lanes[k * kLanes];
+          for (std::size_t i = 0; i < kLanes; ++i) sums[i] += row[i];
+        }
+        const auto count =
+            std::min<std::size_t>(kLanes, static_cast<std::size_t>(width - x));
+        for (std::size_t i = 0; i < count; ++i) {
+          out[x + static_cast<std::int32_t>(i)] = static_cast<float>(
+              static_cast<double>(sums[i]) / static_cast<double>(n - 2 * cut));
+        }
       }
-      network.Sort(lanes.data());
-      sums.fill(0);
-      for (std::size_t k = cut; k < n - cut; ++k) {
-        const Sample* const row = &lanes[k * kLanes];
-        for (std::size_t i = 0; i < kLanes; ++i) sums[i] += row[i];
-      }
-      const auto count =
-          std::min<std::size_t>(kLanes, static_cast<std::size_t>(width - x));
-      float* const out = level + y * width + x;
-      for (std::size_t i = 0; i < count; ++i) {
-        out[i] = static_cast<float>(static_cast<double>(sums[i]) /
-                                    static_cast<double>(n - 2 * cut));
+      const std::size_t first =
+          static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width);
+      const std::size_t last = first + static_cast<std::size_t>(width);
+      for (std::size_t i = (first + pairs.step - 1) / pairs.step * pairs.step;
+           i < last; i += pairs.step) {
+        std::uint16_t* const values = pairs.At(i);
+        for (std::size_t k = 0; k < 2 * pairs.per_pixel; ++k) {
+          values[k] = windows[k].row<Sample>(y)[i - first];
+        }
       }
     }
   }
 }
 
 template <class Sample>
-void MidMeanOf(const Samples& samples, int threads, std::vector<float>& level) {
+void MidMeanOf(const FrameSamples& samples, int threads, Background& background,
+               NoisePairs& pairs) {
   const SortingNetwork network(samples.size(), SortingNetwork::Order::kMiddle);
-  InParallel(samples.frames.front().height_px, threads,
+  InParallel(background.height_px, samples.Threads(threads),
              [&](std::int64_t begin, std::int64_t end) {
-               MidMeanOfRows<Sample>(samples, network, begin, end,
-                                     level.data());
+               FrameSamples::Reader reader(samples);
+               MidMeanOfRows<Sample>(reader, network, samples.size(),
+                                     background.width_px, begin, end,
+                                     background.level.data(), pairs);
              });
 }
 
@@ -113,24 +128,37 @@ struct Covers {
 // they change nothing in the middle. Returns the most that any pixel is
 // covered.
 template <class Sample>
-std::size_t MidMeanBehind(const Samples& samples, const Covers& covers,
+std::size_t MidMeanBehind(const FrameSamples& samples, const Covers& covers,
                           Background& background) {
   // Fewer samples than this are no background: noise, or the body's rim.
   constexpr std::size_t kLeastSamples = 3;
   const std::size_t n = samples.size();
   const SortingNetwork network(n, SortingNetwork::Order::kFull);
+  FrameSamples::Reader reader(samples);
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::size_t, kLanes> low{};   // samples moved below the others
   std::array<std::size_t, kLanes> high{};  // above
   std::size_t most = 0;
-  const std::int32_t width = background.width_px;
   for (std::int32_t y = 0; y < background.height_px; ++y) {
-    for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
+    const std::size_t row = static_cast<std::size_t>(y) *
+                            static_cast<std::size_t>(background.width_px);
+    const auto begin =
+        covers.touched.begin() + static_cast<std::ptrdiff_t>(row);
+    const auto end = begin + background.width_px;
+    const auto left =
+        static_cast<std::int32_t>(std::find(begin, end, 1) - begin);
+    if (left == background.width_px) continue;
+    const auto right = static_cast<std::int32_t>(
+        std::find(std::make_reverse_iterator(end),
+                  std::make_reverse_iterator(begin), 1)
+            .base() -
+        begin);
+    const std::vector<core::Frame>& windows =
+        reader.Read({left, y, right - left, 1});
+    for (std::int32_t x = left; x < right; x += static_cast<int>(kLanes)) {
       const auto count =
-          std::min<std::size_t>(kLanes, static_cast<std::size_t>(width - x));
-      const std::size_t at =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-          static_cast<std::size_t>(x);
+          std::min<std::size_t>(kLanes, static_cast<std::size_t>(right - x));
+      const std::size_t at = row + static_cast<std::size_t>(x);
       const auto* const touched = &covers.touched[at];
       if (std::none_of(touched, touched + count,
                        [](std::uint8_t t) { return t != 0; })) {
@@ -139,12 +167,12 @@ std::size_t MidMeanBehind(const Samples& samples, const Covers& covers,
       low.fill(0);
       high.fill(0);
       for (std::size_t k = 0; k < n; ++k) {
-        Sample* const row = &lanes[k * kLanes];
-        LoadLanes(samples.frames[k], x, y, row);
+        Sample* const samples_k = &lanes[k * kLanes];
+        LoadLanes(windows[k], x - left, 0, samples_k);
         for (std::size_t i = 0; i < count; ++i) {
           if (!covers.Covered(k, x + static_cast<std::int32_t>(i), y)) continue;
           const bool down = low[i] == high[i];
-          row[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
+          samples_k[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
           ++(down ? low : high)[i];
         }
       }
@@ -152,18 +180,18 @@ std::size_t MidMeanBehind(const Samples& samples, const Covers& covers,
       for (std::size_t i = 0; i < count; ++i) {
         if (touched[i] == 0) continue;
         most = std::max(most, low[i] + high[i]);
-        const std::size_t left = n - low[i] - high[i];
-        if (left < kLeastSamples) {
+        const std::size_t uncovered = n - low[i] - high[i];
+        if (uncovered < kLeastSamples) {
           background.unknown[at + i] = 1;
           continue;
         }
-        const std::size_t cut = MidBegin(left);
+        const std::size_t cut = MidBegin(uncovered);
         double sum = 0.0;
-        for (std::size_t k = low[i] + cut; k < low[i] + left - cut; ++k) {
+        for (std::size_t k = low[i] + cut; k < low[i] + uncovered - cut; ++k) {
           sum += lanes[k * kLanes + i];
         }
         background.level[at + i] =
-            static_cast<float>(sum / static_cast<double>(left - 2 * cut));
+            static_cast<float>(sum / static_cast<double>(uncovered - 2 * cut));
       }
     }
   }
@@ -179,34 +207,32 @@ std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
 // Least squares of variance on level over bins of pixels of like level. In each
 // bin the variance is robust: (1.4826 * median |difference|)^2 / 2 of
 // neighbouring samples' differences, with a correction for whole numbers.
-void EstimateNoise(const Samples& samples, Background& background) {
+void EstimateNoise(NoisePairs& pairs, Background& background) {
   constexpr std::size_t kBins = 24;
-  constexpr std::size_t kWanted = 160'000;  // differences: 1 % of sigma a bin
   constexpr std::size_t kMinimumPerBin = 200;
-  if (samples.size() < 2) return;
+  if (pairs.per_pixel == 0) return;
   const std::size_t pixels = background.level.size();
-  const std::size_t step =
-      std::max<std::size_t>(1, pixels * (samples.size() / 2) / kWanted);
   float low = background.level[0];
   float high = low;
-  for (std::size_t i = 0; i < pixels; i += step) {
+  for (std::size_t i = 0; i < pixels; i += pairs.step) {
     low = std::min(low, background.level[i]);
     high = std::max(high, background.level[i]);
   }
   const double width = std::max(1e-6, static_cast<double>(high - low));
   std::array<std::vector<float>, kBins> bins;
-  for (std::size_t k = 0; k + 1 < samples.size(); k += 2) {
-    for (std::size_t i = 0; i < pixels; i += step) {
-      const std::uint32_t a = samples.At(k, i);
+  for (std::size_t i = 0; i < pixels; i += pairs.step) {
+    const auto bin =
+        std::min(kBins - 1,
+                 static_cast<std::size_t>(
+                     (static_cast<double>(background.level[i] - low) / width) *
+                     static_cast<double>(kBins)));
+    const std::uint16_t* const values = pairs.At(i);
+    for (std::size_t k = 0; k < pairs.per_pixel; ++k) {
+      const std::uint16_t a = values[2 * k];
       // A clipped sample has no noise to tell of.
       if (a >= background.full_scale_dn || a == 0) continue;
-      const std::uint32_t b = samples.At(k + 1, i);
-      const auto bin = std::min(
-          kBins - 1,
-          static_cast<std::size_t>(
-              (static_cast<double>(background.level[i] - low) / width) *
-              static_cast<double>(kBins)));
-      bins[bin].push_back(static_cast<float>(a) - static_cast<float>(b));
+      bins[bin].push_back(static_cast<float>(a) -
+                          static_cast<float>(values[2 * k + 1]));
     }
   }
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -270,7 +296,7 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
                                     const Background& fallback,
                                     const BackgroundOptions& options,
                                     double* most_covered) {
-  Samples samples;
+  std::vector<std::int64_t> frames;
   Covers all;
   all.touched.assign(fallback.level.size(), 0);
   for (const std::int64_t index :
@@ -286,21 +312,22 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
       for (std::int32_t x = 0; x < box.width; ++x) touched[x] |= mask[x];
     }
     if (!cover.known) continue;
-    AddSample(clip, index, samples);
+    frames.push_back(index);
     all.of.push_back(std::move(cover));
   }
+  // The noise is the fallback's: a body that passes tells nothing of it.
   Background background = fallback;
-  if (samples.size() < 2) return background;
+  if (frames.size() < 2) return background;
   background.unknown.assign(fallback.level.size(), 0);
+  const FrameSamples samples(clip, frames);
   const std::size_t most =
-      samples.frames.front().is_16_bit()
+      samples.is_16_bit()
           ? MidMeanBehind<std::uint16_t>(samples, all, background)
           : MidMeanBehind<std::uint8_t>(samples, all, background);
   if (most_covered != nullptr) {
     *most_covered =
         static_cast<double>(most) / static_cast<double>(samples.size());
   }
-  EstimateNoise(samples, background);
   return background;
 }
 
@@ -319,20 +346,20 @@ Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
 Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
                         const BackgroundOptions& options) {
   const ClipInfo& info = clip.info();
-  Samples samples;
-  for (const std::int64_t index : frames) AddSample(clip, index, samples);
   Background background;
   background.width_px = info.width_px;
   background.height_px = info.height_px;
   background.full_scale_dn = static_cast<double>((1u << info.bit_depth) - 1u);
   background.level.resize(static_cast<std::size_t>(info.width_px) *
                           static_cast<std::size_t>(info.height_px));
-  if (samples.frames.front().is_16_bit()) {
-    MidMeanOf<std::uint16_t>(samples, options.threads, background.level);
+  const FrameSamples samples(clip, frames);
+  NoisePairs pairs(background.level.size(), samples.size());
+  if (samples.is_16_bit()) {
+    MidMeanOf<std::uint16_t>(samples, options.threads, background, pairs);
   } else {
-    MidMeanOf<std::uint8_t>(samples, options.threads, background.level);
+    MidMeanOf<std::uint8_t>(samples, options.threads, background, pairs);
   }
-  EstimateNoise(samples, background);
+  EstimateNoise(pairs, background);
   return background;
 }
 

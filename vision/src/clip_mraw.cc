@@ -68,7 +68,7 @@ class MrawClip final : public Clip {
   MrawClip(const std::filesystem::path& path, const ClipOptions& options)
       : pair_(FindMrawPair(path)),
         header_(ReadPhotronHeader(pair_.header)),
-        file_(pair_.data) {
+        file_(std::make_shared<const MappedFile>(pair_.data)) {
     info_.path = path;
     info_.format = "mraw";
     info_.width_px = header_.width_px;
@@ -80,6 +80,14 @@ class MrawClip final : public Clip {
     SetTimeBase(options);
   }
 
+  // Reads what `like` reads.
+  explicit MrawClip(const MrawClip* like)
+      : pair_(like->pair_),
+        header_(like->header_),
+        file_(like->file_),
+        info_(like->info_),
+        shift_(like->shift_) {}
+
   const ClipInfo& info() const override { return info_; }
 
   bool views_last() const override {
@@ -88,6 +96,9 @@ class MrawClip final : public Clip {
   }
 
   bool windows_are_cheap() const override { return true; }
+  std::unique_ptr<Clip> Another() const override {
+    return std::make_unique<MrawClip>(this);
+  }
 
   void WillRead(std::int64_t index, const core::PixelRect& window) override {
     const std::int64_t bits = header_.stored_bits;
@@ -96,7 +107,7 @@ class MrawClip final : public Clip {
         static_cast<std::int64_t>(window.y) * info_.width_px;
     const std::int64_t end =
         begin + static_cast<std::int64_t>(window.height) * info_.width_px;
-    file_.WillRead(begin * bits / 8, end * bits / 8);
+    file_->WillRead(begin * bits / 8, end * bits / 8);
   }
 
  protected:
@@ -114,10 +125,10 @@ class MrawClip final : public Clip {
         index * samples_per_frame() +
         static_cast<std::int64_t>(window.y) * info_.width_px + window.x;
     if (header_.stored_bits == 8) {
-      frame.data = file_.data() + first;
+      frame.data = file_->data() + first;
       frame.stride_bytes = info_.width_px;
     } else if (header_.stored_bits == 16 && shift_ == 0) {
-      frame.data = file_.data() + 2 * first;
+      frame.data = file_->data() + 2 * first;
       frame.stride_bytes = std::ptrdiff_t{2} * info_.width_px;
     } else {
       Copy(first, window);
@@ -133,7 +144,7 @@ class MrawClip final : public Clip {
   }
 
   const std::uint8_t* bytes() const {
-    return reinterpret_cast<const std::uint8_t*>(file_.data());
+    return reinterpret_cast<const std::uint8_t*>(file_->data());
   }
 
   std::string Geometry() const {
@@ -147,7 +158,7 @@ class MrawClip final : public Clip {
   std::int64_t CountFrames() {
     // A frame has at most 2^36 bits and a file fewer than 2^63 bytes, so the
     // quotient bounds the header's claim before anything is multiplied by it.
-    const std::int64_t size = file_.size_bytes();
+    const std::int64_t size = file_->size_bytes();
     const std::int64_t bits_per_frame =
         samples_per_frame() * header_.stored_bits;
     const std::int64_t whole =
@@ -190,7 +201,7 @@ class MrawClip final : public Clip {
       return depth;
     }
     const auto* const samples =
-        reinterpret_cast<const std::uint16_t*>(file_.data());
+        reinterpret_cast<const std::uint16_t*>(file_->data());
     std::uint32_t bits = 0;
     for (std::int64_t i = 0; i < samples_per_frame(); ++i) bits |= samples[i];
     if (bits >> depth == 0) return depth;
@@ -236,7 +247,7 @@ class MrawClip final : public Clip {
         UnpackRow12(bytes(), row, window.width, out);
       } else {
         const auto* const in =
-            reinterpret_cast<const std::uint16_t*>(file_.data()) + row;
+            reinterpret_cast<const std::uint16_t*>(file_->data()) + row;
         for (std::int32_t x = 0; x < window.width; ++x) {
           out[x] = static_cast<std::uint16_t>(in[x] >> shift_);
         }
@@ -247,7 +258,7 @@ class MrawClip final : public Clip {
 
   MrawPair pair_;
   PhotronHeader header_;
-  MappedFile file_;
+  std::shared_ptr<const MappedFile> file_;
   ClipInfo info_;
   std::int32_t shift_ = 0;             // of 16-bit words
   std::vector<std::uint16_t> buffer_;  // the window, where it must be unpacked

@@ -35,8 +35,12 @@ inline core::Frame WindowOf(const core::Frame& frame,
 class KeptPixels {
  public:
   KeptPixels() = default;
-  explicit KeptPixels(const core::Frame& frame)
-      : frame_(frame), pixels_(PixelBytes(frame)) {
+  explicit KeptPixels(const core::Frame& frame) { Keep(frame); }
+
+  // In the place of what was kept before.
+  void Keep(const core::Frame& frame) {
+    frame_ = frame;
+    pixels_.resize(PixelBytes(frame));
     const std::size_t row_bytes = RowBytes(frame);
     for (std::int32_t y = 0; y < frame.height_px; ++y) {
       std::memcpy(pixels_.data() + static_cast<std::size_t>(y) * row_bytes,

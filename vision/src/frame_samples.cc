@@ -1,0 +1,44 @@
+#include "frame_samples.h"
+
+namespace touchdown::vision {
+
+FrameSamples::FrameSamples(Clip& clip, std::span<const std::int64_t> frames)
+    : clip_(clip), indices_(frames.begin(), frames.end()) {
+  const core::PixelRect all{0, 0, clip.info().width_px, clip.info().height_px};
+  for (const std::int64_t index : indices_) {
+    clip.WillRead(index, all);
+    if (!clip.views_last() && clip.windows_are_cheap()) continue;
+    core::Frame frame = clip.Read(index);
+    if (!clip.views_last()) {
+      copies_.emplace_back(frame);
+      frame = copies_.back().View();
+    }
+    whole_.push_back(frame);
+  }
+}
+
+int FrameSamples::Threads(int wanted) const {
+  return !whole_.empty() || clip_.Another() != nullptr ? wanted : 1;
+}
+
+FrameSamples::Reader::Reader(const FrameSamples& samples) : samples_(samples) {
+  if (samples.whole_.empty()) own_ = samples.clip_.Another();
+}
+
+const std::vector<core::Frame>& FrameSamples::Reader::Read(
+    const core::PixelRect& window) {
+  windows_.clear();
+  for (const core::Frame& frame : samples_.whole_) {
+    windows_.push_back(WindowOf(frame, window));
+  }
+  if (!windows_.empty()) return windows_;
+  Clip& clip = own_ ? *own_ : samples_.clip_;
+  copies_.resize(samples_.size());
+  for (std::size_t k = 0; k < samples_.size(); ++k) {
+    copies_[k].Keep(clip.Read(samples_.indices_[k], window));
+    windows_.push_back(copies_[k].View());
+  }
+  return windows_;
+}
+
+}  // namespace touchdown::vision

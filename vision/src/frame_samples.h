@@ -1,0 +1,48 @@
+// Some frames of a clip, window by window: of all of them at once, whole, there
+// need be no copies where windows are cheap to read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "kept_pixels.h"
+#include "touchdown/vision/clip.h"
+
+namespace touchdown::vision {
+
+class FrameSamples {
+ public:
+  // Reads the frames, or makes ready to. Throws what Clip::Read throws. `clip`
+  // must outlive this.
+  FrameSamples(Clip& clip, std::span<const std::int64_t> frames);
+
+  std::size_t size() const { return indices_.size(); }
+  bool is_16_bit() const { return clip_.info().bit_depth > 8; }
+  // As many as asked for, or 1 where only one thread can read the clip.
+  int Threads(int wanted) const;
+
+  // One thread's.
+  class Reader {
+   public:
+    explicit Reader(const FrameSamples& samples);
+    // A window of each sample, valid until the next.
+    const std::vector<core::Frame>& Read(const core::PixelRect& window);
+
+   private:
+    const FrameSamples& samples_;
+    std::unique_ptr<Clip> own_;  // null: the samples' clip
+    std::vector<core::Frame> windows_;
+    std::vector<KeptPixels> copies_;
+  };
+
+ private:
+  Clip& clip_;
+  std::vector<std::int64_t> indices_;
+  std::vector<core::Frame> whole_;  // empty where windows are read
+  std::vector<KeptPixels> copies_;
+};
+
+}  // namespace touchdown::vision
