@@ -21,21 +21,65 @@ namespace {
 // in a processor's own cache.
 constexpr std::int32_t kBandRows = 8;
 
-// Neighbouring samples' values at every `step`-th pixel, for the noise.
-struct NoisePairs {
-  std::size_t step = 1;               // pixels
-  std::size_t per_pixel = 0;          // pairs
-  std::vector<std::uint16_t> values;  // of pixel, pair, sample
+// Neighbouring samples' values at points of the picture, for the noise.
+class NoisePairs {
+ public:
+  NoisePairs(std::int32_t width_px, std::int32_t height_px,
+             const FrameSamples& samples)
+      : per_point_(samples.size() / 2) {
+    // Of a sensor's noise 160 000 pairs tell each bin to 1 %, on any rows. That
+    // of compressed pictures differs from place to place in their blocks.
+    const bool alike = samples.are_raw();
+    row_step_ = alike ? 4 : 1;
+    const double wanted = alike ? 160'000 : 640'000;
+    const double there = static_cast<double>(width_px) * height_px / row_step_ *
+                         static_cast<double>(per_point_);
+    step_ = std::max(1, static_cast<std::int32_t>(there / wanted)) | 1;
+    columns_ = (width_px + step_ - 1) / step_;
+    rows_ = (height_px + row_step_ - 1) / row_step_;
+    values_.resize(static_cast<std::size_t>(columns_) *
+                   static_cast<std::size_t>(rows_) * 2 * per_point_);
+  }
 
-  NoisePairs(std::size_t pixels, std::size_t samples) {
-    constexpr std::size_t kWanted = 160'000;  // pairs: 1 % of sigma a bin
-    per_pixel = samples / 2;
-    step = std::max<std::size_t>(1, pixels * per_pixel / kWanted);
-    values.resize((pixels + step - 1) / step * per_pixel * 2);
+  bool Has(std::int32_t y) const { return y % row_step_ == 0; }
+  // Row `y` of the picture is row `row` of each sample's window.
+  template <class Sample>
+  void Take(const std::vector<core::Frame>& windows, std::int32_t row,
+            std::int32_t y) {
+    for (std::size_t k = 0; k < 2 * per_point_; ++k) {
+      const Sample* const samples = windows[k].row<Sample>(row);
+      for (std::int32_t column = 0; column < columns_; ++column) {
+        values_[Point(y / row_step_, column) + k] = samples[column * step_];
+      }
+    }
   }
-  std::uint16_t* At(std::size_t pixel) {
-    return &values[pixel / step * per_pixel * 2];
+  // Calls use(x, y, one, other) for each pair.
+  template <class Use>
+  void ForEach(const Use& use) const {
+    for (std::int32_t row = 0; row < rows_; ++row) {
+      for (std::int32_t column = 0; column < columns_; ++column) {
+        const std::size_t at = Point(row, column);
+        for (std::size_t k = 0; k < 2 * per_point_; k += 2) {
+          use(column * step_, row * row_step_, values_[at + k],
+              values_[at + k + 1]);
+        }
+      }
+    }
   }
+
+ private:
+  std::size_t Point(std::int32_t row, std::int32_t column) const {
+    return (static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+            static_cast<std::size_t>(column)) *
+           2 * per_point_;
+  }
+
+  std::int32_t row_step_ = 1;
+  std::size_t per_point_;
+  std::int32_t step_ = 1;  // px between points of a row
+  std::int32_t columns_ = 0;
+  std::int32_t rows_ = 0;
+  std::vector<std::uint16_t> values_;
 };
 
 // Row `y` of a window from its column `x` on, up to kLanes of it.
@@ -80,16 +124,7 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
               static_cast<double>(sums[i]) / static_cast<double>(n - 2 * cut));
         }
       }
-      const std::size_t first =
-          static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width);
-      const std::size_t last = first + static_cast<std::size_t>(width);
-      for (std::size_t i = (first + pairs.step - 1) / pairs.step * pairs.step;
-           i < last; i += pairs.step) {
-        std::uint16_t* const values = pairs.At(i);
-        for (std::size_t k = 0; k < 2 * pairs.per_pixel; ++k) {
-          values[k] = windows[k].row<Sample>(y)[i - first];
-        }
-      }
+      if (pairs.Has(top + y)) pairs.Take<Sample>(windows, y, top + y);
     }
   }
 }
@@ -207,34 +242,28 @@ std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
 // Least squares of variance on level over bins of pixels of like level. In each
 // bin the variance is robust: (1.4826 * median |difference|)^2 / 2 of
 // neighbouring samples' differences, with a correction for whole numbers.
-void EstimateNoise(NoisePairs& pairs, Background& background) {
+void EstimateNoise(const NoisePairs& pairs, Background& background) {
   constexpr std::size_t kBins = 24;
   constexpr std::size_t kMinimumPerBin = 200;
-  if (pairs.per_pixel == 0) return;
-  const std::size_t pixels = background.level.size();
-  float low = background.level[0];
-  float high = low;
-  for (std::size_t i = 0; i < pixels; i += pairs.step) {
-    low = std::min(low, background.level[i]);
-    high = std::max(high, background.level[i]);
-  }
+  float low = std::numeric_limits<float>::infinity();
+  float high = -low;
+  pairs.ForEach([&](std::int32_t x, std::int32_t y, int, int) {
+    low = std::min(low, background.at(x, y));
+    high = std::max(high, background.at(x, y));
+  });
+  if (!(low <= high)) return;
   const double width = std::max(1e-6, static_cast<double>(high - low));
   std::array<std::vector<float>, kBins> bins;
-  for (std::size_t i = 0; i < pixels; i += pairs.step) {
+  pairs.ForEach([&](std::int32_t x, std::int32_t y, int one, int other) {
+    // A clipped sample has no noise to tell of.
+    if (one >= background.full_scale_dn || one == 0) return;
     const auto bin =
         std::min(kBins - 1,
                  static_cast<std::size_t>(
-                     (static_cast<double>(background.level[i] - low) / width) *
+                     (static_cast<double>(background.at(x, y) - low) / width) *
                      static_cast<double>(kBins)));
-    const std::uint16_t* const values = pairs.At(i);
-    for (std::size_t k = 0; k < pairs.per_pixel; ++k) {
-      const std::uint16_t a = values[2 * k];
-      // A clipped sample has no noise to tell of.
-      if (a >= background.full_scale_dn || a == 0) continue;
-      bins[bin].push_back(static_cast<float>(a) -
-                          static_cast<float>(values[2 * k + 1]));
-    }
-  }
+    bins[bin].push_back(static_cast<float>(one - other));
+  });
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     auto& d = bins[bin];
@@ -315,7 +344,6 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
     frames.push_back(index);
     all.of.push_back(std::move(cover));
   }
-  // The noise is the fallback's: a body that passes tells nothing of it.
   Background background = fallback;
   if (frames.size() < 2) return background;
   background.unknown.assign(fallback.level.size(), 0);
@@ -324,6 +352,18 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
       samples.is_16_bit()
           ? MidMeanBehind<std::uint16_t>(samples, all, background)
           : MidMeanBehind<std::uint8_t>(samples, all, background);
+  NoisePairs pairs(background.width_px, background.height_px, samples);
+  FrameSamples::Reader reader(samples);
+  for (std::int32_t y = 0; y < background.height_px; ++y) {
+    if (!pairs.Has(y)) continue;
+    const auto& row = reader.Read({0, y, background.width_px, 1});
+    if (samples.is_16_bit()) {
+      pairs.Take<std::uint16_t>(row, 0, y);
+    } else {
+      pairs.Take<std::uint8_t>(row, 0, y);
+    }
+  }
+  EstimateNoise(pairs, background);
   if (most_covered != nullptr) {
     *most_covered =
         static_cast<double>(most) / static_cast<double>(samples.size());
@@ -353,7 +393,7 @@ Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
   background.level.resize(static_cast<std::size_t>(info.width_px) *
                           static_cast<std::size_t>(info.height_px));
   const FrameSamples samples(clip, frames);
-  NoisePairs pairs(background.level.size(), samples.size());
+  NoisePairs pairs(info.width_px, info.height_px, samples);
   if (samples.is_16_bit()) {
     MidMeanOf<std::uint16_t>(samples, options.threads, background, pairs);
   } else {

@@ -21,6 +21,8 @@ class FrameSamples {
 
   std::size_t size() const { return indices_.size(); }
   bool is_16_bit() const { return clip_.info().bit_depth > 8; }
+  // Read as the sensor gave them, not compressed.
+  bool are_raw() const { return clip_.windows_are_cheap(); }
   // As many as asked for, or 1 where only one thread can read the clip.
   int Threads(int wanted) const;
 

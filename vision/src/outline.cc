@@ -28,14 +28,13 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
 
-// 1.4826 times the median of the residuals' sizes, and at least 1. Less than a
-// twentieth more is not told from 1, so that counting is mostly enough.
+// 1.4826 times the median of the residuals' sizes, and at least 1: often
+// counting is enough.
 double RobustScale(const std::vector<double>& residuals) {
   constexpr double kPerMedian = 1.4826;
-  constexpr double kTold = 1.05;
   const auto large =
       std::count_if(residuals.begin(), residuals.end(),
-                    [](double r) { return std::abs(r) > kTold / kPerMedian; });
+                    [](double r) { return std::abs(r) > 1.0 / kPerMedian; });
   if (2 * large < static_cast<std::ptrdiff_t>(residuals.size())) return 1.0;
   std::vector<double> sizes(residuals.size());
   std::transform(residuals.begin(), residuals.end(), sizes.begin(),
@@ -54,7 +53,7 @@ class Fitter {
         outline_(start),
         blur_(options.blur_px),
         open_(options.open),
-        smear_(options.travel_px) {
+        smear_(options.travel_px, options.turn_rad, Extent(start)) {
     geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
     // A body of a few pixels cannot tell shading from shape.
     constexpr double kSmallBody_px = 5.0;

@@ -94,6 +94,7 @@ std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
           for (auto i = static_cast<std::size_t>(from);
                i < static_cast<std::size_t>(to); ++i) {
             own.travel_px = batch[i].travel_px;
+            own.turn_rad = batch[i].turn_rad;
             if (i + 1 < static_cast<std::size_t>(to)) {
               PrefetchRows(windows[i + 1].frame);
             }

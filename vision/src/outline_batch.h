@@ -16,10 +16,11 @@ struct OutlineJob {
   std::int64_t frame = 0;
   Outline start;
   core::PixelPoint travel_px{0.0, 0.0};  // as in OutlineOptions
+  double turn_rad = 0.0;                 //
 };
 
 // FitOutline for each job, in their order; nothing where no outline was found.
-// `options` holds for all but for `travel_px`. The result does not depend on
+// `options` holds for all but for the jobs' own. The result does not depend on
 // `threads`. Throws what Clip::Read throws.
 std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
                                                const Background& background,

@@ -64,6 +64,7 @@ struct Place {
   double w_px = 1.0;      // blur
   double d_open_x = 0.0;  // of the place by the exposed share
   double d_open_y = 0.0;
+  double d_open_angle = 0.0;
 };
 
 // Adds the numbers of a disc at four pixels from number i on.
@@ -268,10 +269,12 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     FourAt(&out.d_shape[1][i]) += d_y;
     FourAt(&out.d_shape[2][i]) += (pup + pum) * across;
     FourAt(&out.d_shape[3][i]) += (pvp + pvm) * along;
-    FourAt(&out.d_shape[4][i]) += d_u * v - d_v * u;
+    const Four d_angle = d_u * v - d_v * u;
+    FourAt(&out.d_shape[4][i]) += d_angle;
     FourAt(&out.d_blur[i]) -=
         (up * pup - um * pum) * across + (vp * pvp - vm * pvm) * along;
-    FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y;
+    FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
+                              d_angle * place.d_open_angle;
     FourAt(&out.xi[i]) += u * place.per_long;
     FourAt(&out.eta[i]) += v * place.per_short;
   }
@@ -284,7 +287,8 @@ void Scale(double factor, BlockColumn& column) {
 }  // namespace
 
 double Smear::way_px() const {
-  return open_ * std::hypot(travel_px_.x_px, travel_px_.y_px);
+  return open_ * (std::hypot(travel_px_.x_px, travel_px_.y_px) +
+                  std::abs(turn_rad_) * reach_px_);
 }
 
 void Smear::Set(double blur_px, double open, bool resolved) {
@@ -299,7 +303,10 @@ void Smear::Set(double blur_px, double open, bool resolved) {
     places_ = std::clamp(static_cast<int>(std::ceil(way / (kStep * blur_px))),
                          2, kMost);
   }
-  const double step = way / places_;
+  // Turning blurs the centre not at all and the farthest point most: only what
+  // all of the body shares counts as blur.
+  const double step =
+      open_ * std::hypot(travel_px_.x_px, travel_px_.y_px) / places_;
   place_blur_px_ = std::sqrt(blur_px * blur_px + step * step / 12.0);
 }
 
@@ -349,8 +356,6 @@ void OutlineImage::Cover(const double* x, const double* y,
   place.short_px = outline_.half_short_px;
   place.per_long = 1.0 / place.long_px;
   place.per_short = sphere ? 0.0 : 1.0 / place.short_px;
-  place.cosine = std::cos(outline_.angle_rad);
-  place.sine = std::sin(outline_.angle_rad);
   const int places = smear_.places_;
   const double share = 1.0 / places;
   place.w_px = smear_.place_blur_px_;
@@ -359,7 +364,11 @@ void OutlineImage::Cover(const double* x, const double* y,
     place.d_open_x = s * smear_.travel_px_.x_px;
     place.d_open_y = s * smear_.travel_px_.y_px;
     place.x_px = outline_.centre.x_px + smear_.open_ * place.d_open_x;
+    place.d_open_angle = s * smear_.turn_rad_;
     place.y_px = outline_.centre.y_px + smear_.open_ * place.d_open_y;
+    const double angle = outline_.angle_rad + smear_.open_ * place.d_open_angle;
+    place.cosine = std::cos(angle);
+    place.sine = std::sin(angle);
     if (small_) {
       AddSmallDisc(place, *small_, x, y, out);
     } else if (sphere) {

@@ -30,22 +30,25 @@ struct alignas(64) CoverBlock {
 
 // How the exposure is divided into places at which the body rests. Each place
 // has the blur of its own share of the way (of variance step^2 / 12); steps of
-// 0.7 w leave an error of 1e-4 of the contrast.
+// 0.7 w, of its farthest point, leave an error of 1e-4 of the contrast.
 class Smear {
  public:
-  // `travel_px`: of the body in one frame interval.
-  explicit Smear(const core::PixelPoint& travel_px) : travel_px_(travel_px) {}
+  // Of the body in one frame interval; `reach_px`: to its farthest point.
+  Smear(const core::PixelPoint& travel_px, double turn_rad, double reach_px)
+      : travel_px_(travel_px), turn_rad_(turn_rad), reach_px_(reach_px) {}
 
   // `open`: the share of the frame interval that is exposed. With `resolved`
   // even a way that adds nothing is divided, for its derivative.
   void Set(double blur_px, double open, bool resolved);
 
-  double way_px() const;  // during the exposure
+  double way_px() const;  // during the exposure, of the farthest point
 
  private:
   friend class OutlineImage;
 
   core::PixelPoint travel_px_;
+  double turn_rad_ = 0.0;
+  double reach_px_ = 0.0;
   double blur_px_ = 1.0;
   double open_ = 0.0;
   int places_ = 1;

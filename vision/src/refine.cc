@@ -20,32 +20,41 @@ core::Estimate Combined(const core::Estimate& a, const core::Estimate& b) {
           std::nullopt};
 }
 
-core::PixelPoint Between(const Pose& a, const Pose& b) {
+// Of a body in one frame interval.
+struct Motion {
+  double x_px = 0.0;
+  double y_px = 0.0;
+  double turn_rad = 0.0;
+};
+
+Motion Between(const Pose& a, const Pose& b) {
   const double frames = static_cast<double>(b.frame - a.frame);
   return {(b.centre.x_px - a.centre.x_px) / frames,
-          (b.centre.y_px - a.centre.y_px) / frames};
+          (b.centre.y_px - a.centre.y_px) / frames,
+          (b.angle_rad - a.angle_rad) / frames};
 }
 
-double Apart(const core::PixelPoint& a, const core::PixelPoint& b) {
+double Apart(const Motion& a, const Motion& b) {
   return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
 }
 
-// The way of pose i in one frame interval, from the side on which the motion is
-// the steadier: a blow changes it from one frame to the next.
-core::PixelPoint TravelOf(const std::vector<Pose>& poses, std::size_t i) {
+// The motion at pose i, from the side on which it is the steadier: a blow
+// changes it from one frame to the next.
+Motion MotionAt(const std::vector<Pose>& poses, std::size_t i) {
   const std::size_t n = poses.size();
-  if (n < 2) return {0.0, 0.0};
+  if (n < 2) return {};
   if (i == 0) return Between(poses[0], poses[1]);
   if (i + 1 == n) return Between(poses[n - 2], poses[n - 1]);
-  const core::PixelPoint back = Between(poses[i - 1], poses[i]);
-  const core::PixelPoint on = Between(poses[i], poses[i + 1]);
+  const Motion back = Between(poses[i - 1], poses[i]);
+  const Motion on = Between(poses[i], poses[i + 1]);
   const double change_back =
       i >= 2 ? Apart(Between(poses[i - 2], poses[i - 1]), back) : 0.0;
   const double change_on =
       i + 2 < n ? Apart(on, Between(poses[i + 1], poses[i + 2])) : 0.0;
   // Alike on both sides: the mean is the less noisy.
   if (Apart(back, on) < 2.0 * std::max({change_back, change_on, 0.1})) {
-    return {0.5 * (back.x_px + on.x_px), 0.5 * (back.y_px + on.y_px)};
+    return {0.5 * (back.x_px + on.x_px), 0.5 * (back.y_px + on.y_px),
+            0.5 * (back.turn_rad + on.turn_rad)};
   }
   return change_back <= change_on ? back : on;
 }
@@ -142,7 +151,7 @@ class Refiner {
         std::max(options_.ground_margin_px,
                  std::min(kBlurs * track.body.blur_px, kMostOfHalf * half));
     for (std::size_t i = 0; i < track.poses.size(); ++i) {
-      travel_.push_back(TravelOf(track.poses, i));
+      motion_.push_back(MotionAt(track.poses, i));
     }
   }
 
@@ -158,7 +167,10 @@ class Refiner {
     std::vector<OutlineJob> jobs;
     for (std::size_t i = 0; i < track_.poses.size(); i += step) {
       const Pose& pose = track_.poses[i];
-      jobs.push_back({pose.frame, OutlineAt(body, pose), travel_[i]});
+      const Motion& motion = motion_[i];
+      jobs.push_back({pose.frame, OutlineAt(body, pose),
+                      core::PixelPoint{motion.x_px, motion.y_px},
+                      motion.turn_rad});
     }
     return FitOutlines(clip_, background_, jobs, options_, threads_);
   }
@@ -169,7 +181,7 @@ class Refiner {
   const Track& track_;
   int threads_;
   OutlineOptions options_;
-  std::vector<core::PixelPoint> travel_;
+  std::vector<Motion> motion_;  // at each pose
 };
 
 std::vector<Fitted> Refiner::Sample(const BodyImage& body) {
@@ -185,8 +197,8 @@ void Refiner::LearnShape(Track& refined) {
   constexpr std::size_t kLeast = 3;
   // The exposure, where the body moves by enough of its blur to show it.
   std::vector<double> ways;
-  for (const core::PixelPoint& way : travel_) {
-    ways.push_back(std::hypot(way.x_px, way.y_px));
+  for (const Motion& motion : motion_) {
+    ways.push_back(std::hypot(motion.x_px, motion.y_px));
   }
   options_.fit_blur = true;
   options_.fit_open = Median(ways) > track_.body.blur_px;

@@ -9,8 +9,8 @@
 //   out   the known background, or a quadratic polynomial where the body never
 //         leaves it uncovered
 //   in    a quadratic polynomial over the body (shading)
-// While the shutter is open the body moves by open * travel, and the coverage
-// is the mean along that way. Gauss-Newton on all parameters with the clip's
+// While the shutter is open the body moves by open * travel and turns by open *
+// turn, and the coverage is the mean along that way. Gauss-Newton on all parameters with the clip's
 // own noise as weights, and robust (Tukey) weights against spots, shadows and
 // other things that move. The covariance is that of the normal equations: at
 // the Cramer-Rao bound where the model holds, widened by the residuals' excess
@@ -57,9 +57,10 @@ struct OutlineOptions {
   double blur_px = 0.8;  // start value of w, px
   bool fit_blur = true;
 
-  // The centre's way in one frame interval, px, and the share of the interval
-  // in which the shutter is open, 0 to 1.
+  // The centre's way in one frame interval, px, how far the body turns in it,
+  // and the share of the interval in which the shutter is open, 0 to 1.
   core::PixelPoint travel_px{0.0, 0.0};
+  double turn_rad = 0.0;
   double open = 0.0;
   bool fit_open = false;
 
