@@ -53,6 +53,28 @@ TEST(Scout, LooksWithinTheRegionOnly) {
   EXPECT_TRUE(scout.Look(clip->Read(400)).where.empty());   // x = 205
 }
 
+TEST(Scout, FourGlimpsesSeeWhatALookSees) {
+  for (const std::int32_t depth : {8, 12}) {
+    const Scene scene = testing::LongScene(600, depth);
+    const auto clip = OpenScene(scene, 1);
+    const Background still = EstimateBackground(*clip, 0, 600);
+    const Scout scout(still);
+    int for_nothing = 0;
+    for (std::int64_t index = 0; index < 600; index += 29) {
+      const auto look = scout.Look(*clip, index);
+      const auto whole = scout.Look(clip->Read(index));
+      ASSERT_EQ(look.where.size(), whole.where.size());
+      bool glimpsed = false;
+      for (int phase = 0; phase < 4; ++phase) {
+        glimpsed |= scout.Glimpse(*clip, index, phase);
+      }
+      EXPECT_TRUE(glimpsed || look.where.empty()) << index;
+      for_nothing += look.where.empty() && glimpsed;
+    }
+    EXPECT_LE(for_nothing, 1);
+  }
+}
+
 TEST(Scout, AGhostDiffers) {
   const Scene scene = testing::LongScene(600);
   const auto clip = OpenScene(scene, 1);

@@ -61,6 +61,7 @@ struct Place {
   double per_short = 0.0;
   double cosine = 1.0;
   double sine = 0.0;
+  double weight = 1.0;
   double w_px = 1.0;      // blur
   double d_open_x = 0.0;  // of the place by the exposed share
   double d_open_y = 0.0;
@@ -75,16 +76,17 @@ struct FourOfDisc {
 };
 TOUCHDOWN_INLINE void AddDisc(const Place& place, const FourOfDisc& disc,
                               std::size_t i, CoverBlock& out) {
-  const Four d_x = disc.outwards * disc.dx;
-  const Four d_y = disc.outwards * disc.dy;
-  FourAt(&out.value[i]) += disc.value;
+  const double weight = place.weight;
+  const Four d_x = weight * disc.outwards * disc.dx;
+  const Four d_y = weight * disc.outwards * disc.dy;
+  FourAt(&out.value[i]) += weight * disc.value;
   FourAt(&out.d_shape[0][i]) += d_x;
   FourAt(&out.d_shape[1][i]) += d_y;
-  FourAt(&out.d_shape[2][i]) += disc.d_radius;
-  FourAt(&out.d_blur[i]) += disc.d_w;
+  FourAt(&out.d_shape[2][i]) += weight * disc.d_radius;
+  FourAt(&out.d_blur[i]) += weight * disc.d_w;
   FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y;
-  FourAt(&out.xi[i]) += disc.dx * place.per_long;
-  FourAt(&out.eta[i]) += disc.dy * place.per_long;
+  FourAt(&out.xi[i]) += disc.dx * (weight * place.per_long);
+  FourAt(&out.eta[i]) += disc.dy * (weight * place.per_long);
 }
 
 struct alignas(64) Distances {
@@ -258,8 +260,11 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     pum *= per_w;
     pvp *= per_w;
     pvm *= per_w;
+    const double weight = place.weight;
     const Four along = above_u - below_u;
-    const Four across = above_v - below_v;
+    const Four across = weight * (above_v - below_v);
+    pvp *= weight;
+    pvm *= weight;
     const Four d_u = (pup - pum) * across;
     const Four d_v = (pvp - pvm) * along;
     const Four d_x = d_v * place.sine - d_u * place.cosine;
@@ -275,13 +280,9 @@ void AddRectangle(const Place& place, const double* x, const double* y,
         (up * pup - um * pum) * across + (vp * pvp - vm * pvm) * along;
     FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
                               d_angle * place.d_open_angle;
-    FourAt(&out.xi[i]) += u * place.per_long;
-    FourAt(&out.eta[i]) += v * place.per_short;
+    FourAt(&out.xi[i]) += u * (weight * place.per_long);
+    FourAt(&out.eta[i]) += v * (weight * place.per_short);
   }
-}
-
-void Scale(double factor, BlockColumn& column) {
-  for (double& value : column) value *= factor;
 }
 
 }  // namespace
@@ -292,22 +293,32 @@ double Smear::way_px() const {
 }
 
 void Smear::Set(double blur_px, double open, bool resolved) {
-  constexpr double kStep = 0.7;         // of the blur
   constexpr double kNegligible = 0.15;  // of the blur: its square adds 0.2 %
+  constexpr double kTwoNodes = 0.9;     // of the blur
+  constexpr double kPanel = 2.1;        // of the blur
+  constexpr double kMostPanels = 32.0;
+  constexpr double kOfTwo = 0.28867513459481287;    // 1/sqrt(12)
+  constexpr double kOfThree = 0.38729833462074170;  // sqrt(3/20)
   blur_px_ = blur_px;
   open_ = open;
-  const double way = way_px();
-  places_ = 1;
-  if (way > kNegligible * blur_px || resolved) {
-    constexpr int kMost = 96;
-    places_ = std::clamp(static_cast<int>(std::ceil(way / (kStep * blur_px))),
-                         2, kMost);
+  nodes_.clear();
+  const double way = way_px() / blur_px;
+  if (way <= kNegligible && !resolved) {
+    nodes_.push_back({0.0, 1.0});
+    return;
   }
-  // Turning blurs the centre not at all and the farthest point most: only what
-  // all of the body shares counts as blur.
-  const double step =
-      open_ * std::hypot(travel_px_.x_px, travel_px_.y_px) / places_;
-  place_blur_px_ = std::sqrt(blur_px * blur_px + step * step / 12.0);
+  if (way <= kTwoNodes) {
+    nodes_ = {{-kOfTwo, 0.5}, {kOfTwo, 0.5}};
+    return;
+  }
+  const auto panels =
+      static_cast<int>(std::min(kMostPanels, std::ceil(way / kPanel)));
+  for (int i = 0; i < panels; ++i) {
+    const double middle = (i + 0.5) / panels - 0.5;
+    nodes_.push_back({middle - kOfThree / panels, 5.0 / 18.0 / panels});
+    nodes_.push_back({middle, 8.0 / 18.0 / panels});
+    nodes_.push_back({middle + kOfThree / panels, 5.0 / 18.0 / panels});
+  }
 }
 
 SmallDiscTable::SmallDiscTable(double radius_px, double w_px)
@@ -342,8 +353,8 @@ OutlineImage::OutlineImage(const Outline& outline, const Smear& smear)
     : outline_(outline), smear_(smear) {
   constexpr double kSeriesFrom = 4.0;  // R/w; the series is good to 3e-4
   if (outline.kind == core::BodyKind::kSphere &&
-      outline.radius_px < kSeriesFrom * smear.place_blur_px_) {
-    small_.emplace(outline.radius_px, smear.place_blur_px_);
+      outline.radius_px < kSeriesFrom * smear.blur_px_) {
+    small_.emplace(outline.radius_px, smear.blur_px_);
   }
 }
 
@@ -356,11 +367,9 @@ void OutlineImage::Cover(const double* x, const double* y,
   place.short_px = outline_.half_short_px;
   place.per_long = 1.0 / place.long_px;
   place.per_short = sphere ? 0.0 : 1.0 / place.short_px;
-  const int places = smear_.places_;
-  const double share = 1.0 / places;
-  place.w_px = smear_.place_blur_px_;
-  for (int i = 0; i < places; ++i) {
-    const double s = places == 1 ? 0.0 : (i + 0.5) * share - 0.5;
+  place.w_px = smear_.blur_px_;
+  for (const auto& [s, weight] : smear_.nodes_) {
+    place.weight = weight;
     place.d_open_x = s * smear_.travel_px_.x_px;
     place.d_open_y = s * smear_.travel_px_.y_px;
     place.x_px = outline_.centre.x_px + smear_.open_ * place.d_open_x;
@@ -377,13 +386,6 @@ void OutlineImage::Cover(const double* x, const double* y,
       AddRectangle(place, x, y, out);
     }
   }
-  if (places == 1) return;
-  Scale(share, out.value);
-  for (BlockColumn& column : out.d_shape) Scale(share, column);
-  Scale(share * smear_.blur_px_ / smear_.place_blur_px_, out.d_blur);
-  Scale(share, out.d_open);
-  Scale(share, out.xi);
-  Scale(share, out.eta);
 }
 
 }  // namespace touchdown::vision
