@@ -158,8 +158,7 @@ Picture ClipShelf::Frame(const std::filesystem::path& path,
   const Known known = Learn(key.first, reader.clip());
   const bool compressed = IsCompressed(known.info);
   if (compressed) Ask(key.first, index);
-  const Picture picture =
-      Encode(reader.clip().Read(index), known.info, known.white);
+  Picture picture = Encode(reader.clip().Read(index), known.info, known.white);
   // A raw frame is made again as quickly as it is found.
   if (compressed) Keep(key, picture);
   return picture;

@@ -49,7 +49,8 @@ class NoisePairs {
     for (std::size_t k = 0; k < 2 * per_point_; ++k) {
       const Sample* const samples = windows[k].row<Sample>(row);
       for (std::int32_t column = 0; column < columns_; ++column) {
-        values_[Point(y / row_step_, column) + k] = samples[column * step_];
+        values_[Point(y / row_step_, column) + k] =
+            samples[std::ptrdiff_t{column} * step_];
       }
     }
   }
