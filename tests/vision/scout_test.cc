@@ -3,11 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "tests/vision/long_clip.h"
 
 namespace touchdown::vision {
 namespace {
+
+// A film of 600 frames, a body on its way through it, and what is still.
+struct Watched {
+  explicit Watched(std::int32_t depth = 8)
+      : scene(testing::LongScene(600, depth)),
+        clip(OpenScene(scene, 1)),
+        still(EstimateBackground(*clip, 0, 600)) {}
+
+  Scene scene;
+  std::unique_ptr<Clip> clip;
+  Background still;
+};
 
 bool Inside(const core::PixelRect& rect, double x, double y) {
   return x >= rect.x && y >= rect.y && x < rect.x + rect.width &&
@@ -16,9 +29,8 @@ bool Inside(const core::PixelRect& rect, double x, double y) {
 
 TEST(Scout, PointsAtTheBodyAndAtNothingElse) {
   for (const std::int32_t depth : {8, 12}) {
-    const Scene scene = testing::LongScene(600, depth);
-    const auto clip = OpenScene(scene, 1);
-    const Background still = EstimateBackground(*clip, 0, 600);
+    const Watched watched(depth);
+    const auto& [scene, clip, still] = watched;
     const Scout scout(still);
     int regions = 0;
     for (std::int64_t index = 0; index < 600; index += 13) {
@@ -43,9 +55,8 @@ TEST(Scout, PointsAtTheBodyAndAtNothingElse) {
 }
 
 TEST(Scout, LooksWithinTheRegionOnly) {
-  const Scene scene = testing::LongScene(600);
-  const auto clip = OpenScene(scene, 1);
-  const Background still = EstimateBackground(*clip, 0, 600);
+  const Watched watched;
+  const auto& [scene, clip, still] = watched;
   ScoutOptions options;
   options.region = {0, 0, 100, 160};
   const Scout scout(still, options);
@@ -55,9 +66,8 @@ TEST(Scout, LooksWithinTheRegionOnly) {
 
 TEST(Scout, FourGlimpsesSeeWhatALookSees) {
   for (const std::int32_t depth : {8, 12}) {
-    const Scene scene = testing::LongScene(600, depth);
-    const auto clip = OpenScene(scene, 1);
-    const Background still = EstimateBackground(*clip, 0, 600);
+    const Watched watched(depth);
+    const auto& [scene, clip, still] = watched;
     const Scout scout(still);
     int for_nothing = 0;
     for (std::int64_t index = 0; index < 600; index += 29) {
@@ -76,9 +86,8 @@ TEST(Scout, FourGlimpsesSeeWhatALookSees) {
 }
 
 TEST(Scout, AGhostDiffers) {
-  const Scene scene = testing::LongScene(600);
-  const auto clip = OpenScene(scene, 1);
-  const Background still = EstimateBackground(*clip, 0, 600);
+  const Watched watched;
+  const auto& [scene, clip, still] = watched;
   const Background ghost = EstimateBackground(*clip, 300, 310);
   const Background empty = EstimateBackground(*clip, 0, 60);
   EXPECT_TRUE(Scout(still).Differs(Scout(ghost)));

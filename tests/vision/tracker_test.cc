@@ -149,7 +149,6 @@ TEST(Tracker, SparseLooksMeasureTheSame) {
   const auto clip = OpenScene(testing::LongScene(800), 3);
   TrackOptions every;
   every.first_looks = 100000;
-  every.seen_whole_px = 0.0;  // of the same frames a background is made
   const auto closely = TrackBody(*clip, every);
   TrackOptions sparse;
   sparse.first_looks = 200;

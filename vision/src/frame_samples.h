@@ -1,5 +1,5 @@
-// Some frames of a clip, window by window: of all of them at once, whole, there
-// need be no copies where windows are cheap to read.
+// Some frames of a clip, read window by window, the same one of each: where
+// windows are cheap to read no whole frame need be copied.
 #pragma once
 
 #include <cstddef>

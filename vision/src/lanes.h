@@ -36,7 +36,7 @@ TOUCHDOWN_INLINE Four& FourAt(double* first) {
 }
 
 // Asks for a stretch of memory that is used soon: a mapped recording's rows lie
-// pages apart, and waiting for one after another took half of a fit's time.
+// pages apart, and a fit would wait for one after another.
 inline void Prefetch(const void* begin, std::size_t bytes) {
   constexpr std::size_t kLine = 64;
   const char* const first = static_cast<const char*>(begin);

@@ -58,8 +58,8 @@ MappedFile::~MappedFile() {
 
 void MappedFile::WillRead(std::int64_t begin, std::int64_t end) const {
 #ifdef MADV_POPULATE_READ
-  // A fault costs some 20 us where machines are virtual, a page got in advance
-  // a tenth of that. An older kernel refuses; nothing is lost.
+  // A fault costs many times what a page costs that is got in advance, above
+  // all on virtual machines. An older kernel refuses; nothing is lost.
   static const std::int64_t page = ::sysconf(_SC_PAGESIZE);
   begin = std::max<std::int64_t>(begin, 0) / page * page;
   end = std::min(end, size_bytes_);

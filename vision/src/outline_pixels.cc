@@ -6,10 +6,8 @@
 #include <numbers>
 
 namespace touchdown::vision {
-namespace {
-
-inline double Depth(const Outline& outline, double x_px, double y_px,
-                    double cosine, double sine) {
+double DepthInside(const Outline& outline, double x_px, double y_px,
+                   double cosine, double sine) {
   const double dx = x_px - outline.centre.x_px;
   const double dy = y_px - outline.centre.y_px;
   if (outline.kind == core::BodyKind::kSphere) {
@@ -21,8 +19,6 @@ inline double Depth(const Outline& outline, double x_px, double y_px,
   return out_u > 0.0 && out_v > 0.0 ? -std::sqrt(out_u * out_u + out_v * out_v)
                                     : -std::max(out_u, out_v);
 }
-
-}  // namespace
 
 UsablePart::UsablePart(const std::optional<calib::GroundLine>& ground,
                        double margin_px) {
@@ -75,11 +71,6 @@ bool UsablePart::IsAside(double x_px, double y_px) const {
                 static_cast<std::size_t>(x)] != 0;
 }
 
-double DepthInside(const Outline& outline, double x_px, double y_px,
-                   double cosine, double sine) {
-  return Depth(outline, x_px, y_px, cosine, sine);
-}
-
 double Extent(const Outline& o) {
   return o.kind == core::BodyKind::kSphere
              ? o.radius_px
@@ -108,7 +99,8 @@ bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
   double outside = 0.0;
   double full = 0.0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
-    if (Depth(outline, pixels.x[i], pixels.y[i], cosine, sine) > -kClear_px) {
+    if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) >
+        -kClear_px) {
       continue;
     }
     outside += 1.0;
@@ -131,7 +123,7 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
   std::size_t inside = 0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const core::PixelPoint p = {pixels.x[i], pixels.y[i]};
-    if (Depth(outline, p.x_px, p.y_px, cosine, sine) < clear_px) continue;
+    if (DepthInside(outline, p.x_px, p.y_px, cosine, sine) < clear_px) continue;
     ++inside;
     if (std::abs(residuals[i]) > cut) unexplained.push_back(p);
   }
@@ -224,7 +216,7 @@ void CollectOutlinePixels(const core::Frame& frame,
       continue;
     }
     for (std::int32_t x = x0; x <= x1; ++x) {
-      const double depth = Depth(outline, x, y, cosine, sine);
+      const double depth = DepthInside(outline, x, y, cosine, sine);
       if (depth < -margin || depth > band.inner_px) continue;
       if (large && depth > margin && IsLeftOut(x, y)) continue;
       collector.Take(x, y);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "kept_pixels.h"
 #include "lanes.h"
 
 namespace touchdown::vision {
@@ -166,59 +167,49 @@ Scout::Noise Scout::NoiseOf(const std::vector<float>& off) const {
   return noise;
 }
 
-// `row_of(y)`: the samples of row y of the picture, valid until the next.
+// `row_of(y)`: a window whose first row is row y of the picture.
 template <class RowOf>
 std::vector<float> Scout::Off(const Rows& rows, const RowOf& row_of) const {
   const std::size_t segments = At(segments_);
   std::vector<float> off;
   off.reserve(sum_.size() / rows.step + segments);
   for (std::size_t k = rows.first; k < rows_looked_at(); k += rows.step) {
-    const auto* const row =
+    const core::Frame row =
         row_of(kFirstRow_px + static_cast<std::int32_t>(k) * kRowStep_px);
     off.resize(off.size() + segments);
-    OffInRow(row, segments, &sum_[k * segments], &per_u_[k * segments],
-             &off[off.size() - segments]);
+    float* const out = &off[off.size() - segments];
+    const float* const sum = &sum_[k * segments];
+    const float* const per_u = &per_u_[k * segments];
+    if (row.is_16_bit()) {
+      OffInRow(row.row<std::uint16_t>(0), segments, sum, per_u, out);
+    } else {
+      OffInRow(row.row<std::uint8_t>(0), segments, sum, per_u, out);
+    }
   }
   return off;
+}
+
+std::vector<float> Scout::Off(const core::Frame& frame,
+                              const Rows& rows) const {
+  const auto ahead = static_cast<std::int32_t>(rows.step) * kRowStep_px;
+  return Off(rows, [&](std::int32_t y) {
+    if (y + ahead < height_px_) {
+      Prefetch(frame.row<std::byte>(y + ahead), RowBytes(frame));
+    }
+    return WindowOf(frame, {0, y, width_px_, 1});
+  });
 }
 
 std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
                               const Rows& rows) const {
   clip.WillRead(index, {0, 0, width_px_, height_px_});
-  if (clip.views_last()) {
-    const core::Frame frame = clip.Read(index);
-    const auto ahead = static_cast<std::int32_t>(rows.step) * kRowStep_px;
-    const std::size_t bytes = At(width_px_) * (frame.is_16_bit() ? 2 : 1);
-    const auto prefetch = [&](std::int32_t y) {
-      if (y + ahead < height_px_) {
-        Prefetch(frame.data + (y + ahead) * frame.stride_bytes, bytes);
-      }
-    };
-    if (frame.is_16_bit()) {
-      return Off(rows, [&](std::int32_t y) {
-        prefetch(y);
-        return frame.row<std::uint16_t>(y);
-      });
-    }
+  // Rows alone where they must be unpacked and nothing else need be.
+  if (clip.windows_are_cheap() && !clip.views_last()) {
     return Off(rows, [&](std::int32_t y) {
-      prefetch(y);
-      return frame.row<std::uint8_t>(y);
+      return clip.Read(index, {0, y, width_px_, 1});
     });
   }
-  core::Frame row;
-  const auto read = [&](std::int32_t y) {
-    row = clip.Read(index, {0, y, width_px_, 1});
-  };
-  if (clip.info().bit_depth > 8) {
-    return Off(rows, [&](std::int32_t y) {
-      read(y);
-      return row.row<std::uint16_t>(0);
-    });
-  }
-  return Off(rows, [&](std::int32_t y) {
-    read(y);
-    return row.row<std::uint8_t>(0);
-  });
+  return Off(clip.Read(index), rows);
 }
 
 Changes Scout::ChangesOf(const std::vector<float>& off) const {
@@ -238,12 +229,7 @@ Changes Scout::ChangesOf(const std::vector<float>& off) const {
 }
 
 Changes Scout::Look(const core::Frame& frame) const {
-  if (frame.is_16_bit()) {
-    return ChangesOf(Off(
-        Rows{}, [&](std::int32_t y) { return frame.row<std::uint16_t>(y); }));
-  }
-  return ChangesOf(
-      Off(Rows{}, [&](std::int32_t y) { return frame.row<std::uint8_t>(y); }));
+  return ChangesOf(Off(frame, Rows{}));
 }
 
 Changes Scout::Look(Clip& clip, std::int64_t index) const {

@@ -66,6 +66,7 @@ class Scout {
   Changes ChangesOf(const std::vector<float>& off) const;
   template <class RowOf>
   std::vector<float> Off(const Rows& rows, const RowOf& row_of) const;
+  std::vector<float> Off(const core::Frame& frame, const Rows& rows) const;
   std::vector<float> Off(Clip& clip, std::int64_t index,
                          const Rows& rows) const;
   std::vector<core::PixelRect> Regions(std::vector<float> cells) const;

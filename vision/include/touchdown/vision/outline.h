@@ -10,11 +10,11 @@
 //         leaves it uncovered
 //   in    a quadratic polynomial over the body (shading)
 // While the shutter is open the body moves by open * travel and turns by open *
-// turn, and the coverage is the mean along that way. Gauss-Newton on all parameters with the clip's
-// own noise as weights, and robust (Tukey) weights against spots, shadows and
-// other things that move. The covariance is that of the normal equations: at
-// the Cramer-Rao bound where the model holds, widened by the residuals' excess
-// where it does not.
+// turn, and the coverage is the mean along that way. Gauss-Newton on all
+// parameters with the clip's own noise as weights, and robust (Tukey) weights
+// against spots, shadows and other things that move. The covariance is that of
+// the normal equations: at the Cramer-Rao bound where the model holds, widened
+// by the residuals' excess where it does not.
 #pragma once
 
 #include <array>
