@@ -268,6 +268,14 @@ void Analyzer::DescribeScene() {
   scene.used.push_back(
       track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
   scene.used.push_back("quadratic shading");
+  if (track.near_ground_modelled) {
+    scene.used.push_back("the ground's edge, hidden by the body");
+  } else {
+    scene.left_out["outline near the ground"] =
+        !result_.plane           ? "no ground line"
+        : track.known_background ? "a shadow, a reflection or an uneven edge"
+                                 : "the body never left its background";
+  }
   if (light_spread_) {
     scene.used.push_back(
         fmt::format("flicker of {:.1f} % taken out", 100.0 * *light_spread_));
@@ -378,8 +386,9 @@ Analysis Analyzer::Run() {
     contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
     FindGroundAndContacts(track);
     AddLens(result_, camera_, contact_options_);
-    result_.warnings.insert(result_.warnings.end(), seen.warnings.begin(),
-                            seen.warnings.end());
+    const std::vector<std::string> of_track = Seen(*result_.track).warnings;
+    result_.warnings.insert(result_.warnings.end(), of_track.begin(),
+                            of_track.end());
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());

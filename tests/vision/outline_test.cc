@@ -39,6 +39,8 @@ struct ShotOptions {
   double angle_rad = 0.0;
   int size_px = 80;
   double offset_px = 0.0;  // of the centre from the picture's, to the right
+  double gap_px = 1e4;     // from a sphere to a level ground line below it
+  double shadow_depth = 0.0;
   double body_level = 0.15;
   double background_level = 0.65;
   double gradient = 0.0;
@@ -55,7 +57,6 @@ Shot Take(std::uint64_t seed, const ShotOptions& options) {
   Scene& scene = shot.scene;
   SceneCamera& camera = scene.camera;
   camera.width_px = camera.height_px = options.size_px;
-  camera.ground_point = {0.0, 1e4};  // far below the picture
   camera.bit_depth = options.bit_depth;
   camera.psf_sigma_px = options.psf_px;
   scene.look.body_level = options.body_level;
@@ -65,8 +66,11 @@ Shot Take(std::uint64_t seed, const ShotOptions& options) {
   const double x = 0.5 * options.size_px + options.offset_px + within(engine);
   const double y = 0.5 * options.size_px + within(engine);
   const double turn = options.angle_rad + 0.02 * within(engine);
+  const double ground_px = y + options.half_long_px + options.gap_px;
+  camera.ground_point = {0.0, ground_px};
+  scene.trouble.shadow_depth = options.shadow_depth;
   scene.pose = [=](double) {
-    return ScenePose{{1e-3 * x, 1e-3 * (1e4 - y)}, -turn};
+    return ScenePose{{1e-3 * x, 1e-3 * (ground_px - y)}, -turn};
   };
   shot.truth.kind = options.kind;
   shot.truth.centre = {x, y};
@@ -388,6 +392,66 @@ TEST(Outline, BelowTheGroundsMarginPixelsAreLeftOut) {
   const auto band = RmsBand9999(60);
   EXPECT_LT(Rms(zx), band.high);
   EXPECT_LT(Rms(zy), band.high);
+}
+
+// The body hides the sharp edge of the ground and not its blurred picture:
+// modelled so, its own lower edge need not be left out.
+TEST(Outline, NearTheGroundTheBodyHidesWhatIsAboveIt) {
+  constexpr std::uint64_t kShots = 60;
+  for (const double gap_px : {0.0, 0.6, 1.7, 3.0}) {
+    std::vector<double> zx, zy, excess, u_modelled, u_left_out;
+    for (std::uint64_t seed = 1; seed <= kShots; ++seed) {
+      ShotOptions near;
+      near.gap_px = gap_px;
+      near.half_long_px = 12.0;
+      const Shot shot = Take(seed + 1000, near);
+      const double line = shot.truth.centre.y_px + 12.0 + gap_px;
+      OutlineOptions options;
+      options.ground = calib::GroundThrough({0.0, line}, {79.0, line});
+      const auto left_out =
+          FitOutline(shot.image.view(), shot.background, shot.truth, options);
+      ASSERT_TRUE(left_out) << left_out.error().reason;
+      EXPECT_EQ(left_out->pixels_near_ground, 0);
+      options.near_ground = OutlineOptions::NearGround::kModelled;
+      const auto fit =
+          FitOutline(shot.image.view(), shot.background, shot.truth, options);
+      ASSERT_TRUE(fit) << fit.error().reason;
+      EXPECT_EQ(fit->visible, 1.0);
+      zx.push_back((fit->outline.centre.x_px - shot.truth.centre.x_px) /
+                   fit->u_x_px);
+      zy.push_back((fit->outline.centre.y_px - shot.truth.centre.y_px) /
+                   fit->u_y_px);
+      excess.push_back(fit->excess_near_ground);
+      u_modelled.push_back(fit->u_y_px);
+      u_left_out.push_back(left_out->u_y_px);
+    }
+    const auto band = RmsBand9999(kShots);
+    EXPECT_LT(Rms(zx), band.high) << gap_px;
+    EXPECT_LT(Rms(zy), band.high) << gap_px;
+    EXPECT_LT(std::abs(Mean(zy)) * std::sqrt(static_cast<double>(kShots)), 3.9)
+        << gap_px;
+    EXPECT_NEAR(Mean(excess), 1.0, 0.1) << gap_px;
+    EXPECT_LT(Mean(u_modelled), Mean(u_left_out)) << gap_px;
+  }
+}
+
+// What is near the ground and not of the body is told by its residuals.
+TEST(Outline, AShadowNearTheGroundShowsAsExcess) {
+  ShotOptions shaded;
+  shaded.gap_px = 0.5;
+  shaded.half_long_px = 12.0;
+  shaded.shadow_depth = 0.3;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Shot shot = Take(seed, shaded);
+    const double line = shot.truth.centre.y_px + 12.5;
+    OutlineOptions options;
+    options.ground = calib::GroundThrough({0.0, line}, {79.0, line});
+    options.near_ground = OutlineOptions::NearGround::kModelled;
+    const auto fit =
+        FitOutline(shot.image.view(), shot.background, shot.truth, options);
+    ASSERT_TRUE(fit) << fit.error().reason;
+    EXPECT_GT(fit->excess_near_ground, 1.5);
+  }
 }
 
 // Nothing there: said, with a reason, never an outline.

@@ -287,13 +287,15 @@ TEST(Tracker, RefinedAtTheBorder) {
   }
 }
 
-// With the ground known, its pixels leave the fit, the size is held,
-// and poses near the ground are as good as the others.
-TEST(Tracker, RefinedAtTheGround) {
+// With the ground known the size is held, and poses near the ground are as good
+// as the others; its pixels leave the fit where there is a shadow.
+class TrackerAtTheGround : public ::testing::TestWithParam<double> {};
+TEST_P(TrackerAtTheGround, IsRefined) {
   Scene scene = Flying(core::BodyKind::kSphere);
   scene.pose = [](double t) {
     return ScenePose{{-0.06 + 6.2 * t, 0.012}, 0.0};  // touching all the way
   };
+  scene.trouble.shadow_depth = GetParam();
   std::vector<double> zy;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const auto clip = OpenScene(scene, seed);
@@ -301,6 +303,7 @@ TEST(Tracker, RefinedAtTheGround) {
     ASSERT_TRUE(result) << result.error().reason;
     const Track refined = Refine(*clip, result->background, result->track,
                                  {GroundOf(scene.camera), std::nullopt});
+    EXPECT_EQ(refined.near_ground_modelled, GetParam() == 0.0);
     EXPECT_GE(refined.poses.size() + 2, result->track.poses.size());
     EXPECT_NEAR(refined.body.radius_px.value, 12.0,
                 4.5 * refined.body.radius_px.u);
@@ -311,6 +314,32 @@ TEST(Tracker, RefinedAtTheGround) {
     }
   }
   EXPECT_LT(Rms(zy), 1.35);
+}
+INSTANTIATE_TEST_SUITE_P(ShadowDepth, TrackerAtTheGround,
+                         ::testing::Values(0.0, 0.3));
+
+// A change of size that the ground's edge feigned is taken back.
+TEST(Tracker, RefinedToASteadySize) {
+  const Scene scene = Flying(core::BodyKind::kSphere);
+  const auto clip = OpenScene(scene, 1);
+  auto result = TrackBody(*clip);
+  ASSERT_TRUE(result) << result.error().reason;
+  const RefineOptions options = {GroundOf(scene.camera), std::nullopt};
+  const Track steady =
+      Refine(*clip, result->background, result->track, options);
+  double size = 1.01;
+  for (Pose& pose : result->track.poses) pose.relative_size = size -= 0.001;
+  result->track.warnings.push_back(
+      "the body's image changes size by -2.0 % over the clip");
+  const Track refined =
+      Refine(*clip, result->background, result->track, options);
+  EXPECT_THAT(refined.warnings, ::testing::IsEmpty());
+  ASSERT_EQ(refined.poses.size(), steady.poses.size());
+  for (std::size_t i = 0; i < refined.poses.size(); ++i) {
+    EXPECT_EQ(refined.poses[i].relative_size, 1.0);
+    EXPECT_NEAR(refined.poses[i].centre.y_px, steady.poses[i].centre.y_px,
+                0.1 * steady.poses[i].u_y_px);
+  }
 }
 
 }  // namespace

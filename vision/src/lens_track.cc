@@ -205,8 +205,7 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
   out.body.half_short_px = Grown(track.body.half_short_px, by_short);
   out.body.whole_px *= by_long;
   out.body.blur_px *= by_long;
-  const auto grows = [](const Pose& p) { return p.relative_size != 1.0; };
-  if (std::any_of(track.poses.begin(), track.poses.end(), grows)) {
+  if (!IsSteady(track)) {
     const double common = Median(sizes);
     const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
     // What remains of a change of size that only the lens made (FollowSize
@@ -214,14 +213,10 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
     constexpr double kMatters = 0.01;
     const bool steady = (*most - *least) < kMatters * common;
     for (std::size_t i = 0; i < out.poses.size(); ++i) {
-      out.poses[i].relative_size = steady ? 1.0 : sizes[i] / common;
+      out.poses[i].relative_size = sizes[i] / common;
     }
     out.body.radius_px = Grown(track.body.radius_px, common);
-    if (steady) {
-      std::erase_if(out.warnings, [](const std::string& warning) {
-        return warning.starts_with("the body's image changes size");
-      });
-    }
+    if (steady) KeepSize(out);
   }
   return out;
 }

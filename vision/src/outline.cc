@@ -49,7 +49,9 @@ class Fitter {
       : frame_(frame),
         background_(background),
         options_(options),
-        usable_(options.ground, options.ground_margin_px),
+        height_(options.ground),
+        behind_(background, Models() ? height_ : Height(), Zone_px()),
+        usable_(Models() ? Height() : height_, options.ground_margin_px),
         outline_(start),
         blur_(options.blur_px),
         open_(options.open),
@@ -64,10 +66,21 @@ class Fitter {
   core::Expected<OutlineFit> Run();
 
  private:
+  bool Models() const {
+    return options_.near_ground == OutlineOptions::NearGround::kModelled;
+  }
+  // Where the ground's blurred edge has ended, by 2e-4, and half of nine pixels
+  // above that.
+  double Zone_px() const {
+    constexpr double kBlurs = 3.5;
+    constexpr double kHalf_px = 1.5;
+    return kBlurs * options_.blur_px + kHalf_px;
+  }
   void CollectPixels();
   std::string Gather();
   std::string Iterate(int& iterations);
   bool SetAsideUnexplained();
+  void TellNearGround(OutlineFit& fit) const;
   void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
   double Visible() const {
     return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
@@ -88,6 +101,8 @@ class Fitter {
   const core::Frame& frame_;
   const Background& background_;
   const OutlineOptions& options_;
+  Height height_;
+  Behind behind_;
   UsablePart usable_;
   Outline outline_;
   double blur_;
@@ -120,8 +135,8 @@ void Fitter::CollectPixels() {
   band.margin_px = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * smear_.way_px();
   band.inner_px = saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
   band.known_background = outer_ == 0;
-  CollectOutlinePixels(frame_, background_, outline_, cosine_, sine_, usable_,
-                       band, pixels_);
+  CollectOutlinePixels(frame_, behind_, outline_, cosine_, sine_, usable_, band,
+                       pixels_);
 }
 
 // Collects the pixels; why they are too few, or nothing.
@@ -334,6 +349,23 @@ bool Fitter::SetAsideUnexplained() {
   return true;
 }
 
+void Fitter::TellNearGround(OutlineFit& fit) const {
+  double near = 0.0;
+  double others = 0.0;
+  for (std::size_t i = 0; i < pixels_.size; ++i) {
+    const double square = residuals_[i] * residuals_[i];
+    if (height_.Of(pixels_.x[i], pixels_.y[i]) < options_.ground_margin_px) {
+      ++fit.pixels_near_ground;
+      near += square;
+    } else {
+      others += square;
+    }
+  }
+  const int rest = fit.pixels - fit.pixels_near_ground;
+  if (fit.pixels_near_ground == 0 || rest == 0) return;
+  fit.excess_near_ground = near / fit.pixels_near_ground / (others / rest);
+}
+
 core::Expected<OutlineFit> Fitter::Run() {
   cosine_ = std::cos(outline_.angle_rad);
   sine_ = std::sin(outline_.angle_rad);
@@ -411,6 +443,7 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.hidden = std::max(0.0, before_aside_ - fit.visible);
   fit.pixels = static_cast<int>(pixels_.size);
   fit.iterations = iterations;
+  TellNearGround(fit);
   // Known to no better than half its size it is no outline.
   const double vague = 0.5 * SmallestHalf(outline_);
   if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <

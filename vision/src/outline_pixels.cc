@@ -20,13 +20,30 @@ double DepthInside(const Outline& outline, double x_px, double y_px,
                                     : -std::max(out_u, out_v);
 }
 
-UsablePart::UsablePart(const std::optional<calib::GroundLine>& ground,
-                       double margin_px) {
+Height::Height(const std::optional<calib::GroundLine>& ground) {
   if (!ground) return;
-  const double origin = calib::HeightAbove(*ground, {0.0, 0.0});
-  x_ = calib::HeightAbove(*ground, {1.0, 0.0}) - origin;
-  y_ = calib::HeightAbove(*ground, {0.0, 1.0}) - origin;
-  offset_ = origin - margin_px;
+  offset_ = calib::HeightAbove(*ground, {0.0, 0.0});
+  x_ = calib::HeightAbove(*ground, {1.0, 0.0}) - offset_;
+  y_ = calib::HeightAbove(*ground, {0.0, 1.0}) - offset_;
+}
+
+double Behind::Above(std::int32_t x, std::int32_t y, double px) const {
+  if (std::min(background_.width_px, background_.height_px) < 3) {
+    return static_cast<double>(background_.at(x, y));
+  }
+  const core::PixelPoint from = height_.Above(x, y, px);
+  const auto inside = [](double at, std::int32_t end) {
+    return std::clamp(static_cast<std::int32_t>(std::lround(at)), 1, end - 2);
+  };
+  const std::int32_t x0 = inside(from.x_px, background_.width_px);
+  const std::int32_t y0 = inside(from.y_px, background_.height_px);
+  double sum = 0.0;
+  for (std::int32_t dy = -1; dy <= 1; ++dy) {
+    for (std::int32_t dx = -1; dx <= 1; ++dx) {
+      sum += static_cast<double>(background_.at(x0 + dx, y0 + dy));
+    }
+  }
+  return sum / 9.0;
 }
 
 void UsablePart::Without(const std::vector<core::PixelPoint>& pixels,
@@ -146,25 +163,27 @@ double HalfWidth(double radius, double dy) {
 
 class Collector {
  public:
-  Collector(const core::Frame& frame, const Background& background,
+  Collector(const core::Frame& frame, const Behind& behind,
             const UsablePart& usable, bool known_background,
             OutlinePixels& pixels)
       : frame_(frame),
-        background_(background),
+        background_(behind.background()),
+        behind_(behind),
         usable_(usable),
-        ask_known_(known_background && !background.unknown.empty()),
+        ask_known_(known_background && !background_.unknown.empty()),
         pixels_(pixels) {}
 
   void Take(std::int32_t x, std::int32_t y) {
     if (!usable_.Holds(x, y)) return;
     if (ask_known_ && !background_.known_at(x, y)) return;
     pixels_.Add(x, y, frame_.at(x - frame_.origin_x_px, y - frame_.origin_y_px),
-                static_cast<double>(background_.at(x, y)));
+                static_cast<double>(background_.at(x, y)), behind_.At(x, y));
   }
 
  private:
   const core::Frame& frame_;
   const Background& background_;
+  const Behind& behind_;
   const UsablePart& usable_;
   bool ask_known_;
   OutlinePixels& pixels_;
@@ -176,10 +195,10 @@ bool IsLeftOut(std::int32_t x, std::int32_t y) { return (x + y) % 3 != 0; }
 
 }  // namespace
 
-void CollectOutlinePixels(const core::Frame& frame,
-                          const Background& background, const Outline& outline,
-                          double cosine, double sine, const UsablePart& usable,
-                          const PixelBand& band, OutlinePixels& pixels) {
+void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
+                          const Outline& outline, double cosine, double sine,
+                          const UsablePart& usable, const PixelBand& band,
+                          OutlinePixels& pixels) {
   const double margin = band.margin_px;
   const bool large = SmallestHalf(outline) > 2.0 * margin;
   const double reach = Extent(outline) + margin;
@@ -199,7 +218,8 @@ void CollectOutlinePixels(const core::Frame& frame,
       last(centre.y_px + reach, frame.origin_y_px + frame.height_px - 1);
   pixels.Clear(static_cast<std::size_t>(std::max(0, x1 - x0 + 1)) *
                static_cast<std::size_t>(std::max(0, y1 - y0 + 1)));
-  Collector collector(frame, background, usable, band.known_background, pixels);
+  const Background& background = behind.background();
+  Collector collector(frame, behind, usable, band.known_background, pixels);
   for (std::int32_t y = y0; y <= y1; ++y) {
     if (outline.kind == core::BodyKind::kSphere) {
       const double dy = y - centre.y_px;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,13 +15,54 @@
 
 namespace touchdown::vision {
 
-// What lies above the ground line by a margin, or everything without a line,
-// and is not set aside.
+// The height above a ground line; without one everything is far above it.
+class Height {
+ public:
+  Height() = default;
+  explicit Height(const std::optional<calib::GroundLine>& ground);
+  double Of(double x_px, double y_px) const {
+    return x_ * x_px + y_ * y_px + offset_;
+  }
+  // `px` farther up.
+  core::PixelPoint Above(double x_px, double y_px, double px) const {
+    return {x_px + px * x_, y_px + px * y_};
+  }
+
+ private:
+  double x_ = 0.0;
+  double y_ = 0.0;
+  double offset_ = std::numeric_limits<double>::infinity();
+};
+
+// What the body hides at a pixel: the background there or, near the ground's
+// blurred edge, the background above that: the mean of nine pixels.
+class Behind {
+ public:
+  // `zone_px`: where the edge's blur ends.
+  Behind(const Background& background, const Height& height, double zone_px)
+      : background_(background), height_(height), zone_px_(zone_px) {}
+  double At(std::int32_t x, std::int32_t y) const {
+    const double height = height_.Of(x, y);
+    return height < zone_px_ ? Above(x, y, zone_px_ - height)
+                             : static_cast<double>(background_.at(x, y));
+  }
+  const Background& background() const { return background_; }
+
+ private:
+  double Above(std::int32_t x, std::int32_t y, double px) const;
+
+  const Background& background_;
+  Height height_;
+  double zone_px_;
+};
+
+// What lies higher than a margin above the ground line and is not set aside.
 class UsablePart {
  public:
-  UsablePart(const std::optional<calib::GroundLine>& ground, double margin_px);
+  UsablePart(const Height& height, double margin_px)
+      : height_(height), margin_px_(margin_px) {}
   bool Holds(double x_px, double y_px) const {
-    return x_ * x_px + y_ * y_px + offset_ >= 0.0 &&
+    return height_.Of(x_px, y_px) >= margin_px_ &&
            (aside_.empty() || !IsAside(x_px, y_px));
   }
   // Sets these pixels aside, and all within `reach_px` of any of them.
@@ -29,9 +71,8 @@ class UsablePart {
  private:
   bool IsAside(double x_px, double y_px) const;
 
-  double x_ = 0.0;
-  double y_ = 0.0;
-  double offset_ = 0.0;
+  Height height_;
+  double margin_px_;
   core::PixelRect box_;  // of the pixels set aside
   std::vector<std::uint8_t> aside_;
 };
@@ -44,10 +85,10 @@ struct PixelBand {
   double inner_px = 0.0;          // the greatest depth inside
   bool known_background = false;  // leave out where it is not known
 };
-void CollectOutlinePixels(const core::Frame& frame,
-                          const Background& background, const Outline& outline,
-                          double cosine, double sine, const UsablePart& usable,
-                          const PixelBand& band, OutlinePixels& pixels);
+void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
+                          const Outline& outline, double cosine, double sine,
+                          const UsablePart& usable, const PixelBand& band,
+                          OutlinePixels& pixels);
 
 // Share of the outline that lies in the frame and is usable.
 double VisibleShare(const core::Frame& frame, const Outline& outline,

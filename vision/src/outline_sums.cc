@@ -19,7 +19,8 @@ double SumOf(const std::array<double, kCount>& lanes) {
 void OutlinePixels::Clear(std::size_t room) {
   size = 0;
   if (x.size() >= room + kBlock) return;
-  for (auto* const column : {&x, &y, &value, &background, &per_noise}) {
+  for (auto* const column :
+       {&x, &y, &value, &background, &behind, &per_noise}) {
     column->resize(room + kBlock);
   }
 }
@@ -35,6 +36,7 @@ void OutlinePixels::Finish(double floor_dn2, double slope_dn,
     y[i] = y[size - 1];
     value[i] = value[size - 1];
     background[i] = background[size - 1];
+    behind[i] = behind[size - 1];
     per_noise[i] = 0.0;
   }
 }
@@ -43,6 +45,7 @@ void OutlinePixels::Finish(double floor_dn2, double slope_dn,
 struct OutlineBlock {
   const double* value;
   const double* background;
+  const double* behind;
   const double* per_noise;
   double* residuals;
 
@@ -148,7 +151,8 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
                          Totals& totals) const {
   struct alignas(64) Work {
     std::array<std::array<BlockColumn, 4>, kPadded / 4> rows;
-    BlockColumn in, out, step, inside, outside, residual, weight, weighted;
+    BlockColumn in, out, behind, step, inside, outside, residual, weight,
+        weighted;
     BlockColumn cost, inlier, square, contrast, contrast_weight;
   };
   Work w;
@@ -158,13 +162,15 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
   Levels(cover, round.levels.data(), round.interior, w.in);
   if (known) {
     std::copy_n(background, kBlock, w.out.begin());
+    std::copy_n(behind, kBlock, w.behind.begin());
   } else {
     Levels(cover, round.levels.data() + round.interior, round.outer, w.out);
+    w.behind = w.out;
   }
   for (std::size_t i = 0; i < kBlock; ++i) {
     const double covered = cover.value[i];
     const double noise = per_noise[i];
-    const double rise = w.in[i] - w.out[i];
+    const double rise = w.in[i] - w.behind[i];
     const double residual = (value[i] - w.out[i] - covered * rise) * noise;
     const double present = noise > 0.0 ? 1.0 : 0.0;
     const double t = residual * per_cut;
@@ -233,7 +239,8 @@ void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
   for (std::size_t begin = 0; begin < pixels.padded(); begin += kBlock) {
     image.Cover(&pixels.x[begin], &pixels.y[begin], cover);
     const OutlineBlock block = {&pixels.value[begin], &pixels.background[begin],
-                                &pixels.per_noise[begin], &residuals[begin]};
+                                &pixels.behind[begin], &pixels.per_noise[begin],
+                                &residuals[begin]};
     block.AddTo(round, cover, totals_);
   }
   residuals.resize(pixels.size);

@@ -19,16 +19,19 @@ struct OutlinePixels {
   std::vector<double> y;
   std::vector<double> value;       // DN
   std::vector<double> background;  // DN
+  std::vector<double> behind;      // DN, of what the body hides here
   std::vector<double> per_noise;   // 1/DN; 0: padding
 
   std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
   // None yet, and room for so many.
   void Clear(std::size_t room);
-  void Add(double x_px, double y_px, double value_dn, double background_dn) {
+  void Add(double x_px, double y_px, double value_dn, double background_dn,
+           double behind_dn) {
     x[size] = x_px;
     y[size] = y_px;
     value[size] = value_dn;
     background[size] = background_dn;
+    behind[size] = behind_dn;
     ++size;
   }
   // When all are there. The noise's variance is floor + slope * value, at least

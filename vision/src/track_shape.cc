@@ -14,73 +14,14 @@ double SizeOf(const OutlineFit& fit) {
                                                      : fit.outline.half_long_px;
 }
 
-// A body that comes nearer grows: a straight line through the sizes, used only
-// where the change is large against its uncertainty and matters.
-void FollowSize(const std::vector<Fitted>& all, Track& track) {
-  if (track.body.kind != core::BodyKind::kSphere || all.size() < 12) return;
-  double sw = 0, st = 0, sr = 0, stt = 0, str = 0;
-  for (const Fitted& f : all) {
-    if (f.fit.visible < 0.98) continue;
-    const double w = 1.0 / (f.fit.u_size_px * f.fit.u_size_px + 1e-6);
-    sw += w;
-    st += w * f.time_s;
-    sr += w * f.fit.outline.radius_px;
-    stt += w * f.time_s * f.time_s;
-    str += w * f.time_s * f.fit.outline.radius_px;
-  }
-  const double determinant = sw * stt - st * st;
-  if (!(determinant > 0.0)) return;
-  const double slope = (sw * str - st * sr) / determinant;
-  const double level = (sr - slope * st) / sw;
-  const double span = all.back().time_s - all.front().time_s;
-  const double change = slope * span / track.body.radius_px.value;
-  double square = 0.0;
-  for (const Fitted& f : all) {
-    const double r = f.fit.outline.radius_px - level - slope * f.time_s;
-    square += r * r;
-  }
-  const double scatter = std::sqrt(square / static_cast<double>(all.size()));
-  constexpr double kMatters = 0.01;
-  const double noise = scatter / track.body.radius_px.value /
-                       std::sqrt(static_cast<double>(all.size()) / 12.0);
-  if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
-  // A step is no growth: a blow changes the way that smears the image. Each
-  // half must show a good part of the slope.
-  const auto half = [&](std::size_t begin, std::size_t end) {
-    std::vector<double> early;
-    std::vector<double> late;
-    const std::size_t third = (end - begin) / 3;
-    for (std::size_t i = 0; i < third; ++i) {
-      early.push_back(all[begin + i].fit.outline.radius_px);
-      late.push_back(all[end - 1 - i].fit.outline.radius_px);
-    }
-    const double apart =
-        all[end - 1 - third / 2].time_s - all[begin + third / 2].time_s;
-    return (Median(late) - Median(early)) / apart;
-  };
-  constexpr double kGoodPart = 0.4;
-  const std::size_t middle = all.size() / 2;
-  if (half(0, middle) / slope < kGoodPart ||
-      half(middle, all.size()) / slope < kGoodPart) {
-    return;
-  }
-  for (Pose& pose : track.poses) {
-    pose.relative_size =
-        (level + slope * pose.time_s) / track.body.radius_px.value;
-  }
-  track.warnings.push_back(
-      fmt::format("the body's image changes size by {:.1f} % over the clip: it "
-                  "moves towards "
-                  "or away from the camera, and the scale with it",
-                  100.0 * change));
-}
-
 double Period(const BodyImage& body) {
   constexpr double kSquare = 1.05;  // sides nearer than 5 %: a quarter turn
   return body.half_long_px.value < kSquare * body.half_short_px.value
              ? 0.5 * std::numbers::pi
              : std::numbers::pi;
 }
+
+constexpr const char* kGrows = "the body's image changes size";
 
 }  // namespace
 
@@ -153,6 +94,78 @@ Pose PoseOf(const Fitted& f) {
   pose.u_angle_rad = f.fit.u_angle_rad;
   pose.misfit = f.fit.misfit;
   return pose;
+}
+
+void FollowSize(const std::vector<Fitted>& all, Track& track) {
+  if (track.body.kind != core::BodyKind::kSphere || all.size() < 12) return;
+  double sw = 0, st = 0, sr = 0, stt = 0, str = 0;
+  for (const Fitted& f : all) {
+    if (f.fit.visible < 0.98) continue;
+    const double w = 1.0 / (f.fit.u_size_px * f.fit.u_size_px + 1e-6);
+    sw += w;
+    st += w * f.time_s;
+    sr += w * f.fit.outline.radius_px;
+    stt += w * f.time_s * f.time_s;
+    str += w * f.time_s * f.fit.outline.radius_px;
+  }
+  const double determinant = sw * stt - st * st;
+  if (!(determinant > 0.0)) return;
+  const double slope = (sw * str - st * sr) / determinant;
+  const double level = (sr - slope * st) / sw;
+  const double span = all.back().time_s - all.front().time_s;
+  const double change = slope * span / track.body.radius_px.value;
+  double square = 0.0;
+  for (const Fitted& f : all) {
+    const double r = f.fit.outline.radius_px - level - slope * f.time_s;
+    square += r * r;
+  }
+  const double scatter = std::sqrt(square / static_cast<double>(all.size()));
+  constexpr double kMatters = 0.01;
+  const double noise = scatter / track.body.radius_px.value /
+                       std::sqrt(static_cast<double>(all.size()) / 12.0);
+  if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
+  // A step is no growth: a blow changes the way that smears the image. Each
+  // half must show a good part of the slope.
+  const auto half = [&](std::size_t begin, std::size_t end) {
+    std::vector<double> early;
+    std::vector<double> late;
+    const std::size_t third = (end - begin) / 3;
+    for (std::size_t i = 0; i < third; ++i) {
+      early.push_back(all[begin + i].fit.outline.radius_px);
+      late.push_back(all[end - 1 - i].fit.outline.radius_px);
+    }
+    const double apart =
+        all[end - 1 - third / 2].time_s - all[begin + third / 2].time_s;
+    return (Median(late) - Median(early)) / apart;
+  };
+  constexpr double kGoodPart = 0.4;
+  const std::size_t middle = all.size() / 2;
+  if (half(0, middle) / slope < kGoodPart ||
+      half(middle, all.size()) / slope < kGoodPart) {
+    return;
+  }
+  for (Pose& pose : track.poses) {
+    pose.relative_size =
+        (level + slope * pose.time_s) / track.body.radius_px.value;
+  }
+  track.warnings.push_back(
+      fmt::format("{} by {:.1f} % over the clip: it "
+                  "moves towards "
+                  "or away from the camera, and the scale with it",
+                  kGrows, 100.0 * change));
+}
+
+bool IsSteady(const Track& track) {
+  return std::all_of(
+      track.poses.begin(), track.poses.end(),
+      [](const Pose& pose) { return pose.relative_size == 1.0; });
+}
+
+void KeepSize(Track& track) {
+  for (Pose& pose : track.poses) pose.relative_size = 1.0;
+  std::erase_if(track.warnings, [](const std::string& warning) {
+    return warning.starts_with(kGrows);
+  });
 }
 
 void Unwrap(Track& track) {

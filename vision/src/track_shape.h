@@ -45,6 +45,14 @@ BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind);
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
                Track& track);
 
+// A sphere that comes nearer grows: a straight line through the sizes and a
+// warning, only where the change is large against its uncertainty and matters.
+void FollowSize(const std::vector<Fitted>& all, Track& track);
+
+// Whether the body's image keeps its size; takes back that it does not.
+bool IsSteady(const Track& track);
+void KeepSize(Track& track);
+
 // Directions of a side are known up to a half turn: makes them continuous.
 void Unwrap(Track& track);
 

@@ -69,11 +69,18 @@ struct OutlineOptions {
   // centre's information.
   std::optional<Shading> shading;
 
-  // Pixels lower than this above the ground line are left out: there the body
-  // hides its own shadow and the ground's edge. 2 px: beyond the blur of both
-  // (without it angles were off by two to five standard uncertainties).
+  // Pixels lower than this above the ground line are left out, or modelled: the
+  // blurred edges of body and ground do not superpose, as the body hides the
+  // sharp one. 2 px: beyond the blur of both (else angles were off by two to
+  // five standard uncertainties).
   std::optional<calib::GroundLine> ground;
   double ground_margin_px = 2.0;
+  // kModelled: I = out + c (in - behind), `behind` being the background just
+  // above the ground's blurred edge. Exact as long as the body is above the
+  // line and all else stays as it is: no shadow, no reflection, an even edge.
+  // Of a body that comes in flat it is the lower half in nearly every frame.
+  enum class NearGround { kLeftOut, kModelled };
+  NearGround near_ground = NearGround::kLeftOut;
 
   int max_iterations = 30;
   // Converged when no geometric parameter moves by more than this, px: a
@@ -101,6 +108,10 @@ struct OutlineFit {
                          // the ground's margin
   double hidden = 0.0;   // share of it behind what the body does not explain
   int pixels = 0;
+  // Of them lower than the ground's margin, and the mean square of their
+  // residuals over that of the others: about 1 where they are as modelled.
+  int pixels_near_ground = 0;
+  double excess_near_ground = 0.0;
   int iterations = 0;
 };
 

@@ -58,7 +58,11 @@ struct Track {
   std::int64_t last_frame = 0;
   double frame_interval_s = 0.0;
   bool known_background = true;  // false: the body never left it uncovered
-  bool several_bodies = false;   // another one of like size and contrast moves
+  // Whether the picture near the ground line is what the body alone makes of
+  // it. Else there is a shadow, a reflection or an uneven edge, and the
+  // outline's lower part was left out there. After Refine.
+  bool near_ground_modelled = false;
+  bool several_bodies = false;  // another one of like size and contrast moves
   std::vector<std::string> warnings;
 };
 
