@@ -149,8 +149,10 @@ TEST(Tracker, SparseLooksMeasureTheSame) {
   const auto clip = OpenScene(testing::LongScene(800), 3);
   TrackOptions every;
   every.first_looks = 100000;
+  every.background_samples = 33;
   const auto closely = TrackBody(*clip, every);
   TrackOptions sparse;
+  sparse.background_samples = 33;
   sparse.first_looks = 200;
   sparse.seen_whole_px = 0.0;
   const auto coarsely = TrackBody(*clip, sparse);

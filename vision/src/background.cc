@@ -26,7 +26,8 @@ class NoisePairs {
  public:
   NoisePairs(std::int32_t width_px, std::int32_t height_px,
              const FrameSamples& samples)
-      : per_point_(samples.size() / 2) {
+      : apart_(std::max<std::size_t>(1, samples.size() / kEnough)),
+        per_point_(samples.size() / apart_ / 2) {
     // Of a sensor's noise 160 000 pairs tell each bin to 1 %, on any rows. That
     // of compressed pictures differs from place to place in their blocks.
     const bool alike = samples.are_raw();
@@ -47,7 +48,7 @@ class NoisePairs {
   void Take(const std::vector<core::Frame>& windows, std::int32_t row,
             std::int32_t y) {
     for (std::size_t k = 0; k < 2 * per_point_; ++k) {
-      const Sample* const samples = windows[k].row<Sample>(row);
+      const Sample* const samples = windows[k * apart_].row<Sample>(row);
       for (std::int32_t column = 0; column < columns_; ++column) {
         values_[Point(y / row_step_, column) + k] =
             samples[std::ptrdiff_t{column} * step_];
@@ -75,7 +76,12 @@ class NoisePairs {
            2 * per_point_;
   }
 
+  // So many samples tell. Of more every second one: frames of compressed video
+  // that follow each other share their noise.
+  static constexpr std::size_t kEnough = 32;
+
   std::int32_t row_step_ = 1;
+  std::size_t apart_;  // samples from one to the next that is taken
   std::size_t per_point_;
   std::int32_t step_ = 1;  // px between points of a row
   std::int32_t columns_ = 0;

@@ -126,14 +126,11 @@ bool FallsAtFirst(std::span<const PlaneSample> samples,
   return without - chi2(falling) > kMustWinBy;
 }
 
-// The first half of the track, up to the first blow, comes down along a line
-// that is clearly steeper than what a ground line may be off.
-bool DescendsAtFirst(std::span<const PlaneSample> samples,
-                     const std::vector<Kink>& blows) {
-  std::size_t n = std::max<std::size_t>(3, samples.size() / 2);
-  if (!blows.empty()) n = std::min(n, blows.front().after + 1);
-  if (n < 3) return false;
-  const Flight line = FitFlight(samples.first(n), Straight());
+// These samples come down along a line that is clearly steeper than what a
+// ground line may be off.
+bool Descends(std::span<const PlaneSample> samples) {
+  if (samples.size() < 3) return false;
+  const Flight line = FitFlight(samples, Straight());
   const double rate = line.height[1];
   const double u = std::sqrt(line.height_cov(1, 1));
   constexpr double kClear = 3.0;
@@ -141,12 +138,21 @@ bool DescendsAtFirst(std::span<const PlaneSample> samples,
          -rate > std::tan(kMostInclined_rad) * std::abs(line.along[1]);
 }
 
+// So does the first half of the track, up to the first blow, or without a blow
+// all of it.
+bool Descends(std::span<const PlaneSample> samples,
+              const std::vector<Kink>& blows) {
+  std::size_t n = std::max<std::size_t>(3, samples.size() / 2);
+  if (blows.empty()) return Descends(samples) || Descends(samples.first(n));
+  return Descends(samples.first(std::min(n, blows.front().after + 1)));
+}
+
 // The body is on the ground in the first frames and does not come down to it.
 bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
                        const FlightOptions& flight) {
   const std::span<const PlaneSample> samples(track.samples);
   if (FallsAtFirst(samples, blows, flight)) return false;
-  if (DescendsAtFirst(samples, blows)) return false;
+  if (Descends(samples, blows)) return false;
   const std::size_t n = samples.size();
   const std::size_t m = std::min<std::size_t>(8, n);
   const double first = MedianGap(samples.first(m));

@@ -238,25 +238,6 @@ bool MuchSmoother(const Look& look, const Look& other) {
              kAsManyFrames * static_cast<double>(other.fits.size());
 }
 
-// Detection against a background that may hold the body's ghost.
-Look LookWith(Clip& clip, Background background, const TrackOptions& options,
-              Detector detector, std::int64_t last) {
-  Look look;
-  look.background = std::move(background);
-  look.surround = detector == Detector::kDifference ? Surround::kBackground
-                                                    : Surround::kPolynomial;
-  look.found = Detect(clip, look.background, options, detector, last);
-  if (!look.found.chains.empty()) {
-    const Chain& chain = look.found.chains.front();
-    look.choice =
-        ChooseKind(clip, look.background, chain, options, look.surround);
-    look.fits = FitChain(clip, look.background, chain, look.choice, options,
-                         look.surround);
-    DropStrangers(look.fits);
-  }
-  return look;
-}
-
 }  // namespace
 
 std::int64_t EndPart(std::int64_t first, std::int64_t last) {
@@ -329,39 +310,70 @@ std::vector<Fitted> FitChain(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
+BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options) {
+  constexpr int kOfShort = 64;  // frames
+  BackgroundOptions background;
+  if (options.background_samples > 0) {
+    background.samples = options.background_samples;
+  } else if (!IsLong(clip, options) && !clip.info().has_colour) {
+    background.samples = kOfShort;
+  }
+  background.threads = options.threads;
+  return background;
+}
+
+Look LookWith(Clip& clip, Background background, const TrackOptions& options,
+              Detector detector, std::int64_t last) {
+  Look look;
+  look.background = std::move(background);
+  look.surround = detector == Detector::kDifference ? Surround::kBackground
+                                                    : Surround::kPolynomial;
+  look.found = Detect(clip, look.background, options, detector, last);
+  if (!look.found.chains.empty()) {
+    const Chain& chain = look.found.chains.front();
+    look.choice =
+        ChooseKind(clip, look.background, chain, options, look.surround);
+    look.fits = FitChain(clip, look.background, chain, look.choice, options,
+                         look.surround);
+    DropStrangers(look.fits);
+  }
+  return look;
+}
+
+bool IsBetter(const Look& look, const Look& other) {
+  return MuchSmoother(look, other) ||
+         (CostOf(look) < CostOf(other) && !MuchSmoother(other, look));
+}
+
 // A body that stays long where it is leaves its ghost in the mean of all
 // frames, and outlines fit badly. Then the picture may be empty at the
 // beginning, or at the end; where it never is, the frame's own two levels must
 // do.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                std::int64_t last) {
-  Look best = LookWith(clip,
-                       EstimateBackground(clip, options.first, last,
-                                          {.threads = options.threads}),
-                       options, Detector::kDifference, last);
+  const BackgroundOptions still = BackgroundFor(clip, options);
+  Look best =
+      LookWith(clip, EstimateBackground(clip, options.first, last, still),
+               options, Detector::kDifference, last);
   constexpr double kWellFitted = 4.0;
   const std::int64_t part = EndPart(options.first, last);
   for (int attempt = 0; attempt < 3 && best.choice.badness > kWellFitted;
        ++attempt) {
     Background background = best.background;
     if (attempt == 0) {
-      background = EstimateBackground(clip, options.first,
-                                      std::min(options.first + part, last),
-                                      {.threads = options.threads});
+      background = EstimateBackground(
+          clip, options.first, std::min(options.first + part, last), still);
     } else if (attempt == 1) {
       background = EstimateBackground(
           clip, std::max(options.first, best.found.last - part),
-          best.found.last, {.threads = options.threads});
+          best.found.last, still);
     }
     Look look =
         LookWith(clip, std::move(background), options,
                  attempt == 2 ? Detector::kLevels : Detector::kDifference,
                  best.found.last);
     look.found.warning = best.found.warning;
-    if (MuchSmoother(look, best) ||
-        (CostOf(look) < CostOf(best) && !MuchSmoother(best, look))) {
-      best = std::move(look);
-    }
+    if (IsBetter(look, best)) best = std::move(look);
   }
   if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");

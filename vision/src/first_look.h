@@ -41,6 +41,15 @@ struct Look {
 // is part of the background of them all.
 std::int64_t EndPart(std::int64_t first, std::int64_t last);
 
+// What the still background is made of.
+BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options);
+
+// A look against this background. It is less good than another (by IsBetter)
+// where the background holds the body's ghost.
+Look LookWith(Clip& clip, Background background, const TrackOptions& options,
+              Detector detector, std::int64_t last);
+bool IsBetter(const Look& look, const Look& other);
+
 // Absent where nothing moves, or nothing with an outline.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                std::int64_t last);

@@ -81,6 +81,48 @@ std::string FitBetween(Clip& clip, const Background& background,
   return warning;
 }
 
+// The track of a look's best chain. Warnings and the length of the whole come
+// later.
+Track TrackOf(const Look& look, const Clip& clip, const TrackOptions& options) {
+  Track track;
+  track.first_frame = options.first;
+  track.last_frame = look.found.last;
+  track.frame_interval_s = 1.0 / clip.info().time_base.fps;
+  const Chain& chain = look.found.chains.front();
+  for (std::size_t i = 1; i < look.found.chains.size(); ++i) {
+    track.several_bodies |= IsAnotherBody(chain, look.found.chains[i]);
+  }
+  track.known_background = look.surround == Surround::kBackground;
+  FillTrack(look.fits, look.choice.kind, track);
+  return track;
+}
+
+// What is behind the body of a track.
+struct BehindBody {
+  Background background;
+  double most_covered = 0.0;  // share of the frames, of any pixel
+};
+
+BehindBody LookBehind(Clip& clip, const TrackOptions& options,
+                      const Track& track, const Background& fallback) {
+  BehindBody behind;
+  const BodyCover cover(clip, track);
+  behind.background = EstimateBackgroundBehind(
+      clip, options.first, track.last_frame,
+      [&cover](std::int64_t frame) { return cover.In(frame); }, fallback,
+      BackgroundFor(clip, options), &behind.most_covered);
+  return behind;
+}
+
+// Whether the body may have been lost where it passed its own ghost.
+bool IsTorn(const Look& look) {
+  constexpr double kMost = 0.9;  // of the links have an outline
+  return look.found.chains.size() > 1 ||
+         static_cast<double>(look.fits.size()) <
+             kMost *
+                 static_cast<double>(look.found.chains.front().links.size());
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
@@ -103,21 +145,24 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   }
   if (!first) return tl::unexpected(first.error());
   if (warning.empty()) warning = first->found.warning;
-  result.background = std::move(first->background);
 
   Track& track = result.track;
-  track.first_frame = options.first;
-  track.last_frame = first->found.last;
-  track.frame_interval_s = 1.0 / clip.info().time_base.fps;
-  const Chain& chain = first->found.chains.front();
-  for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
-    track.several_bodies |= IsAnotherBody(chain, first->found.chains[i]);
-  }
-  track.known_background = first->surround == Surround::kBackground;
-  std::vector<Fitted> all = std::move(first->fits);
-  FillTrack(all, first->choice.kind, track);
-
+  track = TrackOf(*first, clip, options);
   // Now that the body's place is known, the background without it.
+  BehindBody behind = LookBehind(clip, options, track, first->background);
+  // Covered less than a fifth of the time, a pixel's mid-mean is untouched.
+  constexpr double kUntouched = 0.2;
+  if (behind.most_covered > kUntouched && IsTorn(*first)) {
+    Look again = LookWith(clip, behind.background, options,
+                          Detector::kDifference, first->found.last);
+    if (again.fits.size() > first->fits.size() && IsBetter(again, *first)) {
+      *first = std::move(again);
+      track = TrackOf(*first, clip, options);
+      behind = LookBehind(clip, options, track, first->background);
+    }
+  }
+  result.background = std::move(first->background);
+  const Chain& chain = first->found.chains.front();
   double whole_px = 0.0;
   if (first->choice.kind == core::BodyKind::kRectangle) {
     for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
@@ -125,19 +170,11 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
           std::max(whole_px, LengthTogether(chain, first->found.chains[i]));
     }
   }
-  double most_covered = 0.0;
-  const BodyCover cover(clip, track);
-  Background behind = EstimateBackgroundBehind(
-      clip, options.first, track.last_frame,
-      [&cover](std::int64_t frame) { return cover.In(frame); },
-      result.background, {.threads = options.threads}, &most_covered);
-  // Covered less than a fifth of the time, a pixel's mid-mean is untouched.
-  constexpr double kUntouched = 0.2;
-  if (most_covered > kUntouched || !track.known_background) {
-    const Choice again =
-        ChooseKind(clip, behind, chain, options, Surround::kBackground);
+  if (behind.most_covered > kUntouched || !track.known_background) {
+    const Choice again = ChooseKind(clip, behind.background, chain, options,
+                                    Surround::kBackground);
     if (again.badness < first->choice.badness || track.known_background) {
-      std::swap(result.background, behind);
+      std::swap(result.background, behind.background);
       std::vector<Fitted> better;
       if (again.kind == first->choice.kind) {
         OutlineOptions fit_options;
@@ -152,13 +189,13 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
       }
       DropStrangers(better);
       constexpr double kAsSmooth = 1.5;
-      if (better.size() * 2 >= all.size() &&
-          Roughness(better) <= kAsSmooth * Roughness(all) + 0.01) {
+      if (better.size() * 2 >= first->fits.size() &&
+          Roughness(better) <= kAsSmooth * Roughness(first->fits) + 0.01) {
         track.known_background = true;
         track.warnings.clear();
         FillTrack(better, again.kind, track);
       } else {
-        std::swap(result.background, behind);
+        std::swap(result.background, behind.background);
       }
     }
   }

@@ -41,6 +41,11 @@ struct TrackOptions {
   // else was seen, or something near it in time.
   std::int64_t first_looks = 125;
 
+  // Frames that the still background is made of. 0: 33, and 64 of a clip that
+  // is seen whole and not colour video (whose frames repeat each other): a slow
+  // body is in fewer of them at any pixel.
+  int background_samples = 0;
+
   int threads = 0;  // 0: one for each core; affects speed only
 
   // Called now and then with the share done, 0..1; may be empty.
