@@ -336,7 +336,6 @@ std::string Fitter::Iterate(int& iterations) {
 // without its neighbourhood, which biases the edge.
 bool Fitter::SetAsideUnexplained() {
   // A body that is crudely modelled has such pixels everywhere.
-  constexpr double kWellModelled = 1.5;  // residuals over noise
   if (robust_scale_ > kWellModelled) return false;
   constexpr double kClear = 1.5;  // of the blur, inside the edge
   constexpr double kReach = 4.0;  // of the blur: where its tail is 1e-4

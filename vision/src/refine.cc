@@ -173,6 +173,14 @@ class Refiner {
     return {pose.frame, OutlineAt(body, pose),
             core::PixelPoint{motion.x_px, motion.y_px}, motion.turn_rad};
   }
+  // Takes the fits of a body that is hidden in part out, and its frames from
+  // the poses to come.
+  void LeaveOutHidden(std::vector<Fitted>& sized);
+  bool IsHidden(std::int64_t frame) const {
+    return std::any_of(hidden_.begin(), hidden_.end(), [&](const Frames& f) {
+      return f.first <= frame && frame <= f.last;
+    });
+  }
   // Of every `step`-th pose.
   std::vector<std::optional<Fitted>> FitPoses(const BodyImage& body,
                                               std::size_t step) {
@@ -187,6 +195,11 @@ class Refiner {
   const Background& background_;
   const Track& track_;
   int threads_;
+  struct Frames {
+    std::int64_t first = 0;  // both included
+    std::int64_t last = 0;
+  };
+  std::vector<Frames> hidden_;  // in which something hides the body in part
   OutlineOptions options_;
   std::vector<Motion> motion_;  // at each pose
 };
@@ -226,7 +239,6 @@ void Refiner::LookNearGround(Track& refined) {
   constexpr double kMostExcess = 1.25;
   constexpr double kSigmas = 4.0;
   // A body that is crudely modelled says nothing of what is near it.
-  constexpr double kWellModelled = 1.5;  // residuals over noise
   if (excess > kMostExcess * pixels + kSigmas * std::sqrt(2.0 * pixels) ||
       misfits.empty() || Median(misfits) > kWellModelled) {
     options_.near_ground = NearGround::kLeftOut;
@@ -272,6 +284,8 @@ void Refiner::LearnShape(Track& refined) {
   options_.blur_px = refined.body.blur_px;
   sized = Sample(refined.body);
   if (sized.size() < kLeast) return;
+  LeaveOutHidden(sized);
+  if (sized.size() < kLeast) return;
   // Not with the shading held: its error is common to all frames, and what it
   // does to the size would not show in their scatter.
   options_.shading = ShadingOf(sized);
@@ -282,13 +296,30 @@ void Refiner::LearnShape(Track& refined) {
   refined.body.half_short_px = shape.half_short_px;
 }
 
+void Refiner::LeaveOutHidden(std::vector<Fitted>& sized) {
+  const std::vector<bool> hidden = FindHidden(sized);
+  std::vector<Fitted> whole;
+  for (std::size_t i = 0; i < sized.size(); ++i) {
+    if (!hidden[i]) {
+      whole.push_back(sized[i]);
+      continue;
+    }
+    // And the frames from the last one that was looked at to the next.
+    const std::int64_t first = i > 0 ? sized[i - 1].frame + 1 : 0;
+    const std::int64_t last = i + 1 < sized.size() ? sized[i + 1].frame - 1
+                                                   : track_.poses.back().frame;
+    hidden_.push_back({first, last});
+  }
+  sized = std::move(whole);
+}
+
 void Refiner::MeasurePoses(Track& refined) {
   options_.fit_size = false;
   options_.fit_blur = false;
   refined.poses.clear();
   const auto fits = FitPoses(refined.body, 1);
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i]) continue;
+    if (!fits[i] || IsHidden(fits[i]->frame)) continue;
     Pose better = PoseOf(*fits[i]);
     better.relative_size = track_.poses[i].relative_size;
     refined.poses.push_back(better);

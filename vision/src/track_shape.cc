@@ -82,6 +82,63 @@ void DropStrangers(std::vector<Fitted>& all) {
   }
 }
 
+std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
+  constexpr std::size_t kLeast = 8;  // that remain
+  std::vector<bool> hidden(all.size(), false);
+  if (all.size() < kLeast) return hidden;
+  const auto quartile = [](std::vector<double> values) {
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  std::vector<double> misfits;
+  misfits.reserve(all.size());
+  for (const Fitted& f : all) misfits.push_back(f.fit.misfit);
+  if (Median(std::move(misfits)) > kWellModelled) return hidden;
+  constexpr double kClearly = 5.0;  // standard uncertainties
+  constexpr double kMatters = 0.01;
+  constexpr double kProbably = 2.0;
+  constexpr double kMayMatter = 0.003;
+  std::vector<bool> probably(all.size(), false);
+  const auto compare = [&](const auto& size_of, double OutlineFit::*u_of) {
+    std::vector<double> sizes;
+    std::vector<double> us;
+    for (const Fitted& f : all) {
+      sizes.push_back(size_of(f.fit));
+      us.push_back(f.fit.*u_of);
+    }
+    const double whole = quartile(sizes);
+    const double usual = Median(us);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double lack = whole - sizes[i];
+      const double u = std::hypot(us[i], usual);
+      hidden[i] = hidden[i] || lack > std::max(kClearly * u, kMatters * whole);
+      probably[i] =
+          probably[i] || lack > std::max(kProbably * u, kMayMatter * whole);
+    }
+  };
+  compare(SizeOf, &OutlineFit::u_size_px);
+  if (all.front().fit.outline.kind == core::BodyKind::kRectangle) {
+    compare([](const OutlineFit& fit) { return fit.outline.half_short_px; },
+            &OutlineFit::u_size_short_px);
+  }
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (hidden[i - 1] && probably[i]) hidden[i] = true;
+  }
+  for (std::size_t i = all.size() - 1; i-- > 0;) {
+    if (hidden[i + 1] && probably[i]) hidden[i] = true;
+  }
+  const auto count =
+      static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), true));
+  constexpr std::size_t kSeveral = 3;
+  if (count < kSeveral || 2 * count > all.size() ||
+      all.size() < count + kLeast) {
+    hidden.assign(all.size(), false);
+  }
+  return hidden;
+}
+
 Pose PoseOf(const Fitted& f) {
   Pose pose;
   pose.frame = f.frame;

@@ -16,6 +16,10 @@ struct Fitted {
   OutlineFit fit;
 };
 
+// Residuals over noise of a body that is what the model says; beyond, residuals
+// and sizes tell of the model's faults first.
+inline constexpr double kWellModelled = 1.5;
+
 double Median(std::vector<double> values);
 
 // Mean weighted by inverse variance, robustly: values off the median by more
@@ -30,6 +34,15 @@ core::Estimate RobustMean(const std::vector<double>& values,
 // than usual. Where half of them see the outline free, those go, too, in which
 // something hides a part of it: its edge passes for the body's.
 void DropStrangers(std::vector<Fitted>& all);
+
+// Which fits, of a free size and by frame, are of a body that something hides
+// in part: it looks smaller there than in the others, never larger. All that is
+// clearly so (five standard uncertainties and 1 %), and its neighbours if they
+// are so by two and 0.3 %: what hides it little already draws its place to one
+// side. None where fewer than eight would remain, or where it is fewer than
+// three, which noise might be, or more than half; and of a body that is crudely
+// modelled.
+std::vector<bool> FindHidden(const std::vector<Fitted>& all);
 
 // How much a track jumps about: the robust scatter of third differences of the
 // centre over frames of equal gaps, as the standard deviation of one position,

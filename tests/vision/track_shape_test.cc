@@ -1,0 +1,88 @@
+#include "vision/src/track_shape.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace touchdown::vision {
+namespace {
+
+using ::testing::Each;
+
+constexpr double kRadius_px = 8.0;
+constexpr double kU_px = 0.05;
+
+// Fits of a sphere that lacks `lack_px[i]` of its radius in frame i.
+std::vector<Fitted> FitsOf(const std::vector<double>& lack_px,
+                           std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, kU_px);
+  std::vector<Fitted> all;
+  for (const double lack : lack_px) {
+    Fitted fitted;
+    fitted.frame = static_cast<std::int64_t>(all.size());
+    fitted.fit.outline.radius_px = kRadius_px - lack + noise(engine);
+    fitted.fit.u_size_px = kU_px;
+    all.push_back(fitted);
+  }
+  return all;
+}
+
+TEST(FindHidden, NoiseHidesNothing) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    EXPECT_THAT(FindHidden(FitsOf(std::vector<double>(60, 0.0), seed)),
+                Each(false))
+        << seed;
+  }
+}
+
+TEST(FindHidden, ComesOutFromBehindSomething) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    std::vector<double> lack(30, 0.0);
+    // By ten to fifty standard uncertainties, and in one more by four: that
+    // alone would not tell, beside the others it does.
+    for (std::size_t i = 0; i < 5; ++i) {
+      lack[i] = (50.0 - 10.0 * static_cast<double>(i)) * kU_px;
+    }
+    lack[5] = 7.0 * kU_px;
+    const std::vector<bool> hidden = FindHidden(FitsOf(lack, seed));
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_TRUE(hidden[i]) << i;
+    // Next to them a frame may be lost by noise, farther away none.
+    for (std::size_t i = 9; i < lack.size(); ++i) EXPECT_FALSE(hidden[i]) << i;
+  }
+}
+
+TEST(FindHidden, HalfOfTheFramesMustShowItWhole) {
+  std::vector<double> lack(30, 0.0);
+  for (std::size_t i = 0; i < 18; ++i) lack[i] = 1.0;
+  EXPECT_THAT(FindHidden(FitsOf(lack, 1)), Each(false));
+}
+
+TEST(FindHidden, TooFewFramesToTell) {
+  EXPECT_THAT(FindHidden(FitsOf({1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 1)),
+              Each(false));
+  EXPECT_TRUE(FindHidden({}).empty());
+}
+
+// A block whose one end is hidden keeps its shorter side.
+TEST(FindHidden, EitherSideOfABlock) {
+  std::vector<Fitted> all;
+  for (int i = 0; i < 20; ++i) {
+    Fitted fitted;
+    fitted.fit.outline.kind = core::BodyKind::kRectangle;
+    fitted.fit.outline.half_long_px = i < 4 ? 18.0 : 20.0;
+    fitted.fit.outline.half_short_px = i >= 16 ? 7.0 : 8.0;
+    fitted.fit.u_size_px = fitted.fit.u_size_short_px = kU_px;
+    all.push_back(fitted);
+  }
+  const std::vector<bool> hidden = FindHidden(all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(hidden[i], i < 4 || i >= 16) << i;
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::vision
