@@ -10,9 +10,11 @@ extern "C" {
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "chroma.h"
+#include "cine_header.h"
 #include "clip_formats.h"
 #include "libav.h"
 #include "luma.h"
@@ -52,6 +54,7 @@ class VideoClip final : public Clip {
           "{} ends early ({}): {} frames are there", path_.filename().string(),
           index_.ended_early, index_.frames));
     }
+    if (info_.format == "cine") TakeCineHeader();
     StartFrom(0);
     DecodeUpTo(0);
     LookAtFirstFrame(options.channel);
@@ -270,6 +273,46 @@ class VideoClip final : public Clip {
     }
   }
 
+  // The camera's own numbers and times, which libav leaves out.
+  void TakeCineHeader() {
+    CineHeader header = ReadCineHeader(path_);
+    companded_ = header.packed_10;
+    info_.first_camera_frame = header.first_image;
+    const auto frames = static_cast<std::size_t>(index_.frames);
+    if (!header.stamps_trouble.empty()) {
+      info_.warnings.push_back(fmt::format(
+          "the camera's times of the frames cannot be right ({}): the frames "
+          "are taken as equally spaced, and dropped ones go unnoticed",
+          header.stamps_trouble));
+    }
+    if (header.times_s.size() < frames) return;
+    header.times_s.resize(frames);
+    index_.spacing =
+        FindSpacing(header.times_s, {header.stated_fps}, kCineTickS);
+    // FrameRate is a whole number, in truth a part in a thousand off at most.
+    constexpr double kOfAnotherRate = 0.01;
+    const double fps = index_.spacing.fps;
+    if (index_.spacing.even &&
+        std::abs(header.stated_fps / fps - 1.0) > kOfAnotherRate) {
+      info_.warnings.push_back(fmt::format(
+          "the header says {:.6g} fps, the camera's times of the frames "
+          "{:.6g} fps: the times are believed; if they are wrong, give the "
+          "rate with --fps",
+          header.stated_fps, fps));
+    }
+    const auto [shortest, longest] = std::minmax_element(
+        header.exposures_s.begin(), header.exposures_s.end());
+    constexpr double kSameExposure = 0.02;  // of the exposure
+    constexpr double kUsPerS = 1e6;
+    if (!header.exposures_s.empty() &&
+        *longest > (1.0 + kSameExposure) * *shortest) {
+      info_.warnings.push_back(
+          fmt::format("the exposure time changes between frames ({:.4g} to "
+                      "{:.4g} us)",
+                      *shortest * kUsPerS, *longest * kUsPerS));
+    }
+  }
+
   void LookAtFirstFrame(Channel channel) {
     const auto pixel_format = static_cast<AVPixelFormat>(frame_->format);
     if (!LumaReader::Reads(pixel_format)) {
@@ -292,16 +335,16 @@ class VideoClip final : public Clip {
       }
     }
     const bool cine = info_.format == "cine";
-    const bool packed =
-        source_.stream->codecpar->codec_tag == MKTAG('B', 'I', 'T', 0);
-    if (cine && packed) {
+    // Phantom's 16-bit words carry fewer bits, which the decoder scales up.
+    reader_.emplace(pixel_format, orientation,
+                    cine ? source_.codec->bits_per_coded_sample : 0);
+    if (companded_ && reader_->bit_depth() == kCineCodeBits) {
+      reader_->UndoCineCurve();
+    } else if (companded_) {
       info_.warnings.push_back(
           "samples of packed .cine follow the camera's companding curve: they "
           "are not linear in light");
     }
-    // Phantom's 16-bit words carry fewer bits, which the decoder scales up.
-    reader_.emplace(pixel_format, orientation,
-                    cine ? source_.codec->bits_per_coded_sample : 0);
     stored_width_ = frame_->width;
     stored_height_ = frame_->height;
     info_.width_px = orientation.transposed ? stored_height_ : stored_width_;
@@ -317,7 +360,6 @@ class VideoClip final : public Clip {
       chroma_.emplace(pixel_format, orientation, channel);
       info_.bit_depth = 8;
     }
-    if (cine) info_.first_camera_frame = CineFirstFrame(path_);
     const AVRational aspect = Libav().av_guess_sample_aspect_ratio(
         source_.format.get(), source_.stream, frame_.get());
     if (aspect.num > 0 && aspect.num != aspect.den) {
@@ -335,22 +377,23 @@ class VideoClip final : public Clip {
 
   void SetTimeBase(const ClipOptions& options) {
     TimeBase& time = info_.time_base;
-    if (!index_.uniform) {
-      info_.warnings.push_back(fmt::format(
-          "the file's frames are not equally spaced in time (mean {:.6g} fps)",
-          index_.fps));
+    if (!index_.spacing.uniform) {
+      info_.warnings.push_back(
+          DescribeSpacing(index_.spacing) +
+          (options.fps ? "; with --fps they are taken as equally spaced"
+                       : "; their own times are used"));
     }
     if (options.fps) {
       time = {*options.fps, FpsSource::kUser, true, true};
       return;
     }
-    if (!(index_.fps > 0.0)) {
+    if (!(index_.spacing.fps > 0.0)) {
       Fail("the file tells no frame rate; give the camera's with --fps");
     }
     const bool cine = info_.format == "cine";  // has the camera's own rate
-    time.fps = index_.fps;
+    time.fps = index_.spacing.fps;
     time.source = cine ? FpsSource::kHeader : FpsSource::kContainer;
-    time.uniform = index_.uniform;
+    time.uniform = index_.spacing.uniform;
     const bool playback = !cine && IsPlaybackRate(time.fps);
     time.trusted = !playback && !index_.coarse;
     if (index_.coarse) {
@@ -370,12 +413,10 @@ class VideoClip final : public Clip {
   }
 
   double TimeOf(std::int64_t index) const {
-    if (info_.time_base.uniform || index_.pts.empty()) {
+    if (info_.time_base.uniform || index_.spacing.times_s.empty()) {
       return static_cast<double>(index) / info_.time_base.fps;
     }
-    return TicksBetween(index_.pts[0],
-                        index_.pts[static_cast<std::size_t>(index)]) *
-           av_q2d(source_.stream->time_base);
+    return index_.spacing.times_s[static_cast<std::size_t>(index)];
   }
 
   std::filesystem::path path_;
@@ -387,7 +428,8 @@ class VideoClip final : public Clip {
   ClipInfo info_;
   std::optional<LumaReader> reader_;
   std::optional<ChromaReader>
-      chroma_;  // where a colour difference is asked for
+      chroma_;              // where a colour difference is asked for
+  bool companded_ = false;  // a .cine of packed 10-bit samples
   std::int32_t stored_width_ = 0;
   std::int32_t stored_height_ = 0;
 

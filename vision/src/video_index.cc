@@ -10,26 +10,6 @@
 namespace touchdown::vision {
 namespace {
 
-// Timestamps that leave the even grid by less than this part of a frame period
-// count as rounded by the container (1 ms ticks at 20 to 30 fps reach 1.5 %);
-// cameras that vary their rate leave it by far more.
-constexpr double kRoundingPeriods = 0.02;
-
-// Largest deviation of `pts` from an even grid of `fps`, in ticks, at most the
-// allowed one?
-bool FitsGrid(const std::vector<std::int64_t>& pts, double fps, double tick_s) {
-  if (!(fps > 0.0) || !std::isfinite(fps)) return false;
-  const double period_ticks = 1.0 / (fps * tick_s);
-  const double allowed = std::max(1.0, kRoundingPeriods * period_ticks);
-  for (std::size_t i = 0; i < pts.size(); ++i) {
-    const double grid = static_cast<double>(i) * period_ticks;
-    if (std::abs(TicksBetween(pts[0], pts[i]) - grid) > allowed) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // The frame rate: what the container says if the timestamps agree with it, else
 // what they say themselves.
 void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
@@ -38,18 +18,15 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   const auto rate = [](AVRational r) {
     return r.num > 0 && r.den > 0 ? av_q2d(r) : 0.0;
   };
-  const double average = rate(stream.avg_frame_rate);
-  const double base = rate(stream.r_frame_rate);
-  for (const double fps : {rate(declared), average, base}) {
-    if (fps > 0.0 && (pts.empty() || FitsGrid(pts, fps, tick_s))) {
-      index.fps = fps;
-      return;
-    }
+  std::vector<double> times_s;
+  times_s.reserve(pts.size());
+  for (const std::int64_t time : pts) {
+    times_s.push_back(TicksBetween(pts[0], time) * tick_s);
   }
-  if (pts.size() < 2 || pts.back() <= pts.front()) return;
-  index.fps = static_cast<double>(pts.size() - 1) /
-              (TicksBetween(pts.front(), pts.back()) * tick_s);
-  index.uniform = FitsGrid(pts, index.fps, tick_s);
+  index.spacing = FindSpacing(
+      times_s,
+      {rate(declared), rate(stream.avg_frame_rate), rate(stream.r_frame_rate)},
+      tick_s);
 }
 
 // The container's own list of an uncompressed stream, if it names every frame
@@ -199,6 +176,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
   FindRate(pts, stream, declared, index);
   const bool distinct = std::adjacent_find(pts.begin(), pts.end()) == pts.end();
   index.coarse = !distinct;
+  if (!distinct) index.spacing.times_s.clear();
   if (timed && distinct) index.pts = std::move(pts);
   if (index.pts.empty()) {
     index.damaged = std::move(damaged_numbers);

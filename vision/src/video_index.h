@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frame_spacing.h"
 #include "libav.h"
 #include "touchdown/vision/clip.h"
 
@@ -42,9 +43,8 @@ struct VideoIndex {
   // beginning.
   std::vector<std::int64_t> pts;
   std::int64_t frames = 0;
-  bool uniform = true;
-  bool coarse = false;  // timestamps that several frames share
-  double fps = 0.0;     // mean rate if not uniform; 0: the file tells none
+  bool coarse = false;                // timestamps that several frames share
+  FrameSpacing spacing;               // fps is 0 if the file tells none
   std::vector<std::int64_t> damaged;  // frames known to be, ascending
   std::string ended_early;  // why demuxing stopped before the end, or empty
 
