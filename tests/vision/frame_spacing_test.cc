@@ -12,7 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kTick = 1e-6;
+constexpr TimeErrors kTick{.tick_s = 1e-6};
 
 std::vector<double> Grid(int frames, double fps) {
   std::vector<double> times;
@@ -41,7 +41,8 @@ TEST(FrameSpacing, GapsAreCountedAndTimesAreWholePeriods) {
         for (std::size_t i = static_cast<std::size_t>(after) + 1; i < 30; ++i) {
           times[i] += missing / fps;
         }
-        const FrameSpacing spacing = FindSpacing(times, {fps}, 1e-9);
+        const FrameSpacing spacing =
+            FindSpacing(times, {fps}, {.jitter_s = 1e-9});
         EXPECT_FALSE(spacing.uniform);
         EXPECT_TRUE(spacing.even);
         EXPECT_EQ(spacing.fps, fps);
@@ -94,9 +95,34 @@ TEST(FrameSpacing, IntervalsThatAreNoPeriodsAreNoGaps) {
   EXPECT_NEAR(spacing.fps, 5 / 0.059, 1e-9);
 }
 
+// In .avi a tick is a period: one that is missing is no rounding. Where a tick
+// is nearly a period, every tenth interval is two ticks, and nothing is
+// missing.
+TEST(FrameSpacing, ATickIsRoundingOnlyWhereThereIsSomethingToRound) {
+  std::vector<double> times = Grid(30, 500.0);
+  for (std::size_t i = 12; i < 30; ++i) times[i] += 0.002;
+  const FrameSpacing avi = FindSpacing(times, {500.0}, {.tick_s = 0.002});
+  ASSERT_EQ(avi.gaps.size(), 1u);
+  EXPECT_EQ(avi.gaps[0].after, 11);
+  EXPECT_TRUE(avi.even);
+  for (const double fps : {900.0, 999.0, 640.0, 33.0}) {
+    for (const double half : {0.0, 0.5}) {  // cut off, rounded
+      std::vector<double> rounded = Grid(400, fps);
+      for (double& t : rounded)
+        t = std::floor(t * 1000.0 + half + 1e-9) / 1000.0;
+      const FrameSpacing coarse =
+          FindSpacing(rounded, {fps}, {.tick_s = 0.001});
+      EXPECT_TRUE(coarse.uniform) << fps;
+      EXPECT_EQ(coarse.fps, fps);
+      EXPECT_TRUE(FindSpacing(rounded, {}, {.tick_s = 0.001}).gaps.empty());
+    }
+  }
+}
+
 TEST(FrameSpacing, AbsurdTimesAreNoCrash) {
   for (const double far : {1e300, 1e18, 1e9}) {
-    const FrameSpacing spacing = FindSpacing({0.0, 1e-9, 2e-9, far}, {}, 1e-12);
+    const FrameSpacing spacing =
+        FindSpacing({0.0, 1e-9, 2e-9, far}, {}, {.tick_s = 1e-12});
     EXPECT_FALSE(spacing.uniform);
     EXPECT_EQ(spacing.times_s.size(), 4u);
   }

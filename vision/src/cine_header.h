@@ -36,7 +36,7 @@ struct CineHeader {
 };
 
 // Cameras stamp in microseconds at the coarsest.
-inline constexpr double kCineTickS = 1e-6;
+inline constexpr double kCineJitterS = 1e-6;
 
 // Reads the header; `name` stands for the file in messages. Throws
 // core::InputError naming the file, the byte and what was expected if it is no

@@ -25,6 +25,16 @@ extern "C" {
 namespace touchdown::vision {
 namespace {
 
+// A palette in which each index is its own brightness.
+std::vector<std::uint8_t> GrayRamp() {
+  std::vector<std::uint8_t> palette;
+  for (int i = 0; i < AVPALETTE_COUNT; ++i) {
+    const auto level = static_cast<std::uint8_t>(i);
+    palette.insert(palette.end(), {level, level, level, 0xFF});
+  }
+  return palette;
+}
+
 class VideoClip final : public Clip {
  public:
   VideoClip(const std::filesystem::path& path, const ClipOptions& options)
@@ -55,6 +65,12 @@ class VideoClip final : public Clip {
           index_.ended_early, index_.frames));
     }
     if (info_.format == "cine") TakeCineHeader();
+    if (source_.codec->codec_id == AV_CODEC_ID_RAWVIDEO &&
+        source_.codec->pix_fmt == AV_PIX_FMT_PAL8 && index_.palette.empty()) {
+      index_.palette = GrayRamp();
+      info_.warnings.push_back(
+          "the file has no palette: its 8-bit samples are taken as gray");
+    }
     StartFrom(0);
     DecodeUpTo(0);
     LookAtFirstFrame(options.channel);
@@ -200,6 +216,7 @@ class VideoClip final : public Clip {
       Libav().avcodec_send_packet(source_.codec.get(), nullptr);
       return;
     }
+    GivePalette();
     const int sent =
         Libav().avcodec_send_packet(source_.codec.get(), packet_.get());
     if (sent == AVERROR(EAGAIN)) return;  // it wants to be emptied first
@@ -207,6 +224,19 @@ class VideoClip final : public Clip {
     Libav().av_packet_unref(packet_.get());
     have_packet_ = false;
     ++sent_;
+  }
+
+  // The decoder forgets the palette at a seek; the demuxer tells it once.
+  void GivePalette() {
+    if (index_.palette.empty() ||
+        Libav().av_packet_get_side_data(packet_.get(), AV_PKT_DATA_PALETTE,
+                                        nullptr) != nullptr) {
+      return;
+    }
+    if (std::uint8_t* const palette = Libav().av_packet_new_side_data(
+            packet_.get(), AV_PKT_DATA_PALETTE, index_.palette.size())) {
+      std::copy(index_.palette.begin(), index_.palette.end(), palette);
+    }
   }
 
   void NoteLostFrame(int error) {
@@ -287,8 +317,8 @@ class VideoClip final : public Clip {
     }
     if (header.times_s.size() < frames) return;
     header.times_s.resize(frames);
-    index_.spacing =
-        FindSpacing(header.times_s, {header.stated_fps}, kCineTickS);
+    index_.spacing = FindSpacing(header.times_s, {header.stated_fps},
+                                 {.jitter_s = kCineJitterS});
     // FrameRate is a whole number, in truth a part in a thousand off at most.
     constexpr double kOfAnotherRate = 0.01;
     const double fps = index_.spacing.fps;

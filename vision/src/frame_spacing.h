@@ -26,13 +26,21 @@ struct FrameSpacing {
   std::vector<double> times_s;
 };
 
+// How far the times of equally spaced frames may be off.
+struct TimeErrors {
+  // Times are whole numbers of ticks, rounded or cut off: no error where a
+  // period is a whole number of them, too, else one tick.
+  double tick_s = 0.0;
+  double jitter_s = 0.0;  // of the clock
+};
+
 // `times_s` ascend; where some are alike no gaps are sought. Deviations from an
-// even grid below 2 % of a period or below `tick_s`, the resolution of the
-// times, count as rounding. Of rates that agree with the times the first of
-// `stated_fps` is taken (values that are not positive are left out); else what
-// the times say themselves.
+// even grid below 2 % of a period or below `errors` count as rounding. Of rates
+// that agree with the times the first of `stated_fps` is taken (values that are
+// not positive are left out); else what the times say themselves.
 FrameSpacing FindSpacing(const std::vector<double>& times_s,
-                         const std::vector<double>& stated_fps, double tick_s);
+                         const std::vector<double>& stated_fps,
+                         const TimeErrors& errors);
 
 // One sentence for the user, without its end: "3 frames are missing (2 after
 // frame 10, 1 after frame 40)" or "the file's frames are not equally spaced in

@@ -26,7 +26,16 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   index.spacing = FindSpacing(
       times_s,
       {rate(declared), rate(stream.avg_frame_rate), rate(stream.r_frame_rate)},
-      tick_s);
+      {.tick_s = tick_s});
+}
+
+void TakePalette(const AVPacket& packet, VideoIndex& index) {
+  std::size_t size = 0;
+  const std::uint8_t* const palette =
+      Libav().av_packet_get_side_data(&packet, AV_PKT_DATA_PALETTE, &size);
+  if (palette != nullptr && size == AVPALETTE_SIZE && index.palette.empty()) {
+    index.palette.assign(palette, palette + size);
+  }
 }
 
 // The container's own list of an uncompressed stream, if it names every frame
@@ -64,8 +73,22 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
   }
   if (end > size) return std::nullopt;
   index.frames = count;
+  const LibavPtr<AVPacket> first(Libav().av_packet_alloc());
+  if (Libav().av_read_frame(&format, first.get()) >= 0) {
+    TakePalette(*first, index);
+  }
   FindRate(index.pts, stream, declared, index);
   return index;
+}
+
+// In .avi an empty chunk stands for a lost frame: it has its tick, a period,
+// and its place in the list, but is never seen. Up to `last_dts` all is there
+// then.
+bool CountsLostFrames(const AVStream& stream, AVRational declared,
+                      std::int64_t last_dts) {
+  return declared.num > 0 &&
+         av_cmp_q(av_inv_q(declared), stream.time_base) == 0 &&
+         last_dts != AV_NOPTS_VALUE && last_dts >= stream.nb_frames - 1;
 }
 
 }  // namespace
@@ -136,6 +159,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
         break;
       }
       index.packets.push_back(Describe(*packet));
+      TakePalette(*packet, index);
       // Frames before the start of an edit list are decoded but not shown.
       if ((packet->flags & AV_PKT_FLAG_DISCARD) == 0) {
         const std::span<const std::uint8_t> bytes(
@@ -162,7 +186,8 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
     index.ended_early = LibavError(format.pb->error);
   } else if (index.ended_early.empty() &&
              stream.nb_frames >
-                 static_cast<std::int64_t>(index.packets.size())) {
+                 static_cast<std::int64_t>(index.packets.size()) &&
+             !CountsLostFrames(stream, declared, last_dts)) {
     index.ended_early = "its own list names more frames";
   }
   if (!timed) pts.clear();

@@ -47,6 +47,9 @@ struct VideoIndex {
   FrameSpacing spacing;               // fps is 0 if the file tells none
   std::vector<std::int64_t> damaged;  // frames known to be, ascending
   std::string ended_early;  // why demuxing stopped before the end, or empty
+  // Colours behind the samples, as AV_PKT_DATA_PALETTE: a demuxer gives them
+  // with its first packet only. Empty: there are none.
+  std::vector<std::uint8_t> palette;
 
   // Number of the frame shown at `pts`, if there is one.
   std::optional<std::int64_t> FrameAt(std::int64_t pts) const;
