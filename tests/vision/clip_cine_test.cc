@@ -112,6 +112,14 @@ TEST(CinePacked, TenBitsBecomeTwelveLinearOnes) {
   ExpectWindowsAreCrops(*clip, 1);
 }
 
+TEST(CinePacked, OtherPackingIsRefusedInOneLine) {
+  std::string bytes = Recording(3, 12).Bytes();
+  cine_file::PutAt(bytes, 44 + 16, 1024, 4);  // 12 bits
+  const TemporaryFolder folder;
+  EXPECT_THAT(ErrorOf(folder.Write("a.cine", bytes)),
+              HasSubstr("a.cine: not a recording that can be read"));
+}
+
 // --- times -------------------------------------------------------------------
 
 TEST(CineTimes, RoundedStampsAreUniform) {
