@@ -10,17 +10,16 @@ extern "C" {
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
 #include "chroma.h"
-#include "cine_header.h"
 #include "clip_formats.h"
 #include "libav.h"
 #include "luma.h"
 #include "touchdown/core/errors.h"
 #include "video_index.h"
 #include "video_source.h"
+#include "video_times.h"
 
 namespace touchdown::vision {
 namespace {
@@ -64,7 +63,9 @@ class VideoClip final : public Clip {
           "{} ends early ({}): {} frames are there", path_.filename().string(),
           index_.ended_early, index_.frames));
     }
-    if (info_.format == "cine") TakeCineHeader();
+    if (info_.format == "cine") {
+      companded_ = TakeCineHeader(path, options, index_, info_);
+    }
     if (source_.codec->codec_id == AV_CODEC_ID_RAWVIDEO &&
         source_.codec->pix_fmt == AV_PIX_FMT_PAL8 && index_.palette.empty()) {
       index_.palette = GrayRamp();
@@ -74,7 +75,7 @@ class VideoClip final : public Clip {
     StartFrom(0);
     DecodeUpTo(0);
     LookAtFirstFrame(options.channel);
-    SetTimeBase(options);
+    SetTimeBase(index_, options, info_);
   }
 
   // Reads what `like` reads, with one thread.
@@ -131,7 +132,7 @@ class VideoClip final : public Clip {
     core::Frame view = chroma_ ? chroma_->View(*frame_, window)
                                : reader_->View(*frame_, window);
     view.index = index;
-    view.time_s = TimeOf(index);
+    view.time_s = TimeOf(index_, info_.time_base, index);
     return view;
   }
 
@@ -303,46 +304,6 @@ class VideoClip final : public Clip {
     }
   }
 
-  // The camera's own numbers and times, which libav leaves out.
-  void TakeCineHeader() {
-    CineHeader header = ReadCineHeader(path_);
-    companded_ = header.packed_10;
-    info_.first_camera_frame = header.first_image;
-    const auto frames = static_cast<std::size_t>(index_.frames);
-    if (!header.stamps_trouble.empty()) {
-      info_.warnings.push_back(fmt::format(
-          "the camera's times of the frames cannot be right ({}): the frames "
-          "are taken as equally spaced, and dropped ones go unnoticed",
-          header.stamps_trouble));
-    }
-    if (header.times_s.size() < frames) return;
-    header.times_s.resize(frames);
-    index_.spacing = FindSpacing(header.times_s, {header.stated_fps},
-                                 {.jitter_s = kCineJitterS});
-    // FrameRate is a whole number, in truth a part in a thousand off at most.
-    constexpr double kOfAnotherRate = 0.01;
-    const double fps = index_.spacing.fps;
-    if (index_.spacing.even &&
-        std::abs(header.stated_fps / fps - 1.0) > kOfAnotherRate) {
-      info_.warnings.push_back(fmt::format(
-          "the header says {:.6g} fps, the camera's times of the frames "
-          "{:.6g} fps: the times are believed; if they are wrong, give the "
-          "rate with --fps",
-          header.stated_fps, fps));
-    }
-    const auto [shortest, longest] = std::minmax_element(
-        header.exposures_s.begin(), header.exposures_s.end());
-    constexpr double kSameExposure = 0.02;  // of the exposure
-    constexpr double kUsPerS = 1e6;
-    if (!header.exposures_s.empty() &&
-        *longest > (1.0 + kSameExposure) * *shortest) {
-      info_.warnings.push_back(
-          fmt::format("the exposure time changes between frames ({:.4g} to "
-                      "{:.4g} us)",
-                      *shortest * kUsPerS, *longest * kUsPerS));
-    }
-  }
-
   void LookAtFirstFrame(Channel channel) {
     const auto pixel_format = static_cast<AVPixelFormat>(frame_->format);
     if (!LumaReader::Reads(pixel_format)) {
@@ -403,50 +364,6 @@ class VideoClip final : public Clip {
           "frames are interlaced: their odd and even rows were taken at "
           "different times");
     }
-  }
-
-  void SetTimeBase(const ClipOptions& options) {
-    TimeBase& time = info_.time_base;
-    if (!index_.spacing.uniform) {
-      info_.warnings.push_back(
-          DescribeSpacing(index_.spacing) +
-          (options.fps ? "; with --fps they are taken as equally spaced"
-                       : "; their own times are used"));
-    }
-    if (options.fps) {
-      time = {*options.fps, FpsSource::kUser, true, true};
-      return;
-    }
-    if (!(index_.spacing.fps > 0.0)) {
-      Fail("the file tells no frame rate; give the camera's with --fps");
-    }
-    const bool cine = info_.format == "cine";  // has the camera's own rate
-    time.fps = index_.spacing.fps;
-    time.source = cine ? FpsSource::kHeader : FpsSource::kContainer;
-    time.uniform = index_.spacing.uniform;
-    const bool playback = !cine && IsPlaybackRate(time.fps);
-    time.trusted = !playback && !index_.coarse;
-    if (index_.coarse) {
-      info_.warnings.push_back(
-          fmt::format("the file's timestamps are too coarse to tell its frames "
-                      "apart (about "
-                      "{:.6g} fps); give the camera's rate with --fps",
-                      time.fps));
-    }
-    if (playback) {
-      info_.warnings.push_back(
-          fmt::format("{:.6g} fps is a rate of playback; if the camera "
-                      "recorded at another, "
-                      "give it with --fps",
-                      time.fps));
-    }
-  }
-
-  double TimeOf(std::int64_t index) const {
-    if (info_.time_base.uniform || index_.spacing.times_s.empty()) {
-      return static_cast<double>(index) / info_.time_base.fps;
-    }
-    return index_.spacing.times_s[static_cast<std::size_t>(index)];
   }
 
   std::filesystem::path path_;
