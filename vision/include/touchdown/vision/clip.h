@@ -31,7 +31,8 @@ enum class FpsSource { kHeader, kContainer, kUser };
 std::string_view Name(FpsSource source);  // "header", "container", "user"
 
 struct TimeBase {
-  double fps = 0.0;  // frames per second of the recording (not of playback)
+  double fps = 0.0;  // recorded, not of playback; where frames are missing,
+                     // of those that follow each other
   FpsSource source = FpsSource::kContainer;
   bool uniform = true;   // frames equally spaced in time
   bool trusted = false;  // false: a playback rate may have been mistaken for it
