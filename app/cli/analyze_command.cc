@@ -71,8 +71,8 @@ void AddAnalyze(CLI::App& app, Action& action) {
       "At what angle did it touch down, and did it slide or bounce?");
   command
       ->add_option("CLIP", flags->clip,
-                   "a video, an .mraw (or its .cih/.cihx), or a folder of "
-                   "PNG, TIFF or JPEG images")
+                   "a video, an .mraw (or its .cih/.cihx), a TIFF of several "
+                   "pages, or a folder of PNG, TIFF or JPEG images")
       ->required();
   AddAnalyzeFlags(*command, flags->analyze);
   command->add_option(

@@ -39,7 +39,8 @@ void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
 
 StillPicture ReadPicture(const std::string& path, std::int64_t frame) {
   StillPicture picture;
-  if (!std::filesystem::is_directory(path) && vision::IsImageName(path)) {
+  if (!std::filesystem::is_directory(path) && vision::IsImageName(path) &&
+      !vision::IsTiffStack(path)) {
     picture.image = vision::ReadImage(path);
     return picture;
   }

@@ -40,11 +40,20 @@ bool IsHidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
+// One that cannot be opened is no stack here; opening it will say why.
+bool IsStack(const fs::path& path) {
+  try {
+    return vision::IsTiffStack(path);
+  } catch (const core::InputError&) {
+    return false;
+  }
+}
+
 void Collect(const fs::path& folder, std::vector<fs::path>& recordings) {
   std::error_code trouble;
   std::vector<fs::path> folders;
   std::vector<fs::path> files;
-  bool images = false;
+  std::vector<fs::path> images;
   fs::directory_iterator entry(folder, trouble);
   for (; !trouble && entry != fs::directory_iterator();
        entry.increment(trouble)) {
@@ -55,16 +64,28 @@ void Collect(const fs::path& folder, std::vector<fs::path>& recordings) {
     if (entry->is_directory(ignored)) {
       if (!entry->is_symlink(ignored)) folders.push_back(path);
     } else if (entry->is_regular_file(ignored)) {
-      if (IsRecordingFile(path)) files.push_back(path);
-      images = images || vision::IsImageName(path);
+      if (IsRecordingFile(path)) {
+        files.push_back(path);
+      } else if (vision::IsImageName(path)) {
+        images.push_back(path);
+      }
     }
   }
   if (trouble) {
     throw core::InputError(
         fmt::format("{}: {}", folder.string(), trouble.message()));
   }
+  // A TIFF of several pages is a recording of its own. Whether the folder holds
+  // such ones its first picture tells: thousands need not be opened.
+  if (!images.empty() && IsStack(*std::ranges::min_element(images))) {
+    const auto stacks = std::stable_partition(
+        images.begin(), images.end(),
+        [](const fs::path& image) { return !IsStack(image); });
+    files.insert(files.end(), stacks, images.end());
+    images.erase(stacks, images.end());
+  }
   // Pictures beside a video are somebody's notes; alone they are a recording.
-  if (images && files.empty()) recordings.push_back(folder);
+  if (!images.empty() && files.empty()) recordings.push_back(folder);
   recordings.insert(recordings.end(), files.begin(), files.end());
   for (const fs::path& below : folders) Collect(below, recordings);
 }

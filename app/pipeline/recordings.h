@@ -11,7 +11,8 @@
 namespace touchdown::pipeline {
 
 // Every recording in `folder` and below it, in the order of their paths: videos
-// by their extension, .mraw files, folders of images. Left out are hidden files
+// by their extension, .mraw files, TIFFs of several pages (where the first
+// picture of their folder is one), folders of images. Left out are hidden files
 // and folders, symbolic links to folders, and folders of evidence (they hold an
 // analysis.json). Throws core::InputError if the folder cannot be read.
 std::vector<std::filesystem::path> FindRecordings(

@@ -181,6 +181,47 @@ TEST(ThroughALens, CropsGroundAndBodySizeFit) {
   }
 }
 
+// A .cihx says where on the sensor its picture lies: no --crop is needed. A
+// .cih does not, and a picture of another size is then refused.
+TEST(ThroughALens, AnMrawBringsItsOwnCrop) {
+  const Film film = Bent(BodyKind::kSphere);
+  constexpr std::int32_t kX = 40;
+  constexpr std::int32_t kY = 24;
+  AnalyzeOptions options = Known(film);
+  options.calibration = Calibrated(film);
+  options.calibration->picture.width_px += 100;
+  options.calibration->picture.height_px += 60;
+  options.calibration->lens->lens = calib::Cropped(*film.camera.lens, -kX, -kY);
+  const testing::TemporaryFolder folder;
+  const auto write = [&](const char* name, bool xml) {
+    const auto clip = vision::OpenScene(filmed::SceneOf(film), 5);
+    vision::MrawOptions mraw;
+    mraw.fps = film.camera.fps;
+    mraw.xml_header = xml;
+    if (xml) mraw.sensor_origin = vision::SensorOrigin{kX, kY};
+    std::int64_t i = 0;
+    vision::WriteMraw(folder / name, mraw, [&]() -> std::optional<core::Frame> {
+      if (i == clip->info().frames) return std::nullopt;
+      return clip->Read(i++);
+    });
+    return folder / name;
+  };
+  const Analysis own = Analyze(write("a.mraw", true), options);
+  ASSERT_TRUE(own.calibration && own.calibration->lens);
+  EXPECT_NEAR(own.calibration->lens->lens.cx_px, film.camera.lens->cx_px, 1e-9);
+  EXPECT_NEAR(own.calibration->lens->lens.cy_px, film.camera.lens->cy_px, 1e-9);
+  const auto bare = write("b.mraw", false);
+  EXPECT_THAT([&] { Analyze(bare, options); },
+              ::testing::ThrowsMessage<core::InputError>(
+                  HasSubstr("say where with --crop X,Y")));
+  options.crop = calib::SensorCorner{kX, kY};
+  const Analysis told = Analyze(bare, options);
+  ASSERT_TRUE(own.contacts.first.contact.found);
+  ASSERT_TRUE(told.contacts.first.contact.found);
+  EXPECT_DOUBLE_EQ(own.contacts.first.contact.approach_angle_rad->value,
+                   told.contacts.first.contact.approach_angle_rad->value);
+}
+
 TEST(ThroughALens, RefusesAClipThatDoesNotFitAndWarnsOfAge) {
   const Film film = Bent(BodyKind::kSphere);
   AnalyzeOptions options = Known(film);

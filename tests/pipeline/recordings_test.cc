@@ -54,6 +54,27 @@ TEST(FindRecordings, PicturesBesideAVideoAreNotes) {
   EXPECT_THAT(Names(folder.path()), ElementsAre("a.avi"));
 }
 
+// A TIFF of several pages is a recording of its own.
+TEST(FindRecordings, StacksAreRecordings) {
+  // Two directories without entries: pages of nothing.
+  const std::string stack(
+      "II*\0\x08\0\0\0"
+      "\0\0\x0E\0\0\0"
+      "\0\0\0\0\0\0",
+      20);
+  const TemporaryFolder folder;
+  for (const char* below : {"stacks", "pictures"}) {
+    fs::create_directories(folder / below);
+  }
+  folder.Write("stacks/a.tif", stack);
+  folder.Write("stacks/b.TIFF", stack);
+  folder.Write("stacks/map.png", "x");
+  folder.Write("pictures/1.tif", "x");
+  folder.Write("pictures/2.tif", "x");
+  EXPECT_THAT(Names(folder.path()),
+              ElementsAre("pictures", "stacks/a.tif", "stacks/b.TIFF"));
+}
+
 TEST(Settling, TellsARecordingWhenItHasStoppedGrowing) {
   Settling settling(2s);
   const Settling::Instant start{};

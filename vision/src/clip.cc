@@ -93,21 +93,20 @@ std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
             ? fmt::format("{}: {}", path.string(), trouble.message())
             : fmt::format("{}: no such file or folder", path.string()));
   }
-  if (std::filesystem::is_directory(status)) {
-    return OpenImageFolder(path, options);
-  }
-  if (!std::filesystem::is_regular_file(status)) {
+  const bool folder = std::filesystem::is_directory(status);
+  if (!folder && !std::filesystem::is_regular_file(status)) {
     throw core::InputError(
         fmt::format("{}: neither a file nor a folder", path.string()));
   }
-  const bool colour = options.channel != Channel::kLuma;
-  if (colour &&
-      (IsMrawOrHeader(path) || std::filesystem::is_directory(status))) {
+  if (options.channel != Channel::kLuma &&
+      (folder || IsMrawOrHeader(path) || IsImageName(path))) {
     throw std::invalid_argument(
         fmt::format("channel is {}, but {} is read as gray",
                     Name(options.channel), path.string()));
   }
+  if (folder) return OpenImageFolder(path, options);
   if (IsMrawOrHeader(path)) return OpenMraw(path, options);
+  if (IsTiffStack(path)) return OpenTiffStack(path, options);
   if (IsImageName(path)) {
     throw core::InputError(
         fmt::format("{}: a single picture is no recording; give the folder "

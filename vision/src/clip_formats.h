@@ -19,6 +19,10 @@ std::unique_ptr<Clip> OpenMraw(const std::filesystem::path& path,
 std::unique_ptr<Clip> OpenImageFolder(const std::filesystem::path& folder,
                                       const ClipOptions& options);
 
+// A TIFF of several pages.
+std::unique_ptr<Clip> OpenTiffStack(const std::filesystem::path& path,
+                                    const ClipOptions& options);
+
 // Any container that libav knows.
 std::unique_ptr<Clip> OpenVideo(const std::filesystem::path& path,
                                 const ClipOptions& options);

@@ -46,6 +46,7 @@ class ImageFolderClip final : public Clip {
           "--fps",
           folder.string()));
     }
+    RefuseStack(0);
     Load(0);
     info_.path = folder;
     info_.format = KindOf(files_.front()) + "-folder";
@@ -69,6 +70,7 @@ class ImageFolderClip final : public Clip {
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
     if (index != loaded_) {
+      RefuseStack(index);
       Load(index);
       CheckLikeFirst(index);
     }
@@ -85,6 +87,16 @@ class ImageFolderClip final : public Clip {
   }
 
  private:
+  // A picture a file: of a TIFF with several pages all but one would be lost.
+  void RefuseStack(std::int64_t index) const {
+    const auto& file = files_[static_cast<std::size_t>(index)];
+    if (!IsTiffStack(file)) return;
+    throw core::InputError(fmt::format(
+        "{} (frame {}): a TIFF of several pages, expected a picture a file in "
+        "a folder of images; give the path of that file to read its pages",
+        file.string(), index));
+  }
+
   void Load(std::int64_t index) {
     loaded_ = -1;  // until it is done
     try {

@@ -19,9 +19,20 @@ extern "C" {
 #include "touchdown/core/errors.h"
 #include "video_index.h"
 #include "video_source.h"
+#include "video_times.h"
 
 namespace touchdown::vision {
 namespace {
+
+// A palette in which each index is its own brightness.
+std::vector<std::uint8_t> GrayRamp() {
+  std::vector<std::uint8_t> palette;
+  for (int i = 0; i < AVPALETTE_COUNT; ++i) {
+    const auto level = static_cast<std::uint8_t>(i);
+    palette.insert(palette.end(), {level, level, level, 0xFF});
+  }
+  return palette;
+}
 
 class VideoClip final : public Clip {
  public:
@@ -52,10 +63,19 @@ class VideoClip final : public Clip {
           "{} ends early ({}): {} frames are there", path_.filename().string(),
           index_.ended_early, index_.frames));
     }
+    if (info_.format == "cine") {
+      companded_ = TakeCineHeader(path, options, index_, info_);
+    }
+    if (source_.codec->codec_id == AV_CODEC_ID_RAWVIDEO &&
+        source_.codec->pix_fmt == AV_PIX_FMT_PAL8 && index_.palette.empty()) {
+      index_.palette = GrayRamp();
+      info_.warnings.push_back(
+          "the file has no palette: its 8-bit samples are taken as gray");
+    }
     StartFrom(0);
     DecodeUpTo(0);
     LookAtFirstFrame(options.channel);
-    SetTimeBase(options);
+    SetTimeBase(index_, options, info_);
   }
 
   // Reads what `like` reads, with one thread.
@@ -112,7 +132,7 @@ class VideoClip final : public Clip {
     core::Frame view = chroma_ ? chroma_->View(*frame_, window)
                                : reader_->View(*frame_, window);
     view.index = index;
-    view.time_s = TimeOf(index);
+    view.time_s = TimeOf(index_, info_.time_base, index);
     return view;
   }
 
@@ -197,6 +217,7 @@ class VideoClip final : public Clip {
       Libav().avcodec_send_packet(source_.codec.get(), nullptr);
       return;
     }
+    GivePalette();
     const int sent =
         Libav().avcodec_send_packet(source_.codec.get(), packet_.get());
     if (sent == AVERROR(EAGAIN)) return;  // it wants to be emptied first
@@ -204,6 +225,19 @@ class VideoClip final : public Clip {
     Libav().av_packet_unref(packet_.get());
     have_packet_ = false;
     ++sent_;
+  }
+
+  // The decoder forgets the palette at a seek; the demuxer tells it once.
+  void GivePalette() {
+    if (index_.palette.empty() ||
+        Libav().av_packet_get_side_data(packet_.get(), AV_PKT_DATA_PALETTE,
+                                        nullptr) != nullptr) {
+      return;
+    }
+    if (std::uint8_t* const palette = Libav().av_packet_new_side_data(
+            packet_.get(), AV_PKT_DATA_PALETTE, index_.palette.size())) {
+      std::copy(index_.palette.begin(), index_.palette.end(), palette);
+    }
   }
 
   void NoteLostFrame(int error) {
@@ -292,16 +326,16 @@ class VideoClip final : public Clip {
       }
     }
     const bool cine = info_.format == "cine";
-    const bool packed =
-        source_.stream->codecpar->codec_tag == MKTAG('B', 'I', 'T', 0);
-    if (cine && packed) {
+    // Phantom's 16-bit words carry fewer bits, which the decoder scales up.
+    reader_.emplace(pixel_format, orientation,
+                    cine ? source_.codec->bits_per_coded_sample : 0);
+    if (companded_ && reader_->bit_depth() == kCineCodeBits) {
+      reader_->UndoCineCurve();
+    } else if (companded_) {
       info_.warnings.push_back(
           "samples of packed .cine follow the camera's companding curve: they "
           "are not linear in light");
     }
-    // Phantom's 16-bit words carry fewer bits, which the decoder scales up.
-    reader_.emplace(pixel_format, orientation,
-                    cine ? source_.codec->bits_per_coded_sample : 0);
     stored_width_ = frame_->width;
     stored_height_ = frame_->height;
     info_.width_px = orientation.transposed ? stored_height_ : stored_width_;
@@ -317,7 +351,6 @@ class VideoClip final : public Clip {
       chroma_.emplace(pixel_format, orientation, channel);
       info_.bit_depth = 8;
     }
-    if (cine) info_.first_camera_frame = CineFirstFrame(path_);
     const AVRational aspect = Libav().av_guess_sample_aspect_ratio(
         source_.format.get(), source_.stream, frame_.get());
     if (aspect.num > 0 && aspect.num != aspect.den) {
@@ -333,51 +366,6 @@ class VideoClip final : public Clip {
     }
   }
 
-  void SetTimeBase(const ClipOptions& options) {
-    TimeBase& time = info_.time_base;
-    if (!index_.uniform) {
-      info_.warnings.push_back(fmt::format(
-          "the file's frames are not equally spaced in time (mean {:.6g} fps)",
-          index_.fps));
-    }
-    if (options.fps) {
-      time = {*options.fps, FpsSource::kUser, true, true};
-      return;
-    }
-    if (!(index_.fps > 0.0)) {
-      Fail("the file tells no frame rate; give the camera's with --fps");
-    }
-    const bool cine = info_.format == "cine";  // has the camera's own rate
-    time.fps = index_.fps;
-    time.source = cine ? FpsSource::kHeader : FpsSource::kContainer;
-    time.uniform = index_.uniform;
-    const bool playback = !cine && IsPlaybackRate(time.fps);
-    time.trusted = !playback && !index_.coarse;
-    if (index_.coarse) {
-      info_.warnings.push_back(
-          fmt::format("the file's timestamps are too coarse to tell its frames "
-                      "apart (about "
-                      "{:.6g} fps); give the camera's rate with --fps",
-                      time.fps));
-    }
-    if (playback) {
-      info_.warnings.push_back(
-          fmt::format("{:.6g} fps is a rate of playback; if the camera "
-                      "recorded at another, "
-                      "give it with --fps",
-                      time.fps));
-    }
-  }
-
-  double TimeOf(std::int64_t index) const {
-    if (info_.time_base.uniform || index_.pts.empty()) {
-      return static_cast<double>(index) / info_.time_base.fps;
-    }
-    return TicksBetween(index_.pts[0],
-                        index_.pts[static_cast<std::size_t>(index)]) *
-           av_q2d(source_.stream->time_base);
-  }
-
   std::filesystem::path path_;
   std::int32_t threads_;
   VideoSource source_;
@@ -387,7 +375,8 @@ class VideoClip final : public Clip {
   ClipInfo info_;
   std::optional<LumaReader> reader_;
   std::optional<ChromaReader>
-      chroma_;  // where a colour difference is asked for
+      chroma_;              // where a colour difference is asked for
+  bool companded_ = false;  // a .cine of packed 10-bit samples
   std::int32_t stored_width_ = 0;
   std::int32_t stored_height_ = 0;
 

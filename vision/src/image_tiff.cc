@@ -1,95 +1,16 @@
-// TIFF through libtiff, with message handlers of the open file only (the
-// library's global ones stay as they are).
+// TIFF through libtiff.
 #include <fmt/format.h>
-#include <tiffio.h>
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
-#include <memory>
-#include <stdexcept>
 
 #include "image_codecs.h"
 #include "output_file.h"
+#include "tiff_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::vision {
 namespace {
-
-// A file in memory: to be read, or growing.
-struct Memory {
-  FileBytes input;
-  std::vector<std::uint8_t>* output = nullptr;
-  std::uint64_t at = 0;
-  char error[160] = "";
-
-  std::uint64_t size() const { return output ? output->size() : input.size(); }
-};
-
-int OnError(TIFF*, void* user, const char*, const char* format, va_list args) {
-  auto* const memory = static_cast<Memory*>(user);
-  // The first message is the cause; later ones follow from it.
-  if (memory->error[0] == '\0') {
-    std::vsnprintf(memory->error, sizeof memory->error, format, args);
-  }
-  return 1;
-}
-
-int OnWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
-
-tmsize_t OnRead(thandle_t handle, void* out, tmsize_t count) {
-  auto* const memory = static_cast<Memory*>(handle);
-  if (count <= 0 || memory->at >= memory->size()) return 0;
-  const auto got = std::min<std::uint64_t>(static_cast<std::uint64_t>(count),
-                                           memory->size() - memory->at);
-  const std::uint8_t* const from =
-      memory->output ? memory->output->data() : memory->input.data();
-  std::memcpy(out, from + memory->at, got);
-  memory->at += got;
-  return static_cast<tmsize_t>(got);
-}
-
-tmsize_t OnWrite(thandle_t handle, void* bytes, tmsize_t count) {
-  auto* const memory = static_cast<Memory*>(handle);
-  if (memory->output == nullptr || count < 0) return 0;
-  const std::uint64_t end = memory->at + static_cast<std::uint64_t>(count);
-  if (end > memory->output->size()) memory->output->resize(end);
-  std::memcpy(memory->output->data() + memory->at, bytes,
-              static_cast<std::size_t>(count));
-  memory->at = end;
-  return count;
-}
-
-toff_t OnSeek(thandle_t handle, toff_t offset, int whence) {
-  auto* const memory = static_cast<Memory*>(handle);
-  if (whence == SEEK_CUR) offset += memory->at;
-  if (whence == SEEK_END) offset += memory->size();
-  memory->at = offset;
-  return offset;
-}
-
-int OnClose(thandle_t) { return 0; }
-
-toff_t OnSize(thandle_t handle) {
-  return static_cast<const Memory*>(handle)->size();
-}
-
-struct Close {
-  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
-};
-using TiffHandle = std::unique_ptr<TIFF, Close>;
-
-TiffHandle Open(Memory& memory, const char* mode) {
-  TIFFOpenOptions* const options = TIFFOpenOptionsAlloc();
-  TIFFOpenOptionsSetErrorHandlerExtR(options, OnError, &memory);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, OnWarning, &memory);
-  TIFF* const tiff =
-      TIFFClientOpenExt("", mode, &memory, OnRead, OnWrite, OnSeek, OnClose,
-                        OnSize, nullptr, nullptr, options);
-  TIFFOpenOptionsFree(options);
-  return TiffHandle(tiff);
-}
 
 template <class T>
 T Tag(TIFF* tiff, std::uint32_t tag, T fallback) {
@@ -132,78 +53,149 @@ void TakeRow(const std::uint8_t* row, const RowLayout& layout,
   }
 }
 
+// What the directory that libtiff has read says.
+struct Kind {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint16_t bits = 1;
+  std::uint16_t samples = 1;
+  std::uint16_t meaning = PHOTOMETRIC_MINISBLACK;
+  bool gray = true;
+  bool tiled = false;
+
+  std::uint32_t pixel_bytes() const { return samples * (bits / 8u); }
+};
+
+Kind KindOf(TIFF* tiff, const std::string& name) {
+  Kind kind;
+  kind.width = Tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
+  kind.height = Tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
+  kind.bits = Tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE, 1);
+  kind.samples = Tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+  kind.meaning =
+      Tag<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  kind.gray = kind.meaning == PHOTOMETRIC_MINISBLACK ||
+              kind.meaning == PHOTOMETRIC_MINISWHITE;
+  kind.tiled = TIFFIsTiled(tiff) != 0;
+  const auto format =
+      Tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+  const auto planar =
+      Tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  const int least = kind.gray ? 1 : 3;  // one more may be alpha
+  if ((kind.bits != 8 && kind.bits != 16) || format != SAMPLEFORMAT_UINT ||
+      (!kind.gray && kind.meaning != PHOTOMETRIC_RGB) || kind.samples < least ||
+      kind.samples > least + 1 ||
+      (kind.samples > 1 && planar != PLANARCONFIG_CONTIG)) {
+    throw core::InputError(
+        fmt::format("{}: TIFF of {} samples of {} bits (photometric {}, sample "
+                    "format {}), expected gray or RGB of 8 or 16 bits",
+                    name, kind.samples, kind.bits, kind.meaning, format));
+  }
+  return kind;
+}
+
+// Hands the rows over, from the top; false where libtiff finds them damaged.
+template <class Take>
+bool EachRow(TIFF* tiff, const Kind& kind, const Take& take) {
+  const std::size_t pixel = kind.pixel_bytes();
+  const std::size_t row_bytes = kind.width * pixel;
+  if (!kind.tiled) {
+    std::vector<std::uint8_t> row(row_bytes);
+    if (TIFFScanlineSize64(tiff) != row_bytes) return false;
+    for (std::uint32_t y = 0; y < kind.height; ++y) {
+      if (TIFFReadScanline(tiff, row.data(), y, 0) != 1) return false;
+      take(row.data());
+    }
+    return true;
+  }
+  const auto wide = Tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH, 0);
+  const auto high = Tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH, 0);
+  // A tile is at most a picture rounded up; more is a damaged directory.
+  constexpr std::uint32_t kMaxTilePx = 1 << 14;
+  const std::size_t tile_row = wide * pixel;
+  if (wide < 1 || high < 1 || wide > kMaxTilePx || high > kMaxTilePx ||
+      TIFFTileSize64(tiff) != tile_row * high) {
+    return false;
+  }
+  std::vector<std::uint8_t> tile(tile_row * high);
+  std::vector<std::uint8_t> band(row_bytes * std::min(high, kind.height));
+  for (std::uint32_t y = 0; y < kind.height; y += high) {
+    const std::uint32_t rows = std::min(high, kind.height - y);
+    for (std::uint32_t x = 0; x < kind.width; x += wide) {
+      if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0) return false;
+      const std::size_t bytes = std::min(wide, kind.width - x) * pixel;
+      for (std::uint32_t v = 0; v < rows; ++v) {
+        std::memcpy(band.data() + v * row_bytes + x * pixel,
+                    tile.data() + v * tile_row, bytes);
+      }
+    }
+    for (std::uint32_t v = 0; v < rows; ++v) take(band.data() + v * row_bytes);
+  }
+  return true;
+}
+
+// The page that libtiff has read the directory of.
+void Decode(TIFF* tiff, const TiffMemory& memory, const std::string& name,
+            Image& image) {
+  const Kind kind = KindOf(tiff, name);
+  Allocate(kind.width, kind.height,
+           kind.bits == 8 ? 8
+           : kind.gray    ? DepthOf(tiff)
+                          : 16,
+           name, image);
+  const RowLayout layout{image.width_px, kind.samples, !kind.gray,
+                         kind.meaning == PHOTOMETRIC_MINISWHITE};
+  auto* out = reinterpret_cast<std::uint8_t*>(image.pixels.data());
+  const bool whole = EachRow(tiff, kind, [&](const std::uint8_t* row) {
+    if (kind.bits == 8) {
+      TakeRow<std::uint8_t>(row, layout, out);
+    } else {
+      TakeRow<std::uint16_t>(row, layout, out);
+    }
+    out += std::size_t{kind.width} * (kind.bits / 8u);
+  });
+  if (!whole) {
+    throw core::InputError(
+        fmt::format("{}: damaged TIFF: {}", name, memory.error));
+  }
+}
+
 }  // namespace
 
 void DecodeTiff(FileBytes file, const std::string& name, Image& image) {
-  Memory memory;
+  TiffMemory memory;
   memory.input = file;
-  const auto fail = [&](const std::string& why) {
-    return core::InputError(fmt::format("{}: {}", name, why));
-  };
-  const auto damaged = [&] {
-    return fail(fmt::format("damaged TIFF: {}", memory.error));
-  };
-  const TiffHandle tiff = Open(memory, "rm");
-  if (!tiff) throw damaged();
+  const TiffHandle tiff = OpenTiff(memory, "rm");
+  if (!tiff) {
+    throw core::InputError(
+        fmt::format("{}: damaged TIFF: {}", name, memory.error));
+  }
+  Decode(tiff.get(), memory, name, image);
+}
 
-  const auto width = Tag<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH, 0);
-  const auto height = Tag<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH, 0);
-  const auto bits = Tag<std::uint16_t>(tiff.get(), TIFFTAG_BITSPERSAMPLE, 1);
-  const auto samples =
-      Tag<std::uint16_t>(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
-  const auto format =
-      Tag<std::uint16_t>(tiff.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
-  const auto planar =
-      Tag<std::uint16_t>(tiff.get(), TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-  const auto meaning = Tag<std::uint16_t>(tiff.get(), TIFFTAG_PHOTOMETRIC,
-                                          PHOTOMETRIC_MINISBLACK);
-  const bool gray =
-      meaning == PHOTOMETRIC_MINISBLACK || meaning == PHOTOMETRIC_MINISWHITE;
-  if ((bits != 8 && bits != 16) || format != SAMPLEFORMAT_UINT ||
-      (!gray && meaning != PHOTOMETRIC_RGB) || (gray && samples > 2) ||
-      (!gray && (samples < 3 || samples > 4)) ||
-      (samples > 1 && planar != PLANARCONFIG_CONTIG) ||
-      TIFFIsTiled(tiff.get()) != 0) {
-    throw fail(fmt::format(
-        "TIFF of {} samples of {} bits{} (photometric {}), expected gray or "
-        "RGB of 8 or 16 bits in strips",
-        samples, bits, TIFFIsTiled(tiff.get()) != 0 ? " in tiles" : "",
-        meaning));
+void DecodeTiffPage(FileBytes file, std::uint64_t directory,
+                    const std::string& name, Image& image) {
+  TiffMemory memory;
+  memory.input = file;
+  const TiffHandle tiff = OpenTiff(memory, "rhm");  // h: no directory yet
+  if (!tiff || TIFFSetSubDirectory(tiff.get(), directory) != 1) {
+    throw core::InputError(
+        fmt::format("{}: damaged TIFF: {}", name, memory.error));
   }
-  Allocate(width, height,
-           bits == 8 ? 8
-           : gray    ? DepthOf(tiff.get())
-                     : 16,
-           name, image);
-  const auto row_bytes = TIFFScanlineSize64(tiff.get());
-  const std::uint64_t needed = std::uint64_t{width} * samples * (bits / 8);
-  if (row_bytes != needed) throw damaged();
-  std::vector<std::uint8_t> row(needed);
-  const RowLayout layout{image.width_px, samples, !gray,
-                         meaning == PHOTOMETRIC_MINISWHITE};
-  auto* out = reinterpret_cast<std::uint8_t*>(image.pixels.data());
-  for (std::uint32_t y = 0; y < height; ++y) {
-    if (TIFFReadScanline(tiff.get(), row.data(), y, 0) != 1) throw damaged();
-    if (bits == 8) {
-      TakeRow<std::uint8_t>(row.data(), layout, out);
-    } else {
-      TakeRow<std::uint16_t>(row.data(), layout, out);
-    }
-    out += std::size_t{width} * (bits / 8);
-  }
+  Decode(tiff.get(), memory, name, image);
 }
 
 void WriteTiff(const std::filesystem::path& path, const core::Frame& frame) {
   OutputFile file(path);
   std::vector<std::uint8_t> bytes;
-  Memory memory;
+  TiffMemory memory;
   memory.output = &bytes;
   const auto fail = [&] {
     return core::InputError(
         fmt::format("{}: cannot be written: {}", path.string(), memory.error));
   };
   {
-    const TiffHandle tiff = Open(memory, "wm");
+    const TiffHandle tiff = OpenTiff(memory, "wm");
     if (!tiff) throw fail();
     const std::uint16_t bits = frame.is_16_bit() ? 16 : 8;
     TIFFSetField(tiff.get(), TIFFTAG_IMAGEWIDTH, frame.width_px);

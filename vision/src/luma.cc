@@ -4,6 +4,7 @@ extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -116,7 +117,7 @@ bool LumaReader::Reads(AVPixelFormat format) {
 
 LumaReader::LumaReader(AVPixelFormat format, Orientation orientation,
                        std::int32_t significant_bits)
-    : format_(format), orientation_(orientation) {
+    : format_(format), orientation_(orientation), stored_bits_(0) {
   const AVPixFmtDescriptor* const d = av_pix_fmt_desc_get(format);
   bit_depth_ = Has(*d, AV_PIX_FMT_FLAG_PAL) ? 8 : d->comp[0].depth;
   shift_ = d->comp[0].shift;
@@ -124,6 +125,12 @@ LumaReader::LumaReader(AVPixelFormat format, Orientation orientation,
     shift_ += bit_depth_ - significant_bits;
     bit_depth_ = significant_bits;
   }
+  stored_bits_ = bit_depth_;
+}
+
+void LumaReader::UndoCineCurve() {
+  curve_ = CineLinearOfCode();
+  bit_depth_ = kCineLinearBits;
 }
 
 core::Frame LumaReader::View(const AVFrame& frame,
@@ -143,8 +150,8 @@ core::Frame LumaReader::View(const AVFrame& frame,
   view.origin_y_px = window.y;
   const bool aligned =
       reinterpret_cast<std::uintptr_t>(y.origin) % 2 == 0 && y.dy % 2 == 0;
-  if (!palette && !rgb && shift_ == 0 && y.dy > 0 && y.dx == (wide ? 2 : 1) &&
-      (!wide || (!big_endian && aligned))) {
+  if (!palette && !rgb && !curve_ && shift_ == 0 && y.dy > 0 &&
+      y.dx == (wide ? 2 : 1) && (!wide || (!big_endian && aligned))) {
     view.data = reinterpret_cast<const std::byte*>(y.origin);
     view.stride_bytes = y.dy;
     return view;
@@ -185,13 +192,18 @@ core::Frame LumaReader::View(const AVFrame& frame,
           out8);
     }
   } else if (wide) {
-    const std::uint32_t mask = (1u << bit_depth_) - 1u;
+    const std::uint32_t mask = (1u << stored_bits_) - 1u;
     Copy(
         window,
         [&](std::int32_t u, std::int32_t v) {
           return Load16(y, u, v, big_endian) >> shift_ & mask;
         },
         out16);
+    if (curve_) {
+      std::transform(out16, out16 + samples, out16, [&](std::uint16_t code) {
+        return (*curve_)[code & ((1u << kCineCodeBits) - 1u)];
+      });
+    }
   } else {
     Copy(
         window, [&](std::int32_t u, std::int32_t v) { return Load8(y, u, v); },

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "cine_curve.h"
 #include "libav.h"
 #include "touchdown/core/frame.h"
 #include "touchdown/core/points.h"
@@ -39,6 +40,10 @@ class LumaReader {
   LumaReader(AVPixelFormat format, Orientation orientation,
              std::int32_t significant_bits);
 
+  // Undoes the companding of a packed .cine, whose samples have ten bits: from
+  // now on they have twelve, linear in light.
+  void UndoCineCurve();
+
   std::int32_t bit_depth() const { return bit_depth_; }
   AVPixelFormat format() const { return format_; }
   const Orientation& orientation() const { return orientation_; }
@@ -52,6 +57,8 @@ class LumaReader {
   Orientation orientation_;
   std::int32_t bit_depth_;
   std::int32_t shift_ = 0;
+  std::int32_t stored_bits_;  // of a sample, before the curve is undone
+  std::optional<CineCurve> curve_;
   std::vector<std::uint16_t> buffer_;  // of the window, where it is copied
 };
 

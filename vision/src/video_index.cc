@@ -10,26 +10,6 @@
 namespace touchdown::vision {
 namespace {
 
-// Timestamps that leave the even grid by less than this part of a frame period
-// count as rounded by the container (1 ms ticks at 20 to 30 fps reach 1.5 %);
-// cameras that vary their rate leave it by far more.
-constexpr double kRoundingPeriods = 0.02;
-
-// Largest deviation of `pts` from an even grid of `fps`, in ticks, at most the
-// allowed one?
-bool FitsGrid(const std::vector<std::int64_t>& pts, double fps, double tick_s) {
-  if (!(fps > 0.0) || !std::isfinite(fps)) return false;
-  const double period_ticks = 1.0 / (fps * tick_s);
-  const double allowed = std::max(1.0, kRoundingPeriods * period_ticks);
-  for (std::size_t i = 0; i < pts.size(); ++i) {
-    const double grid = static_cast<double>(i) * period_ticks;
-    if (std::abs(TicksBetween(pts[0], pts[i]) - grid) > allowed) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // The frame rate: what the container says if the timestamps agree with it, else
 // what they say themselves.
 void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
@@ -38,18 +18,24 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   const auto rate = [](AVRational r) {
     return r.num > 0 && r.den > 0 ? av_q2d(r) : 0.0;
   };
-  const double average = rate(stream.avg_frame_rate);
-  const double base = rate(stream.r_frame_rate);
-  for (const double fps : {rate(declared), average, base}) {
-    if (fps > 0.0 && (pts.empty() || FitsGrid(pts, fps, tick_s))) {
-      index.fps = fps;
-      return;
-    }
+  std::vector<double> times_s;
+  times_s.reserve(pts.size());
+  for (const std::int64_t time : pts) {
+    times_s.push_back(TicksBetween(pts[0], time) * tick_s);
   }
-  if (pts.size() < 2 || pts.back() <= pts.front()) return;
-  index.fps = static_cast<double>(pts.size() - 1) /
-              (TicksBetween(pts.front(), pts.back()) * tick_s);
-  index.uniform = FitsGrid(pts, index.fps, tick_s);
+  index.spacing = FindSpacing(
+      times_s,
+      {rate(declared), rate(stream.avg_frame_rate), rate(stream.r_frame_rate)},
+      {.tick_s = tick_s});
+}
+
+void TakePalette(const AVPacket& packet, VideoIndex& index) {
+  std::size_t size = 0;
+  const std::uint8_t* const palette =
+      Libav().av_packet_get_side_data(&packet, AV_PKT_DATA_PALETTE, &size);
+  if (palette != nullptr && size == AVPALETTE_SIZE && index.palette.empty()) {
+    index.palette.assign(palette, palette + size);
+  }
 }
 
 // The container's own list of an uncompressed stream, if it names every frame
@@ -87,8 +73,22 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
   }
   if (end > size) return std::nullopt;
   index.frames = count;
+  const LibavPtr<AVPacket> first(Libav().av_packet_alloc());
+  if (Libav().av_read_frame(&format, first.get()) >= 0) {
+    TakePalette(*first, index);
+  }
   FindRate(index.pts, stream, declared, index);
   return index;
+}
+
+// In .avi an empty chunk stands for a lost frame: it has its tick, a period,
+// and its place in the list, but is never seen. Up to `last_dts` all is there
+// then.
+bool CountsLostFrames(const AVStream& stream, AVRational declared,
+                      std::int64_t last_dts) {
+  return declared.num > 0 &&
+         av_cmp_q(av_inv_q(declared), stream.time_base) == 0 &&
+         last_dts != AV_NOPTS_VALUE && last_dts >= stream.nb_frames - 1;
 }
 
 }  // namespace
@@ -159,6 +159,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
         break;
       }
       index.packets.push_back(Describe(*packet));
+      TakePalette(*packet, index);
       // Frames before the start of an edit list are decoded but not shown.
       if ((packet->flags & AV_PKT_FLAG_DISCARD) == 0) {
         const std::span<const std::uint8_t> bytes(
@@ -185,7 +186,8 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
     index.ended_early = LibavError(format.pb->error);
   } else if (index.ended_early.empty() &&
              stream.nb_frames >
-                 static_cast<std::int64_t>(index.packets.size())) {
+                 static_cast<std::int64_t>(index.packets.size()) &&
+             !CountsLostFrames(stream, declared, last_dts)) {
     index.ended_early = "its own list names more frames";
   }
   if (!timed) pts.clear();
@@ -199,6 +201,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
   FindRate(pts, stream, declared, index);
   const bool distinct = std::adjacent_find(pts.begin(), pts.end()) == pts.end();
   index.coarse = !distinct;
+  if (!distinct) index.spacing.times_s.clear();
   if (timed && distinct) index.pts = std::move(pts);
   if (index.pts.empty()) {
     index.damaged = std::move(damaged_numbers);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frame_spacing.h"
 #include "libav.h"
 #include "touchdown/vision/clip.h"
 
@@ -42,11 +43,13 @@ struct VideoIndex {
   // beginning.
   std::vector<std::int64_t> pts;
   std::int64_t frames = 0;
-  bool uniform = true;
-  bool coarse = false;  // timestamps that several frames share
-  double fps = 0.0;     // mean rate if not uniform; 0: the file tells none
+  bool coarse = false;                // timestamps that several frames share
+  FrameSpacing spacing;               // fps is 0 if the file tells none
   std::vector<std::int64_t> damaged;  // frames known to be, ascending
   std::string ended_early;  // why demuxing stopped before the end, or empty
+  // Colours behind the samples, as AV_PKT_DATA_PALETTE: a demuxer gives them
+  // with its first packet only. Empty: there are none.
+  std::vector<std::uint8_t> palette;
 
   // Number of the frame shown at `pts`, if there is one.
   std::optional<std::int64_t> FrameAt(std::int64_t pts) const;

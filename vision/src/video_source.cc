@@ -160,12 +160,4 @@ bool IsCut(const std::filesystem::path& path) {
   return bytes <= 8 && length != unknown && size < segment + 4 + bytes + length;
 }
 
-std::int64_t CineFirstFrame(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::int32_t number = 0;
-  file.seekg(16);
-  file.read(reinterpret_cast<char*>(&number), sizeof number);
-  return file ? number : 0;
-}
-
 }  // namespace touchdown::vision

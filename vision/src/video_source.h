@@ -28,7 +28,4 @@ std::string FormatName(const AVFormatContext& format);
 // libav takes the end of such a file for the end of the recording.
 bool IsCut(const std::filesystem::path& path);
 
-// The camera's number of the first frame of a .cine (FirstImageNo, at byte 16).
-std::int64_t CineFirstFrame(const std::filesystem::path& path);
-
 }  // namespace touchdown::vision

@@ -8,9 +8,10 @@
 //
 // Formats: video through libav (avi, mp4, mkv, mov, cine: MJPEG, H.264, FFV1,
 // raw; 8 to 16 bit; gray and colour, of which the luma is read), Photron
-// .mraw with its .cih or .cihx beside it (8, 12 packed, 16 bit), folders of
-// PNG, TIFF or JPEG (8 and 16 bit) in natural order of their names. What each
-// does with depth, range, rotation and time: vision/README.md, "Clips".
+// .mraw with its .cih or .cihx beside it (8, 12 packed, 16 bit), TIFFs of
+// several pages, folders of PNG, TIFF or JPEG (8 and 16 bit) in natural order
+// of their names. What each does with depth, range, rotation and time:
+// vision/README.md, "Clips".
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,8 @@ enum class FpsSource { kHeader, kContainer, kUser };
 std::string_view Name(FpsSource source);  // "header", "container", "user"
 
 struct TimeBase {
-  double fps = 0.0;  // frames per second of the recording (not of playback)
+  double fps = 0.0;  // recorded, not of playback; where frames are missing,
+                     // of those that follow each other
   FpsSource source = FpsSource::kContainer;
   bool uniform = true;   // frames equally spaced in time
   bool trusted = false;  // false: a playback rate may have been mistaken for it
@@ -46,7 +48,7 @@ struct SensorOrigin {
 
 struct ClipInfo {
   std::filesystem::path path;
-  std::string format;  // "mraw", "avi", "mp4", "png-folder", ...
+  std::string format;  // "mraw", "avi", "mp4", "tiff-stack", ...
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
   std::int32_t bit_depth = 8;           // significant bits of a sample, 1..16
@@ -143,15 +145,15 @@ class Clip {
   double reading_s_ = 0.0;
 };
 
-// Opens a recording: a video file, an .mraw (or its .cih/.cihx), or a folder of
-// images. Throws core::InputError naming the file, and what to do, if it does
-// not exist, is damaged before its first frame, or is of an unknown kind;
-// std::invalid_argument if options.fps is not positive and finite or
-// options.decoder_threads is negative.
+// Opens a recording: a video file, an .mraw (or its .cih/.cihx), a TIFF of
+// several pages, or a folder of images. Throws core::InputError naming the
+// file, and what to do, if it does not exist, is damaged before its first
+// frame, or is of an unknown kind; std::invalid_argument if options.fps is not
+// positive and finite or options.decoder_threads is negative.
 //
 // A clip that ends early but whose first frames are whole opens with the frames
-// that are there and a warning. A folder of images has no frame rate: without
-// options.fps it is refused with an InputError that says so.
+// that are there and a warning. A folder of images and a TIFF have no frame
+// rate: without options.fps they are refused with an InputError that says so.
 std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
                                const ClipOptions& options = {});
 

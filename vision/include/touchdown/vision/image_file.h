@@ -26,12 +26,18 @@ struct Image {
 // Whether the name ends in .png, .tif, .tiff, .jpg or .jpeg (in any case).
 bool IsImageName(const std::filesystem::path& path);
 
+// Whether it is a TIFF of several pages: a recording (clip.h), not a picture.
+// Looks at its beginning only; false of a file that is no TIFF. Throws
+// core::InputError if the file cannot be opened.
+bool IsTiffStack(const std::filesystem::path& path);
+
 // Reads the luma of one picture; the kind is told by the content, not the name.
 //
 //   PNG   1 to 16 bit, gray, palette, colour; alpha is left out. An sBIT chunk
 //         of 9 to 15 bits tells the bit depth, else 16-bit files have depth 16
-//   TIFF  first page; 8 or 16 bit, gray or RGB, in strips, any compression of
-//         libtiff. MaxSampleValue of 2^n - 1, n = 9 to 15, tells the bit depth
+//   TIFF  first page; 8 or 16 bit, gray or RGB, in strips or tiles, any
+//         compression of libtiff. MaxSampleValue of 2^n - 1, n = 9 to 15, tells
+//         the bit depth
 //   JPEG  8 bit; Y as stored (full range), or of RGB
 //
 // Colour becomes luma by Rec. ITU-R BT.601: Y = 0.299 R + 0.587 G + 0.114 B,
