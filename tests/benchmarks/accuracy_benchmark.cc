@@ -139,7 +139,7 @@ void PrintPeers(const std::vector<Outcome>& outcomes, std::size_t clips) {
       ++methods[0].failures;
     }
   }
-  for (const Peer peer : kPeers) {
+  for (const Peer peer : Peers()) {
     Method method;
     method.name = Name(peer);
     for (std::size_t i = 0; i < std::min(clips, outcomes.size()); ++i) {
