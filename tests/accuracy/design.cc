@@ -4,6 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <random>
+#include <stdexcept>
 
 #include "touchdown/core/units.h"
 
@@ -297,12 +298,15 @@ Case DrawAt(std::uint64_t index, const Levels& levels) {
   constexpr std::uint64_t kOwnSeeds = 998;
   c.seed = 1000 * (index + 1) + kOwnSeeds;
   Drawer draw(c.seed);
-  const int least_after = std::min(kLeastAfter, levels.frames_after);
-  do {
+  const int least_after = std::min(kLeastShortStay, levels.frames_after);
+  constexpr int kAttempts = 1000;
+  for (int i = 0; i < kAttempts; ++i) {
     c.levels = levels;
     DrawFilm(c, draw);
-  } while (c.levels.frames_after < least_after);
-  return c;
+    if (c.levels.frames_after >= least_after) return c;
+  }
+  throw std::invalid_argument(
+      "levels: a block of this size comes down on its other corner at once");
 }
 
 Case DrawRebound(std::uint64_t index) {

@@ -76,7 +76,7 @@ Case Draw(std::uint64_t index, Hardship hardship);
 
 // Case `index` with these levels; what they leave open is drawn by the index.
 // frames_after is the most: a block's film ends before its other corner comes
-// down.
+// down. Throws std::invalid_argument where that leaves less than two frames.
 Case DrawAt(std::uint64_t index, const Levels& levels);
 
 // Case `index` of the states: a sphere that stays down (one in four) or rises

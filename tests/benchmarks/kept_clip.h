@@ -59,9 +59,9 @@ class KeptClip : public vision::Clip {
                          const core::PixelRect& window) override {
     core::Frame frame =
         (*frames_)[static_cast<std::size_t>(index * step_)].view;
-    frame.data += window.y * frame.stride_bytes +
-                  static_cast<std::ptrdiff_t>(window.x) *
-                      (frame.is_16_bit() ? 2 : 1);
+    frame.data +=
+        window.y * frame.stride_bytes +
+        static_cast<std::ptrdiff_t>(window.x) * (frame.is_16_bit() ? 2 : 1);
     frame.width_px = window.width;
     frame.height_px = window.height;
     frame.origin_x_px = window.x;
