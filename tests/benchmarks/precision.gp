@@ -17,8 +17,9 @@ set rmargin at screen 0.66
 # than 5 % failures are drawn apart: their errors are of the easier items.
 rows(stage, method) = sprintf("< awk -F, '$1 == \"%s\" && $2 == \"%s\" && $5 <= 0.05 * $4 && $11 != \"\" {print $9, $11, $12, $13}' '%s'", stage, method, csv)
 failing(stage) = sprintf("< awk -F, '$1 == \"%s\" && $5 > 0.05 * $4 && $11 != \"\" {print $9, $11, $12, $13}' '%s'", stage, csv)
-# A word where there is such a point, else none: a loop's list.
-some(points) = system(sprintf("%s | head -n 1 | cut -d ' ' -f 1", points[3:]))
+# That part of the plot command, where there is such a point.
+apart(stage) = system(failing(stage)[3:] . " | wc -l") > 0 ? \
+  sprintf("failing('%s') using 1:2:3:4 with yerrorbars lc rgb '#444444' pt 6 ps 0.9 title 'more than 5 %% absent',", stage) : ""
 defaults(stage) = sprintf("< awk -F, '$1 == \"%s\" && $2 !~ /told/ && $3 ~ /default/ {print $9, $11}' '%s'", stage, csv)
 # Points that no other beats in both.
 front(stage) = sprintf("< awk -F, '$1 == \"%s\" && $5 <= 0.05 * $4 && $11 != \"\" {print $9, $11}' '%s' | sort -k1,1gr | awk 'NR == 1 || $2 < least {print; least = $2}'", stage, csv)
@@ -46,8 +47,9 @@ set yrange [0.4 * bound:*]
 set xrange [*:2 * alone]
 set arrow 1 from alone, graph 0 to alone, graph 1 nohead lc rgb "#888888" dt 3
 set label 1 "reading alone" at alone, graph 0.97 right offset -0.5, 0 textcolor rgb "#666666"
+these = apart("chain")
 plot for [i = 1:8] rows("chain", chain[i]) using 1:2:3:4 with yerrorlines lc rgb colour[i] pt 7 ps 0.7 title shown(chain[i]), \
-  for [any in some(failing("chain"))] failing("chain") using 1:2:3:4 with yerrorbars lc rgb "#444444" pt 6 ps 0.9 title "more than 5 % absent", \
+  @these \
   defaults("chain") using 1:2 with points lc rgb "black" pt 6 ps 1.7 title "default", \
   front("chain") using 1:2 with lines lc rgb "#bbbbbb" lw 4 dt 2 title "not beaten in both", \
   bound with lines lc rgb "black" dt 2 title "Cramér–Rao bound"
@@ -60,8 +62,9 @@ set ylabel "RMSE of the centre, a coordinate, px" noenhanced
 bound = cell("outline", 15)
 set yrange [0.5 * bound:*]
 set xrange [*:*]
+these = apart("outline")
 plot for [i = 1:10] rows("outline", outline[i]) using 1:2:3:4 with yerrorlines lc rgb colour[i] pt 7 ps 0.7 title shown(outline[i]), \
-  for [any in some(failing("outline"))] failing("outline") using 1:2:3:4 with yerrorbars lc rgb "#444444" pt 6 ps 0.9 title "more than 5 % absent", \
+  @these \
   defaults("outline") using 1:2 with points lc rgb "black" pt 6 ps 1.7 title "default", \
   front("outline") using 1:2 with lines lc rgb "#bbbbbb" lw 4 dt 2 title "not beaten in both", \
   bound with lines lc rgb "black" dt 2 title "Cramér–Rao bound"
