@@ -4,6 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <random>
+#include <stdexcept>
 
 #include "touchdown/core/units.h"
 
@@ -16,6 +17,10 @@ using vision::synthetic::Throw;
 constexpr double kPxPerM = 1000.0;
 constexpr double kRestitution = 0.6;
 constexpr int kLeadIn = 24;  // empty frames before the body
+// Frames after contact, at least: of a regular film, and of one with few
+// frames.
+constexpr int kLeastAfter = 6;
+constexpr int kLeastShortStay = 2;
 
 // The film's body is off the ground `frames` after contact, and not about to
 // come down.
@@ -140,11 +145,11 @@ void DrawTrouble(Case& c, Drawer& draw) {
       trouble.speck_seed = c.seed;
       break;
     case Hardship::kObstacle: {
-      // From the picture's border to where the body is clear of it at half of
-      // its way.
+      // From the picture's border to where the body is clear of it, after that
+      // share of its way.
       const vision::SceneCamera& camera = c.film.camera;
       const double clear =
-          0.5 * l.size_px + 0.5 * l.frames_before * l.speed_px *
+          0.5 * l.size_px + (1.0 - l.hidden) * l.frames_before * l.speed_px *
                                 std::cos(l.angle_deg * core::kDegree);
       const double x =
           camera.ground_point.x_px + (camera.travels_left ? clear : -clear);
@@ -278,7 +283,7 @@ Case Draw(std::uint64_t index, Hardship hardship) {
   // A block that comes down on its other corner at once is drawn again.
   const bool short_stay =
       hardship == Hardship::kFewFrames || hardship == Hardship::kFast;
-  const int least_after = short_stay ? 2 : 6;
+  const int least_after = short_stay ? kLeastShortStay : kLeastAfter;
   do {
     c.levels = {};
     c.levels.hardship = hardship;
@@ -286,6 +291,22 @@ Case Draw(std::uint64_t index, Hardship hardship) {
     DrawFilm(c, draw);
   } while (c.levels.frames_after < least_after);
   return c;
+}
+
+Case DrawAt(std::uint64_t index, const Levels& levels) {
+  Case c;
+  constexpr std::uint64_t kOwnSeeds = 998;
+  c.seed = 1000 * (index + 1) + kOwnSeeds;
+  Drawer draw(c.seed);
+  const int least_after = std::min(kLeastShortStay, levels.frames_after);
+  constexpr int kAttempts = 1000;
+  for (int i = 0; i < kAttempts; ++i) {
+    c.levels = levels;
+    DrawFilm(c, draw);
+    if (c.levels.frames_after >= least_after) return c;
+  }
+  throw std::invalid_argument(
+      "levels: a block of this size comes down on its other corner at once");
 }
 
 Case DrawRebound(std::uint64_t index) {

@@ -52,6 +52,7 @@ struct Levels {
   int frames_before = 20;
   int frames_after = 12;
   int bit_depth = 8;
+  double hidden = 0.5;  // of the approach, behind kObstacle's obstacle
 };
 
 struct Case {
@@ -72,6 +73,11 @@ inline constexpr double kGravityRelativeU = 0.002;
 // Case `index` of the regular part, or of one hardship. The same index gives
 // the same case, whatever else is drawn.
 Case Draw(std::uint64_t index, Hardship hardship);
+
+// Case `index` with these levels; what they leave open is drawn by the index.
+// frames_after is the most: a block's film ends before its other corner comes
+// down. Throws std::invalid_argument where that leaves less than two frames.
+Case DrawAt(std::uint64_t index, const Levels& levels);
 
 // Case `index` of the states: a sphere that stays down (one in four) or rises
 // by 0.05 to 10 times the default bounce height, filmed until after its apex.

@@ -1,31 +1,60 @@
 #include "tests/accuracy/score.h"
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <random>
+#include <thread>
 
-#include "app/pipeline/analyze.h"
+#include "tests/support/statistics.h"
 #include "touchdown/analysis/agreement_statistics.h"
 #include "touchdown/vision/render.h"
 
 namespace touchdown::accuracy {
 
-Outcome Analyse(const Case& c) {
-  Outcome outcome;
-  outcome.made = c;
-  const vision::synthetic::Throw& t = c.film.thrown;
-  const Bound bound = BoundOf(c);
+pipeline::AnalyzeOptions Told(const Case& c) {
   pipeline::AnalyzeOptions options;
-  options.body_kind = t.kind;
+  options.body_kind = c.film.thrown.kind;
   options.scale_px_per_m = core::Estimate{
       c.told_px_per_m, kScaleRelativeU * c.told_px_per_m, std::nullopt};
+  return options;
+}
+
+Outcome Analyse(const Case& c) {
+  const pipeline::AnalyzeOptions options = Told(c);
   auto clip = vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
   const auto start = std::chrono::steady_clock::now();
   const pipeline::Analysis analysis =
       pipeline::AnalyzeClip(std::move(clip), options);
-  outcome.seconds =
+  const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
-  const core::ContactRecord& first = analysis.contacts.first;
+  Outcome outcome = Compare(c, analysis.contacts.first);
+  outcome.seconds = seconds;
+  return outcome;
+}
+
+std::vector<Outcome> AnalyseAll(const std::vector<Case>& cases) {
+  std::vector<Outcome> outcomes(cases.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < cases.size(); i = next++) {
+      outcomes[i] = Analyse(cases[i]);
+    }
+  };
+  std::vector<std::jthread> threads;
+  const unsigned count = std::max(1U, std::thread::hardware_concurrency());
+  for (unsigned i = 0; i < count; ++i) threads.emplace_back(work);
+  threads.clear();
+  return outcomes;
+}
+
+Outcome Compare(const Case& c, const core::ContactRecord& first) {
+  Outcome outcome;
+  outcome.made = c;
+  const vision::synthetic::Throw& t = c.film.thrown;
+  const Bound bound = BoundOf(c);
   outcome.state = first.state.label;
   outcome.state_reason = first.state.reason;
   if (first.state.max_gap_m) outcome.u_gap_m = first.state.max_gap_m->u;
@@ -54,6 +83,21 @@ Outcome Analyse(const Case& c) {
          bound.radius_rad);
   }
   return outcome;
+}
+
+core::Interval RmsInterval95(const std::vector<double>& errors) {
+  constexpr int kDraws = 1000;
+  std::mt19937_64 engine(1);
+  std::uniform_int_distribution<std::size_t> any(0, errors.size() - 1);
+  std::vector<double> drawn;
+  std::vector<double> sample(errors.size());
+  drawn.reserve(kDraws);
+  for (int i = 0; i < kDraws; ++i) {
+    for (double& v : sample) v = errors[any(engine)];
+    drawn.push_back(testing::Rms(sample));
+  }
+  std::sort(drawn.begin(), drawn.end());
+  return {drawn[kDraws / 40], drawn[kDraws - 1 - kDraws / 40]};
 }
 
 double Sum::RmseOverBound() const {

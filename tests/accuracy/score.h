@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/pipeline/analyze.h"
 #include "tests/accuracy/bound.h"
 #include "tests/accuracy/design.h"
 #include "touchdown/core/trial.h"
@@ -39,7 +40,18 @@ struct Outcome {
   double seconds = 0.0;
 };
 
+// What `analyze` is told of a case.
+pipeline::AnalyzeOptions Told(const Case& c);
+
+// The case rendered, analysed and compared.
 Outcome Analyse(const Case& c);
+std::vector<Outcome> AnalyseAll(const std::vector<Case>& cases);  // all cores
+
+// An analysis' first contact against the case's truth and bound.
+Outcome Compare(const Case& c, const core::ContactRecord& first);
+
+// 95 % interval of the root mean square of at least one error: bootstrap.
+core::Interval RmsInterval95(const std::vector<double>& errors);
 
 // Over many clips: failures are counted, never averaged in.
 struct Sum {

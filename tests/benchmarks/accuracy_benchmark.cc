@@ -5,16 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
-#include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "tests/accuracy/score.h"
@@ -28,21 +25,6 @@ namespace {
 
 using namespace touchdown;
 using namespace touchdown::accuracy;
-
-std::vector<Outcome> AnalyseAll(const std::vector<Case>& cases) {
-  std::vector<Outcome> outcomes(cases.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < cases.size(); i = next++) {
-      outcomes[i] = Analyse(cases[i]);
-    }
-  };
-  std::vector<std::jthread> threads;
-  const unsigned count = std::max(1U, std::thread::hardware_concurrency());
-  for (unsigned i = 0; i < count; ++i) threads.emplace_back(work);
-  threads.clear();
-  return outcomes;
-}
 
 void PrintCsv(const std::vector<Outcome>& outcomes) {
   fmt::print(
@@ -107,22 +89,11 @@ struct Method {
   std::size_t failures = 0;
 };
 
-// 95 % interval of the root mean square: bootstrap over the clips.
 std::string RmsText(const std::vector<double>& errors) {
   if (errors.empty()) return "-";
-  constexpr int kDraws = 1000;
-  std::mt19937_64 engine(1);
-  std::uniform_int_distribution<std::size_t> any(0, errors.size() - 1);
-  std::vector<double> drawn;
-  std::vector<double> sample(errors.size());
-  drawn.reserve(kDraws);
-  for (int i = 0; i < kDraws; ++i) {
-    for (double& v : sample) v = errors[any(engine)];
-    drawn.push_back(testing::Rms(sample));
-  }
-  std::sort(drawn.begin(), drawn.end());
+  const core::Interval interval = RmsInterval95(errors);
   return fmt::format("{:.3g} ({:.3g} to {:.3g})", testing::Rms(errors),
-                     drawn[kDraws / 40], drawn[kDraws - 1 - kDraws / 40]);
+                     interval.low, interval.high);
 }
 
 void PrintPeers(const std::vector<Outcome>& outcomes, std::size_t clips) {
@@ -139,7 +110,7 @@ void PrintPeers(const std::vector<Outcome>& outcomes, std::size_t clips) {
       ++methods[0].failures;
     }
   }
-  for (const Peer peer : kPeers) {
+  for (const Peer peer : Peers()) {
     Method method;
     method.name = Name(peer);
     for (std::size_t i = 0; i < std::min(clips, outcomes.size()); ++i) {

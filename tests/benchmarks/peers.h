@@ -3,8 +3,10 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "tests/accuracy/design.h"
+#include "touchdown/vision/clip.h"
 
 namespace touchdown::accuracy {
 
@@ -14,9 +16,10 @@ enum class Peer {
               // ballistic fits
   kTemplate,  // normalised correlation with a template, parabola through the
               // peak, ballistic fits (as Tracker and Kinovea do)
+  kCsrt,      // OpenCV's TrackerCSRT from the true first box, ballistic fits
 };
-inline constexpr Peer kPeers[] = {Peer::kMog2, Peer::kCentroid,
-                                  Peer::kTemplate};
+// Those that are built in: CSRT needs libopencv-contrib-dev.
+std::vector<Peer> Peers();
 const char* Name(Peer peer);
 
 struct PeerReading {
@@ -25,6 +28,9 @@ struct PeerReading {
 };
 
 // Nothing where it finds no touchdown.
+std::optional<PeerReading> Measure(vision::Clip& clip, const Case& c,
+                                   Peer peer);
+// Of the case as it is rendered.
 std::optional<PeerReading> Measure(const Case& c, Peer peer);
 
 }  // namespace touchdown::accuracy
