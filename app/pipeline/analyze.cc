@@ -167,12 +167,12 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   calib::GroundLine in_image = ground;
   if (camera_.lens) {
     in_image =
-        SeenNear(vision::SeenFromGround(Seen(track), ground), *camera_.lens);
+        SeenNear(SeenInPlane(camera_, Seen(track), ground), *camera_.lens);
   }
   judged.track = vision::Refine(*clip_, background_, track,
                                 {in_image, aspect_, options_.decoder_threads});
-  judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
-  judged.contacts = vision::FindContacts(judged.plane, contact_options_);
+  judged.plane = SeenInPlane(camera_, Seen(judged.track), ground);
+  judged.contacts = ContactsIn(judged.plane, contact_options_);
   return judged;
 }
 
@@ -196,8 +196,8 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   // fitting every outline again.
   const vision::Track seen = Seen(track);
   const auto first_merit = [&](const calib::GroundLine& candidate) {
-    return Merit(vision::FindContacts(vision::SeenFromGround(seen, candidate),
-                                      contact_options_));
+    return Merit(
+        ContactsIn(SeenInPlane(camera_, seen, candidate), contact_options_));
   };
   std::vector<std::pair<int, calib::GroundLine>> ranked;
   ranked.reserve(candidates.size());
@@ -378,6 +378,7 @@ Analysis Analyzer::Run() {
     contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
     FindGroundAndContacts(track);
     AddLens(result_, camera_, contact_options_);
+    AddYaw(result_, camera_, contact_options_);
     result_.warnings.insert(result_.warnings.end(), seen.warnings.begin(),
                             seen.warnings.end());
     result_.warnings.insert(result_.warnings.end(),
@@ -397,6 +398,9 @@ Analysis Analyzer::Run() {
           : core::DefaultAngleKind(result_.body ? result_.body->kind
                                                 : core::BodyKind::kSphere);
   DescribeScene();
+  if (result_.contacts.first.contact.found) {
+    DescribeBudget(result_, contact_options_);
+  }
   result_.timing.contact_s = Since(lap);
   result_.timing.decode_s = clip_->reading_s();
   result_.timing.total_s = Since(start);

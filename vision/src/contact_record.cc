@@ -81,6 +81,12 @@ void FillAngles(const RecordContext& context, const Event& event,
   contact.approach_angle_rad =
       Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u,
                std::nullopt};
+  // No angle is negative: near 0 the normal interval promises what cannot be.
+  if (angle.value < core::kNormal975 * angle.u) {
+    Estimate& flat = *contact.approach_angle_rad;
+    flat.interval95 =
+        core::Interval{0.0, flat.value + core::kNormal975 * angle.u};
+  }
   contact.approach_budget = BudgetOf(fit, approach, angle.u);
   if (track.kind == core::BodyKind::kSphere) {
     contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
