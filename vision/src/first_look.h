@@ -35,6 +35,8 @@ struct Look {
   Choice choice;
   OutlineOptions::Surround surround = OutlineOptions::Surround::kBackground;
   std::vector<Fitted> fits;  // of the best chain
+  // Its blobs hold the body's shadow, too: many a fit began too far off.
+  bool rough_starts = false;
 };
 
 // Frames at either end of a range of which a background is made where the body
