@@ -221,6 +221,18 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   }
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
+  if (!camera_.ideal_ground && best_merit < 2) {
+    if (const auto from_path = vision::GroundFromPath(seen)) {
+      Judged judged = Judge(*from_path, track);
+      if (judged.contacts.first.contact.from_start) {
+        result_.warnings.emplace_back(
+            "no visible edge is the ground; the body moves along it all the "
+            "time, and its path tells where it is");
+        best = std::move(judged);
+        best_merit = 2;
+      }
+    }
+  }
   if (!camera_.ideal_ground && best_merit < 1) {
     if (const auto from_contacts = vision::GroundFromContacts(seen)) {
       Judged judged = Judge(*from_contacts, track);
