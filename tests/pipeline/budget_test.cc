@@ -9,6 +9,7 @@
 #include "app/pipeline/clip_calibration.h"
 #include "app/pipeline/judge.h"
 #include "tests/accuracy/monte_carlo.h"
+#include "tests/pipeline/filmed.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::accuracy {
@@ -143,6 +144,61 @@ TEST(Budget, SaysWhatIsLeftOut) {
   EXPECT_FALSE(scene.left_out.contains("yaw"));
   EXPECT_THAT(scene.used, ::testing::Contains(::testing::HasSubstr(
                               "yaw of the plane of travel, 4.00 +- 0.50 deg")));
+}
+
+// The whole chain on a rendered clip: a plane turned by 6 degrees, its scale as
+// a rule on the ground shows it.
+TEST(Budget, ATurnedPlaneIsMeasuredRightWithItsCalibration) {
+  pipeline::filmed::Film film =
+      pipeline::filmed::Default(core::BodyKind::kSphere);
+  film.camera.lens =
+      calib::Lens{600.0, 600.0, 119.5, 59.5, 0.0, 0.0, 0.0, 0.0, 0.0};
+  film.camera.yaw_rad = 6.0 * core::kDegree;
+  calib::Calibration calibration;
+  calibration.camera = "rendered";
+  calibration.date = "2026-01-31";
+  calibration.expires = "2027-01-31";
+  calibration.picture = {film.camera.width_px, film.camera.height_px,
+                         calib::SensorCorner{0, 0}};
+  calib::LensRecord lens;
+  lens.lens = *film.camera.lens;
+  calibration.lens = lens;
+  calib::ScaleRecord scale;
+  const double seen = film.camera.px_per_m * std::cos(film.camera.yaw_rad);
+  scale.px_per_m = {seen, 1e-4 * seen, std::nullopt};
+  scale.length_m = 0.1;
+  calibration.scale = scale;
+  calib::GroundRecord ground;
+  ground.p1 = vision::ToImage(film.camera, {-0.05, 0.0});
+  ground.p2 = vision::ToImage(film.camera, {0.05, 0.0});
+  ground.u_point_px = 0.02;
+  ground.yaw_rad = core::Estimate{film.camera.yaw_rad, 1e-3, std::nullopt};
+  calibration.ground = ground;
+  pipeline::AnalyzeOptions options;
+  options.calibration = calibration;
+  const auto analyze = [&] {
+    return pipeline::AnalyzeClip(
+        vision::OpenScene(pipeline::filmed::SceneOf(film), 4), options);
+  };
+  const pipeline::Analysis with = analyze();
+  options.calibration->ground->yaw_rad.reset();
+  const pipeline::Analysis without = analyze();
+  const core::ContactRecord& first = with.contacts.first;
+  ASSERT_TRUE(first.contact.found) << first.contact.reason;
+  EXPECT_EQ(first.contact.approach_budget.back().source, "yaw");
+  const auto off = [](const core::Measured& m, double truth) {
+    return std::abs(m->value - truth) / m->u;
+  };
+  const auto& t = film.thrown;
+  EXPECT_LT(off(first.contact.approach_angle_rad, t.ContactAngle()), 4.0);
+  EXPECT_LT(off(first.contact.frame, film.contact_frame), 4.0);
+  EXPECT_LT(off(first.motion.before_tangential_mps, t.before.vx), 4.0);
+  EXPECT_LT(off(first.motion.before_normal_mps, t.before.vy), 4.0);
+  const core::ContactRecord& naive = without.contacts.first;
+  EXPECT_GT(std::max(off(naive.contact.approach_angle_rad, t.ContactAngle()),
+                     off(naive.motion.before_normal_mps, t.before.vy)),
+            4.0)
+      << "the yaw does not matter here";
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // A plane of travel that is turned from the picture's plane about its own
 // vertical. Perspective then changes angles: to first order away from the axis,
-// to second order on it. For a point at (X, Y) from the axis, Y downwards, in
-// units of the focal length, a path at the angle a is seen at
+// to second order on it. For a point at (X, Y) from the axis, Y upwards, in
+// units of the focal length, a path that descends at the angle a is seen at
 //   tan a_seen = (tan a + Y sin(yaw)) / (cos(yaw) - X sin(yaw))
 // (reference/statistics.md 4.3; X, Y there are X/Z, Y/Z). Here it is undone
 // point by point, so that the ground line, which is turned with the path, and
