@@ -75,8 +75,8 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
     core::Measured& approach = contact.approach_angle_rad;
     if (approach && approach->value < core::kNormal975 * approach->u) {
       // As near 0 as without it (vision/src/contact_record.cc).
-      approach->interval95 = core::Interval{
-          0.0, approach->value + core::kNormal975 * approach->u};
+      approach->interval95 =
+          core::Interval{0.0, approach->value + core::kNormal975 * approach->u};
     }
     if (!contact.approach_budget.empty()) {
       contact.approach_budget.push_back({source, std::sqrt(variances[i][0])});
