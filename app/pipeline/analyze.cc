@@ -167,12 +167,12 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   calib::GroundLine in_image = ground;
   if (camera_.lens) {
     in_image =
-        SeenNear(vision::SeenFromGround(Seen(track), ground), *camera_.lens);
+        SeenNear(SeenInPlane(camera_, Seen(track), ground), *camera_.lens);
   }
   judged.track = vision::Refine(*clip_, background_, track,
                                 {in_image, aspect_, options_.decoder_threads});
-  judged.plane = vision::SeenFromGround(Seen(judged.track), ground);
-  judged.contacts = vision::FindContacts(judged.plane, contact_options_);
+  judged.plane = SeenInPlane(camera_, Seen(judged.track), ground);
+  judged.contacts = ContactsIn(judged.plane, contact_options_);
   return judged;
 }
 
@@ -196,8 +196,8 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   // fitting every outline again.
   const vision::Track seen = Seen(track);
   const auto first_merit = [&](const calib::GroundLine& candidate) {
-    return Merit(vision::FindContacts(vision::SeenFromGround(seen, candidate),
-                                      contact_options_));
+    return Merit(
+        ContactsIn(SeenInPlane(camera_, seen, candidate), contact_options_));
   };
   std::vector<std::pair<int, calib::GroundLine>> ranked;
   ranked.reserve(candidates.size());
@@ -221,6 +221,18 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
   }
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
+  if (!camera_.ideal_ground && best_merit < 2) {
+    if (const auto from_path = vision::GroundFromPath(seen)) {
+      Judged judged = Judge(*from_path, track);
+      if (judged.contacts.first.contact.from_start) {
+        result_.warnings.emplace_back(
+            "no visible edge is the ground; the body moves along it all the "
+            "time, and its path tells where it is");
+        best = std::move(judged);
+        best_merit = 2;
+      }
+    }
+  }
   if (!camera_.ideal_ground && best_merit < 1) {
     if (const auto from_contacts = vision::GroundFromContacts(seen)) {
       Judged judged = Judge(*from_contacts, track);
@@ -386,6 +398,7 @@ Analysis Analyzer::Run() {
     contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
     FindGroundAndContacts(track);
     AddLens(result_, camera_, contact_options_);
+    AddYaw(result_, camera_, contact_options_);
     const std::vector<std::string> of_track = Seen(*result_.track).warnings;
     result_.warnings.insert(result_.warnings.end(), of_track.begin(),
                             of_track.end());
@@ -406,6 +419,9 @@ Analysis Analyzer::Run() {
           : core::DefaultAngleKind(result_.body ? result_.body->kind
                                                 : core::BodyKind::kSphere);
   DescribeScene();
+  if (result_.contacts.first.contact.found) {
+    DescribeBudget(result_, contact_options_);
+  }
   result_.timing.contact_s = Since(lap);
   result_.timing.decode_s = clip_->reading_s();
   result_.timing.total_s = Since(start);

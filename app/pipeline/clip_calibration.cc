@@ -49,6 +49,7 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
           calib::GroundThrough(ground.p1, ground.p2, ground.u_point_px);
       out.image_ground->source = calib::GroundSource::kCalibration;
     }
+    if (calibration.ground) out.yaw_rad = calibration.ground->yaw_rad;
     if (calibration.ground && calibration.ground->slope_rad) {
       const core::Estimate& slope = *calibration.ground->slope_rad;
       core::Estimate& gravity = out.gravity_mps2;
@@ -69,9 +70,27 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
   return out;
 }
 
+vision::PlaneYaw YawThrough(double yaw_rad,
+                            const std::optional<calib::Lens>& lens) {
+  vision::PlaneYaw yaw;
+  yaw.yaw_rad = yaw_rad;
+  if (lens) {
+    yaw.focal_px = calib::IdealFocal(*lens);
+    yaw.axis = {lens->cx_px, lens->cy_px};
+  }
+  return yaw;
+}
+
+std::optional<vision::PlaneYaw> YawOf(const ClipCalibration& camera) {
+  if (!camera.yaw_rad) return std::nullopt;
+  return YawThrough(camera.yaw_rad->value, camera.lens);
+}
+
 void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
                          SceneModel& scene) {
+  scene.used.emplace_back("roll, by the ground line: angles are to it");
   scene.left_out["perspective"] = "no calibration";
+  scene.left_out["yaw"] = "no calibration";
   if (!calibration) {
     scene.left_out["lens distortion"] = "no calibration";
     return;
@@ -82,10 +101,17 @@ void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
     scene.left_out["lens distortion"] = "the calibration has no lens";
   }
   scene.left_out["perspective"] = "the calibration has no board on the ground";
+  scene.left_out["yaw"] = "the calibration has no board on the ground";
   if (!calibration->ground) return;
   if (const auto& yaw = calibration->ground->yaw_rad) {
-    scene.left_out["perspective"] = "the plane of travel is turned by " +
-                                    Degrees(*yaw) + " from the picture's";
+    scene.used.push_back("yaw of the plane of travel, " + Degrees(*yaw));
+    scene.left_out.erase("yaw");
+    if (calibration->lens) {
+      scene.left_out["perspective"] = "but for the yaw: the camera is level";
+    } else {
+      scene.left_out["yaw off the axis"] =
+          "the calibration has no lens: its focal length is not known";
+    }
   }
   if (const auto& slope = calibration->ground->slope_rad) {
     scene.used.emplace_back("slope of the ground, in gravity along its normal");

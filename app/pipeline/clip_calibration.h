@@ -13,6 +13,7 @@
 #include "touchdown/core/estimate.h"
 #include "touchdown/vision/clip.h"
 #include "touchdown/vision/contact.h"
+#include "touchdown/vision/plane_yaw.h"
 
 namespace touchdown::pipeline {
 
@@ -23,6 +24,8 @@ struct ClipCalibration {
   // ideal picture (the same without a lens).
   std::optional<calib::GroundLine> image_ground;
   std::optional<calib::GroundLine> ideal_ground;
+  // Of the plane of travel; with a focal length where there is a lens.
+  std::optional<core::Estimate> yaw_rad;
   // Its part along the ground's normal.
   core::Estimate gravity_mps2 = vision::ContactOptions{}.gravity_mps2;
   std::vector<std::string> warnings;
@@ -33,6 +36,14 @@ struct ClipCalibration {
 // lens model.
 ClipCalibration FitToClip(const AnalyzeOptions& options,
                           const vision::ClipInfo& clip);
+
+// The yaw for vision::SeenFromGround; of `yaw_rad`, which need not be the
+// calibrated one, with this lens.
+vision::PlaneYaw YawThrough(double yaw_rad,
+                            const std::optional<calib::Lens>& lens);
+
+// The same as calibrated; nothing where no calibration tells the yaw.
+std::optional<vision::PlaneYaw> YawOf(const ClipCalibration& camera);
 
 // What the calibration adds to the scene model, or why something is left out.
 void DescribeCalibration(const std::optional<calib::Calibration>& calibration,

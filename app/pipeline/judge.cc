@@ -8,6 +8,8 @@
 
 #include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
+#include "app/pipeline/shared_uncertainty.h"
+#include "touchdown/core/units.h"
 #include "touchdown/vision/lens_track.h"
 
 namespace touchdown::pipeline {
@@ -63,6 +65,25 @@ vision::Track SeenThrough(const ClipCalibration& camera,
   return camera.lens ? vision::Undistorted(track, *camera.lens) : track;
 }
 
+vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
+                               const vision::Track& seen,
+                               const calib::GroundLine& ground) {
+  return vision::SeenFromGround(seen, ground, YawOf(camera));
+}
+
+vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
+                                 const vision::ContactOptions& options) {
+  vision::ContactOptions in_plane = options;
+  if (in_plane.scale) {
+    in_plane.scale->px_per_m =
+        core::Scaled(in_plane.scale->px_per_m,
+                     in_plane.scale->source == calib::ScaleSource::kBodySize
+                         ? plane.size_stretch
+                         : plane.along_stretch);
+  }
+  return vision::FindContacts(plane, in_plane);
+}
+
 vision::ContactOptions ContactOptionsOf(
     const AnalyzeOptions& options, const ClipCalibration& camera,
     const std::optional<calib::Scale>& scale) {
@@ -89,11 +110,71 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
       [&](const calib::Lens& lens) {
         const auto ground = ThroughPoints(seen, lens, ideal);
         if (!ground) return vision::ContactResult{};
-        return vision::FindContacts(
+        std::optional<vision::PlaneYaw> yaw;
+        if (camera.yaw_rad) yaw = YawThrough(camera.yaw_rad->value, lens);
+        return ContactsIn(
             vision::SeenFromGround(vision::Undistorted(*analysis.track, lens),
-                                   *ground),
+                                   *ground, yaw),
             contact_options);
       });
+}
+
+void AddYaw(Analysis& analysis, const ClipCalibration& camera,
+            const vision::ContactOptions& contact_options) {
+  if (!camera.yaw_rad || !analysis.plane ||
+      !analysis.contacts.first.contact.found) {
+    return;
+  }
+  const vision::Track seen = SeenThrough(camera, *analysis.track);
+  std::vector<MovedContacts> moved;
+  // On the axis the change is of second order: both sides count.
+  for (const double side : {-1.0, 1.0}) {
+    const double yaw_rad = camera.yaw_rad->value + side * camera.yaw_rad->u;
+    constexpr double kHalf = 0.5;
+    moved.push_back(
+        {ContactsIn(vision::SeenFromGround(seen, analysis.plane->ground,
+                                           YawThrough(yaw_rad, camera.lens)),
+                    contact_options),
+         kHalf});
+  }
+  AddShared(analysis.contacts, "yaw", moved);
+}
+
+namespace {
+
+// The frames at another rate: the same poses, closer in time.
+vision::PlaneTrack AtRate(vision::PlaneTrack plane, double factor) {
+  plane.frame_interval_s /= factor;
+  for (vision::PlaneSample& s : plane.samples) s.time_s /= factor;
+  return plane;
+}
+
+}  // namespace
+
+void DescribeBudget(Analysis& analysis,
+                    const vision::ContactOptions& contact_options) {
+  auto& left_out = analysis.scene_model.left_out;
+  left_out["uncertainty of the model"] =
+      "no second model is fitted; what the flights do not explain widens u";
+  const vision::TimeBase& time = analysis.clip.time_base;
+  const auto& angle = analysis.contacts.first.contact.approach_angle_rad;
+  std::string reason =
+      time.trusted ? "the rate is the recording's own; its u is not stated"
+                   : "the rate is not the recording's own; no u of it is known";
+  if (analysis.plane && angle && !analysis.contacts.first.contact.from_start) {
+    // All speeds follow the rate; the angle feels it through gravity alone.
+    constexpr double kPerCent = 0.01;
+    const auto faster =
+        ContactsIn(AtRate(*analysis.plane, 1.0 + kPerCent), contact_options);
+    const auto& other = faster.first.contact.approach_angle_rad;
+    if (other) {
+      reason += fmt::format(
+          "; 1 % of it is 1 % of all speeds and {:.4f} deg of the approach "
+          "angle",
+          std::abs(other->value - angle->value) / core::kDegree);
+    }
+  }
+  left_out["uncertainty of the frame rate"] = reason;
 }
 
 Analysis Rejudge(Analysis analysis, const Correction& correction) {
@@ -131,10 +212,12 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
   }
   const vision::ContactOptions contact_options =
       ContactOptionsOf(analysis.options, camera, analysis.scale);
-  analysis.plane = vision::SeenFromGround(SeenThrough(camera, *analysis.track),
-                                          *analysis.ground);
-  analysis.contacts = vision::FindContacts(*analysis.plane, contact_options);
+  analysis.plane = SeenInPlane(camera, SeenThrough(camera, *analysis.track),
+                               *analysis.ground);
+  analysis.contacts = ContactsIn(*analysis.plane, contact_options);
   AddLens(analysis, camera, contact_options);
+  AddYaw(analysis, camera, contact_options);
+  DescribeBudget(analysis, contact_options);
   for (const std::string& warning : analysis.contacts.warnings) {
     if (std::find(analysis.warnings.begin(), analysis.warnings.end(),
                   warning) == analysis.warnings.end()) {

@@ -14,6 +14,17 @@ namespace touchdown::pipeline {
 vision::Track SeenThrough(const ClipCalibration& camera,
                           const vision::Track& track);
 
+// The track from the ground, in the plane of travel where the calibration tells
+// its yaw. `seen`: as SeenThrough gives it.
+vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
+                               const vision::Track& seen,
+                               const calib::GroundLine& ground);
+
+// FindContacts with `options` as of the ideal picture: a scale that was
+// measured along the ground, or by the body, is that of the plane.
+vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
+                                 const vision::ContactOptions& options);
+
 // How contacts are found with these options and this scale.
 vision::ContactOptions ContactOptionsOf(
     const AnalyzeOptions& options, const ClipCalibration& camera,
@@ -23,6 +34,17 @@ vision::ContactOptions ContactOptionsOf(
 // which track, plane and contacts are there.
 void AddLens(Analysis& analysis, const ClipCalibration& camera,
              const vision::ContactOptions& contact_options);
+
+// Adds what the uncertainty of the calibrated yaw does to the contacts, as the
+// line `yaw` of the budgets. Of those of which track, plane and contacts are
+// there.
+void AddYaw(Analysis& analysis, const ClipCalibration& camera,
+            const vision::ContactOptions& contact_options);
+
+// Says in the scene model what the budgets leave out and why: the frame rate,
+// with what an error of it would do, and the choice of the model.
+void DescribeBudget(Analysis& analysis,
+                    const vision::ContactOptions& contact_options);
 
 // What a person changes in an analysis; what is not named stays.
 struct Correction {

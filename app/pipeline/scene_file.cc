@@ -173,6 +173,8 @@ vision::SceneCamera ReadCamera(Object object) {
   object.Number("psf_sigma_px", 1.0, camera.psf_sigma_px);
   object.Whole("bit_depth", 1, 16, camera.bit_depth);
   if (object.Has("lens")) camera.lens = ReadLens(object.Child("lens"), camera);
+  object.Number("yaw_deg", core::kDegree, camera.yaw_rad);
+  object.Number("row_delay_us", 1e-6, camera.row_delay_s);
   object.Done();
   return camera;
 }
@@ -188,6 +190,15 @@ vision::SceneLook ReadLook(Object object) {
   object.Number("texture_correlation_px", 1.0, look.texture_correlation_px);
   object.Whole("texture_seed", 0, std::numeric_limits<std::int64_t>::max(),
                look.texture_seed);
+  object.Number("hole", 1.0, look.hole);
+  if (object.Has("mark")) {
+    Object mark = object.Child("mark");
+    vision::SceneMark& m = look.mark.emplace();
+    mark.Number("level", 1.0, m.level);
+    mark.Number("distance", 1.0, m.distance);
+    mark.Number("radius", 1.0, m.radius);
+    mark.Done();
+  }
   object.Done();
   return look;
 }

@@ -17,10 +17,12 @@
 //   angle_kind, set_angle_deg, bounce_height_mm
 //   camera      width_px, height_px, px_per_m, ground_x_px, ground_y_px,
 //               roll_deg, travels ("right" | "left"), fps, exposure_us,
-//               psf_sigma_px, bit_depth
+//               psf_sigma_px, bit_depth, lens ({"focal_px", "k1", "k2", "p1",
+//               "p2", "k3", "cx_px", "cy_px"}), yaw_deg (needs a lens),
+//               row_delay_us
 //   look        body_level, background_level, ground_level, gradient_x,
 //               gradient_y, texture_amplitude, texture_correlation_px,
-//               texture_seed
+//               texture_seed, hole, mark ({"level", "distance", "radius"})
 //   trouble     shading_x, shading_y, highlight_level, highlight_x,
 //               highlight_y, highlight_sigma, shadow_depth, flicker_amplitude,
 //               flicker_hz, wave_amplitude_px, wave_length_px, specks,

@@ -69,6 +69,13 @@ ordered_json SceneJson(const Shot& shot) {
                                {"k2", lens.k2},          {"p1", lens.p1},
                                {"p2", lens.p2},          {"k3", lens.k3}};
   }
+  // What most scenes do not have is not written.
+  if (camera.yaw_rad != 0.0) {
+    scene["camera"]["yaw_deg"] = camera.yaw_rad / core::kDegree;
+  }
+  if (camera.row_delay_s != 0.0) {
+    scene["camera"]["row_delay_us"] = camera.row_delay_s * 1e6;
+  }
   const vision::SceneLook& look = shot.look;
   scene["look"] = {{"body_level", look.body_level},
                    {"background_level", look.background_level},
@@ -78,6 +85,12 @@ ordered_json SceneJson(const Shot& shot) {
                    {"texture_amplitude", look.texture_amplitude},
                    {"texture_correlation_px", look.texture_correlation_px},
                    {"texture_seed", look.texture_seed}};
+  if (look.hole > 0.0) scene["look"]["hole"] = look.hole;
+  if (look.mark) {
+    scene["look"]["mark"] = {{"level", look.mark->level},
+                             {"distance", look.mark->distance},
+                             {"radius", look.mark->radius}};
+  }
   if (vision::HasTrouble(shot.trouble)) {
     const vision::SceneTrouble& t = shot.trouble;
     ordered_json& trouble = scene["trouble"];

@@ -324,5 +324,39 @@ TEST(AnalyzeFiles, UnwritableFolderIsNamedAndLeavesNothing) {
   }
 }
 
+// A dark ring that rolls down a ramp of 32 degrees, with a bright mark on it:
+// steeper than any edge that is taken for ground.
+TEST(Analyze, ARingOnARampIsCarriedByIt) {
+  vision::Scene scene;
+  scene.body = core::Sphere({0.05, 0.0});
+  scene.camera.width_px = 320;
+  scene.camera.height_px = 240;
+  scene.camera.ground_point = {160.0, 150.0};
+  scene.camera.roll_rad = 32.0 * core::kDegree;
+  scene.camera.fps = 120.0;
+  scene.camera.exposure_s = 0.0;
+  scene.look.hole = 0.3;
+  scene.look.mark = vision::SceneMark{0.9, 0.65, 0.3};
+  scene.noise.read_dn = 1.5;
+  scene.frames = 60;
+  scene.pose = [](double t) {
+    if (t < 0.025) return vision::ScenePose{{99.0, 99.0}, 0.0};
+    const double x = -0.14 + 0.1 * t + 0.5 * 2.6 * t * t;
+    return vision::ScenePose{{x, 0.025}, -x / 0.025};
+  };
+  const Analysis a = AnalyzeClip(vision::OpenScene(scene, 7));
+  ASSERT_TRUE(a.track) << a.no_body_reason;
+  EXPECT_GE(a.track->poses.size(), 25u);
+  EXPECT_NEAR(a.track->body.radius_px.value, 25.0, 1.0);
+  ASSERT_TRUE(a.ground) << a.no_ground_reason;
+  EXPECT_EQ(a.ground->source, calib::GroundSource::kContactPoints);
+  EXPECT_NEAR(calib::ImageAngle(*a.ground), 32.0 * core::kDegree,
+              0.5 * core::kDegree);
+  EXPECT_TRUE(a.contacts.first.contact.from_start)
+      << a.contacts.first.contact.reason;
+  EXPECT_NE(a.contacts.first.state.label, MotionState::kBounce)
+      << a.contacts.first.state.reason;
+}
+
 }  // namespace
 }  // namespace touchdown::pipeline

@@ -113,5 +113,43 @@ TEST(Footage, ABallWithTwoShadowsBouncesOffAGroundThatNoEdgeShows) {
   }
 }
 
+// A hoop with a white face and a dark mark: before the wall the mark is all
+// that stands out, before the tiles the face. Its rim shows more or less of
+// itself, so that outlines wander by a pixel; that it does not bounce is then
+// likely, or open, but never the contrary.
+TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
+  const auto path = Clip("roll_slip_42.4");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 29.97;
+  const Analysis a = Analyze(path, options);
+  ASSERT_TRUE(a.track);
+  EXPECT_GE(a.track->poses.size(), 12u);  // of 37 frames
+  // By hand 45.0 deg, of which nothing finer is known than 0.4 deg.
+  ASSERT_TRUE(a.ground);
+  EXPECT_EQ(a.ground->source, calib::GroundSource::kContactPoints);
+  EXPECT_NEAR(calib::ImageAngle(*a.ground) / kDegree, 45.0, 0.8);
+  EXPECT_TRUE(a.contacts.first.contact.from_start);
+  const core::StateDecision& state = a.contacts.first.state;
+  EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
+  ASSERT_TRUE(state.p_bounce);
+  EXPECT_LT(*state.p_bounce, 0.3);
+}
+
+TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
+  const auto path = Clip("roll_slip_17.6");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 29.97;
+  const Analysis a = Analyze(path, options);
+  ASSERT_TRUE(a.track);
+  EXPECT_GE(a.track->poses.size(), 15u);
+  ASSERT_TRUE(a.ground);
+  EXPECT_NEAR(calib::ImageAngle(*a.ground) / kDegree, 19.7, 0.8);
+  EXPECT_TRUE(a.contacts.first.contact.from_start);
+  const core::StateDecision& state = a.contacts.first.state;
+  EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
+}
+
 }  // namespace
 }  // namespace touchdown::pipeline

@@ -304,6 +304,16 @@ TEST(SceneFile, HasALens) {
   const Shot back = ParseScene(SceneText(shot), "text");
   ASSERT_TRUE(back.camera.lens);
   EXPECT_EQ(*back.camera.lens, *shot.camera.lens);
+  shot.camera.yaw_rad = 3.0 * core::kDegree;
+  shot.camera.row_delay_s = 1e-6;
+  shot.look.hole = 0.25;
+  shot.look.mark = vision::SceneMark{0.8, 0.6, 0.3};
+  const Shot turned = ParseScene(SceneText(shot), "text");
+  EXPECT_DOUBLE_EQ(turned.camera.yaw_rad, shot.camera.yaw_rad);
+  EXPECT_DOUBLE_EQ(turned.camera.row_delay_s, 1e-6);
+  EXPECT_EQ(turned.look.hole, 0.25);
+  ASSERT_TRUE(turned.look.mark);
+  EXPECT_EQ(turned.look.mark->distance, 0.6);
   shot.camera.lens->k1 = -9.0;
   EXPECT_THAT(
       [&] { ParseScene(SceneText(shot), "text"); },

@@ -413,6 +413,52 @@ TEST(Contact, LineThatIsNotTheGroundIsRefuted) {
   EXPECT_TRUE(right.ground_refuted.empty()) << right.ground_refuted;
 }
 
+// What a ramp carries: it speeds up along its path, which tells where the ramp
+// is. Flight, steady motion and a short way tell nothing.
+TEST(Contact, GroundFromThePathOfWhatIsCarried) {
+  const Throw body;
+  for (const double slope_deg : {-50.0, -20.0, 0.0, 35.0, 60.0}) {
+    SCOPED_TRACE(slope_deg);
+    Filming filming;
+    filming.camera.roll_rad = slope_deg * core::kDegree;
+    const auto film = [&](double acceleration, double speed, double fall) {
+      return synthetic::FilmTrack(
+          body,
+          [=](double t) {
+            return ScenePose{{speed * t + 0.5 * acceleration * t * t - 0.2,
+                              body.half_long_m - 0.5 * fall * t * t},
+                             0.0};
+          },
+          filming);
+    };
+    filming.frames = 400;  // at 2000 a second
+    const auto ground = GroundFromPath(film(4.0, 0.5, 0.0));
+    ASSERT_TRUE(ground);
+    EXPECT_EQ(ground->source, calib::GroundSource::kContactPoints);
+    EXPECT_NEAR(calib::ImageAngle(*ground), filming.camera.roll_rad,
+                4.0 * ground->u_angle_rad);
+    EXPECT_NEAR(
+        calib::HeightAbove(*ground, ToImage(filming.camera, {0.0, 0.0})), 0.0,
+        4.0 * std::hypot(ground->u_offset_px, 0.003));
+    EXPECT_LT(ground->u_angle_rad, 1e-3);
+    EXPECT_FALSE(GroundFromPath(film(0.0, 1.0, 0.0))) << "steady";
+    // Free flight, of which this slope takes its parts.
+    const double g = core::kStandardGravity_mps2;
+    EXPECT_FALSE(GroundFromPath(film(g * std::sin(filming.camera.roll_rad), 0.8,
+                                     g * std::cos(filming.camera.roll_rad))))
+        << "flight";
+  }
+  // Falling straight down is no wall's work.
+  Filming filming;
+  filming.frames = 400;
+  EXPECT_FALSE(GroundFromPath(synthetic::FilmTrack(
+      body,
+      [](double t) {
+        return ScenePose{{0.0, 0.3 - 4.9 * t * t}, 0.0};
+      },
+      filming)));
+}
+
 // Without any line: the ground through the lowest point at the first rebound.
 TEST(Contact, GroundFromTheContactsThemselves) {
   Throw thrown;

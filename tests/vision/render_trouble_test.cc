@@ -176,5 +176,185 @@ TEST(RenderTrouble, RefusedByName) {
   EXPECT_EQ(refused([](SceneTrouble&) {}), "");
 }
 
+// --- camera and body
+// ----------------------------------------------------------
+
+struct Moments {
+  double area = 0.0;  // px, of full scale
+  double x = 0.0;
+  double y = 0.0;
+};
+
+// Of what `scene` has and `without` has not.
+Moments MomentsOf(const Scene& scene, const Scene& without,
+                  std::int64_t index = 0) {
+  const CleanImage a = RenderClean(scene, index);
+  const CleanImage b = RenderClean(without, index);
+  Moments m;
+  for (std::int32_t y = 0; y < a.height_px; ++y) {
+    for (std::int32_t x = 0; x < a.width_px; ++x) {
+      const double d =
+          (static_cast<double>(a.at(x, y)) - static_cast<double>(b.at(x, y))) /
+          255.0;
+      m.area += d;
+      m.x += d * x;
+      m.y += d * y;
+    }
+  }
+  m.x /= m.area;
+  m.y /= m.area;
+  return m;
+}
+
+Scene Empty(Scene scene) {
+  scene.pose = [](double) { return ScenePose{{9.0, 9.0}, 0.0}; };
+  return scene;
+}
+
+TEST(RenderBody, TheMarkTurnsWithIt) {
+  for (const double angle : {0.0, 0.7, 3.0}) {
+    Scene scene = Plain();
+    scene.pose = [angle](double) { return ScenePose{{0.0, 0.03}, angle}; };
+    const Scene without = scene;
+    scene.look.mark = SceneMark{0.9, 0.5, 0.3};
+    const Moments m = MomentsOf(scene, without);
+    EXPECT_NEAR(m.area, std::numbers::pi * 36.0 * (0.9 - scene.look.body_level),
+                1e-2);
+    EXPECT_NEAR(m.x, 80.0 + 10.0 * std::cos(angle), 1e-3);
+    EXPECT_NEAR(m.y, 50.0 - 10.0 * std::sin(angle), 1e-3);
+  }
+}
+
+TEST(RenderBody, TheHoleShowsWhatIsBehind) {
+  Scene scene = Plain();
+  // Over the ground's edge.
+  scene.pose = [](double) { return ScenePose{{0.0, 0.0}, 0.0}; };
+  const Scene whole = scene;
+  scene.look.hole = 0.6;
+  const SceneRenderer ring(scene);
+  const CleanImage image = ring.RenderClean(0);
+  for (const std::int32_t y : {72, 80, 88}) {
+    EXPECT_NEAR(image.at(80, y), ring.background().at(80, y), 1e-3) << y;
+  }
+  EXPECT_NEAR(image.at(80, 64), 255.0 * scene.look.body_level, 1e-3);
+  const double half = 0.5 * std::numbers::pi * 144.0;
+  EXPECT_NEAR(MomentsOf(scene, whole).area,
+              half * (scene.look.background_level + scene.look.ground_level -
+                      2.0 * scene.look.body_level),
+              2e-2);
+}
+
+// Of a falling disc row y shows where it was when that row was read: y0 + v t y
+// for the point y0, which makes it higher by 1 / (1 - v t) and moves it.
+TEST(RenderCamera, ARollingShutterStretchesWhatFalls) {
+  Scene scene = Plain();
+  scene.camera.exposure_s = 0.0;
+  scene.camera.row_delay_s = 4e-6;
+  constexpr double kSpeed_mps = 5.0;  // 0.02 px a row
+  scene.pose = [](double t) {
+    return ScenePose{{0.0, 0.045 - kSpeed_mps * t}, 0.0};
+  };
+  const double share = 1000.0 * kSpeed_mps * scene.camera.row_delay_s;
+  const Moments m = MomentsOf(scene, Empty(scene));
+  const double contrast = scene.look.body_level - scene.look.background_level;
+  // The blur is not stretched: the area is right to the edge's share in it.
+  EXPECT_NEAR(m.area, contrast * std::numbers::pi * 400.0 / (1.0 - share), 0.1);
+  EXPECT_NEAR(m.x, 80.0, 1e-3);
+  EXPECT_NEAR(m.y, 35.0 / (1.0 - share), 2e-3);
+}
+
+// One that passes is sheared: each row's middle is where it then was.
+TEST(RenderCamera, ARollingShutterShearsWhatPasses) {
+  Scene scene = Plain();
+  scene.camera.exposure_s = 0.0;
+  scene.camera.row_delay_s = 4e-6;
+  constexpr double kSpeed_mps = 10.0;
+  scene.pose = [](double t) { return ScenePose{{kSpeed_mps * t, 0.035}, 0.0}; };
+  const SceneRenderer renderer(scene);
+  const CleanImage image = renderer.RenderClean(0);
+  for (const std::int32_t y : {32, 45, 58}) {
+    double sum = 0.0;
+    double first = 0.0;
+    for (std::int32_t x = 0; x < 160; ++x) {
+      const double d = static_cast<double>(image.at(x, y)) -
+                       static_cast<double>(renderer.background().at(x, y));
+      sum += d;
+      first += d * x;
+    }
+    EXPECT_NEAR(first / sum,
+                80.0 + 1000.0 * kSpeed_mps * scene.camera.row_delay_s * y,
+                1e-3);
+  }
+}
+
+// The plane turned by 10 degrees about the ground point, 1 m away: a pinhole's
+// arithmetic.
+Scene Turned() {
+  Scene scene = Plain();
+  scene.camera.lens =
+      calib::Lens{1000.0, 1000.0, 70.0, 40.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  scene.camera.yaw_rad = 10.0 * core::kDegree;
+  return scene;
+}
+
+core::PixelPoint PinholeOf(double x_m, double y_m) {
+  const double yaw = 10.0 * core::kDegree;
+  const double depth = 1.0 + x_m * std::sin(yaw);
+  return {70.0 + 1000.0 * (0.01 + x_m * std::cos(yaw)) / depth,
+          40.0 + 1000.0 * (0.04 - y_m) / depth};
+}
+
+TEST(RenderCamera, YawIsAPinholes) {
+  for (const double x : {-0.03, 0.0, 0.04}) {
+    Scene scene = Turned();
+    scene.pose = [x](double) { return ScenePose{{x, 0.03}, 0.2}; };
+    const core::PixelPoint seen = ToImage(scene.camera, {x, 0.03});
+    EXPECT_NEAR(seen.x_px, PinholeOf(x, 0.03).x_px, 1e-9);
+    EXPECT_NEAR(seen.y_px, PinholeOf(x, 0.03).y_px, 1e-9);
+    const Moments disc = MomentsOf(scene, Empty(scene));
+    const double radius = 20.0 / (1.0 + x * std::sin(10.0 * core::kDegree));
+    const double contrast = scene.look.body_level - scene.look.background_level;
+    EXPECT_NEAR(disc.x, seen.x_px, 2e-3);
+    EXPECT_NEAR(disc.y, seen.y_px, 2e-3);
+    EXPECT_NEAR(disc.area, contrast * std::numbers::pi * radius * radius, 0.05);
+    EXPECT_NEAR(TruthOf(scene, 0).radius_px, radius, 1e-9);
+    scene.body = core::Rectangle({0.04, 0.0}, {0.02, 0.0});
+    // Its image's area by the shoelace formula over the pinhole's corners.
+    double area = 0.0;
+    const auto corners = Corners(scene.body, scene.pose(0.0));
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto p = PinholeOf(corners[k].x_m, corners[k].y_m);
+      const auto q =
+          PinholeOf(corners[(k + 1) % 4].x_m, corners[(k + 1) % 4].y_m);
+      area += 0.5 * (p.x_px * q.y_px - q.x_px * p.y_px);
+    }
+    EXPECT_NEAR(MomentsOf(scene, Empty(scene)).area, contrast * std::abs(area),
+                0.05);
+  }
+  const auto ground = GroundOf(Turned().camera);
+  for (const double x : {-0.05, 0.05}) {
+    EXPECT_NEAR(calib::HeightAbove(ground, PinholeOf(x, 0.0)), 0.0, 1e-9);
+  }
+}
+
+TEST(RenderCamera, RefusesWhatItCannotDraw) {
+  Scene scene = Turned();
+  scene.camera.lens.reset();
+  EXPECT_THROW(Validate(scene), std::invalid_argument);
+  scene = Plain();
+  scene.camera.row_delay_s = 1e-3;
+  EXPECT_THROW(Validate(scene), std::invalid_argument);
+  scene.camera.row_delay_s = 1e-6;
+  EXPECT_NO_THROW(Validate(scene));
+  scene.trouble.shading_x = 0.1;
+  EXPECT_THROW(Validate(scene), std::invalid_argument);
+  scene = Plain();
+  scene.look.mark = SceneMark{0.9, 0.8, 0.3};
+  EXPECT_THROW(Validate(scene), std::invalid_argument);
+  scene.look.mark = SceneMark{0.9, 0.7, 0.2};
+  scene.look.hole = 0.6;
+  EXPECT_THROW(Validate(scene), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace touchdown::vision

@@ -100,15 +100,36 @@ FlightOptions Straight() {
   return options;
 }
 
+// What speeds up or slows down along the ground ten times as much as across it
+// is carried by the ground, or braked: flight would do so only along a wall.
+bool IsCarried(std::span<const PlaneSample> samples) {
+  std::vector<PlaneSample> turned(samples.begin(), samples.end());
+  for (PlaneSample& s : turned) {
+    s.height_px = s.along_px;
+    s.u_height_px = s.u_along_px;
+  }
+  constexpr double kTimes = 10.0;
+  constexpr double kClear = 5.0;
+  const Flight along = FitFlight(turned);
+  const double a = std::abs(along.height[2]);
+  return a > kTimes * std::abs(FitFlight(samples).height[2]) &&
+         a > kClear * std::sqrt(along.height_cov(2, 2));
+}
+
+constexpr std::size_t kLeastAtFirst = 5;  // frames that tell anything
+
+std::size_t BeforeFirst(std::span<const PlaneSample> samples,
+                        const std::vector<Kink>& blows) {
+  return blows.empty() ? samples.size() / 2 : blows.front().after + 1;
+}
+
 // The first frames, up to the first blow, fall as free flight does, and not
 // along a straight line as what lies on the ground.
 bool FallsAtFirst(std::span<const PlaneSample> samples,
                   const std::vector<Kink>& blows,
                   const FlightOptions& options) {
-  const std::size_t n =
-      blows.empty() ? samples.size() / 2 : blows.front().after + 1;
-  constexpr std::size_t kLeast = 5;
-  if (n < kLeast) return false;
+  const std::size_t n = BeforeFirst(samples, blows);
+  if (n < kLeastAtFirst) return false;
   const auto chi2 = [&](const Flight& flight) {
     double sum = 0.0;
     for (const PlaneSample& s : samples.first(n)) {
@@ -118,6 +139,7 @@ bool FallsAtFirst(std::span<const PlaneSample> samples,
     }
     return sum;
   };
+  if (IsCarried(samples.first(n))) return false;
   const FlightOptions straight = Straight();
   const Flight falling = FitFlight(samples.first(n), options);
   const double without = chi2(FitFlight(samples.first(n), straight));
@@ -168,6 +190,10 @@ bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
     return first - later <
            std::max(0.5, 5.0 * noise) + 0.1 * track.half_short_px;
   }
+  // Carried up to there, it only seems to drop: outlines wander by more than
+  // they claim.
+  const std::size_t before = BeforeFirst(samples, blows);
+  if (before >= kLeastAtFirst && IsCarried(samples.first(before))) return true;
   // It came down if the first frames are clearly higher than the first blow.
   const Kink& blow = blows.front();
   const double at_blow =

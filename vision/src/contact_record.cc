@@ -81,6 +81,12 @@ void FillAngles(const RecordContext& context, const Event& event,
   contact.approach_angle_rad =
       Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u,
                std::nullopt};
+  // No angle is negative: near 0 the normal interval promises what cannot be.
+  if (angle.value < core::kNormal975 * angle.u) {
+    Estimate& flat = *contact.approach_angle_rad;
+    flat.interval95 =
+        core::Interval{0.0, flat.value + core::kNormal975 * angle.u};
+  }
   contact.approach_budget = BudgetOf(fit, approach, angle.u);
   if (track.kind == core::BodyKind::kSphere) {
     contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
@@ -392,8 +398,21 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   gaps.reserve(samples.size());
   for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
   const double level = Median(std::move(gaps));
-  const double u_level = samples[samples.size() / 2].u_gap_px /
-                         std::sqrt(static_cast<double>(samples.size()));
+  // It is down for most of the time: how much its gaps scatter then is how well
+  // one is known, whatever the poses claim. Outlines that a bad model fits err
+  // alike in neighbouring frames, which no difference of them shows.
+  std::vector<double> off;
+  off.reserve(samples.size());
+  for (const PlaneSample& s : samples)
+    off.push_back(std::abs(s.gap_px - level));
+  constexpr double kOfMedian = 1.4826;  // of |normal|
+  const double scatter = kOfMedian * Median(std::move(off));
+  const double claimed = samples[samples.size() / 2].u_gap_px;
+  constexpr double kMore = 2.0;  // an excess within its own uncertainty is none
+  const double u_level =
+      scatter > kMore * claimed
+          ? scatter
+          : claimed / std::sqrt(static_cast<double>(samples.size()));
 
   const char reason[] = "on the ground from the start";
   core::Motion& m = record.motion;
@@ -433,6 +452,13 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   }
   FillState(context, 0, level, u_level, false, record.state);
   record.state.reason = "on the ground from the start; " + record.state.reason;
+  if (scatter > kMore * claimed) {
+    record.state.reason += fmt::format(
+        "; its outlines wander by {:.2f} px about the ground, {:.0f} times "
+        "what "
+        "each claims",
+        scatter, scatter / claimed);
+  }
   NameWhatStaysDown(context, 0, record.state);
   return record;
 }

@@ -87,6 +87,26 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
       options.threshold_sigmas * SmoothedSigma(background, options);
   cv::Mat magnitude = cv::abs(smooth);
   cv::Mat mask = magnitude > threshold;
+  if (options.detector == Detector::kChange) {
+    // Across the lines where body and background are alike, and without what
+    // is thin: penumbras, the body's wake in compressed pictures.
+    constexpr int kAcross_px = 5;
+    const cv::Mat disc =
+        cv::getStructuringElement(cv::MORPH_ELLIPSE, {kAcross_px, kAcross_px});
+    cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, disc);
+    std::vector<std::vector<cv::Point>> changed;
+    cv::findContours(mask.clone(), changed, cv::RETR_EXTERNAL,
+                     cv::CHAIN_APPROX_NONE);
+    cv::drawContours(mask, changed, -1, 255, cv::FILLED);
+    cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc);
+    cv::findContours(mask, changed, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    for (const auto& part : changed) {
+      Blob blob = FromContour(part, magnitude, region, frame);
+      if (blob.area_px2 >= options.least_area_px2) blobs.push_back(blob);
+    }
+    KeepLargest(blobs, options);
+    return blobs;
+  }
   std::vector<std::vector<cv::Point>> regions;
   cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
                    cv::CHAIN_APPROX_NONE);
@@ -177,9 +197,9 @@ void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
 std::vector<Blob> DetectBlobs(const core::Frame& frame,
                               const Background& background,
                               const DetectOptions& options) {
-  return options.detector == Detector::kDifference
-             ? FromDifference(frame, background, options)
-             : FromLevels(frame, options);
+  return options.detector == Detector::kLevels
+             ? FromLevels(frame, options)
+             : FromDifference(frame, background, options);
 }
 
 Outline StartFrom(const Blob& blob, core::BodyKind kind) {

@@ -14,7 +14,8 @@ namespace touchdown::vision {
 struct Blob {
   core::PixelPoint centre;
   double area_px2 = 0.0;     // holes filled
-  double contrast_dn = 0.0;  // region minus background, signed
+  double contrast_dn = 0.0;  // region minus background, signed; kChange: its
+                             // magnitude
   double long_px = 0.0;      // sides of the smallest box around it
   double short_px = 0.0;     //
   double angle_rad = 0.0;    // of the box's long side, image
@@ -24,6 +25,9 @@ struct Blob {
 
 enum class Detector {
   kDifference,  // frame against the background
+  kChange,      // the same, but all that differs, whichever way: of a body of
+                // several levels, or before a background of several, no part
+                // is the strongest all along. Shadows come with it.
   kLevels       // the frame's own two levels, where the background is not seen
 };
 

@@ -36,7 +36,7 @@ class Watcher {
       : clip_(clip), background_(background) {
     detect_.detector = detector;
     detect_.region = options.region;
-    if (detector == Detector::kDifference && IsLong(clip, options)) {
+    if (detector != Detector::kLevels && IsLong(clip, options)) {
       ScoutOptions scout;
       scout.region = options.region;
       scout_.emplace(background, scout);
@@ -323,16 +323,21 @@ BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options) {
 }
 
 Look LookWith(Clip& clip, Background background, const TrackOptions& options,
-              Detector detector, std::int64_t last) {
+              Detector detector, std::int64_t last, double least_links,
+              double most_cost) {
   Look look;
   look.background = std::move(background);
-  look.surround = detector == Detector::kDifference ? Surround::kBackground
-                                                    : Surround::kPolynomial;
+  look.surround = detector == Detector::kLevels ? Surround::kPolynomial
+                                                : Surround::kBackground;
   look.found = Detect(clip, look.background, options, detector, last);
-  if (!look.found.chains.empty()) {
+  look.rough_starts = detector == Detector::kChange;
+  if (!look.found.chains.empty() &&
+      static_cast<double>(look.found.chains.front().links.size()) >=
+          least_links) {
     const Chain& chain = look.found.chains.front();
     look.choice =
         ChooseKind(clip, look.background, chain, options, look.surround);
+    if (CostOf(look) > most_cost) return look;
     look.fits = FitChain(clip, look.background, chain, look.choice, options,
                          look.surround);
     DropStrangers(look.fits);
@@ -357,8 +362,21 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                options, Detector::kDifference, last);
   constexpr double kWellFitted = 4.0;
   const std::int64_t part = EndPart(options.first, last);
-  for (int attempt = 0; attempt < 3 && best.choice.badness > kWellFitted;
+  for (int attempt = 0; attempt < 4 && best.choice.badness > kWellFitted;
        ++attempt) {
+    constexpr Detector kDetectors[] = {Detector::kDifference,
+                                       Detector::kDifference, Detector::kLevels,
+                                       Detector::kChange};
+    const Detector detector = kDetectors[attempt];
+    // All that changes holds shadows, too: it must follow the body much farther
+    // than what was found, and is not tried where it cannot.
+    constexpr double kFarther = 1.5;
+    const double least = kFarther * static_cast<double>(best.fits.size());
+    const bool change = detector == Detector::kChange;
+    if (change && static_cast<double>(best.found.last - options.first) <
+                      least * static_cast<double>(best.found.step)) {
+      continue;
+    }
     Background background = best.background;
     if (attempt == 0) {
       background = EstimateBackground(
@@ -368,11 +386,13 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
           clip, std::max(options.first, best.found.last - part),
           best.found.last, still);
     }
-    Look look =
-        LookWith(clip, std::move(background), options,
-                 attempt == 2 ? Detector::kLevels : Detector::kDifference,
-                 best.found.last);
+    Look look = change
+                    ? LookWith(clip, std::move(background), options, detector,
+                               best.found.last, least, CostOf(best))
+                    : LookWith(clip, std::move(background), options, detector,
+                               best.found.last);
     look.found.warning = best.found.warning;
+    if (change && static_cast<double>(look.fits.size()) < least) continue;
     if (IsBetter(look, best)) best = std::move(look);
   }
   if (best.found.chains.empty()) {

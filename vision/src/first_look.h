@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct Look {
   Choice choice;
   OutlineOptions::Surround surround = OutlineOptions::Surround::kBackground;
   std::vector<Fitted> fits;  // of the best chain
+  // Its blobs hold the body's shadow, too: many a fit began too far off.
+  bool rough_starts = false;
 };
 
 // Frames at either end of a range of which a background is made where the body
@@ -45,9 +48,11 @@ std::int64_t EndPart(std::int64_t first, std::int64_t last);
 BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options);
 
 // A look against this background. It is less good than another (by IsBetter)
-// where the background holds the body's ghost.
+// where the background holds the body's ghost. No outline is fitted where there
+// are fewer links than `least_links`, or no cost below `most_cost`.
 Look LookWith(Clip& clip, Background background, const TrackOptions& options,
-              Detector detector, std::int64_t last);
+              Detector detector, std::int64_t last, double least_links = 0.0,
+              double most_cost = std::numeric_limits<double>::infinity());
 bool IsBetter(const Look& look, const Look& other);
 
 // Absent where nothing moves, or nothing with an outline.

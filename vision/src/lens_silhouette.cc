@@ -49,7 +49,9 @@ std::vector<core::PixelPoint> IdealOutline(const Scene& scene,
     return corners;
   }
   const core::PixelPoint c = ToIdealImage(scene.camera, pose.centre);
-  const double r = 0.5 * scene.body.diameter_m->value * scene.camera.px_per_m;
+  // With a yaw it is drawn as a sphere, which is seen round, at its depth.
+  const double r = 0.5 * scene.body.diameter_m->value * scene.camera.px_per_m /
+                   DepthOf(scene.camera, pose.centre);
   constexpr double kSide_px = 0.25;
   const int sides =
       std::max(64, static_cast<int>(2.0 * std::numbers::pi * r / kSide_px));
@@ -95,7 +97,7 @@ Silhouette DrawThroughLens(const Scene& scene, const ScenePose& pose,
 
 ShapeOutline GroundThroughLens(const SceneCamera& camera, double margin) {
   const calib::Lens& lens = *camera.lens;
-  const double slope = std::tan(camera.roll_rad);
+  const double slope = std::tan(IdealGroundAngle(camera));
   std::vector<core::PixelPoint> outline;
   // From where the line is seen left of the picture to where right of it. The
   // model may fold back out there: then the last point before it must do, and

@@ -1,11 +1,90 @@
 #include "touchdown/vision/plane_track.h"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include "track_shape.h"
 
 namespace touchdown::vision {
+namespace {
 
-PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground) {
+// A track as a camera would have seen it that looks straight at the plane of
+// travel; the ground's reference point stays where it is.
+struct Turned {
+  Track track;
+  calib::GroundLine ground;
+  double size_stretch = 1.0;
+};
+
+Turned TurnedTrack(const Track& track, const calib::GroundLine& ground,
+                   const YawedView& view) {
+  Turned out{track, ground, 1.0};
+  // Image directions of the plane's horizontal; y points down.
+  const Eigen::Vector2d right = view.along;
+  const Eigen::Vector2d down = -view.up;
+  out.ground.p1 = {ground.reference.x_px - 100.0 * right.x(),
+                   ground.reference.y_px - 100.0 * right.y()};
+  out.ground.p2 = {ground.reference.x_px + 100.0 * right.x(),
+                   ground.reference.y_px + 100.0 * right.y()};
+  Eigen::Matrix2d to_image;
+  to_image.col(0) = right;
+  to_image.col(1) = -down;  // (right, height) to image coordinates
+  std::vector<double> grown;
+  std::vector<double> grown_long;
+  std::vector<double> grown_short;
+  for (Pose& pose : out.track.poses) {
+    const InPlane at = ToPlane(view, pose.centre);
+    const Eigen::Matrix2d j = to_image * at.jacobian;
+    const Eigen::Vector2d centre =
+        to_image * Eigen::Vector2d(at.right_px, at.height_px);
+    pose.centre = {ground.reference.x_px + centre.x(),
+                   ground.reference.y_px + centre.y()};
+    Eigen::Matrix2d covariance;
+    const double xy = pose.correlation_xy * pose.u_x_px * pose.u_y_px;
+    covariance << pose.u_x_px * pose.u_x_px, xy, xy, pose.u_y_px * pose.u_y_px;
+    covariance = j * covariance * j.transpose();
+    pose.u_x_px = std::sqrt(covariance(0, 0));
+    pose.u_y_px = std::sqrt(covariance(1, 1));
+    const double product = pose.u_x_px * pose.u_y_px;
+    pose.correlation_xy =
+        product > 0.0 ? std::clamp(covariance(0, 1) / product, -1.0, 1.0) : 0.0;
+    grown.push_back(at.depth);
+    if (track.body.kind != core::BodyKind::kRectangle) continue;
+    const double c = std::cos(pose.angle_rad);
+    const double s = std::sin(pose.angle_rad);
+    const Eigen::Vector2d along = j * Eigen::Vector2d(c, s);
+    grown_long.push_back(along.norm());
+    // Sides stay parallel, but are no longer square to each other; the width
+    // is across the long side.
+    grown_short.push_back(j.determinant() / along.norm());
+    const double turned = std::atan2(along.y(), along.x());
+    pose.angle_rad +=
+        std::remainder(turned - pose.angle_rad, 2.0 * std::numbers::pi);
+    pose.u_angle_rad *= j.determinant() / along.squaredNorm();
+  }
+  // The common size is a mean over the frames.
+  const double common = Median(grown);
+  for (std::size_t i = 0; i < grown.size(); ++i) {
+    Pose& pose = out.track.poses[i];
+    // 1: not followed, and the plane's own size is the same in all frames.
+    if (pose.relative_size != 1.0) pose.relative_size *= grown[i] / common;
+  }
+  BodyImage& body = out.track.body;
+  body.radius_px = core::Scaled(body.radius_px, common);
+  body.whole_px *= common;
+  out.size_stretch = common;
+  if (!grown_long.empty()) {
+    out.size_stretch = Median(grown_long);
+    body.half_long_px = core::Scaled(body.half_long_px, out.size_stretch);
+    body.half_short_px = core::Scaled(body.half_short_px, Median(grown_short));
+  }
+  return out;
+}
+
+PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   PlaneTrack plane;
   plane.kind = track.body.kind;
   const bool sphere = plane.kind == core::BodyKind::kSphere;
@@ -69,8 +148,28 @@ PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground) {
   return plane;
 }
 
+}  // namespace
+
+PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
+                          const std::optional<PlaneYaw>& yaw) {
+  if (!yaw || track.poses.empty()) return SeenStraight(track, ground);
+  const YawedView view = ViewOf(ground, *yaw);
+  const Turned turned = TurnedTrack(track, ground, view);
+  PlaneTrack plane = SeenStraight(turned.track, turned.ground);
+  plane.ground = ground;
+  plane.yaw = yaw;
+  plane.along_stretch =
+      ToPlane(view, ground.reference).jacobian.row(0).dot(view.along);
+  plane.size_stretch = turned.size_stretch;
+  return plane;
+}
+
 core::PixelPoint ToImage(const PlaneTrack& track, double along_px,
                          double height_px) {
+  if (track.yaw) {
+    return FromPlane(ViewOf(track.ground, *track.yaw),
+                     track.direction * along_px, height_px);
+  }
   const double angle = calib::ImageAngle(track.ground);
   const double along = track.direction * along_px;
   return {track.ground.reference.x_px + along * std::cos(angle) +

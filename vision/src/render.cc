@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -23,8 +25,8 @@ struct SubExposure {
 
 HalfPlane Ground(const SceneCamera& camera) {
   // The normal points up, away from the ground.
-  return {camera.ground_point, std::sin(camera.roll_rad),
-          -std::cos(camera.roll_rad)};
+  const double angle = IdealGroundAngle(camera);
+  return {camera.ground_point, std::sin(angle), -std::cos(angle)};
 }
 
 Silhouette Draw(const Scene& scene, const ScenePose& pose) {
@@ -74,6 +76,24 @@ double MotionPx(const Scene& scene, const ScenePose& p, const ScenePose& q,
          radius_px * std::abs(q.angle_rad - p.angle_rad);
 }
 
+double HalfSmallest(const core::Body& body) {
+  return body.kind == core::BodyKind::kSphere
+             ? 0.5 * body.diameter_m->value
+             : 0.5 * std::min(body.long_m->value, body.short_m->value);
+}
+
+// A disc on the body: the mark, or a hole at distance 0.
+Silhouette DrawDisc(const Scene& scene, const ScenePose& pose, double distance,
+                    double radius) {
+  const double half_m = HalfSmallest(scene.body);
+  Scene disc = scene;
+  disc.body = core::Sphere({2.0 * radius * half_m, 0.0});
+  const double reach_m = distance * half_m;
+  return Draw(disc, {{pose.centre.x_m + reach_m * std::cos(pose.angle_rad),
+                      pose.centre.y_m + reach_m * std::sin(pose.angle_rad)},
+                     pose.angle_rad});
+}
+
 // Gauss-Legendre nodes over the exposure. For an edge blurred by sigma and
 // moving m within the exposure the error is, of the contrast: one node
 // 0.01 (m/sigma)^2, two 1.3e-4 (m/sigma)^4, three 1.2e-6 (m/sigma)^6 a panel.
@@ -83,11 +103,16 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
   const ScenePose middle = PoseAt(scene, middle_s);
   const ScenePose last = PoseAt(scene, middle_s + 0.5 * exposure);
   // A turning disc looks the same.
-  const double turning_radius =
+  double turning_radius =
       scene.body.kind == core::BodyKind::kSphere
           ? 0.0
           : 0.5 * scene.camera.px_per_m *
                 std::hypot(scene.body.long_m->value, scene.body.short_m->value);
+  if (const auto& mark = scene.look.mark) {
+    turning_radius = std::max(turning_radius, (mark->distance + mark->radius) *
+                                                  HalfSmallest(scene.body) *
+                                                  scene.camera.px_per_m);
+  }
   const double motion = MotionPx(scene, first, middle, turning_radius) +
                         MotionPx(scene, middle, last, turning_radius);
   // Without blur the pixel's own square is the blur.
@@ -305,42 +330,83 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
   }
 }
 
-CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
-  const SceneCamera& camera = scene_.camera;
-  const double middle_s = static_cast<double>(index) / camera.fps;
-  std::vector<std::pair<Silhouette, double>> silhouettes;
-  for (const SubExposure& sub : SubExposures(scene_, middle_s)) {
-    silhouettes.emplace_back(Draw(scene_, PoseAt(scene_, sub.time_s)),
-                             sub.weight);
-  }
-  double min_x = silhouettes[0].first.min_x, max_x = silhouettes[0].first.max_x;
-  double min_y = silhouettes[0].first.min_y, max_y = silhouettes[0].first.max_y;
-  bool dips = false;
-  for (const auto& [silhouette, weight] : silhouettes) {
-    min_x = std::min(min_x, silhouette.min_x);
-    max_x = std::max(max_x, silhouette.max_x);
-    min_y = std::min(min_y, silhouette.min_y);
-    max_y = std::max(max_y, silhouette.max_y);
-    dips = dips || !silhouette.below.pieces.empty();
-  }
-  const double margin = kKernelReach * camera.psf_sigma_px + 1.0;
-  const core::PixelRect window =
-      WindowAround(min_x, max_x, min_y, max_y, margin, camera);
-  CoverageMap body(window, camera.psf_sigma_px);
-  CoverageMap below(dips ? window : core::PixelRect{}, camera.psf_sigma_px);
-  for (const auto& [silhouette, weight] : silhouettes) {
-    body.Add(silhouette.body, weight);
-    if (dips) below.Add(silhouette.below, weight);
-  }
-  body.Finish();
-  below.Finish();
+namespace {
 
-  CleanImage image = background_;
+// The body during one exposure.
+struct Exposed {
+  struct Part {
+    Silhouette body;
+    std::optional<Silhouette> hole;
+    std::optional<Silhouette> mark;
+    double weight = 1.0;
+  };
+  std::vector<Part> parts;
+  double min_x, max_x, min_y, max_y;
+  bool dips = false;
+};
+
+Exposed Expose(const Scene& scene, double middle_s) {
+  Exposed e;
+  e.min_x = e.min_y = std::numeric_limits<double>::max();
+  e.max_x = e.max_y = std::numeric_limits<double>::lowest();
+  for (const SubExposure& sub : SubExposures(scene, middle_s)) {
+    const ScenePose pose = PoseAt(scene, sub.time_s);
+    Exposed::Part part{Draw(scene, pose), std::nullopt, std::nullopt,
+                       sub.weight};
+    const SceneLook& look = scene.look;
+    if (look.hole > 0.0) part.hole = DrawDisc(scene, pose, 0.0, look.hole);
+    if (look.mark) {
+      part.mark = DrawDisc(scene, pose, look.mark->distance, look.mark->radius);
+    }
+    e.min_x = std::min(e.min_x, part.body.min_x);
+    e.max_x = std::max(e.max_x, part.body.max_x);
+    e.min_y = std::min(e.min_y, part.body.min_y);
+    e.max_y = std::max(e.max_y, part.body.max_y);
+    e.dips = e.dips || !part.body.below.pieces.empty();
+    e.parts.push_back(std::move(part));
+  }
+  return e;
+}
+
+}  // namespace
+
+// Shares of the pixels of a window.
+struct SceneRenderer::Covers {
+  Covers(const Exposed& exposed, const core::PixelRect& window, double sigma)
+      : body(window, sigma),
+        below(exposed.dips ? window : core::PixelRect{}, sigma),
+        mark(exposed.parts[0].mark ? window : core::PixelRect{}, sigma) {
+    for (const Exposed::Part& part : exposed.parts) {
+      body.Add(part.body.body, part.weight);
+      if (exposed.dips) below.Add(part.body.below, part.weight);
+      if (part.hole) {
+        body.Add(part.hole->body, -part.weight);
+        if (exposed.dips) below.Add(part.hole->below, -part.weight);
+      }
+      if (part.mark) mark.Add(part.mark->body, part.weight);
+    }
+    body.Finish();
+    below.Finish();
+    mark.Finish();
+  }
+
+  CoverageMap body;
+  CoverageMap below;
+  CoverageMap mark;  // of the body
+};
+
+// Adds the body to rows `window`, over the background.
+void SceneRenderer::DrawBody(const Covers& covers, bool dips,
+                             CleanImage& image) const {
+  const SceneCamera& camera = scene_.camera;
+  const SceneLook& look = scene_.look;
   const bool wavy = scene_.trouble.wave_amplitude_px > 0.0;
-  const double contrast = scene_.look.body_level - scene_.look.background_level;
+  const double contrast = look.body_level - look.background_level;
+  const core::PixelRect& window = covers.body.window();
   for (std::int32_t y = window.y; y < window.y + window.height; ++y) {
-    const double* covered = body.row(y);
-    const double* hidden = dips ? below.row(y) : nullptr;
+    const double* covered = covers.body.row(y);
+    const double* hidden = dips ? covers.below.row(y) : nullptr;
+    const double* marked = look.mark ? covers.mark.row(y) : nullptr;
     const std::size_t first = static_cast<std::size_t>(y) *
                                   static_cast<std::size_t>(camera.width_px) +
                               static_cast<std::size_t>(window.x);
@@ -354,12 +420,42 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
       } else if (hidden != nullptr) {
         change -= static_cast<double>(ground_[i]) * hidden[x];
       }
+      if (marked != nullptr) {
+        change += static_cast<double>(light_[i]) *
+                  (look.mark->level - look.body_level) * marked[x];
+      }
       image.dn[i] += static_cast<float>(change);
     }
   }
+}
+
+CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
+  const SceneCamera& camera = scene_.camera;
+  const double middle_s = static_cast<double>(index) / camera.fps;
+  const double margin = kKernelReach * camera.psf_sigma_px + 1.0;
+  CleanImage image = background_;
+  if (camera.row_delay_s > 0.0) {
+    // Each row at its own time.
+    for (std::int32_t y = 0; y < camera.height_px; ++y) {
+      const Exposed exposed = Expose(scene_, middle_s + y * camera.row_delay_s);
+      if (y < exposed.min_y - margin || y > exposed.max_y + margin) continue;
+      core::PixelRect row =
+          WindowAround(exposed.min_x, exposed.max_x, y, y, margin, camera);
+      row.y = y;
+      row.height = 1;
+      DrawBody(Covers(exposed, row, camera.psf_sigma_px), exposed.dips, image);
+    }
+    return image;
+  }
+  const Exposed exposed = Expose(scene_, middle_s);
+  const Covers covers(exposed,
+                      WindowAround(exposed.min_x, exposed.max_x, exposed.min_y,
+                                   exposed.max_y, margin, camera),
+                      camera.psf_sigma_px);
+  DrawBody(covers, exposed.dips, image);
   if (trouble_) {
-    trouble_->Draw(scene_, middle_s, {light_, ground_, ground_share_, body},
-                   image);
+    trouble_->Draw(scene_, middle_s,
+                   {light_, ground_, ground_share_, covers.body}, image);
   }
   return image;
 }

@@ -107,6 +107,15 @@ void Validate(const Scene& scene) {
             "camera.roll_rad", camera.roll_rad,
             "within -pi/3 .. pi/3 where there is a lens");
   }
+  Require(std::abs(camera.yaw_rad) < std::numbers::pi / 3.0 &&
+              (camera.yaw_rad == 0.0 || camera.lens.has_value()),
+          "camera.yaw_rad", camera.yaw_rad,
+          "within -pi/3 .. pi/3, and 0 where there is no lens");
+  Require(camera.row_delay_s >= 0.0 &&
+              camera.row_delay_s * camera.height_px * camera.fps <= 1.0,
+          "camera.row_delay_s", camera.row_delay_s, "0 .. 1/(fps height_px)");
+  Require(camera.row_delay_s == 0.0 || !HasTrouble(scene.trouble),
+          "camera.row_delay_s", camera.row_delay_s, "0 where there is trouble");
 
   const SceneLook& look = scene.look;
   Require(IsLevel(look.body_level), "look.body_level", look.body_level,
@@ -124,6 +133,19 @@ void Validate(const Scene& scene) {
   Require(
       look.texture_correlation_px >= 0.0 && look.texture_correlation_px <= 1e3,
       "look.texture_correlation_px", look.texture_correlation_px, "0 .. 1000");
+  Require(look.hole >= 0.0 && look.hole < 1.0, "look.hole", look.hole,
+          "at least 0, below 1");
+  if (look.mark) {
+    Require(IsLevel(look.mark->level), "look.mark.level", look.mark->level,
+            "0 .. 1");
+    Require(look.mark->radius > 0.0, "look.mark.radius", look.mark->radius,
+            "more than 0");
+    Require(look.mark->distance + look.mark->radius <= 1.0 &&
+                (look.hole == 0.0 ||
+                 look.mark->distance - look.mark->radius >= look.hole),
+            "look.mark.distance", look.mark->distance,
+            "such that the mark lies on the body");
+  }
 
   Validate(scene.trouble, camera.lens.has_value());
   Require(scene.noise.read_dn >= 0.0 && std::isfinite(scene.noise.read_dn),
@@ -158,8 +180,25 @@ core::PixelPoint ToIdealImage(const SceneCamera& camera,
       camera.px_per_m * (camera.travels_left ? -point.x_m : point.x_m);
   const double y = camera.px_per_m * point.y_m;
   // Along the ground (c, s), up its normal (s, -c): image y points down.
-  return {camera.ground_point.x_px + x * c + y * s,
-          camera.ground_point.y_px + x * s - y * c};
+  if (camera.yaw_rad == 0.0) {
+    return {camera.ground_point.x_px + x * c + y * s,
+            camera.ground_point.y_px + x * s - y * c};
+  }
+  // A pinhole: of the ground point from the axis, and the depth over its.
+  const double gx = camera.ground_point.x_px - camera.lens->cx_px;
+  const double gy = camera.ground_point.y_px - camera.lens->cy_px;
+  const double depth = DepthOf(camera, point);
+  const double right = (c * gx + s * gy + x * std::cos(camera.yaw_rad)) / depth;
+  const double up = (s * gx - c * gy + y) / depth;
+  return {camera.lens->cx_px + right * c + up * s,
+          camera.lens->cy_px + right * s - up * c};
+}
+
+double DepthOf(const SceneCamera& camera, core::PlanePoint point) {
+  if (camera.yaw_rad == 0.0) return 1.0;
+  const double right = camera.travels_left ? -point.x_m : point.x_m;
+  return 1.0 + right * camera.px_per_m * std::sin(camera.yaw_rad) /
+                   calib::IdealFocal(*camera.lens);
 }
 
 std::array<core::PlanePoint, 4> Corners(const core::Body& body,
@@ -209,13 +248,35 @@ SceneTruth TruthOf(const Scene& scene, std::int64_t index) {
                               ? 0.5 * scene.body.diameter_m->value
                               : 0.5 * std::hypot(scene.body.long_m->value,
                                                  scene.body.short_m->value);
-  truth.radius_px = scene.camera.px_per_m * radius_m;
+  if (scene.camera.yaw_rad != 0.0) {
+    constexpr double kStep_m = 1e-6;
+    const core::PlanePoint ahead{
+        truth.pose.centre.x_m + kStep_m * std::cos(truth.pose.angle_rad),
+        truth.pose.centre.y_m + kStep_m * std::sin(truth.pose.angle_rad)};
+    const core::PixelPoint a = ToIdealImage(scene.camera, truth.pose.centre);
+    const core::PixelPoint b = ToIdealImage(scene.camera, ahead);
+    // The long side's direction, seen to the right as without yaw.
+    const double seen = std::atan2(b.y_px - a.y_px, b.x_px - a.x_px);
+    truth.image_angle_rad +=
+        std::remainder(seen - truth.image_angle_rad, std::numbers::pi);
+  }
+  truth.radius_px = scene.camera.px_per_m * radius_m /
+                    DepthOf(scene.camera, truth.pose.centre);
   truth.gap_px = scene.camera.px_per_m * Gap(scene.body, truth.pose);
   return truth;
 }
 
+double IdealGroundAngle(const SceneCamera& camera) {
+  if (camera.yaw_rad == 0.0) return camera.roll_rad;
+  // A straight line is seen straight: two points of it, a pixel apart.
+  const double step_m = (camera.travels_left ? -1.0 : 1.0) / camera.px_per_m;
+  const core::PixelPoint p = ToIdealImage(camera, {step_m, 0.0});
+  return std::atan2(p.y_px - camera.ground_point.y_px,
+                    p.x_px - camera.ground_point.x_px);
+}
+
 calib::GroundLine GroundOf(const SceneCamera& camera) {
-  const double slope = std::tan(camera.roll_rad);
+  const double slope = std::tan(IdealGroundAngle(camera));
   const auto at = [&](double x) {
     const core::PixelPoint ideal{
         x, camera.ground_point.y_px + slope * (x - camera.ground_point.x_px)};

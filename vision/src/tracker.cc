@@ -47,11 +47,27 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
+// A rigid body has one size: an outline of another sits on another edge of it,
+// such as the rim behind its face.
+void DropOtherSizes(std::vector<Fitted>& all) {
+  constexpr double kRatio = 1.05;
+  const auto size_of = [](const Fitted& f) {
+    const Outline& o = f.fit.outline;
+    return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_long_px;
+  };
+  std::vector<double> sizes;
+  for (const Fitted& f : all) sizes.push_back(size_of(f));
+  const double size = Median(std::move(sizes));
+  std::erase_if(all, [&](const Fitted& f) {
+    return size_of(f) > kRatio * size || kRatio * size_of(f) < size;
+  });
+}
+
 // Where only every `step`-th frame was looked at, all frames now, and those at
 // the ends that the looks may have missed. Returns a warning, or nothing.
 std::string FitBetween(Clip& clip, const Background& background,
                        const TrackOptions& options, std::int64_t step,
-                       Track& track) {
+                       bool one_size, Track& track) {
   OutlineOptions fit_options;
   fit_options.surround =
       track.known_background ? Surround::kBackground : Surround::kPolynomial;
@@ -74,7 +90,9 @@ std::string FitBetween(Clip& clip, const Background& background,
     all = FitFromTrack(clip, background, track, options, fit_options, stretch);
   }
   DropStrangers(all);
-  if (all.size() >= track.poses.size()) {
+  if (one_size) DropOtherSizes(all);
+  constexpr std::size_t kLeast = 8;
+  if (all.size() >= track.poses.size() || (one_size && all.size() >= kLeast)) {
     track.warnings.clear();
     FillTrack(all, track.body.kind, track);
   }
@@ -199,9 +217,19 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
       }
     }
   }
+  if (first->rough_starts) {
+    // Now the frames between say where each fit begins. What that finds is a
+    // better beginning again.
+    constexpr int kPasses = 2;
+    for (int pass = 0; pass < kPasses && track.poses.size() > 1; ++pass) {
+      FitBetween(clip, result.background, options, first->found.step,
+                 pass + 1 == kPasses, track);
+    }
+  }
   if (first->found.step > 1) {
     const std::string cut =
-        FitBetween(clip, result.background, options, first->found.step, track);
+        FitBetween(clip, result.background, options, first->found.step,
+                   first->rough_starts, track);
     if (!cut.empty()) warning = cut;
   }
   if (!warning.empty()) track.warnings.push_back(warning);

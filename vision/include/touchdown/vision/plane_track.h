@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/words.h"
+#include "touchdown/vision/plane_yaw.h"
 #include "touchdown/vision/track.h"
 
 namespace touchdown::vision {
@@ -41,11 +43,21 @@ struct PlaneTrack {
   std::int64_t last_frame = 0;  // one past the last frame of the range
   calib::GroundLine ground;
   std::vector<PlaneSample> samples;  // by time
+
+  // Where the plane of travel is turned: px of the samples and sizes are those
+  // of the plane at the ground's reference point (plane_yaw.h).
+  std::optional<PlaneYaw> yaw;
+  // px here over a px of the image: of a length along the ground at its
+  // reference point, and of the body's size. 1 where there is no yaw.
+  double along_stretch = 1.0;
+  double size_stretch = 1.0;
 };
 
-// Seen from `ground`. The direction of travel is that of the whole
-// displacement; right where there is none.
-PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground);
+// Seen from `ground`, in the plane of travel where its yaw is known. The
+// direction of travel is that of the whole displacement; right where there is
+// none. Throws as ViewOf does.
+PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
+                          const std::optional<PlaneYaw>& yaw = std::nullopt);
 
 // A point of the plane, in the image.
 core::PixelPoint ToImage(const PlaneTrack& track, double along_px,

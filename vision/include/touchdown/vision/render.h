@@ -71,6 +71,9 @@ class SceneRenderer {
   const CleanImage& background() const { return background_; }
 
  private:
+  struct Covers;
+  void DrawBody(const Covers& covers, bool dips, CleanImage& image) const;
+
   Scene scene_;
   CleanImage background_;            // in DN
   std::vector<float> ground_;        // ground minus background, in DN, textured

@@ -26,7 +26,7 @@ struct ScenePose {
 };
 using PoseFunction = std::function<ScenePose(double time_s)>;
 
-// A camera whose axis is perpendicular to the plane of motion.
+// A camera whose axis is perpendicular to the plane of motion, but for the yaw.
 struct SceneCamera {
   std::int32_t width_px = 640;
   std::int32_t height_px = 400;
@@ -49,6 +49,23 @@ struct SceneCamera {
   // Distorts what the camera sees; the fields above are those of the ideal
   // picture (calib/lens.h). Nothing: no distortion. Needs |roll| < 60 degrees.
   std::optional<calib::Lens> lens;
+  // The plane of motion is turned about its vertical through `ground_point`:
+  // positive where its right end is farther away (vision/plane_yaw.h). The
+  // scale is then that at `ground_point`. Needs a lens, whose focal length f
+  // says how far away that is: f / px_per_m, m. |yaw| < 60 degrees.
+  double yaw_rad = 0.0;
+  // Rolling shutter: row y collects its light y times this later than row 0,
+  // whose time is the frame's. At most 1/fps over the picture; no trouble then.
+  double row_delay_s = 0.0;
+};
+
+// A patch on the body that turns with it: a disc, in units of half the body's
+// smallest size; distance + radius <= 1.
+struct SceneMark {
+  double level = 0.9;     // fraction of full scale, as the body's
+  double distance = 0.5;  // of its centre from the body's, where the body's
+                          // angle points
+  double radius = 0.25;   // more than 0
 };
 
 // Brightness, as fractions of full scale at the picture's centre.
@@ -66,6 +83,11 @@ struct SceneLook {
   double texture_amplitude = 0.0;
   double texture_correlation_px = 2.0;
   std::uint64_t texture_seed = 1;
+  std::optional<SceneMark> mark;
+  // A ring: through a concentric round hole of this share of the body's
+  // smallest size what is behind it is seen. 0 (none) to below 1; a mark lies
+  // on the ring: distance - radius >= hole.
+  double hole = 0.0;
 };
 
 // Sensor noise in DN (digital numbers of the recorded bit depth): a sample with
@@ -94,6 +116,14 @@ core::PixelPoint ToIdealImage(const SceneCamera& camera,
                               core::PlanePoint point);
 core::PixelPoint ToImage(const SceneCamera& camera, core::PlanePoint point);
 
+// Of the camera's depth: that of a point of the plane over that of
+// `ground_point`. 1 without yaw.
+double DepthOf(const SceneCamera& camera, core::PlanePoint point);
+
+// Direction of the ground line in the ideal picture, as calib::ImageAngle: the
+// roll, but for what a yaw does away from the axis.
+double IdealGroundAngle(const SceneCamera& camera);
+
 // The four corners of a rectangle in the plane, counter-clockwise, beginning
 // with the upper leading one (+long/2, +short/2). Throws std::invalid_argument
 // for other bodies.
@@ -112,7 +142,7 @@ struct SceneTruth {
   // In the ideal picture:
   double image_angle_rad = 0.0;  // of the long side, from +x towards +y
   double radius_px = 0.0;  // of a sphere; half the diagonal of a rectangle
-  double gap_px = 0.0;
+  double gap_px = 0.0;     // as seen at `ground_point`
 };
 SceneTruth TruthOf(const Scene& scene, std::int64_t index);
 
