@@ -124,7 +124,7 @@ TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
   options.fps = 29.97;
   const Analysis a = Analyze(path, options);
   ASSERT_TRUE(a.track);
-  EXPECT_GE(a.track->poses.size(), 12u);  // of 37 frames
+  EXPECT_GE(a.track->poses.size(), 15u);
   // By hand 45.0 deg, of which nothing finer is known than 0.4 deg.
   ASSERT_TRUE(a.ground);
   EXPECT_EQ(a.ground->source, calib::GroundSource::kContactPoints);
@@ -143,7 +143,7 @@ TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
   options.fps = 29.97;
   const Analysis a = Analyze(path, options);
   ASSERT_TRUE(a.track);
-  EXPECT_GE(a.track->poses.size(), 15u);
+  EXPECT_GE(a.track->poses.size(), 12u);  // of 37 frames
   ASSERT_TRUE(a.ground);
   EXPECT_NEAR(calib::ImageAngle(*a.ground) / kDegree, 19.7, 0.8);
   EXPECT_TRUE(a.contacts.first.contact.from_start);
