@@ -25,6 +25,7 @@ struct Flags {
   std::string db;
   std::string campaign;
   ConditionFlags conditions;
+  bool no_digest = false;
   bool json = false;
 };
 
@@ -36,6 +37,12 @@ int Run(const Flags& flags) {
   if (flags.db.empty() && !flags.conditions.empty()) {
     throw std::invalid_argument("--condition needs --db, the store to log in");
   }
+  if (flags.no_digest && !flags.db.empty()) {
+    throw std::invalid_argument(
+        "--no-digest does not go with --db: a trial is logged by its clip's "
+        "digest; leave one of them out");
+  }
+  options.digest = !flags.no_digest;
   const auto conditions = ConditionsOf(flags.conditions, flags.db);
   if (!flags.campaign.empty()) {
     pipeline::FillFromCampaign(flags.db, flags.campaign, options);
@@ -85,6 +92,8 @@ void AddAnalyze(CLI::App& app, Action& action) {
       "angle kind and bounce height are then the campaign's "
       "where not given");
   AddConditionFlag(*command, flags->conditions);
+  command->add_flag("--no-digest", flags->no_digest,
+                    "leave clip.id out: nothing is read but what is measured");
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });

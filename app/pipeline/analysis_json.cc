@@ -149,7 +149,9 @@ Json ClipOf(Writer& writer, const Analysis& analysis) {
   const vision::ClipInfo& clip = analysis.clip;
   Json json;
   json["path"] = clip.path.string();
-  json["id"] = analysis.clip_id;
+  json["id"] = analysis.clip_id.empty()
+                   ? writer.Missing("clip.id", "not asked for")
+                   : Json(analysis.clip_id);
   json["sha256"] =
       writer.Missing("clip.sha256", "computed when a trial is logged");
   json["format"] = clip.format;

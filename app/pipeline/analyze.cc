@@ -452,7 +452,8 @@ Analysis Analyze(const std::filesystem::path& path,
   double digest_s = 0.0;
   auto id = std::async(
       options.decoder_threads == 1 ? std::launch::deferred : std::launch::async,
-      [&path, &digest_s] {
+      [&path, &digest_s, wanted = options.digest] {
+        if (!wanted) return std::string();
         const auto begun = Clock::now();
         std::string digest = vision::ClipId(path);
         digest_s = Since(begun);

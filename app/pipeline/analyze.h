@@ -39,6 +39,7 @@ struct AnalyzeOptions {
   std::optional<double> bounce_height_m;       // nothing: default convention
   std::function<void(double share)> progress;  // may be empty
   std::int32_t decoder_threads = 0;            // as in vision::ClipOptions
+  bool digest = true;  // clip.id, by which a logged trial knows its clip
 
   // Of the camera: its lens, and scale and ground where nothing else is given.
   // Its uncertainty enters every quantity. A clip that it does not fit is

@@ -255,6 +255,22 @@ TEST(AnalyzeFiles, TruncatedRecordingIsAnalysedWithAWarning) {
   EXPECT_FALSE(document["warnings"].empty());
 }
 
+TEST(AnalyzeFiles, WithoutADigestAllElseIsTheSame) {
+  const testing::TemporaryFolder folder;
+  const Film film = Default(kSphere);
+  const auto path = WriteFilm(film, folder / "shot.mraw");
+  AnalyzeOptions options = Known(film);
+  const json with = ExpectDocument(Analyze(path, options));
+  options.digest = false;
+  const json without = ExpectDocument(Analyze(path, options));
+  EXPECT_TRUE(with["clip"]["id"].is_string());
+  EXPECT_TRUE(without["clip"]["id"].is_null());
+  for (const char* const part : {"ground", "body", "contact", "state", "motion",
+                                 "scene_model", "warnings", "software"}) {
+    EXPECT_EQ(with[part], without[part]) << part;
+  }
+}
+
 TEST(AnalyzeFiles, EvidenceIsWhatAPersonCanCheck) {
   const testing::TemporaryFolder folder;
   for (const BodyKind kind : {kSphere, kBlock}) {
