@@ -5,20 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "edge_wave.h"
+
 namespace touchdown::calib {
 namespace {
-
-// y = offset + slope * (x - middle)
-struct Line {
-  double offset = 0.0;
-  double slope = 0.0;
-};
-
-struct EdgePoint {
-  double x = 0.0;
-  double y = 0.0;
-  double strength = 0.0;  // step in DN, signed downwards
-};
 
 float At(const StillImage& image, std::int32_t x, std::int32_t y) {
   return image.level[static_cast<std::size_t>(y) *
@@ -324,8 +314,18 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
       continue;
     }
     std::vector<double> weights;
-    const double scatter = FitLine(edge, middle, best, weights);
+    double scatter = FitLine(edge, middle, best, weights);
     if (scatter < 0.0) continue;
+    // Neighbours that go up and down together may do so evenly.
+    constexpr double kAlike = 3.0;
+    double wave_px = 0.0;
+    if (CorrelationLength(edge, weights, best, middle) > kAlike) {
+      wave_px = TakeOutWave(best, middle, weights, edge);
+    }
+    if (wave_px > 0.0) {
+      scatter = FitLine(edge, middle, best, weights);
+      if (scatter < 0.0) continue;
+    }
     double sw = 0, sx = 0;
     for (std::size_t i = 0; i < edge.size(); ++i) {
       sw += weights[i];
@@ -349,6 +349,7 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
     line.u_offset_px = cosine * scatter * std::sqrt(correlation / sw);
     line.u_angle_rad = cosine * cosine * scatter * std::sqrt(correlation / sxx);
     line.source = GroundSource::kDetected;
+    line.wave_px = wave_px;
     lines.push_back(line);
   }
   return lines;

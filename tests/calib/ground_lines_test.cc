@@ -38,6 +38,8 @@ struct StillOptions {
   double texture = 0.0;
   double gradient = 0.0;
   double ground_level = 0.40;
+  double wave_px = 0.0;
+  double wave_length_px = 40.0;
 };
 
 Still Picture(std::uint64_t seed, const StillOptions& options) {
@@ -55,6 +57,8 @@ Still Picture(std::uint64_t seed, const StillOptions& options) {
   scene.look.gradient_y = -options.gradient;
   scene.look.texture_amplitude = options.texture;
   scene.look.texture_seed = seed;
+  scene.trouble.wave_amplitude_px = options.wave_px;
+  scene.trouble.wave_length_px = options.wave_length_px;
   Still still;
   still.camera = scene.camera;
   still.image = vision::SceneRenderer(scene).background();
@@ -106,6 +110,25 @@ void ExpectHonest(const Errors& errors) {
   EXPECT_LT(Rms(errors.z_height), band.high);
   EXPECT_LT(Largest(errors.z_angle), 4.0);
   EXPECT_LT(Largest(errors.z_height), 4.0);
+}
+
+// An edge that goes up and down evenly is as good as a straight one, whatever
+// part of the last wave is seen.
+TEST(GroundLines, EvenWavesAreTakenOut) {
+  const Errors straight = Measure({}, kSeeds);
+  for (const double length_px : {21.0, 37.0, 75.0}) {
+    StillOptions wavy;
+    wavy.wave_px = 1.0;
+    wavy.wave_length_px = length_px;
+    const Errors errors = Measure(wavy, kSeeds);
+    const auto band = RmsBand9999(errors.z_angle.size());
+    EXPECT_LT(Rms(errors.z_angle), 1.2 * band.high) << length_px;
+    EXPECT_LT(Rms(errors.z_height), 1.2 * band.high) << length_px;
+    EXPECT_LT(Rms(errors.angle_rad), 2.0 * Rms(straight.angle_rad))
+        << length_px;
+    EXPECT_LT(Rms(errors.height_px), 2.0 * Rms(straight.height_px))
+        << length_px;
+  }
 }
 
 TEST(GroundLines, LevelGroundUnderNoise) {

@@ -206,7 +206,9 @@ class Refiner {
 
 void Refiner::LookNearGround(Track& refined) {
   refined.near_ground_modelled = false;
-  if (!track_.known_background) return;
+  // What a body on a wavy edge hides is no level line.
+  constexpr double kEven_px = 0.1;
+  if (!track_.known_background || options_.ground->wave_px > kEven_px) return;
   // Of the poses that reach down there, evenly.
   constexpr std::size_t kEnough = 40;  // some thousand pixels in all
   std::vector<std::size_t> low;

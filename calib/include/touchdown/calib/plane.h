@@ -27,6 +27,7 @@ struct GroundLine {
   double u_offset_px = 0.0;    // of the normal distance, at `reference`
   double u_angle_rad = 0.0;    // of the direction
   GroundSource source = GroundSource::kUser;
+  double wave_px = 0.0;  // amplitude of the edge about it, where it is wavy
 };
 
 // A ground line through two points given by a person, each good to
