@@ -73,7 +73,8 @@ double TakeOutWave(const Line& line, double middle,
     least = remains;
     best = per_px;
   };
-  for (double per_px = first; per_px <= last; per_px += step) look(per_px);
+  const int tried = static_cast<int>((last - first) / step);
+  for (int i = 0; i <= tried; ++i) look(first + i * step);
   constexpr double kMostRemains = 0.25;
   if (!(least < kMostRemains * squares)) return 0.0;
   // Finer about the best one.

@@ -56,6 +56,7 @@ void DropOtherSizes(std::vector<Fitted>& all) {
     return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_long_px;
   };
   std::vector<double> sizes;
+  sizes.reserve(all.size());
   for (const Fitted& f : all) sizes.push_back(size_of(f));
   const double size = Median(std::move(sizes));
   std::erase_if(all, [&](const Fitted& f) {
