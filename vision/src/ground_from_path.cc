@@ -94,8 +94,6 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
                           : 2.0 * track.body.half_long_px.value;
   if (!(along.norm() > size)) return std::nullopt;
   along.normalize();
-  double offset = 0.0;
-  double middle = 0.0;
   for (int pass = 0; pass < 3; ++pass) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     const Eigen::Vector2d across(-along.y(), along.x());
@@ -109,8 +107,6 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
     }
     const auto count = static_cast<double>(n);
     const double slope = (count * sxy - sx * sy) / (count * sxx - sx * sx);
-    middle = sx / count;
-    offset = sy / count;
     along = (along + slope * across).normalized();
   }
   // Down the picture: y grows.
@@ -121,9 +117,9 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
     s.push_back(along.dot(from_origin(pose)));
     q.push_back(down.dot(from_origin(pose)));
   }
-  middle = 0.5 * (*std::min_element(s.begin(), s.end()) +
-                  *std::max_element(s.begin(), s.end()));
-  offset = Median(q);
+  const double middle = 0.5 * (*std::min_element(s.begin(), s.end()) +
+                               *std::max_element(s.begin(), s.end()));
+  const double offset = Median(q);
   const auto path = FitParabola(t, s);
   const auto side = FitParabola(t, q);
   if (!path || !side) return std::nullopt;
@@ -157,6 +153,7 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
   constexpr double kCounting = 0.25;
   const double count = std::max(2.0, kCounting * static_cast<double>(n));
   std::vector<double> off;
+  off.reserve(q.size());
   for (const double value : q) off.push_back(std::abs(value - offset));
   constexpr double kOfMedian = 1.4826;
   const double scatter = kOfMedian * Median(std::move(off));
