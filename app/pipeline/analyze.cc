@@ -489,21 +489,4 @@ Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
   return Analyzer(std::move(clip), options).Run();
 }
 
-core::Trial ToTrial(const Analysis& analysis) {
-  core::Trial trial;
-  trial.origin =
-      analysis.simulated ? core::Origin::kSimulated : core::Origin::kRecorded;
-  trial.clip.path = analysis.clip.path.string();
-  trial.clip.id = analysis.clip_id;
-  if (analysis.body) trial.body = *analysis.body;
-  trial.angle_kind = analysis.angle_kind;
-  trial.first = analysis.contacts.first;
-  trial.later = analysis.contacts.later;
-  trial.author = "touchdown";
-  trial.software_version = std::string(Version());
-  trial.options_hash = analysis.options_hash;
-  trial.document_json = ToJson(analysis);
-  return trial;
-}
-
 }  // namespace touchdown::pipeline

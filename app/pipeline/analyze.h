@@ -104,10 +104,6 @@ Analysis Analyze(const std::filesystem::path& path,
 Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
                      const AnalyzeOptions& options = {});
 
-// The trial that an analysis makes: for the store and the report. id, revision
-// and time stamps are the store's.
-core::Trial ToTrial(const Analysis& analysis);
-
 // The touchdown.analysis/1 document.
 std::string ToJson(const Analysis& analysis);
 

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
 
+#include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/store.h"
 #include "touchdown/vision/clip_digest.h"
@@ -40,6 +42,23 @@ void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options) {
   if (!options.bounce_height_m && campaign.bounce_height_m > 0.0) {
     options.bounce_height_m = campaign.bounce_height_m;
   }
+}
+
+core::Trial ToTrial(const Analysis& analysis) {
+  core::Trial trial;
+  trial.origin =
+      analysis.simulated ? core::Origin::kSimulated : core::Origin::kRecorded;
+  trial.clip.path = analysis.clip.path.string();
+  trial.clip.id = analysis.clip_id;
+  if (analysis.body) trial.body = *analysis.body;
+  trial.angle_kind = analysis.angle_kind;
+  trial.first = analysis.contacts.first;
+  trial.later = analysis.contacts.later;
+  trial.author = "touchdown";
+  trial.software_version = std::string(Version());
+  trial.options_hash = analysis.options_hash;
+  trial.document_json = ToJson(analysis);
+  return trial;
 }
 
 core::Trial LoggableTrial(const Analysis& analysis,

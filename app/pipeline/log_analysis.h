@@ -12,6 +12,10 @@
 
 namespace touchdown::pipeline {
 
+// The trial that an analysis makes: for the store and the report. id, revision
+// and time stamps are the store's.
+core::Trial ToTrial(const Analysis& analysis);
+
 // What the campaign fixed and the options leave open: body and its size, kind
 // of angle, bounce height. Throws core::StoreError if there is no such
 // campaign.

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/pipeline/judge.h"
+#include "app/pipeline/log_analysis.h"
 #include "app/pipeline/whole_number.h"
 #include "touchdown/core/errors.h"
 

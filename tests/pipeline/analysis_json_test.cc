@@ -8,6 +8,7 @@
 
 #include "app/pipeline/analysis_text.h"
 #include "app/pipeline/analyze.h"
+#include "app/pipeline/log_analysis.h"
 #include "tests/pipeline/analyzed_film.h"
 #include "tests/pipeline/document.h"
 #include "tests/pipeline/filmed.h"

@@ -149,6 +149,8 @@ TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
   EXPECT_TRUE(a.contacts.first.contact.from_start);
   const core::StateDecision& state = a.contacts.first.state;
   EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
+  ASSERT_TRUE(state.p_bounce);
+  EXPECT_LT(*state.p_bounce, 0.975);
 }
 
 }  // namespace

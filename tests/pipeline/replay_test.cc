@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/pipeline/judge.h"
+#include "app/pipeline/log_analysis.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/db/quantities.h"

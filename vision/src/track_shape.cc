@@ -9,11 +9,6 @@
 namespace touchdown::vision {
 namespace {
 
-double SizeOf(const OutlineFit& fit) {
-  return fit.outline.kind == core::BodyKind::kSphere ? fit.outline.radius_px
-                                                     : fit.outline.half_long_px;
-}
-
 double Period(const BodyImage& body) {
   constexpr double kSquare = 1.05;  // sides nearer than 5 %: a quarter turn
   return body.half_long_px.value < kSquare * body.half_short_px.value
@@ -24,6 +19,11 @@ double Period(const BodyImage& body) {
 constexpr const char* kGrows = "the body's image changes size";
 
 }  // namespace
+
+double SizeOf(const OutlineFit& fit) {
+  return fit.outline.kind == core::BodyKind::kSphere ? fit.outline.radius_px
+                                                     : fit.outline.half_long_px;
+}
 
 double Median(std::vector<double> values) {
   if (values.empty()) return 0.0;

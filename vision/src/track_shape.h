@@ -20,6 +20,9 @@ struct Fitted {
 // and sizes tell of the model's faults first.
 inline constexpr double kWellModelled = 1.5;
 
+// Radius, or half the long side, px.
+double SizeOf(const OutlineFit& fit);
+
 double Median(std::vector<double> values);
 
 // Mean weighted by inverse variance, robustly: values off the median by more

@@ -51,16 +51,12 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
 // such as the rim behind its face.
 void DropOtherSizes(std::vector<Fitted>& all) {
   constexpr double kRatio = 1.05;
-  const auto size_of = [](const Fitted& f) {
-    const Outline& o = f.fit.outline;
-    return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_long_px;
-  };
   std::vector<double> sizes;
   sizes.reserve(all.size());
-  for (const Fitted& f : all) sizes.push_back(size_of(f));
+  for (const Fitted& f : all) sizes.push_back(SizeOf(f.fit));
   const double size = Median(std::move(sizes));
   std::erase_if(all, [&](const Fitted& f) {
-    return size_of(f) > kRatio * size || kRatio * size_of(f) < size;
+    return SizeOf(f.fit) > kRatio * size || kRatio * SizeOf(f.fit) < size;
   });
 }
 
@@ -218,19 +214,13 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
       }
     }
   }
-  if (first->rough_starts) {
-    // Now the frames between say where each fit begins. What that finds is a
-    // better beginning again.
-    constexpr int kPasses = 2;
-    for (int pass = 0; pass < kPasses && track.poses.size() > 1; ++pass) {
-      FitBetween(clip, result.background, options, first->found.step,
-                 pass + 1 == kPasses, track);
-    }
-  }
-  if (first->found.step > 1) {
+  // Now the frames between say where each fit begins. From rough starts, what
+  // that finds is a better beginning again.
+  const int passes = first->rough_starts ? 2 : first->found.step > 1 ? 1 : 0;
+  for (int pass = 0; pass < passes && track.poses.size() > 1; ++pass) {
     const std::string cut =
         FitBetween(clip, result.background, options, first->found.step,
-                   first->rough_starts, track);
+                   first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
   if (!warning.empty()) track.warnings.push_back(warning);

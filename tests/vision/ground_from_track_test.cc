@@ -1,0 +1,96 @@
+// Ground lines that only the track tells. No pixel is needed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "tests/support/statistics.h"
+#include "tests/vision/synthetic_track.h"
+#include "touchdown/core/units.h"
+#include "touchdown/vision/contact.h"
+
+namespace touchdown::vision {
+namespace {
+
+using synthetic::Filming;
+using synthetic::Throw;
+using touchdown::testing::Rms;
+using touchdown::testing::RmsBand9999;
+
+// What a ramp carries: it speeds up along its path, which tells where the ramp
+// is. Flight, steady motion and a short way tell nothing.
+TEST(GroundFromPath, OfWhatIsCarried) {
+  const Throw body;
+  for (const double slope_deg : {-50.0, -20.0, 0.0, 35.0, 60.0}) {
+    SCOPED_TRACE(slope_deg);
+    Filming filming;
+    filming.camera.roll_rad = slope_deg * core::kDegree;
+    const auto film = [&](double acceleration, double speed, double fall) {
+      return synthetic::FilmTrack(
+          body,
+          [=](double t) {
+            return ScenePose{{speed * t + 0.5 * acceleration * t * t - 0.2,
+                              body.half_long_m - 0.5 * fall * t * t},
+                             0.0};
+          },
+          filming);
+    };
+    filming.frames = 400;  // at 2000 a second
+    const auto ground = GroundFromPath(film(4.0, 0.5, 0.0));
+    ASSERT_TRUE(ground);
+    EXPECT_EQ(ground->source, calib::GroundSource::kContactPoints);
+    EXPECT_NEAR(calib::ImageAngle(*ground), filming.camera.roll_rad,
+                4.0 * ground->u_angle_rad);
+    EXPECT_NEAR(
+        calib::HeightAbove(*ground, ToImage(filming.camera, {0.0, 0.0})), 0.0,
+        4.0 * std::hypot(ground->u_offset_px, 0.003));
+    EXPECT_LT(ground->u_angle_rad, 1e-3);
+    EXPECT_FALSE(GroundFromPath(film(0.0, 1.0, 0.0))) << "steady";
+    // Free flight, of which this slope takes its parts.
+    const double g = core::kStandardGravity_mps2;
+    EXPECT_FALSE(GroundFromPath(film(g * std::sin(filming.camera.roll_rad), 0.8,
+                                     g * std::cos(filming.camera.roll_rad))))
+        << "flight";
+  }
+  // Falling straight down is no wall's work.
+  Filming filming;
+  filming.frames = 400;
+  EXPECT_FALSE(GroundFromPath(synthetic::FilmTrack(
+      body,
+      [](double t) {
+        return ScenePose{{0.0, 0.3 - 4.9 * t * t}, 0.0};
+      },
+      filming)));
+}
+
+// Without any line: the ground through the lowest point at the first rebound.
+TEST(GroundFromContacts, AtTheFirstRebound) {
+  Throw thrown;
+  std::vector<double> z;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Filming filming;
+    filming.seed = seed;
+    const Track track = synthetic::FilmTrack(
+        thrown, [&](double t) { return thrown.At(t); }, filming);
+    const auto ground = GroundFromContacts(track);
+    ASSERT_TRUE(ground);
+    EXPECT_EQ(ground->source, calib::GroundSource::kContactPoints);
+    EXPECT_NEAR(calib::ImageAngle(*ground), 0.0, 1e-12);
+    EXPECT_DOUBLE_EQ(ground->u_angle_rad, 0.5 * core::kDegree);
+    z.push_back((ground->reference.y_px - 330.0) / ground->u_offset_px);
+    EXPECT_LT(ground->u_offset_px, 1.0);
+  }
+  EXPECT_LT(Rms(z), RmsBand9999(30).high);
+  // No rebound, no ground.
+  Throw slides;
+  slides.contact_s = -1.0;
+  slides.after = {1.2, 0.0, 0.0};
+  slides.stays = true;
+  const Track flat = synthetic::FilmTrack(
+      slides, [&](double t) { return slides.At(t); }, Filming{});
+  EXPECT_FALSE(GroundFromContacts(flat));
+}
+
+}  // namespace
+}  // namespace touchdown::vision
