@@ -53,10 +53,6 @@ class Straightened final : public vision::Clip {
     }
     frame.data = samples_.data();
     frame.stride_bytes = static_cast<std::ptrdiff_t>(bytes) * window.width;
-    frame.width_px = window.width;
-    frame.height_px = window.height;
-    frame.origin_x_px = window.x;
-    frame.origin_y_px = window.y;
     return frame;
   }
 

@@ -63,12 +63,7 @@ class Counting : public Clip {
     frame.data = pixels_.data() + static_cast<std::size_t>(window.y) * stride +
                  static_cast<std::size_t>(window.x) * bytes;
     frame.stride_bytes = static_cast<std::ptrdiff_t>(stride);
-    frame.width_px = window.width;
-    frame.height_px = window.height;
     frame.bit_depth = info_.bit_depth;
-    frame.origin_x_px = window.x;
-    frame.origin_y_px = window.y;
-    frame.index = index;
     frame.time_s = static_cast<double>(index) / 100.0;
     return frame;
   }

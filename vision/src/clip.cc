@@ -65,7 +65,12 @@ core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
         window.y, window.width, window.height, clip.width_px, clip.height_px));
   }
   const auto start = std::chrono::steady_clock::now();
-  const core::Frame frame = ReadWindow(index, window);
+  core::Frame frame = ReadWindow(index, window);
+  frame.width_px = window.width;
+  frame.height_px = window.height;
+  frame.origin_x_px = window.x;
+  frame.origin_y_px = window.y;
+  frame.index = index;
   reading_s_ +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();

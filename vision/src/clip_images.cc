@@ -77,11 +77,6 @@ class ImageFolderClip final : public Clip {
     core::Frame frame = image_.View();
     frame.data += window.y * frame.stride_bytes +
                   std::ptrdiff_t{window.x} * (frame.is_16_bit() ? 2 : 1);
-    frame.width_px = window.width;
-    frame.height_px = window.height;
-    frame.origin_x_px = window.x;
-    frame.origin_y_px = window.y;
-    frame.index = index;
     frame.time_s = static_cast<double>(index) / info_.time_base.fps;
     return frame;
   }

@@ -131,7 +131,6 @@ class VideoClip final : public Clip {
     }
     core::Frame view = chroma_ ? chroma_->View(*frame_, window)
                                : reader_->View(*frame_, window);
-    view.index = index;
     view.time_s = TimeOf(index_, info_.time_base, index);
     return view;
   }

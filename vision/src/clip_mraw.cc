@@ -114,12 +114,7 @@ class MrawClip final : public Clip {
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
     core::Frame frame;
-    frame.width_px = window.width;
-    frame.height_px = window.height;
     frame.bit_depth = info_.bit_depth;
-    frame.origin_x_px = window.x;
-    frame.origin_y_px = window.y;
-    frame.index = index;
     frame.time_s = static_cast<double>(index) / info_.time_base.fps;
     const std::int64_t first =
         index * samples_per_frame() +

@@ -109,12 +109,7 @@ class TiffStackClip final : public Clip {
       frame = image_.View();
       frame.data += window.y * frame.stride_bytes + window.x * sample_bytes();
     }
-    frame.width_px = window.width;
-    frame.height_px = window.height;
     frame.bit_depth = info_.bit_depth;
-    frame.origin_x_px = window.x;
-    frame.origin_y_px = window.y;
-    frame.index = index;
     frame.time_s = static_cast<double>(index) / info_.time_base.fps;
     return frame;
   }

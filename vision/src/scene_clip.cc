@@ -42,10 +42,6 @@ class SceneClip final : public Clip {
     frame.data +=
         window.y * frame.stride_bytes +
         static_cast<std::ptrdiff_t>(window.x) * (frame.is_16_bit() ? 2 : 1);
-    frame.width_px = window.width;
-    frame.height_px = window.height;
-    frame.origin_x_px = window.x;
-    frame.origin_y_px = window.y;
     return frame;
   }
 

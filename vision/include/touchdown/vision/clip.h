@@ -135,6 +135,8 @@ class Clip {
   double reading_s() const { return reading_s_; }
 
  protected:
+  // The samples of the window (data, stride, depth) and the frame's time; Read
+  // adds where the window lies and which frame it is.
   virtual core::Frame ReadWindow(std::int64_t index,
                                  const core::PixelRect& window) = 0;
 
