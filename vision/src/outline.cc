@@ -15,6 +15,7 @@
 #include "outline_image.h"
 #include "outline_pixels.h"
 #include "outline_sums.h"
+#include "shared_fit.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
@@ -40,6 +41,17 @@ double RobustScale(const std::vector<double>& residuals) {
   std::transform(residuals.begin(), residuals.end(), sizes.begin(),
                  [](double r) { return std::abs(r); });
   return std::max(1.0, kPerMedian * Median(std::move(sizes)));
+}
+
+// Adds a step's sizes.
+template <class Step>
+void AddSizes(const Step& step, Outline& outline) {
+  if (outline.kind == core::BodyKind::kSphere) {
+    outline.radius_px += step[2];
+  } else {
+    outline.half_long_px += step[2];
+    outline.half_short_px += step[3];
+  }
 }
 
 class Fitter {
@@ -126,6 +138,7 @@ class Fitter {
   double inliers_ = 0.0;
   bool converged_ = false;
   double before_aside_ = 0.0;  // visible share, where something was set aside
+  bool telling_ = false;       // of what is held
 };
 
 void Fitter::CollectPixels() {
@@ -153,9 +166,11 @@ std::string Fitter::Gather() {
 }
 
 bool Fitter::Free(int k) const {
-  if (k == geometry_) return options_.fit_blur;
-  if (k == OpenAt()) return options_.fit_open;
-  if (options_.fit_size) return true;
+  if (k == geometry_) return options_.fit_blur || telling_;
+  if (k == OpenAt()) {
+    return options_.fit_open || (telling_ && smear_.IsResolved());
+  }
+  if (options_.fit_size || telling_) return true;
   return !(k == 2 || (geometry_ == 5 && k == 3));
 }
 
@@ -254,18 +269,14 @@ bool Fitter::Step(double& geometric_step) {
   outline_.centre.x_px += step[0];
   outline_.centre.y_px += step[1];
   geometric_step = std::hypot(step[0], step[1]);
-  if (outline_.kind == core::BodyKind::kSphere) {
-    outline_.radius_px += step[2];
-    geometric_step = std::max(geometric_step, std::abs(step[2]));
-    if (!(outline_.radius_px > 0.7)) return false;
-  } else {
-    outline_.half_long_px += step[2];
-    outline_.half_short_px += step[3];
+  AddSizes(step, outline_);
+  constexpr double kLeast_px = 0.7;
+  if (!(SmallestHalf(outline_) > kLeast_px)) return false;
+  geometric_step = std::max(geometric_step, std::abs(step[2]));
+  if (outline_.kind == core::BodyKind::kRectangle) {
     outline_.angle_rad += step[4];
-    geometric_step =
-        std::max({geometric_step, std::abs(step[2]), std::abs(step[3]),
-                  std::abs(step[4]) * outline_.half_long_px});
-    if (!(outline_.half_short_px > 0.7)) return false;
+    geometric_step = std::max({geometric_step, std::abs(step[3]),
+                               std::abs(step[4]) * outline_.half_long_px});
     cosine_ = std::cos(outline_.angle_rad);
     sine_ = std::sin(outline_.angle_rad);
   }
@@ -389,7 +400,8 @@ core::Expected<OutlineFit> Fitter::Run() {
   }
   if (!why.empty()) return core::AbsentBecause(why);
   // What was summed a step of less than the tolerance ago is as good.
-  if (!converged_) Accumulate(true);
+  telling_ = options_.tell_shared;
+  if (!converged_ || telling_) Accumulate(true);
   const double level = pixels_.background[pixels_.size / 2];
   const double noise = std::sqrt(background_.Variance(level));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel
@@ -414,6 +426,13 @@ core::Expected<OutlineFit> Fitter::Run() {
   };
   OutlineFit fit;
   fit.outline = outline_;
+  if (telling_) {
+    AddSizes(covariance * gradient_, fit.outline);
+    const auto row = [&](int k) { return Free(k) ? k : -1; };
+    fit.shared =
+        WithoutOwn(Regular() / (widen * widen), gradient_ / (widen * widen),
+                   {2, geometry_ == 5 ? 3 : -1, geometry_, row(OpenAt())});
+  }
   fit.blur_px = blur_;
   fit.u_blur_px = u(geometry_);
   fit.open = open_;

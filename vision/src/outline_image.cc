@@ -106,6 +106,26 @@ TOUCHDOWN_INLINE void Measure(const Place& place, const double* x,
 
 constexpr double kAtCentre_px = 1e-12;  // no direction there, and no edge
 
+// A pixel is a square, and its part of the blur no Gaussian of its variance
+// 1/12: the next term of the series, -1/2880 (d^4/dx^4 + d^4/dy^4) of the
+// image. Of an edge whose normal has the direction (c, s), z = depth/w:
+//   (c^4 + s^4) / (2880 w^4) He_3(z) phi(z),  He_3 = z^3 - 3 z
+// 2e-3 of the contrast at a lens's blur of 0.5 px; without it sizes pooled over
+// a clip were 5e-4 px small. No image is sharper than a pixel's.
+double SquareTerm(double w_px) {
+  const double variance = std::max(w_px * w_px, 1.0 / 12.0);
+  return 1.0 / (2880.0 * variance * variance);
+}
+
+// `term` times He_3 phi at z, and its slope -He_4 phi. Takes phi's place.
+TOUCHDOWN_INLINE void AddSquare(double term, const Four& z, Four& cdf,
+                                Four& pdf, Four& added) {
+  const Four square = z * z;
+  added = term * z * (square - 3.0) * pdf;
+  cdf += added;
+  pdf *= 1.0 - term * (square * (square - 6.0) + 3.0);
+}
+
 // As a series in e = w/R, s = (r - R)/w, from the heat equation
 // u_t = u_rr + u_r/r with 2 t = w^2:
 //   Phi(-s) + phi(s) (-e/2 + 3/8 e^2 s - e^3 (1 + 5 s^2)/16) + O(e^4)
@@ -116,25 +136,34 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
   Measure(place, x, y, at);
   const double per_w = 1.0 / place.w_px;
   const double e = place.w_px / place.long_px;
+  const double square_term = SquareTerm(place.w_px);
   for (std::size_t i = 0; i < kBlock; i += 4) {
     const Four r = FourAt(&at.r[i]);
+    const Four dx = FourAt(&at.dx[i]);
+    const Four dy = FourAt(&at.dy[i]);
     const Four s = (r - place.long_px) * per_w;
     Four cdf;
     Four pdf;
     NormalAt(-s, cdf, pdf);
-    const Four square = 0.0625 * (1.0 + 5.0 * s * s);
-    const Four g = e * (-0.5 + e * (0.375 * s - e * square));
+    const Four third = 0.0625 * (1.0 + 5.0 * s * s);
+    const Four g = e * (-0.5 + e * (0.375 * s - e * third));
     const Four g_s = e * e * (0.375 - 0.625 * e * s);
-    const Four g_e = -0.5 + e * (0.75 * s - 3.0 * e * square);
-    const Four by_s = pdf * (-1.0 - s * g + g_s) * per_w;
+    const Four g_e = -0.5 + e * (0.75 * s - 3.0 * e * third);
+    // c^4 + s^4 = 1 - 2 c^2 s^2
+    const Four sine_cosine = dx * dy / (r * r + kAtCentre_px);
+    const Four k = square_term * (1.0 - 2.0 * sine_cosine * sine_cosine) * pdf;
+    const Four s2 = s * s;
+    const Four square = k * s * (3.0 - s2);  // z is -s
+    const Four by_s =
+        (pdf * (-1.0 - s * g + g_s) + k * (s2 * (s2 - 6.0) + 3.0)) * per_w;
     const Four by_e = pdf * g_e * place.per_long;
     FourOfDisc disc;
-    disc.dx = FourAt(&at.dx[i]);
-    disc.dy = FourAt(&at.dy[i]);
+    disc.dx = dx;
+    disc.dy = dy;
     disc.outwards = -by_s / (r + kAtCentre_px);
-    disc.value = cdf + pdf * g;
+    disc.value = cdf + pdf * g + square;
     disc.d_radius = -by_s - by_e * e;
-    disc.d_w = by_e - by_s * s;
+    disc.d_w = by_e - by_s * s - 4.0 * per_w * square;
     AddDisc(place, disc, i, out);
   }
 }
@@ -236,6 +265,9 @@ TOUCHDOWN_WIDEST
 void AddRectangle(const Place& place, const double* x, const double* y,
                   CoverBlock& out) {
   const double per_w = 1.0 / place.w_px;
+  const double c2 = place.cosine * place.cosine;
+  const double s2 = place.sine * place.sine;
+  const double k = (c2 * c2 + s2 * s2) * SquareTerm(place.w_px);
   Distances at;
   for (std::size_t i = 0; i < kBlock; ++i) {
     at.dx[i] = x[i] - place.x_px;
@@ -256,6 +288,11 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     NormalAt(um, below_u, pum);
     NormalAt(vp, above_v, pvp);
     NormalAt(vm, below_v, pvm);
+    Four sup, sum, svp, svm;
+    AddSquare(k, up, above_u, pup, sup);
+    AddSquare(k, um, below_u, pum, sum);
+    AddSquare(k, vp, above_v, pvp, svp);
+    AddSquare(k, vm, below_v, pvm, svm);
     pup *= per_w;
     pum *= per_w;
     pvp *= per_w;
@@ -265,6 +302,9 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     const Four across = weight * (above_v - below_v);
     pvp *= weight;
     pvm *= weight;
+    // By w at a fixed depth in w: the term goes with w^-4.
+    const Four fades_u = 4.0 * per_w * (sup - sum);
+    const Four fades_v = (4.0 * weight) * per_w * (svp - svm);
     const Four d_u = (pup - pum) * across;
     const Four d_v = (pvp - pvm) * along;
     const Four d_x = d_v * place.sine - d_u * place.cosine;
@@ -276,8 +316,8 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     FourAt(&out.d_shape[3][i]) += (pvp + pvm) * along;
     const Four d_angle = d_u * v - d_v * u;
     FourAt(&out.d_shape[4][i]) += d_angle;
-    FourAt(&out.d_blur[i]) -=
-        (up * pup - um * pum) * across + (vp * pvp - vm * pvm) * along;
+    FourAt(&out.d_blur[i]) -= (up * pup - um * pum + fades_u) * across +
+                              (vp * pvp - vm * pvm + fades_v) * along;
     FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
                               d_angle * place.d_open_angle;
     FourAt(&out.xi[i]) += u * (weight * place.per_long);

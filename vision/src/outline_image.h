@@ -43,6 +43,7 @@ class Smear {
   void Set(double blur_px, double open, bool resolved);
 
   double way_px() const;  // during the exposure, of the farthest point
+  bool IsResolved() const { return nodes_.size() > 1; }
 
  private:
   friend class OutlineImage;

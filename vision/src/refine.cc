@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "outline_batch.h"
+#include "shared_fit.h"
 #include "touchdown/vision/tracker.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
+
+constexpr std::size_t kLeastSized = 3;  // frames that tell a size
 
 using NearGround = OutlineOptions::NearGround;
 using Surround = OutlineOptions::Surround;
@@ -113,6 +116,13 @@ std::optional<double> Shared(const std::vector<Fitted>& all,
   return RobustMean(values, us).value;
 }
 
+double MedianMisfit(const std::vector<Fitted>& all) {
+  std::vector<double> misfits;
+  misfits.reserve(all.size());
+  for (const Fitted& f : all) misfits.push_back(f.fit.misfit);
+  return Median(std::move(misfits));
+}
+
 // A body that is no sphere or rectangle, or lies behind others, may lose its
 // size in a free fit: what was found is kept then.
 bool IsSameSize(const BodyImage& again, const BodyImage& found) {
@@ -173,6 +183,13 @@ class Refiner {
     return {pose.frame, OutlineAt(body, pose),
             core::PixelPoint{motion.x_px, motion.y_px}, motion.turn_rad};
   }
+  // Blur and exposure, from fits of each frame, which it returns.
+  std::vector<Fitted> LearnBlur(Track& refined);
+  // The mean of the sizes that frames show; or one size, blur and exposure for
+  // all of them at once. They return the fits; few or none where it fails.
+  std::vector<Fitted> SizeByFrames(BodyImage& body);
+  std::vector<Fitted> SizeTogether(BodyImage& body);
+  void Follow(const SharedStep& step, BodyImage& body);
   // Takes the fits of a body that is hidden in part out, and its frames from
   // the poses to come.
   void LeaveOutHidden(std::vector<Fitted>& sized);
@@ -228,13 +245,13 @@ void Refiner::LookNearGround(Track& refined) {
   options_.near_ground = NearGround::kModelled;
   double pixels = 0.0;
   double excess = 0.0;
-  std::vector<double> misfits;
+  std::vector<Fitted> near;
   for (const auto& fit :
        FitOutlines(clip_, background_, jobs, options_, threads_)) {
     if (!fit) continue;
     pixels += fit->fit.pixels_near_ground;
     excess += fit->fit.pixels_near_ground * fit->fit.excess_near_ground;
-    misfits.push_back(fit->fit.misfit);
+    near.push_back(*fit);
   }
   // A mean square of n residuals scatters by sqrt(2/n); in 1000 clips of even
   // ground it lay between 0.87 and 1.2, of those with a shadow at 2 and more.
@@ -242,7 +259,7 @@ void Refiner::LookNearGround(Track& refined) {
   constexpr double kSigmas = 4.0;
   // A body that is crudely modelled says nothing of what is near it.
   if (excess > kMostExcess * pixels + kSigmas * std::sqrt(2.0 * pixels) ||
-      misfits.empty() || Median(misfits) > kWellModelled) {
+      near.empty() || MedianMisfit(near) > kWellModelled) {
     options_.near_ground = NearGround::kLeftOut;
     return;
   }
@@ -259,7 +276,24 @@ std::vector<Fitted> Refiner::Sample(const BodyImage& body) {
 }
 
 void Refiner::LearnShape(Track& refined) {
-  constexpr std::size_t kLeast = 3;
+  std::vector<Fitted> sized = LearnBlur(refined);
+  BodyImage body = refined.body;
+  // Frames that a crude model shows say each something else: no joint fit of
+  // them is better than their mean.
+  const bool crude =
+      sized.size() < kLeastSized || MedianMisfit(sized) > kWellModelled;
+  sized = crude ? SizeByFrames(body) : SizeTogether(body);
+  // Not with the shading held: its error is common to all frames, and what it
+  // does to the size would not show in their scatter.
+  if (sized.size() >= kLeastSized) options_.shading = ShadingOf(sized);
+  if (sized.size() >= kLeastSized && IsSameSize(body, track_.body)) {
+    refined.body = body;
+  } else {
+    options_.blur_px = refined.body.blur_px;
+  }
+}
+
+std::vector<Fitted> Refiner::LearnBlur(Track& refined) {
   // The exposure, where the body moves by enough of its blur to show it.
   std::vector<double> ways;
   for (const Motion& motion : motion_) {
@@ -274,7 +308,7 @@ void Refiner::LearnShape(Track& refined) {
       Shared(sized, &OutlineFit::open, &OutlineFit::u_open).value_or(0.0), 0.0,
       1.0);
   options_.open = 0.0;
-  if (sized.size() >= kLeast &&
+  if (sized.size() >= kLeastSized &&
       IsSameSize(ShapeOf(sized, track_.body.kind), track_.body)) {
     if (options_.fit_open) options_.open = open;
     refined.body.blur_px =
@@ -284,18 +318,57 @@ void Refiner::LearnShape(Track& refined) {
   options_.fit_open = false;
   options_.fit_blur = false;
   options_.blur_px = refined.body.blur_px;
-  sized = Sample(refined.body);
-  if (sized.size() < kLeast) return;
-  LeaveOutHidden(sized);
-  if (sized.size() < kLeast) return;
-  // Not with the shading held: its error is common to all frames, and what it
-  // does to the size would not show in their scatter.
-  options_.shading = ShadingOf(sized);
-  const BodyImage shape = ShapeOf(sized, track_.body.kind);
-  if (!IsSameSize(shape, track_.body)) return;
-  refined.body.radius_px = shape.radius_px;
-  refined.body.half_long_px = shape.half_long_px;
-  refined.body.half_short_px = shape.half_short_px;
+  return sized;
+}
+
+std::vector<Fitted> Refiner::SizeByFrames(BodyImage& body) {
+  std::vector<Fitted> sized = Sample(body);
+  if (sized.empty()) return sized;
+  const BodyImage shape = ShapeOf(sized, body.kind);
+  body.radius_px = shape.radius_px;
+  body.half_long_px = shape.half_long_px;
+  body.half_short_px = shape.half_short_px;
+  return sized;
+}
+
+std::vector<Fitted> Refiner::SizeTogether(BodyImage& body) {
+  options_.fit_size = false;
+  options_.tell_shared = true;
+  constexpr int kRounds = 3;
+  constexpr double kNegligible = 0.1;  // of the uncertainty
+  std::vector<Fitted> sized;
+  double step = 1.0;
+  for (int round = 0; round < kRounds && step > kNegligible; ++round) {
+    sized = Sample(body);
+    if (round == 0) LeaveOutHidden(sized);
+    std::erase_if(sized, [&](const Fitted& f) { return IsHidden(f.frame); });
+    const auto together = StepTogether(sized);
+    if (!together) {
+      sized.clear();
+      break;
+    }
+    Follow(*together, body);
+    step = std::abs(together->step[0]) / together->u[0];
+  }
+  options_.fit_size = true;
+  options_.tell_shared = false;
+  return sized;
+}
+
+void Refiner::Follow(const SharedStep& step, BodyImage& body) {
+  const auto follow = [&](core::Estimate& value, int k) {
+    value.value += step.step[k];
+    value.u = step.u[k];
+  };
+  if (body.kind == core::BodyKind::kSphere) {
+    follow(body.radius_px, 0);
+  } else {
+    follow(body.half_long_px, 0);
+    follow(body.half_short_px, 1);
+  }
+  body.blur_px += step.step[2];
+  options_.blur_px = body.blur_px;
+  options_.open = std::clamp(options_.open + step.step[3], 0.0, 1.0);
 }
 
 void Refiner::LeaveOutHidden(std::vector<Fitted>& sized) {

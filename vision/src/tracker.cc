@@ -138,6 +138,13 @@ bool IsTorn(const Look& look) {
                  static_cast<double>(look.found.chains.front().links.size());
 }
 
+bool IsWellModelled(const Track& track) {
+  std::vector<double> misfits;
+  misfits.reserve(track.poses.size());
+  for (const Pose& pose : track.poses) misfits.push_back(pose.misfit);
+  return Median(std::move(misfits)) <= kWellModelled;
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
@@ -165,7 +172,8 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   track = TrackOf(*first, clip, options);
   // Now that the body's place is known, the background without it.
   BehindBody behind = LookBehind(clip, options, track, first->background);
-  // Covered less than a fifth of the time, a pixel's mid-mean is untouched.
+  // Covered less than a fifth of the time, a pixel's mid-mean is untouched but
+  // for a tenth of the noise.
   constexpr double kUntouched = 0.2;
   if (behind.most_covered > kUntouched && IsTorn(*first)) {
     Look again = LookWith(clip, behind.background, options,
@@ -213,6 +221,9 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
         std::swap(result.background, behind.background);
       }
     }
+  } else if (IsWellModelled(track)) {
+    // A body of another shape would show through its mask.
+    result.background = std::move(behind.background);
   }
   // Now the frames between say where each fit begins. From rough starts, what
   // that finds is a better beginning again.

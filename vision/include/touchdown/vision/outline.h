@@ -17,6 +17,7 @@
 // by the residuals' excess where it does not.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 
@@ -54,6 +55,9 @@ struct OutlineOptions {
   Surround surround = Surround::kBackground;
 
   bool fit_size = true;  // false: radius or sides are held as given
+  // With all that frames share held: OutlineFit::shared is told, and sizes that
+  // are one step of Gauss and Newton from the held ones.
+  bool tell_shared = false;
   double blur_px = 0.8;  // start value of w, px
   bool fit_blur = true;
 
@@ -88,6 +92,15 @@ struct OutlineOptions {
   double tolerance_px = 1e-4;
 };
 
+// What one frame says of what all frames share, at its held values: information
+// and gradient (1/px^2, 1/px) of the size, the other side, the blur, and the
+// share of the interval that is exposed (1), all else of the frame eliminated.
+// Rows of what the body does not have, or the picture does not show, are 0.
+struct SharedTerms {
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+};
+
 struct OutlineFit {
   Outline outline;
   double blur_px = 0.0;
@@ -113,6 +126,7 @@ struct OutlineFit {
   int pixels_near_ground = 0;
   double excess_near_ground = 0.0;
   int iterations = 0;
+  std::optional<SharedTerms> shared;  // where it was asked for
 };
 
 // Fits the outline to `frame` from `start`, which must be within about a
