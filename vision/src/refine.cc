@@ -139,6 +139,12 @@ bool IsSameSize(const BodyImage& again, const BodyImage& found) {
          same(again.half_short_px, found.half_short_px);
 }
 
+void TakeSize(const BodyImage& from, BodyImage& to) {
+  to.radius_px = from.radius_px;
+  to.half_long_px = from.half_long_px;
+  to.half_short_px = from.half_short_px;
+}
+
 class Refiner {
  public:
   Refiner(Clip& clip, const Background& background, const Track& track,
@@ -282,6 +288,11 @@ void Refiner::LearnShape(Track& refined) {
   // them is better than their mean.
   const bool crude =
       sized.size() < kLeastSized || MedianMisfit(sized) > kWellModelled;
+  if (!crude) {
+    // From where the frames' own sizes are: a step is short then.
+    const BodyImage shape = ShapeOf(sized, body.kind);
+    if (IsSameSize(shape, track_.body)) TakeSize(shape, body);
+  }
   sized = crude ? SizeByFrames(body) : SizeTogether(body);
   // Not with the shading held: its error is common to all frames, and what it
   // does to the size would not show in their scatter.
@@ -324,10 +335,7 @@ std::vector<Fitted> Refiner::LearnBlur(Track& refined) {
 std::vector<Fitted> Refiner::SizeByFrames(BodyImage& body) {
   std::vector<Fitted> sized = Sample(body);
   if (sized.empty()) return sized;
-  const BodyImage shape = ShapeOf(sized, body.kind);
-  body.radius_px = shape.radius_px;
-  body.half_long_px = shape.half_long_px;
-  body.half_short_px = shape.half_short_px;
+  TakeSize(ShapeOf(sized, body.kind), body);
   return sized;
 }
 
