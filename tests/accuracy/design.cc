@@ -22,13 +22,19 @@ constexpr int kLeadIn = 24;  // empty frames before the body
 constexpr int kLeastAfter = 6;
 constexpr int kLeastShortStay = 2;
 
-// The film's body is off the ground `frames` after contact, and not about to
-// come down.
+// The film's body is off the ground `frames` after contact, not about to come
+// down, and has not been in it on the way: a block that turns fast may dip its
+// other corner between two frames.
 bool IsClear(const Throw& thrown, double frames, double fps) {
   const auto gap_px = [&](double at) {
     const vision::ScenePose pose = thrown.At(thrown.contact_s + at / fps);
     return kPxPerM * (pose.centre.y_m - thrown.Support(pose.angle_rad));
   };
+  constexpr double kStep = 0.05;  // frames
+  constexpr double kSunk_px = 0.02;
+  for (double at = kStep; at < frames; at += kStep) {
+    if (gap_px(at) < -kSunk_px) return false;
+  }
   constexpr double kMargin_px = 0.5;
   const double gap = gap_px(frames);
   return gap > kMargin_px || gap > gap_px(frames - 1.0);
