@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "edge_texture.h"
 #include "edge_wave.h"
 
 namespace touchdown::calib {
@@ -261,6 +262,44 @@ double CorrelationLength(const std::vector<EdgePoint>& points,
   return sum;
 }
 
+// The direction of an edge of textured ground from the edge's foot, where that
+// is clearly better known; not its height, which hangs there on the blur.
+void TakeTexture(const StillImage& image, const std::optional<Lens>& lens,
+                 double blur, double middle, double centre, Line& line,
+                 double& u_slope) {
+  std::vector<double> seen(static_cast<std::size_t>(image.width_px));
+  for (std::size_t x = 0; x < seen.size(); ++x) {
+    seen[x] = SeenAt(lens, line, middle, static_cast<double>(x));
+  }
+  constexpr double kBlurs = 3.0;
+  const auto texture = LearnTexture(image, seen, kBlurs * blur);
+  if (!texture) return;
+  std::vector<EdgePoint> edge;
+  for (std::int32_t x = 0; x < image.width_px; ++x) {
+    EdgePoint p = TexturedEdge(image, *texture, x,
+                               seen[static_cast<std::size_t>(x)], blur);
+    if (p.strength != 0.0 && ToIdeal(lens, p)) edge.push_back(p);
+  }
+  Line better = line;
+  std::vector<double> weights;
+  const double scatter = FitLine(edge, middle, better, weights);
+  if (scatter < 0.0) return;
+  double sw = 0, sx = 0, sxx = 0;
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    sw += weights[i];
+    sx += weights[i] * edge[i].x;
+    sxx += weights[i] * edge[i].x * edge[i].x;
+  }
+  const double u =
+      scatter * std::sqrt(CorrelationLength(edge, weights, better, middle) /
+                          (sxx - sx * sx / sw));
+  if (!(u < u_slope)) return;
+  const double height = line.offset + line.slope * (centre - middle);
+  line.slope = better.slope;
+  line.offset = height - line.slope * (centre - middle);
+  u_slope = u;
+}
+
 }  // namespace
 
 std::vector<GroundLine> FindGroundLines(const StillImage& image,
@@ -337,6 +376,8 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
       sxx += weights[i] * (edge[i].x - centre) * (edge[i].x - centre);
     }
     const double correlation = CorrelationLength(edge, weights, best, middle);
+    double u_slope = scatter * std::sqrt(correlation / sxx);
+    TakeTexture(image, options.lens, blur, middle, centre, best, u_slope);
     const double cosine = 1.0 / std::hypot(1.0, best.slope);
     const auto y_at = [&](double x) {
       return best.offset + best.slope * (x - middle);
@@ -347,7 +388,7 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
                y_at(image.width_px - 1.0)};
     line.reference = {centre, y_at(centre)};
     line.u_offset_px = cosine * scatter * std::sqrt(correlation / sw);
-    line.u_angle_rad = cosine * cosine * scatter * std::sqrt(correlation / sxx);
+    line.u_angle_rad = cosine * cosine * u_slope;
     line.source = GroundSource::kDetected;
     line.wave_px = wave_px;
     lines.push_back(line);

@@ -40,6 +40,7 @@ struct StillOptions {
   double ground_level = 0.40;
   double wave_px = 0.0;
   double wave_length_px = 40.0;
+  int most_lines = 4;  // to be found
 };
 
 Still Picture(std::uint64_t seed, const StillOptions& options) {
@@ -78,9 +79,11 @@ struct Errors {
 
 Errors Measure(const StillOptions& options, int seeds) {
   Errors errors;
+  GroundLineOptions find;
+  find.most_lines = options.most_lines;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Still still = Picture(static_cast<std::uint64_t>(seed), options);
-    const std::vector<GroundLine> lines = FindGroundLines(still.view());
+    const std::vector<GroundLine> lines = FindGroundLines(still.view(), find);
     if (lines.size() != 1) {
       ADD_FAILURE() << lines.size() << " lines with seed " << seed;
       continue;
@@ -183,6 +186,26 @@ TEST(GroundLines, TexturedGround) {
   options.texture = 0.05;
   options.roll_rad = 1.0_deg;
   ExpectHonest(Measure(options, kSeeds));
+}
+
+// Where the noise is small beside the texture, the edge's foot tells the
+// direction better than equal weights would: as those still tell the height,
+// the one measures the other (u_angle = sqrt(12)/L u_height for one weight).
+TEST(GroundLines, TheFootOfATexturedEdgeTellsItsDirection) {
+  for (const double ground_level : {0.40, 0.9}) {
+    StillOptions options;
+    options.texture = 0.10;
+    options.noise_dn = 0.3;
+    options.most_lines = 1;  // a coarse texture has edges of its own
+    options.roll_rad = 1.0_deg;
+    options.ground_level = ground_level;
+    SCOPED_TRACE(ground_level);
+    const Errors errors = Measure(options, kSeeds);
+    ExpectHonest(errors);
+    const double of_equal_weights =
+        std::sqrt(12.0) / 320.0 * Rms(errors.height_px);
+    EXPECT_LT(Rms(errors.angle_rad), 0.6 * of_equal_weights);
+  }
 }
 
 TEST(GroundLines, EmptyPictureHasNone) {

@@ -1,0 +1,165 @@
+#include "edge_texture.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace touchdown::calib {
+namespace {
+
+constexpr std::int32_t kRows = 12;  // of a strip beside the edge
+
+// What a strip's samples vary by about their level, which may change along the
+// edge.
+struct Strip {
+  std::vector<double> level;               // by column
+  std::array<double, kRows> covariance{};  // at distances of 0 .. rows
+};
+
+double At(const StillImage& image, std::int32_t x, std::int32_t y) {
+  return static_cast<double>(
+      image.level[static_cast<std::size_t>(y) *
+                      static_cast<std::size_t>(image.width_px) +
+                  static_cast<std::size_t>(x)]);
+}
+
+// Mean over columns within `half` of each.
+std::vector<double> Running(const std::vector<double>& values,
+                            std::size_t half) {
+  std::vector<double> sums(values.size() + 1, 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sums[i + 1] = sums[i] + values[i];
+  }
+  std::vector<double> means(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t from = i > half ? i - half : 0;
+    const std::size_t to = std::min(values.size(), i + half + 1);
+    means[i] = (sums[to] - sums[from]) / static_cast<double>(to - from);
+  }
+  return means;
+}
+
+// The strip from `reach` rows off the edge on; nothing where the picture ends.
+std::optional<Strip> Look(const StillImage& image,
+                          const std::vector<double>& edge_px, double reach,
+                          bool below) {
+  const auto first = static_cast<std::int32_t>(std::ceil(reach)) + 1;
+  const auto row = [&](std::size_t x, std::int32_t k) {
+    const auto edge = static_cast<std::int32_t>(std::lround(edge_px[x]));
+    return below ? edge + first + k : edge - first - k;
+  };
+  std::vector<double> mean(edge_px.size(), 0.0);
+  for (std::size_t x = 0; x < edge_px.size(); ++x) {
+    for (const std::int32_t end : {row(x, 0), row(x, kRows - 1)}) {
+      if (end < 0 || end >= image.height_px) return std::nullopt;
+    }
+    for (std::int32_t k = 0; k < kRows; ++k) {
+      mean[x] += At(image, static_cast<std::int32_t>(x), row(x, k)) / kRows;
+    }
+  }
+  Strip strip;
+  // Wide enough for a fine texture to be even, and narrow for the light.
+  constexpr std::size_t kHalfWidth = 16;
+  strip.level = Running(mean, kHalfWidth);
+  for (std::int32_t lag = 0; lag < kRows; ++lag) {
+    double sum = 0.0;
+    for (std::size_t x = 0; x < edge_px.size(); ++x) {
+      const auto column = static_cast<std::int32_t>(x);
+      for (std::int32_t k = 0; k + lag < kRows; ++k) {
+        sum += (At(image, column, row(x, k)) - strip.level[x]) *
+               (At(image, column, row(x, k + lag)) - strip.level[x]);
+      }
+    }
+    // Over all rows, not over the pairs: that is some field's covariance, which
+    // that of few pairs need not be.
+    strip.covariance[static_cast<std::size_t>(lag)] =
+        sum / (static_cast<double>(edge_px.size()) * kRows);
+  }
+  return strip;
+}
+
+double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+}  // namespace
+
+std::optional<EdgeTexture> LearnTexture(const StillImage& image,
+                                        const std::vector<double>& edge_px,
+                                        double reach_px) {
+  const auto above = Look(image, edge_px, reach_px, false);
+  const auto below = Look(image, edge_px, reach_px, true);
+  if (!above || !below) return std::nullopt;
+  EdgeTexture texture;
+  texture.below = below->covariance[0] > above->covariance[0];
+  const Strip& rough = texture.below ? *below : *above;
+  const Strip& plain = texture.below ? *above : *below;
+  constexpr double kTwice = 2.0;
+  constexpr double kRounding_dn2 = 1e-4;
+  texture.variance_dn2 = std::max(plain.covariance[0], kRounding_dn2);
+  if (rough.covariance[0] < kTwice * texture.variance_dn2) return std::nullopt;
+  texture.covariance_dn2.assign(rough.covariance.begin(),
+                                rough.covariance.end());
+  texture.covariance_dn2[0] -= texture.variance_dn2;
+  texture.ground_dn = rough.level;
+  return texture;
+}
+
+EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
+                       std::int32_t x, double y0, double blur_px) {
+  EdgePoint edge{static_cast<double>(x), y0, 0.0};
+  constexpr double kBlurs = 3.0;
+  const double reach = kBlurs * blur_px + 2.0;
+  const double side = texture.below ? 1.0 : -1.0;
+  const double ground = texture.ground_dn[static_cast<std::size_t>(x)];
+  constexpr int kIterations = 8;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const auto from = static_cast<std::int32_t>(std::ceil(edge.y - reach));
+    const auto to = static_cast<std::int32_t>(std::floor(edge.y + reach));
+    if (from < 0 || to >= image.height_px) return {edge.x, edge.y, 0.0};
+    const Eigen::Index n = to - from + 1;
+    Eigen::VectorXd cover(n);
+    Eigen::VectorXd slope(n);
+    Eigen::VectorXd value(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double y = static_cast<double>(from + i);
+      const double z = side * (y - edge.y) / blur_px;
+      cover[i] = Phi(z);
+      slope[i] = -side * std::exp(-0.5 * z * z) /
+                 (blur_px * std::sqrt(2.0 * std::numbers::pi));
+      value[i] = At(image, x, from + static_cast<std::int32_t>(i));
+    }
+    Eigen::MatrixXd covariance =
+        texture.variance_dn2 * Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const auto lag = static_cast<std::size_t>(std::abs(i - j));
+        if (lag >= texture.covariance_dn2.size()) continue;
+        covariance(i, j) += texture.covariance_dn2[lag] * cover[i] * cover[j];
+      }
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
+    if (!factor.isPositive()) return {edge.x, edge.y, 0.0};
+    // v - g F = a (1 - F), then the step in y at that a.
+    Eigen::MatrixXd rows(n, 2);
+    rows.col(0) = 1.0 - cover.array();
+    const Eigen::VectorXd weighted = factor.solve(rows.col(0));
+    const double a =
+        weighted.dot(value - ground * cover) / weighted.dot(rows.col(0));
+    rows.col(1) = (ground - a) * slope;
+    const Eigen::VectorXd residual = value - ground * cover - a * rows.col(0);
+    const Eigen::Matrix2d normal = rows.transpose() * factor.solve(rows);
+    const Eigen::Vector2d step =
+        normal.ldlt().solve(rows.transpose() * factor.solve(residual));
+    if (!step.allFinite()) return {edge.x, edge.y, 0.0};
+    edge.strength = side * (ground - a);
+    edge.y += std::clamp(step[1], -1.0, 1.0);
+    if (std::abs(edge.y - y0) > reach) return {edge.x, edge.y, 0.0};
+    constexpr double kSettled_px = 1e-4;
+    if (std::abs(step[1]) < kSettled_px) break;
+  }
+  return edge;
+}
+
+}  // namespace touchdown::calib
