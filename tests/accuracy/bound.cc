@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "touchdown/core/units.h"
+#include "touchdown/vision/scene.h"
 
 namespace touchdown::accuracy {
 namespace {
@@ -40,13 +41,35 @@ double EdgeInformation(double contrast, double blur2, double variance) {
 constexpr int kPose = 5;
 using PoseMatrix = Eigen::Matrix<double, kPose, kPose>;
 
-// `vx`, `vy` in px per frame, for the blur of the motion.
-PoseMatrix PoseInformation(const Case& c, double face, double vx, double vy) {
+// Whether an obstacle hides a point that is so far from the contact, px along
+// the ground and upwards.
+bool IsHidden(const Case& c, double along_px, double up_px) {
+  if (!c.film.trouble.obstacle) return false;
+  const vision::SceneCamera& camera = c.film.camera;
+  const core::PixelPoint seen = vision::ToImage(
+      camera, {along_px / camera.px_per_m, up_px / camera.px_per_m});
+  const core::PixelRect& box = *c.film.trouble.obstacle;
+  return seen.x_px >= box.x && seen.x_px < box.x + box.width &&
+         seen.y_px >= box.y && seen.y_px < box.y + box.height;
+}
+
+// Of the body at `pose`; `vx`, `vy` in px per frame, for the blur of the
+// motion.
+PoseMatrix PoseInformation(const Case& c,
+                           const Eigen::Matrix<double, kPose, 1>& pose,
+                           double vx, double vy) {
   const Levels& l = c.levels;
+  const double face = pose[2];
   const double variance = PixelVariance(c);
   PoseMatrix information = PoseMatrix::Zero();
   const auto add = [&](double nx, double ny, double lever, double long_side,
                        double short_side, double length) {
+    // The side's middle lies half the other side along the normal.
+    const double out = long_side * pose[3] + short_side * pose[4];
+    if (IsHidden(c, pose[0] + nx * out + ny * lever,
+                 pose[1] + ny * out - nx * lever)) {
+      return;
+    }
     const double along = l.open * (nx * vx + ny * vy);
     const double blur2 = PixelBlur2(c) + along * along / 12.0;
     Eigen::Matrix<double, kPose, 1> p;
@@ -213,7 +236,7 @@ Bound BoundOf(const Case& c) {
     const bool before = time < film.contact_frame;
     const auto pose = model.PoseAt(truth, time);
     const PoseMatrix pixels =
-        PoseInformation(c, pose[2], before ? truth[kVx] : truth[kVx2],
+        PoseInformation(c, pose, before ? truth[kVx] : truth[kVx2],
                         before ? truth[kVy] : truth[kVy2]);
     const MatrixXd j =
         gradient([&](const VectorXd& p) { return model.PoseAt(p, time); });

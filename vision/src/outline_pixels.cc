@@ -5,7 +5,14 @@
 #include <cstdint>
 #include <numbers>
 
+#include "hider.h"
+
 namespace touchdown::vision {
+
+bool UsablePart::IsHidden(double x_px, double y_px) const {
+  return hider_->Hides(x_px, y_px);
+}
+
 double DepthInside(const Outline& outline, double x_px, double y_px,
                    double cosine, double sine) {
   const double dx = x_px - outline.centre.x_px;
@@ -246,29 +253,30 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                 Background::kVarianceFloor_dn2);
 }
 
+core::PixelPoint OutlinePoint(const Outline& outline, double cosine,
+                              double sine, double phi) {
+  double x = outline.radius_px * std::cos(phi);
+  double y = outline.radius_px * std::sin(phi);
+  if (outline.kind == core::BodyKind::kRectangle) {
+    // Where the ray at phi leaves the rectangle.
+    const double c = std::cos(phi);
+    const double s = std::sin(phi);
+    const double t =
+        std::min(outline.half_long_px / std::max(std::abs(c), 1e-9),
+                 outline.half_short_px / std::max(std::abs(s), 1e-9));
+    x = t * (c * cosine - s * sine);
+    y = t * (c * sine + s * cosine);
+  }
+  return {outline.centre.x_px + x, outline.centre.y_px + y};
+}
+
 double VisibleShare(const core::Frame& frame, const Outline& outline,
                     double cosine, double sine, const UsablePart& usable) {
   constexpr int kProbes = 72;
   int seen = 0;
   for (int i = 0; i < kProbes; ++i) {
     const double phi = 2.0 * std::numbers::pi * i / kProbes;
-    double x = 0.0;
-    double y = 0.0;
-    if (outline.kind == core::BodyKind::kSphere) {
-      x = outline.radius_px * std::cos(phi);
-      y = outline.radius_px * std::sin(phi);
-    } else {
-      // Where the ray at phi leaves the rectangle.
-      const double c = std::cos(phi);
-      const double s = std::sin(phi);
-      const double t =
-          std::min(outline.half_long_px / std::max(std::abs(c), 1e-9),
-                   outline.half_short_px / std::max(std::abs(s), 1e-9));
-      x = t * (c * cosine - s * sine);
-      y = t * (c * sine + s * cosine);
-    }
-    x += outline.centre.x_px;
-    y += outline.centre.y_px;
+    const auto [x, y] = OutlinePoint(outline, cosine, sine, phi);
     seen += x >= frame.origin_x_px && y >= frame.origin_y_px &&
             x <= frame.origin_x_px + frame.width_px - 1 &&
             y <= frame.origin_y_px + frame.height_px - 1 && usable.Holds(x, y);

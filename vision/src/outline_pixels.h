@@ -56,13 +56,15 @@ class Behind {
   double zone_px_;
 };
 
-// What lies higher than a margin above the ground line and is not set aside.
+// What lies higher than a margin above the ground line, is not hidden and not
+// set aside.
 class UsablePart {
  public:
-  UsablePart(const Height& height, double margin_px)
-      : height_(height), margin_px_(margin_px) {}
+  UsablePart(const Height& height, double margin_px, const Hider* hider)
+      : height_(height), margin_px_(margin_px), hider_(hider) {}
   bool Holds(double x_px, double y_px) const {
     return height_.Of(x_px, y_px) >= margin_px_ &&
+           (hider_ == nullptr || !IsHidden(x_px, y_px)) &&
            (aside_.empty() || !IsAside(x_px, y_px));
   }
   // Sets these pixels aside, and all within `reach_px` of any of them.
@@ -70,9 +72,11 @@ class UsablePart {
 
  private:
   bool IsAside(double x_px, double y_px) const;
+  bool IsHidden(double x_px, double y_px) const;
 
   Height height_;
   double margin_px_;
+  const Hider* hider_;
   core::PixelRect box_;  // of the pixels set aside
   std::vector<std::uint8_t> aside_;
 };
@@ -89,6 +93,11 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                           const Outline& outline, double cosine, double sine,
                           const UsablePart& usable, const PixelBand& band,
                           OutlinePixels& pixels);
+
+// The point of the outline in the direction phi from its centre; for a
+// rectangle from its long side.
+core::PixelPoint OutlinePoint(const Outline& outline, double cosine,
+                              double sine, double phi);
 
 // Share of the outline that lies in the frame and is usable.
 double VisibleShare(const core::Frame& frame, const Outline& outline,

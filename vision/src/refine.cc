@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "hidden_frames.h"
 #include "outline_batch.h"
 #include "shared_fit.h"
 #include "touchdown/vision/tracker.h"
@@ -116,13 +117,6 @@ std::optional<double> Shared(const std::vector<Fitted>& all,
   return RobustMean(values, us).value;
 }
 
-double MedianMisfit(const std::vector<Fitted>& all) {
-  std::vector<double> misfits;
-  misfits.reserve(all.size());
-  for (const Fitted& f : all) misfits.push_back(f.fit.misfit);
-  return Median(std::move(misfits));
-}
-
 // A body that is no sphere or rectangle, or lies behind others, may lose its
 // size in a free fit: what was found is kept then.
 bool IsSameSize(const BodyImage& again, const BodyImage& found) {
@@ -152,7 +146,8 @@ class Refiner {
       : clip_(clip),
         background_(background),
         track_(track),
-        threads_(refine.threads) {
+        threads_(refine.threads),
+        hidden_(clip, background, track) {
     options_.surround =
         track.known_background ? Surround::kBackground : Surround::kPolynomial;
     options_.blur_px = track.body.blur_px;
@@ -196,14 +191,7 @@ class Refiner {
   std::vector<Fitted> SizeByFrames(BodyImage& body);
   std::vector<Fitted> SizeTogether(BodyImage& body);
   void Follow(const SharedStep& step, BodyImage& body);
-  // Takes the fits of a body that is hidden in part out, and its frames from
-  // the poses to come.
-  void LeaveOutHidden(std::vector<Fitted>& sized);
-  bool IsHidden(std::int64_t frame) const {
-    return std::any_of(hidden_.begin(), hidden_.end(), [&](const Frames& f) {
-      return f.first <= frame && frame <= f.last;
-    });
-  }
+  bool LookForHider(const std::vector<Fitted>& whole, const BodyImage& body);
   // Of every `step`-th pose.
   std::vector<std::optional<Fitted>> FitPoses(const BodyImage& body,
                                               std::size_t step) {
@@ -218,11 +206,7 @@ class Refiner {
   const Background& background_;
   const Track& track_;
   int threads_;
-  struct Frames {
-    std::int64_t first = 0;  // both included
-    std::int64_t last = 0;
-  };
-  std::vector<Frames> hidden_;  // in which something hides the body in part
+  HiddenFrames hidden_;
   OutlineOptions options_;
   std::vector<Motion> motion_;  // at each pose
 };
@@ -294,6 +278,14 @@ void Refiner::LearnShape(Track& refined) {
     if (IsSameSize(shape, track_.body)) TakeSize(shape, body);
   }
   sized = crude ? SizeByFrames(body) : SizeTogether(body);
+  // Where frames that it hides a little still passed for whole, the next look
+  // knows their place better.
+  constexpr int kLooks = 3;
+  for (int look = 0; look < kLooks && !crude && LookForHider(sized, body);
+       ++look) {
+    sized = SizeTogether(body);
+    if (sized.size() < kLeastSized) break;
+  }
   // Not with the shading held: its error is common to all frames, and what it
   // does to the size would not show in their scatter.
   if (sized.size() >= kLeastSized) options_.shading = ShadingOf(sized);
@@ -348,8 +340,8 @@ std::vector<Fitted> Refiner::SizeTogether(BodyImage& body) {
   double step = 1.0;
   for (int round = 0; round < kRounds && step > kNegligible; ++round) {
     sized = Sample(body);
-    if (round == 0) LeaveOutHidden(sized);
-    std::erase_if(sized, [&](const Fitted& f) { return IsHidden(f.frame); });
+    if (round == 0) hidden_.LeaveOut(sized);
+    std::erase_if(sized, [&](const Fitted& f) { return hidden_.Has(f.frame); });
     const auto together = StepTogether(sized);
     if (!together) {
       sized.clear();
@@ -379,21 +371,18 @@ void Refiner::Follow(const SharedStep& step, BodyImage& body) {
   options_.open = std::clamp(options_.open + step.step[3], 0.0, 1.0);
 }
 
-void Refiner::LeaveOutHidden(std::vector<Fitted>& sized) {
-  const std::vector<bool> hidden = FindHidden(sized);
-  std::vector<Fitted> whole;
-  for (std::size_t i = 0; i < sized.size(); ++i) {
-    if (!hidden[i]) {
-      whole.push_back(sized[i]);
-      continue;
-    }
-    // And the frames from the last one that was looked at to the next.
-    const std::int64_t first = i > 0 ? sized[i - 1].frame + 1 : 0;
-    const std::int64_t last = i + 1 < sized.size() ? sized[i + 1].frame - 1
-                                                   : track_.poses.back().frame;
-    hidden_.push_back({first, last});
+bool Refiner::LookForHider(const std::vector<Fitted>& whole,
+                           const BodyImage& body) {
+  std::vector<OutlineJob> own;
+  for (std::size_t i = 0; i < track_.poses.size(); ++i) {
+    if (hidden_.Has(track_.poses[i].frame)) own.push_back(JobAt(body, i));
   }
-  sized = std::move(whole);
+  OutlineOptions held = options_;
+  held.fit_size = false;
+  const auto fits = FitOutlines(clip_, background_, own, held, threads_);
+  if (!hidden_.LookForHider(whole, body, fits, held)) return false;
+  options_.hider = hidden_.hider();
+  return true;
 }
 
 void Refiner::MeasurePoses(Track& refined) {
@@ -401,11 +390,20 @@ void Refiner::MeasurePoses(Track& refined) {
   options_.fit_blur = false;
   refined.poses.clear();
   const auto fits = FitPoses(refined.body, 1);
+  std::vector<Fitted> whole;
+  std::vector<double> sizes;
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i] || IsHidden(fits[i]->frame)) continue;
-    Pose better = PoseOf(*fits[i]);
-    better.relative_size = track_.poses[i].relative_size;
-    refined.poses.push_back(better);
+    if (!fits[i] || hidden_.Has(fits[i]->frame)) continue;
+    whole.push_back(*fits[i]);
+    sizes.push_back(track_.poses[i].relative_size);
+  }
+  if (hidden_.hider() != nullptr) {
+    hidden_.AddTo(whole, refined.body, options_);
+    sizes.assign(whole.size(), 1.0);
+  }
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    refined.poses.push_back(PoseOf(whole[i]));
+    refined.poses.back().relative_size = sizes[i];
   }
 }
 

@@ -33,6 +33,13 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
+double MedianMisfit(const std::vector<Fitted>& all) {
+  std::vector<double> misfits;
+  misfits.reserve(all.size());
+  for (const Fitted& f : all) misfits.push_back(f.fit.misfit);
+  return Median(std::move(misfits));
+}
+
 core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us) {
   const double centre = Median(values);

@@ -24,6 +24,7 @@ inline constexpr double kWellModelled = 1.5;
 double SizeOf(const OutlineFit& fit);
 
 double Median(std::vector<double> values);
+double MedianMisfit(const std::vector<Fitted>& all);
 
 // Mean weighted by inverse variance, robustly: values off the median by more
 // than four times the scatter are left out. No value weighs more than the

@@ -29,6 +29,8 @@
 
 namespace touchdown::vision {
 
+struct Hider;
+
 // Geometry of the outline in the image.
 struct Outline {
   core::BodyKind kind = core::BodyKind::kSphere;
@@ -85,6 +87,10 @@ struct OutlineOptions {
   // Of a body that comes in flat it is the lower half in nearly every frame.
   enum class NearGround { kLeftOut, kModelled };
   NearGround near_ground = NearGround::kLeftOut;
+
+  // What stands before the body (src/hider.h), and leaves the fit; the caller
+  // keeps it alive.
+  const Hider* hider = nullptr;
 
   int max_iterations = 30;
   // Converged when no geometric parameter moves by more than this, px: a
