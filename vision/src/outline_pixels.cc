@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "appearance.h"
+
 namespace touchdown::vision {
 double DepthInside(const Outline& outline, double x_px, double y_px,
                    double cosine, double sine) {
@@ -189,6 +191,25 @@ class Collector {
   OutlinePixels& pixels_;
 };
 
+// As if it were added to the shading. Where it is not known well, the body's
+// pixels have less weight.
+void AddAppearance(const Appearance& appearance, const Outline& outline,
+                   double cosine, double sine, OutlinePixels& pixels) {
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    const Appearance::Value value =
+        appearance.At(pixels.x[i] - outline.centre.x_px,
+                      pixels.y[i] - outline.centre.y_px, cosine, sine);
+    pixels.behind[i] -= value.level_dn;
+    constexpr double kEdge_px = 1.0;
+    if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) <
+        -kEdge_px) {
+      continue;
+    }
+    const double u = value.u_dn * pixels.per_noise[i];
+    pixels.per_noise[i] /= std::sqrt(1.0 + u * u);
+  }
+}
+
 // Deep inside a large body there is only the shading to learn: every third
 // pixel.
 bool IsLeftOut(std::int32_t x, std::int32_t y) { return (x + y) % 3 != 0; }
@@ -244,6 +265,9 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
   }
   pixels.Finish(background.noise_floor_dn2, background.noise_slope_dn,
                 Background::kVarianceFloor_dn2);
+  if (band.appearance != nullptr) {
+    AddAppearance(*band.appearance, outline, cosine, sine, pixels);
+  }
 }
 
 double VisibleShare(const core::Frame& frame, const Outline& outline,

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "appearance.h"
 #include "outline_batch.h"
 #include "touchdown/vision/tracker.h"
 #include "track_shape.h"
@@ -129,6 +131,21 @@ bool IsSameSize(const BodyImage& again, const BodyImage& found) {
          same(again.half_short_px, found.half_short_px);
 }
 
+// Whether as many frames, or nearly, are modelled as well, or well enough.
+bool IsAsGood(const std::vector<Fitted>& again,
+              const std::vector<Fitted>& before) {
+  const auto misfit = [](const std::vector<Fitted>& fits) {
+    std::vector<double> misfits;
+    misfits.reserve(fits.size());
+    for (const Fitted& f : fits) misfits.push_back(f.fit.misfit);
+    return Median(std::move(misfits));
+  };
+  constexpr double kNearly = 0.8;
+  return static_cast<double>(again.size()) >=
+             kNearly * static_cast<double>(before.size()) &&
+         misfit(again) <= std::max(kWellModelled, misfit(before));
+}
+
 class Refiner {
  public:
   Refiner(Clip& clip, const Background& background, const Track& track,
@@ -163,10 +180,14 @@ class Refiner {
   // had the ground's edge taken for its own. With it blur, exposure, shading.
   void LearnShape(Track& refined);
   void MeasurePoses(Track& refined);
+  // What the body looks like beyond its shading, where that is something;
+  // `sized` are fits of a sample of frames, and are fitted again then.
+  void LearnLook(Track& refined, std::vector<Fitted>& sized);
   // The body as some frames show it.
   std::vector<Fitted> Sample(const BodyImage& body);
 
  private:
+  std::vector<SeenOutline> Seen(const std::vector<Fitted>& fits) const;
   OutlineJob JobAt(const BodyImage& body, std::size_t i) const {
     const Pose& pose = track_.poses[i];
     const Motion& motion = motion_[i];
@@ -202,6 +223,7 @@ class Refiner {
   std::vector<Frames> hidden_;  // in which something hides the body in part
   OutlineOptions options_;
   std::vector<Motion> motion_;  // at each pose
+  std::optional<Appearance> look_;
 };
 
 void Refiner::LookNearGround(Track& refined) {
@@ -270,6 +292,7 @@ void Refiner::LearnShape(Track& refined) {
   constexpr double kStart = 0.3;  // of the frame interval
   if (options_.fit_open) options_.open = kStart;
   std::vector<Fitted> sized = Sample(refined.body);
+  LearnLook(refined, sized);
   const double open = std::clamp(
       Shared(sized, &OutlineFit::open, &OutlineFit::u_open).value_or(0.0), 0.0,
       1.0);
@@ -296,6 +319,42 @@ void Refiner::LearnShape(Track& refined) {
   refined.body.radius_px = shape.radius_px;
   refined.body.half_long_px = shape.half_long_px;
   refined.body.half_short_px = shape.half_short_px;
+}
+
+void Refiner::LearnLook(Track& refined, std::vector<Fitted>& sized) {
+  if (!track_.known_background) return;
+  // The first outlines are drawn aside by what they do not know; after the
+  // third round nothing changes any more.
+  constexpr int kRounds = 3;
+  std::vector<Fitted> again = sized;
+  for (int round = 0; round < kRounds; ++round) {
+    auto look = LearnAppearance(clip_, background_, Seen(again), options_);
+    if (!look) break;
+    look_ = std::move(look);
+    options_.appearance = &*look_;
+    again = Sample(refined.body);
+  }
+  if (!look_) return;
+  if (!IsAsGood(again, sized)) {
+    look_.reset();
+    options_.appearance = nullptr;
+    return;
+  }
+  sized = std::move(again);
+  // A body that is well modelled now tells more of what is near it.
+  LookNearGround(refined);
+}
+
+std::vector<SeenOutline> Refiner::Seen(const std::vector<Fitted>& fits) const {
+  std::vector<SeenOutline> seen;
+  std::size_t i = 0;  // both are in the frames' order
+  for (const Fitted& f : fits) {
+    while (i + 1 < track_.poses.size() && track_.poses[i].frame < f.frame) ++i;
+    const Motion& motion = motion_[i];
+    seen.push_back({f.frame, f.fit, core::PixelPoint{motion.x_px, motion.y_px},
+                    motion.turn_rad});
+  }
+  return seen;
 }
 
 void Refiner::LeaveOutHidden(std::vector<Fitted>& sized) {
