@@ -195,11 +195,20 @@ class Collector {
 // pixels have less weight.
 void AddAppearance(const Appearance& appearance, const Outline& outline,
                    double cosine, double sine, OutlinePixels& pixels) {
+  pixels.sloped = !appearance.rings_dn.empty();
+  if (pixels.sloped) {
+    pixels.slope_x.assign(pixels.padded(), 0.0);
+    pixels.slope_y.assign(pixels.padded(), 0.0);
+  }
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const Appearance::Value value =
         appearance.At(pixels.x[i] - outline.centre.x_px,
                       pixels.y[i] - outline.centre.y_px, cosine, sine);
     pixels.behind[i] -= value.level_dn;
+    if (pixels.sloped) {
+      pixels.slope_x[i] = value.slope_x_dn_per_px;
+      pixels.slope_y[i] = value.slope_y_dn_per_px;
+    }
     constexpr double kEdge_px = 1.0;
     if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) <
         -kEdge_px) {
@@ -221,7 +230,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                           const UsablePart& usable, const PixelBand& band,
                           OutlinePixels& pixels) {
   const double margin = band.margin_px;
-  const bool large = SmallestHalf(outline) > 2.0 * margin;
+  const bool large = !band.every && SmallestHalf(outline) > 2.0 * margin;
   const double reach = Extent(outline) + margin;
   const core::PixelPoint& centre = outline.centre;
   const auto first = [](double at, std::int32_t least) {

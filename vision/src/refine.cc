@@ -131,19 +131,12 @@ bool IsSameSize(const BodyImage& again, const BodyImage& found) {
          same(again.half_short_px, found.half_short_px);
 }
 
-// Whether as many frames, or nearly, are modelled as well, or well enough.
-bool IsAsGood(const std::vector<Fitted>& again,
-              const std::vector<Fitted>& before) {
-  const auto misfit = [](const std::vector<Fitted>& fits) {
-    std::vector<double> misfits;
-    misfits.reserve(fits.size());
-    for (const Fitted& f : fits) misfits.push_back(f.fit.misfit);
-    return Median(std::move(misfits));
-  };
-  constexpr double kNearly = 0.8;
-  return static_cast<double>(again.size()) >=
-             kNearly * static_cast<double>(before.size()) &&
-         misfit(again) <= std::max(kWellModelled, misfit(before));
+// Of most frames.
+double MisfitOf(const std::vector<Fitted>& fits) {
+  std::vector<double> misfits;
+  misfits.reserve(fits.size());
+  for (const Fitted& f : fits) misfits.push_back(f.fit.misfit);
+  return Median(std::move(misfits));
 }
 
 class Refiner {
@@ -183,6 +176,8 @@ class Refiner {
   // What the body looks like beyond its shading, where that is something;
   // `sized` are fits of a sample of frames, and are fitted again then.
   void LearnLook(Track& refined, std::vector<Fitted>& sized);
+  bool LearnSpots(const BodyImage& body, std::vector<Fitted>& sized);
+  bool LearnRim(const BodyImage& body, std::vector<Fitted>& sized);
   // The body as some frames show it.
   std::vector<Fitted> Sample(const BodyImage& body);
 
@@ -323,26 +318,73 @@ void Refiner::LearnShape(Track& refined) {
 
 void Refiner::LearnLook(Track& refined, std::vector<Fitted>& sized) {
   if (!track_.known_background) return;
+  if (!LearnSpots(refined.body, sized) && !LearnRim(refined.body, sized)) {
+    options_.appearance = nullptr;
+    return;
+  }
+  options_.appearance = &*look_;
+  // A body that is well modelled now tells more of what is near it.
+  LookNearGround(refined);
+}
+
+bool Refiner::LearnSpots(const BodyImage& body, std::vector<Fitted>& sized) {
   // The first outlines are drawn aside by what they do not know; after the
   // third round nothing changes any more.
   constexpr int kRounds = 3;
+  constexpr double kNearlyAll = 0.8;  // of the frames
+  look_.reset();
   std::vector<Fitted> again = sized;
   for (int round = 0; round < kRounds; ++round) {
     auto look = LearnAppearance(clip_, background_, Seen(again), options_);
     if (!look) break;
     look_ = std::move(look);
     options_.appearance = &*look_;
-    again = Sample(refined.body);
+    again = Sample(body);
   }
-  if (!look_) return;
-  if (!IsAsGood(again, sized)) {
-    look_.reset();
-    options_.appearance = nullptr;
-    return;
+  if (!look_ ||
+      static_cast<double>(again.size()) <
+          kNearlyAll * static_cast<double>(sized.size()) ||
+      MisfitOf(again) > std::max(kWellModelled, MisfitOf(sized))) {
+    return false;
   }
   sized = std::move(again);
-  // A body that is well modelled now tells more of what is near it.
-  LookNearGround(refined);
+  return true;
+}
+
+bool Refiner::LearnRim(const BodyImage& body, std::vector<Fitted>& sized) {
+  const double crude = MisfitOf(sized);
+  if (body.kind != core::BodyKind::kSphere || !(crude > kWellModelled)) {
+    return false;
+  }
+  // Each round aligns the frames better to each other, or strays: the best
+  // counts. A hoop's misfit fell to 0.6 where its poses became twice as smooth,
+  // to 0.85 where they did not.
+  constexpr int kRounds = 8;
+  constexpr double kMuchBetter = 0.7;
+  constexpr double kNearlyAll = 0.8;  // of the frames
+  look_.reset();
+  options_.appearance = nullptr;
+  double least = kMuchBetter * crude;
+  std::vector<Fitted> best;
+  std::vector<Fitted> again = sized;
+  std::optional<Appearance> look;
+  for (int round = 0; round < kRounds; ++round) {
+    look = LearnRings(clip_, background_, Seen(again), options_);
+    if (!look) break;
+    options_.appearance = &*look;
+    again = Sample(body);
+    if (static_cast<double>(again.size()) <
+            kNearlyAll * static_cast<double>(sized.size()) ||
+        MisfitOf(again) > least) {
+      continue;
+    }
+    least = MisfitOf(again);
+    best = again;
+    look_ = look;
+  }
+  if (!look_) return false;
+  sized = std::move(best);
+  return true;
 }
 
 std::vector<SeenOutline> Refiner::Seen(const std::vector<Fitted>& fits) const {
