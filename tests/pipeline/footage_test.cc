@@ -114,9 +114,9 @@ TEST(Footage, ABallWithTwoShadowsBouncesOffAGroundThatNoEdgeShows) {
 }
 
 // A hoop with a white face and a dark mark: before the wall the mark is all
-// that stands out, before the tiles the face. Its rim shows more or less of
-// itself, so that outlines wander by a pixel; that it does not bounce is then
-// likely, or open, but never the contrary.
+// that stands out, before the tiles the face. Where its rings are learnt, its
+// outlines wander by a third of a pixel (steep) and by one (flat); that it does
+// not bounce is then known, or likely, but never the contrary.
 TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
   const auto path = Clip("roll_slip_42.4");
   SKIP_WITHOUT(path);
@@ -133,7 +133,7 @@ TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
   const core::StateDecision& state = a.contacts.first.state;
   EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
   ASSERT_TRUE(state.p_bounce);
-  EXPECT_LT(*state.p_bounce, 0.3);
+  EXPECT_LT(*state.p_bounce, 0.1);  // 0.01; it was 0.09
 }
 
 TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
@@ -150,7 +150,7 @@ TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
   const core::StateDecision& state = a.contacts.first.state;
   EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
   ASSERT_TRUE(state.p_bounce);
-  EXPECT_LT(*state.p_bounce, 0.975);
+  EXPECT_LT(*state.p_bounce, 0.975);  // 0.26; it was 0.72
 }
 
 }  // namespace

@@ -345,6 +345,34 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
   return look;
 }
 
+namespace {
+
+// Whether `look` follows something within the body that `other` follows: a
+// wheel's hole, a patch. It may fit better, and is not the body.
+bool IsWithin(const Look& look, const Look& other) {
+  constexpr double kSmaller = 0.8;
+  constexpr double kConcentric = 0.05;  // of the outer size
+  constexpr double kMostly = 0.8;       // of the frames that both saw
+  std::size_t both = 0;
+  std::size_t within = 0;
+  for (const Fitted& f : look.fits) {
+    const auto same =
+        std::find_if(other.fits.begin(), other.fits.end(),
+                     [&](const Fitted& o) { return o.frame == f.frame; });
+    if (same == other.fits.end()) continue;
+    ++both;
+    const core::PixelPoint& a = f.fit.outline.centre;
+    const core::PixelPoint& b = same->fit.outline.centre;
+    const double size = SizeOf(same->fit);
+    within += SizeOf(f.fit) < kSmaller * size &&
+              std::hypot(a.x_px - b.x_px, a.y_px - b.y_px) < kConcentric * size;
+  }
+  return within > 0 &&
+         static_cast<double>(within) > kMostly * static_cast<double>(both);
+}
+
+}  // namespace
+
 bool IsBetter(const Look& look, const Look& other) {
   return MuchSmoother(look, other) ||
          (CostOf(look) < CostOf(other) && !MuchSmoother(other, look));
@@ -393,7 +421,7 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                best.found.last);
     look.found.warning = best.found.warning;
     if (change && static_cast<double>(look.fits.size()) < least) continue;
-    if (IsBetter(look, best)) best = std::move(look);
+    if (IsBetter(look, best) && !IsWithin(look, best)) best = std::move(look);
   }
   if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");

@@ -70,9 +70,10 @@ class Fitter {
         open_(options.open),
         smear_(options.travel_px, options.turn_rad, Extent(start)) {
     geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
-    // A body of a few pixels cannot tell shading from shape.
-    constexpr double kSmallBody_px = 5.0;
-    interior_ = SmallestHalf(start) < kSmallBody_px ? 1 : 6;
+    // A body of a few pixels cannot tell shading from shape; one with a look of
+    // its own has a shading, too, which other frames tell.
+    const double small_px = options.appearance != nullptr ? 3.0 : 5.0;
+    interior_ = SmallestHalf(start) < small_px ? 1 : 6;
     outer_ = options.surround == OutlineOptions::Surround::kPolynomial ? 6 : 0;
   }
 
@@ -149,6 +150,7 @@ void Fitter::CollectPixels() {
   band.margin_px = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * smear_.way_px();
   band.inner_px = saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
   band.known_background = outer_ == 0;
+  band.appearance = outer_ == 0 ? options_.appearance : nullptr;
   CollectOutlinePixels(frame_, behind_, outline_, cosine_, sine_, usable_, band,
                        pixels_);
 }
@@ -322,10 +324,12 @@ std::string Fitter::Iterate(int& iterations) {
     // Follow the body with the set of pixels while it still moves; at first
     // closely, so that what is fitted to does not depend on the start.
     constexpr double kSamePlace_px = 0.003;
+    // What is added to the shading moves with the body.
+    const double far_px = options_.appearance != nullptr ? 0.02 : 0.5;
     const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
                                     outline_.centre.y_px - collected.y_px);
     const double spread = std::abs(blur_ - collected_blur);
-    if (moved > 0.5 ||
+    if (moved > far_px ||
         (iteration < 3 && std::max({moved, spread, step}) > kSamePlace_px)) {
       if (std::string why = Gather(); !why.empty()) {
         return why;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "appearance.h"
 #include "hider.h"
 
 namespace touchdown::vision {
@@ -196,6 +197,34 @@ class Collector {
   OutlinePixels& pixels_;
 };
 
+// As if it were added to the shading. Where it is not known well, the body's
+// pixels have less weight.
+void AddAppearance(const Appearance& appearance, const Outline& outline,
+                   double cosine, double sine, OutlinePixels& pixels) {
+  pixels.sloped = !appearance.rings_dn.empty();
+  if (pixels.sloped) {
+    pixels.slope_x.assign(pixels.padded(), 0.0);
+    pixels.slope_y.assign(pixels.padded(), 0.0);
+  }
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    const Appearance::Value value =
+        appearance.At(pixels.x[i] - outline.centre.x_px,
+                      pixels.y[i] - outline.centre.y_px, cosine, sine);
+    pixels.behind[i] -= value.level_dn;
+    if (pixels.sloped) {
+      pixels.slope_x[i] = value.slope_x_dn_per_px;
+      pixels.slope_y[i] = value.slope_y_dn_per_px;
+    }
+    constexpr double kEdge_px = 1.0;
+    if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) <
+        -kEdge_px) {
+      continue;
+    }
+    const double u = value.u_dn * pixels.per_noise[i];
+    pixels.per_noise[i] /= std::sqrt(1.0 + u * u);
+  }
+}
+
 // Deep inside a large body there is only the shading to learn: every third
 // pixel.
 bool IsLeftOut(std::int32_t x, std::int32_t y) { return (x + y) % 3 != 0; }
@@ -207,7 +236,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                           const UsablePart& usable, const PixelBand& band,
                           OutlinePixels& pixels) {
   const double margin = band.margin_px;
-  const bool large = SmallestHalf(outline) > 2.0 * margin;
+  const bool large = !band.every && SmallestHalf(outline) > 2.0 * margin;
   const double reach = Extent(outline) + margin;
   const core::PixelPoint& centre = outline.centre;
   const auto first = [](double at, std::int32_t least) {
@@ -251,6 +280,9 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
   }
   pixels.Finish(background.noise_floor_dn2, background.noise_slope_dn,
                 Background::kVarianceFloor_dn2);
+  if (band.appearance != nullptr) {
+    AddAppearance(*band.appearance, outline, cosine, sine, pixels);
+  }
 }
 
 core::PixelPoint OutlinePoint(const Outline& outline, double cosine,

@@ -88,6 +88,10 @@ struct PixelBand {
   double margin_px = 0.0;         // outwards, and inwards where all counts
   double inner_px = 0.0;          // the greatest depth inside
   bool known_background = false;  // leave out where it is not known
+  bool every = false;             // deep inside, too, not one in three
+  // Taken from what the body hides, as if it were added to the shading:
+  // I = out + c (shading + appearance - behind). Nothing: none.
+  const Appearance* appearance = nullptr;
 };
 void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                           const Outline& outline, double cosine, double sine,

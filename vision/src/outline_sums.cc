@@ -18,6 +18,7 @@ double SumOf(const std::array<double, kCount>& lanes) {
 
 void OutlinePixels::Clear(std::size_t room) {
   size = 0;
+  sloped = false;
   if (x.size() >= room + kBlock) return;
   for (auto* const column :
        {&x, &y, &value, &background, &behind, &per_noise}) {
@@ -47,6 +48,8 @@ struct OutlineBlock {
   const double* background;
   const double* behind;
   const double* per_noise;
+  const double* slope_x;  // null: none
+  const double* slope_y;
   double* residuals;
 
   using Lanes = OutlineSums::Lanes;
@@ -205,6 +208,11 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
                                ? cover.d_open
                                : cover.d_shape[round.shape[k]];
     Multiply(w.step, d, rows[k]);
+    if (slope_x == nullptr || round.shape[k] > 1) continue;
+    const double* const slope = round.shape[k] == 0 ? slope_x : slope_y;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      rows[k][i] -= w.inside[i] * slope[i];
+    }
   }
   Terms(cover, w.inside, round.interior, rows + round.shapes);
   if (!known) {
@@ -238,9 +246,14 @@ void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
   CoverBlock cover;
   for (std::size_t begin = 0; begin < pixels.padded(); begin += kBlock) {
     image.Cover(&pixels.x[begin], &pixels.y[begin], cover);
-    const OutlineBlock block = {&pixels.value[begin], &pixels.background[begin],
-                                &pixels.behind[begin], &pixels.per_noise[begin],
-                                &residuals[begin]};
+    const OutlineBlock block = {
+        &pixels.value[begin],
+        &pixels.background[begin],
+        &pixels.behind[begin],
+        &pixels.per_noise[begin],
+        pixels.sloped ? &pixels.slope_x[begin] : nullptr,
+        pixels.sloped ? &pixels.slope_y[begin] : nullptr,
+        &residuals[begin]};
     block.AddTo(round, cover, totals_);
   }
   residuals.resize(pixels.size);

@@ -21,6 +21,11 @@ struct OutlinePixels {
   std::vector<double> background;  // DN
   std::vector<double> behind;      // DN, of what the body hides here
   std::vector<double> per_noise;   // 1/DN; 0: padding
+  // Of what is added to the interior's levels and moves with the body, DN/px;
+  // used where `sloped`.
+  std::vector<double> slope_x;
+  std::vector<double> slope_y;
+  bool sloped = false;
 
   std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
   // None yet, and room for so many.

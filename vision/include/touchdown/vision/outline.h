@@ -50,6 +50,9 @@ struct Shading {
   std::array<double, 6> u{};
 };
 
+// What the body looks like beyond its shading (src/appearance.h).
+struct Appearance;
+
 struct OutlineOptions {
   // What lies around the body: the known background, or, where the body never
   // left it uncovered, a polynomial of its own.
@@ -74,6 +77,10 @@ struct OutlineOptions {
   // Without it the shading of a small or blurred body costs half of the
   // centre's information.
   std::optional<Shading> shading;
+
+  // What is to be added to the shading at each place of the body, where other
+  // frames tell, or nothing; known background only. Not owned.
+  const Appearance* appearance = nullptr;
 
   // Pixels lower than this above the ground line are left out, or modelled: the
   // blurred edges of body and ground do not superpose, as the body hides the
