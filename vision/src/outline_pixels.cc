@@ -276,4 +276,16 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
   return static_cast<double>(seen) / kProbes;
 }
 
+double DepthInside(const Outline& outline, double x_px, double y_px) {
+  return DepthInside(outline, x_px, y_px, std::cos(outline.angle_rad),
+                     std::sin(outline.angle_rad));
+}
+
+double SupportHeight(const Outline& outline, double ground_angle_rad) {
+  if (outline.kind == core::BodyKind::kSphere) return outline.radius_px;
+  const double tilt = outline.angle_rad - ground_angle_rad;
+  return outline.half_long_px * std::abs(std::sin(tilt)) +
+         outline.half_short_px * std::abs(std::cos(tilt));
+}
+
 }  // namespace touchdown::vision

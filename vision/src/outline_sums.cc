@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "lanes.h"
@@ -258,6 +259,32 @@ double OutlineSums::normal(std::size_t i, std::size_t j) const {
 
 double OutlineSums::gradient(std::size_t i) const {
   return SumOf(totals_.gradient[i]);
+}
+
+double RobustScale(const std::vector<double>& residuals) {
+  constexpr double kPerMedian = 1.4826;
+  const double one = 1.0 / kPerMedian;
+  const auto larger = static_cast<std::size_t>(
+      std::count_if(residuals.begin(), residuals.end(),
+                    [&](double r) { return std::abs(r) > one; }));
+  const std::size_t others = residuals.size() - larger;
+  const std::size_t middle = residuals.size() / 2;
+  if (middle < others) return 1.0;
+  // Mostly the median is not far beyond 1: few are so near to it.
+  std::vector<double> sizes;
+  for (const double most :
+       {1.1, 1.5, std::numeric_limits<double>::infinity()}) {
+    sizes.clear();
+    for (const double r : residuals) {
+      const double size = std::abs(r);
+      if (size > one && size <= most * one) sizes.push_back(size);
+    }
+    if (sizes.size() > middle - others) break;
+  }
+  if (sizes.size() <= middle - others) return 1.0;
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(middle - others);
+  std::nth_element(sizes.begin(), at, sizes.end());
+  return kPerMedian * *at;
 }
 
 }  // namespace touchdown::vision

@@ -82,9 +82,15 @@ struct OutlineOptions {
   enum class NearGround { kLeftOut, kModelled };
   NearGround near_ground = NearGround::kLeftOut;
 
+  // The start is of an outline that was fitted, or between such: within a tenth
+  // of a pixel or so. With `shading` known, too, what does not fit is an outlier
+  // from the first round on, if most pixels do fit.
+  bool starts_near = false;
+
   int max_iterations = 30;
-  // Converged when no geometric parameter moves by more than this, px: a
-  // twentieth of the best uncertainty that pixels give.
+  // Converged when no geometric parameter moves by more than this, px, or would
+  // in the next round by the last two: a twentieth of the best uncertainty that
+  // pixels give.
   double tolerance_px = 1e-4;
 };
 
