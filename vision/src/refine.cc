@@ -3,6 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "between_looks.h"
+#include "body_cover.h"
 #include "outline_batch.h"
 #include "touchdown/vision/tracker.h"
 #include "track_shape.h"
@@ -318,20 +320,25 @@ void Refiner::LeaveOutHidden(std::vector<Fitted>& sized) {
 void Refiner::MeasurePoses(Track& refined) {
   options_.fit_size = false;
   options_.fit_blur = false;
+  options_.starts_near = true;
   refined.poses.clear();
-  const auto fits = FitPoses(refined.body, 1);
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i] || IsHidden(fits[i]->frame)) continue;
-    Pose better = PoseOf(*fits[i]);
-    better.relative_size = track_.poses[i].relative_size;
+  std::vector<Fitted> fits = Found(FitPoses(refined.body, 1));
+  // Between two looks none has been asked yet whether it is of the body.
+  if (track_.step > 1) DropStrangers(fits);
+  refined.step = 1;
+  for (const Fitted& fit : fits) {
+    if (IsHidden(fit.frame)) continue;
+    Pose better = PoseOf(fit);
+    better.relative_size = PoseIn(track_, fit.frame)->relative_size;
     refined.poses.push_back(better);
   }
 }
 
 }  // namespace
 
-Track Refine(Clip& clip, const Background& background, const Track& track,
+Track Refine(Clip& clip, const Background& background, const Track& given,
              const RefineOptions& refine) {
+  const Track track = Bridged(given);
   Track refined = track;
   Refiner refiner(clip, background, track, refine);
   refiner.LookNearGround(refined);
