@@ -271,19 +271,23 @@ double RobustScale(const std::vector<double>& residuals) {
   const std::size_t middle = residuals.size() / 2;
   if (middle < others) return 1.0;
   // Mostly the median is not far beyond 1: few are so near to it.
-  std::vector<double> sizes;
+  std::vector<double> sizes(residuals.size());
+  std::size_t count = 0;
   for (const double most :
        {1.1, 1.5, std::numeric_limits<double>::infinity()}) {
-    sizes.clear();
+    count = 0;
     for (const double r : residuals) {
       const double size = std::abs(r);
-      if (size > one && size <= most * one) sizes.push_back(size);
+      sizes[count] = size;  // without a branch that nobody can foretell
+      count += static_cast<std::size_t>(size > one) &
+               static_cast<std::size_t>(size <= most * one);
     }
-    if (sizes.size() > middle - others) break;
+    if (count > middle - others) break;
   }
-  if (sizes.size() <= middle - others) return 1.0;
+  if (count <= middle - others) return 1.0;
   const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(middle - others);
-  std::nth_element(sizes.begin(), at, sizes.end());
+  std::nth_element(sizes.begin(), at,
+                   sizes.begin() + static_cast<std::ptrdiff_t>(count));
   return kPerMedian * *at;
 }
 
