@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace touchdown::vision {
 namespace {
@@ -74,15 +75,28 @@ void Around::Take(std::span<const PlaneSample> before,
 // Left and right of the middle: value = h + v t + c t^2. Of N parameters: 4, c
 // known (that of free flight); 5, c shared; 6, one of each side.
 template <int N>
-Sides FitSides(const Around& around, double gravity) {
-  Sides sides;
-  const int count = static_cast<int>(around.points.size());
-  if (count <= N) return sides;
+class SidesFit {
+ public:
+  SidesFit(const Around& around, double gravity);
+
+  double jump() const { return ok_ ? (x_[3] - x_[1]) / around_.unit_s : 0.0; }
+  Sides Judge() const;
+
+ private:
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
-  // A known c is taken out of the values.
-  const double known =
-      N == 4 ? 0.5 * gravity * around.unit_s * around.unit_s : 0.0;
+
+  const Around& around_;
+  double known_ = 0.0;  // c, taken out of the values
+  bool ok_ = false;
+  Eigen::LDLT<Matrix> factor_;
+  Vector x_ = Vector::Zero();
+};
+
+template <int N>
+SidesFit<N>::SidesFit(const Around& around, double gravity) : around_(around) {
+  if (static_cast<int>(around.points.size()) <= N) return;
+  if (N == 4) known_ = 0.5 * gravity * around.unit_s * around.unit_s;
   Matrix a = Matrix::Zero();
   Vector b = Vector::Zero();
   for (int side = 0; side < 2; ++side) {
@@ -91,8 +105,8 @@ Sides FitSides(const Around& around, double gravity) {
     a(at, at) = m.t[0];
     a(at, at + 1) = a(at + 1, at) = m.t[1];
     a(at + 1, at + 1) = m.t[2];
-    b[at] = m.h[0] + known * m.t[2];
-    b[at + 1] = m.h[1] + known * m.t[3];
+    b[at] = m.h[0] + known_ * m.t[2];
+    b[at + 1] = m.h[1] + known_ * m.t[3];
     if constexpr (N > 4) {
       const int bend = N == 6 ? 4 + side : 4;
       a(at, bend) = a(bend, at) = m.t[2];
@@ -101,32 +115,39 @@ Sides FitSides(const Around& around, double gravity) {
       b[bend] += m.h[2];
     }
   }
-  const Eigen::LDLT<Matrix> factor(a);
-  const Vector x = factor.solve(b);
-  if (!x.allFinite()) return sides;
+  factor_.compute(a);
+  x_ = factor_.solve(b);
+  ok_ = x_.allFinite();
+}
+
+template <int N>
+Sides SidesFit<N>::Judge() const {
+  Sides sides;
+  if (!ok_) return sides;
+  const int count = static_cast<int>(around_.points.size());
   double chi2 = 0.0;
-  for (std::size_t i = 0; i < around.points.size(); ++i) {
-    const Point& p = around.points[i];
-    const int at = i < around.left ? 0 : 2;
-    double bend = -known;
-    if constexpr (N == 5) bend = x[4];
-    if constexpr (N == 6) bend = x[4 + at / 2];
-    const double r = p.h - x[at] - p.t * (x[at + 1] + p.t * bend);
+  for (std::size_t i = 0; i < around_.points.size(); ++i) {
+    const Point& p = around_.points[i];
+    const int at = i < around_.left ? 0 : 2;
+    double bend = -known_;
+    if constexpr (N == 5) bend = x_[4];
+    if constexpr (N == 6) bend = x_[4 + at / 2];
+    const double r = p.h - x_[at] - p.t * (x_[at + 1] + p.t * bend);
     chi2 += p.w * r * r;
   }
   Vector difference = Vector::Zero();
   difference[1] = -1.0;
   difference[3] = 1.0;
   const double widen = std::max(1.0, chi2 / (count - N));
-  sides.jump = (x[3] - x[1]) / around.unit_s;
-  sides.u = std::sqrt(widen * difference.dot(factor.solve(difference))) /
-            around.unit_s;
+  sides.jump = jump();
+  sides.u = std::sqrt(widen * difference.dot(factor_.solve(difference))) /
+            around_.unit_s;
   sides.chi2 = chi2;
   sides.bic = chi2 + N * std::log(static_cast<double>(count));
   // Lines through the middle meet where the heights agree.
-  const double dv = x[3] - x[1];
-  sides.meet_s =
-      around.middle_s + around.unit_s * (dv != 0.0 ? (x[0] - x[2]) / dv : 0.0);
+  const double dv = x_[3] - x_[1];
+  sides.meet_s = around_.middle_s +
+                 around_.unit_s * (dv != 0.0 ? (x_[0] - x_[2]) / dv : 0.0);
   sides.ok = std::isfinite(sides.u) && sides.u > 0.0;
   return sides;
 }
@@ -163,18 +184,28 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
                         double PlaneSample::*value, double PlaneSample::*u) {
     const double gravity = options.gravity_px_per_s2.value_or(0.0);
     around.Take(left, right, value, u);
-    Sides sides = FitSides<5>(around, gravity);
-    if (left.size() >= 4 && right.size() >= 4) {
-      const Sides own = FitSides<6>(around, gravity);
-      if (own.ok && (!sides.ok || own.bic < sides.bic)) sides = own;
+    const double span_s = right.back().time_s - left.front().time_s;
+    const SidesFit<5> shared(around, gravity);
+    std::optional<SidesFit<6>> own;
+    if (left.size() >= 4 && right.size() >= 4) own.emplace(around, gravity);
+    std::optional<SidesFit<4>> known;
+    if (options.gravity_px_per_s2) known.emplace(around, gravity);
+    // Mostly none of them jumps by enough, whichever is the best.
+    const double most_jump = std::max(
+        {shared.jump(), own ? own->jump() : 0.0, known ? known->jump() : 0.0});
+    if (!(0.25 * most_jump * span_s >= options.least_effect_px)) return;
+    Sides sides = shared.Judge();
+    if (own) {
+      const Sides other = own->Judge();
+      if (other.ok && (!sides.ok || other.bic < sides.bic)) sides = other;
     }
     double most = std::numeric_limits<double>::infinity();
-    if (options.gravity_px_per_s2) {
+    if (known) {
       // Gravity is no guess: free curvature must explain clearly more.
       constexpr double kClearly = 6.0;  // of BIC: odds of e^3
-      const Sides known = FitSides<4>(around, gravity);
-      if (known.ok && (!sides.ok || known.bic < sides.bic + kClearly)) {
-        sides = known;
+      const Sides flight = known->Judge();
+      if (flight.ok && (!sides.ok || flight.bic < sides.bic + kClearly)) {
+        sides = flight;
         // Rest looks like many small bounces, and one flight like none: the
         // blow must explain what neither does.
         const double without =
@@ -184,7 +215,6 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
     }
     if (!sides.ok || sides.jump <= 0.0) return;
     const double significance = std::min(most, sides.jump / sides.u);
-    const double span_s = right.back().time_s - left.front().time_s;
     if (significance < options.least_significance) return;
     if (0.25 * sides.jump * span_s < options.least_effect_px) return;
     Kink kink;

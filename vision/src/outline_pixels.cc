@@ -248,27 +248,37 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
 
 double VisibleShare(const core::Frame& frame, const Outline& outline,
                     double cosine, double sine, const UsablePart& usable) {
+  // Mostly all of it.
+  const double reach = Extent(outline);
+  const core::PixelPoint& centre = outline.centre;
+  if (centre.x_px - reach >= frame.origin_x_px &&
+      centre.y_px - reach >= frame.origin_y_px &&
+      centre.x_px + reach <= frame.origin_x_px + frame.width_px - 1 &&
+      centre.y_px + reach <= frame.origin_y_px + frame.height_px - 1 &&
+      usable.HoldsAround(centre, reach)) {
+    return 1.0;
+  }
   constexpr int kProbes = 72;
   int seen = 0;
   for (int i = 0; i < kProbes; ++i) {
     const double phi = 2.0 * std::numbers::pi * i / kProbes;
+    const double c = std::cos(phi);
+    const double s = std::sin(phi);
     double x = 0.0;
     double y = 0.0;
     if (outline.kind == core::BodyKind::kSphere) {
-      x = outline.radius_px * std::cos(phi);
-      y = outline.radius_px * std::sin(phi);
+      x = outline.radius_px * c;
+      y = outline.radius_px * s;
     } else {
       // Where the ray at phi leaves the rectangle.
-      const double c = std::cos(phi);
-      const double s = std::sin(phi);
       const double t =
           std::min(outline.half_long_px / std::max(std::abs(c), 1e-9),
                    outline.half_short_px / std::max(std::abs(s), 1e-9));
       x = t * (c * cosine - s * sine);
       y = t * (c * sine + s * cosine);
     }
-    x += outline.centre.x_px;
-    y += outline.centre.y_px;
+    x += centre.x_px;
+    y += centre.y_px;
     seen += x >= frame.origin_x_px && y >= frame.origin_y_px &&
             x <= frame.origin_x_px + frame.width_px - 1 &&
             y <= frame.origin_y_px + frame.height_px - 1 && usable.Holds(x, y);
