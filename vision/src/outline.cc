@@ -320,10 +320,11 @@ std::string Fitter::Iterate(int& iterations) {
     near = near && step < kNearStart_px;
     // The next step is smaller by as much as this one is.
     constexpr double kFewTolerances = 10.0;
+    constexpr double kSurer = 5.0;  // what is left is alike in all frames
     const double next_step = step < kFewTolerances * options_.tolerance_px
                                  ? step * (step / last_step)
                                  : step;
-    if (std::min(step, next_step) < options_.tolerance_px &&
+    if (std::min(step, kSurer * next_step) < options_.tolerance_px &&
         robust_rounds >= 2) {
       converged_ = true;
       break;

@@ -17,9 +17,9 @@ struct BackgroundOptions {
   // ghost. 33 keeps the background's variance under 5 % of a frame's.
   int samples = 33;
 
-  // EstimateBackgroundBehind: where no pixel is covered in a larger share of the
-  // samples, `fallback` is as good, and a background without pixels comes back.
-  // 0: never.
+  // EstimateBackgroundBehind: where no pixel is covered in a larger share of
+  // the samples, `fallback` is as good, and a background without pixels comes
+  // back. 0: never.
   double least_covered = 0.0;
 
   int threads = 0;  // 0: one for each core; affects speed only

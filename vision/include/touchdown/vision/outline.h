@@ -83,8 +83,8 @@ struct OutlineOptions {
   NearGround near_ground = NearGround::kLeftOut;
 
   // The start is of an outline that was fitted, or between such: within a tenth
-  // of a pixel or so. With `shading` known, too, what does not fit is an outlier
-  // from the first round on, if most pixels do fit.
+  // of a pixel or so. With `shading` known, too, what does not fit is an
+  // outlier from the first round on, if most pixels do fit.
   bool starts_near = false;
 
   int max_iterations = 30;
