@@ -290,6 +290,14 @@ std::string Fitter::Iterate(int& iterations) {
   bool near = NearLevels();
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     ++iterations;
+    // It was not near enough, or the body is crudely modelled.
+    const auto begin_again = [&] {
+      near = false;
+      robust_rounds = 0;
+      iteration = -1;
+      step = std::numeric_limits<double>::infinity();
+      SolveLevels();
+    };
     // Before the outline is nearly in place, its residuals are no outliers.
     constexpr double kNear_px = 0.1;
     const bool robust = near || iteration >= 2 || step < kNear_px;
@@ -304,27 +312,28 @@ std::string Fitter::Iterate(int& iterations) {
     }
     constexpr double kUsualScale = 1.25;  // of a good fit, noise being told
     if (near && robust_scale_ > kUsualScale) {
-      // It was not near enough, or the body is crudely modelled.
-      near = false;
-      robust_rounds = 0;
-      SolveLevels();
+      begin_again();
       continue;
     }
     // Weights change with the residuals: of normal ones Newton's step is longer
     // by the mean of Tukey's weights over that of their influence's slope.
     constexpr double kToNewton = 1.2;
-    const bool settles = near || (robust && last_step < kNear_px);
-    if (!Step(settles ? kToNewton : 1.0, step)) {
+    if (!Step(near ? kToNewton : 1.0, step)) {
       return "the outline's fit is degenerate";
     }
-    near = near && step < kNearStart_px;
-    // The next step is smaller by as much as this one is.
+    if (near && step >= kNearStart_px) {
+      begin_again();
+      continue;
+    }
+    // From near, with the shape held, the next step is smaller by as much as
+    // this one is.
     constexpr double kFewTolerances = 10.0;
     constexpr double kSurer = 5.0;  // what is left is alike in all frames
-    const double next_step = step < kFewTolerances * options_.tolerance_px
-                                 ? step * (step / last_step)
-                                 : step;
-    if (std::min(step, kSurer * next_step) < options_.tolerance_px &&
+    const double next_step =
+        near && step < kFewTolerances * options_.tolerance_px
+            ? kSurer * step * (step / last_step)
+            : step;
+    if (std::min(step, next_step) < options_.tolerance_px &&
         robust_rounds >= 2) {
       converged_ = true;
       break;

@@ -88,9 +88,9 @@ struct OutlineOptions {
   bool starts_near = false;
 
   int max_iterations = 30;
-  // Converged when no geometric parameter moves by more than this, px, or would
-  // in the next round by the last two: a twentieth of the best uncertainty that
-  // pixels give.
+  // Converged when no geometric parameter moves by more than this, px: a
+  // twentieth of the best uncertainty that pixels give. With starts_near also
+  // when by the last two rounds the next would move it by less than a fifth.
   double tolerance_px = 1e-4;
 };
 
