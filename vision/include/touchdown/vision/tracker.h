@@ -84,13 +84,14 @@ struct RefineOptions {
 };
 
 // Fits the outlines again with the ground line known, from the track's own
-// poses, and for the first time where they were left out. The picture near the line is modelled (OutlineOptions::NearGround)
-// where residuals say that it is what the body alone makes of it; else pixels
-// lower than 2.5 w above the line (at most half of the smallest size) leave the
-// fit. What all frames share is learnt first: size, blur, the share of the
-// frame interval that is exposed, and the body's shading; then it is held, so
-// that a pose no longer depends on what is free in each frame. Frames in which
-// something hides a part of the body, so that it looks smaller, are left out.
+// poses, and for the first time where they were left out. The picture near the
+// line is modelled (OutlineOptions::NearGround) where residuals say that it is
+// what the body alone makes of it; else pixels lower than 2.5 w above the line
+// (at most half of the smallest size) leave the fit. What all frames share is
+// learnt first: size, blur, the share of the frame interval that is exposed,
+// and the body's shading; then it is held, so that a pose no longer depends on
+// what is free in each frame. Frames in which something hides a part of the
+// body, so that it looks smaller, are left out.
 Track Refine(Clip& clip, const Background& background, const Track& track,
              const RefineOptions& options);
 
