@@ -3,9 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 #include "app/cli/command.h"
 #include "app/pipeline/version.h"
@@ -19,6 +22,46 @@ enum ExitStatus : int {
   kStore = 4,  // trial store trouble
   kDefect = 70
 };
+
+struct Command {
+  std::string_view name;
+  void (*add)(CLI::App&, touchdown::cli::Action&);
+};
+constexpr Command kCommands[] = {{"analyze", touchdown::cli::AddAnalyze},
+                                 {"batch", touchdown::cli::AddBatch},
+                                 {"calibrate", touchdown::cli::AddCalibrate},
+                                 {"simulate", touchdown::cli::AddSimulate},
+                                 {"boundary", touchdown::cli::AddBoundary},
+                                 {"next", touchdown::cli::AddNext},
+                                 {"report", touchdown::cli::AddReport},
+                                 {"review", touchdown::cli::AddReview},
+                                 {"list", touchdown::cli::AddList},
+                                 {"show", touchdown::cli::AddShow},
+                                 {"log", touchdown::cli::AddLog},
+                                 {"correct", touchdown::cli::AddCorrect},
+                                 {"campaign", touchdown::cli::AddCampaign},
+                                 {"register", touchdown::cli::AddRegister},
+                                 {"import", touchdown::cli::AddImport},
+                                 {"export", touchdown::cli::AddExport},
+                                 {"db", touchdown::cli::AddDb},
+                                 {"session", touchdown::cli::AddSession},
+                                 {"rig", touchdown::cli::AddRig},
+                                 {"theory", touchdown::cli::AddTheory},
+                                 {"demo", touchdown::cli::AddDemo}};
+
+// The command of that name alone: to make all takes milliseconds. Those of
+// another name, such as --help, see all of them.
+void AddCommands(CLI::App& app, touchdown::cli::Action& action,
+                 std::string_view name) {
+  const auto* const one = std::find_if(
+      std::begin(kCommands), std::end(kCommands),
+      [&](const Command& command) { return command.name == name; });
+  for (const Command& command : kCommands) {
+    if (one == std::end(kCommands) || one->name == command.name) {
+      command.add(app, action);
+    }
+  }
+}
 
 int Complain(int status, const char* what) {
   fmt::print(stderr, "touchdown: {}\n", what);
@@ -38,27 +81,7 @@ int main(int argc, char** argv) {
                        std::string(touchdown::pipeline::Version()));
   app.require_subcommand(1);
   touchdown::cli::Action action;
-  touchdown::cli::AddAnalyze(app, action);
-  touchdown::cli::AddBatch(app, action);
-  touchdown::cli::AddCalibrate(app, action);
-  touchdown::cli::AddSimulate(app, action);
-  touchdown::cli::AddBoundary(app, action);
-  touchdown::cli::AddNext(app, action);
-  touchdown::cli::AddReport(app, action);
-  touchdown::cli::AddReview(app, action);
-  touchdown::cli::AddList(app, action);
-  touchdown::cli::AddShow(app, action);
-  touchdown::cli::AddLog(app, action);
-  touchdown::cli::AddCorrect(app, action);
-  touchdown::cli::AddCampaign(app, action);
-  touchdown::cli::AddRegister(app, action);
-  touchdown::cli::AddImport(app, action);
-  touchdown::cli::AddExport(app, action);
-  touchdown::cli::AddDb(app, action);
-  touchdown::cli::AddSession(app, action);
-  touchdown::cli::AddRig(app, action);
-  touchdown::cli::AddTheory(app, action);
-  touchdown::cli::AddDemo(app, action);
+  AddCommands(app, action, argc > 1 ? argv[1] : "");
   try {
     app.parse(argc, argv);
     return action ? action() : 0;

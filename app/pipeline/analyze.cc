@@ -8,6 +8,7 @@
 #include <future>
 #include <stdexcept>
 
+#include "app/pipeline/body_size.h"
 #include "app/pipeline/clip_calibration.h"
 #include "app/pipeline/judge.h"
 #include "app/pipeline/options_hash.h"
@@ -61,65 +62,6 @@ std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
   return kind;
 }
 
-core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
-  const double value = a.value / b.value;
-  return {value, value * std::hypot(a.u / a.value, b.u / b.value),
-          std::nullopt};
-}
-
-// `image`: of the body in the ideal picture.
-std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
-                                      const vision::BodyImage& image) {
-  if (options.scale_px_per_m) {
-    return calib::Scale{*options.scale_px_per_m, calib::ScaleSource::kUser};
-  }
-  if (options.calibration && options.calibration->scale) {
-    return calib::Scale{options.calibration->scale->px_per_m,
-                        calib::ScaleSource::kCalibration};
-  }
-  // The size of a part is not that of the body.
-  if (image.whole_px > 0.0) return std::nullopt;
-  if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
-    return calib::Scale{
-        QuotientOf(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
-        calib::ScaleSource::kBodySize};
-  }
-  if (options.long_m && image.kind == core::BodyKind::kRectangle) {
-    // The long side is the better known one, relative to its length.
-    const core::Estimate& a = *options.long_m;
-    const core::Estimate& b = *options.short_m;
-    return calib::Scale{QuotientOf(core::Scaled(image.half_long_px, 2.0),
-                                   a.value >= b.value ? a : b),
-                        calib::ScaleSource::kBodySize};
-  }
-  return std::nullopt;
-}
-
-// The body's size: as given, or from the image and the scale.
-core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,
-                  const std::optional<calib::Scale>& scale) {
-  const auto metres = [&](const core::Estimate& half_px) -> core::Measured {
-    if (!scale) return core::AbsentBecause("no scale");
-    const core::Estimate& s = scale->px_per_m;
-    const double value = 2.0 * half_px.value / s.value;
-    return core::Estimate{
-        value, std::hypot(2.0 * half_px.u / s.value, value * s.u / s.value),
-        std::nullopt};
-  };
-  core::Body body;
-  body.kind = image.kind;
-  if (image.kind == core::BodyKind::kSphere) {
-    body.diameter_m = options.diameter_m ? core::Measured(*options.diameter_m)
-                                         : metres(image.radius_px);
-  } else if (options.long_m) {
-    body = core::Rectangle(*options.long_m, *options.short_m);
-  } else {
-    body.long_m = metres(image.half_long_px);
-    body.short_m = metres(image.half_short_px);
-  }
-  return body;
-}
-
 struct Judged {
   calib::GroundLine ground;
   vision::Track track;  // refined with this ground
@@ -146,7 +88,10 @@ class Analyzer {
     return SeenThrough(camera_, track);
   }
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
-  void FindGroundAndContacts(const vision::Track& track);
+  std::optional<Judged> JudgeBest(
+      const std::vector<calib::GroundLine>& candidates,
+      const vision::Track& track);
+  void FindGroundAndContacts(vision::Track track);
   void DescribeScene();
 
   const AnalyzeOptions& options_;
@@ -158,6 +103,7 @@ class Analyzer {
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
   ClipCalibration camera_;
+  vision::TrackOptions track_options_;
 };
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
@@ -176,33 +122,22 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   return judged;
 }
 
-void Analyzer::FindGroundAndContacts(const vision::Track& track) {
-  std::vector<calib::GroundLine> candidates;
-  if (camera_.ideal_ground) {
-    candidates.push_back(*camera_.ideal_ground);
-  } else {
-    // The background's own noise: that of a frame over the square root of the
-    // frames averaged.
-    const calib::StillImage still{
-        background_.level.data(), background_.width_px, background_.height_px,
-        std::sqrt(background_.Variance(static_cast<double>(
-                      background_.level[background_.level.size() / 2])) /
-                  8.0)};
-    calib::GroundLineOptions line_options;
-    line_options.lens = camera_.lens;
-    candidates = calib::FindGroundLines(still, line_options);
-  }
+// The one that serves best as the ground of this track; nothing of none.
+std::optional<Judged> Analyzer::JudgeBest(
+    const std::vector<calib::GroundLine>& candidates,
+    const vision::Track& track) {
   // A first judgement by the track as it is; only the likely ones are worth
   // fitting every outline again.
   const vision::Track seen = Seen(track);
-  const auto first_merit = [&](const calib::GroundLine& candidate) {
-    return Merit(
-        ContactsIn(SeenInPlane(camera_, seen, candidate), contact_options_));
-  };
   std::vector<std::pair<int, calib::GroundLine>> ranked;
   ranked.reserve(candidates.size());
   for (const calib::GroundLine& candidate : candidates) {
-    ranked.emplace_back(first_merit(candidate), candidate);
+    ranked.emplace_back(
+        candidates.size() == 1
+            ? 0
+            : Merit(ContactsIn(SeenInPlane(camera_, seen, candidate),
+                               contact_options_)),
+        candidate);
   }
   std::stable_sort(
       ranked.begin(), ranked.end(),
@@ -219,6 +154,36 @@ void Analyzer::FindGroundAndContacts(const vision::Track& track) {
     }
     if (merit == 2) break;
   }
+  return best;
+}
+
+void Analyzer::FindGroundAndContacts(vision::Track track) {
+  std::vector<calib::GroundLine> candidates;
+  if (camera_.ideal_ground) {
+    candidates.push_back(*camera_.ideal_ground);
+  } else {
+    // The background's own noise: that of a frame over the square root of the
+    // frames averaged.
+    const calib::StillImage still{
+        background_.level.data(), background_.width_px, background_.height_px,
+        std::sqrt(background_.Variance(static_cast<double>(
+                      background_.level[background_.level.size() / 2])) /
+                  8.0)};
+    calib::GroundLineOptions line_options;
+    line_options.lens = camera_.lens;
+    candidates = calib::FindGroundLines(still, line_options);
+  }
+  const auto merit_of = [](const std::optional<Judged>& judged) {
+    return judged ? Merit(judged->contacts) : -1;
+  };
+  std::optional<Judged> best = JudgeBest(candidates, track);
+  if (!camera_.ideal_ground && track.step > 1 && merit_of(best) < 2) {
+    // What else there is to try needs all of the track.
+    track = vision::FitEveryFrame(*clip_, background_, track, track_options_);
+    best = JudgeBest(candidates, track);
+  }
+  int best_merit = merit_of(best);
+  const vision::Track seen = Seen(track);
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
   if (!camera_.ideal_ground && best_merit < 2) {
@@ -352,8 +317,10 @@ Analysis Analyzer::Run() {
   result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
                           camera_.warnings.end());
   auto lap = Clock::now();
-  vision::SteadyLight light =
-      vision::SteadyLightOf(std::move(clip_), options_.first_frame, last);
+  vision::SteadyLightOptions light_options;
+  light_options.threads = options_.decoder_threads;
+  vision::SteadyLight light = vision::SteadyLightOf(
+      std::move(clip_), options_.first_frame, last, light_options);
   clip_ = std::move(light.clip);
   light_told_ = light.told;
   if (light.corrected) light_spread_ = light.spread;
@@ -364,7 +331,8 @@ Analysis Analyzer::Run() {
   store_options.threads = options_.decoder_threads;
   store_options.progress = options_.progress;
   clip_ = vision::KeepFrames(std::move(clip_), store_options);
-  vision::TrackOptions track_options;
+  vision::TrackOptions& track_options = track_options_;
+  track_options.every_frame = false;
   track_options.first = options_.first_frame;
   track_options.last = last;
   track_options.region = options_.region;
@@ -419,11 +387,16 @@ Analysis Analyzer::Run() {
           : core::DefaultAngleKind(result_.body ? result_.body->kind
                                                 : core::BodyKind::kSphere);
   DescribeScene();
+  result_.timing.decode_s = clip_->reading_s();
+  // To give a large mapped file back takes milliseconds: beside the rest.
+  const auto closing =
+      std::async(options_.decoder_threads == 1 ? std::launch::deferred
+                                               : std::launch::async,
+                 [clip = std::move(clip_)]() mutable { clip.reset(); });
   if (result_.contacts.first.contact.found) {
     DescribeBudget(result_, contact_options_);
   }
   result_.timing.contact_s = Since(lap);
-  result_.timing.decode_s = clip_->reading_s();
   result_.timing.total_s = Since(start);
   result_.timing.frames_per_s =
       static_cast<double>(last - options_.first_frame) / result_.timing.total_s;

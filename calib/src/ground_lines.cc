@@ -55,21 +55,31 @@ double SeenAt(const std::optional<Lens>& lens, const Line& line, double middle,
 std::vector<EdgePoint> EdgePoints(const StillImage& image, double least) {
   std::vector<EdgePoint> points;
   const std::int32_t step = std::max<std::int32_t>(1, image.width_px / 640);
-  std::vector<double> profile(static_cast<std::size_t>(image.height_px), 0.0);
-  for (std::int32_t x = 0; x < image.width_px; x += step) {
-    for (std::int32_t y = 4; y + 4 < image.height_px; ++y) {
-      profile[static_cast<std::size_t>(y)] = StepAt(image, x, y);
+  const auto columns =
+      static_cast<std::size_t>((image.width_px + step - 1) / step);
+  // Row after row, as they lie in memory: the steps of three of them.
+  std::vector<double> above(columns);
+  std::vector<double> here(columns);
+  std::vector<double> below(columns);
+  for (std::int32_t y = 4; y + 4 < image.height_px; ++y) {
+    std::swap(above, here);
+    std::swap(here, below);
+    for (std::size_t k = 0; k < columns; ++k) {
+      below[k] = StepAt(image, static_cast<std::int32_t>(k) * step, y);
     }
-    for (std::int32_t y = 5; y + 5 < image.height_px; ++y) {
-      const auto i = static_cast<std::size_t>(y);
-      const double here = std::abs(profile[i]);
-      if (here < least) continue;
-      if (here > std::abs(profile[i - 1]) && here >= std::abs(profile[i + 1])) {
-        points.push_back(
-            {static_cast<double>(x), static_cast<double>(y), profile[i]});
+    if (y < 6) continue;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const double size = std::abs(here[k]);
+      if (size < least) continue;
+      if (size > std::abs(above[k]) && size >= std::abs(below[k])) {
+        points.push_back({static_cast<double>(k) * step,
+                          static_cast<double>(y - 1), here[k]});
       }
     }
   }
+  std::stable_sort(
+      points.begin(), points.end(),
+      [](const EdgePoint& a, const EdgePoint& b) { return a.x < b.x; });
   return points;
 }
 
@@ -154,6 +164,7 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
   const double reach = 3.0 * blur + 2.0;
   EdgePoint edge{static_cast<double>(x), y0, 0.0};
   residual2 = 0.0;
+  std::vector<double> phi;
   for (int iteration = 0; iteration < 6; ++iteration) {
     const auto from = static_cast<std::int32_t>(std::ceil(edge.y - reach));
     const auto to = static_cast<std::int32_t>(std::floor(edge.y + reach));
@@ -163,8 +174,10 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     }
     // Levels: value = a + b Phi((y - y_edge) / blur).
     double n = 0, sp = 0, spp = 0, sv = 0, spv = 0;
+    phi.clear();
     for (std::int32_t y = from; y <= to; ++y) {
       const double p = NormalCdf((y - edge.y) / blur);
+      phi.push_back(p);
       const auto v = static_cast<double>(At(image, x, y));
       n += 1;
       sp += p;
@@ -186,8 +199,8 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     residual2 = 0.0;
     for (std::int32_t y = from; y <= to; ++y) {
       const double z = (y - edge.y) / blur;
-      const double r =
-          static_cast<double>(At(image, x, y)) - a - b * NormalCdf(z);
+      const double r = static_cast<double>(At(image, x, y)) - a -
+                       b * phi[static_cast<std::size_t>(y - from)];
       const double slope =
           -b * 0.3989422804014327 * std::exp(-0.5 * z * z) / blur;
       num += r * slope;

@@ -150,7 +150,7 @@ TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
   const core::StateDecision& state = a.contacts.first.state;
   EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
   ASSERT_TRUE(state.p_bounce);
-  EXPECT_LT(*state.p_bounce, 0.975);  // 0.26; it was 0.72
+  EXPECT_LT(*state.p_bounce, 0.975);
 }
 
 }  // namespace

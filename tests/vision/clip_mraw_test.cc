@@ -78,6 +78,37 @@ TEST(Mraw, Eightbits) {
   EXPECT_DOUBLE_EQ(frame.time_s, 1.0 / 2000.0);
 }
 
+// Rows of all lengths, from any sample on, to the file's last byte.
+TEST(Mraw, TwelveBitsOfLongRows) {
+  const TemporaryFolder folder;
+  Header header;
+  header.width = 45;
+  header.bits = 12;
+  folder.Write("a.cihx", header.Cihx());
+  const auto level = [](unsigned i) { return (0x123 + 0x0E1 * i) & 0xFFF; };
+  std::string bytes;
+  for (unsigned i = 0; i < 180; i += 2) {
+    bytes += static_cast<char>(level(i) >> 4);
+    bytes += static_cast<char>((level(i) & 0xF) << 4 | level(i + 1) >> 8);
+    bytes += static_cast<char>(level(i + 1) & 0xFF);
+  }
+  const auto clip = OpenClip(folder.Write("a.mraw", bytes));
+  for (std::int64_t index = 0; index < 2; ++index) {
+    for (std::int32_t x = 0; x < 45; ++x) {
+      for (std::int32_t width = 1; width <= 45 - x; ++width) {
+        const core::Frame frame = clip->Read(index, {x, 0, width, 2});
+        for (std::int32_t v = 0; v < 2; ++v) {
+          for (std::int32_t u = 0; u < width; ++u) {
+            const auto sample =
+                static_cast<unsigned>(index * 90 + v * 45 + x + u);
+            ASSERT_EQ(frame.at(u, v), level(sample));
+          }
+        }
+      }
+    }
+  }
+}
+
 // Bytes AB Cx yz hold ABC and xyz, and the packing runs on across rows and
 // frames: 3x3 pictures begin and end in the middle of a byte.
 TEST(Mraw, TwelveBitsArePackedAcrossRowsAndFrames) {

@@ -163,15 +163,31 @@ struct Covers {
                           static_cast<std::size_t>(box.width) +
                       static_cast<std::size_t>(x - box.x)] != 0;
   }
+  // The greatest number of them that cover any one pixel.
+  int Most() const {
+    int most = 0;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const core::PixelRect& box = of[k].box;
+      auto mask = of[k].mask.begin();
+      for (std::int32_t y = box.y; y < box.y + box.height; ++y) {
+        for (std::int32_t x = box.x; x < box.x + box.width; ++x) {
+          if (*mask++ == 0) continue;
+          int count = 1;
+          for (std::size_t j = 0; j < k; ++j) count += Covered(j, x, y) ? 1 : 0;
+          most = std::max(most, count);
+        }
+      }
+    }
+    return most;
+  }
 };
 
 // The mid-mean of what is not covered, in the pixels that anything covers.
 // Covered samples are moved alternately to the two ends of the order, where
-// they change nothing in the middle. Returns the most that any pixel is
-// covered.
+// they change nothing in the middle.
 template <class Sample>
-std::size_t MidMeanBehind(const FrameSamples& samples, const Covers& covers,
-                          Background& background) {
+void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
+                   Background& background) {
   // Fewer samples than this are no background: noise, or the body's rim.
   constexpr std::size_t kLeastSamples = 3;
   const std::size_t n = samples.size();
@@ -180,7 +196,6 @@ std::size_t MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::size_t, kLanes> low{};   // samples moved below the others
   std::array<std::size_t, kLanes> high{};  // above
-  std::size_t most = 0;
   for (std::int32_t y = 0; y < background.height_px; ++y) {
     const std::size_t row = static_cast<std::size_t>(y) *
                             static_cast<std::size_t>(background.width_px);
@@ -221,7 +236,6 @@ std::size_t MidMeanBehind(const FrameSamples& samples, const Covers& covers,
       network.Sort(lanes.data());
       for (std::size_t i = 0; i < count; ++i) {
         if (touched[i] == 0) continue;
-        most = std::max(most, low[i] + high[i]);
         const std::size_t uncovered = n - low[i] - high[i];
         if (uncovered < kLeastSamples) {
           background.unknown[at + i] = 1;
@@ -237,7 +251,6 @@ std::size_t MidMeanBehind(const FrameSamples& samples, const Covers& covers,
       }
     }
   }
-  return most;
 }
 
 // Evenly over the range, both ends included.
@@ -334,10 +347,22 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
                                     double* most_covered) {
   std::vector<std::int64_t> frames;
   Covers all;
-  all.touched.assign(fallback.level.size(), 0);
+  std::vector<Cover> doubtful;
   for (const std::int64_t index :
        BackgroundFrames(first, last, options.samples)) {
     Cover cover = covers(index);
+    if (!cover.known) {
+      doubtful.push_back(std::move(cover));
+      continue;
+    }
+    frames.push_back(index);
+    all.of.push_back(std::move(cover));
+  }
+  if (frames.size() < 2) return fallback;
+  const double share = all.Most() / static_cast<double>(frames.size());
+  if (most_covered != nullptr) *most_covered = share;
+  all.touched.assign(fallback.level.size(), 0);
+  const auto touch = [&](const Cover& cover) {
     const core::PixelRect& box = cover.box;
     for (std::int32_t y = 0; y < box.height; ++y) {
       const std::uint8_t* const mask =
@@ -347,18 +372,17 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
           static_cast<std::ptrdiff_t>(box.y + y) * fallback.width_px + box.x;
       for (std::int32_t x = 0; x < box.width; ++x) touched[x] |= mask[x];
     }
-    if (!cover.known) continue;
-    frames.push_back(index);
-    all.of.push_back(std::move(cover));
-  }
+  };
+  for (const Cover& cover : all.of) touch(cover);
+  for (const Cover& cover : doubtful) touch(cover);
   Background background = fallback;
-  if (frames.size() < 2) return background;
   background.unknown.assign(fallback.level.size(), 0);
   const FrameSamples samples(clip, frames);
-  const std::size_t most =
-      samples.is_16_bit()
-          ? MidMeanBehind<std::uint16_t>(samples, all, background)
-          : MidMeanBehind<std::uint8_t>(samples, all, background);
+  if (samples.is_16_bit()) {
+    MidMeanBehind<std::uint16_t>(samples, all, background);
+  } else {
+    MidMeanBehind<std::uint8_t>(samples, all, background);
+  }
   NoisePairs pairs(background.width_px, background.height_px, samples);
   FrameSamples::Reader reader(samples);
   for (std::int32_t y = 0; y < background.height_px; ++y) {
@@ -371,10 +395,6 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
     }
   }
   EstimateNoise(pairs, background);
-  if (most_covered != nullptr) {
-    *most_covered =
-        static_cast<double>(most) / static_cast<double>(samples.size());
-  }
   return background;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "outline_batch.h"
+#include "outline_pixels.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
@@ -19,6 +20,8 @@ double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
   const double depth =
       0.3 * (outline.kind == core::BodyKind::kSphere ? outline.radius_px
                                                      : outline.half_short_px);
+  const double cosine = std::cos(outline.angle_rad);
+  const double sine = std::sin(outline.angle_rad);
   double sum = 0.0;
   double count = 0.0;
   for (int y = static_cast<int>(outline.centre.y_px - reach);
@@ -30,7 +33,7 @@ double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
       if (u < 0 || v < 0 || u >= frame.width_px || v >= frame.height_px) {
         continue;
       }
-      if (DepthInside(outline, x, y) < depth) continue;
+      if (DepthInside(outline, x, y, cosine, sine) < depth) continue;
       sum += frame.at(u, v);
       count += 1.0;
     }
@@ -105,9 +108,12 @@ Cover BodyCover::CoverOf(const Pose& pose) const {
   }
   cover.mask.reserve(static_cast<std::size_t>(box.width) *
                      static_cast<std::size_t>(box.height));
+  const double cosine = std::cos(outline.angle_rad);
+  const double sine = std::sin(outline.angle_rad);
   for (int y = box.y; y < box.y + box.height; ++y) {
     for (int x = box.x; x < box.x + box.width; ++x) {
-      cover.mask.push_back(DepthInside(outline, x, y) > -margin ? 1 : 0);
+      const double depth = DepthInside(outline, x, y, cosine, sine);
+      cover.mask.push_back(depth > -margin ? 1 : 0);
     }
   }
   return cover;

@@ -15,6 +15,7 @@
 #include <initializer_list>
 
 #include "clip_formats.h"
+#include "lanes.h"
 #include "mapped_file.h"
 #include "photron_header.h"
 #include "touchdown/core/errors.h"
@@ -36,6 +37,30 @@ std::uint16_t Unpack12(const std::uint8_t* stream, std::int64_t i) {
                                                : (p[1] & 0xF) << 8 | p[2]);
 }
 
+// Eight samples of twelve bytes at a time, as long as sixteen bytes are there.
+TOUCHDOWN_WIDEST
+void Unpack12Eights(const std::uint8_t*& bytes, std::int32_t& samples,
+                    std::uint16_t*& to) {
+  using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  using Words = std::uint16_t __attribute__((vector_size(16)));
+  constexpr Words kEven = {0xFFF, 0, 0xFFF, 0, 0xFFF, 0, 0xFFF, 0};
+  constexpr Words kOdd = {0, 0xFFF, 0, 0xFFF, 0, 0xFFF, 0, 0xFFF};
+  const std::uint8_t* p = bytes;
+  std::uint16_t* out = to;
+  std::int32_t left = samples;
+  for (; left >= 12; left -= 8, p += 12, out += 8) {
+    Bytes sixteen;
+    std::memcpy(&sixteen, p, sizeof sixteen);
+    const auto words = reinterpret_cast<Words>(__builtin_shufflevector(
+        sixteen, sixteen, 1, 0, 2, 1, 4, 3, 5, 4, 7, 6, 8, 7, 10, 9, 11, 10));
+    const Words eight = ((words >> 4) & kEven) | (words & kOdd);
+    std::memcpy(out, &eight, sizeof eight);
+  }
+  bytes = p;
+  to = out;
+  samples = left;
+}
+
 void UnpackRow12(const std::uint8_t* stream, std::int64_t first,
                  std::int32_t count, std::uint16_t* out) {
   if (count > 0 && first % 2 != 0) {
@@ -43,6 +68,7 @@ void UnpackRow12(const std::uint8_t* stream, std::int64_t first,
     --count;
   }
   const std::uint8_t* p = stream + first / 2 * 3;
+  Unpack12Eights(p, count, out);
   // Four at a time of eight bytes, of which six count; the last few, which have
   // no eight, by two.
   for (; count >= 8; count -= 4, p += 6, out += 4) {

@@ -9,6 +9,7 @@
 
 #include "detect.h"
 #include "outline_batch.h"
+#include "read_apart.h"
 #include "scout.h"
 #include "touchdown/core/errors.h"
 
@@ -28,12 +29,18 @@ bool IsLong(const Clip& clip, const TrackOptions& options) {
              options.seen_whole_px;
 }
 
-// Looks at frames one by one.
+// What was seen in one frame.
+struct Seen {
+  double time_s = 0.0;  // where there are any blobs
+  std::vector<Blob> blobs;
+};
+
+// Looks at frames, each by itself.
 class Watcher {
  public:
-  Watcher(Clip& clip, const Background& background, const TrackOptions& options,
-          Detector detector)
-      : clip_(clip), background_(background) {
+  Watcher(const Clip& clip, const Background& background,
+          const TrackOptions& options, Detector detector)
+      : background_(background) {
     detect_.detector = detector;
     detect_.region = options.region;
     if (detector != Detector::kLevels && IsLong(clip, options)) {
@@ -44,39 +51,40 @@ class Watcher {
   }
 
   // Where a clip can be glimpsed at, whether frame `index` may show anything.
-  bool CanGlimpse() const { return scout_ && clip_.windows_are_cheap(); }
-  bool Glimpse(std::int64_t index, int phase) const {
-    return scout_->Glimpse(clip_, index, phase);
+  bool CanGlimpse(const Clip& clip) const {
+    return scout_ && clip.windows_are_cheap();
+  }
+  bool Glimpse(Clip& clip, std::int64_t index, int phase) const {
+    return scout_->Glimpse(clip, index, phase);
   }
 
-  // The blobs of frame `index`, and its time where there are any.
-  std::vector<Blob> Look(std::int64_t index, double& time_s) {
+  Seen Look(Clip& clip, std::int64_t index) const {
+    Seen seen;
     if (!scout_) {
-      const core::Frame frame = clip_.Read(index);
-      time_s = frame.time_s;
-      return DetectBlobs(frame, background_, detect_);
+      const core::Frame frame = clip.Read(index);
+      seen.time_s = frame.time_s;
+      seen.blobs = DetectBlobs(frame, background_, detect_);
+      return seen;
     }
     Changes changes;
-    if (const Changes* known = clip_.ChangesIn(index)) {
+    if (const Changes* known = clip.ChangesIn(index)) {
       changes = *known;
     } else {
-      changes = scout_->Look(clip_, index);
+      changes = scout_->Look(clip, index);
     }
     DetectOptions detect = detect_;
     detect.noise = changes.noise;
-    std::vector<Blob> blobs;
     for (const core::PixelRect& rect : changes.where) {
-      const core::Frame window = clip_.Read(index, rect);
-      time_s = window.time_s;
+      const core::Frame window = clip.Read(index, rect);
+      seen.time_s = window.time_s;
       const auto more = DetectBlobs(window, background_, detect);
-      blobs.insert(blobs.end(), more.begin(), more.end());
+      seen.blobs.insert(seen.blobs.end(), more.begin(), more.end());
     }
-    KeepLargest(blobs, detect_);
-    return blobs;
+    KeepLargest(seen.blobs, detect_);
+    return seen;
   }
 
  private:
-  Clip& clip_;
   const Background& background_;
   DetectOptions detect_;
   std::optional<Scout> scout_;
@@ -89,21 +97,35 @@ struct Range {
 
 // Which of every `step`-th frame of the range are worth a look: those within
 // four glimpses of one that saw anything. All, where none did.
-std::vector<bool> WorthALook(const Watcher& watcher, const Range& range,
-                             std::int64_t step, std::int64_t first_looks) {
+std::vector<bool> WorthALook(Clip& clip, const Watcher& watcher,
+                             const Range& range, std::int64_t step,
+                             const TrackOptions& options) {
   const auto count =
       static_cast<std::size_t>((range.last - range.first + step - 1) / step);
   std::vector<bool> worth(count, true);
-  if (!watcher.CanGlimpse()) return worth;
-  constexpr std::int64_t kPhases = 4;
+  if (!watcher.CanGlimpse(clip)) return worth;
+  constexpr std::size_t kPhases = 4;
   constexpr std::int64_t kLargestStep = 32;  // frames
-  const std::int64_t stride =
-      std::clamp((range.last - range.first) / first_looks, step, kLargestStep);
+  const std::int64_t stride = std::clamp(
+      (range.last - range.first) / options.first_looks, step, kLargestStep);
+  std::vector<char> glimpsed(static_cast<std::size_t>(
+      (range.last - range.first + stride - 1) / stride));
+  const auto glimpse = [&](Clip& reader, std::size_t k) {
+    glimpsed[k] = watcher.Glimpse(
+        reader, range.first + static_cast<std::int64_t>(k) * stride,
+        static_cast<int>(k % kPhases));
+  };
+  if (CanReadApart(clip)) {
+    ReadApart(clip, glimpsed.size(), options.threads, glimpse);
+  } else {
+    for (std::size_t k = 0; k < glimpsed.size(); ++k) glimpse(clip, k);
+  }
   std::vector<bool> seen(count, false);
-  for (std::int64_t index = range.first, k = 0; index < range.last;
-       index += stride, ++k) {
-    if (!watcher.Glimpse(index, static_cast<int>(k % kPhases))) continue;
-    const std::int64_t reach = kPhases * stride;
+  for (std::size_t k = 0; k < glimpsed.size(); ++k) {
+    if (!glimpsed[k]) continue;
+    const std::int64_t index =
+        range.first + static_cast<std::int64_t>(k) * stride;
+    const std::int64_t reach = static_cast<std::int64_t>(kPhases) * stride;
     const std::int64_t from = std::max<std::int64_t>(
         0, (index - reach - range.first + step - 1) / step);
     const auto to = std::min(
@@ -132,15 +154,31 @@ Detections DetectIn(Clip& clip, const Background& background,
   found.step = step;
   seen = {range.last, range.first};
   std::vector<bool> worth;  // empty: all are
-  if (first) worth = WorthALook(watcher, range, step, options.first_looks);
+  if (first) worth = WorthALook(clip, watcher, range, step, options);
+  std::vector<std::int64_t> indices;
   for (std::int64_t index = range.first; index < range.last; index += step) {
     const auto look = static_cast<std::size_t>((index - range.first) / step);
-    if (!worth.empty() && !worth[look]) continue;
+    if (worth.empty() || worth[look]) indices.push_back(index);
+  }
+  std::vector<Seen> looks;
+  if (CanReadApart(clip)) {
+    looks.resize(indices.size());
     try {
-      double time_s = 0.0;
-      const std::vector<Blob> blobs = watcher.Look(index, time_s);
-      builder.Add(index, time_s, blobs);
-      if (!blobs.empty()) {
+      ReadApart(clip, looks.size(), options.threads,
+                [&](Clip& reader, std::size_t i) {
+                  looks[i] = watcher.Look(reader, indices[i]);
+                });
+    } catch (const core::InputError&) {
+      looks.clear();  // one by one: up to the damage
+    }
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::int64_t index = indices[i];
+    try {
+      const Seen look =
+          looks.empty() ? watcher.Look(clip, index) : std::move(looks[i]);
+      builder.Add(index, look.time_s, look.blobs);
+      if (!look.blobs.empty()) {
         seen.first = std::min(seen.first, index);
         seen.last = index + 1;
       }

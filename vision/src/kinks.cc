@@ -3,8 +3,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace touchdown::vision {
 namespace {
@@ -18,99 +20,151 @@ struct Sides {
   bool ok = false;
 };
 
-enum class Curvature { kKnown, kShared, kOwn };
+// What a fit of either side needs: a sample's time from the middle over the
+// whole span, its value from the last one on the left, its weight.
+struct Point {
+  double t = 0.0;
+  double h = 0.0;
+  double w = 0.0;
+};
 
-// Left and right of the middle: value = h + v t + c t^2 with c known (that of
-// free flight), shared, or one of each side.
-Sides FitSides(std::span<const PlaneSample> left,
-               std::span<const PlaneSample> right, Curvature curvature,
-               double gravity, double PlaneSample::*value,
-               double PlaneSample::*u) {
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-  const int n = curvature == Curvature::kOwn      ? 6
-                : curvature == Curvature::kShared ? 5
-                                                  : 4;
-  const int count = static_cast<int>(left.size() + right.size());
+// Weighted sums of one side: of t^k, and of h t^k.
+struct Moments {
+  std::array<double, 5> t{};
+  std::array<double, 3> h{};
+};
+
+// The samples around one instant.
+struct Around {
+  std::vector<Point> points;  // left, then right
+  std::size_t left = 0;       // so many
+  std::array<Moments, 2> sides;
+  double middle_s = 0.0;
+  double unit_s = 1.0;
+
+  void Take(std::span<const PlaneSample> before,
+            std::span<const PlaneSample> after, double PlaneSample::*value,
+            double PlaneSample::*u);
+};
+
+void Around::Take(std::span<const PlaneSample> before,
+                  std::span<const PlaneSample> after,
+                  double PlaneSample::*value, double PlaneSample::*u) {
+  middle_s = 0.5 * (before.back().time_s + after.front().time_s);
+  unit_s = after.back().time_s - before.front().time_s;
+  const double origin = before.back().*value;
+  points.clear();
+  left = before.size();
+  sides = {};
+  const auto add = [&](std::span<const PlaneSample> side, Moments& sums) {
+    for (const PlaneSample& s : side) {
+      const Point p{(s.time_s - middle_s) / unit_s, s.*value - origin,
+                    1.0 / (s.*u * s.*u)};
+      points.push_back(p);
+      double power = p.w;
+      for (std::size_t k = 0; k < sums.t.size(); ++k, power *= p.t) {
+        sums.t[k] += power;
+        if (k < sums.h.size()) sums.h[k] += power * p.h;
+      }
+    }
+  };
+  add(before, sides[0]);
+  add(after, sides[1]);
+}
+
+// Left and right of the middle: value = h + v t + c t^2. Of N parameters: 4, c
+// known (that of free flight); 5, c shared; 6, one of each side.
+template <int N>
+class SidesFit {
+ public:
+  SidesFit(const Around& around, double gravity);
+
+  double jump() const { return ok_ ? (x_[3] - x_[1]) / around_.unit_s : 0.0; }
+  Sides Judge() const;
+
+ private:
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  const Around& around_;
+  double known_ = 0.0;  // c, taken out of the values
+  bool ok_ = false;
+  Eigen::LDLT<Matrix> factor_;
+  Vector x_ = Vector::Zero();
+};
+
+template <int N>
+SidesFit<N>::SidesFit(const Around& around, double gravity) : around_(around) {
+  if (static_cast<int>(around.points.size()) <= N) return;
+  if (N == 4) known_ = 0.5 * gravity * around.unit_s * around.unit_s;
+  Matrix a = Matrix::Zero();
+  Vector b = Vector::Zero();
+  for (int side = 0; side < 2; ++side) {
+    const Moments& m = around.sides[static_cast<std::size_t>(side)];
+    const int at = 2 * side;
+    a(at, at) = m.t[0];
+    a(at, at + 1) = a(at + 1, at) = m.t[1];
+    a(at + 1, at + 1) = m.t[2];
+    b[at] = m.h[0] + known_ * m.t[2];
+    b[at + 1] = m.h[1] + known_ * m.t[3];
+    if constexpr (N > 4) {
+      const int bend = N == 6 ? 4 + side : 4;
+      a(at, bend) = a(bend, at) = m.t[2];
+      a(at + 1, bend) = a(bend, at + 1) = m.t[3];
+      a(bend, bend) += m.t[4];
+      b[bend] += m.h[2];
+    }
+  }
+  factor_.compute(a);
+  x_ = factor_.solve(b);
+  ok_ = x_.allFinite();
+}
+
+template <int N>
+Sides SidesFit<N>::Judge() const {
   Sides sides;
-  if (count <= n) return sides;
-  const double middle = 0.5 * (left.back().time_s + right.front().time_s);
-  const double unit = right.back().time_s - left.front().time_s;
-  const double origin = left.back().*value;
-  Matrix a = Matrix::Zero(n, n);
-  Vector b = Vector::Zero(n);
-  const auto row_of = [&](const PlaneSample& s, bool is_right) {
-    Vector row = Vector::Zero(n);
-    const double t = (s.time_s - middle) / unit;
-    const int at = is_right ? 2 : 0;
-    row[at] = 1.0;
-    row[at + 1] = t;
-    if (n > 4) row[n == 6 && is_right ? 5 : 4] = t * t;
-    return row;
-  };
-  const auto measured = [&](const PlaneSample& s) {
-    const double t = s.time_s - middle;
-    return s.*value - origin + (n == 4 ? 0.5 * gravity * t * t : 0.0);
-  };
-  const auto add = [&](std::span<const PlaneSample> side, bool is_right) {
-    for (const PlaneSample& s : side) {
-      const Vector row = row_of(s, is_right);
-      const double w = 1.0 / (s.*u * s.*u);
-      a.noalias() += w * row * row.transpose();
-      b.noalias() += w * measured(s) * row;
-    }
-  };
-  add(left, false);
-  add(right, true);
-  const Eigen::LDLT<Matrix> factor(a);
-  const Vector x = factor.solve(b);
-  if (!x.allFinite()) return sides;
+  if (!ok_) return sides;
+  const int count = static_cast<int>(around_.points.size());
   double chi2 = 0.0;
-  const auto cost = [&](std::span<const PlaneSample> side, bool is_right) {
-    for (const PlaneSample& s : side) {
-      const double r = (measured(s) - row_of(s, is_right).dot(x)) / (s.*u);
-      chi2 += r * r;
-    }
-  };
-  cost(left, false);
-  cost(right, true);
-  Vector difference = Vector::Zero(n);
+  for (std::size_t i = 0; i < around_.points.size(); ++i) {
+    const Point& p = around_.points[i];
+    const int at = i < around_.left ? 0 : 2;
+    double bend = -known_;
+    if constexpr (N == 5) bend = x_[4];
+    if constexpr (N == 6) bend = x_[4 + at / 2];
+    const double r = p.h - x_[at] - p.t * (x_[at + 1] + p.t * bend);
+    chi2 += p.w * r * r;
+  }
+  Vector difference = Vector::Zero();
   difference[1] = -1.0;
   difference[3] = 1.0;
-  const double widen = std::max(1.0, chi2 / (count - n));
-  sides.jump = (x[3] - x[1]) / unit;
-  sides.u = std::sqrt(widen * difference.dot(factor.solve(difference))) / unit;
+  const double widen = std::max(1.0, chi2 / (count - N));
+  sides.jump = jump();
+  sides.u = std::sqrt(widen * difference.dot(factor_.solve(difference))) /
+            around_.unit_s;
   sides.chi2 = chi2;
-  sides.bic = chi2 + n * std::log(static_cast<double>(count));
+  sides.bic = chi2 + N * std::log(static_cast<double>(count));
   // Lines through the middle meet where the heights agree.
-  const double dv = x[3] - x[1];
-  sides.meet_s = middle + unit * (dv != 0.0 ? (x[0] - x[2]) / dv : 0.0);
+  const double dv = x_[3] - x_[1];
+  sides.meet_s = around_.middle_s +
+                 around_.unit_s * (dv != 0.0 ? (x_[0] - x_[2]) / dv : 0.0);
   sides.ok = std::isfinite(sides.u) && sides.u > 0.0;
   return sides;
 }
 
 // Sum of squared residuals, in sigmas, of one straight line with `gravity`
 // added: of rest and sliding (0) or of one flight.
-double WithoutBlow(std::span<const PlaneSample> left,
-                   std::span<const PlaneSample> right, double gravity,
-                   double PlaneSample::*value, double PlaneSample::*u) {
-  const double middle = 0.5 * (left.back().time_s + right.front().time_s);
-  const double unit = right.back().time_s - left.front().time_s;
-  const double origin = left.back().*value;
+double WithoutBlow(const Around& around, double gravity) {
+  const double bend = 0.5 * gravity * around.unit_s * around.unit_s;
   double sw = 0, st = 0, sh = 0, stt = 0, sth = 0, shh = 0;
-  for (const auto side : {left, right}) {
-    for (const PlaneSample& s : side) {
-      const double w = 1.0 / (s.*u * s.*u);
-      const double seconds = s.time_s - middle;
-      const double t = seconds / unit;
-      const double h = s.*value - origin + 0.5 * gravity * seconds * seconds;
-      sw += w;
-      st += w * t;
-      sh += w * h;
-      stt += w * t * t;
-      sth += w * t * h;
-      shh += w * h * h;
-    }
+  for (const Point& p : around.points) {
+    const double h = p.h + bend * p.t * p.t;
+    sw += p.w;
+    st += p.w * p.t;
+    sh += p.w * h;
+    stt += p.w * p.t * p.t;
+    sth += p.w * p.t * h;
+    shh += p.w * h * h;
   }
   const double tt = stt - st * st / sw;
   const double th = sth - st * sh / sw;
@@ -124,35 +178,43 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
   constexpr std::size_t kWindows[] = {3, 4, 6, 10, 16, 28};
   std::vector<Kink> candidates;
   std::vector<std::size_t> reach;
+  Around around;
   const auto look = [&](std::span<const PlaneSample> left,
                         std::span<const PlaneSample> right, std::size_t k,
                         double PlaneSample::*value, double PlaneSample::*u) {
     const double gravity = options.gravity_px_per_s2.value_or(0.0);
-    Sides sides = FitSides(left, right, Curvature::kShared, gravity, value, u);
-    const auto better = [&](Curvature curvature) {
-      const Sides other = FitSides(left, right, curvature, gravity, value, u);
+    around.Take(left, right, value, u);
+    const double span_s = right.back().time_s - left.front().time_s;
+    const SidesFit<5> shared(around, gravity);
+    std::optional<SidesFit<6>> own;
+    if (left.size() >= 4 && right.size() >= 4) own.emplace(around, gravity);
+    std::optional<SidesFit<4>> known;
+    if (options.gravity_px_per_s2) known.emplace(around, gravity);
+    // Mostly none of them jumps by enough, whichever is the best.
+    const double most_jump = std::max(
+        {shared.jump(), own ? own->jump() : 0.0, known ? known->jump() : 0.0});
+    if (!(0.25 * most_jump * span_s >= options.least_effect_px)) return;
+    Sides sides = shared.Judge();
+    if (own) {
+      const Sides other = own->Judge();
       if (other.ok && (!sides.ok || other.bic < sides.bic)) sides = other;
-    };
-    if (left.size() >= 4 && right.size() >= 4) better(Curvature::kOwn);
+    }
     double most = std::numeric_limits<double>::infinity();
-    if (options.gravity_px_per_s2) {
+    if (known) {
       // Gravity is no guess: free curvature must explain clearly more.
       constexpr double kClearly = 6.0;  // of BIC: odds of e^3
-      const Sides known =
-          FitSides(left, right, Curvature::kKnown, gravity, value, u);
-      if (known.ok && (!sides.ok || known.bic < sides.bic + kClearly)) {
-        sides = known;
+      const Sides flight = known->Judge();
+      if (flight.ok && (!sides.ok || flight.bic < sides.bic + kClearly)) {
+        sides = flight;
         // Rest looks like many small bounces, and one flight like none: the
         // blow must explain what neither does.
         const double without =
-            std::min(WithoutBlow(left, right, 0.0, value, u),
-                     WithoutBlow(left, right, gravity, value, u));
+            std::min(WithoutBlow(around, 0.0), WithoutBlow(around, gravity));
         most = std::sqrt(std::max(0.0, without - sides.chi2));
       }
     }
     if (!sides.ok || sides.jump <= 0.0) return;
     const double significance = std::min(most, sides.jump / sides.u);
-    const double span_s = right.back().time_s - left.front().time_s;
     if (significance < options.least_significance) return;
     if (0.25 * sides.jump * span_s < options.least_effect_px) return;
     Kink kink;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,23 +24,12 @@ namespace {
 // outer polynomial terms.
 constexpr int kMaxParameters = kMostTerms;
 constexpr double kTukey = 4.685;  // 95 % efficient
+// Pixels that come and go at the band's borders as the outline moves by so much
+// tell nothing of its place, and residuals at its edge are no outliers yet.
+constexpr double kNearStart_px = 0.05;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
-
-// 1.4826 times the median of the residuals' sizes, and at least 1: often
-// counting is enough.
-double RobustScale(const std::vector<double>& residuals) {
-  constexpr double kPerMedian = 1.4826;
-  const auto large =
-      std::count_if(residuals.begin(), residuals.end(),
-                    [](double r) { return std::abs(r) > 1.0 / kPerMedian; });
-  if (2 * large < static_cast<std::ptrdiff_t>(residuals.size())) return 1.0;
-  std::vector<double> sizes(residuals.size());
-  std::transform(residuals.begin(), residuals.end(), sizes.begin(),
-                 [](double r) { return std::abs(r); });
-  return std::max(1.0, kPerMedian * Median(std::move(sizes)));
-}
 
 // Adds a step's sizes.
 template <class Step>
@@ -100,12 +88,13 @@ class Fitter {
     return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
   }
   void SolveLevels();
+  bool NearLevels();
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
   void Accumulate(bool robust);
   void Sum(const OutlineRound& round);
   OutlineRound Round() const;
   Matrix Regular() const;
-  bool Step(double& geometric_step);
+  bool Step(double longer, double& geometric_step);
   int OpenAt() const { return geometry_ + 1; }
   int LevelsBegin() const { return geometry_ + 2; }
   int Parameters() const { return LevelsBegin() + interior_ + outer_; }
@@ -227,6 +216,16 @@ void Fitter::SolveLevels() {
   levels_ = a.ldlt().solve(gradient_.tail(n));
 }
 
+// Those that the other frames tell, and with them that half of the residuals
+// are those of the noise, where the start is near; false elsewhere.
+bool Fitter::NearLevels() {
+  if (!options_.starts_near || !HasPrior() || outer_ != 0) return false;
+  levels_ = Eigen::Map<const Eigen::Vector<double, 6>>(
+      options_.shading->level.data());
+  robust_scale_ = 1.0;
+  return true;
+}
+
 // Builds the normal equations.
 void Fitter::Accumulate(bool robust) {
   OutlineRound round = Round();
@@ -254,10 +253,11 @@ Matrix Fitter::Regular() const {
   return a;
 }
 
-bool Fitter::Step(double& geometric_step) {
+// A step of Gauss and Newton, `longer` so many times.
+bool Fitter::Step(double longer, double& geometric_step) {
   const Eigen::LDLT<Matrix> factor(Regular());
   if (factor.info() != Eigen::Success) return false;
-  Vector step = factor.solve(gradient_);
+  Vector step = longer * factor.solve(gradient_);
   if (!step.allFinite()) return false;
   // No parameter may jump further than the linearisation holds.
   const double size = SmallestHalf(outline_);
@@ -301,11 +301,21 @@ std::string Fitter::Iterate(int& iterations) {
   core::PixelPoint collected = outline_.centre;
   double collected_blur = blur_;
   int robust_rounds = 0;
+  bool near = NearLevels();
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     ++iterations;
+    // It was not near enough, or the body is crudely modelled.
+    const auto begin_again = [&] {
+      near = false;
+      robust_rounds = 0;
+      iteration = -1;
+      step = std::numeric_limits<double>::infinity();
+      SolveLevels();
+    };
     // Before the outline is nearly in place, its residuals are no outliers.
     constexpr double kNear_px = 0.1;
-    const bool robust = iteration >= 2 || step < kNear_px;
+    const bool robust = near || iteration >= 2 || step < kNear_px;
+    const double last_step = step;
     Accumulate(robust);
     robust_rounds += robust ? 1 : 0;
     // At least the expected noise, more where the model is crude. Held after a
@@ -314,16 +324,37 @@ std::string Fitter::Iterate(int& iterations) {
     if (iteration < kSettled) {
       robust_scale_ = RobustScale(residuals_);
     }
-    if (!Step(step)) {
+    constexpr double kUsualScale = 1.25;  // of a good fit, noise being told
+    if (near && robust_scale_ > kUsualScale) {
+      begin_again();
+      continue;
+    }
+    // Weights change with the residuals: of normal ones Newton's step is longer
+    // by the mean of Tukey's weights over that of their influence's slope.
+    constexpr double kToNewton = 1.2;
+    if (!Step(near ? kToNewton : 1.0, step)) {
       return "the outline's fit is degenerate";
     }
-    if (step < options_.tolerance_px && robust_rounds >= 2) {
+    if (near && step >= kNearStart_px) {
+      begin_again();
+      continue;
+    }
+    // From near, with the shape held, the next step is smaller by as much as
+    // this one is.
+    constexpr double kFewTolerances = 10.0;
+    constexpr double kSurer = 5.0;  // what is left is alike in all frames
+    const double next_step =
+        near && step < kFewTolerances * options_.tolerance_px
+            ? kSurer * step * (step / last_step)
+            : step;
+    if (std::min(step, next_step) < options_.tolerance_px &&
+        robust_rounds >= 2) {
       converged_ = true;
       break;
     }
     // Follow the body with the set of pixels while it still moves; at first
     // closely, so that what is fitted to does not depend on the start.
-    constexpr double kSamePlace_px = 0.003;
+    const double kSamePlace_px = near ? kNearStart_px : 0.003;
     // What is added to the shading moves with the body.
     const double far_px = options_.appearance != nullptr ? 0.02 : 0.5;
     const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
@@ -396,7 +427,7 @@ core::Expected<OutlineFit> Fitter::Run() {
     interior_ = 1;
     CollectPixels();
   }
-  SolveLevels();
+  if (!NearLevels()) SolveLevels();
   int iterations = 0;
   std::string why = Iterate(iterations);
   if (why.empty() && SetAsideUnexplained()) {
@@ -484,18 +515,6 @@ core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
                                       const Outline& start,
                                       const OutlineOptions& options) {
   return Fitter(frame, background, start, options).Run();
-}
-
-double DepthInside(const Outline& outline, double x_px, double y_px) {
-  return DepthInside(outline, x_px, y_px, std::cos(outline.angle_rad),
-                     std::sin(outline.angle_rad));
-}
-
-double SupportHeight(const Outline& outline, double ground_angle_rad) {
-  if (outline.kind == core::BodyKind::kSphere) return outline.radius_px;
-  const double tilt = outline.angle_rad - ground_angle_rad;
-  return outline.half_long_px * std::abs(std::sin(tilt)) +
-         outline.half_short_px * std::abs(std::cos(tilt));
 }
 
 }  // namespace touchdown::vision

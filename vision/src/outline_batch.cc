@@ -1,12 +1,14 @@
 #include "outline_batch.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 
 #include "kept_pixels.h"
 #include "lanes.h"
 #include "parallel.h"
+#include "read_apart.h"
 
 namespace touchdown::vision {
 namespace {
@@ -36,6 +38,58 @@ void PrefetchRows(const core::Frame& frame) {
   for (std::int32_t y = 0; y < frame.height_px; ++y) {
     Prefetch(frame.data + y * frame.stride_bytes, bytes);
   }
+}
+
+// The options of all, and a job's own.
+OutlineOptions OptionsFor(const OutlineJob& job,
+                          const OutlineOptions& options) {
+  OutlineOptions own = options;
+  own.travel_px = job.travel_px;
+  own.turn_rad = job.turn_rad;
+  return own;
+}
+
+// The fits of jobs [from, to) in their windows.
+void FitThese(std::span<const OutlineJob> jobs, std::span<const Window> windows,
+              const Background& background, const OutlineOptions& options,
+              std::size_t from, std::size_t to, std::optional<Fitted>* fits) {
+  for (std::size_t i = from; i < to; ++i) {
+    if (i + 1 < to) PrefetchRows(windows[i + 1].frame);
+    const core::Frame& frame = windows[i].frame;
+    const auto fit = FitOutline(frame, background, jobs[i].start,
+                                OptionsFor(jobs[i], options));
+    if (fit) fits[i] = Fitted{jobs[i].frame, frame.time_s, *fit};
+  }
+}
+
+void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
+             const OutlineOptions& options, std::vector<Window>& windows) {
+  windows.clear();
+  for (const OutlineJob& job : jobs) {
+    windows.push_back(
+        Take(clip, job.frame,
+             WindowFor(job.start, OptionsFor(job, options), clip.info())));
+  }
+}
+
+// Each thread reads what it fits, by a reader of its own.
+void FitApart(Clip& clip, const Background& background,
+              std::span<const OutlineJob> jobs, const OutlineOptions& options,
+              int threads, std::vector<std::optional<Fitted>>& fits) {
+  constexpr std::size_t kAtOnce = 8;  // jobs: a millisecond
+  std::atomic<std::size_t> next = 0;
+  InParallel(ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
+    const std::unique_ptr<Clip> own = clip.Another();
+    std::vector<Window> windows;
+    for (std::size_t begin = next.fetch_add(kAtOnce); begin < jobs.size();
+         begin = next.fetch_add(kAtOnce)) {
+      const auto some =
+          jobs.subspan(begin, std::min(kAtOnce, jobs.size() - begin));
+      TakeAll(*own, some, options, windows);
+      FitThese(some, windows, background, options, 0, some.size(),
+               &fits[begin]);
+    }
+  });
 }
 
 }  // namespace
@@ -76,35 +130,21 @@ std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
                                                const OutlineOptions& options,
                                                int threads) {
   std::vector<std::optional<Fitted>> fits(jobs.size());
+  if (CanReadApart(clip)) {
+    FitApart(clip, background, jobs, options, threads, fits);
+    return fits;
+  }
   std::vector<Window> windows;
   for (std::size_t begin = 0; begin < jobs.size(); begin += kBatch) {
     const std::span<const OutlineJob> batch =
         jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
-    windows.clear();
-    for (const OutlineJob& job : batch) {
-      OutlineOptions own = options;
-      own.travel_px = job.travel_px;
-      windows.push_back(
-          Take(clip, job.frame, WindowFor(job.start, own, clip.info())));
-    }
-    InParallel(
-        static_cast<std::int64_t>(batch.size()), threads,
-        [&](std::int64_t from, std::int64_t to) {
-          OutlineOptions own = options;
-          for (auto i = static_cast<std::size_t>(from);
-               i < static_cast<std::size_t>(to); ++i) {
-            own.travel_px = batch[i].travel_px;
-            own.turn_rad = batch[i].turn_rad;
-            if (i + 1 < static_cast<std::size_t>(to)) {
-              PrefetchRows(windows[i + 1].frame);
-            }
-            const core::Frame& frame = windows[i].frame;
-            const auto fit = FitOutline(frame, background, batch[i].start, own);
-            if (fit) {
-              fits[begin + i] = Fitted{batch[i].frame, frame.time_s, *fit};
-            }
-          }
-        });
+    TakeAll(clip, batch, options, windows);
+    InParallel(static_cast<std::int64_t>(batch.size()), threads,
+               [&](std::int64_t from, std::int64_t to) {
+                 FitThese(batch, windows, background, options,
+                          static_cast<std::size_t>(from),
+                          static_cast<std::size_t>(to), &fits[begin]);
+               });
   }
   return fits;
 }

@@ -304,6 +304,16 @@ core::PixelPoint OutlinePoint(const Outline& outline, double cosine,
 
 double VisibleShare(const core::Frame& frame, const Outline& outline,
                     double cosine, double sine, const UsablePart& usable) {
+  // Mostly all of it.
+  const double reach = Extent(outline);
+  const core::PixelPoint& centre = outline.centre;
+  if (centre.x_px - reach >= frame.origin_x_px &&
+      centre.y_px - reach >= frame.origin_y_px &&
+      centre.x_px + reach <= frame.origin_x_px + frame.width_px - 1 &&
+      centre.y_px + reach <= frame.origin_y_px + frame.height_px - 1 &&
+      usable.HoldsAround(centre, reach)) {
+    return 1.0;
+  }
   constexpr int kProbes = 72;
   int seen = 0;
   for (int i = 0; i < kProbes; ++i) {
@@ -314,6 +324,18 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
             y <= frame.origin_y_px + frame.height_px - 1 && usable.Holds(x, y);
   }
   return static_cast<double>(seen) / kProbes;
+}
+
+double DepthInside(const Outline& outline, double x_px, double y_px) {
+  return DepthInside(outline, x_px, y_px, std::cos(outline.angle_rad),
+                     std::sin(outline.angle_rad));
+}
+
+double SupportHeight(const Outline& outline, double ground_angle_rad) {
+  if (outline.kind == core::BodyKind::kSphere) return outline.radius_px;
+  const double tilt = outline.angle_rad - ground_angle_rad;
+  return outline.half_long_px * std::abs(std::sin(tilt)) +
+         outline.half_short_px * std::abs(std::cos(tilt));
 }
 
 }  // namespace touchdown::vision

@@ -67,6 +67,11 @@ class UsablePart {
            (hider_ == nullptr || !IsHidden(x_px, y_px)) &&
            (aside_.empty() || !IsAside(x_px, y_px));
   }
+  // All within `reach_px` of a point.
+  bool HoldsAround(const core::PixelPoint& point, double reach_px) const {
+    return height_.Of(point.x_px, point.y_px) - reach_px >= margin_px_ &&
+           hider_ == nullptr && aside_.empty();
+  }
   // Sets these pixels aside, and all within `reach_px` of any of them.
   void Without(const std::vector<core::PixelPoint>& pixels, double reach_px);
 

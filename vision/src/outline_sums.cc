@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "lanes.h"
@@ -271,6 +272,36 @@ double OutlineSums::normal(std::size_t i, std::size_t j) const {
 
 double OutlineSums::gradient(std::size_t i) const {
   return SumOf(totals_.gradient[i]);
+}
+
+double RobustScale(const std::vector<double>& residuals) {
+  constexpr double kPerMedian = 1.4826;
+  const double one = 1.0 / kPerMedian;
+  const auto larger = static_cast<std::size_t>(
+      std::count_if(residuals.begin(), residuals.end(),
+                    [&](double r) { return std::abs(r) > one; }));
+  const std::size_t others = residuals.size() - larger;
+  const std::size_t middle = residuals.size() / 2;
+  if (middle < others) return 1.0;
+  // Mostly the median is not far beyond 1: few are so near to it.
+  std::vector<double> sizes(residuals.size());
+  std::size_t count = 0;
+  for (const double most :
+       {1.1, 1.5, std::numeric_limits<double>::infinity()}) {
+    count = 0;
+    for (const double r : residuals) {
+      const double size = std::abs(r);
+      sizes[count] = size;  // without a branch that nobody can foretell
+      count += static_cast<std::size_t>(size > one) &
+               static_cast<std::size_t>(size <= most * one);
+    }
+    if (count > middle - others) break;
+  }
+  if (count <= middle - others) return 1.0;
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(middle - others);
+  std::nth_element(sizes.begin(), at,
+                   sizes.begin() + static_cast<std::ptrdiff_t>(count));
+  return kPerMedian * *at;
 }
 
 }  // namespace touchdown::vision

@@ -94,4 +94,7 @@ class OutlineSums {
   Totals totals_;
 };
 
+// 1.4826 times the median of the residuals' sizes, and at least 1.
+double RobustScale(const std::vector<double>& residuals);
+
 }  // namespace touchdown::vision

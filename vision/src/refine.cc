@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "appearance.h"
+#include "between_looks.h"
+#include "body_cover.h"
 #include "hidden_frames.h"
 #include "outline_batch.h"
 #include "shared_fit.h"
@@ -481,29 +483,31 @@ bool Refiner::LookForHider(const std::vector<Fitted>& whole,
 void Refiner::MeasurePoses(Track& refined) {
   options_.fit_size = false;
   options_.fit_blur = false;
+  options_.starts_near = true;
   refined.poses.clear();
-  const auto fits = FitPoses(refined.body, 1);
-  std::vector<Fitted> whole;
-  std::vector<double> sizes;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i] || hidden_.Has(fits[i]->frame)) continue;
-    whole.push_back(*fits[i]);
-    sizes.push_back(track_.poses[i].relative_size);
-  }
+  std::vector<Fitted> fits = Found(FitPoses(refined.body, 1));
+  // Between two looks none has been asked yet whether it is of the body.
+  if (track_.step > 1) DropStrangers(fits);
+  std::erase_if(fits, [&](const Fitted& f) { return hidden_.Has(f.frame); });
+  options_.starts_near = false;
   if (hidden_.hider() != nullptr) {
-    hidden_.AddTo(whole, refined.body, options_);
-    sizes.assign(whole.size(), 1.0);
+    hidden_.AddTo(fits, refined.body, options_);
   }
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    refined.poses.push_back(PoseOf(whole[i]));
-    refined.poses.back().relative_size = sizes[i];
+  refined.step = 1;
+  for (const Fitted& fit : fits) {
+    Pose better = PoseOf(fit);
+    if (const auto pose = PoseIn(track_, fit.frame)) {
+      better.relative_size = pose->relative_size;
+    }
+    refined.poses.push_back(better);
   }
 }
 
 }  // namespace
 
-Track Refine(Clip& clip, const Background& background, const Track& track,
+Track Refine(Clip& clip, const Background& background, const Track& given,
              const RefineOptions& refine) {
+  const Track track = Bridged(given);
   Track refined = track;
   Refiner refiner(clip, background, track, refine);
   refiner.LookNearGround(refined);

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "parallel.h"
+#include "read_apart.h"
 #include "touchdown/core/errors.h"
 #include "track_shape.h"
 
@@ -31,9 +34,19 @@ class Grid {
   std::vector<float> Look(const core::Frame& frame) const {
     std::vector<float> levels;
     for (std::int32_t y = step_ / 2; y < height_; y += step_) {
-      for (std::int32_t x = step_ / 2; x < width_; x += step_) {
-        levels.push_back(static_cast<float>(frame.at(x, y)));
-      }
+      AddRow(frame, y, levels);
+    }
+    return levels;
+  }
+
+  // Of a frame of the clip: rows alone where they must be unpacked.
+  std::vector<float> Look(Clip& clip, std::int64_t index) const {
+    if (!clip.windows_are_cheap() || clip.views_last()) {
+      return Look(clip.Read(index));
+    }
+    std::vector<float> levels;
+    for (std::int32_t y = step_ / 2; y < height_; y += step_) {
+      AddRow(clip.Read(index, {0, y, width_, 1}), 0, levels);
     }
     return levels;
   }
@@ -56,9 +69,12 @@ class Grid {
     double gain = 1.0;
     double most_off = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kRounds; ++round) {
+      const double gain_before = gain;
+      const double most_before = most_off;
       double over = 0.0;
       double under = 0.0;
       std::vector<double> off;
+      off.reserve(levels.size());
       for (std::size_t i = 0; i < levels.size(); ++i) {
         const double v = static_cast<double>(levels[i]);
         const double r = static_cast<double>(steady_[i]);
@@ -77,11 +93,18 @@ class Grid {
       }
       // Half a level: what rounding alone leaves.
       most_off = 4.0 * std::max(0.5, 1.4826 * Median(std::move(off)));
+      if (gain == gain_before && most_off == most_before) break;
     }
     return gain;
   }
 
  private:
+  void AddRow(const core::Frame& frame, std::int32_t row,
+              std::vector<float>& levels) const {
+    for (std::int32_t x = step_ / 2; x < width_; x += step_) {
+      levels.push_back(static_cast<float>(frame.at(x, row)));
+    }
+  }
   bool IsUsable(float level, float steady) const {
     return level < static_cast<float>(full_) && steady > 0.0F &&
            steady < static_cast<float>(full_);
@@ -154,6 +177,34 @@ class CorrectedClip final : public Clip {
   std::vector<std::uint16_t> samples_;
 };
 
+// Of these frames, up to the first that cannot be read.
+std::vector<std::vector<float>> LookAt(Clip& clip, const Grid& grid,
+                                       std::span<const std::int64_t> indices,
+                                       int threads) {
+  std::vector<std::vector<float>> looks;
+  if (CanReadApart(clip)) {
+    looks.resize(indices.size());
+    try {
+      ReadApart(clip, indices.size(), threads,
+                [&](Clip& reader, std::size_t i) {
+                  looks[i] = grid.Look(reader, indices[i]);
+                });
+      return looks;
+    } catch (const core::InputError&) {
+      looks.clear();  // one by one: up to the damage
+    }
+  }
+  for (const std::int64_t index : indices) {
+    try {
+      looks.push_back(grid.Look(clip, index));
+    } catch (const core::InputError&) {
+      if (looks.empty()) throw;
+      break;
+    }
+  }
+  return looks;
+}
+
 }  // namespace
 
 SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
@@ -166,7 +217,6 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
                     info.frames));
   }
   Grid grid(info, options.points);
-  std::vector<std::vector<float>> looks;
   const auto frames = static_cast<std::int64_t>(
       std::clamp<double>(std::ceil(options.look_s * info.time_base.fps),
                          options.least_frames, options.most_frames));
@@ -174,32 +224,42 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
   constexpr std::int64_t kLooks = 34;
   const std::int64_t step = std::max<std::int64_t>(1, frames / kLooks);
   const std::int64_t end = std::min<std::int64_t>(last, first + frames);
+  std::vector<std::int64_t> indices;
   for (std::int64_t index = first; index < end; index += step) {
-    try {
-      looks.push_back(grid.Look(clip->Read(index)));
-    } catch (const core::InputError&) {
-      if (index == first) throw;
-      break;
-    }
+    indices.push_back(index);
   }
+  const std::vector<std::vector<float>> looks =
+      LookAt(*clip, grid, indices, options.threads);
   SteadyLight light;
   std::vector<float> steady(looks.front().size());
-  std::vector<double> column(looks.size());
-  for (std::size_t i = 0; i < steady.size(); ++i) {
-    for (std::size_t k = 0; k < looks.size(); ++k) {
-      column[k] = static_cast<double>(looks[k][i]);
-    }
-    steady[i] = static_cast<float>(Median(column));
-  }
+  InParallel(static_cast<std::int64_t>(steady.size()), options.threads,
+             [&](std::int64_t from, std::int64_t to) {
+               std::vector<float> column(looks.size());
+               const auto middle = column.begin() + static_cast<std::ptrdiff_t>(
+                                                        column.size() / 2);
+               for (auto i = static_cast<std::size_t>(from);
+                    i < static_cast<std::size_t>(to); ++i) {
+                 for (std::size_t k = 0; k < looks.size(); ++k) {
+                   column[k] = looks[k][i];
+                 }
+                 std::nth_element(column.begin(), middle, column.end());
+                 steady[i] = *middle;
+               }
+             });
   grid.SetSteady(std::move(steady));
   light.told = grid.Tells();
   if (!light.told) {
     light.clip = std::move(clip);
     return light;
   }
-  std::vector<double> gains;
-  gains.reserve(looks.size());
-  for (const auto& look : looks) gains.push_back(grid.GainOf(look));
+  std::vector<double> gains(looks.size());
+  InParallel(static_cast<std::int64_t>(looks.size()), options.threads,
+             [&](std::int64_t from, std::int64_t to) {
+               for (auto k = static_cast<std::size_t>(from);
+                    k < static_cast<std::size_t>(to); ++k) {
+                 gains[k] = grid.GainOf(looks[k]);
+               }
+             });
   double mean = 0.0;
   for (const double g : gains) mean += g / static_cast<double>(gains.size());
   double square = 0.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "between_looks.h"
 #include "body_cover.h"
 #include "first_look.h"
 #include "outline_batch.h"
@@ -14,12 +15,6 @@ namespace touchdown::vision {
 namespace {
 
 using Surround = OutlineOptions::Surround;
-
-struct Stretch {
-  std::int64_t first = 0;  // frames, both included
-  std::int64_t last = 0;
-  std::int64_t step = 1;
-};
 
 // Where the body should be: between two measured poses, or straight on from the
 // ends of the track.
@@ -37,10 +32,10 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
                                  const Track& track,
                                  const TrackOptions& options,
                                  OutlineOptions fit_options,
-                                 const Stretch& stretch) {
+                                 const std::vector<std::int64_t>& frames) {
   fit_options.ground = options.ground;
   std::vector<OutlineJob> jobs;
-  for (std::int64_t f = stretch.first; f <= stretch.last; f += stretch.step) {
+  for (const std::int64_t f : frames) {
     jobs.push_back({f, OutlineAt(track.body, Expected(track, f))});
   }
   return Found(
@@ -60,31 +55,44 @@ void DropOtherSizes(std::vector<Fitted>& all) {
   });
 }
 
+// Every `step`-th frame.
+std::vector<std::int64_t> FramesFrom(std::int64_t first, std::int64_t last,
+                                     std::int64_t step) {
+  std::vector<std::int64_t> frames;
+  for (std::int64_t f = first; f <= last; f += step) frames.push_back(f);
+  return frames;
+}
+
+OutlineOptions FitOptionsOf(const Track& track) {
+  OutlineOptions fit_options;
+  fit_options.surround =
+      track.known_background ? Surround::kBackground : Surround::kPolynomial;
+  fit_options.blur_px = track.body.blur_px;
+  return fit_options;
+}
+
 // Where only every `step`-th frame was looked at, all frames now, and those at
 // the ends that the looks may have missed. Returns a warning, or nothing.
 std::string FitBetween(Clip& clip, const Background& background,
                        const TrackOptions& options, std::int64_t step,
                        bool one_size, Track& track) {
-  OutlineOptions fit_options;
-  fit_options.surround =
-      track.known_background ? Surround::kBackground : Surround::kPolynomial;
-  fit_options.blur_px = track.body.blur_px;
-  Stretch stretch;
-  stretch.first = std::max(options.first, track.poses.front().frame - step + 1);
-  stretch.last =
+  const OutlineOptions fit_options = FitOptionsOf(track);
+  const std::int64_t first =
+      std::max(options.first, track.poses.front().frame - step + 1);
+  const std::int64_t last =
       std::min(track.last_frame - 1, track.poses.back().frame + step - 1);
   std::string warning;
   std::vector<Fitted> all;
   try {
-    all = FitFromTrack(clip, background, track, options, fit_options, stretch);
+    all = FitFromTrack(clip, background, track, options, fit_options,
+                       FramesFrom(first, last, 1));
   } catch (const core::InputError&) {
     std::string reason;
-    const std::int64_t bad =
-        FirstUnreadable(clip, stretch.first, stretch.last + 1, reason);
+    const std::int64_t bad = FirstUnreadable(clip, first, last + 1, reason);
     warning = fmt::format("frames from {} on cannot be read: {}", bad, reason);
     track.last_frame = bad;
-    stretch.last = bad - 1;
-    all = FitFromTrack(clip, background, track, options, fit_options, stretch);
+    all = FitFromTrack(clip, background, track, options, fit_options,
+                       FramesFrom(first, bad - 1, 1));
   }
   DropStrangers(all);
   if (one_size) DropOtherSizes(all);
@@ -94,6 +102,53 @@ std::string FitBetween(Clip& clip, const Background& background,
     FillTrack(all, track.body.kind, track);
   }
   return warning;
+}
+
+// The same only where the path is not smooth, beside the `looks` that the track
+// was made of; false, and nothing done, where the frames between do matter.
+bool FitWhereNotSmooth(Clip& clip, const Background& background,
+                       const TrackOptions& options, std::int64_t step,
+                       const std::vector<Fitted>& looks, Track& track) {
+  if (!track.known_background || !IsSteady(track) || MayChangeSize(looks)) {
+    return false;
+  }
+  const std::vector<bool> bridged = CanBeBridged(looks, track.poses, step);
+  if (std::find(bridged.begin(), bridged.end(), true) == bridged.end()) {
+    return false;
+  }
+  std::vector<std::int64_t> frames =
+      FramesFrom(std::max(options.first, looks.front().frame - step + 1),
+                 looks.front().frame - 1, 1);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (bridged[i]) continue;
+    const std::int64_t next =
+        i + 1 < looks.size()
+            ? looks[i + 1].frame
+            : std::min(track.last_frame, looks[i].frame + step);
+    for (std::int64_t f = looks[i].frame + 1; f < next; ++f) {
+      frames.push_back(f);
+    }
+  }
+  std::vector<Fitted> all = FitFromTrack(clip, background, track, options,
+                                         FitOptionsOf(track), frames);
+  all.insert(all.end(), looks.begin(), looks.end());
+  std::sort(all.begin(), all.end(),
+            [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
+  DropStrangers(all);
+  const auto is_there = [&](const Fitted& look) {
+    return std::binary_search(
+        all.begin(), all.end(), look,
+        [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
+  };
+  // A bridge needs its ends.
+  if (!std::all_of(looks.begin(), looks.end(), is_there)) return false;
+  Track filled = track;
+  filled.warnings.clear();
+  FillTrack(all, track.body.kind, filled);
+  if (!IsSteady(filled)) return false;
+  track = std::move(filled);
+  track.step = step;
+  return true;
 }
 
 // The track of a look's best chain. Warnings and the length of the whole come
@@ -117,6 +172,10 @@ struct BehindBody {
   Background background;
   double most_covered = 0.0;  // share of the frames, of any pixel
 };
+
+// Covered less than a fifth of the time, a pixel's mid-mean is untouched but
+// for a tenth of the noise.
+constexpr double kUntouched = 0.2;
 
 BehindBody LookBehind(Clip& clip, const TrackOptions& options,
                       const Track& track, const Background& fallback) {
@@ -172,9 +231,6 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   track = TrackOf(*first, clip, options);
   // Now that the body's place is known, the background without it.
   BehindBody behind = LookBehind(clip, options, track, first->background);
-  // Covered less than a fifth of the time, a pixel's mid-mean is untouched but
-  // for a tenth of the noise.
-  constexpr double kUntouched = 0.2;
   if (behind.most_covered > kUntouched && IsTorn(*first)) {
     Look again = LookWith(clip, behind.background, options,
                           Detector::kDifference, first->found.last);
@@ -202,10 +258,10 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
       if (again.kind == first->choice.kind) {
         OutlineOptions fit_options;
         fit_options.blur_px = again.blur_px;
-        better =
-            FitFromTrack(clip, result.background, track, options, fit_options,
-                         {track.poses.front().frame, track.poses.back().frame,
-                          first->found.step});
+        better = FitFromTrack(
+            clip, result.background, track, options, fit_options,
+            FramesFrom(track.poses.front().frame, track.poses.back().frame,
+                       first->found.step));
       } else {
         better = FitChain(clip, result.background, chain, again, options,
                           Surround::kBackground);
@@ -217,6 +273,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
         track.known_background = true;
         track.warnings.clear();
         FillTrack(better, again.kind, track);
+        first->fits = std::move(better);
       } else {
         std::swap(result.background, behind.background);
       }
@@ -227,7 +284,12 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   }
   // Now the frames between say where each fit begins. From rough starts, what
   // that finds is a better beginning again.
-  const int passes = first->rough_starts ? 2 : first->found.step > 1 ? 1 : 0;
+  int passes = first->rough_starts ? 2 : first->found.step > 1 ? 1 : 0;
+  if (passes == 1 && !options.every_frame && clip.windows_are_cheap() &&
+      FitWhereNotSmooth(clip, result.background, options, first->found.step,
+                        first->fits, track)) {
+    passes = 0;
+  }
   for (int pass = 0; pass < passes && track.poses.size() > 1; ++pass) {
     const std::string cut =
         FitBetween(clip, result.background, options, first->found.step,
@@ -243,6 +305,21 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
         whole_px));
   }
   return result;
+}
+
+Track FitEveryFrame(Clip& clip, const Background& background,
+                    const Track& track, const TrackOptions& options) {
+  Track whole = track;
+  if (track.step <= 1) return whole;
+  whole.step = 1;
+  whole.warnings.clear();
+  const std::string cut =
+      FitBetween(clip, background, options, track.step, false, whole);
+  whole.body.whole_px = track.body.whole_px;
+  if (!cut.empty()) whole.warnings.push_back(cut);
+  whole.warnings.insert(whole.warnings.end(), track.warnings.begin(),
+                        track.warnings.end());
+  return whole;
 }
 
 }  // namespace touchdown::vision

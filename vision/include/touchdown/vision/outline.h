@@ -99,9 +99,15 @@ struct OutlineOptions {
   // keeps it alive.
   const Hider* hider = nullptr;
 
+  // The start is of an outline that was fitted, or between such: within a tenth
+  // of a pixel or so. With `shading` known, too, what does not fit is an
+  // outlier from the first round on, if most pixels do fit.
+  bool starts_near = false;
+
   int max_iterations = 30;
   // Converged when no geometric parameter moves by more than this, px: a
-  // twentieth of the best uncertainty that pixels give.
+  // twentieth of the best uncertainty that pixels give. With starts_near also
+  // when by the last two rounds the next would move it by less than a fifth.
   double tolerance_px = 1e-4;
 };
 

@@ -26,6 +26,8 @@ struct SteadyLightOptions {
   // mirrors, the background's own noise estimate holds it, and correcting does
   // more harm than good (bouncing_cart: 0.6 %).
   double least_spread = 0.01;
+
+  int threads = 0;  // 0: one for each core; affects speed only
 };
 
 struct SteadyLight {

@@ -58,6 +58,9 @@ struct Track {
   std::int64_t last_frame = 0;
   double frame_interval_s = 0.0;
   bool known_background = true;  // false: the body never left it uncovered
+  // More than 1: between two poses that are so many frames apart the path is
+  // smooth, and no outline has been fitted yet.
+  std::int64_t step = 1;
   // Whether the picture near the ground line is what the body alone makes of
   // it. Else there is a shadow, a reflection or an uneven edge, and the
   // outline's lower part was left out there. After Refine.

@@ -46,6 +46,11 @@ struct TrackOptions {
   // body is in fewer of them at any pixel.
   int background_samples = 0;
 
+  // False: of a raw clip that was looked at every so many frames, the frames of
+  // a smooth path are left to Refine (Track::step). Near blows, at both ends
+  // and where the body is not wholly seen every frame is fitted all the same.
+  bool every_frame = true;
+
   int threads = 0;  // 0: one for each core; affects speed only
 
   // Called now and then with the share done, 0..1; may be empty.
@@ -64,6 +69,10 @@ struct TrackResult {
 core::Expected<TrackResult> TrackBody(Clip& clip,
                                       const TrackOptions& options = {});
 
+// Fits the outlines that TrackBody left out, from the poses around them.
+Track FitEveryFrame(Clip& clip, const Background& background,
+                    const Track& track, const TrackOptions& options = {});
+
 struct RefineOptions {
   calib::GroundLine ground;
 
@@ -75,13 +84,14 @@ struct RefineOptions {
 };
 
 // Fits the outlines again with the ground line known, from the track's own
-// poses. The picture near the line is modelled (OutlineOptions::NearGround)
-// where residuals say that it is what the body alone makes of it; else pixels
-// lower than 2.5 w above the line (at most half of the smallest size) leave the
-// fit. What all frames share is learnt first: size, blur, the share of the
-// frame interval that is exposed, and the body's shading; then it is held, so
-// that a pose no longer depends on what is free in each frame. Frames in which
-// something hides a part of the body, so that it looks smaller, are left out.
+// poses, and for the first time where they were left out. The picture near the
+// line is modelled (OutlineOptions::NearGround) where residuals say that it is
+// what the body alone makes of it; else pixels lower than 2.5 w above the line
+// (at most half of the smallest size) leave the fit. What all frames share is
+// learnt first: size, blur, the share of the frame interval that is exposed,
+// and the body's shading; then it is held, so that a pose no longer depends on
+// what is free in each frame. Frames in which something hides a part of the
+// body, so that it looks smaller, are left out.
 Track Refine(Clip& clip, const Background& background, const Track& track,
              const RefineOptions& options);
 

@@ -1,0 +1,27 @@
+// The body's size and the scale: what a person told, and what the image tells
+// of the rest.
+#pragma once
+
+#include <optional>
+
+#include "app/pipeline/analyze.h"
+#include "touchdown/calib/plane.h"
+#include "touchdown/core/body.h"
+#include "touchdown/core/estimate.h"
+#include "touchdown/vision/track.h"
+
+namespace touchdown::pipeline {
+
+// a / b, with u of both to first order.
+core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b);
+
+// Pixels per metre: given, calibrated, or from the body's known size; nothing
+// where none of them is there. `image`: of the body in the ideal picture.
+std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
+                                      const vision::BodyImage& image);
+
+// The body's size: as given, or from the image and the scale.
+core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,
+                  const std::optional<calib::Scale>& scale);
+
+}  // namespace touchdown::pipeline
