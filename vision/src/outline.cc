@@ -31,17 +31,6 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              kMaxParameters, kMaxParameters>;
 
-// Adds a step's sizes.
-template <class Step>
-void AddSizes(const Step& step, Outline& outline) {
-  if (outline.kind == core::BodyKind::kSphere) {
-    outline.radius_px += step[2];
-  } else {
-    outline.half_long_px += step[2];
-    outline.half_short_px += step[3];
-  }
-}
-
 class Fitter {
  public:
   Fitter(const core::Frame& frame, const Background& background,
@@ -82,7 +71,6 @@ class Fitter {
   std::string Gather();
   std::string Iterate(int& iterations);
   bool SetAsideUnexplained();
-  void TellNearGround(OutlineFit& fit) const;
   void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
   double Visible() const {
     return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
@@ -272,7 +260,7 @@ bool Fitter::Step(double longer, double& geometric_step) {
   outline_.centre.x_px += step[0];
   outline_.centre.y_px += step[1];
   geometric_step = std::hypot(step[0], step[1]);
-  AddSizes(step, outline_);
+  Grow(step[2], geometry_ == 5 ? step[3] : 0.0, outline_);
   constexpr double kLeast_px = 0.7;
   if (!(SmallestHalf(outline_) > kLeast_px)) return false;
   geometric_step = std::max(geometric_step, std::abs(step[2]));
@@ -395,23 +383,6 @@ bool Fitter::SetAsideUnexplained() {
   return true;
 }
 
-void Fitter::TellNearGround(OutlineFit& fit) const {
-  double near = 0.0;
-  double others = 0.0;
-  for (std::size_t i = 0; i < pixels_.size; ++i) {
-    const double square = residuals_[i] * residuals_[i];
-    if (height_.Of(pixels_.x[i], pixels_.y[i]) < options_.ground_margin_px) {
-      ++fit.pixels_near_ground;
-      near += square;
-    } else {
-      others += square;
-    }
-  }
-  const int rest = fit.pixels - fit.pixels_near_ground;
-  if (fit.pixels_near_ground == 0 || rest == 0) return;
-  fit.excess_near_ground = near / fit.pixels_near_ground / (others / rest);
-}
-
 core::Expected<OutlineFit> Fitter::Run() {
   cosine_ = std::cos(outline_.angle_rad);
   sine_ = std::sin(outline_.angle_rad);
@@ -463,7 +434,8 @@ core::Expected<OutlineFit> Fitter::Run() {
   OutlineFit fit;
   fit.outline = outline_;
   if (telling_) {
-    AddSizes(covariance * gradient_, fit.outline);
+    const Vector step = covariance * gradient_;
+    Grow(step[2], geometry_ == 5 ? step[3] : 0.0, fit.outline);
     const auto row = [&](int k) { return Free(k) ? k : -1; };
     fit.shared =
         WithoutOwn(Regular() / (widen * widen), gradient_ / (widen * widen),
@@ -497,7 +469,10 @@ core::Expected<OutlineFit> Fitter::Run() {
   fit.hidden = std::max(0.0, before_aside_ - fit.visible);
   fit.pixels = static_cast<int>(pixels_.size);
   fit.iterations = iterations;
-  TellNearGround(fit);
+  const NearGroundPixels near =
+      LookNearGround(pixels_, residuals_, height_, options_.ground_margin_px);
+  fit.pixels_near_ground = near.pixels;
+  fit.excess_near_ground = near.excess;
   // Known to no better than half its size it is no outline.
   const double vague = 0.5 * SmallestHalf(outline_);
   if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <

@@ -106,6 +106,15 @@ double SmallestHalf(const Outline& o) {
   return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_short_px;
 }
 
+void Grow(double size_px, double other_px, Outline& outline) {
+  if (outline.kind == core::BodyKind::kSphere) {
+    outline.radius_px += size_px;
+  } else {
+    outline.half_long_px += size_px;
+    outline.half_short_px += other_px;
+  }
+}
+
 double Area(const Outline& o) {
   return o.kind == core::BodyKind::kSphere
              ? std::numbers::pi * o.radius_px * o.radius_px
@@ -132,6 +141,28 @@ bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
     full += pixels.value[i] >= full_scale_dn;
   }
   return full > 0.5 * outside;
+}
+
+NearGroundPixels LookNearGround(const OutlinePixels& pixels,
+                                const std::vector<double>& residuals,
+                                const Height& height, double below_px) {
+  NearGroundPixels result;
+  double near = 0.0;
+  double others = 0.0;
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    const double square = residuals[i] * residuals[i];
+    if (height.Of(pixels.x[i], pixels.y[i]) < below_px) {
+      ++result.pixels;
+      near += square;
+    } else {
+      others += square;
+    }
+  }
+  const int rest = static_cast<int>(pixels.size) - result.pixels;
+  if (result.pixels > 0 && rest > 0) {
+    result.excess = near / result.pixels / (others / rest);
+  }
+  return result;
 }
 
 std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,

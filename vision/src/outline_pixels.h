@@ -117,6 +117,17 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
 bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
                          double cosine, double sine, double full_scale_dn);
 
+// How many pixels lie lower than `below_px` above the ground line, and the mean
+// square of their residuals over that of the others; 0: there are none of
+// either kind.
+struct NearGroundPixels {
+  int pixels = 0;
+  double excess = 0.0;
+};
+NearGroundPixels LookNearGround(const OutlinePixels& pixels,
+                                const std::vector<double>& residuals,
+                                const Height& height, double below_px);
+
 // Pixels deeper than `clear_px` inside whose residual is beyond `cut`; none
 // where there are too few of them to be more than dust or the tail of the
 // noise.
@@ -129,6 +140,9 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
 // DepthInside of outline.h with the cosine and sine of the angle at hand.
 double DepthInside(const Outline& outline, double x_px, double y_px,
                    double cosine, double sine);
+
+// The radius or half the long side by `size_px`, half the other by `other_px`.
+void Grow(double size_px, double other_px, Outline& outline);
 
 double Extent(const Outline& outline);        // px, centre to farthest point
 double SmallestHalf(const Outline& outline);  // px
