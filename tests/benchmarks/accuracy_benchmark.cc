@@ -175,9 +175,13 @@ int main(int argc, char** argv) {
   PrintTable(outcomes,
              [](const Levels& l) { return std::string(Name(l.hardship)); });
   std::vector<Outcome> of_regular;
+  std::vector<Outcome> of_hard;
   for (const Outcome& o : outcomes) {
-    if (o.made.levels.hardship == Hardship::kNone) of_regular.push_back(o);
+    const bool is_regular = o.made.levels.hardship == Hardship::kNone;
+    (is_regular ? of_regular : of_hard).push_back(o);
   }
+  PrintTable(of_hard,
+             [](const Levels&) { return std::string("all hardships"); });
   const std::pair<const char*, std::function<double(const Levels&)>> factors[] =
       {{"size, px", [](const Levels& l) { return l.size_px; }},
        {"contrast", [](const Levels& l) { return l.contrast; }},
