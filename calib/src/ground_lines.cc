@@ -227,10 +227,16 @@ double EstimateBlur(const StillImage& image, const std::optional<Lens>& lens,
   double best = kTried[0];
   double least = 0.0;
   bool any = false;
+  // The same ones in a mirror.
+  std::vector<std::int32_t> columns;
+  for (std::int32_t x = 2; 2 * x < image.width_px;
+       x += 1 + image.width_px / 120) {
+    columns.push_back(x);
+    columns.push_back(image.width_px - 1 - x);
+  }
   for (const double blur : kTried) {
     std::vector<double> residuals;
-    for (std::int32_t x = 2; x < image.width_px;
-         x += 1 + image.width_px / 120) {
+    for (const std::int32_t x : columns) {
       double r2 = 0.0;
       const EdgePoint edge =
           ColumnEdge(image, x, SeenAt(lens, line, middle, x), blur, r2);

@@ -257,8 +257,20 @@ void AddAppearance(const Appearance& appearance, const Outline& outline,
 }
 
 // Deep inside a large body there is only the shading to learn: every third
-// pixel.
-bool IsLeftOut(std::int32_t x, std::int32_t y) { return (x + y) % 3 != 0; }
+// pixel, the same ones in a mirror.
+class Sparse {
+ public:
+  explicit Sparse(const core::PixelPoint& centre)
+      : x_(static_cast<std::int32_t>(std::lround(centre.x_px))),
+        y_(static_cast<std::int32_t>(std::lround(centre.y_px))) {}
+  bool LeavesOut(std::int32_t x, std::int32_t y) const {
+    return (std::abs(x - x_) + std::abs(y - y_)) % 3 != 0;
+  }
+
+ private:
+  std::int32_t x_;
+  std::int32_t y_;
+};
 
 }  // namespace
 
@@ -268,6 +280,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                           OutlinePixels& pixels) {
   const double margin = band.margin_px;
   const bool large = !band.every && SmallestHalf(outline) > 2.0 * margin;
+  const Sparse sparse(outline.centre);
   const double reach = Extent(outline) + margin;
   const core::PixelPoint& centre = outline.centre;
   const auto first = [](double at, std::int32_t least) {
@@ -297,7 +310,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
       const std::int32_t end = last(centre.x_px + outer, right);
       for (std::int32_t x = first(centre.x_px - outer, left); x <= end; ++x) {
         const double dx = std::abs(x - centre.x_px);
-        if (dx < inner || (dx < thin && IsLeftOut(x, y))) continue;
+        if (dx < inner || (dx < thin && sparse.LeavesOut(x, y))) continue;
         collector.Take(x, y);
       }
       continue;
@@ -305,7 +318,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
     for (std::int32_t x = x0; x <= x1; ++x) {
       const double depth = DepthInside(outline, x, y, cosine, sine);
       if (depth < -margin || depth > band.inner_px) continue;
-      if (large && depth > margin && IsLeftOut(x, y)) continue;
+      if (large && depth > margin && sparse.LeavesOut(x, y)) continue;
       collector.Take(x, y);
     }
   }
