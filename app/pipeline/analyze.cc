@@ -106,6 +106,14 @@ class Analyzer {
   vision::TrackOptions track_options_;
 };
 
+// Whether the contact lies where the track ends: no frame has seen it, and a
+// line that the path happens to point at will have one.
+bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track) {
+  return contact.time_s && !track.poses.empty() &&
+         contact.time_s->value >
+             track.poses.back().time_s - track.frame_interval_s;
+}
+
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
@@ -186,7 +194,8 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
   const vision::Track seen = Seen(track);
   // A visible edge need not be the contact line: where none agrees with the
   // track, the lowest points at the contacts tell.
-  if (!camera_.ideal_ground && best_merit < 2) {
+  if (!camera_.ideal_ground &&
+      (best_merit < 2 || IsAtTheEnd(best->contacts.first.contact, seen))) {
     if (const auto from_path = vision::GroundFromPath(seen)) {
       Judged judged = Judge(*from_path, track);
       if (judged.contacts.first.contact.from_start) {
