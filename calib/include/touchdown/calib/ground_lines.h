@@ -39,10 +39,11 @@ struct GroundLineOptions {
 // position in every column (least squares of a Gaussian-blurred step, with its
 // own two levels in each column); u from the scatter about the line, widened by
 // the scatter's correlation along it (texture of the ground is smoothed by the
-// lens: neighbouring columns err alike). Where one side is textured by more than
-// noise, the direction comes from the edge's foot on the plain side
-// (generalised least squares, src/edge_texture.h). An edge that goes up and down evenly
-// (tiles, a corrugated sheet) is fitted with its wave; the line is its middle.
+// lens: neighbouring columns err alike). Where one side is textured by more
+// than noise, the direction comes from the edge's foot on the plain side
+// (generalised least squares, src/edge_texture.h). An edge that goes up and
+// down evenly (tiles, a corrugated sheet) is fitted with its wave; the line is
+// its middle.
 std::vector<GroundLine> FindGroundLines(const StillImage& image,
                                         const GroundLineOptions& options = {});
 
