@@ -106,10 +106,10 @@ TEST_P(Appearances, AHighlightIsLearntAsFarAsTheEdge) {
   ASSERT_TRUE(look);
   EXPECT_EQ(look->spots.spots, 1);
   EXPECT_FALSE(look->turns);  // it stays where the lamp is
-  const double half = GetParam() == core::BodyKind::kSphere ? 10.0 : 7.0;
+  const int half = GetParam() == core::BodyKind::kSphere ? 10 : 7;
   const double sigma = trouble.highlight_sigma * half;
-  for (double y = -half; y <= half; y += 1.0) {
-    for (double x = -half; x <= half; x += 1.0) {
+  for (int y = -half; y <= half; ++y) {
+    for (int x = -half; x <= half; ++x) {
       const double dx = (x - trouble.highlight_x * half) / sigma;
       const double dy = (y - trouble.highlight_y * half) / sigma;
       const double truth = 4095.0 * trouble.highlight_level *

@@ -40,8 +40,10 @@ Seen SeenOf(const Face& face, int frames, std::uint64_t seed) {
   std::normal_distribution<double> noise(0.0, kNoise_dn);
   std::uniform_real_distribution<double> within(-0.25, 0.25);
   Seen seen;
-  for (double y = -6.0; y <= 6.0; y += 0.5) {
-    for (double x = -6.0; x <= 6.0; x += 0.5) {
+  for (int row = -12; row <= 12; ++row) {
+    for (int column = -12; column <= 12; ++column) {
+      const double x = 0.5 * column;
+      const double y = 0.5 * row;
       if (x * x + y * y > 36.0) continue;
       SpotSample mean = {0.0, 0.0, 0.0, kNoise_dn * kNoise_dn / frames};
       for (int i = 0; i < frames; ++i) {

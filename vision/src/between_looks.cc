@@ -61,6 +61,7 @@ std::vector<bool> CanBeBridged(const std::vector<Fitted>& fits,
   constexpr double kWhole = 0.98;
   constexpr double kMostTurn_rad = 0.5;  // in a step: no half turn is hidden
   std::vector<double> misfits;
+  misfits.reserve(n);
   for (const Pose& pose : poses) misfits.push_back(pose.misfit);
   constexpr double kUsual = 2.0;
   const double most_misfit = kUsual * std::max(1.0, Median(misfits));

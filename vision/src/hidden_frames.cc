@@ -134,6 +134,7 @@ void HiddenFrames::AddTo(std::vector<Fitted>& fits, const BodyImage& body,
     return apart;
   };
   std::vector<std::pair<std::int64_t, std::int64_t>> nearest_first;
+  nearest_first.reserve(frames.size());
   for (const std::int64_t frame : frames) {
     nearest_first.emplace_back(from_whole(frame), frame);
   }

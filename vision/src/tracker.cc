@@ -35,6 +35,7 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
                                  const std::vector<std::int64_t>& frames) {
   fit_options.ground = options.ground;
   std::vector<OutlineJob> jobs;
+  jobs.reserve(frames.size());
   for (const std::int64_t f : frames) {
     jobs.push_back({f, OutlineAt(track.body, Expected(track, f))});
   }
