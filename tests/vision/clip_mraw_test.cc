@@ -78,6 +78,19 @@ TEST(Mraw, Eightbits) {
   EXPECT_DOUBLE_EQ(frame.time_s, 1.0 / 2000.0);
 }
 
+unsigned Level12(unsigned sample) { return (0x123 + 0x0E1 * sample) & 0xFFF; }
+
+// Bytes AB Cx yz hold ABC and xyz.
+std::string Packed12(unsigned samples) {
+  std::string bytes;
+  for (unsigned i = 0; i < samples; i += 2) {
+    bytes += static_cast<char>(Level12(i) >> 4);
+    bytes += static_cast<char>((Level12(i) & 0xF) << 4 | Level12(i + 1) >> 8);
+    bytes += static_cast<char>(Level12(i + 1) & 0xFF);
+  }
+  return bytes;
+}
+
 // Rows of all lengths, from any sample on, to the file's last byte.
 TEST(Mraw, TwelveBitsOfLongRows) {
   const TemporaryFolder folder;
@@ -85,13 +98,7 @@ TEST(Mraw, TwelveBitsOfLongRows) {
   header.width = 45;
   header.bits = 12;
   folder.Write("a.cihx", header.Cihx());
-  const auto level = [](unsigned i) { return (0x123 + 0x0E1 * i) & 0xFFF; };
-  std::string bytes;
-  for (unsigned i = 0; i < 180; i += 2) {
-    bytes += static_cast<char>(level(i) >> 4);
-    bytes += static_cast<char>((level(i) & 0xF) << 4 | level(i + 1) >> 8);
-    bytes += static_cast<char>(level(i + 1) & 0xFF);
-  }
+  const std::string bytes = Packed12(180);
   const auto clip = OpenClip(folder.Write("a.mraw", bytes));
   for (std::int64_t index = 0; index < 2; ++index) {
     for (std::int32_t x = 0; x < 45; ++x) {
@@ -101,7 +108,7 @@ TEST(Mraw, TwelveBitsOfLongRows) {
           for (std::int32_t u = 0; u < width; ++u) {
             const auto sample =
                 static_cast<unsigned>(index * 90 + v * 45 + x + u);
-            ASSERT_EQ(frame.at(u, v), level(sample));
+            ASSERT_EQ(frame.at(u, v), Level12(sample));
           }
         }
       }
@@ -109,22 +116,15 @@ TEST(Mraw, TwelveBitsOfLongRows) {
   }
 }
 
-// Bytes AB Cx yz hold ABC and xyz, and the packing runs on across rows and
-// frames: 3x3 pictures begin and end in the middle of a byte.
+// The packing runs on across rows and frames: 3x3 pictures begin and end in the
+// middle of a byte.
 TEST(Mraw, TwelveBitsArePackedAcrossRowsAndFrames) {
   const TemporaryFolder folder;
   Header header;
   header.height = 3;
   header.bits = 12;
   folder.Write("a.cihx", header.Cihx());
-  std::string bytes;
-  for (unsigned i = 0; i < 18; i += 2) {
-    const unsigned a = (0x123 + 0x0E1 * i) & 0xFFF;
-    const unsigned b = (0x123 + 0x0E1 * (i + 1)) & 0xFFF;
-    bytes += static_cast<char>(a >> 4);
-    bytes += static_cast<char>((a & 0xF) << 4 | b >> 8);
-    bytes += static_cast<char>(b & 0xFF);
-  }
+  const std::string bytes = Packed12(18);
   const auto clip = OpenClip(folder.Write("a.mraw", bytes));
   EXPECT_EQ(clip->info().bit_depth, 12);
   EXPECT_EQ(clip->info().sensor_origin, (SensorOrigin{320, 16}));

@@ -41,6 +41,16 @@ Fitted FrameOf(const SharedTerms& terms) {
   return fitted;
 }
 
+std::vector<Fitted> DrawFrames(int count, const std::array<int, 4>& at,
+                               std::mt19937_64& engine) {
+  std::vector<Fitted> frames;
+  for (int f = 0; f < count; ++f) {
+    const Equations e = Draw(7, engine);
+    frames.push_back(FrameOf(WithoutOwn(e.normal, e.gradient, at)));
+  }
+  return frames;
+}
+
 TEST(SharedFit, IsTheSolutionOfAllFramesEquationsAtOnce) {
   std::mt19937_64 engine(1);
   constexpr int kFrames = 6;
@@ -78,12 +88,7 @@ TEST(SharedFit, IsTheSolutionOfAllFramesEquationsAtOnce) {
 
 TEST(SharedFit, WhatNoFrameTellsStaysAsItIs) {
   std::mt19937_64 engine(2);
-  std::vector<Fitted> frames;
-  for (int f = 0; f < 5; ++f) {
-    const Equations e = Draw(7, engine);
-    frames.push_back(FrameOf(WithoutOwn(e.normal, e.gradient, {2, -1, 4, -1})));
-  }
-  const auto step = StepTogether(frames);
+  const auto step = StepTogether(DrawFrames(5, {2, -1, 4, -1}, engine));
   ASSERT_TRUE(step);
   EXPECT_NE(step->step[0], 0.0);
   EXPECT_EQ(step->step[1], 0.0);
@@ -93,11 +98,7 @@ TEST(SharedFit, WhatNoFrameTellsStaysAsItIs) {
 
 TEST(SharedFit, AFrameFarOffAndOnesThatAreNotWholeAreLeftOut) {
   std::mt19937_64 engine(3);
-  std::vector<Fitted> frames;
-  for (int f = 0; f < 8; ++f) {
-    const Equations e = Draw(7, engine);
-    frames.push_back(FrameOf(WithoutOwn(e.normal, e.gradient, kAt)));
-  }
+  std::vector<Fitted> frames = DrawFrames(8, kAt, engine);
   const auto alone = StepTogether(frames);
   Equations far = Draw(7, engine);
   far.gradient[2] += 1e3;
@@ -113,12 +114,7 @@ TEST(SharedFit, AFrameFarOffAndOnesThatAreNotWholeAreLeftOut) {
 
 TEST(SharedFit, NothingFromFewerThanThreeFrames) {
   std::mt19937_64 engine(4);
-  std::vector<Fitted> frames;
-  for (int f = 0; f < 2; ++f) {
-    const Equations e = Draw(7, engine);
-    frames.push_back(FrameOf(WithoutOwn(e.normal, e.gradient, kAt)));
-  }
-  EXPECT_FALSE(StepTogether(frames));
+  EXPECT_FALSE(StepTogether(DrawFrames(2, kAt, engine)));
   EXPECT_FALSE(StepTogether({}));
 }
 

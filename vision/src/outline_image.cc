@@ -110,8 +110,8 @@ constexpr double kAtCentre_px = 1e-12;  // no direction there, and no edge
 // 1/12: the next term of the series, -1/2880 (d^4/dx^4 + d^4/dy^4) of the
 // image. Of an edge whose normal has the direction (c, s), z = depth/w:
 //   (c^4 + s^4) / (2880 w^4) He_3(z) phi(z),  He_3 = z^3 - 3 z
-// 2e-3 of the contrast at a lens's blur of 0.5 px; without it sizes pooled over
-// a clip were 5e-4 px small. No image is sharper than a pixel's.
+// 2e-3 of the contrast at a lens's blur of 0.5 px, alike in all frames. No
+// image is sharper than a pixel's.
 double SquareTerm(double w_px) {
   const double variance = std::max(w_px * w_px, 1.0 / 12.0);
   return 1.0 / (2880.0 * variance * variance);

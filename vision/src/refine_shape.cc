@@ -90,6 +90,7 @@ void TakeSize(const BodyImage& from, BodyImage& to) {
 void Refiner::LearnShape(Track& refined) {
   std::vector<Fitted> sized = LearnBlur(refined);
   BodyImage body = refined.body;
+  const double open = options_.open;
   // Frames that a crude model shows say each something else: no joint fit of
   // them is better than their mean.
   const bool crude =
@@ -115,6 +116,7 @@ void Refiner::LearnShape(Track& refined) {
     refined.body = body;
   } else {
     options_.blur_px = refined.body.blur_px;
+    options_.open = open;
   }
 }
 
