@@ -251,6 +251,9 @@ double EstimateBlur(const StillImage& image, const std::optional<Lens>& lens,
       least = *at;
       best = blur;
     }
+    // Ever wider ones explain it ever worse, and take ever longer.
+    constexpr double kClearlyWorse = 4.0;
+    if (*at > kClearlyWorse * least) break;
   }
   return best;
 }

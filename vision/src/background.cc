@@ -119,11 +119,7 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
           LoadLanes(windows[k], x, y, &lanes[k * kLanes]);
         }
         network.Sort(lanes.data());
-        sums.fill(0);
-        for (std::size_t k = cut; k < n - cut; ++k) {
-          const Sample* const row = &lanes[k * kLanes];
-          for (std::size_t i = 0; i < kLanes; ++i) sums[i] += row[i];
-        }
+        AddSamples(lanes.data(), cut, n - cut, sums.data());
         const auto count =
             std::min<std::size_t>(kLanes, static_cast<std::size_t>(width - x));
         for (std::size_t i = 0; i < count; ++i) {
@@ -185,8 +181,10 @@ struct Covers {
 // The mid-mean of what is not covered, in the pixels that anything covers.
 // Covered samples are moved alternately to the two ends of the order, where
 // they change nothing in the middle.
+// Of the rows [top, bottom).
 template <class Sample>
 void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
+                   std::int64_t top, std::int64_t bottom,
                    Background& background) {
   // Fewer samples than this are no background: noise, or the body's rim.
   constexpr std::size_t kLeastSamples = 3;
@@ -196,7 +194,7 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::size_t, kLanes> low{};   // samples moved below the others
   std::array<std::size_t, kLanes> high{};  // above
-  for (std::int32_t y = 0; y < background.height_px; ++y) {
+  for (auto y = static_cast<std::int32_t>(top); y < bottom; ++y) {
     const std::size_t row = static_cast<std::size_t>(y) *
                             static_cast<std::size_t>(background.width_px);
     const auto begin =
@@ -251,6 +249,23 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
       }
     }
   }
+}
+
+// The noise of the samples themselves.
+void EstimateNoise(const NoisePairs& pairs, Background& background);
+void EstimateNoiseOf(const FrameSamples& samples, Background& background) {
+  NoisePairs pairs(background.width_px, background.height_px, samples);
+  FrameSamples::Reader reader(samples);
+  for (std::int32_t y = 0; y < background.height_px; ++y) {
+    if (!pairs.Has(y)) continue;
+    const auto& row = reader.Read({0, y, background.width_px, 1});
+    if (samples.is_16_bit()) {
+      pairs.Take<std::uint16_t>(row, 0, y);
+    } else {
+      pairs.Take<std::uint8_t>(row, 0, y);
+    }
+  }
+  EstimateNoise(pairs, background);
 }
 
 // Evenly over the range, both ends included.
@@ -378,23 +393,36 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
   Background background = fallback;
   background.unknown.assign(fallback.level.size(), 0);
   const FrameSamples samples(clip, frames);
-  if (samples.is_16_bit()) {
-    MidMeanBehind<std::uint16_t>(samples, all, background);
-  } else {
-    MidMeanBehind<std::uint8_t>(samples, all, background);
+  const auto first_row = std::find(all.touched.begin(), all.touched.end(), 1) -
+                         all.touched.begin();
+  const std::int64_t top = first_row / fallback.width_px;
+  const auto after = std::find(all.touched.rbegin(), all.touched.rend(), 1);
+  const std::int64_t bottom =
+      (all.touched.rend() - after + fallback.width_px - 1) / fallback.width_px;
+  InParallel(std::max<std::int64_t>(0, bottom - top),
+             samples.Threads(options.threads),
+             [&](std::int64_t begin, std::int64_t end) {
+               if (samples.is_16_bit()) {
+                 MidMeanBehind<std::uint16_t>(samples, all, top + begin,
+                                              top + end, background);
+               } else {
+                 MidMeanBehind<std::uint8_t>(samples, all, top + begin,
+                                             top + end, background);
+               }
+             });
+  if (std::none_of(background.unknown.begin(), background.unknown.end(),
+                   [](std::uint8_t u) { return u != 0; })) {
+    background.unknown.clear();
   }
-  NoisePairs pairs(background.width_px, background.height_px, samples);
-  FrameSamples::Reader reader(samples);
-  for (std::int32_t y = 0; y < background.height_px; ++y) {
-    if (!pairs.Has(y)) continue;
-    const auto& row = reader.Read({0, y, background.width_px, 1});
-    if (samples.is_16_bit()) {
-      pairs.Take<std::uint16_t>(row, 0, y);
-    } else {
-      pairs.Take<std::uint8_t>(row, 0, y);
-    }
+  // What is known of the noise is known from all of the picture: levels that
+  // change in a small part of it say nothing new.
+  constexpr double kSmallPart = 0.05;
+  const auto touched =
+      std::count(all.touched.begin(), all.touched.end(), std::uint8_t{1});
+  if (static_cast<double>(touched) >
+      kSmallPart * static_cast<double>(all.touched.size())) {
+    EstimateNoiseOf(samples, background);
   }
-  EstimateNoise(pairs, background);
   return background;
 }
 

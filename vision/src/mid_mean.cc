@@ -1,8 +1,64 @@
 #include "mid_mean.h"
 
+#include <algorithm>
 #include <bit>
 
+#include "lanes.h"
+
 namespace touchdown::vision {
+namespace {
+
+using Exchanges = std::vector<std::pair<std::size_t, std::size_t>>;
+
+// Apart from each other in memory, which the compiler is told.
+template <class Sample>
+TOUCHDOWN_INLINE void Exchange(Sample* __restrict a, Sample* __restrict b) {
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const Sample one = a[k];
+    const Sample other = b[k];
+    a[k] = one < other ? one : other;
+    b[k] = one < other ? other : one;
+  }
+}
+
+template <class Sample>
+TOUCHDOWN_INLINE void ExchangeAll(const Exchanges& exchanges, Sample* lanes) {
+  for (const auto& [i, j] : exchanges) {
+    Exchange(lanes + i * kLanes, lanes + j * kLanes);
+  }
+}
+
+template <class Sample>
+TOUCHDOWN_INLINE void AddAll(const Sample* lanes, std::size_t begin,
+                             std::size_t end, std::uint32_t* __restrict sums) {
+  std::fill_n(sums, kLanes, 0U);
+  for (std::size_t k = begin; k < end; ++k) {
+    const Sample* const row = lanes + k * kLanes;
+    for (std::size_t i = 0; i < kLanes; ++i) sums[i] += row[i];
+  }
+}
+
+TOUCHDOWN_WIDEST void Exchange8(const Exchanges& exchanges,
+                                std::uint8_t* lanes) {
+  ExchangeAll(exchanges, lanes);
+}
+
+TOUCHDOWN_WIDEST void Exchange16(const Exchanges& exchanges,
+                                 std::uint16_t* lanes) {
+  ExchangeAll(exchanges, lanes);
+}
+
+TOUCHDOWN_WIDEST void Add8(const std::uint8_t* lanes, std::size_t begin,
+                           std::size_t end, std::uint32_t* sums) {
+  AddAll(lanes, begin, end, sums);
+}
+
+TOUCHDOWN_WIDEST void Add16(const std::uint16_t* lanes, std::size_t begin,
+                            std::size_t end, std::uint32_t* sums) {
+  AddAll(lanes, begin, end, sums);
+}
+
+}  // namespace
 
 // Batcher's merge exchange (Knuth, The Art of Computer Programming, vol. 3,
 // algorithm 5.2.2M), for any number of samples.
@@ -41,6 +97,24 @@ SortingNetwork::SortingNetwork(std::size_t count, Order order) {
     needed.push_back(exchanges_[k]);
   }
   exchanges_.assign(needed.rbegin(), needed.rend());
+}
+
+void SortingNetwork::Sort(std::uint8_t* lanes) const {
+  Exchange8(exchanges_, lanes);
+}
+
+void SortingNetwork::Sort(std::uint16_t* lanes) const {
+  Exchange16(exchanges_, lanes);
+}
+
+void AddSamples(const std::uint8_t* lanes, std::size_t begin, std::size_t end,
+                std::uint32_t* sums) {
+  Add8(lanes, begin, end, sums);
+}
+
+void AddSamples(const std::uint16_t* lanes, std::size_t begin, std::size_t end,
+                std::uint32_t* sums) {
+  Add16(lanes, begin, end, sums);
 }
 
 }  // namespace touchdown::vision

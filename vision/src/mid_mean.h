@@ -3,7 +3,6 @@
 // maximum that the compiler vectorises.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -28,21 +27,17 @@ class SortingNetwork {
   enum class Order { kFull, kMiddle };
   SortingNetwork(std::size_t count, Order order);
 
-  template <class Sample>
-  void Sort(Sample* lanes) const {
-    for (const auto& [i, j] : exchanges_) {
-      Sample* const a = lanes + i * kLanes;
-      Sample* const b = lanes + j * kLanes;
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        const Sample low = std::min(a[k], b[k]);
-        b[k] = std::max(a[k], b[k]);
-        a[k] = low;
-      }
-    }
-  }
+  void Sort(std::uint8_t* lanes) const;
+  void Sort(std::uint16_t* lanes) const;
 
  private:
   std::vector<std::pair<std::size_t, std::size_t>> exchanges_;
 };
+
+// Adds up the samples [begin, end) of each pixel, in the order of `lanes`.
+void AddSamples(const std::uint8_t* lanes, std::size_t begin, std::size_t end,
+                std::uint32_t* sums);
+void AddSamples(const std::uint16_t* lanes, std::size_t begin, std::size_t end,
+                std::uint32_t* sums);
 
 }  // namespace touchdown::vision

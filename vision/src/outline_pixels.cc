@@ -212,11 +212,45 @@ class Collector {
         ask_known_(known_background && !background_.unknown.empty()),
         pixels_(pixels) {}
 
+  // All pixels that follow lie within `reach_px` of a point. Where each of them
+  // is usable and hides what is seen beside it, none need be asked.
+  void StayAround(const core::PixelPoint& centre, double reach_px) {
+    ask_ = ask_known_ || !usable_.HoldsAround(centre, reach_px) ||
+           !behind_.IsSeenAround(centre, reach_px);
+  }
+
+  // The pixels of row y from x to `end`.
+  void TakeRun(std::int32_t x, std::int32_t end, std::int32_t y) {
+    if (ask_) {
+      for (; x <= end; ++x) Take(x, y);
+      return;
+    }
+    if (x > end) return;
+    const auto count = static_cast<std::size_t>(end - x + 1);
+    const float* const background =
+        background_.level.data() +
+        static_cast<std::ptrdiff_t>(y) * background_.width_px + x;
+    const std::int32_t row = y - frame_.origin_y_px;
+    const std::int32_t column = x - frame_.origin_x_px;
+    if (frame_.is_16_bit()) {
+      pixels_.AddRun(x, y, count, frame_.row<std::uint16_t>(row) + column,
+                     background);
+    } else {
+      pixels_.AddRun(x, y, count, frame_.row<std::uint8_t>(row) + column,
+                     background);
+    }
+  }
+
   void Take(std::int32_t x, std::int32_t y) {
-    if (!usable_.Holds(x, y)) return;
-    if (ask_known_ && !background_.known_at(x, y)) return;
+    const auto background = static_cast<double>(background_.at(x, y));
+    double behind = background;
+    if (ask_) {
+      if (!usable_.Holds(x, y)) return;
+      if (ask_known_ && !background_.known_at(x, y)) return;
+      behind = behind_.At(x, y);
+    }
     pixels_.Add(x, y, frame_.at(x - frame_.origin_x_px, y - frame_.origin_y_px),
-                static_cast<double>(background_.at(x, y)), behind_.At(x, y));
+                background, behind);
   }
 
  private:
@@ -225,6 +259,7 @@ class Collector {
   const Behind& behind_;
   const UsablePart& usable_;
   bool ask_known_;
+  bool ask_ = true;
   OutlinePixels& pixels_;
 };
 
@@ -266,11 +301,24 @@ class Sparse {
   bool LeavesOut(std::int32_t x, std::int32_t y) const {
     return (std::abs(x - x_) + std::abs(y - y_)) % 3 != 0;
   }
+  // The first that is not left out, at x or after it.
+  std::int32_t Next(std::int32_t x, std::int32_t y) const {
+    while (LeavesOut(x, y)) ++x;
+    return x;
+  }
 
  private:
   std::int32_t x_;
   std::int32_t y_;
 };
+
+// The first whole number from `at` on, the last up to it, within a picture.
+std::int32_t First(double at, std::int32_t least) {
+  return std::max(least, static_cast<std::int32_t>(std::ceil(at)));
+}
+std::int32_t Last(double at, std::int32_t most) {
+  return std::min(most, static_cast<std::int32_t>(std::floor(at)));
+}
 
 }  // namespace
 
@@ -283,23 +331,18 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
   const Sparse sparse(outline.centre);
   const double reach = Extent(outline) + margin;
   const core::PixelPoint& centre = outline.centre;
-  const auto first = [](double at, std::int32_t least) {
-    return std::max(least, static_cast<std::int32_t>(std::ceil(at)));
-  };
-  const auto last = [](double at, std::int32_t most) {
-    return std::min(most, static_cast<std::int32_t>(std::floor(at)));
-  };
   const std::int32_t left = frame.origin_x_px;
   const std::int32_t right = frame.origin_x_px + frame.width_px - 1;
-  const std::int32_t x0 = first(centre.x_px - reach, left);
-  const std::int32_t x1 = last(centre.x_px + reach, right);
-  const std::int32_t y0 = first(centre.y_px - reach, frame.origin_y_px);
+  const std::int32_t x0 = First(centre.x_px - reach, left);
+  const std::int32_t x1 = Last(centre.x_px + reach, right);
+  const std::int32_t y0 = First(centre.y_px - reach, frame.origin_y_px);
   const std::int32_t y1 =
-      last(centre.y_px + reach, frame.origin_y_px + frame.height_px - 1);
+      Last(centre.y_px + reach, frame.origin_y_px + frame.height_px - 1);
   pixels.Clear(static_cast<std::size_t>(std::max(0, x1 - x0 + 1)) *
                static_cast<std::size_t>(std::max(0, y1 - y0 + 1)));
   const Background& background = behind.background();
   Collector collector(frame, behind, usable, band.known_background, pixels);
+  collector.StayAround(centre, std::numbers::sqrt2 * reach);
   for (std::int32_t y = y0; y <= y1; ++y) {
     if (outline.kind == core::BodyKind::kSphere) {
       const double dy = y - centre.y_px;
@@ -307,12 +350,24 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
       const double outer = HalfWidth(radius + margin, dy);
       const double thin = large ? HalfWidth(radius - margin, dy) : -1.0;
       const double inner = HalfWidth(radius - band.inner_px, dy);
-      const std::int32_t end = last(centre.x_px + outer, right);
-      for (std::int32_t x = first(centre.x_px - outer, left); x <= end; ++x) {
-        const double dx = std::abs(x - centre.x_px);
-        if (dx < inner || (dx < thin && sparse.LeavesOut(x, y))) continue;
-        collector.Take(x, y);
+      // The edge's band on the left, what is deeper inside, the band on the
+      // right.
+      const double deep = std::max({thin, inner, 0.0});
+      const std::int32_t begin = First(centre.x_px - outer, left);
+      const std::int32_t end = Last(centre.x_px + outer, right);
+      const std::int32_t middle =
+          std::max(begin, Last(centre.x_px - deep, end) + 1);
+      const std::int32_t rest =
+          std::max(middle, First(centre.x_px + deep, left));
+      collector.TakeRun(begin, middle - 1, y);
+      if (thin > inner) {
+        const std::int32_t middle_end = std::min(rest, end + 1);
+        for (std::int32_t x = sparse.Next(middle, y); x < middle_end;
+             x = sparse.Next(x + 1, y)) {
+          if (std::abs(x - centre.x_px) >= inner) collector.Take(x, y);
+        }
       }
+      collector.TakeRun(rest, end, y);
       continue;
     }
     for (std::int32_t x = x0; x <= x1; ++x) {

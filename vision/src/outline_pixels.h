@@ -46,6 +46,10 @@ class Behind {
     return height < zone_px_ ? Above(x, y, zone_px_ - height)
                              : static_cast<double>(background_.at(x, y));
   }
+  // Whether nothing within `reach_px` of a point is near the ground's edge.
+  bool IsSeenAround(const core::PixelPoint& point, double reach_px) const {
+    return height_.Of(point.x_px, point.y_px) - reach_px >= zone_px_;
+  }
   const Background& background() const { return background_; }
 
  private:

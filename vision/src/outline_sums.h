@@ -2,29 +2,52 @@
 // squares, and what the residuals say.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "outline_image.h"
 
 namespace touchdown::vision {
 
+// Leaves new elements as they are in memory: they are written before they are
+// read, and a fit would spend a tenth of its time on zeroes.
+template <class T>
+struct Unfilled : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = Unfilled<U>;
+  };
+  template <class U>
+  void construct(U* place) const {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... From>
+  void construct(U* place, From&&... from) const {
+    ::new (static_cast<void*>(place)) U(std::forward<From>(from)...);
+  }
+};
+
 // The pixels of a fit, column by column, padded to whole blocks. Columns may be
 // longer than that.
 struct OutlinePixels {
+  using Column = std::vector<double, Unfilled<double>>;
   std::size_t size = 0;  // without the padding
-  std::vector<double> x;
-  std::vector<double> y;
-  std::vector<double> value;       // DN
-  std::vector<double> background;  // DN
-  std::vector<double> behind;      // DN, of what the body hides here
-  std::vector<double> per_noise;   // 1/DN; 0: padding
+  Column x;
+  Column y;
+  Column value;       // DN
+  Column background;  // DN
+  Column behind;      // DN, of what the body hides here
+  Column per_noise;   // 1/DN; 0: padding
   // Of what is added to the interior's levels and moves with the body, DN/px;
   // used where `sloped`.
-  std::vector<double> slope_x;
-  std::vector<double> slope_y;
+  Column slope_x;
+  Column slope_y;
   bool sloped = false;
 
   std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
@@ -38,6 +61,23 @@ struct OutlinePixels {
     background[size] = background_dn;
     behind[size] = behind_dn;
     ++size;
+  }
+  // `count` pixels of a row, whose background is what the body hides.
+  template <class Sample>
+  void AddRun(double x_px, double y_px, std::size_t count,
+              const Sample* value_dn, const float* background_dn) {
+    for (std::size_t i = 0; i < count; ++i) {
+      x[size + i] = x_px + static_cast<double>(i);
+    }
+    std::fill_n(&y[size], count, y_px);
+    for (std::size_t i = 0; i < count; ++i) {
+      value[size + i] = static_cast<double>(value_dn[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      background[size + i] = static_cast<double>(background_dn[i]);
+    }
+    std::copy_n(&background[size], count, &behind[size]);
+    size += count;
   }
   // When all are there. The noise's variance is floor + slope * value, at least
   // `least`.
