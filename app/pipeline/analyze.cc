@@ -87,6 +87,8 @@ class Analyzer {
   vision::Track Seen(const vision::Track& track) const {
     return SeenThrough(camera_, track);
   }
+  // The scale, the body's size and what hangs on them, from a track.
+  void TakeSize(const vision::Track& track);
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   std::optional<Judged> JudgeBest(
       const std::vector<calib::GroundLine>& candidates,
@@ -114,6 +116,21 @@ bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track) {
              track.poses.back().time_s - track.frame_interval_s;
 }
 
+void Analyzer::TakeSize(const vision::Track& track) {
+  const vision::BodyImage body = Seen(track).body;
+  result_.scale = FindScale(options_, body);
+  result_.no_scale_reason.clear();
+  if (!result_.scale) {
+    result_.no_scale_reason =
+        body.whole_px > 0.0
+            ? "the body shows in parts; give --scale-px-per-m"
+            : "give --calibration, --scale-px-per-m, --diameter-mm or "
+              "--sides-mm";
+  }
+  result_.body = BodyOf(options_, body, result_.scale);
+  contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
+}
+
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
   Judged judged;
@@ -125,6 +142,7 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   }
   judged.track = vision::Refine(*clip_, background_, track,
                                 {in_image, aspect_, options_.decoder_threads});
+  TakeSize(judged.track);
   judged.plane = SeenInPlane(camera_, Seen(judged.track), ground);
   judged.contacts = ContactsIn(judged.plane, contact_options_);
   return judged;
@@ -222,6 +240,7 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
       }
     }
   }
+  TakeSize(best ? best->track : track);
   if (!best) {
     result_.no_ground_reason =
         "no straight edge was found, and the body shows no rebound; give "
@@ -362,17 +381,7 @@ Analysis Analyzer::Run() {
   } else {
     const vision::Track& track = tracked->track;
     background_ = std::move(tracked->background);
-    const vision::Track seen = Seen(track);
-    result_.scale = FindScale(options_, seen.body);
-    if (!result_.scale) {
-      result_.no_scale_reason =
-          track.body.whole_px > 0.0
-              ? "the body shows in parts; give --scale-px-per-m"
-              : "give --calibration, --scale-px-per-m, --diameter-mm or "
-                "--sides-mm";
-    }
-    result_.body = BodyOf(options_, seen.body, result_.scale);
-    contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
+    TakeSize(track);
     FindGroundAndContacts(track);
     AddLens(result_, camera_, contact_options_);
     AddYaw(result_, camera_, contact_options_);
