@@ -9,6 +9,7 @@
 #include "contact_event.h"
 #include "contact_record.h"
 #include "kinks.h"
+#include "path_trend.h"
 #include "touchdown/vision/state.h"
 #include "track_noise.h"
 #include "track_shape.h"
@@ -89,10 +90,6 @@ Blows FindBlows(const PlaneTrack& track, const KinkOptions& kink_options) {
   }
   return blows;
 }
-
-// An edge of the ground seen in perspective differs from the contact line by so
-// much; more is another line, or none.
-constexpr double kMostInclined_rad = 1.0 * core::kDegree;
 
 FlightOptions Straight() {
   FlightOptions options;
@@ -202,46 +199,6 @@ bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
   const double needed =
       std::max(0.1, 5.0 * noise / std::sqrt(static_cast<double>(m)));
   return first - at_blow < needed;
-}
-
-// A body that is down from the start draws the contact line itself: the slope
-// of its gaps along the ground (robust straight line), which is the visible
-// edge's error where it is small. Takes it out; returns it, rad.
-double TakeOutSlope(PlaneTrack& track) {
-  auto& samples = track.samples;
-  double offset = MedianGap(samples);
-  double slope = 0.0;
-  const double middle = samples[samples.size() / 2].along_px;
-  for (int iteration = 0; iteration < 15; ++iteration) {
-    std::vector<double> off;
-    off.reserve(samples.size());
-    for (const PlaneSample& s : samples) {
-      off.push_back(
-          std::abs(s.gap_px - offset - slope * (s.along_px - middle)));
-    }
-    const double scatter = std::max(1.4826 * Median(std::move(off)), 1e-6);
-    double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (const PlaneSample& s : samples) {
-      const double x = s.along_px - middle;
-      const double t = (s.gap_px - offset - slope * x) / (4.685 * scatter);
-      const double w = std::abs(t) < 1.0 ? (1 - t * t) * (1 - t * t) : 0.0;
-      sw += w;
-      sx += w * x;
-      sy += w * s.gap_px;
-      sxx += w * x * x;
-      sxy += w * x * s.gap_px;
-    }
-    const double determinant = sw * sxx - sx * sx;
-    if (!(determinant > 1e-9 * sw * sxx)) return 0.0;
-    slope = (sw * sxy - sx * sy) / determinant;
-    offset = (sy - slope * sx) / sw;
-  }
-  if (std::abs(slope) > kMostInclined_rad) return 0.0;
-  for (PlaneSample& s : samples) {
-    s.gap_px -= slope * (s.along_px - middle);
-    s.height_px -= slope * (s.along_px - middle);
-  }
-  return slope;
 }
 
 // The blows, where a person says which is the first: at the last sample up to
@@ -359,7 +316,15 @@ ContactResult FindContacts(const PlaneTrack& given,
                           OnGroundFromStart(track, blows.kinks, context.flight);
   result.ground_refuted = blows.refuted;
   if (from_start) {
-    const double slope = TakeOutSlope(track);
+    const PathTrend trend = TakeOutTrend(track);
+    const double slope = trend.slope_rad;
+    if (trend.bend_px != 0.0) {
+      result.warnings.push_back(
+          fmt::format("the body's path is bent by {:.1f} px, as a lens without "
+                      "calibration bends a line; its gap is taken from the "
+                      "path",
+                      std::abs(trend.bend_px)));
+    }
     constexpr double kNotable = 3.0;  // of the line's own uncertainty
     if (std::abs(slope) > kNotable * track.ground.u_angle_rad) {
       result.warnings.push_back(

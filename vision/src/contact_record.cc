@@ -375,6 +375,33 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   return record;
 }
 
+namespace {
+
+// Of the samples' median gap, whose robust scatter is known. That of a median
+// is sqrt(pi/2) that of a mean, and neighbours that err alike count for fewer:
+// n over 1 + 2 sum of their correlations, as far as they are positive.
+double UncertaintyOfMedian(std::span<const PlaneSample> samples, double median,
+                           double scatter) {
+  double square = 0.0;
+  for (const PlaneSample& s : samples) {
+    square += (s.gap_px - median) * (s.gap_px - median);
+  }
+  constexpr std::size_t kShare = 4;  // lags beyond a quarter of all are noise
+  double alike = 1.0;
+  for (std::size_t lag = 1; lag <= samples.size() / kShare; ++lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < samples.size(); ++i) {
+      sum += (samples[i].gap_px - median) * (samples[i - lag].gap_px - median);
+    }
+    if (sum <= 0.0) break;
+    alike += 2.0 * sum / square;
+  }
+  const auto n = static_cast<double>(samples.size());
+  return scatter * std::sqrt(0.5 * std::numbers::pi * std::min(1.0, alike / n));
+}
+
+}  // namespace
+
 core::ContactRecord RecordFromStart(const RecordContext& context,
                                     double slope_rad) {
   const PlaneTrack& track = context.track;
@@ -411,7 +438,7 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   constexpr double kMore = 2.0;  // an excess within its own uncertainty is none
   const double u_level =
       scatter > kMore * claimed
-          ? scatter
+          ? UncertaintyOfMedian(samples, level, scatter)
           : claimed / std::sqrt(static_cast<double>(samples.size()));
 
   const char reason[] = "on the ground from the start";

@@ -1,0 +1,31 @@
+// A body that is down from the start draws the contact line itself: what of its
+// gaps is the line's error and not the body's.
+#pragma once
+
+#include "touchdown/core/units.h"
+#include "touchdown/vision/plane_track.h"
+
+namespace touchdown::vision {
+
+// An edge of the ground seen in perspective differs from the contact line by so
+// much; more is another line, or none.
+inline constexpr double kMostInclined_rad = 1.0 * core::kDegree;
+
+struct PathTrend {
+  // Of the gaps along the ground: the visible edge's error where it is small.
+  double slope_rad = 0.0;
+  // From the middle of the path to the straight line between its ends, up; what
+  // a lens without calibration bends. 0: not asked for.
+  double bend_px = 0.0;
+};
+
+// Takes the trend out of gaps and heights. The slope by a robust straight line
+// through all samples. The bend only where there is no visible edge to say how
+// straight the ground is seen (the line comes from the path itself), where
+// Schwarz's criterion asks for it (n ln(rss/n) + k ln n, statistics.md section
+// 4), where it is of a lens's size, and where what carries the body shows: a
+// flight bends by its own fall, which is no small part of the acceleration
+// along the ground.
+PathTrend TakeOutTrend(PlaneTrack& track);
+
+}  // namespace touchdown::vision
