@@ -82,7 +82,10 @@ bool IsCarried(const PlaneTrack& track, double half_px,
 
 bool AsksForBend(const PlaneTrack& track, double half_px,
                  const Polynomial& line, const Polynomial& bent) {
-  if (track.ground.source != calib::GroundSource::kContactPoints) return false;
+  if (track.ground.source != calib::GroundSource::kContactPoints &&
+      track.ground.source != calib::GroundSource::kDetected) {
+    return false;
+  }
   // Barrel and pincushion of ordinary lenses bend a line by up to 1 %.
   constexpr double kMostBend = 0.01;
   if (!bent.good || std::abs(BendOf(bent)) > kMostBend * 2.0 * half_px) {

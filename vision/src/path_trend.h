@@ -20,12 +20,12 @@ struct PathTrend {
 };
 
 // Takes the trend out of gaps and heights. The slope by a robust straight line
-// through all samples. The bend only where there is no visible edge to say how
-// straight the ground is seen (the line comes from the path itself), where
-// Schwarz's criterion asks for it (n ln(rss/n) + k ln n, statistics.md section
-// 4), where it is of a lens's size, and where what carries the body shows: a
-// flight bends by its own fall, which is no small part of the acceleration
-// along the ground.
+// through all samples. The bend only where the line is one that was found, in
+// the picture or from the path, which is straight though the lens need not be;
+// where Schwarz's criterion asks for it (n ln(rss/n) + k ln n; Annals of
+// Statistics 6, 1978), where it is of a lens's size, and where what carries the
+// body shows: a flight bends by its own fall, which is no small part of the
+// acceleration along the ground.
 PathTrend TakeOutTrend(PlaneTrack& track);
 
 }  // namespace touchdown::vision

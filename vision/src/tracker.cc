@@ -105,6 +105,47 @@ std::string FitBetween(Clip& clip, const Background& background,
   return warning;
 }
 
+// Frames within the track in which the outline was lost or sat on another edge:
+// the body of one size is sought once more where the path leads.
+void FitMissing(Clip& clip, const Background& background,
+                const TrackOptions& options, Track& track) {
+  if (track.step > 1 || !IsSteady(track)) return;
+  std::vector<std::int64_t> missing;
+  for (std::size_t i = 1; i < track.poses.size(); ++i) {
+    for (std::int64_t f = track.poses[i - 1].frame + 1;
+         f < track.poses[i].frame; ++f) {
+      missing.push_back(f);
+    }
+  }
+  if (missing.empty()) return;
+  OutlineOptions fit_options = FitOptionsOf(track);
+  fit_options.fit_size = false;
+  std::vector<double> misfits;
+  misfits.reserve(track.poses.size());
+  for (const Pose& pose : track.poses) misfits.push_back(pose.misfit);
+  // Twice as bad as usual is another thing; so is what is off the path.
+  constexpr double kUsual = 2.0;
+  constexpr double kOff = 0.1;  // of the body's size
+  constexpr double kHidden = 0.02;
+  const double most_misfit = kUsual * Median(std::move(misfits));
+  for (const Fitted& fit :
+       FitFromTrack(clip, background, track, options, fit_options, missing)) {
+    const Pose there = Expected(track, fit.frame);
+    const double off =
+        std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
+                   fit.fit.outline.centre.y_px - there.centre.y_px);
+    if (fit.fit.misfit > most_misfit || fit.fit.hidden > kHidden ||
+        off > kOff * 2.0 * SizeOf(fit.fit)) {
+      continue;
+    }
+    const auto at = std::lower_bound(
+        track.poses.begin(), track.poses.end(), fit.frame,
+        [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
+    track.poses.insert(at, PoseOf(fit));
+  }
+  Unwrap(track);
+}
+
 // The same only where the path is not smooth, beside the `looks` that the track
 // was made of; false, and nothing done, where the frames between do matter.
 bool FitWhereNotSmooth(Clip& clip, const Background& background,
@@ -297,6 +338,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                    first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
+  FitMissing(clip, result.background, options, track);
   if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
   if (whole_px > 0.0) {
