@@ -114,9 +114,10 @@ TEST(Footage, ABallWithTwoShadowsBouncesOffAGroundThatNoEdgeShows) {
 }
 
 // A hoop with a white face and a dark mark: before the wall the mark is all
-// that stands out, before the tiles the face. Where its rings are learnt, its
-// outlines wander by a third of a pixel (steep) and by one (flat); that it does
-// not bounce is then known, or likely, but never the contrary.
+// that stands out, before the tiles the face. Where its rings are learnt
+// (steep), its outlines wander by a fifth of a pixel, and by a half where not
+// (flat); that it does not bounce is then known, or likely, but never the
+// contrary.
 TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
   const auto path = Clip("roll_slip_42.4");
   SKIP_WITHOUT(path);
@@ -124,7 +125,7 @@ TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
   options.fps = 29.97;
   const Analysis a = Analyze(path, options);
   ASSERT_TRUE(a.track);
-  EXPECT_GE(a.track->poses.size(), 15u);
+  EXPECT_GE(a.track->poses.size(), 18u);  // two of them sought again
   // By hand 45.0 deg, of which nothing finer is known than 0.4 deg.
   ASSERT_TRUE(a.ground);
   EXPECT_EQ(a.ground->source, calib::GroundSource::kContactPoints);
@@ -133,7 +134,8 @@ TEST(Footage, AHoopOnASteepRampIsFollowedAndNotSaidToBounce) {
   const core::StateDecision& state = a.contacts.first.state;
   EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
   ASSERT_TRUE(state.p_bounce);
-  EXPECT_LT(*state.p_bounce, 0.1);  // 0.01; it was 0.09
+  EXPECT_EQ(state.label, core::MotionState::kStaysDown) << state.reason;
+  EXPECT_LT(*state.p_bounce, 0.01);
 }
 
 TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
@@ -150,7 +152,7 @@ TEST(Footage, AHoopOnAFlatRampIsNotSaidToBounce) {
   const core::StateDecision& state = a.contacts.first.state;
   EXPECT_NE(state.label, core::MotionState::kBounce) << state.reason;
   ASSERT_TRUE(state.p_bounce);
-  EXPECT_LT(*state.p_bounce, 0.975);
+  EXPECT_LT(*state.p_bounce, 0.3);  // 0.10; undecided
 }
 
 }  // namespace
