@@ -10,9 +10,9 @@
 namespace touchdown::vision {
 namespace {
 
-struct alignas(64) Points {
-  BlockColumn x;
-  BlockColumn y;
+struct Points {
+  std::array<double, kBlock> x;
+  std::array<double, kBlock> y;
 };
 
 // Places in and around a body at (30, 20).

@@ -22,10 +22,12 @@
 
 namespace touchdown::vision {
 
-// Four numbers at a time, as GCC and clang have them in the language: one
-// instruction of avx2, two of older processors.
+// Four numbers at a time, or eight short ones, as GCC and clang have them in
+// the language: one instruction of avx2, two of older processors.
 using Four = double __attribute__((vector_size(32), may_alias));
 using FourBits = std::uint64_t __attribute__((vector_size(32)));
+using Eight = float __attribute__((vector_size(32), may_alias));
+using EightBits = std::uint32_t __attribute__((vector_size(32)));
 
 // The four that begin at `first`, which lies on a multiple of 32 bytes.
 TOUCHDOWN_INLINE const Four& FourAt(const double* first) {
@@ -33,6 +35,12 @@ TOUCHDOWN_INLINE const Four& FourAt(const double* first) {
 }
 TOUCHDOWN_INLINE Four& FourAt(double* first) {
   return *reinterpret_cast<Four*>(first);
+}
+TOUCHDOWN_INLINE const Eight& EightAt(const float* first) {
+  return *reinterpret_cast<const Eight*>(first);
+}
+TOUCHDOWN_INLINE Eight& EightAt(float* first) {
+  return *reinterpret_cast<Eight*>(first);
 }
 
 // Asks for a stretch of memory that is used soon: a mapped recording's rows lie

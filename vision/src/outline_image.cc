@@ -51,60 +51,103 @@ TOUCHDOWN_INLINE void NormalAt(const Four& z, Four& cdf, Four& pdf) {
   cdf = z > 0.0 ? 1.0 - tail : tail;
 }
 
+// The same of short numbers, 0 <= y <= 85, to 2e-7 of the greatest. ln(2) in
+// two parts, of which the first has few digits: n times it is exact.
+TOUCHDOWN_INLINE void ExpOfMinus(const Eight& y, Eight& result) {
+  constexpr float kRound = 0x1.8p23F;
+  constexpr float kLn2High = 0.693359375F;
+  constexpr float kLn2Low = -2.12194440e-4F;
+  const Eight shifted = y * std::numbers::log2e_v<float> + kRound;
+  const Eight n = shifted - kRound;
+  const Eight r = (y - n * kLn2High) - n * kLn2Low;
+  const Eight series =
+      1.0F +
+      r * (-1.0F +
+           r * (1.0F / 2 +
+                r * (-1.0F / 6 +
+                     r * (1.0F / 24 + r * (-1.0F / 120 + r * (1.0F / 720))))));
+  constexpr std::uint32_t kOne = std::bit_cast<std::uint32_t>(1.0F);
+  const EightBits scale = kOne - (__builtin_bit_cast(EightBits, shifted) << 23);
+  result = series * __builtin_bit_cast(Eight, scale);
+}
+
+TOUCHDOWN_INLINE void NormalAt(const Eight& z, Eight& cdf, Eight& pdf) {
+  constexpr float kFar = 13.0F;  // the density is 1e-37
+  constexpr Eight kMost = {kFar, kFar, kFar, kFar, kFar, kFar, kFar, kFar};
+  const Eight size = z < 0.0F ? -z : z;
+  const Eight near = size < kMost ? size : kMost;
+  ExpOfMinus(0.5F * near * near, pdf);
+  pdf = pdf * static_cast<float>(kInverseSqrt2Pi);
+  const Eight t = 1.0F / (1.0F + 0.2316419F * near);
+  const Eight tail =
+      pdf * t *
+      (0.319381530F +
+       t * (-0.356563782F +
+            t * (1.781477937F + t * (-1.821255978F + t * 1.330274429F))));
+  cdf = z > 0.0F ? 1.0F - tail : tail;
+}
+
 // A body at rest at one place of its way.
 struct Place {
+  // What tells where pixels lie from the edge; differences are short numbers.
   double x_px = 0.0;
   double y_px = 0.0;
   double long_px = 0.0;   // radius, or half the long side
   double short_px = 0.0;  // half the short side
-  double per_long = 0.0;
-  double per_short = 0.0;
   double cosine = 1.0;
   double sine = 0.0;
-  double weight = 1.0;
-  double w_px = 1.0;      // blur
-  double d_open_x = 0.0;  // of the place by the exposed share
-  double d_open_y = 0.0;
-  double d_open_angle = 0.0;
+  // All others are good to 6e-8 of themselves.
+  float per_long = 0.0F;
+  float per_short = 0.0F;
+  float weight = 1.0F;
+  float w_px = 1.0F;      // blur
+  float d_open_x = 0.0F;  // of the place by the exposed share
+  float d_open_y = 0.0F;
+  float d_open_angle = 0.0F;
 };
 
-// Adds the numbers of a disc at four pixels from number i on.
-struct FourOfDisc {
-  Four dx, dy;
-  Four outwards;  // minus the derivative by r, over r
-  Four value, d_radius, d_w;
+// Adds the numbers of a disc at eight pixels from number i on.
+struct EightOfDisc {
+  Eight dx, dy;
+  Eight outwards;  // minus the derivative by r, over r
+  Eight value, d_radius, d_w;
 };
-TOUCHDOWN_INLINE void AddDisc(const Place& place, const FourOfDisc& disc,
+TOUCHDOWN_INLINE void AddDisc(const Place& place, const EightOfDisc& disc,
                               std::size_t i, CoverBlock& out) {
-  const double weight = place.weight;
-  const Four d_x = weight * disc.outwards * disc.dx;
-  const Four d_y = weight * disc.outwards * disc.dy;
-  FourAt(&out.value[i]) += weight * disc.value;
-  FourAt(&out.d_shape[0][i]) += d_x;
-  FourAt(&out.d_shape[1][i]) += d_y;
-  FourAt(&out.d_shape[2][i]) += weight * disc.d_radius;
-  FourAt(&out.d_blur[i]) += weight * disc.d_w;
-  FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y;
-  FourAt(&out.xi[i]) += disc.dx * (weight * place.per_long);
-  FourAt(&out.eta[i]) += disc.dy * (weight * place.per_long);
+  const float weight = place.weight;
+  const Eight d_x = weight * disc.outwards * disc.dx;
+  const Eight d_y = weight * disc.outwards * disc.dy;
+  EightAt(&out.value[i]) += weight * disc.value;
+  EightAt(&out.d_shape[0][i]) += d_x;
+  EightAt(&out.d_shape[1][i]) += d_y;
+  EightAt(&out.d_shape[2][i]) += weight * disc.d_radius;
+  EightAt(&out.d_blur[i]) += weight * disc.d_w;
+  EightAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y;
+  EightAt(&out.xi[i]) += disc.dx * (weight * place.per_long);
+  EightAt(&out.eta[i]) += disc.dy * (weight * place.per_long);
 }
 
 struct alignas(64) Distances {
   BlockColumn dx;
   BlockColumn dy;
   BlockColumn r;
+  BlockColumn outside;  // of a disc
 };
 
 TOUCHDOWN_INLINE void Measure(const Place& place, const double* x,
                               const double* y, Distances& at) {
   for (std::size_t i = 0; i < kBlock; ++i) {
-    at.dx[i] = x[i] - place.x_px;
-    at.dy[i] = y[i] - place.y_px;
-    at.r[i] = std::sqrt(at.dx[i] * at.dx[i] + at.dy[i] * at.dy[i]);
+    const double dx = x[i] - place.x_px;
+    const double dy = y[i] - place.y_px;
+    const double r = std::sqrt(dx * dx + dy * dy);
+    at.dx[i] = static_cast<float>(dx);
+    at.dy[i] = static_cast<float>(dy);
+    at.r[i] = static_cast<float>(r);
+    at.outside[i] = static_cast<float>(r - place.long_px);
   }
 }
 
-constexpr double kAtCentre_px = 1e-12;  // no direction there, and no edge
+constexpr float kAtCentre_px = 1e-12F;  // no direction there, and no edge
 
 // A pixel is a square, and its part of the blur no Gaussian of its variance
 // 1/12: the next term of the series, -1/2880 (d^4/dx^4 + d^4/dy^4) of the
@@ -112,18 +155,18 @@ constexpr double kAtCentre_px = 1e-12;  // no direction there, and no edge
 //   (c^4 + s^4) / (2880 w^4) He_3(z) phi(z),  He_3 = z^3 - 3 z
 // 2e-3 of the contrast at a lens's blur of 0.5 px, alike in all frames. No
 // image is sharper than a pixel's.
-double SquareTerm(double w_px) {
-  const double variance = std::max(w_px * w_px, 1.0 / 12.0);
-  return 1.0 / (2880.0 * variance * variance);
+float SquareTerm(float w_px) {
+  const float variance = std::max(w_px * w_px, 1.0F / 12.0F);
+  return 1.0F / (2880.0F * variance * variance);
 }
 
 // `term` times He_3 phi at z, and its slope -He_4 phi. Takes phi's place.
-TOUCHDOWN_INLINE void AddSquare(double term, const Four& z, Four& cdf,
-                                Four& pdf, Four& added) {
-  const Four square = z * z;
-  added = term * z * (square - 3.0) * pdf;
+TOUCHDOWN_INLINE void AddSquare(float term, const Eight& z, Eight& cdf,
+                                Eight& pdf, Eight& added) {
+  const Eight square = z * z;
+  added = term * z * (square - 3.0F) * pdf;
   cdf += added;
-  pdf *= 1.0 - term * (square * (square - 6.0) + 3.0);
+  pdf *= 1.0F - term * (square * (square - 6.0F) + 3.0F);
 }
 
 // As a series in e = w/R, s = (r - R)/w, from the heat equation
@@ -134,36 +177,37 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
                   CoverBlock& out) {
   Distances at;
   Measure(place, x, y, at);
-  const double per_w = 1.0 / place.w_px;
-  const double e = place.w_px / place.long_px;
-  const double square_term = SquareTerm(place.w_px);
-  for (std::size_t i = 0; i < kBlock; i += 4) {
-    const Four r = FourAt(&at.r[i]);
-    const Four dx = FourAt(&at.dx[i]);
-    const Four dy = FourAt(&at.dy[i]);
-    const Four s = (r - place.long_px) * per_w;
-    Four cdf;
-    Four pdf;
+  const float per_w = 1.0F / place.w_px;
+  const float e = place.w_px * place.per_long;
+  const float square_term = SquareTerm(place.w_px);
+  for (std::size_t i = 0; i < kBlock; i += 8) {
+    const Eight r = EightAt(&at.r[i]);
+    const Eight dx = EightAt(&at.dx[i]);
+    const Eight dy = EightAt(&at.dy[i]);
+    const Eight s = EightAt(&at.outside[i]) * per_w;
+    Eight cdf;
+    Eight pdf;
     NormalAt(-s, cdf, pdf);
-    const Four third = 0.0625 * (1.0 + 5.0 * s * s);
-    const Four g = e * (-0.5 + e * (0.375 * s - e * third));
-    const Four g_s = e * e * (0.375 - 0.625 * e * s);
-    const Four g_e = -0.5 + e * (0.75 * s - 3.0 * e * third);
+    const Eight third = 0.0625F * (1.0F + 5.0F * s * s);
+    const Eight g = e * (-0.5F + e * (0.375F * s - e * third));
+    const Eight g_s = e * e * (0.375F - 0.625F * e * s);
+    const Eight g_e = -0.5F + e * (0.75F * s - 3.0F * e * third);
     // c^4 + s^4 = 1 - 2 c^2 s^2
-    const Four sine_cosine = dx * dy / (r * r + kAtCentre_px);
-    const Four k = square_term * (1.0 - 2.0 * sine_cosine * sine_cosine) * pdf;
-    const Four s2 = s * s;
-    const Four square = k * s * (3.0 - s2);  // z is -s
-    const Four by_s =
-        (pdf * (-1.0 - s * g + g_s) + k * (s2 * (s2 - 6.0) + 3.0)) * per_w;
-    const Four by_e = pdf * g_e * place.per_long;
-    FourOfDisc disc;
+    const Eight sine_cosine = dx * dy / (r * r + kAtCentre_px);
+    const Eight k =
+        square_term * (1.0F - 2.0F * sine_cosine * sine_cosine) * pdf;
+    const Eight s2 = s * s;
+    const Eight square = k * s * (3.0F - s2);  // z is -s
+    const Eight by_s =
+        (pdf * (-1.0F - s * g + g_s) + k * (s2 * (s2 - 6.0F) + 3.0F)) * per_w;
+    const Eight by_e = pdf * g_e * place.per_long;
+    EightOfDisc disc;
     disc.dx = dx;
     disc.dy = dy;
     disc.outwards = -by_s / (r + kAtCentre_px);
     disc.value = cdf + pdf * g + square;
     disc.d_radius = -by_s - by_e * e;
-    disc.d_w = by_e - by_s * s - 4.0 * per_w * square;
+    disc.d_w = by_e - by_s * s - 4.0F * per_w * square;
     AddDisc(place, disc, i, out);
   }
 }
@@ -245,18 +289,22 @@ void AddSmallDisc(const Place& place, const SmallDiscTable& table,
                   const double* x, const double* y, CoverBlock& out) {
   Distances at;
   Measure(place, x, y, at);
-  for (std::size_t i = 0; i < kBlock; i += 4) {
-    FourOfDisc disc;
-    for (std::size_t l = 0; l < 4; ++l) {
-      const SmallDiscTable::Profile p = table.At(at.r[i + l]);
-      disc.outwards[l] = -p.d_r / (at.r[i + l] + kAtCentre_px);
-      disc.value[l] = p.value;
-      disc.d_radius[l] = p.d_radius;
+  for (std::size_t i = 0; i < kBlock; i += 8) {
+    EightOfDisc disc;
+    for (std::size_t l = 0; l < 8; ++l) {
+      const SmallDiscTable::Profile p =
+          table.At(static_cast<double>(at.r[i + l]));
+      const auto r = static_cast<double>(at.r[i + l]);
+      disc.outwards[l] =
+          static_cast<float>(-p.d_r / (r + static_cast<double>(kAtCentre_px)));
+      disc.value[l] = static_cast<float>(p.value);
+      disc.d_radius[l] = static_cast<float>(p.d_radius);
       disc.d_w[l] =
-          -(at.r[i + l] * p.d_r + place.long_px * p.d_radius) / place.w_px;
+          static_cast<float>(-(r * p.d_r + place.long_px * p.d_radius) /
+                             static_cast<double>(place.w_px));
     }
-    disc.dx = FourAt(&at.dx[i]);
-    disc.dy = FourAt(&at.dy[i]);
+    disc.dx = EightAt(&at.dx[i]);
+    disc.dy = EightAt(&at.dy[i]);
     AddDisc(place, disc, i, out);
   }
 }
@@ -264,31 +312,41 @@ void AddSmallDisc(const Place& place, const SmallDiscTable& table,
 TOUCHDOWN_WIDEST
 void AddRectangle(const Place& place, const double* x, const double* y,
                   CoverBlock& out) {
-  const double per_w = 1.0 / place.w_px;
-  const double c2 = place.cosine * place.cosine;
-  const double s2 = place.sine * place.sine;
-  const double k = (c2 * c2 + s2 * s2) * SquareTerm(place.w_px);
-  Distances at;
+  const float per_w = 1.0F / place.w_px;
+  const auto c = static_cast<float>(place.cosine);
+  const auto s = static_cast<float>(place.sine);
+  const float k = (c * c * c * c + s * s * s * s) * SquareTerm(place.w_px);
+  struct alignas(64) Sides {
+    BlockColumn u, v;
+    BlockColumn up, um, vp, vm;  // from each side, inwards and outwards
+  };
+  Sides at;
   for (std::size_t i = 0; i < kBlock; ++i) {
-    at.dx[i] = x[i] - place.x_px;
-    at.dy[i] = y[i] - place.y_px;
+    const double dx = x[i] - place.x_px;
+    const double dy = y[i] - place.y_px;
+    const double u = dx * place.cosine + dy * place.sine;
+    const double v = dy * place.cosine - dx * place.sine;
+    at.u[i] = static_cast<float>(u);
+    at.v[i] = static_cast<float>(v);
+    at.up[i] = static_cast<float>(u + place.long_px);
+    at.um[i] = static_cast<float>(u - place.long_px);
+    at.vp[i] = static_cast<float>(v + place.short_px);
+    at.vm[i] = static_cast<float>(v - place.short_px);
   }
-  for (std::size_t i = 0; i < kBlock; i += 4) {
-    const Four dx = FourAt(&at.dx[i]);
-    const Four dy = FourAt(&at.dy[i]);
-    const Four u = dx * place.cosine + dy * place.sine;
-    const Four v = dy * place.cosine - dx * place.sine;
-    const Four up = (u + place.long_px) * per_w;
-    const Four um = (u - place.long_px) * per_w;
-    const Four vp = (v + place.short_px) * per_w;
-    const Four vm = (v - place.short_px) * per_w;
-    Four above_u, below_u, above_v, below_v;  // the slab's two sides
-    Four pup, pum, pvp, pvm;
+  for (std::size_t i = 0; i < kBlock; i += 8) {
+    const Eight u = EightAt(&at.u[i]);
+    const Eight v = EightAt(&at.v[i]);
+    const Eight up = EightAt(&at.up[i]) * per_w;
+    const Eight um = EightAt(&at.um[i]) * per_w;
+    const Eight vp = EightAt(&at.vp[i]) * per_w;
+    const Eight vm = EightAt(&at.vm[i]) * per_w;
+    Eight above_u, below_u, above_v, below_v;  // the slab's two sides
+    Eight pup, pum, pvp, pvm;
     NormalAt(up, above_u, pup);
     NormalAt(um, below_u, pum);
     NormalAt(vp, above_v, pvp);
     NormalAt(vm, below_v, pvm);
-    Four sup, sum, svp, svm;
+    Eight sup, sum, svp, svm;
     AddSquare(k, up, above_u, pup, sup);
     AddSquare(k, um, below_u, pum, sum);
     AddSquare(k, vp, above_v, pvp, svp);
@@ -297,31 +355,31 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     pum *= per_w;
     pvp *= per_w;
     pvm *= per_w;
-    const double weight = place.weight;
-    const Four along = above_u - below_u;
-    const Four across = weight * (above_v - below_v);
+    const float weight = place.weight;
+    const Eight along = above_u - below_u;
+    const Eight across = weight * (above_v - below_v);
     pvp *= weight;
     pvm *= weight;
     // By w at a fixed depth in w: the term goes with w^-4.
-    const Four fades_u = 4.0 * per_w * (sup - sum);
-    const Four fades_v = (4.0 * weight) * per_w * (svp - svm);
-    const Four d_u = (pup - pum) * across;
-    const Four d_v = (pvp - pvm) * along;
-    const Four d_x = d_v * place.sine - d_u * place.cosine;
-    const Four d_y = -d_u * place.sine - d_v * place.cosine;
-    FourAt(&out.value[i]) += along * across;
-    FourAt(&out.d_shape[0][i]) += d_x;
-    FourAt(&out.d_shape[1][i]) += d_y;
-    FourAt(&out.d_shape[2][i]) += (pup + pum) * across;
-    FourAt(&out.d_shape[3][i]) += (pvp + pvm) * along;
-    const Four d_angle = d_u * v - d_v * u;
-    FourAt(&out.d_shape[4][i]) += d_angle;
-    FourAt(&out.d_blur[i]) -= (up * pup - um * pum + fades_u) * across +
-                              (vp * pvp - vm * pvm + fades_v) * along;
-    FourAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
-                              d_angle * place.d_open_angle;
-    FourAt(&out.xi[i]) += u * (weight * place.per_long);
-    FourAt(&out.eta[i]) += v * (weight * place.per_short);
+    const Eight fades_u = 4.0F * per_w * (sup - sum);
+    const Eight fades_v = (4.0F * weight) * per_w * (svp - svm);
+    const Eight d_u = (pup - pum) * across;
+    const Eight d_v = (pvp - pvm) * along;
+    const Eight d_x = d_v * s - d_u * c;
+    const Eight d_y = -d_u * s - d_v * c;
+    EightAt(&out.value[i]) += along * across;
+    EightAt(&out.d_shape[0][i]) += d_x;
+    EightAt(&out.d_shape[1][i]) += d_y;
+    EightAt(&out.d_shape[2][i]) += (pup + pum) * across;
+    EightAt(&out.d_shape[3][i]) += (pvp + pvm) * along;
+    const Eight d_angle = d_u * v - d_v * u;
+    EightAt(&out.d_shape[4][i]) += d_angle;
+    EightAt(&out.d_blur[i]) -= (up * pup - um * pum + fades_u) * across +
+                               (vp * pvp - vm * pvm + fades_v) * along;
+    EightAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
+                               d_angle * place.d_open_angle;
+    EightAt(&out.xi[i]) += u * (weight * place.per_long);
+    EightAt(&out.eta[i]) += v * (weight * place.per_short);
   }
 }
 
@@ -405,17 +463,21 @@ void OutlineImage::Cover(const double* x, const double* y,
   Place place;
   place.long_px = sphere ? outline_.radius_px : outline_.half_long_px;
   place.short_px = outline_.half_short_px;
-  place.per_long = 1.0 / place.long_px;
-  place.per_short = sphere ? 0.0 : 1.0 / place.short_px;
-  place.w_px = smear_.blur_px_;
+  place.per_long = static_cast<float>(1.0 / place.long_px);
+  place.per_short =
+      sphere ? 0.0F : static_cast<float>(1.0 / outline_.half_short_px);
+  place.w_px = static_cast<float>(smear_.blur_px_);
   for (const auto& [s, weight] : smear_.nodes_) {
-    place.weight = weight;
-    place.d_open_x = s * smear_.travel_px_.x_px;
-    place.d_open_y = s * smear_.travel_px_.y_px;
-    place.x_px = outline_.centre.x_px + smear_.open_ * place.d_open_x;
-    place.d_open_angle = s * smear_.turn_rad_;
-    place.y_px = outline_.centre.y_px + smear_.open_ * place.d_open_y;
-    const double angle = outline_.angle_rad + smear_.open_ * place.d_open_angle;
+    place.weight = static_cast<float>(weight);
+    const double x_way = s * smear_.travel_px_.x_px;
+    const double y_way = s * smear_.travel_px_.y_px;
+    const double turn = s * smear_.turn_rad_;
+    place.d_open_x = static_cast<float>(x_way);
+    place.d_open_y = static_cast<float>(y_way);
+    place.d_open_angle = static_cast<float>(turn);
+    place.x_px = outline_.centre.x_px + smear_.open_ * x_way;
+    place.y_px = outline_.centre.y_px + smear_.open_ * y_way;
+    const double angle = outline_.angle_rad + smear_.open_ * turn;
     place.cosine = std::cos(angle);
     place.sine = std::sin(angle);
     if (small_) {

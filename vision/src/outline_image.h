@@ -17,7 +17,7 @@ namespace touchdown::vision {
 // Pixels are worked on so many at a time: their numbers stay in the processor's
 // nearest cache.
 inline constexpr std::size_t kBlock = 64;
-using BlockColumn = std::array<double, kBlock>;
+using BlockColumn = std::array<float, kBlock>;
 
 // The coverage of each pixel of a block and its derivatives.
 struct alignas(64) CoverBlock {

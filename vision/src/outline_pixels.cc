@@ -269,25 +269,25 @@ void AddAppearance(const Appearance& appearance, const Outline& outline,
                    double cosine, double sine, OutlinePixels& pixels) {
   pixels.sloped = !appearance.rings_dn.empty();
   if (pixels.sloped) {
-    pixels.slope_x.assign(pixels.padded(), 0.0);
-    pixels.slope_y.assign(pixels.padded(), 0.0);
+    pixels.slope_x.assign(pixels.padded(), 0.0F);
+    pixels.slope_y.assign(pixels.padded(), 0.0F);
   }
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const Appearance::Value value =
         appearance.At(pixels.x[i] - outline.centre.x_px,
                       pixels.y[i] - outline.centre.y_px, cosine, sine);
-    pixels.behind[i] -= value.level_dn;
+    pixels.behind[i] -= static_cast<float>(value.level_dn);
     if (pixels.sloped) {
-      pixels.slope_x[i] = value.slope_x_dn_per_px;
-      pixels.slope_y[i] = value.slope_y_dn_per_px;
+      pixels.slope_x[i] = static_cast<float>(value.slope_x_dn_per_px);
+      pixels.slope_y[i] = static_cast<float>(value.slope_y_dn_per_px);
     }
     constexpr double kEdge_px = 1.0;
     if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) <
         -kEdge_px) {
       continue;
     }
-    const double u = value.u_dn * pixels.per_noise[i];
-    pixels.per_noise[i] /= std::sqrt(1.0 + u * u);
+    const double u = value.u_dn * static_cast<double>(pixels.per_noise[i]);
+    pixels.per_noise[i] /= static_cast<float>(std::sqrt(1.0 + u * u));
   }
 }
 

@@ -11,8 +11,10 @@ namespace touchdown::vision {
 namespace {
 
 template <std::size_t kCount>
-double SumOf(const std::array<double, kCount>& lanes) {
-  return std::accumulate(lanes.begin(), lanes.end(), 0.0);
+double SumOf(const std::array<float, kCount>& lanes) {
+  double sum = 0.0;
+  for (const float lane : lanes) sum += static_cast<double>(lane);
+  return sum;
 }
 
 }  // namespace
@@ -21,8 +23,9 @@ void OutlinePixels::Clear(std::size_t room) {
   size = 0;
   sloped = false;
   if (x.size() >= room + kBlock) return;
-  for (auto* const column :
-       {&x, &y, &value, &background, &behind, &per_noise}) {
+  x.resize(room + kBlock);
+  y.resize(room + kBlock);
+  for (Column* const column : {&value, &background, &behind, &per_noise}) {
     column->resize(room + kBlock);
   }
 }
@@ -30,8 +33,10 @@ void OutlinePixels::Clear(std::size_t room) {
 void OutlinePixels::Finish(double floor_dn2, double slope_dn,
                            double least_dn2) {
   for (std::size_t i = 0; i < size; ++i) {
-    const double variance = floor_dn2 + slope_dn * value[i];
-    per_noise[i] = 1.0 / std::sqrt(variance > least_dn2 ? variance : least_dn2);
+    const double variance =
+        floor_dn2 + slope_dn * static_cast<double>(value[i]);
+    per_noise[i] = static_cast<float>(
+        1.0 / std::sqrt(variance > least_dn2 ? variance : least_dn2));
   }
   for (std::size_t i = size; i < padded(); ++i) {
     x[i] = x[size - 1];
@@ -39,18 +44,18 @@ void OutlinePixels::Finish(double floor_dn2, double slope_dn,
     value[i] = value[size - 1];
     background[i] = background[size - 1];
     behind[i] = behind[size - 1];
-    per_noise[i] = 0.0;
+    per_noise[i] = 0.0F;
   }
 }
 
 // One block of a round.
 struct OutlineBlock {
-  const double* value;
-  const double* background;
-  const double* behind;
-  const double* per_noise;
-  const double* slope_x;  // null: none
-  const double* slope_y;
+  const float* value;
+  const float* background;
+  const float* behind;
+  const float* per_noise;
+  const float* slope_x;  // null: none
+  const float* slope_y;
   double* residuals;
 
   using Lanes = OutlineSums::Lanes;
@@ -62,70 +67,52 @@ struct OutlineBlock {
   TOUCHDOWN_INLINE static void AddProducts(const BlockColumn& a,
                                            const std::array<BlockColumn, 4>& b,
                                            Lanes* sums) {
-    Four s[4][2];
-    for (std::size_t j = 0; j < 4; ++j) {
-      s[j][0] = FourAt(sums[j].data());
-      s[j][1] = FourAt(sums[j].data() + 4);
-    }
+    Eight s[4];
+    for (std::size_t j = 0; j < 4; ++j) s[j] = EightAt(sums[j].data());
     for (std::size_t k = 0; k < kBlock; k += kLanes) {
-      const Four a0 = FourAt(&a[k]);
-      const Four a1 = FourAt(&a[k + 4]);
-      for (std::size_t j = 0; j < 4; ++j) {
-        s[j][0] += a0 * FourAt(&b[j][k]);
-        s[j][1] += a1 * FourAt(&b[j][k + 4]);
-      }
+      const Eight at = EightAt(&a[k]);
+      for (std::size_t j = 0; j < 4; ++j) s[j] += at * EightAt(&b[j][k]);
     }
-    for (std::size_t j = 0; j < 4; ++j) {
-      FourAt(sums[j].data()) = s[j][0];
-      FourAt(sums[j].data() + 4) = s[j][1];
-    }
+    for (std::size_t j = 0; j < 4; ++j) EightAt(sums[j].data()) = s[j];
   }
 
   TOUCHDOWN_INLINE static void AddProduct(const BlockColumn& a,
                                           const BlockColumn& b, Lanes& sum) {
-    Four s0 = FourAt(sum.data());
-    Four s1 = FourAt(sum.data() + 4);
+    Eight s = EightAt(sum.data());
     for (std::size_t k = 0; k < kBlock; k += kLanes) {
-      s0 += FourAt(&a[k]) * FourAt(&b[k]);
-      s1 += FourAt(&a[k + 4]) * FourAt(&b[k + 4]);
+      s += EightAt(&a[k]) * EightAt(&b[k]);
     }
-    FourAt(sum.data()) = s0;
-    FourAt(sum.data() + 4) = s1;
+    EightAt(sum.data()) = s;
   }
 
   TOUCHDOWN_INLINE static void Add(const BlockColumn& from, Lanes& sum) {
-    Four s0 = FourAt(sum.data());
-    Four s1 = FourAt(sum.data() + 4);
-    for (std::size_t k = 0; k < kBlock; k += kLanes) {
-      s0 += FourAt(&from[k]);
-      s1 += FourAt(&from[k + 4]);
-    }
-    FourAt(sum.data()) = s0;
-    FourAt(sum.data() + 4) = s1;
+    Eight s = EightAt(sum.data());
+    for (std::size_t k = 0; k < kBlock; k += kLanes) s += EightAt(&from[k]);
+    EightAt(sum.data()) = s;
   }
 
   TOUCHDOWN_INLINE static void Multiply(const BlockColumn& a,
                                         const BlockColumn& b,
                                         BlockColumn& product) {
-    for (std::size_t k = 0; k < kBlock; k += 4) {
-      FourAt(&product[k]) = FourAt(&a[k]) * FourAt(&b[k]);
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      EightAt(&product[k]) = EightAt(&a[k]) * EightAt(&b[k]);
     }
   }
 
   // 1, xi, eta, xi^2, xi eta, eta^2 times their levels.
   TOUCHDOWN_INLINE static void Levels(const CoverBlock& cover,
-                                      const double* level, std::size_t count,
+                                      const float* level, std::size_t count,
                                       BlockColumn& sum) {
     if (count == 1) {
       sum.fill(level[0]);
       return;
     }
-    for (std::size_t k = 0; k < kBlock; k += 4) {
-      const Four xi = FourAt(&cover.xi[k]);
-      const Four eta = FourAt(&cover.eta[k]);
-      FourAt(&sum[k]) = level[0] + xi * level[1] + eta * level[2] +
-                        xi * (xi * level[3] + eta * level[4]) +
-                        eta * eta * level[5];
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      const Eight xi = EightAt(&cover.xi[k]);
+      const Eight eta = EightAt(&cover.eta[k]);
+      EightAt(&sum[k]) = level[0] + xi * level[1] + eta * level[2] +
+                         xi * (xi * level[3] + eta * level[4]) +
+                         eta * eta * level[5];
     }
   }
 
@@ -134,16 +121,16 @@ struct OutlineBlock {
                                      std::size_t count, BlockColumn* rows) {
     rows[0] = factor;
     if (count == 1) return;
-    for (std::size_t k = 0; k < kBlock; k += 4) {
-      const Four xi = FourAt(&cover.xi[k]);
-      const Four eta = FourAt(&cover.eta[k]);
-      const Four x = FourAt(&factor[k]) * xi;
-      const Four y = FourAt(&factor[k]) * eta;
-      FourAt(&rows[1][k]) = x;
-      FourAt(&rows[2][k]) = y;
-      FourAt(&rows[3][k]) = x * xi;
-      FourAt(&rows[4][k]) = x * eta;
-      FourAt(&rows[5][k]) = y * eta;
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      const Eight xi = EightAt(&cover.xi[k]);
+      const Eight eta = EightAt(&cover.eta[k]);
+      const Eight x = EightAt(&factor[k]) * xi;
+      const Eight y = EightAt(&factor[k]) * eta;
+      EightAt(&rows[1][k]) = x;
+      EightAt(&rows[2][k]) = y;
+      EightAt(&rows[3][k]) = x * xi;
+      EightAt(&rows[4][k]) = x * eta;
+      EightAt(&rows[5][k]) = y * eta;
     }
   }
 
@@ -161,33 +148,38 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
   };
   Work w;
   const std::size_t n = round.terms();
-  const double per_cut = round.cut > 0.0 ? 1.0 / round.cut : 0.0;
+  const float per_cut =
+      round.cut > 0.0 ? static_cast<float>(1.0 / round.cut) : 0.0F;
+  std::array<float, 12> levels;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i] = static_cast<float>(round.levels[i]);
+  }
   const bool known = round.outer == 0;
-  Levels(cover, round.levels.data(), round.interior, w.in);
+  Levels(cover, levels.data(), round.interior, w.in);
   if (known) {
     std::copy_n(background, kBlock, w.out.begin());
     std::copy_n(behind, kBlock, w.behind.begin());
   } else {
-    Levels(cover, round.levels.data() + round.interior, round.outer, w.out);
+    Levels(cover, levels.data() + round.interior, round.outer, w.out);
     w.behind = w.out;
   }
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const double covered = cover.value[i];
-    const double noise = per_noise[i];
-    const double rise = w.in[i] - w.behind[i];
-    const double residual = (value[i] - w.out[i] - covered * rise) * noise;
-    const double present = noise > 0.0 ? 1.0 : 0.0;
-    const double t = residual * per_cut;
-    const double inner = 1.0 - t * t;
-    const double q = inner > 0.0 ? inner : 0.0;
-    const double weight = present * q * q;
-    const double edge = present * covered * (1.0 - covered);
-    const double inlier = weight > 0.5 ? 1.0 : 0.0;
+    const float covered = cover.value[i];
+    const float noise = per_noise[i];
+    const float rise = w.in[i] - w.behind[i];
+    const float residual = (value[i] - w.out[i] - covered * rise) * noise;
+    const float present = noise > 0.0F ? 1.0F : 0.0F;
+    const float t = residual * per_cut;
+    const float inner = 1.0F - t * t;
+    const float q = inner > 0.0F ? inner : 0.0F;
+    const float weight = present * q * q;
+    const float edge = present * covered * (1.0F - covered);
+    const float inlier = weight > 0.5F ? 1.0F : 0.0F;
     w.residual[i] = residual;
     w.weight[i] = weight;
     w.step[i] = rise * noise;
     w.inside[i] = covered * noise;
-    w.outside[i] = (1.0 - covered) * noise;
+    w.outside[i] = (1.0F - covered) * noise;
     w.cost[i] = weight * residual * residual;
     w.inlier[i] = inlier;
     w.square[i] = inlier * residual * residual;
@@ -210,7 +202,7 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
                                : cover.d_shape[round.shape[k]];
     Multiply(w.step, d, rows[k]);
     if (slope_x == nullptr || round.shape[k] > 1) continue;
-    const double* const slope = round.shape[k] == 0 ? slope_x : slope_y;
+    const float* const slope = round.shape[k] == 0 ? slope_x : slope_y;
     for (std::size_t i = 0; i < kBlock; ++i) {
       rows[k][i] -= w.inside[i] * slope[i];
     }
@@ -219,7 +211,7 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
   if (!known) {
     Terms(cover, w.outside, round.outer, rows + round.shapes + round.interior);
   }
-  for (std::size_t k = n; k < (n + 3) / 4 * 4; ++k) rows[k].fill(0.0);
+  for (std::size_t k = n; k < (n + 3) / 4 * 4; ++k) rows[k].fill(0.0F);
 
   for (std::size_t i = 0; i < n; ++i) {
     Multiply(w.weight, rows[i], w.weighted);
@@ -231,11 +223,8 @@ void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
   }
 }
 
-void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
-                     const OutlineRound& round,
-                     std::vector<double>& residuals) {
-  const std::size_t n = round.terms();
-  for (std::size_t i = 0; i < n; ++i) {
+void OutlineSums::Begin(std::size_t terms) {
+  for (std::size_t i = 0; i < terms; ++i) {
     std::fill_n(
         totals_.normal.begin() + static_cast<std::ptrdiff_t>(i * kPadded),
         (i + 4) / 4 * 4, Lanes{});
@@ -243,6 +232,31 @@ void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
   }
   totals_.cost = totals_.weights = totals_.inliers = {};
   totals_.square = totals_.contrast = totals_.contrast_weight = {};
+}
+
+void OutlineSums::TakeIn(std::size_t terms) {
+  for (std::size_t i = 0; i < terms; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      normal_[i * kPadded + j] += SumOf(totals_.normal[i * kPadded + j]);
+    }
+    gradient_[i] += SumOf(totals_.gradient[i]);
+  }
+  cost += SumOf(totals_.cost);
+  weights += SumOf(totals_.weights);
+  inliers += SumOf(totals_.inliers);
+  square += SumOf(totals_.square);
+  contrast_ += SumOf(totals_.contrast);
+  contrast_weight_ += SumOf(totals_.contrast_weight);
+}
+
+void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
+                     const OutlineRound& round,
+                     std::vector<double>& residuals) {
+  const std::size_t n = round.terms();
+  normal_.fill(0.0);
+  gradient_.fill(0.0);
+  cost = weights = inliers = square = contrast_ = contrast_weight_ = 0.0;
+  Begin(n);
   residuals.resize(pixels.padded());
   CoverBlock cover;
   for (std::size_t begin = 0; begin < pixels.padded(); begin += kBlock) {
@@ -256,23 +270,23 @@ void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
         pixels.sloped ? &pixels.slope_y[begin] : nullptr,
         &residuals[begin]};
     block.AddTo(round, cover, totals_);
+    // So many short numbers still add up to 1e-6 of their sum.
+    constexpr std::size_t kTogether = 16 * kBlock;
+    if ((begin + kBlock) % kTogether == 0 ||
+        begin + kBlock >= pixels.padded()) {
+      TakeIn(n);
+      Begin(n);
+    }
   }
   residuals.resize(pixels.size);
-  cost = SumOf(totals_.cost);
-  weights = SumOf(totals_.weights);
-  inliers = SumOf(totals_.inliers);
-  square = SumOf(totals_.square);
-  const double edge = SumOf(totals_.contrast_weight);
-  contrast_dn = edge > 0.0 ? SumOf(totals_.contrast) / edge : 0.0;
+  contrast_dn = contrast_weight_ > 0.0 ? contrast_ / contrast_weight_ : 0.0;
 }
 
 double OutlineSums::normal(std::size_t i, std::size_t j) const {
-  return SumOf(totals_.normal[i * kPadded + j]);
+  return normal_[i * kPadded + j];
 }
 
-double OutlineSums::gradient(std::size_t i) const {
-  return SumOf(totals_.gradient[i]);
-}
+double OutlineSums::gradient(std::size_t i) const { return gradient_[i]; }
 
 double RobustScale(const std::vector<double>& residuals) {
   constexpr double kPerMedian = 1.4826;

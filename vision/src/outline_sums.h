@@ -36,10 +36,11 @@ struct Unfilled : std::allocator<T> {
 // The pixels of a fit, column by column, padded to whole blocks. Columns may be
 // longer than that.
 struct OutlinePixels {
-  using Column = std::vector<double, Unfilled<double>>;
+  using Column = std::vector<float, Unfilled<float>>;
+  using Places = std::vector<double, Unfilled<double>>;
   std::size_t size = 0;  // without the padding
-  Column x;
-  Column y;
+  Places x;
+  Places y;
   Column value;       // DN
   Column background;  // DN
   Column behind;      // DN, of what the body hides here
@@ -57,9 +58,9 @@ struct OutlinePixels {
            double behind_dn) {
     x[size] = x_px;
     y[size] = y_px;
-    value[size] = value_dn;
-    background[size] = background_dn;
-    behind[size] = behind_dn;
+    value[size] = static_cast<float>(value_dn);
+    background[size] = static_cast<float>(background_dn);
+    behind[size] = static_cast<float>(behind_dn);
     ++size;
   }
   // `count` pixels of a row, whose background is what the body hides.
@@ -71,12 +72,10 @@ struct OutlinePixels {
     }
     std::fill_n(&y[size], count, y_px);
     for (std::size_t i = 0; i < count; ++i) {
-      value[size + i] = static_cast<double>(value_dn[i]);
+      value[size + i] = static_cast<float>(value_dn[i]);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      background[size + i] = static_cast<double>(background_dn[i]);
-    }
-    std::copy_n(&background[size], count, &behind[size]);
+    std::copy_n(background_dn, count, &background[size]);
+    std::copy_n(background_dn, count, &behind[size]);
     size += count;
   }
   // When all are there. The noise's variance is floor + slope * value, at least
@@ -123,15 +122,23 @@ class OutlineSums {
  private:
   static constexpr std::size_t kLanes = 8;
   static constexpr std::size_t kPadded = (kMostTerms + 3) / 4 * 4;
-  using Lanes = std::array<double, kLanes>;
+  using Lanes = std::array<float, kLanes>;
 
   friend struct OutlineBlock;
+  // Of a few blocks, in short numbers.
   struct alignas(64) Totals {
     std::array<Lanes, kMostTerms * kPadded> normal;
     std::array<Lanes, kMostTerms> gradient;
     Lanes cost, weights, inliers, square, contrast, contrast_weight;
   };
+  void Begin(std::size_t terms);
+  void TakeIn(std::size_t terms);
+
   Totals totals_;
+  std::array<double, kMostTerms * kPadded> normal_;
+  std::array<double, kMostTerms> gradient_;
+  double contrast_ = 0.0;
+  double contrast_weight_ = 0.0;
 };
 
 // 1.4826 times the median of the residuals' sizes, and at least 1.
