@@ -46,7 +46,7 @@ struct Ladder {
 std::vector<Ladder> Ladders() {
   return {
       {"size (px)",
-       {160.0, 80.0, 40.0, 24.0, 16.0, 12.0, 8.0, 6.0},
+       {400.0, 240.0, 160.0, 80.0, 40.0, 24.0, 16.0, 12.0, 8.0, 6.0},
        [](Levels& l, double v) { l.size_px = v; }},
       {"contrast over noise",
        {30.0, 20.0, 12.0, 8.0, 6.0, 4.0, 3.0, 2.0},
