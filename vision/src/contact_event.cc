@@ -297,11 +297,12 @@ bool MeasureStay(const PlaneTrack& track, Event& event,
   return event.fit.has_value();
 }
 
-// The last of three frames may follow the blow.
+// The last of three frames may follow the blow, if none was left out there.
 void DropFirstAfterBlow(std::span<const PlaneSample> samples, Event& event,
                         const EventOptions& options) {
   if (event.before->frames != static_cast<int>(Least(options)) ||
-      Least(options) == LeastBefore(options)) {
+      Least(options) == LeastBefore(options) ||
+      event.before_end != event.first_after) {
     return;
   }
   const std::size_t last = event.before_end - 1;
