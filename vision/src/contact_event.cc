@@ -356,14 +356,18 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
     event.before = FitFlight(BeforeOf(samples, event), options.flight);
   }
   const bool flies = FindFlightAfter(track, event, options);
-  event.too_few = event.before_end - event.before_begin < Least(options) &&
-                  !(flies && CameBeforeRebound(samples, event, options));
+  const bool few = event.before_end - event.before_begin < Least(options);
+  event.too_few = few && !(flies && CameBeforeRebound(samples, event, options));
   if (event.too_few) return false;
 
   if (!(flies ? MeasureRebound(track, event, options)
               : MeasureStay(track, event, options))) {
     return false;
   }
+  // Two frames of which one is no outline of the body (it comes out from behind
+  // something) seem to rebound, too: but not from the line.
+  constexpr double kFarOff = 6.0;  // in u
+  if (few && std::abs(event.disagreement) > kFarOff) return false;
   const JointFit& fit = *event.fit;
   const auto time_of = [&](JointParameter k) {
     const core::Estimate t = fit.Of([k](const JointVector& p) { return p[k]; });
