@@ -261,6 +261,11 @@ Bound BoundOf(const Case& c) {
         [&](const VectorXd& p) { return VectorXd::Constant(1, q(p)); });
     return std::sqrt((j * covariance * j.transpose())(0, 0));
   };
+  // Wider than all there could be, it is what rounding left of no information.
+  const auto or_none = [](double wide, double most) {
+    return wide < most ? wide : std::numeric_limits<double>::quiet_NaN();
+  };
+  constexpr double kRightAngle_rad = 0.5 * std::numbers::pi;
   bound.approach_rad = deviation([](const VectorXd& p) {
     return std::atan2(-p[kVy], p[kVx]) + p[kSlope];
   });
@@ -273,6 +278,10 @@ Bound BoundOf(const Case& c) {
       return p[kFace] - p[kSlope] + std::atan2(p[kHalfShort], p[kHalfLong]);
     });
   }
+  bound.approach_rad = or_none(bound.approach_rad, kRightAngle_rad);
+  bound.frame = or_none(bound.frame, static_cast<double>(film.frames));
+  bound.face_rad = or_none(bound.face_rad, kRightAngle_rad);
+  bound.radius_rad = or_none(bound.radius_rad, kRightAngle_rad);
   return bound;
 }
 

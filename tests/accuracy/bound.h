@@ -22,7 +22,8 @@
 
 namespace touchdown::accuracy {
 
-// Standard deviations; NaN where the quantity does not exist.
+// Standard deviations; NaN where the quantity does not exist, or the pixels do
+// not tell it.
 struct Bound {
   double approach_rad = 0.0;
   double frame = 0.0;  // contact time, in frames

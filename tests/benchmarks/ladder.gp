@@ -25,8 +25,8 @@ set label 5 "▮ share of clips without an angle (right)" at screen 0.78, 0.02 t
 array ladder[6] = ["size (px)", "contrast over noise", "blur of the lens (px)", \
   "frames on either side", "approach angle (deg)", "hidden share of the approach"]
 # Number of the rung, rung, ratio and its interval ("-" where nothing was
-# measured), share absent, coverage.
-rows(name, quantity) = sprintf("< awk -F, '$1 == \"%s\" && $3 == \"%s\" {n = $12 == \"\"; print i++, $2, n ? \"-\" : $12, n ? \"-\" : $13, n ? \"-\" : $14, $6, n ? \"-\" : $16}' '%s'", name, quantity, csv)
+# measured or there is no bound), share absent, coverage.
+rows(name, quantity) = sprintf("< awk -F, '$1 == \"%s\" && $3 == \"%s\" {n = $12 == \"\"; print i++, $2, n ? \"-\" : $12, n ? \"-\" : $13, n ? \"-\" : $14, $6, $16 == \"\" ? \"-\" : $16}' '%s'", name, quantity, csv)
 set datafile missing "-"
 do for [k = 1:6] {
   if (k == 2) { unset label }

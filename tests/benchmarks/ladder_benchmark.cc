@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/accuracy/score.h"
+#include "tests/support/statistics.h"
 #include "touchdown/analysis/agreement_statistics.h"
 #include "touchdown/core/units.h"
 
@@ -46,7 +47,7 @@ struct Ladder {
 std::vector<Ladder> Ladders() {
   return {
       {"size (px)",
-       {160.0, 80.0, 40.0, 24.0, 16.0, 12.0, 8.0, 6.0},
+       {400.0, 240.0, 160.0, 80.0, 40.0, 24.0, 16.0, 12.0, 8.0, 6.0},
        [](Levels& l, double v) { l.size_px = v; }},
       {"contrast over noise",
        {30.0, 20.0, 12.0, 8.0, 6.0, 4.0, 3.0, 2.0},
@@ -89,6 +90,18 @@ std::vector<Case> CasesOf(const Ladder& ladder, double rung,
   return cases;
 }
 
+// Errors over their bounds, whose root mean square is `bound`.
+void PrintRatios(const std::vector<double>& ratios, double bound) {
+  const core::Interval interval = RmsInterval95(ratios);
+  std::vector<double> sizes = ratios;
+  for (double& v : sizes) v = std::abs(v);
+  const auto middle =
+      sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  fmt::print("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", bound, testing::Rms(ratios),
+             interval.low, interval.high, *middle);
+}
+
 void PrintRung(const std::string& ladder, double rung,
                const std::vector<Outcome>& outcomes, Quantity quantity) {
   Sum sum;
@@ -115,19 +128,15 @@ void PrintRung(const std::string& ladder, double rung,
     return;
   }
   const double unit = is_time ? 1.0 : core::kDegree;
-  const core::Interval interval = RmsInterval95(ratios);
   const core::Interval band = sum.CoverageBand();
-  std::vector<double> sizes = ratios;
-  for (double& v : sizes) v = std::abs(v);
-  const auto middle =
-      sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  fmt::print(
-      "{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n",
-      is_time ? "frame" : "deg", sum.Rmse() / unit,
-      std::sqrt(bound2 / static_cast<double>(sum.measured)) / unit,
-      sum.RmseOverBound(), interval.low, interval.high, *middle, sum.Coverage(),
-      band.low, band.high);
+  fmt::print("{},{:.4g},", is_time ? "frame" : "deg", sum.Rmse() / unit);
+  if (!std::isfinite(bound2)) {  // of some clip there is no bound
+    fmt::print(",,,,,");
+  } else {
+    PrintRatios(ratios,
+                std::sqrt(bound2 / static_cast<double>(sum.measured)) / unit);
+  }
+  fmt::print("{:.4g},{:.4g},{:.4g}\n", sum.Coverage(), band.low, band.high);
 }
 
 }  // namespace

@@ -87,6 +87,39 @@ TEST(SteadyLight, SteadyLightIsLeftAlone) {
   }
 }
 
+// A dark body that hides a quarter of the picture in half of the frames looked
+// at: least squares of all points would take it for less light.
+Film FilledByTheBody() {
+  Film film = Default(core::BodyKind::kSphere);
+  film.camera.height_px = 180;
+  film.camera.ground_point.y_px = 156.0;
+  film.thrown.half_long_m = film.thrown.half_short_m = 0.06;
+  film.look.background_level = 0.7;
+  film.look.body_level = 0.2;
+  return film;
+}
+constexpr std::int64_t kBeforeIt = 35;  // of the body's first frame, 50
+
+TEST(SteadyLight, ALargeBodyIsNoFlicker) {
+  const Film film = FilledByTheBody();
+  const SteadyLight light = SteadyLightOf(Open(film), kBeforeIt, film.frames);
+  EXPECT_TRUE(light.told);
+  EXPECT_FALSE(light.corrected) << light.spread;
+  EXPECT_LT(light.spread, 0.5 * SteadyLightOptions{}.least_spread);
+}
+
+TEST(SteadyLight, FlickerBesideALargeBodyIsTakenOut) {
+  constexpr double kAmplitude = 0.1;
+  Film film = FilledByTheBody();
+  film.trouble.flicker_amplitude = kAmplitude;
+  film.trouble.flicker_hz = film.camera.fps / 17.3;
+  const SteadyLight light = SteadyLightOf(Open(film), kBeforeIt, film.frames);
+  ASSERT_TRUE(light.corrected);
+  // What is left: where the body passes, the median over the frames is of
+  // those without it, which have a light of their own.
+  EXPECT_LT(SpreadOfCorner(*light.clip), 0.07 * kAmplitude);
+}
+
 TEST(SteadyLight, FullScaleStaysFullScale) {
   Film film = Flickering(0.1, 8);
   film.look.background_level = 1.0;  // clipped half of the time

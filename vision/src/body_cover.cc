@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "outline_batch.h"
+#include "outline_image.h"
 #include "outline_pixels.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
 
-// Mean level of a frame inside the outline, clear of its edge.
-double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
-  const core::Frame frame =
-      clip.Read(index, WindowFor(outline, {}, clip.info()));
+// Calls use(x, y) for each pixel inside the outline, clear of its edge.
+template <class Use>
+void ForEachInside(const Outline& outline, const Use& use) {
   const double reach = outline.kind == core::BodyKind::kSphere
                            ? outline.radius_px
                            : outline.half_long_px;
@@ -22,23 +22,57 @@ double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
                                                      : outline.half_short_px);
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
-  double sum = 0.0;
-  double count = 0.0;
   for (int y = static_cast<int>(outline.centre.y_px - reach);
        y <= static_cast<int>(outline.centre.y_px + reach); ++y) {
     for (int x = static_cast<int>(outline.centre.x_px - reach);
          x <= static_cast<int>(outline.centre.x_px + reach); ++x) {
-      const int u = x - frame.origin_x_px;
-      const int v = y - frame.origin_y_px;
-      if (u < 0 || v < 0 || u >= frame.width_px || v >= frame.height_px) {
-        continue;
-      }
       if (DepthInside(outline, x, y, cosine, sine) < depth) continue;
-      sum += frame.at(u, v);
-      count += 1.0;
+      use(x, y);
     }
   }
+}
+
+// Mean level of a frame there.
+double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
+  const core::Frame frame =
+      clip.Read(index, WindowFor(outline, {}, clip.info()));
+  double sum = 0.0;
+  double count = 0.0;
+  ForEachInside(outline, [&](int x, int y) {
+    const int u = x - frame.origin_x_px;
+    const int v = y - frame.origin_y_px;
+    if (u < 0 || v < 0 || u >= frame.width_px || v >= frame.height_px) return;
+    sum += frame.at(u, v);
+    count += 1.0;
+  });
   return count > 0.0 ? sum / count : 0.0;
+}
+
+// Mean coverage there: less than 1 where the body is not much wider than its
+// blur.
+double CoverInside(const Outline& outline, double blur_px) {
+  Smear still({0.0, 0.0}, 0.0, 0.0);
+  still.Set(blur_px, 0.0, false);
+  const OutlineImage image(outline, still);
+  BlockColumn xs{};
+  BlockColumn ys{};
+  std::size_t filled = 0;
+  double sum = 0.0;
+  double count = 0.0;
+  CoverBlock block;
+  const auto flush = [&] {
+    image.Cover(xs.data(), ys.data(), block);
+    for (std::size_t i = 0; i < filled; ++i) sum += block.value[i];
+    count += static_cast<double>(filled);
+    filled = 0;
+  };
+  ForEachInside(outline, [&](int x, int y) {
+    xs[filled] = x;
+    ys[filled] = y;
+    if (++filled == kBlock) flush();
+  });
+  if (filled > 0) flush();
+  return count > 0.0 ? sum / count : 1.0;
 }
 
 }  // namespace
@@ -70,6 +104,7 @@ BodyCover::BodyCover(Clip& clip, const Track& track)
   const Pose& last = track.poses.back();
   level_first_ = LevelInside(clip, first.frame, OutlineAt(track.body, first));
   level_last_ = LevelInside(clip, last.frame, OutlineAt(track.body, last));
+  cover_inside_ = CoverInside(OutlineAt(track.body, first), track.body.blur_px);
 }
 
 // Empty frames are the best background there is.
@@ -78,7 +113,7 @@ bool BodyCover::IsAbsent(std::int64_t frame) const {
   const Pose& end = before ? track_.poses.front() : track_.poses.back();
   const double level = LevelInside(clip_, frame, OutlineAt(track_.body, end));
   return std::abs(level - (before ? level_first_ : level_last_)) >
-         0.5 * std::abs(track_.body.contrast_dn);
+         0.5 * cover_inside_ * std::abs(track_.body.contrast_dn);
 }
 
 // With a margin for blur, for the error of a first look and for the shadow's

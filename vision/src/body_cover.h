@@ -35,6 +35,7 @@ class BodyCover {
   const Track& track_;
   double level_first_ = 0.0;
   double level_last_ = 0.0;
+  double cover_inside_ = 1.0;  // what the blur leaves of the contrast there
 };
 
 }  // namespace touchdown::vision

@@ -350,7 +350,16 @@ ContactResult FindContacts(const PlaneTrack& given,
     event.end = k + 1 < blows.kinks.size() ? blows.kinks[k + 1].after + 1
                                            : samples.size();
     begin = event.first_after;
-    if (!MeasureEvent(track, event, event_options)) continue;
+    if (!MeasureEvent(track, event, event_options)) {
+      // What comes later is not the first contact.
+      if (event.too_few && !first_done) {
+        result.first = NoContact(fmt::format(
+            "too few frames show the body before its blow at frame {}",
+            samples[blows.kinks[k].after].frame));
+        first_done = true;
+      }
+      continue;
+    }
     if (GapOf(track, *event.before, event.time_s.value).rate >= 0.0) continue;
     if (from_start) continue;  // hops of a body that slides
     if (!first_done) {

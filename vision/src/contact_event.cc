@@ -3,112 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight_frames.h"
+
 namespace touchdown::vision {
 namespace {
-
-std::size_t Least(const EventOptions& options) {
-  return options.flight.gravity_px_per_s2 ? 3 : 4;
-}
-
-bool Deviates(const PlaneSample& s, const Flight& flight, double sigmas) {
-  const FlightState at = flight.At(s.time_s);
-  const double h = std::hypot(at.u_height_px, s.u_height_px);
-  const double a = std::hypot(at.u_along_px, s.u_along_px);
-  // A blow on a corner turns a rectangle before it moves its centre.
-  const double f = std::hypot(at.u_face_rad, s.u_face_rad);
-  return std::abs(s.height_px - at.height_px) > sigmas * h ||
-         std::abs(s.along_px - at.along_px) > sigmas * a ||
-         std::abs(s.face_rad - at.face_rad) > sigmas * f;
-}
-
-// The frames next to the blow may be in contact: fit those further off, and
-// keep of the nearest only what the fit predicts. `towards_end`: the blow
-// follows the samples. Returns the trimmed range.
-void TrimAtBlow(std::span<const PlaneSample> samples, std::size_t& begin,
-                std::size_t& end, bool blow_at_end,
-                const EventOptions& options) {
-  constexpr std::size_t kMostDoubtful = 3;  // frames looked at next to the blow
-  constexpr std::size_t kTrusted = 8;       // frames that judge them
-  const std::size_t count = end - begin;
-  // With few frames only the nearest, which may be exposed across the blow.
-  const std::size_t least = Least(options);
-  if (count < least + 1) return;
-  const std::size_t doubtful =
-      std::clamp<std::size_t>(count - least, 2, kMostDoubtful + 1) - 1;
-  const std::size_t trusted = std::min(kTrusted, count - doubtful);
-  const double sigmas = options.flight_sigmas;
-  if (blow_at_end) {
-    const std::size_t last = end - doubtful;
-    const Flight flight =
-        FitFlight(samples.subspan(last - trusted, trusted), options.flight);
-    for (std::size_t i = last; i < end; ++i) {
-      if (Deviates(samples[i], flight, sigmas)) {
-        end = i;
-        return;
-      }
-    }
-  } else {
-    const std::size_t first = begin + doubtful;
-    const Flight flight =
-        FitFlight(samples.subspan(first, trusted), options.flight);
-    for (std::size_t i = first; i-- > begin;) {
-      if (Deviates(samples[i], flight, sigmas)) {
-        begin = i + 1;
-        return;
-      }
-    }
-  }
-}
-
-// From a few frames at the blow outwards, as long as the flight explains them.
-Flight Grow(std::span<const PlaneSample> samples, std::size_t& begin,
-            std::size_t& end, bool outwards_is_back,
-            const EventOptions& options) {
-  constexpr std::size_t kStart = 8;
-  const std::size_t low = begin;
-  const std::size_t high = end;
-  const std::size_t count = std::min(kStart, high - low);
-  if (outwards_is_back) {
-    begin = high - count;
-  } else {
-    end = low + count;
-  }
-  Flight flight =
-      FitFlight(samples.subspan(begin, end - begin), options.flight);
-  std::size_t fitted = end - begin;
-  int strikes = 0;
-  while (true) {
-    const bool more = outwards_is_back ? begin > low : end < high;
-    if (!more) break;
-    const std::size_t next = outwards_is_back ? begin - 1 : end;
-    strikes = Deviates(samples[next], flight, options.flight_sigmas)
-                  ? strikes + 1
-                  : 0;
-    if (outwards_is_back) {
-      --begin;
-    } else {
-      ++end;
-    }
-    if (strikes == 2) {
-      // The two that no longer belong, and two that may have begun to leave.
-      const std::size_t drop =
-          std::min<std::size_t>(4, end - begin - std::min(count, end - begin));
-      const std::size_t cut = std::max<std::size_t>(2, drop);
-      if (outwards_is_back) {
-        begin += cut;
-      } else {
-        end -= cut;
-      }
-      break;
-    }
-    // Again when a tenth was added: predictions far out need a fresh fit.
-    if (end - begin >= fitted + std::max<std::size_t>(1, fitted / 10)) {
-      fitted = end - begin;
-      flight = FitFlight(samples.subspan(begin, fitted), options.flight);
-    }
-  }
-  return FitFlight(samples.subspan(begin, end - begin), options.flight);
-}
 
 // Where the gap of a flight is `level`, near `start_s` (Newton; the gap of a
 // turning rectangle is not a parabola).
@@ -399,6 +297,33 @@ bool MeasureStay(const PlaneTrack& track, Event& event,
   return event.fit.has_value();
 }
 
+// The last of three frames may follow the blow, if none was left out there.
+void DropFirstAfterBlow(std::span<const PlaneSample> samples, Event& event,
+                        const EventOptions& options) {
+  if (event.before->frames != static_cast<int>(Least(options)) ||
+      Least(options) == LeastBefore(options) ||
+      event.before_end != event.first_after) {
+    return;
+  }
+  const std::size_t last = event.before_end - 1;
+  const Flight two = FitFlight(
+      samples.subspan(event.before_begin, kLeastBeforeRebound), options.flight);
+  if (!BelongsAfter(samples, samples[last], two, event.first_after, event.end,
+                    options)) {
+    return;
+  }
+  event.first_after = event.before_end = last;
+  event.before = two;
+}
+
+// Whether the last frame before the blow, with none to spare, is not of the
+// flight after it: a blow one frame earlier looks alike.
+bool CameBeforeRebound(std::span<const PlaneSample> samples, const Event& event,
+                       const EventOptions& options) {
+  return Deviates(samples[event.before_end - 1], *event.after,
+                  options.flight_sigmas);
+}
+
 }  // namespace
 
 bool MeasureEvent(const PlaneTrack& track, Event& event,
@@ -406,12 +331,14 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   const std::span<const PlaneSample> samples(track.samples);
   event.before_begin = event.begin;
   event.before_end = event.first_after;
-  if (event.before_end - event.before_begin < Least(options)) return false;
+  const std::size_t least = LeastBefore(options);
+  event.too_few = event.before_end - event.before_begin < least;
+  if (event.too_few) return false;
   TrimAtBlow(samples, event.before_begin, event.before_end, true, options);
-  if (event.before_end - event.before_begin < Least(options)) return false;
   event.before =
       Grow(samples, event.before_begin, event.before_end, true, options);
-  if (event.before->frames < static_cast<int>(Least(options))) return false;
+  if (event.before->frames < static_cast<int>(least)) return false;
+  DropFirstAfterBlow(samples, event, options);
   // With few frames after it a blow is placed a frame or two early: what the
   // flight before still explains, above the ground, is of that flight.
   while (event.before_end == event.first_after &&
@@ -419,21 +346,28 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
     const PlaneSample& s = samples[event.first_after];
     const FlightGap g = GapOf(track, *event.before, s.time_s);
     if (!(g.gap_px > 0.0) ||
-        Deviates(s, *event.before, options.flight_sigmas)) {
+        Deviates(s, *event.before, options.flight_sigmas) ||
+        (event.before->frames < static_cast<int>(Least(options)) &&
+         BelongsAfter(samples, s, *event.before, event.first_after + 1,
+                      event.end, options))) {
       break;
     }
     event.before_end = ++event.first_after;
-    event.before =
-        FitFlight(samples.subspan(event.before_begin,
-                                  event.before_end - event.before_begin),
-                  options.flight);
+    event.before = FitFlight(BeforeOf(samples, event), options.flight);
   }
   const bool flies = FindFlightAfter(track, event, options);
+  const bool few = event.before_end - event.before_begin < Least(options);
+  event.too_few = few && !(flies && CameBeforeRebound(samples, event, options));
+  if (event.too_few) return false;
 
   if (!(flies ? MeasureRebound(track, event, options)
               : MeasureStay(track, event, options))) {
     return false;
   }
+  // Two frames of which one is no outline of the body (it comes out from behind
+  // something) seem to rebound, too: but not from the line.
+  constexpr double kFarOff = 6.0;  // in u
+  if (few && std::abs(event.disagreement) > kFarOff) return false;
   const JointFit& fit = *event.fit;
   const auto time_of = [&](JointParameter k) {
     const core::Estimate t = fit.Of([k](const JointVector& p) { return p[k]; });

@@ -17,7 +17,8 @@ namespace touchdown::vision {
 struct Event {
   std::size_t begin = 0;  // first sample that may belong to the flight before
   std::size_t first_after = 0;  // samples [begin, first_after) precede the blow
-  std::size_t end = 0;          // one past the last sample before the next blow
+  bool too_few = false;  // frames before the blow, or to tell which they are
+  std::size_t end = 0;   // one past the last sample before the next blow
 
   std::optional<Flight> before;
   std::optional<Flight> after;   // nothing where the body stays down

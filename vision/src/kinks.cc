@@ -176,6 +176,15 @@ double WithoutBlow(const Around& around, double gravity) {
 std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
                             const KinkOptions& options) {
   constexpr std::size_t kWindows[] = {3, 4, 6, 10, 16, 28};
+  // One more than the numbers of two straight lines with one curvature. Of a
+  // track that has no more, one more than those of two flights in known
+  // gravity.
+  constexpr std::size_t kLeastInBoth = 6;
+  constexpr std::size_t kLeastInAll = 5;
+  const std::size_t least_in_both =
+      options.gravity_px_per_s2
+          ? std::clamp(samples.size(), kLeastInAll, kLeastInBoth)
+          : kLeastInBoth;
   std::vector<Kink> candidates;
   std::vector<std::size_t> reach;
   Around around;
@@ -234,7 +243,9 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
       // Left: [.., k], right: [k + 1, ..]; shorter near the ends.
       const std::size_t n_left = std::min(window, k + 1);
       const std::size_t n_right = std::min(window, samples.size() - k - 1);
-      if (n_left < 2 || n_right < 2 || n_left + n_right < 6) continue;
+      if (n_left < 2 || n_right < 2 || n_left + n_right < least_in_both) {
+        continue;
+      }
       // A window that was cut at both ends was tried already.
       if (n_left < window && n_right < window) continue;
       const auto left = samples.subspan(k + 1 - n_left, n_left);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "outline_image.h"
+#include "outline_inside.h"
 #include "outline_pixels.h"
 #include "outline_sums.h"
 #include "shared_fit.h"
@@ -34,7 +35,7 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
 class Fitter {
  public:
   Fitter(const core::Frame& frame, const Background& background,
-         const Outline& start, const OutlineOptions& options)
+         const Outline& start, const OutlineOptions& options, Inside inside)
       : frame_(frame),
         background_(background),
         options_(options),
@@ -50,7 +51,9 @@ class Fitter {
     // A body of a few pixels cannot tell shading from shape; one with a look of
     // its own has a shading, too, which other frames tell.
     const double small_px = options.appearance != nullptr ? 3.0 : 5.0;
-    interior_ = SmallestHalf(start) < small_px ? 1 : 6;
+    const bool flat =
+        inside == Inside::kOneLevel || SmallestHalf(start) < small_px;
+    interior_ = flat ? 1 : 6;
     outer_ = options.surround == OutlineOptions::Surround::kPolynomial ? 6 : 0;
   }
 
@@ -485,11 +488,12 @@ core::Expected<OutlineFit> Fitter::Run() {
 
 }  // namespace
 
-core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
-                                      const Background& background,
-                                      const Outline& start,
-                                      const OutlineOptions& options) {
-  return Fitter(frame, background, start, options).Run();
+core::Expected<OutlineFit> FitOutlineWith(Inside inside,
+                                          const core::Frame& frame,
+                                          const Background& background,
+                                          const Outline& start,
+                                          const OutlineOptions& options) {
+  return Fitter(frame, background, start, options, inside).Run();
 }
 
 }  // namespace touchdown::vision

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <unordered_map>
@@ -64,17 +63,17 @@ class Grid {
            kLeast * static_cast<double>(steady_.size());
   }
 
-  // Least squares of v = g r without points off by more than 4 sigma.
+  // Least squares of v = g r without points off by more than 4 sigma. It begins
+  // where most of the light is: least squares of all points are drawn to a body
+  // that hides a tenth of the picture, and leave it in.
   double GainOf(const std::vector<float>& levels) const {
-    double gain = 1.0;
-    double most_off = std::numeric_limits<double>::infinity();
+    double gain = MedianGain(levels);
+    double most_off = MostOff(levels, gain);
     for (int round = 0; round < kRounds; ++round) {
       const double gain_before = gain;
       const double most_before = most_off;
       double over = 0.0;
       double under = 0.0;
-      std::vector<double> off;
-      off.reserve(levels.size());
       for (std::size_t i = 0; i < levels.size(); ++i) {
         const double v = static_cast<double>(levels[i]);
         const double r = static_cast<double>(steady_[i]);
@@ -86,19 +85,49 @@ class Grid {
       }
       if (under <= 0.0) return 1.0;
       gain = over / under;
-      for (std::size_t i = 0; i < levels.size(); ++i) {
-        const double v = static_cast<double>(levels[i]);
-        if (!IsUsable(levels[i], steady_[i])) continue;
-        off.push_back(std::abs(v - gain * static_cast<double>(steady_[i])));
-      }
-      // Half a level: what rounding alone leaves.
-      most_off = 4.0 * std::max(0.5, 1.4826 * Median(std::move(off)));
+      most_off = MostOff(levels, gain);
       if (gain == gain_before && most_off == most_before) break;
     }
     return gain;
   }
 
  private:
+  // That of the least sum of |v - g r|: the median of v / r, each point counted
+  // r times. Right as long as a body hides less than half of the light.
+  double MedianGain(const std::vector<float>& levels) const {
+    std::vector<std::pair<double, double>> gains;  // with what they count
+    gains.reserve(levels.size());
+    double all = 0.0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (!IsUsable(levels[i], steady_[i])) continue;
+      const double r = static_cast<double>(steady_[i]);
+      gains.emplace_back(static_cast<double>(levels[i]) / r, r);
+      all += r;
+    }
+    std::sort(gains.begin(), gains.end());
+    double below = 0.0;
+    for (const auto& [gain, weight] : gains) {
+      below += weight;
+      if (2.0 * below >= all) return gain;
+    }
+    return 1.0;
+  }
+
+  // How far a point may be off.
+  double MostOff(const std::vector<float>& levels, double gain) const {
+    std::vector<double> off;
+    off.reserve(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (!IsUsable(levels[i], steady_[i])) continue;
+      off.push_back(std::abs(static_cast<double>(levels[i]) -
+                             gain * static_cast<double>(steady_[i])));
+    }
+    if (off.empty()) return 0.0;
+    // Half a level: what rounding alone leaves.
+    constexpr double kSigmas = 4.0;
+    return kSigmas * std::max(0.5, 1.4826 * Median(std::move(off)));
+  }
+
   void AddRow(const core::Frame& frame, std::int32_t row,
               std::vector<float>& levels) const {
     for (std::int32_t x = step_ / 2; x < width_; x += step_) {

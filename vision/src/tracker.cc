@@ -296,6 +296,10 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                                     Surround::kBackground);
     if (again.badness < first->choice.badness || track.known_background) {
       std::swap(result.background, behind.background);
+      // So many fits must not get lost.
+      const auto enough = [&](const std::vector<Fitted>& fits) {
+        return fits.size() * 2 >= first->fits.size();
+      };
       std::vector<Fitted> better;
       if (again.kind == first->choice.kind) {
         OutlineOptions fit_options;
@@ -304,13 +308,15 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
             clip, result.background, track, options, fit_options,
             FramesFrom(track.poses.front().frame, track.poses.back().frame,
                        first->found.step));
-      } else {
+      }
+      // From the blobs, if the track's outlines are those of the ghost.
+      if (!enough(better)) {
         better = FitChain(clip, result.background, chain, again, options,
                           Surround::kBackground);
       }
       DropStrangers(better);
       constexpr double kAsSmooth = 1.5;
-      if (better.size() * 2 >= first->fits.size() &&
+      if (enough(better) &&
           Roughness(better) <= kAsSmooth * Roughness(first->fits) + 0.01) {
         track.known_background = true;
         track.warnings.clear();
