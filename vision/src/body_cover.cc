@@ -1,6 +1,7 @@
 #include "body_cover.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "outline_batch.h"
@@ -54,15 +55,16 @@ double CoverInside(const Outline& outline, double blur_px) {
   Smear still({0.0, 0.0}, 0.0, 0.0);
   still.Set(blur_px, 0.0, false);
   const OutlineImage image(outline, still);
-  BlockColumn xs{};
-  BlockColumn ys{};
+  std::array<double, kBlock> xs{};
+  std::array<double, kBlock> ys{};
   std::size_t filled = 0;
   double sum = 0.0;
   double count = 0.0;
   CoverBlock block;
   const auto flush = [&] {
     image.Cover(xs.data(), ys.data(), block);
-    for (std::size_t i = 0; i < filled; ++i) sum += block.value[i];
+    for (std::size_t i = 0; i < filled; ++i)
+      sum += static_cast<double>(block.value[i]);
     count += static_cast<double>(filled);
     filled = 0;
   };
