@@ -35,11 +35,17 @@ class NoisePairs {
     const double wanted = alike ? 160'000 : 640'000;
     const double there = static_cast<double>(width_px) * height_px / row_step_ *
                          static_cast<double>(per_point_);
-    step_ = std::max(1, static_cast<std::int32_t>(there / wanted)) | 1;
-    columns_ = (width_px + step_ - 1) / step_;
+    const std::int32_t step =
+        std::max(1, static_cast<std::int32_t>(there / wanted)) | 1;
+    // From both sides to the middle: the same ones in a mirror.
+    for (std::int32_t x = 0; 2 * x < width_px; x += step) {
+      columns_.push_back(x);
+      if (2 * x != width_px - 1) columns_.push_back(width_px - 1 - x);
+    }
+    std::sort(columns_.begin(), columns_.end());
     rows_ = (height_px + row_step_ - 1) / row_step_;
-    values_.resize(static_cast<std::size_t>(columns_) *
-                   static_cast<std::size_t>(rows_) * 2 * per_point_);
+    values_.resize(columns_.size() * static_cast<std::size_t>(rows_) * 2 *
+                   per_point_);
   }
 
   bool Has(std::int32_t y) const { return y % row_step_ == 0; }
@@ -49,9 +55,8 @@ class NoisePairs {
             std::int32_t y) {
     for (std::size_t k = 0; k < 2 * per_point_; ++k) {
       const Sample* const samples = windows[k * apart_].row<Sample>(row);
-      for (std::int32_t column = 0; column < columns_; ++column) {
-        values_[Point(y / row_step_, column) + k] =
-            samples[std::ptrdiff_t{column} * step_];
+      for (std::size_t column = 0; column < columns_.size(); ++column) {
+        values_[Point(y / row_step_, column) + k] = samples[columns_[column]];
       }
     }
   }
@@ -59,10 +64,10 @@ class NoisePairs {
   template <class Use>
   void ForEach(const Use& use) const {
     for (std::int32_t row = 0; row < rows_; ++row) {
-      for (std::int32_t column = 0; column < columns_; ++column) {
+      for (std::size_t column = 0; column < columns_.size(); ++column) {
         const std::size_t at = Point(row, column);
         for (std::size_t k = 0; k < 2 * per_point_; k += 2) {
-          use(column * step_, row * row_step_, values_[at + k],
+          use(columns_[column], row * row_step_, values_[at + k],
               values_[at + k + 1]);
         }
       }
@@ -70,10 +75,9 @@ class NoisePairs {
   }
 
  private:
-  std::size_t Point(std::int32_t row, std::int32_t column) const {
-    return (static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-            static_cast<std::size_t>(column)) *
-           2 * per_point_;
+  std::size_t Point(std::int32_t row, std::size_t column) const {
+    return (static_cast<std::size_t>(row) * columns_.size() + column) * 2 *
+           per_point_;
   }
 
   // So many samples tell. Of more every second one: frames of compressed video
@@ -83,8 +87,7 @@ class NoisePairs {
   std::int32_t row_step_ = 1;
   std::size_t apart_;  // samples from one to the next that is taken
   std::size_t per_point_;
-  std::int32_t step_ = 1;  // px between points of a row
-  std::int32_t columns_ = 0;
+  std::vector<std::int32_t> columns_;
   std::int32_t rows_ = 0;
   std::vector<std::uint16_t> values_;
 };
