@@ -331,6 +331,23 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
 
 }  // namespace
 
+double Background::UsualVariance() const {
+  constexpr std::int32_t kPlaces = 8;  // across and down
+  // Evenly from both sides to the middle: the same ones in a mirror.
+  const auto place = [](std::int32_t i, std::int32_t size_px) {
+    const std::int32_t from_side = std::min(i, kPlaces - 1 - i);
+    const std::int32_t at = (2 * from_side + 1) * size_px / (2 * kPlaces);
+    return i == from_side ? at : size_px - 1 - at;
+  };
+  double sum = 0.0;
+  for (std::int32_t j = 0; j < kPlaces; ++j) {
+    for (std::int32_t i = 0; i < kPlaces; ++i) {
+      sum += static_cast<double>(at(place(i, width_px), place(j, height_px)));
+    }
+  }
+  return Variance(sum / (kPlaces * kPlaces));
+}
+
 std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
                                            std::int64_t last, int samples) {
   const std::int64_t n =
