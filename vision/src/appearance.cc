@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "both_sides.h"
 #include "outline_image.h"
 #include "outline_pixels.h"
 #include "outline_sums.h"
@@ -383,7 +384,7 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
     if (whole && (!best || common.size_px < fitted)) break;
     Collection collection(clip, background, options,
                           whole ? common.extent_px : fitted);
-    for (std::size_t i = 0; i < frames.size(); i += step) {
+    for (const std::size_t i : FromBothSides(frames.size(), step)) {
       collection.Add(frames[i]);
     }
     best.reset();

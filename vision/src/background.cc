@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "both_sides.h"
 #include "frame_samples.h"
 #include "mid_mean.h"
 #include "parallel.h"
@@ -28,6 +29,13 @@ class NoisePairs {
              const FrameSamples& samples)
       : apart_(std::max<std::size_t>(1, samples.size() / kEnough)),
         per_point_(samples.size() / apart_ / 2) {
+    // From both ends of the clip to its middle; of an odd number that are all
+    // taken the last stays out.
+    const std::size_t end = apart_ > 1 ? samples.size() : 2 * per_point_;
+    for (std::size_t k = 0; k < per_point_; ++k) taken_.push_back(k * apart_);
+    for (std::size_t k = per_point_; k-- > 0;) {
+      taken_.push_back(end - 1 - k * apart_);
+    }
     // Of a sensor's noise 160 000 pairs tell each bin to 1 %, on any rows. That
     // of compressed pictures differs from place to place in their blocks.
     const bool alike = samples.are_raw();
@@ -35,14 +43,11 @@ class NoisePairs {
     const double wanted = alike ? 160'000 : 640'000;
     const double there = static_cast<double>(width_px) * height_px / row_step_ *
                          static_cast<double>(per_point_);
-    const std::int32_t step =
-        std::max(1, static_cast<std::int32_t>(there / wanted)) | 1;
-    // From both sides to the middle: the same ones in a mirror.
-    for (std::int32_t x = 0; 2 * x < width_px; x += step) {
-      columns_.push_back(x);
-      if (2 * x != width_px - 1) columns_.push_back(width_px - 1 - x);
+    const int step = std::max(1, static_cast<int>(there / wanted)) | 1;
+    for (const std::size_t x : FromBothSides(static_cast<std::size_t>(width_px),
+                                             static_cast<std::size_t>(step))) {
+      columns_.push_back(static_cast<std::int32_t>(x));
     }
-    std::sort(columns_.begin(), columns_.end());
     rows_ = (height_px + row_step_ - 1) / row_step_;
     values_.resize(columns_.size() * static_cast<std::size_t>(rows_) * 2 *
                    per_point_);
@@ -54,21 +59,23 @@ class NoisePairs {
   void Take(const std::vector<core::Frame>& windows, std::int32_t row,
             std::int32_t y) {
     for (std::size_t k = 0; k < 2 * per_point_; ++k) {
-      const Sample* const samples = windows[k * apart_].row<Sample>(row);
+      const Sample* const samples = windows[taken_[k]].row<Sample>(row);
       for (std::size_t column = 0; column < columns_.size(); ++column) {
         values_[Point(y / row_step_, column) + k] = samples[columns_[column]];
       }
     }
   }
-  // Calls use(x, y, one, other) for each pair.
+  // Calls use(x, y, one, other) for each pair, the one nearer to the clip's end
+  // first.
   template <class Use>
   void ForEach(const Use& use) const {
     for (std::int32_t row = 0; row < rows_; ++row) {
       for (std::size_t column = 0; column < columns_.size(); ++column) {
         const std::size_t at = Point(row, column);
         for (std::size_t k = 0; k < 2 * per_point_; k += 2) {
-          use(columns_[column], row * row_step_, values_[at + k],
-              values_[at + k + 1]);
+          const std::size_t late = k >= per_point_ ? 1 : 0;
+          use(columns_[column], row * row_step_, values_[at + k + late],
+              values_[at + k + 1 - late]);
         }
       }
     }
@@ -87,6 +94,7 @@ class NoisePairs {
   std::int32_t row_step_ = 1;
   std::size_t apart_;  // samples from one to the next that is taken
   std::size_t per_point_;
+  std::vector<std::size_t> taken_;  // samples
   std::vector<std::int32_t> columns_;
   std::int32_t rows_ = 0;
   std::vector<std::uint16_t> values_;
@@ -256,10 +264,14 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   }
 }
 
-// Evenly over the range, both ends included.
+// Evenly over the range, both ends included; rounded towards the nearer
+// one, so that a clip has the same ones when it is played backwards.
 std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
                          std::int64_t n) {
-  return n == 1 ? first : first + (k * (last - first - 1)) / (n - 1);
+  if (n == 1) return first;
+  const std::int64_t from_end = std::min(k, n - 1 - k);
+  const std::int64_t at = from_end * (last - first - 1) / (n - 1);
+  return from_end == k ? first + at : last - 1 - at;
 }
 
 // Least squares of variance on level over bins of pixels of like level. In each
