@@ -190,11 +190,9 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
   } else {
     // The background's own noise: that of a frame over the square root of the
     // frames averaged.
-    const calib::StillImage still{
-        background_.level.data(), background_.width_px, background_.height_px,
-        std::sqrt(background_.Variance(static_cast<double>(
-                      background_.level[background_.level.size() / 2])) /
-                  8.0)};
+    const calib::StillImage still{background_.level.data(),
+                                  background_.width_px, background_.height_px,
+                                  std::sqrt(background_.UsualVariance() / 8.0)};
     calib::GroundLineOptions line_options;
     line_options.lens = camera_.lens;
     candidates = calib::FindGroundLines(still, line_options);

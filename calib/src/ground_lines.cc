@@ -52,27 +52,44 @@ double SeenAt(const std::optional<Lens>& lens, const Line& line, double middle,
   return seen.y_px;
 }
 
+// Columns that are `step` apart, from both sides to the middle: the same ones
+// in a mirror.
+std::vector<std::int32_t> FromBothSides(std::int32_t first, std::int32_t step,
+                                        std::int32_t width_px) {
+  std::vector<std::int32_t> columns;
+  for (std::int32_t x = first; 2 * x < width_px; x += step) {
+    columns.push_back(x);
+    if (2 * x != width_px - 1) columns.push_back(width_px - 1 - x);
+  }
+  std::sort(columns.begin(), columns.end());
+  return columns;
+}
+
+// Columns from one to the next that votes: some hundred are enough.
+std::int32_t StepOf(const StillImage& image) {
+  return std::max<std::int32_t>(1, image.width_px / 640);
+}
+
 std::vector<EdgePoint> EdgePoints(const StillImage& image, double least) {
   std::vector<EdgePoint> points;
-  const std::int32_t step = std::max<std::int32_t>(1, image.width_px / 640);
-  const auto columns =
-      static_cast<std::size_t>((image.width_px + step - 1) / step);
+  const std::vector<std::int32_t> columns =
+      FromBothSides(0, StepOf(image), image.width_px);
   // Row after row, as they lie in memory: the steps of three of them.
-  std::vector<double> above(columns);
-  std::vector<double> here(columns);
-  std::vector<double> below(columns);
+  std::vector<double> above(columns.size());
+  std::vector<double> here(columns.size());
+  std::vector<double> below(columns.size());
   for (std::int32_t y = 4; y + 4 < image.height_px; ++y) {
     std::swap(above, here);
     std::swap(here, below);
-    for (std::size_t k = 0; k < columns; ++k) {
-      below[k] = StepAt(image, static_cast<std::int32_t>(k) * step, y);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      below[k] = StepAt(image, columns[k], y);
     }
     if (y < 6) continue;
-    for (std::size_t k = 0; k < columns; ++k) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
       const double size = std::abs(here[k]);
       if (size < least) continue;
       if (size > std::abs(above[k]) && size >= std::abs(below[k])) {
-        points.push_back({static_cast<double>(k) * step,
+        points.push_back({static_cast<double>(columns[k]),
                           static_cast<double>(y - 1), here[k]});
       }
     }
@@ -227,13 +244,8 @@ double EstimateBlur(const StillImage& image, const std::optional<Lens>& lens,
   double best = kTried[0];
   double least = 0.0;
   bool any = false;
-  // The same ones in a mirror.
-  std::vector<std::int32_t> columns;
-  for (std::int32_t x = 2; 2 * x < image.width_px;
-       x += 1 + image.width_px / 120) {
-    columns.push_back(x);
-    columns.push_back(image.width_px - 1 - x);
-  }
+  const std::vector<std::int32_t> columns =
+      FromBothSides(2, 1 + image.width_px / 120, image.width_px);
   for (const double blur : kTried) {
     std::vector<double> residuals;
     for (const std::int32_t x : columns) {
@@ -339,7 +351,7 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
     if (ToIdeal(options.lens, p)) points.push_back(p);
   }
   std::vector<bool> used(points.size(), false);
-  const double step = std::max<std::int32_t>(1, image.width_px / 640);
+  const double step = StepOf(image);
   for (int found = 0; found < options.most_lines; ++found) {
     Line best;
     double votes = 0.0;

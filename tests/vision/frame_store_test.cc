@@ -157,7 +157,7 @@ TEST(FrameStore, LongClipsAreDecodedOnce) {
     FrameStoreOptions options;
     // A quarter of its pictures; of three key frames, which cannot tell what is
     // still, windows at the body's place in each are kept, too.
-    options.most_bytes = 320 * 160 * (group < 250 ? 150 : 450);
+    options.most_bytes = 320 * 160 * (group < 250 ? 148 : 450);
     const auto clip = KeepFrames(std::make_unique<testing::InGroups>(
                                      OpenScene(scene, 1), group, decoded),
                                  options);

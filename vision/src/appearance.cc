@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "both_sides.h"
 #include "outline_image.h"
 #include "outline_pixels.h"
 #include "outline_sums.h"
@@ -24,6 +25,7 @@ struct Inside {
   double cosine = 1.0;  // of the body's angle
   double sine = 0.0;
   std::size_t frame = 0;  // how many were added before
+  std::size_t place = 0;  // columns and rows from the body's middle
 };
 
 // What all frames have in common.
@@ -65,6 +67,11 @@ double ShadingAt(const Shading& shading, double xi, double eta) {
   const auto& k = shading.level;
   return k[0] + xi * (k[1] + xi * k[3] + eta * k[4]) +
          eta * (k[2] + eta * k[5]);
+}
+
+std::size_t PlaceOf(const core::PixelPoint& centre, double x_px, double y_px) {
+  return static_cast<std::size_t>(std::abs(x_px - std::round(centre.x_px)) +
+                                  std::abs(y_px - std::round(centre.y_px)));
 }
 
 class Collection {
@@ -153,6 +160,7 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
       in.cosine = cosine;
       in.sine = sine;
       in.frame = frames_;
+      in.place = PlaceOf(centre, pixels_.x[i], pixels_.y[i]);
       all_.push_back(in);
     }
   }
@@ -164,12 +172,13 @@ SpotSample SampleOf(const Inside& in, bool turns) {
           in.level_dn, in.variance_dn2};
 }
 
-// Means of samples in squares of this side.
+// Means of samples in squares of this side, as many on either side of the
+// middle.
 std::vector<SpotSample> CellsOf(const std::vector<SpotSample>& samples,
                                 double side_px, double reach_px) {
-  const double first = -reach_px - side_px;
-  const auto count =
-      static_cast<std::size_t>(std::ceil(-2.0 * first / side_px)) + 1;
+  const double half = std::ceil(reach_px / side_px) + 1.0;
+  const double first = -half * side_px;
+  const auto count = static_cast<std::size_t>(2.0 * half);
   std::vector<SpotSample> sums(count * count, SpotSample{0.0, 0.0, 0.0, 0.0});
   std::vector<double> seen(count * count, 0.0);
   const auto place = [&](double at) {
@@ -214,6 +223,21 @@ bool IsSeenThroughout(const std::vector<Inside>& all, std::size_t frames,
   return static_cast<double>(seen) > kMost * static_cast<double>(frames);
 }
 
+// Every `step`-th, in each frame others: the same ones in a mirror, and of a
+// clip that is played backwards.
+std::vector<Inside> Thinned(const std::vector<Inside>& all, std::size_t frames,
+                            std::size_t step) {
+  std::vector<Inside> some;
+  some.reserve(all.size() / step);
+  for (const Inside& in : all) {
+    const std::size_t last = frames - 1;
+    const std::size_t from_middle =
+        std::max(in.frame, last - in.frame) - last / 2;
+    if ((in.place + from_middle) % step == 0) some.push_back(in);
+  }
+  return some;
+}
+
 std::optional<Appearance> Described(const std::vector<Inside>& all, bool turns,
                                     std::size_t frames, const Common& common) {
   std::vector<SpotSample> samples;
@@ -232,12 +256,13 @@ std::optional<Appearance> Described(const std::vector<Inside>& all, bool turns,
   // Enough for a spot's place to a hundredth of a pixel.
   constexpr std::size_t kSamples = 12000;
   const std::size_t step = (samples.size() + kSamples - 1) / kSamples;
+  double left_out = 1.0;  // how many there are for one that stays
   if (step > 1) {
-    std::vector<SpotSample> some;
-    for (std::size_t i = 0; i < samples.size(); i += step) {
-      some.push_back(samples[i]);
-    }
-    samples = std::move(some);
+    const std::vector<Inside> some = Thinned(all, frames, step);
+    left_out =
+        static_cast<double>(all.size()) / static_cast<double>(some.size());
+    samples.clear();
+    for (const Inside& in : some) samples.push_back(SampleOf(in, turns));
   }
   SpotOptions options;
   options.size_px = common.size_px;
@@ -246,7 +271,7 @@ std::optional<Appearance> Described(const std::vector<Inside>& all, bool turns,
   options.curved = common.shaded;
   auto spots = FindSpots(cells, samples, options);
   if (!spots) return std::nullopt;
-  spots->covariance /= static_cast<double>(step);
+  spots->covariance /= left_out;
   Appearance look = {turns, common.shaded, std::move(*spots), {}};
   if (!IsSeenThroughout(all, frames, look)) return std::nullopt;
   return look;
@@ -359,7 +384,7 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
     if (whole && (!best || common.size_px < fitted)) break;
     Collection collection(clip, background, options,
                           whole ? common.extent_px : fitted);
-    for (std::size_t i = 0; i < frames.size(); i += step) {
+    for (const std::size_t i : FromBothSides(frames.size(), step)) {
       collection.Add(frames[i]);
     }
     best.reset();

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "both_sides.h"
 #include "frame_samples.h"
 #include "mid_mean.h"
 #include "parallel.h"
@@ -28,6 +29,13 @@ class NoisePairs {
              const FrameSamples& samples)
       : apart_(std::max<std::size_t>(1, samples.size() / kEnough)),
         per_point_(samples.size() / apart_ / 2) {
+    // From both ends of the clip to its middle; of an odd number that are all
+    // taken the last stays out.
+    const std::size_t end = apart_ > 1 ? samples.size() : 2 * per_point_;
+    for (std::size_t k = 0; k < per_point_; ++k) taken_.push_back(k * apart_);
+    for (std::size_t k = per_point_; k-- > 0;) {
+      taken_.push_back(end - 1 - k * apart_);
+    }
     // Of a sensor's noise 160 000 pairs tell each bin to 1 %, on any rows. That
     // of compressed pictures differs from place to place in their blocks.
     const bool alike = samples.are_raw();
@@ -35,11 +43,14 @@ class NoisePairs {
     const double wanted = alike ? 160'000 : 640'000;
     const double there = static_cast<double>(width_px) * height_px / row_step_ *
                          static_cast<double>(per_point_);
-    step_ = std::max(1, static_cast<std::int32_t>(there / wanted)) | 1;
-    columns_ = (width_px + step_ - 1) / step_;
+    const int step = std::max(1, static_cast<int>(there / wanted)) | 1;
+    for (const std::size_t x : FromBothSides(static_cast<std::size_t>(width_px),
+                                             static_cast<std::size_t>(step))) {
+      columns_.push_back(static_cast<std::int32_t>(x));
+    }
     rows_ = (height_px + row_step_ - 1) / row_step_;
-    values_.resize(static_cast<std::size_t>(columns_) *
-                   static_cast<std::size_t>(rows_) * 2 * per_point_);
+    values_.resize(columns_.size() * static_cast<std::size_t>(rows_) * 2 *
+                   per_point_);
   }
 
   bool Has(std::int32_t y) const { return y % row_step_ == 0; }
@@ -48,32 +59,32 @@ class NoisePairs {
   void Take(const std::vector<core::Frame>& windows, std::int32_t row,
             std::int32_t y) {
     for (std::size_t k = 0; k < 2 * per_point_; ++k) {
-      const Sample* const samples = windows[k * apart_].row<Sample>(row);
-      for (std::int32_t column = 0; column < columns_; ++column) {
-        values_[Point(y / row_step_, column) + k] =
-            samples[std::ptrdiff_t{column} * step_];
+      const Sample* const samples = windows[taken_[k]].row<Sample>(row);
+      for (std::size_t column = 0; column < columns_.size(); ++column) {
+        values_[Point(y / row_step_, column) + k] = samples[columns_[column]];
       }
     }
   }
-  // Calls use(x, y, one, other) for each pair.
+  // Calls use(x, y, one, other) for each pair, the one nearer to the clip's end
+  // first.
   template <class Use>
   void ForEach(const Use& use) const {
     for (std::int32_t row = 0; row < rows_; ++row) {
-      for (std::int32_t column = 0; column < columns_; ++column) {
+      for (std::size_t column = 0; column < columns_.size(); ++column) {
         const std::size_t at = Point(row, column);
         for (std::size_t k = 0; k < 2 * per_point_; k += 2) {
-          use(column * step_, row * row_step_, values_[at + k],
-              values_[at + k + 1]);
+          const std::size_t late = k >= per_point_ ? 1 : 0;
+          use(columns_[column], row * row_step_, values_[at + k + late],
+              values_[at + k + 1 - late]);
         }
       }
     }
   }
 
  private:
-  std::size_t Point(std::int32_t row, std::int32_t column) const {
-    return (static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-            static_cast<std::size_t>(column)) *
-           2 * per_point_;
+  std::size_t Point(std::int32_t row, std::size_t column) const {
+    return (static_cast<std::size_t>(row) * columns_.size() + column) * 2 *
+           per_point_;
   }
 
   // So many samples tell. Of more every second one: frames of compressed video
@@ -83,8 +94,8 @@ class NoisePairs {
   std::int32_t row_step_ = 1;
   std::size_t apart_;  // samples from one to the next that is taken
   std::size_t per_point_;
-  std::int32_t step_ = 1;  // px between points of a row
-  std::int32_t columns_ = 0;
+  std::vector<std::size_t> taken_;  // samples
+  std::vector<std::int32_t> columns_;
   std::int32_t rows_ = 0;
   std::vector<std::uint16_t> values_;
 };
@@ -251,27 +262,14 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   }
 }
 
-// The noise of the samples themselves.
-void EstimateNoise(const NoisePairs& pairs, Background& background);
-void EstimateNoiseOf(const FrameSamples& samples, Background& background) {
-  NoisePairs pairs(background.width_px, background.height_px, samples);
-  FrameSamples::Reader reader(samples);
-  for (std::int32_t y = 0; y < background.height_px; ++y) {
-    if (!pairs.Has(y)) continue;
-    const auto& row = reader.Read({0, y, background.width_px, 1});
-    if (samples.is_16_bit()) {
-      pairs.Take<std::uint16_t>(row, 0, y);
-    } else {
-      pairs.Take<std::uint8_t>(row, 0, y);
-    }
-  }
-  EstimateNoise(pairs, background);
-}
-
-// Evenly over the range, both ends included.
+// Evenly over the range, both ends included; rounded towards the nearer
+// one, so that a clip has the same ones when it is played backwards.
 std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
                          std::int64_t n) {
-  return n == 1 ? first : first + (k * (last - first - 1)) / (n - 1);
+  if (n == 1) return first;
+  const std::int64_t from_end = std::min(k, n - 1 - k);
+  const std::int64_t at = from_end * (last - first - 1) / (n - 1);
+  return from_end == k ? first + at : last - 1 - at;
 }
 
 // Least squares of variance on level over bins of pixels of like level. In each
@@ -341,7 +339,40 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
   }
 }
 
+// The noise of the samples themselves.
+void EstimateNoiseOf(const FrameSamples& samples, Background& background) {
+  NoisePairs pairs(background.width_px, background.height_px, samples);
+  FrameSamples::Reader reader(samples);
+  for (std::int32_t y = 0; y < background.height_px; ++y) {
+    if (!pairs.Has(y)) continue;
+    const auto& row = reader.Read({0, y, background.width_px, 1});
+    if (samples.is_16_bit()) {
+      pairs.Take<std::uint16_t>(row, 0, y);
+    } else {
+      pairs.Take<std::uint8_t>(row, 0, y);
+    }
+  }
+  EstimateNoise(pairs, background);
+}
+
 }  // namespace
+
+double Background::UsualVariance() const {
+  constexpr std::int32_t kPlaces = 8;  // across and down
+  // Evenly from both sides to the middle: the same ones in a mirror.
+  const auto place = [](std::int32_t i, std::int32_t size_px) {
+    const std::int32_t from_side = std::min(i, kPlaces - 1 - i);
+    const std::int32_t at = (2 * from_side + 1) * size_px / (2 * kPlaces);
+    return i == from_side ? at : size_px - 1 - at;
+  };
+  double sum = 0.0;
+  for (std::int32_t j = 0; j < kPlaces; ++j) {
+    for (std::int32_t i = 0; i < kPlaces; ++i) {
+      sum += static_cast<double>(at(place(i, width_px), place(j, height_px)));
+    }
+  }
+  return Variance(sum / (kPlaces * kPlaces));
+}
 
 std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
                                            std::int64_t last, int samples) {

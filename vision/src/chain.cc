@@ -4,15 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "track_shape.h"
+
 namespace touchdown::vision {
 namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 template <class Get>
 double MedianOf(const Chain& chain, Get get) {

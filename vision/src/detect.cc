@@ -22,10 +22,7 @@ cv::Rect SearchRegion(const core::Frame& frame, const core::PixelRect& wanted) {
 // pixels gives after a 3 x 3 mean, as many times as the frame's is larger.
 double SmoothedSigma(const Background& background,
                      const DetectOptions& options) {
-  return options.noise *
-         std::sqrt(background.Variance(static_cast<double>(
-             background.level[background.level.size() / 2]))) /
-         3.0;
+  return options.noise * std::sqrt(background.UsualVariance()) / 3.0;
 }
 
 // A blob from one outer contour; holes (specular spots) count as body.

@@ -295,7 +295,10 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
   std::vector<const Link*> probes;
   const std::size_t n = std::min(kProbes, inside.size());
   for (std::size_t k = 0; k < n; ++k) {
-    probes.push_back(inside[(2 * k + 1) * inside.size() / (2 * n)]);
+    const std::size_t from_end = std::min(k, n - 1 - k);
+    const std::size_t at = (2 * from_end + 1) * inside.size() / (2 * n);
+    probes.push_back(from_end == k ? inside[at]
+                                   : inside[inside.size() - 1 - at]);
   }
   std::vector<core::BodyKind> kinds = {core::BodyKind::kSphere,
                                        core::BodyKind::kRectangle};

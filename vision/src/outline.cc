@@ -412,8 +412,8 @@ core::Expected<OutlineFit> Fitter::Run() {
   // What was summed a step of less than the tolerance ago is as good.
   telling_ = options_.tell_shared;
   if (!converged_ || telling_) Accumulate(true);
-  const double level = pixels_.background[pixels_.size / 2];
-  const double noise = std::sqrt(background_.Variance(level));
+  const double noise =
+      std::sqrt(background_.Variance(pixels_.MeanBackground()));
   constexpr double kLeastContrast = 3.0;  // in noise of one pixel
   // Noise has blobs of a pixel or two as bright as that: all of the body
   // together must stand out, too.

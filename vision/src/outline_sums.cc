@@ -48,6 +48,12 @@ void OutlinePixels::Finish(double floor_dn2, double slope_dn,
   }
 }
 
+double OutlinePixels::MeanBackground() const {
+  const auto end = background.begin() + static_cast<std::ptrdiff_t>(size);
+  return std::accumulate(background.begin(), end, 0.0) /
+         static_cast<double>(size);
+}
+
 // One block of a round.
 struct OutlineBlock {
   const float* value;

@@ -81,6 +81,7 @@ struct OutlinePixels {
   // When all are there. The noise's variance is floor + slope * value, at least
   // `least`.
   void Finish(double floor_dn2, double slope_dn, double least_dn2);
+  double MeanBackground() const;
 };
 
 // What stands in the normal equations' columns, in this order: up to seven

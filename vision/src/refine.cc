@@ -5,6 +5,7 @@
 
 #include "between_looks.h"
 #include "body_cover.h"
+#include "both_sides.h"
 #include "refiner.h"
 
 namespace touchdown::vision {
@@ -99,7 +100,7 @@ void Refiner::LookNearGround(Track& refined) {
   }
   const std::size_t step = (low.size() + kEnough - 1) / kEnough;
   std::vector<OutlineJob> jobs;
-  for (std::size_t i = 0; i < low.size(); i += step) {
+  for (const std::size_t i : FromBothSides(low.size(), step)) {
     jobs.push_back(JobAt(track_.body, low[i]));
   }
   options_.near_ground = NearGround::kModelled;
@@ -136,7 +137,7 @@ OutlineJob Refiner::JobAt(const BodyImage& body, std::size_t i) const {
 std::vector<std::optional<Fitted>> Refiner::FitPoses(const BodyImage& body,
                                                      std::size_t step) {
   std::vector<OutlineJob> jobs;
-  for (std::size_t i = 0; i < track_.poses.size(); i += step) {
+  for (const std::size_t i : FromBothSides(track_.poses.size(), step)) {
     jobs.push_back(JobAt(body, i));
   }
   return FitOutlines(clip_, background_, jobs, options_, threads_);

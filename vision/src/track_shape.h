@@ -23,6 +23,8 @@ inline constexpr double kWellModelled = 1.5;
 // Radius, or half the long side, px.
 double SizeOf(const OutlineFit& fit);
 
+// Of an even number the mean of the two in the middle: that of values which
+// change sign in a mirror does so, too.
 double Median(std::vector<double> values);
 double MedianMisfit(const std::vector<Fitted>& all);
 

@@ -46,6 +46,8 @@ struct Background {
     const double v = noise_floor_dn2 + noise_slope_dn * level_dn;
     return v > kVarianceFloor_dn2 ? v : kVarianceFloor_dn2;
   }
+  // That of the picture's mean level, by a few places all over it.
+  double UsualVariance() const;
   float at(std::int32_t x, std::int32_t y) const {
     return level[static_cast<std::size_t>(y) *
                      static_cast<std::size_t>(width_px) +
