@@ -104,13 +104,24 @@ class Grid {
       gains.emplace_back(static_cast<double>(levels[i]) / r, r);
       all += r;
     }
-    std::sort(gains.begin(), gains.end());
-    double below = 0.0;
-    for (const auto& [gain, weight] : gains) {
-      below += weight;
-      if (2.0 * below >= all) return gain;
+    if (gains.empty()) return 1.0;
+    // Half by half: only the part that holds it is put in order.
+    auto first = gains.begin();
+    auto last = gains.end();
+    double below = 0.0;  // of those before `first`
+    while (last - first > 1) {
+      const auto middle = first + (last - first) / 2;
+      std::nth_element(first, middle, last);
+      double left = below;
+      for (auto at = first; at != middle; ++at) left += at->second;
+      if (2.0 * left >= all) {
+        last = middle;
+      } else {
+        below = left;
+        first = middle;
+      }
     }
-    return 1.0;
+    return first->first;
   }
 
   // How far a point may be off.
