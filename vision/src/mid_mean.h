@@ -3,10 +3,14 @@
 // maximum that the compiler vectorises.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #include <vector>
+
+#include "touchdown/core/frame.h"
 
 namespace touchdown::vision {
 
@@ -18,6 +22,15 @@ constexpr std::size_t MidBegin(std::size_t count) {
 
 // Pixels that are sorted at once: 33 samples of 16 bits take 4 KiB.
 inline constexpr std::size_t kLanes = 64;
+
+// Row `y` of a window from its column `x` on, up to kLanes of it.
+template <class Sample>
+void LoadLanes(const core::Frame& frame, std::int32_t x, std::int32_t y,
+               Sample* lanes) {
+  const auto count = std::min<std::size_t>(
+      kLanes, static_cast<std::size_t>(frame.width_px - x));
+  std::memcpy(lanes, frame.row<Sample>(y) + x, count * sizeof(Sample));
+}
 
 // lanes[k * kLanes + i]: sample k of pixel i. Sorts each pixel's samples.
 class SortingNetwork {

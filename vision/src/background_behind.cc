@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "frame_samples.h"
+#include "mid_mean.h"
+#include "noise_pairs.h"
+#include "parallel.h"
+#include "touchdown/vision/background.h"
+
+namespace touchdown::vision {
+namespace {
+
+// Where the body was in the samples.
+struct Covers {
+  std::vector<Cover> of;  // of each sample
+  // The box around all of these and of doubtful ones, and for each of its
+  // pixels how many cover it.
+  core::PixelRect box;
+  std::vector<std::uint16_t> counts;
+
+  const std::uint16_t* CountsOf(std::int32_t y) const {
+    return counts.data() + static_cast<std::ptrdiff_t>(y - box.y) * box.width;
+  }
+  bool Covered(std::size_t k, std::int32_t x, std::int32_t y) const {
+    const Cover& cover = of[k];
+    const core::PixelRect& own = cover.box;
+    return x >= own.x && y >= own.y && x < own.x + own.width &&
+           y < own.y + own.height &&
+           cover.mask[static_cast<std::size_t>(y - own.y) *
+                          static_cast<std::size_t>(own.width) +
+                      static_cast<std::size_t>(x - own.x)] != 0;
+  }
+  void Count(const Cover& cover) {
+    const core::PixelRect& own = cover.box;
+    for (std::int32_t y = 0; y < own.height; ++y) {
+      const std::uint8_t* const mask =
+          cover.mask.data() + static_cast<std::ptrdiff_t>(y) * own.width;
+      std::uint16_t* const count =
+          counts.data() +
+          static_cast<std::ptrdiff_t>(own.y + y - box.y) * box.width +
+          (own.x - box.x);
+      for (std::int32_t x = 0; x < own.width; ++x) {
+        count[x] = static_cast<std::uint16_t>(count[x] + (mask[x] != 0));
+      }
+    }
+  }
+};
+
+core::PixelRect BoxAround(const core::PixelRect& a, const core::PixelRect& b) {
+  if (a.width == 0 || a.height == 0) return b;
+  if (b.width == 0 || b.height == 0) return a;
+  const std::int32_t x = std::min(a.x, b.x);
+  const std::int32_t y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
+          std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+// The mid-mean of what is not covered, in the pixels that anything covers.
+// Covered samples are moved alternately to the two ends of the order, where
+// they change nothing in the middle. Of the rows [top, bottom).
+template <class Sample>
+void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
+                   std::int64_t top, std::int64_t bottom,
+                   Background& background) {
+  // Fewer samples than this are no background: noise, or the body's rim.
+  constexpr std::size_t kLeastSamples = 3;
+  const std::size_t n = samples.size();
+  const SortingNetwork network(n, SortingNetwork::Order::kFull);
+  FrameSamples::Reader reader(samples);
+  std::vector<Sample> lanes(n * kLanes);
+  std::array<std::size_t, kLanes> low{};   // samples moved below the others
+  std::array<std::size_t, kLanes> high{};  // above
+  const auto is_touched = [](std::uint16_t count) { return count != 0; };
+  for (auto y = static_cast<std::int32_t>(top); y < bottom; ++y) {
+    const std::uint16_t* const counts = covers.CountsOf(y);
+    const std::uint16_t* const end = counts + covers.box.width;
+    const std::uint16_t* const first = std::find_if(counts, end, is_touched);
+    if (first == end) continue;
+    const auto left = covers.box.x + static_cast<std::int32_t>(first - counts);
+    const auto right =
+        covers.box.x +
+        static_cast<std::int32_t>(
+            std::find_if(std::make_reverse_iterator(end),
+                         std::make_reverse_iterator(counts), is_touched)
+                .base() -
+            counts);
+    const std::size_t row = static_cast<std::size_t>(y) *
+                            static_cast<std::size_t>(background.width_px);
+    const std::vector<core::Frame>& windows =
+        reader.Read({left, y, right - left, 1});
+    for (std::int32_t x = left; x < right; x += static_cast<int>(kLanes)) {
+      const auto count =
+          std::min<std::size_t>(kLanes, static_cast<std::size_t>(right - x));
+      const std::size_t at = row + static_cast<std::size_t>(x);
+      const std::uint16_t* const touched = counts + (x - covers.box.x);
+      if (std::none_of(touched, touched + count, is_touched)) continue;
+      low.fill(0);
+      high.fill(0);
+      for (std::size_t k = 0; k < n; ++k) {
+        Sample* const samples_k = &lanes[k * kLanes];
+        LoadLanes(windows[k], x - left, 0, samples_k);
+        for (std::size_t i = 0; i < count; ++i) {
+          if (!covers.Covered(k, x + static_cast<std::int32_t>(i), y)) continue;
+          const bool down = low[i] == high[i];
+          samples_k[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
+          ++(down ? low : high)[i];
+        }
+      }
+      network.Sort(lanes.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        if (touched[i] == 0) continue;
+        const std::size_t uncovered = n - low[i] - high[i];
+        if (uncovered < kLeastSamples) {
+          background.unknown[at + i] = 1;
+          continue;
+        }
+        const std::size_t cut = MidBegin(uncovered);
+        double sum = 0.0;
+        for (std::size_t k = low[i] + cut; k < low[i] + uncovered - cut; ++k) {
+          sum += lanes[k * kLanes + i];
+        }
+        background.level[at + i] =
+            static_cast<float>(sum / static_cast<double>(uncovered - 2 * cut));
+      }
+    }
+  }
+}
+
+// The noise of the samples themselves.
+void EstimateNoiseOf(const FrameSamples& samples, Background& background) {
+  NoisePairs pairs(background.width_px, background.height_px, samples);
+  FrameSamples::Reader reader(samples);
+  for (std::int32_t y = 0; y < background.height_px; ++y) {
+    if (!pairs.Has(y)) continue;
+    const auto& row = reader.Read({0, y, background.width_px, 1});
+    if (samples.is_16_bit()) {
+      pairs.Take<std::uint16_t>(row, 0, y);
+    } else {
+      pairs.Take<std::uint8_t>(row, 0, y);
+    }
+  }
+  EstimateNoise(pairs, background);
+}
+
+}  // namespace
+
+Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
+                                    std::int64_t last,
+                                    const CoverFunction& covers,
+                                    const Background& fallback,
+                                    const BackgroundOptions& options,
+                                    double* most_covered) {
+  std::vector<std::int64_t> frames;
+  Covers all;
+  std::vector<Cover> doubtful;
+  for (const std::int64_t index :
+       BackgroundFrames(first, last, options.samples)) {
+    Cover cover = covers(index);
+    if (!cover.known) {
+      doubtful.push_back(std::move(cover));
+      continue;
+    }
+    frames.push_back(index);
+    all.of.push_back(std::move(cover));
+  }
+  if (frames.size() < 2) return fallback;
+  for (const Cover& cover : all.of) all.box = BoxAround(all.box, cover.box);
+  for (const Cover& cover : doubtful) all.box = BoxAround(all.box, cover.box);
+  all.counts.assign(static_cast<std::size_t>(all.box.width) *
+                        static_cast<std::size_t>(all.box.height),
+                    0);
+  for (const Cover& cover : all.of) all.Count(cover);
+  if (most_covered != nullptr) {
+    const int most = all.counts.empty() ? 0
+                                        : *std::max_element(all.counts.begin(),
+                                                            all.counts.end());
+    *most_covered = most / static_cast<double>(frames.size());
+  }
+  for (const Cover& cover : doubtful) all.Count(cover);
+  Background background = fallback;
+  background.unknown.assign(fallback.level.size(), 0);
+  const FrameSamples samples(clip, frames);
+  InParallel(all.box.height, samples.Threads(options.threads),
+             [&](std::int64_t begin, std::int64_t end) {
+               if (samples.is_16_bit()) {
+                 MidMeanBehind<std::uint16_t>(samples, all, all.box.y + begin,
+                                              all.box.y + end, background);
+               } else {
+                 MidMeanBehind<std::uint8_t>(samples, all, all.box.y + begin,
+                                             all.box.y + end, background);
+               }
+             });
+  if (std::none_of(background.unknown.begin(), background.unknown.end(),
+                   [](std::uint8_t u) { return u != 0; })) {
+    background.unknown.clear();
+  }
+  // What is known of the noise is known from all of the picture: levels that
+  // change in a small part of it say nothing new.
+  constexpr double kSmallPart = 0.05;
+  const auto untouched =
+      std::count(all.counts.begin(), all.counts.end(), std::uint16_t{0});
+  if (static_cast<double>(all.counts.size()) - static_cast<double>(untouched) >
+      kSmallPart * static_cast<double>(fallback.level.size())) {
+    EstimateNoiseOf(samples, background);
+  }
+  return background;
+}
+
+}  // namespace touchdown::vision
