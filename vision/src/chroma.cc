@@ -1,9 +1,5 @@
 #include "chroma.h"
 
-extern "C" {
-#include <libavutil/pixdesc.h>
-}
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,7 +7,7 @@ extern "C" {
 namespace touchdown::vision {
 
 bool ChromaReader::Reads(AVPixelFormat format) {
-  const AVPixFmtDescriptor* const d = av_pix_fmt_desc_get(format);
+  const AVPixFmtDescriptor* const d = Libav().av_pix_fmt_desc_get(format);
   constexpr std::uint64_t kOther =
       AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_HWACCEL |
       AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT;
@@ -28,7 +24,7 @@ ChromaReader::ChromaReader(AVPixelFormat format, Orientation orientation,
 
 core::Frame ChromaReader::View(const AVFrame& frame,
                                const core::PixelRect& window) {
-  const AVPixFmtDescriptor& d = *av_pix_fmt_desc_get(format_);
+  const AVPixFmtDescriptor& d = *Libav().av_pix_fmt_desc_get(format_);
   const AVComponentDescriptor& component = d.comp[component_];
   const std::uint8_t* const plane =
       frame.data[component.plane] + component.offset;

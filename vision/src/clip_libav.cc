@@ -44,7 +44,7 @@ class VideoClip final : public Clip {
                            std::max(1u, std::thread::hardware_concurrency()))),
         source_(OpenVideoSource(path, threads_)),
         packet_(Libav().av_packet_alloc()),
-        frame_(av_frame_alloc()) {
+        frame_(Libav().av_frame_alloc()) {
     info_.path = path;
     info_.format = FormatName(*source_.format);
     index_ =
@@ -84,7 +84,7 @@ class VideoClip final : public Clip {
         threads_(1),
         source_(OpenVideoSource(path_, threads_)),
         packet_(Libav().av_packet_alloc()),
-        frame_(av_frame_alloc()),
+        frame_(Libav().av_frame_alloc()),
         index_(like.index_),
         info_(like.info_),
         reader_(like.reader_),
@@ -306,7 +306,7 @@ class VideoClip final : public Clip {
   void LookAtFirstFrame(Channel channel) {
     const auto pixel_format = static_cast<AVPixelFormat>(frame_->format);
     if (!LumaReader::Reads(pixel_format)) {
-      const char* const name = av_get_pix_fmt_name(pixel_format);
+      const char* const name = Libav().av_get_pix_fmt_name(pixel_format);
       Fail(
           fmt::format("its pixel format ({}) is not read; expected gray, YUV, "
                       "RGB or palette of 8 to 16 bits",
@@ -396,7 +396,7 @@ class VideoClip final : public Clip {
 std::unique_ptr<Clip> OpenVideo(const std::filesystem::path& path,
                                 const ClipOptions& options) {
   // libav's log is of the whole program; its complaints come to us as codes.
-  av_log_set_level(AV_LOG_QUIET);
+  Libav().av_log_set_level(AV_LOG_QUIET);
   return std::make_unique<VideoClip>(path, options);
 }
 

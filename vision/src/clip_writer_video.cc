@@ -88,7 +88,7 @@ class VideoWriter {
         options_(options),
         name_(path),
         packet_(Libav().av_packet_alloc()),
-        picture_(av_frame_alloc()) {
+        picture_(Libav().av_frame_alloc()) {
     CheckFps(options.fps);
     // libav writes faster ones as 600 fps in .avi, and to the nearest
     // millisecond in .mkv.
@@ -116,7 +116,7 @@ class VideoWriter {
 
   void Add(const core::Frame& frame, std::int64_t index) {
     if (index == 0) Start(frame);
-    Check(av_frame_make_writable(picture_.get()));
+    Check(Libav().av_frame_make_writable(picture_.get()));
     const auto row_bytes =
         static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
     for (std::int32_t y = 0; y < frame.height_px; ++y) {
@@ -181,7 +181,7 @@ class VideoWriter {
     codec_->pix_fmt = pixels;
     codec_->color_range = AVCOL_RANGE_JPEG;
     // 2^20: exact for every rate of whole and of thousandths of frames.
-    codec_->framerate = av_d2q(options_.fps, 1 << 20);
+    codec_->framerate = Libav().av_d2q(options_.fps, 1 << 20);
     codec_->time_base = av_inv_q(codec_->framerate);
     codec_->sample_aspect_ratio = {1, 1};
     codec_->thread_count = 0;  // as many as there are cores
@@ -192,12 +192,12 @@ class VideoWriter {
       picture_->quality = codec_->global_quality;
     } else if (options_.codec == VideoCodec::kH264) {
       codec_->gop_size = options_.key_frame_distance;
-      av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
-      av_opt_set_int(codec_->priv_data, "qp", quality, 0);
+      Libav().av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
+      Libav().av_opt_set_int(codec_->priv_data, "qp", quality, 0);
     } else if (options_.codec == VideoCodec::kFfv1) {
       codec_->level = 3;     // slices with check sums
       codec_->gop_size = 1;  // a damaged frame does not spoil the next
-      av_opt_set_int(codec_->priv_data, "slicecrc", 1, 0);
+      Libav().av_opt_set_int(codec_->priv_data, "slicecrc", 1, 0);
     }
     if ((format_->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
       codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
@@ -207,7 +207,7 @@ class VideoWriter {
     picture_->format = pixels;
     picture_->width = frame.width_px;
     picture_->height = frame.height_px;
-    Check(av_frame_get_buffer(picture_.get(), 0));
+    Check(Libav().av_frame_get_buffer(picture_.get(), 0));
 
     stream_ = Libav().avformat_new_stream(format_.get(), nullptr);
     if (stream_ == nullptr) Check(AVERROR(ENOMEM));
@@ -220,7 +220,7 @@ class VideoWriter {
           reinterpret_cast<std::int32_t*>(Libav().av_stream_new_side_data(
               stream_, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(std::int32_t)));
       if (matrix == nullptr) Check(AVERROR(ENOMEM));
-      av_display_rotation_set(matrix, -90.0 * options_.turn_quarters);
+      Libav().av_display_rotation_set(matrix, -90.0 * options_.turn_quarters);
     }
     Check(Libav().avio_open(&format_->pb,
                             ("file:" + name_.path().string()).c_str(),
@@ -270,7 +270,7 @@ class VideoWriter {
 std::int64_t WriteVideo(const std::filesystem::path& path,
                         const VideoOptions& options, const FrameSource& next) {
   // libav's log is of the whole program; its complaints come to us as codes.
-  av_log_set_level(AV_LOG_QUIET);
+  Libav().av_log_set_level(AV_LOG_QUIET);
   VideoWriter writer(path, options);
   FrameFeed feed(next);
   while (const auto frame = feed.Next()) writer.Add(*frame, feed.count() - 1);

@@ -1,8 +1,6 @@
 #include "ffv1_check.h"
 
-extern "C" {
-#include <libavutil/crc.h>
-}
+#include "libav.h"
 
 namespace touchdown::vision {
 
@@ -20,7 +18,8 @@ bool Ffv1SumsHold(std::span<const std::uint8_t> packet) {
                               kFooterBytes;
     if (slice > packet.size()) return false;
     const std::uint8_t* const begin = packet.data() + packet.size() - slice;
-    if (av_crc(av_crc_get_table(AV_CRC_32_IEEE), 0, begin, slice) != 0) {
+    if (Libav().av_crc(Libav().av_crc_get_table(AV_CRC_32_IEEE), 0, begin,
+                       slice) != 0) {
       return false;
     }
     packet = packet.first(packet.size() - slice);

@@ -4,6 +4,10 @@
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
+#include <libavutil/crc.h>
+#include <libavutil/display.h>
+#include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
 }
 
 #include <memory>
@@ -11,10 +15,9 @@ extern "C" {
 
 namespace touchdown::vision {
 
-// What we call of libavformat and libavcodec. The two bring a hundred libraries
-// with them, half of the start-up of a command that needs no video, so they are
-// not linked but loaded when the first video is opened. libavutil, which comes
-// alone, is linked.
+// What we call of libavformat, libavcodec and libavutil. They bring a hundred
+// libraries with them, half of the start-up of a command that needs no video,
+// so they are not linked but loaded when the first video is opened.
 struct LibavFunctions {
   // Throws core::InputError where a library is not installed, or is of another
   // version than was compiled for.
@@ -32,16 +35,16 @@ struct LibavDelete {
     Libav().avformat_close_input(&c);
   }
   void operator()(AVCodecContext* c) const { Libav().avcodec_free_context(&c); }
-  void operator()(AVFrame* f) const { av_frame_free(&f); }
+  void operator()(AVFrame* f) const { Libav().av_frame_free(&f); }
   void operator()(AVPacket* p) const { Libav().av_packet_free(&p); }
-  void operator()(AVDictionary* d) const { av_dict_free(&d); }
+  void operator()(AVDictionary* d) const { Libav().av_dict_free(&d); }
 };
 template <class T>
 using LibavPtr = std::unique_ptr<T, LibavDelete>;
 
 inline std::string LibavError(int code) {
   char text[AV_ERROR_MAX_STRING_SIZE] = "";
-  av_strerror(code, text, sizeof text);
+  Libav().av_strerror(code, text, sizeof text);
   return text;
 }
 

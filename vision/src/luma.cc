@@ -1,14 +1,11 @@
 #include "luma.h"
 
-extern "C" {
-#include <libavutil/pixdesc.h>
-}
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "image_codecs.h"
+#include "libav.h"
 
 namespace touchdown::vision {
 namespace {
@@ -95,7 +92,7 @@ std::optional<Orientation> OrientationOf(const std::int32_t matrix[9]) {
 }
 
 bool LumaReader::Reads(AVPixelFormat format) {
-  const AVPixFmtDescriptor* const d = av_pix_fmt_desc_get(format);
+  const AVPixFmtDescriptor* const d = Libav().av_pix_fmt_desc_get(format);
   if (d == nullptr || Has(*d, AV_PIX_FMT_FLAG_HWACCEL) ||
       Has(*d, AV_PIX_FMT_FLAG_BITSTREAM) || Has(*d, AV_PIX_FMT_FLAG_BAYER) ||
       Has(*d, AV_PIX_FMT_FLAG_FLOAT)) {
@@ -118,7 +115,7 @@ bool LumaReader::Reads(AVPixelFormat format) {
 LumaReader::LumaReader(AVPixelFormat format, Orientation orientation,
                        std::int32_t significant_bits)
     : format_(format), orientation_(orientation), stored_bits_(0) {
-  const AVPixFmtDescriptor* const d = av_pix_fmt_desc_get(format);
+  const AVPixFmtDescriptor* const d = Libav().av_pix_fmt_desc_get(format);
   bit_depth_ = Has(*d, AV_PIX_FMT_FLAG_PAL) ? 8 : d->comp[0].depth;
   shift_ = d->comp[0].shift;
   if (significant_bits > 8 && significant_bits < bit_depth_) {
@@ -135,7 +132,7 @@ void LumaReader::UndoCineCurve() {
 
 core::Frame LumaReader::View(const AVFrame& frame,
                              const core::PixelRect& window) {
-  const AVPixFmtDescriptor& d = *av_pix_fmt_desc_get(format_);
+  const AVPixFmtDescriptor& d = *Libav().av_pix_fmt_desc_get(format_);
   const bool palette = Has(d, AV_PIX_FMT_FLAG_PAL);
   const bool rgb = Has(d, AV_PIX_FMT_FLAG_RGB) && !palette;
   const bool big_endian = Has(d, AV_PIX_FMT_FLAG_BE);

@@ -28,13 +28,13 @@ constexpr char kContainers[] =
 LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
   const LibavFunctions& libav = Libav();  // before there is what may leak
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "format_whitelist", kContainers, 0);
-  av_dict_set(&options, "protocol_whitelist", "file", 0);
+  Libav().av_dict_set(&options, "format_whitelist", kContainers, 0);
+  Libav().av_dict_set(&options, "protocol_whitelist", "file", 0);
   AVFormatContext* format = nullptr;
   // The prefix keeps a name like "http:a.avi" a name.
   const int opened = libav.avformat_open_input(
       &format, ("file:" + path.string()).c_str(), nullptr, &options);
-  av_dict_free(&options);
+  Libav().av_dict_free(&options);
   if (opened < 0) {
     Fail(path, fmt::format("not a recording that can be read ({}); expected a "
                            "video, an .mraw with its header, or a folder of "
@@ -116,7 +116,7 @@ std::string FormatName(const AVFormatContext& format) {
   const std::string name = format.iformat->name;
   if (name.starts_with("mov,")) {
     const AVDictionaryEntry* const brand =
-        av_dict_get(format.metadata, "major_brand", nullptr, 0);
+        Libav().av_dict_get(format.metadata, "major_brand", nullptr, 0);
     return brand == nullptr || std::string_view(brand->value) == "qt  " ? "mov"
                                                                         : "mp4";
   }
