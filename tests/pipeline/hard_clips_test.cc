@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <random>
 #include <utility>
@@ -142,25 +143,38 @@ TEST_P(HardClips, WithoutContrastThereIsNoContact) {
   }
 }
 
-// All white, and so bright that only the body is not.
-TEST_P(HardClips, Saturated) {
-  const auto brighter = [](double factor) {
-    return [factor](const SampleOf& of, std::int64_t i, std::int32_t x,
-                    std::int32_t y) {
-      return static_cast<std::uint32_t>(
-          std::min(255.0, std::round(factor * of(i, x, y))));
-    };
+std::function<std::uint32_t(const SampleOf&, std::int64_t, std::int32_t,
+                            std::int32_t)>
+Brighter(double factor) {
+  return [factor](const SampleOf& of, std::int64_t i, std::int32_t x,
+                  std::int32_t y) {
+    return static_cast<std::uint32_t>(
+        std::min(255.0, std::round(factor * of(i, x, y))));
   };
-  const Film film = Default(GetParam());
-  const Analysis white = AnalyzeChanged(film, 1, brighter(100.0));
+}
+
+TEST_P(HardClips, AllWhite) {
+  const Analysis white =
+      AnalyzeChanged(Default(GetParam()), 1, Brighter(100.0));
   EXPECT_FALSE(white.contacts.first.contact.found);
   ExpectDocument(white);
-  const Analysis bright = AnalyzeChanged(film, 1, brighter(2.0));
-  ExpectDocument(bright);
-  const core::Contact& contact = bright.contacts.first.contact;
-  if (contact.found) {
-    // The surround's edges are cut off, and u need not know how.
-    EXPECT_NEAR(contact.frame->value, film.contact_frame, 1.0);
+}
+
+// The surround is cut off, in the end the ground, too: the edge moves inwards,
+// all around alike, and the instant with it by little. (The line seems to lie
+// lower, of which there is a warning.)
+TEST_P(HardClips, ASaturatedSurround) {
+  for (const double factor : {1.6, 1.8, 2.0, 2.2, 2.5}) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      const Film film = Default(GetParam());
+      const Analysis bright = AnalyzeChanged(film, seed, Brighter(factor));
+      ExpectDocument(bright);
+      const core::Contact& contact = bright.contacts.first.contact;
+      ASSERT_TRUE(contact.found) << factor << ", " << seed;
+      EXPECT_EQ(bright.track->body.kind, GetParam());
+      EXPECT_NEAR(contact.frame->value, film.contact_frame, 0.05)
+          << factor << ", " << seed;
+    }
   }
 }
 

@@ -30,7 +30,7 @@ namespace cine_file {
 
 inline void Put(std::string& out, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) {
-    out += static_cast<char>(value >> (8 * i) & 0xFF);
+    out += i < 8 ? static_cast<char>(value >> (8 * i) & 0xFF) : '\0';
   }
 }
 

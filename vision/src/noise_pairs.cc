@@ -53,13 +53,18 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
   const double width = std::max(1e-6, static_cast<double>(high - low));
   std::array<std::vector<float>, kBins> bins;
   pairs.ForEach([&](std::int32_t x, std::int32_t y, int one, int other) {
-    // A clipped sample has no noise to tell of.
-    if (one >= background.full_scale_dn || one == 0) return;
+    // A clipped sample has no noise to tell of; nor has a place that is clipped
+    // without the body: the samples that are left there are the body's.
+    constexpr double kOff_dn = 1.0;
+    const auto level = static_cast<double>(background.at(x, y));
+    if (one >= background.full_scale_dn || one == 0 ||
+        level > background.full_scale_dn - kOff_dn || level < kOff_dn) {
+      return;
+    }
     const auto bin =
         std::min(kBins - 1,
-                 static_cast<std::size_t>(
-                     (static_cast<double>(background.at(x, y) - low) / width) *
-                     static_cast<double>(kBins)));
+                 static_cast<std::size_t>((level - static_cast<double>(low)) /
+                                          width * static_cast<double>(kBins)));
     bins[bin].push_back(static_cast<float>(one - other));
   });
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;

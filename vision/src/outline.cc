@@ -90,6 +90,7 @@ class Fitter {
   int LevelsBegin() const { return geometry_ + 2; }
   int Parameters() const { return LevelsBegin() + interior_ + outer_; }
   bool Free(int k) const;
+  double full_scale() const { return background_.full_scale_dn; }
   bool HasPrior() const { return options_.shading && interior_ == 6; }
 
   const core::Frame& frame_;
@@ -229,8 +230,11 @@ void Fitter::Accumulate(bool robust) {
   if (robust) round.cut = kTukey * robust_scale_;
   Sum(round);
   contrast_ = sums_.contrast_dn;
-  inliers_ = sums_.inliers / static_cast<double>(pixels_.size);
-  const double spare = sums_.inliers - Parameters();
+  const double clipped =
+      saturated_ ? ClippedAsExpected(pixels_, residuals_, full_scale()) : 0.0;
+  inliers_ = (sums_.inliers - clipped) /
+             std::max(1.0, static_cast<double>(pixels_.size) - clipped);
+  const double spare = sums_.inliers - clipped - Parameters();
   misfit_ = spare > 0.0 ? std::sqrt(sums_.square / spare) : 0.0;
 }
 
@@ -353,9 +357,7 @@ std::string Fitter::Iterate(int& iterations) {
     const double spread = std::abs(blur_ - collected_blur);
     if (moved > far_px ||
         (iteration < 3 && std::max({moved, spread, step}) > kSamePlace_px)) {
-      if (std::string why = Gather(); !why.empty()) {
-        return why;
-      }
+      if (std::string why = Gather(); !why.empty()) return why;
       collected = outline_.centre;
       collected_blur = blur_;
     }
@@ -389,21 +391,19 @@ bool Fitter::SetAsideUnexplained() {
 core::Expected<OutlineFit> Fitter::Run() {
   cosine_ = std::cos(outline_.angle_rad);
   sine_ = std::sin(outline_.angle_rad);
-  if (std::string why = Gather(); !why.empty()) {
-    return core::AbsentBecause(why);
-  }
+  std::string why = Gather();
+  if (!why.empty()) return core::AbsentBecause(why);
   // Where the surround is saturated, the outer half of the edge's tail is cut
   // off; its inner half must then not pass for shading, which would shift the
   // edge outwards: one level for the whole body.
-  if (IsSurroundSaturated(pixels_, outline_, cosine_, sine_,
-                          background_.full_scale_dn)) {
+  if (IsSurroundSaturated(pixels_, outline_, cosine_, sine_, full_scale())) {
     saturated_ = true;
     interior_ = 1;
     CollectPixels();
   }
   if (!NearLevels()) SolveLevels();
   int iterations = 0;
-  std::string why = Iterate(iterations);
+  why = Iterate(iterations);
   if (why.empty() && SetAsideUnexplained()) {
     why = Gather();
     if (why.empty()) why = Iterate(iterations);

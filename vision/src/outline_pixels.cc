@@ -143,6 +143,18 @@ bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
   return full > 0.5 * outside;
 }
 
+double ClippedAsExpected(const OutlinePixels& pixels,
+                         const std::vector<double>& residuals,
+                         double full_scale_dn) {
+  constexpr double kNone = 0.5;  // of the noise
+  double count = 0.0;
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    count += static_cast<double>(pixels.value[i]) >= full_scale_dn &&
+             std::abs(residuals[i]) < kNone;
+  }
+  return count;
+}
+
 NearGroundPixels LookNearGround(const OutlinePixels& pixels,
                                 const std::vector<double>& residuals,
                                 const Height& height, double below_px) {

@@ -121,6 +121,12 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
 bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
                          double cosine, double sine, double full_scale_dn);
 
+// How many pixels at full scale are where they are expected. They fit any
+// outline that leaves them out, and tell nothing of how well one fits.
+double ClippedAsExpected(const OutlinePixels& pixels,
+                         const std::vector<double>& residuals,
+                         double full_scale_dn);
+
 // How many pixels lie lower than `below_px` above the ground line, and the mean
 // square of their residuals over that of the others; 0: there are none of
 // either kind.

@@ -32,14 +32,11 @@ void OutlinePixels::Clear(std::size_t room) {
 
 void OutlinePixels::Finish(double floor_dn2, double slope_dn,
                            double least_dn2) {
-  const auto floor = static_cast<float>(floor_dn2);
-  const auto slope = static_cast<float>(slope_dn);
-  const auto least = static_cast<float>(least_dn2);
-  const float* const from = value.data();
-  float* const to = per_noise.data();
   for (std::size_t i = 0; i < size; ++i) {
-    const float variance = floor + slope * from[i];
-    to[i] = 1.0F / std::sqrt(variance > least ? variance : least);
+    const double variance =
+        floor_dn2 + slope_dn * static_cast<double>(value[i]);
+    per_noise[i] = static_cast<float>(
+        1.0 / std::sqrt(variance > least_dn2 ? variance : least_dn2));
   }
   for (std::size_t i = size; i < padded(); ++i) {
     x[i] = x[size - 1];
