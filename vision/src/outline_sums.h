@@ -20,7 +20,7 @@ namespace touchdown::vision {
 template <class T>
 struct Unfilled : std::allocator<T> {
   template <class U>
-  struct rebind {
+  struct rebind {  // NOLINT(readability-identifier-naming): the library's name
     using other = Unfilled<U>;
   };
   template <class U>
