@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "path_trend.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/contact.h"
 #include "track_shape.h"
@@ -128,7 +129,6 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
   const double to_vertical = std::atan2(along.x(), std::abs(along.y()));
   if (to_vertical < kRolled_rad) return std::nullopt;
   constexpr double kClear = 5.0;
-  constexpr double kCarried = 0.1;
   const double a = std::abs(path->acceleration);
   const double c = std::abs(side->acceleration);
   if (a < kClear * path->u_acceleration ||

@@ -38,26 +38,6 @@ TOUCHDOWN_INLINE void AddAll(const Sample* lanes, std::size_t begin,
   }
 }
 
-TOUCHDOWN_WIDEST void Exchange8(const Exchanges& exchanges,
-                                std::uint8_t* lanes) {
-  ExchangeAll(exchanges, lanes);
-}
-
-TOUCHDOWN_WIDEST void Exchange16(const Exchanges& exchanges,
-                                 std::uint16_t* lanes) {
-  ExchangeAll(exchanges, lanes);
-}
-
-TOUCHDOWN_WIDEST void Add8(const std::uint8_t* lanes, std::size_t begin,
-                           std::size_t end, std::uint32_t* sums) {
-  AddAll(lanes, begin, end, sums);
-}
-
-TOUCHDOWN_WIDEST void Add16(const std::uint16_t* lanes, std::size_t begin,
-                            std::size_t end, std::uint32_t* sums) {
-  AddAll(lanes, begin, end, sums);
-}
-
 }  // namespace
 
 // Batcher's merge exchange (Knuth, The Art of Computer Programming, vol. 3,
@@ -99,22 +79,22 @@ SortingNetwork::SortingNetwork(std::size_t count, Order order) {
   exchanges_.assign(needed.rbegin(), needed.rend());
 }
 
-void SortingNetwork::Sort(std::uint8_t* lanes) const {
-  Exchange8(exchanges_, lanes);
+TOUCHDOWN_WIDEST void SortingNetwork::Sort(std::uint8_t* lanes) const {
+  ExchangeAll(exchanges_, lanes);
 }
 
-void SortingNetwork::Sort(std::uint16_t* lanes) const {
-  Exchange16(exchanges_, lanes);
+TOUCHDOWN_WIDEST void SortingNetwork::Sort(std::uint16_t* lanes) const {
+  ExchangeAll(exchanges_, lanes);
 }
 
-void AddSamples(const std::uint8_t* lanes, std::size_t begin, std::size_t end,
-                std::uint32_t* sums) {
-  Add8(lanes, begin, end, sums);
+TOUCHDOWN_WIDEST void AddSamples(const std::uint8_t* lanes, std::size_t begin,
+                                 std::size_t end, std::uint32_t* sums) {
+  AddAll(lanes, begin, end, sums);
 }
 
-void AddSamples(const std::uint16_t* lanes, std::size_t begin, std::size_t end,
-                std::uint32_t* sums) {
-  Add16(lanes, begin, end, sums);
+TOUCHDOWN_WIDEST void AddSamples(const std::uint16_t* lanes, std::size_t begin,
+                                 std::size_t end, std::uint32_t* sums) {
+  AddAll(lanes, begin, end, sums);
 }
 
 }  // namespace touchdown::vision

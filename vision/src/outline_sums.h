@@ -16,7 +16,7 @@
 namespace touchdown::vision {
 
 // Leaves new elements as they are in memory: they are written before they are
-// read, and a fit would spend a tenth of its time on zeroes.
+// read, and zeroes would cost a fit more than its pixels.
 template <class T>
 struct Unfilled : std::allocator<T> {
   template <class U>

@@ -61,8 +61,8 @@ double BendOf(const Polynomial& fit) { return -fit.terms[2]; }
 
 // Whether gravity is carried: the gaps' acceleration that the bend makes is
 // small beside that along the ground.
-bool IsCarried(const PlaneTrack& track, double half_px,
-               const Polynomial& bent) {
+bool FallsLittle(const PlaneTrack& track, double half_px,
+                 const Polynomial& bent) {
   std::vector<double> t, s;
   const double begin = track.samples.front().time_s;
   const double half_s = 0.5 * (track.samples.back().time_s - begin);
@@ -74,7 +74,6 @@ bool IsCarried(const PlaneTrack& track, double half_px,
   const Polynomial along = Fit(t, s, 2);
   if (!along.good) return false;
   // In half paths over the square of half the time: gap'' = 2 b (x')^2.
-  constexpr double kCarried = 0.1;
   const double across =
       std::abs(2.0 * bent.terms[2] / half_px * along.terms[1] * along.terms[1]);
   return across < kCarried * std::abs(2.0 * along.terms[2]);
@@ -96,7 +95,7 @@ bool AsksForBend(const PlaneTrack& track, double half_px,
   const auto n = static_cast<double>(track.samples.size());
   const double gain =
       n * std::log(line.square / std::max(bent.square, 1e-300)) - std::log(n);
-  return gain > kStrong && IsCarried(track, half_px, bent);
+  return gain > kStrong && FallsLittle(track, half_px, bent);
 }
 
 }  // namespace

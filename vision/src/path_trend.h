@@ -11,6 +11,10 @@ namespace touchdown::vision {
 // much; more is another line, or none.
 inline constexpr double kMostInclined_rad = 1.0 * core::kDegree;
 
+// What carries a body leaves of its fall so much beside the acceleration along
+// the ground, at most.
+inline constexpr double kCarried = 0.1;
+
 struct PathTrend {
   // Of the gaps along the ground: the visible edge's error where it is small.
   double slope_rad = 0.0;

@@ -80,9 +80,10 @@ void DropStrangers(std::vector<Fitted>& all) {
            SizeOf(f.fit) * kSizeRatio < size ||
            f.fit.misfit > kMisfitRatio * std::max(1.0, misfit);
   });
-  constexpr double kHidden = 0.02;
   constexpr std::size_t kLeast = 8;
-  const auto is_hidden = [](const Fitted& f) { return f.fit.hidden > kHidden; };
+  const auto is_hidden = [](const Fitted& f) {
+    return f.fit.hidden > kMostHidden;
+  };
   const auto hidden = static_cast<std::size_t>(
       std::count_if(all.begin(), all.end(), is_hidden));
   if (all.size() >= kLeast + hidden && 2 * hidden <= all.size()) {

@@ -36,6 +36,9 @@ double MedianMisfit(const std::vector<Fitted>& all);
 core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us);
 
+// Share of an outline that may be hidden while it still counts as free.
+inline constexpr double kMostHidden = 0.02;
+
 // Leaves out fits that are not of this body: other size, or far worse residuals
 // than usual. Where half of them see the outline free, those go, too, in which
 // something hides a part of it: its edge passes for the body's.

@@ -126,7 +126,6 @@ void FitMissing(Clip& clip, const Background& background,
   // Twice as bad as usual is another thing; so is what is off the path.
   constexpr double kUsual = 2.0;
   constexpr double kOff = 0.1;  // of the body's size
-  constexpr double kHidden = 0.02;
   const double most_misfit = kUsual * Median(std::move(misfits));
   for (const Fitted& fit :
        FitFromTrack(clip, background, track, options, fit_options, missing)) {
@@ -134,7 +133,7 @@ void FitMissing(Clip& clip, const Background& background,
     const double off =
         std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
                    fit.fit.outline.centre.y_px - there.centre.y_px);
-    if (fit.fit.misfit > most_misfit || fit.fit.hidden > kHidden ||
+    if (fit.fit.misfit > most_misfit || fit.fit.hidden > kMostHidden ||
         off > kOff * 2.0 * SizeOf(fit.fit)) {
       continue;
     }
