@@ -271,6 +271,9 @@ void Analyzer::DescribeScene() {
   scene.used.push_back(
       track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
   scene.used.push_back("quadratic shading");
+  if (track.patterned) {
+    scene.used.push_back("the body's own picture, which moves with it");
+  }
   if (track.near_ground_modelled) {
     scene.used.push_back("the ground's edge, hidden by the body");
   } else {

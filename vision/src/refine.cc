@@ -6,6 +6,7 @@
 #include "between_looks.h"
 #include "body_cover.h"
 #include "both_sides.h"
+#include "follow_pattern.h"
 #include "refiner.h"
 
 namespace touchdown::vision {
@@ -202,6 +203,7 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
   }
   refiner.MeasurePoses(refined);
   Unwrap(refined);
+  if (track.patterned) refined = PutOn(refined, track);
   return refined;
 }
 

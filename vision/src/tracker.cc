@@ -8,6 +8,7 @@
 #include "between_looks.h"
 #include "body_cover.h"
 #include "first_look.h"
+#include "follow_pattern.h"
 #include "outline_batch.h"
 #include "touchdown/core/errors.h"
 
@@ -344,6 +345,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     if (!cut.empty()) warning = cut;
   }
   FitMissing(clip, result.background, options, track);
+  track = FollowPattern(clip, result.background, track, options.threads);
   if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
   if (whole_px > 0.0) {

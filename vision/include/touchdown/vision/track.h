@@ -65,6 +65,9 @@ struct Track {
   // it. Else there is a shadow, a reflection or an uneven edge, and the
   // outline's lower part was left out there. After Refine.
   bool near_ground_modelled = false;
+  // Whether poses are those of the body's picture, which moves with it: its
+  // outlines alone were bad witnesses.
+  bool patterned = false;
   bool several_bodies = false;  // another one of like size and contrast moves
   std::vector<std::string> warnings;
 };
