@@ -195,6 +195,7 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
                                   std::sqrt(background_.UsualVariance() / 8.0)};
     calib::GroundLineOptions line_options;
     line_options.lens = camera_.lens;
+    line_options.threads = options_.decoder_threads;
     candidates = calib::FindGroundLines(still, line_options);
   }
   const auto merit_of = [](const std::optional<Judged>& judged) {

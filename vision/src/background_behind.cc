@@ -10,7 +10,7 @@
 #include "frame_samples.h"
 #include "mid_mean.h"
 #include "noise_pairs.h"
-#include "parallel.h"
+#include "touchdown/core/parallel.h"
 #include "touchdown/vision/background.h"
 
 namespace touchdown::vision {
@@ -186,16 +186,17 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
   Background background = fallback;
   background.unknown.assign(fallback.level.size(), 0);
   const FrameSamples samples(clip, frames);
-  InParallel(all.box.height, samples.Threads(options.threads),
-             [&](std::int64_t begin, std::int64_t end) {
-               if (samples.is_16_bit()) {
-                 MidMeanBehind<std::uint16_t>(samples, all, all.box.y + begin,
-                                              all.box.y + end, background);
-               } else {
-                 MidMeanBehind<std::uint8_t>(samples, all, all.box.y + begin,
-                                             all.box.y + end, background);
-               }
-             });
+  core::InParallel(
+      all.box.height, samples.Threads(options.threads),
+      [&](std::int64_t begin, std::int64_t end) {
+        if (samples.is_16_bit()) {
+          MidMeanBehind<std::uint16_t>(samples, all, all.box.y + begin,
+                                       all.box.y + end, background);
+        } else {
+          MidMeanBehind<std::uint8_t>(samples, all, all.box.y + begin,
+                                      all.box.y + end, background);
+        }
+      });
   if (std::none_of(background.unknown.begin(), background.unknown.end(),
                    [](std::uint8_t u) { return u != 0; })) {
     background.unknown.clear();
