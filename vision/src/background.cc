@@ -61,6 +61,9 @@ void MidMeanOf(const FrameSamples& samples, int threads, Background& background,
   core::InParallel(background.height_px, samples.Threads(threads),
                    [&](std::int64_t begin, std::int64_t end) {
                      FrameSamples::Reader reader(samples);
+                     reader.WillRead({0, static_cast<std::int32_t>(begin),
+                                      background.width_px,
+                                      static_cast<std::int32_t>(end - begin)});
                      MidMeanOfRows<Sample>(reader, network, samples.size(),
                                            background.width_px, begin, end,
                                            background.level.data(), pairs);
