@@ -9,6 +9,7 @@
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/condition_flags.h"
+#include "app/cli/kept_memory.h"
 #include "app/cli/progress.h"
 #include "app/pipeline/analysis_text.h"
 #include "app/pipeline/analyze.h"
@@ -30,6 +31,7 @@ struct Flags {
 };
 
 int Run(const Flags& flags) {
+  KeepMemory();
   pipeline::AnalyzeOptions options = ToOptions(flags.analyze);
   if (flags.db.empty() && !flags.campaign.empty()) {
     throw std::invalid_argument("--campaign needs --db, the store it is in");

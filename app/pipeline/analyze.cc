@@ -95,6 +95,11 @@ class Analyzer {
       const vision::Track& track);
   void FindGroundAndContacts(vision::Track track);
   void DescribeScene();
+  // How what need not be waited for is done.
+  std::launch Beside() const {
+    return options_.decoder_threads == 1 ? std::launch::deferred
+                                         : std::launch::async;
+  }
 
   const AnalyzeOptions& options_;
   std::unique_ptr<vision::Clip> clip_;
@@ -106,6 +111,7 @@ class Analyzer {
   std::optional<core::Estimate> aspect_;  // short over long side, measured
   ClipCalibration camera_;
   vision::TrackOptions track_options_;
+  std::future<void> given_back_;  // the last: it uses the clip
 };
 
 // Whether the contact lies where the track ends: no frame has seen it, and a
@@ -142,6 +148,9 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   }
   judged.track = vision::Refine(*clip_, background_, track,
                                 {in_image, aspect_, options_.decoder_threads});
+  // To give a large mapped file's pages back takes milliseconds: beside the
+  // rest. Mostly no other line is tried.
+  given_back_ = std::async(Beside(), [clip = clip_.get()] { clip->HasRead(); });
   TakeSize(judged.track);
   judged.plane = SeenInPlane(camera_, Seen(judged.track), ground);
   judged.contacts = ContactsIn(judged.plane, contact_options_);
@@ -195,6 +204,7 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
                                   std::sqrt(background_.UsualVariance() / 8.0)};
     calib::GroundLineOptions line_options;
     line_options.lens = camera_.lens;
+    line_options.threads = options_.decoder_threads;
     candidates = calib::FindGroundLines(still, line_options);
   }
   const auto merit_of = [](const std::optional<Judged>& judged) {
@@ -407,11 +417,12 @@ Analysis Analyzer::Run() {
                                                 : core::BodyKind::kSphere);
   DescribeScene();
   result_.timing.decode_s = clip_->reading_s();
-  // To give a large mapped file back takes milliseconds: beside the rest.
-  const auto closing =
-      std::async(options_.decoder_threads == 1 ? std::launch::deferred
-                                               : std::launch::async,
-                 [clip = std::move(clip_)]() mutable { clip.reset(); });
+  const auto closing = std::async(
+      Beside(),
+      [clip = std::move(clip_), given_back = std::move(given_back_)]() mutable {
+        if (given_back.valid()) given_back.wait();
+        clip.reset();
+      });
   if (result_.contacts.first.contact.found) {
     DescribeBudget(result_, contact_options_);
   }

@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::int32_t kRows = 12;  // of a strip beside the edge
 
-// What a strip's samples vary by about their level, which may change along the
-// edge.
+// What lies beside the edge.
 struct Strip {
-  std::vector<double> level;               // by column
-  std::array<double, kRows> covariance{};  // at distances of 0 .. rows
+  std::vector<std::int32_t> first_row;  // by column, the one next to the edge
+  std::int32_t step = 1;                // rows from there on
+  std::vector<double> level;  // by column: it may change along the edge
 };
 
 double At(const StillImage& image, std::int32_t x, std::int32_t y) {
@@ -47,38 +47,49 @@ std::optional<Strip> Look(const StillImage& image,
                           const std::vector<double>& edge_px, double reach,
                           bool below) {
   const auto first = static_cast<std::int32_t>(std::ceil(reach)) + 1;
-  const auto row = [&](std::size_t x, std::int32_t k) {
-    const auto edge = static_cast<std::int32_t>(std::lround(edge_px[x]));
-    return below ? edge + first + k : edge - first - k;
-  };
+  Strip strip;
+  strip.step = below ? 1 : -1;
+  strip.first_row.reserve(edge_px.size());
   std::vector<double> mean(edge_px.size(), 0.0);
   for (std::size_t x = 0; x < edge_px.size(); ++x) {
-    for (const std::int32_t end : {row(x, 0), row(x, kRows - 1)}) {
+    const auto edge = static_cast<std::int32_t>(std::lround(edge_px[x]));
+    strip.first_row.push_back(edge + strip.step * first);
+    for (const std::int32_t end :
+         {strip.first_row[x], strip.first_row[x] + strip.step * (kRows - 1)}) {
       if (end < 0 || end >= image.height_px) return std::nullopt;
     }
     for (std::int32_t k = 0; k < kRows; ++k) {
-      mean[x] += At(image, static_cast<std::int32_t>(x), row(x, k)) / kRows;
+      mean[x] += At(image, static_cast<std::int32_t>(x),
+                    strip.first_row[x] + strip.step * k) /
+                 kRows;
     }
   }
-  Strip strip;
   // Wide enough for a fine texture to be even, and narrow for the light.
   constexpr std::size_t kHalfWidth = 16;
   strip.level = Running(mean, kHalfWidth);
-  for (std::int32_t lag = 0; lag < kRows; ++lag) {
-    double sum = 0.0;
-    for (std::size_t x = 0; x < edge_px.size(); ++x) {
-      const auto column = static_cast<std::int32_t>(x);
-      for (std::int32_t k = 0; k + lag < kRows; ++k) {
-        sum += (At(image, column, row(x, k)) - strip.level[x]) *
-               (At(image, column, row(x, k + lag)) - strip.level[x]);
-      }
-    }
-    // Over all rows, not over the pairs: that is some field's covariance, which
-    // that of few pairs need not be.
-    strip.covariance[static_cast<std::size_t>(lag)] =
-        sum / (static_cast<double>(edge_px.size()) * kRows);
-  }
   return strip;
+}
+
+// What its samples vary by about their level, at a distance of `lag` rows.
+double CovarianceAt(const StillImage& image, const Strip& strip,
+                    std::int32_t lag) {
+  double sum = 0.0;
+  for (std::size_t x = 0; x < strip.level.size(); ++x) {
+    std::array<double, kRows> off{};
+    for (std::int32_t k = 0; k < kRows; ++k) {
+      off[static_cast<std::size_t>(k)] =
+          At(image, static_cast<std::int32_t>(x),
+             strip.first_row[x] + strip.step * k) -
+          strip.level[x];
+    }
+    for (std::int32_t k = 0; k + lag < kRows; ++k) {
+      sum += off[static_cast<std::size_t>(k)] *
+             off[static_cast<std::size_t>(k + lag)];
+    }
+  }
+  // Over all rows, not over the pairs: that is some field's covariance, which
+  // that of few pairs need not be.
+  return sum / (static_cast<double>(strip.level.size()) * kRows);
 }
 
 double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
@@ -91,17 +102,21 @@ std::optional<EdgeTexture> LearnTexture(const StillImage& image,
   const auto above = Look(image, edge_px, reach_px, false);
   const auto below = Look(image, edge_px, reach_px, true);
   if (!above || !below) return std::nullopt;
+  const double above_dn2 = CovarianceAt(image, *above, 0);
+  const double below_dn2 = CovarianceAt(image, *below, 0);
   EdgeTexture texture;
-  texture.below = below->covariance[0] > above->covariance[0];
+  texture.below = below_dn2 > above_dn2;
   const Strip& rough = texture.below ? *below : *above;
-  const Strip& plain = texture.below ? *above : *below;
   constexpr double kTwice = 2.0;
   constexpr double kRounding_dn2 = 1e-4;
-  texture.variance_dn2 = std::max(plain.covariance[0], kRounding_dn2);
-  if (rough.covariance[0] < kTwice * texture.variance_dn2) return std::nullopt;
-  texture.covariance_dn2.assign(rough.covariance.begin(),
-                                rough.covariance.end());
-  texture.covariance_dn2[0] -= texture.variance_dn2;
+  texture.variance_dn2 =
+      std::max(std::min(below_dn2, above_dn2), kRounding_dn2);
+  const double rough_dn2 = std::max(below_dn2, above_dn2);
+  if (rough_dn2 < kTwice * texture.variance_dn2) return std::nullopt;
+  texture.covariance_dn2.push_back(rough_dn2 - texture.variance_dn2);
+  for (std::int32_t lag = 1; lag < kRows; ++lag) {
+    texture.covariance_dn2.push_back(CovarianceAt(image, rough, lag));
+  }
   texture.ground_dn = rough.level;
   return texture;
 }

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 #include "edge_texture.h"
 #include "edge_wave.h"
+#include "touchdown/core/parallel.h"
 
 namespace touchdown::calib {
 namespace {
@@ -70,11 +73,11 @@ std::int32_t StepOf(const StillImage& image) {
   return std::max<std::int32_t>(1, image.width_px / 640);
 }
 
-std::vector<EdgePoint> EdgePoints(const StillImage& image, double least) {
-  std::vector<EdgePoint> points;
-  const std::vector<std::int32_t> columns =
-      FromBothSides(0, StepOf(image), image.width_px);
-  // Row after row, as they lie in memory: the steps of three of them.
+// Of some columns, row after row, as they lie in memory.
+void EdgePointsIn(const StillImage& image, double least,
+                  std::span<const std::int32_t> columns,
+                  std::span<std::vector<EdgePoint>> points) {
+  // The steps of three rows.
   std::vector<double> above(columns.size());
   std::vector<double> here(columns.size());
   std::vector<double> below(columns.size());
@@ -89,53 +92,90 @@ std::vector<EdgePoint> EdgePoints(const StillImage& image, double least) {
       const double size = std::abs(here[k]);
       if (size < least) continue;
       if (size > std::abs(above[k]) && size >= std::abs(below[k])) {
-        points.push_back({static_cast<double>(columns[k]),
-                          static_cast<double>(y - 1), here[k]});
+        points[k].push_back({static_cast<double>(columns[k]),
+                             static_cast<double>(y - 1), here[k]});
       }
     }
   }
-  std::stable_sort(
-      points.begin(), points.end(),
-      [](const EdgePoint& a, const EdgePoint& b) { return a.x < b.x; });
+}
+
+// Column after column.
+std::vector<EdgePoint> EdgePoints(const StillImage& image, double least,
+                                  int threads) {
+  const std::vector<std::int32_t> columns =
+      FromBothSides(0, StepOf(image), image.width_px);
+  std::vector<std::vector<EdgePoint>> in_column(columns.size());
+  core::InParallel(static_cast<std::int64_t>(columns.size()), threads,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     const auto from = static_cast<std::size_t>(begin);
+                     const auto count = static_cast<std::size_t>(end - begin);
+                     EdgePointsIn(image, least,
+                                  std::span(columns).subspan(from, count),
+                                  std::span(in_column).subspan(from, count));
+                   });
+  std::vector<EdgePoint> points;
+  for (const std::vector<EdgePoint>& some : in_column) {
+    points.insert(points.end(), some.begin(), some.end());
+  }
   return points;
 }
 
-// Best-supported line among `points` of one sign (Hough transform: votes over
-// tilt and height, one per column).
-bool Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
-          int sign, const StillImage& image, double most_tilt, Line& line,
-          double& votes) {
-  constexpr int kTilts = 121;
+struct Votes {
+  Line line;
+  double votes = 0.0;
+};
+
+// Those that points of one sign give to lines of one slope.
+Votes VoteAt(double slope, const std::vector<EdgePoint>& points,
+             const std::vector<bool>& used, int sign, const StillImage& image) {
   constexpr double kBin_px = 2.0;
   const double middle = 0.5 * (image.width_px - 1);
   const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
   std::vector<float> count(static_cast<std::size_t>(bins));
-  votes = 0.0;
-  for (int k = 0; k < kTilts; ++k) {
-    const double slope = std::tan(most_tilt * (2.0 * k / (kTilts - 1.0) - 1.0));
-    std::fill(count.begin(), count.end(), 0.0f);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (used[i] || points[i].strength * sign <= 0.0) continue;
-      const double y = points[i].y - slope * (points[i].x - middle);
-      const double at = y / kBin_px;
-      if (at < 0.0 || at >= bins - 1) continue;
-      // Between two bins, so that a line on their border loses no votes.
-      const auto low = static_cast<std::size_t>(at);
-      const auto share = static_cast<float>(at - std::floor(at));
-      count[low] += 1.0f - share;
-      count[low + 1] += share;
-    }
-    for (int b = 0; b + 1 < bins; ++b) {
-      const auto i = static_cast<std::size_t>(b);
-      const double sum = static_cast<double>(count[i] + count[i + 1]);
-      if (sum > votes) {
-        votes = sum;
-        const double weight = static_cast<double>(count[i + 1]) / sum;
-        line = {(b + weight) * kBin_px, slope};
-      }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (used[i] || points[i].strength * sign <= 0.0) continue;
+    const double y = points[i].y - slope * (points[i].x - middle);
+    const double at = y / kBin_px;
+    if (at < 0.0 || at >= bins - 1) continue;
+    // Between two bins, so that a line on their border loses no votes.
+    const auto low = static_cast<std::size_t>(at);
+    const auto share = static_cast<float>(at - std::floor(at));
+    count[low] += 1.0f - share;
+    count[low + 1] += share;
+  }
+  Votes best;
+  for (int b = 0; b + 1 < bins; ++b) {
+    const auto i = static_cast<std::size_t>(b);
+    const double sum = static_cast<double>(count[i] + count[i + 1]);
+    if (sum > best.votes) {
+      best.votes = sum;
+      const double weight = static_cast<double>(count[i + 1]) / sum;
+      best.line = {(b + weight) * kBin_px, slope};
     }
   }
-  return votes > 0.0;
+  return best;
+}
+
+// Best-supported line among `points` of one sign (Hough transform: votes over
+// tilt and height, one per column).
+Votes Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
+           int sign, const StillImage& image,
+           const GroundLineOptions& options) {
+  constexpr int kTilts = 121;
+  std::vector<Votes> of_tilt(kTilts);
+  core::InParallel(
+      kTilts, options.threads, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t k = begin; k < end; ++k) {
+          const double tilt =
+              options.most_tilt_rad *
+              (2.0 * static_cast<double>(k) / (kTilts - 1.0) - 1.0);
+          of_tilt[static_cast<std::size_t>(k)] =
+              VoteAt(std::tan(tilt), points, used, sign, image);
+        }
+      });
+  return *std::max_element(
+      of_tilt.begin(), of_tilt.end(),
+      [](const Votes& a, const Votes& b) { return a.votes < b.votes; });
 }
 
 // Straight line through points by iteratively re-weighted least squares
@@ -236,8 +276,33 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
   return edge;
 }
 
+struct ColumnFit {
+  EdgePoint edge;
+  double residual2 = 0.0;
+};
+
+// Of each of the columns, near the line.
+std::vector<ColumnFit> ColumnEdges(const StillImage& image,
+                                   const GroundLineOptions& options,
+                                   const std::vector<std::int32_t>& columns,
+                                   const Line& line, double middle,
+                                   double blur) {
+  std::vector<ColumnFit> fits(columns.size());
+  core::InParallel(static_cast<std::int64_t>(columns.size()), options.threads,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     for (auto k = static_cast<std::size_t>(begin);
+                          k < static_cast<std::size_t>(end); ++k) {
+                       const double y =
+                           SeenAt(options.lens, line, middle, columns[k]);
+                       fits[k].edge = ColumnEdge(image, columns[k], y, blur,
+                                                 fits[k].residual2);
+                     }
+                   });
+  return fits;
+}
+
 // The edge's blur: the one that explains a sample of columns best.
-double EstimateBlur(const StillImage& image, const std::optional<Lens>& lens,
+double EstimateBlur(const StillImage& image, const GroundLineOptions& options,
                     const Line& line, double middle) {
   constexpr std::array<double, 12> kTried = {0.4, 0.5, 0.6, 0.7, 0.85, 1.0,
                                              1.2, 1.5, 1.9, 2.4, 3.0,  4.0};
@@ -248,11 +313,9 @@ double EstimateBlur(const StillImage& image, const std::optional<Lens>& lens,
       FromBothSides(2, 1 + image.width_px / 120, image.width_px);
   for (const double blur : kTried) {
     std::vector<double> residuals;
-    for (const std::int32_t x : columns) {
-      double r2 = 0.0;
-      const EdgePoint edge =
-          ColumnEdge(image, x, SeenAt(lens, line, middle, x), blur, r2);
-      if (edge.strength != 0.0) residuals.push_back(r2);
+    for (const ColumnFit& fit :
+         ColumnEdges(image, options, columns, line, middle, blur)) {
+      if (fit.edge.strength != 0.0) residuals.push_back(fit.residual2);
     }
     if (residuals.size() < 8) continue;
     const auto at =
@@ -347,24 +410,21 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
   // A mean of three rows on each side has noise sqrt(2/3) sigma.
   const double least = options.least_contrast_sigmas * image.noise_dn;
   std::vector<EdgePoint> points;
-  for (EdgePoint p : EdgePoints(image, least)) {
+  for (EdgePoint p : EdgePoints(image, least, options.threads)) {
     if (ToIdeal(options.lens, p)) points.push_back(p);
   }
   std::vector<bool> used(points.size(), false);
+  std::vector<std::int32_t> all_columns(
+      static_cast<std::size_t>(image.width_px));
+  std::iota(all_columns.begin(), all_columns.end(), 0);
   const double step = StepOf(image);
   for (int found = 0; found < options.most_lines; ++found) {
-    Line best;
-    double votes = 0.0;
-    for (const int sign : {1, -1}) {
-      Line line;
-      double v = 0.0;
-      if (Vote(points, used, sign, image, options.most_tilt_rad, line, v) &&
-          v > votes) {
-        votes = v;
-        best = line;
-      }
-    }
-    if (votes * step < options.least_share * image.width_px) break;
+    const Votes up = Vote(points, used, 1, image, options);
+    const Votes down = Vote(points, used, -1, image, options);
+    Line best = down.votes > up.votes ? down.line : up.line;
+    if (std::max(up.votes, down.votes) * step <
+        options.least_share * image.width_px)
+      break;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double off =
           points[i].y - best.offset - best.slope * (points[i].x - middle);
@@ -372,12 +432,11 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
       if (std::abs(off) < kSameLine_px) used[i] = true;
     }
     // To sub-pixel, from every column.
-    const double blur = EstimateBlur(image, options.lens, best, middle);
+    const double blur = EstimateBlur(image, options, best, middle);
     std::vector<EdgePoint> edge;
-    for (std::int32_t x = 0; x < image.width_px; ++x) {
-      double r2 = 0.0;
-      EdgePoint p =
-          ColumnEdge(image, x, SeenAt(options.lens, best, middle, x), blur, r2);
+    for (const ColumnFit& fit :
+         ColumnEdges(image, options, all_columns, best, middle, blur)) {
+      EdgePoint p = fit.edge;
       if (std::abs(p.strength) > least && ToIdeal(options.lens, p)) {
         edge.push_back(p);
       }

@@ -76,15 +76,17 @@ std::size_t PlaceOf(const core::PixelPoint& centre, double x_px, double y_px) {
 
 class Collection {
  public:
-  // `inner_px`: the greatest depth that is looked at.
+  // `inner_px`: the greatest depth that is looked at; `frames`: so many are
+  // going to be added.
   Collection(Clip& clip, const Background& background,
-             const OutlineOptions& options, double inner_px)
+             const OutlineOptions& options, double inner_px, std::size_t frames)
       : clip_(clip),
         background_(background),
         behind_(background, Height(), 0.0),
         usable_(Height(options.ground), options.ground_margin_px,
                 options.hider),
-        inner_px_(inner_px) {}
+        inner_px_(inner_px),
+        expected_(frames) {}
 
   void Add(const SeenOutline& seen);
 
@@ -100,6 +102,7 @@ class Collection {
   Behind behind_;
   UsablePart usable_;
   double inner_px_;
+  std::size_t expected_;  // frames
   OutlinePixels pixels_;
   std::vector<Inside> all_;
   std::size_t frames_ = 0;
@@ -124,6 +127,8 @@ void Collection::Add(const SeenOutline& seen) {
   CollectOutlinePixels(frame, behind_, outline, cosine, sine, usable_, band,
                        pixels_);
   if (pixels_.size == 0) return;
+  // Frames show about as many pixels each.
+  if (all_.empty()) all_.reserve((expected_ + 1) * pixels_.size);
   const std::size_t begin = all_.size();
   Add(seen, OutlineImage(outline, smear), cosine, sine);
   ++frames_;
@@ -340,7 +345,8 @@ std::optional<Appearance> LearnRings(Clip& clip, const Background& background,
   constexpr std::size_t kLeast = 8;
   if (frames.size() < kLeast) return std::nullopt;
   const Common common = CommonOf(frames);
-  Collection collection(clip, background, options, common.extent_px);
+  Collection collection(clip, background, options, common.extent_px,
+                        frames.size());
   for (const SeenOutline& seen : frames) collection.Add(seen);
   std::vector<std::vector<double>> rings;
   for (const Inside& in : collection.all()) {
@@ -375,6 +381,7 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
   constexpr std::size_t kEnough = 40;
   if (frames.size() < kLeast) return std::nullopt;
   const std::size_t step = (frames.size() + kEnough - 1) / kEnough;
+  const std::vector<std::size_t> some = FromBothSides(frames.size(), step);
   const Common common = CommonOf(frames);
   // First what the fits saw: of most bodies there is nothing to learn. Then the
   // whole face, as a spot's middle tells more of it than its rim.
@@ -383,8 +390,8 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
   for (const bool whole : {false, true}) {
     if (whole && (!best || common.size_px < fitted)) break;
     Collection collection(clip, background, options,
-                          whole ? common.extent_px : fitted);
-    for (const std::size_t i : FromBothSides(frames.size(), step)) {
+                          whole ? common.extent_px : fitted, some.size());
+    for (const std::size_t i : some) {
       collection.Add(frames[i]);
     }
     best.reset();

@@ -11,7 +11,7 @@
 #include "frame_samples.h"
 #include "mid_mean.h"
 #include "noise_pairs.h"
-#include "parallel.h"
+#include "touchdown/core/parallel.h"
 
 namespace touchdown::vision {
 namespace {
@@ -58,13 +58,16 @@ template <class Sample>
 void MidMeanOf(const FrameSamples& samples, int threads, Background& background,
                NoisePairs& pairs) {
   const SortingNetwork network(samples.size(), SortingNetwork::Order::kMiddle);
-  InParallel(background.height_px, samples.Threads(threads),
-             [&](std::int64_t begin, std::int64_t end) {
-               FrameSamples::Reader reader(samples);
-               MidMeanOfRows<Sample>(reader, network, samples.size(),
-                                     background.width_px, begin, end,
-                                     background.level.data(), pairs);
-             });
+  core::InParallel(background.height_px, samples.Threads(threads),
+                   [&](std::int64_t begin, std::int64_t end) {
+                     FrameSamples::Reader reader(samples);
+                     reader.WillRead({0, static_cast<std::int32_t>(begin),
+                                      background.width_px,
+                                      static_cast<std::int32_t>(end - begin)});
+                     MidMeanOfRows<Sample>(reader, network, samples.size(),
+                                           background.width_px, begin, end,
+                                           background.level.data(), pairs);
+                   });
 }
 
 // Evenly over the range, both ends included; rounded towards the nearer

@@ -10,7 +10,7 @@
 #include "frame_samples.h"
 #include "mid_mean.h"
 #include "noise_pairs.h"
-#include "parallel.h"
+#include "touchdown/core/parallel.h"
 #include "touchdown/vision/background.h"
 
 namespace touchdown::vision {
@@ -73,6 +73,8 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   const std::size_t n = samples.size();
   const SortingNetwork network(n, SortingNetwork::Order::kFull);
   FrameSamples::Reader reader(samples);
+  reader.WillRead({covers.box.x, static_cast<std::int32_t>(top),
+                   covers.box.width, static_cast<std::int32_t>(bottom - top)});
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::size_t, kLanes> low{};   // samples moved below the others
   std::array<std::size_t, kLanes> high{};  // above
@@ -133,18 +135,26 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
 }
 
 // The noise of the samples themselves.
-void EstimateNoiseOf(const FrameSamples& samples, Background& background) {
+void EstimateNoiseOf(const FrameSamples& samples, int threads,
+                     Background& background) {
   NoisePairs pairs(background.width_px, background.height_px, samples);
-  FrameSamples::Reader reader(samples);
-  for (std::int32_t y = 0; y < background.height_px; ++y) {
-    if (!pairs.Has(y)) continue;
-    const auto& row = reader.Read({0, y, background.width_px, 1});
-    if (samples.is_16_bit()) {
-      pairs.Take<std::uint16_t>(row, 0, y);
-    } else {
-      pairs.Take<std::uint8_t>(row, 0, y);
-    }
-  }
+  core::InParallel(
+      background.height_px, samples.Threads(threads),
+      [&](std::int64_t begin, std::int64_t end) {
+        FrameSamples::Reader reader(samples);
+        const auto top = static_cast<std::int32_t>(begin);
+        const auto bottom = static_cast<std::int32_t>(end);
+        reader.WillRead({0, top, background.width_px, bottom - top});
+        for (std::int32_t y = top; y < bottom; ++y) {
+          if (!pairs.Has(y)) continue;
+          const auto& row = reader.Read({0, y, background.width_px, 1});
+          if (samples.is_16_bit()) {
+            pairs.Take<std::uint16_t>(row, 0, y);
+          } else {
+            pairs.Take<std::uint8_t>(row, 0, y);
+          }
+        }
+      });
   EstimateNoise(pairs, background);
 }
 
@@ -186,16 +196,17 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
   Background background = fallback;
   background.unknown.assign(fallback.level.size(), 0);
   const FrameSamples samples(clip, frames);
-  InParallel(all.box.height, samples.Threads(options.threads),
-             [&](std::int64_t begin, std::int64_t end) {
-               if (samples.is_16_bit()) {
-                 MidMeanBehind<std::uint16_t>(samples, all, all.box.y + begin,
-                                              all.box.y + end, background);
-               } else {
-                 MidMeanBehind<std::uint8_t>(samples, all, all.box.y + begin,
-                                             all.box.y + end, background);
-               }
-             });
+  core::InParallel(
+      all.box.height, samples.Threads(options.threads),
+      [&](std::int64_t begin, std::int64_t end) {
+        if (samples.is_16_bit()) {
+          MidMeanBehind<std::uint16_t>(samples, all, all.box.y + begin,
+                                       all.box.y + end, background);
+        } else {
+          MidMeanBehind<std::uint8_t>(samples, all, all.box.y + begin,
+                                      all.box.y + end, background);
+        }
+      });
   if (std::none_of(background.unknown.begin(), background.unknown.end(),
                    [](std::uint8_t u) { return u != 0; })) {
     background.unknown.clear();
@@ -207,7 +218,7 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
       std::count(all.counts.begin(), all.counts.end(), std::uint16_t{0});
   if (static_cast<double>(all.counts.size()) - static_cast<double>(untouched) >
       kSmallPart * static_cast<double>(fallback.level.size())) {
-    EstimateNoiseOf(samples, background);
+    EstimateNoiseOf(samples, options.threads, background);
   }
   return background;
 }

@@ -135,6 +135,7 @@ class MrawClip final : public Clip {
         begin + static_cast<std::int64_t>(window.height) * info_.width_px;
     file_->WillRead(begin * bits / 8, end * bits / 8);
   }
+  void HasRead() const override { file_->HasRead(); }
 
  protected:
   core::Frame ReadWindow(std::int64_t index,

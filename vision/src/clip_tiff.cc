@@ -97,6 +97,7 @@ class TiffStackClip final : public Clip {
     file_->WillRead(begin + window.y * row_bytes(),
                     begin + (window.y + window.height) * row_bytes());
   }
+  void HasRead() const override { file_->HasRead(); }
 
  protected:
   core::Frame ReadWindow(std::int64_t index,

@@ -8,8 +8,8 @@
 
 #include "body_cover.h"
 #include "both_sides.h"
-#include "parallel.h"
 #include "pattern.h"
+#include "touchdown/core/parallel.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
@@ -76,13 +76,13 @@ std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
   for (int round = 0; round < kRounds; ++round) {
     if (!pattern.Learn(views, poses)) return std::nullopt;
     std::vector<std::optional<PatternPose>> found(views.size());
-    InParallel(static_cast<std::int64_t>(views.size()), threads,
-               [&](std::int64_t from, std::int64_t to) {
-                 for (auto k = static_cast<std::size_t>(from);
-                      k < static_cast<std::size_t>(to); ++k) {
-                   found[k] = pattern.Register(views[k], poses[k].pose);
-                 }
-               });
+    core::InParallel(static_cast<std::int64_t>(views.size()), threads,
+                     [&](std::int64_t from, std::int64_t to) {
+                       for (auto k = static_cast<std::size_t>(from);
+                            k < static_cast<std::size_t>(to); ++k) {
+                         found[k] = pattern.Register(views[k], poses[k].pose);
+                       }
+                     });
     std::vector<PatternView> kept;
     std::vector<PatternPose> before;
     std::vector<PatternPose> after;
@@ -157,14 +157,14 @@ std::vector<std::optional<PatternPose>> Follower::At(
           ViewAround(clip_, starts[i].frame, starts[i].centre,
                      learnt_.pattern.reach_px() + within_px + kSlack_px));
     }
-    InParallel(static_cast<std::int64_t>(views.size()), threads_,
-               [&](std::int64_t from, std::int64_t to) {
-                 for (auto k = static_cast<std::size_t>(from);
-                      k < static_cast<std::size_t>(to); ++k) {
-                   found[begin + k] = learnt_.pattern.Register(
-                       views[k], starts[begin + k], within_px);
-                 }
-               });
+    core::InParallel(static_cast<std::int64_t>(views.size()), threads_,
+                     [&](std::int64_t from, std::int64_t to) {
+                       for (auto k = static_cast<std::size_t>(from);
+                            k < static_cast<std::size_t>(to); ++k) {
+                         found[begin + k] = learnt_.pattern.Register(
+                             views[k], starts[begin + k], within_px);
+                       }
+                     });
   }
   return found;
 }

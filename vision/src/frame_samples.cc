@@ -4,9 +4,7 @@ namespace touchdown::vision {
 
 FrameSamples::FrameSamples(Clip& clip, std::span<const std::int64_t> frames)
     : clip_(clip), indices_(frames.begin(), frames.end()) {
-  const core::PixelRect all{0, 0, clip.info().width_px, clip.info().height_px};
   for (const std::int64_t index : indices_) {
-    clip.WillRead(index, all);
     if (!clip.views_last() && clip.windows_are_cheap()) continue;
     core::Frame frame = clip.Read(index);
     if (!clip.views_last()) {
@@ -22,7 +20,15 @@ int FrameSamples::Threads(int wanted) const {
 }
 
 FrameSamples::Reader::Reader(const FrameSamples& samples) : samples_(samples) {
-  if (samples.whole_.empty()) own_ = samples.clip_.Another();
+  // A reader of a compressed clip would decode it anew.
+  if (samples.are_raw()) own_ = samples.clip_.Another();
+}
+
+void FrameSamples::Reader::WillRead(const core::PixelRect& window) {
+  if (!own_) return;
+  for (const std::int64_t index : samples_.indices_) {
+    own_->WillRead(index, window);
+  }
 }
 
 const std::vector<core::Frame>& FrameSamples::Reader::Read(

@@ -30,12 +30,14 @@ class FrameSamples {
   class Reader {
    public:
     explicit Reader(const FrameSamples& samples);
+    // Before windows in this one are read.
+    void WillRead(const core::PixelRect& window);
     // A window of each sample, valid until the next.
     const std::vector<core::Frame>& Read(const core::PixelRect& window);
 
    private:
     const FrameSamples& samples_;
-    std::unique_ptr<Clip> own_;  // null: the samples' clip
+    std::unique_ptr<Clip> own_;  // null where one thread alone can read
     std::vector<core::Frame> windows_;
     std::vector<KeptPixels> copies_;
   };

@@ -8,9 +8,9 @@
 
 #include "first_look.h"
 #include "kept_pixels.h"
-#include "parallel.h"
 #include "scout.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/parallel.h"
 #include "touchdown/vision/background.h"
 
 namespace touchdown::vision {
@@ -209,7 +209,7 @@ class WindowStore final : public Clip {
     if (AreStoredAlone()) {
       parts = 16;  // enough for the cores of a workstation
       const auto readers =
-          std::min<std::int64_t>(ThreadsOf(options_.threads), parts);
+          std::min<std::int64_t>(core::ThreadsOf(options_.threads), parts);
       while (static_cast<std::int64_t>(others.size()) + 1 < readers) {
         auto other = clip_->Another();
         if (!other) break;
@@ -217,17 +217,18 @@ class WindowStore final : public Clip {
       }
     }
     std::atomic<std::size_t> next = 0;
-    InParallel(parts, static_cast<int>(others.size()) + 1,
-               [&](std::int64_t from, std::int64_t to) {
-                 const std::size_t mine = next++;
-                 Clip& clip = mine == 0 ? *clip_ : *others[mine - 1];
-                 for (std::int64_t part = from; part < to; ++part) {
-                   DecodePart(clip, scout,
-                              {options_.first + part * frames / parts,
-                               options_.first + (part + 1) * frames / parts,
-                               room / static_cast<std::size_t>(parts)});
-                 }
-               });
+    core::InParallel(parts, static_cast<int>(others.size()) + 1,
+                     [&](std::int64_t from, std::int64_t to) {
+                       const std::size_t mine = next++;
+                       Clip& clip = mine == 0 ? *clip_ : *others[mine - 1];
+                       for (std::int64_t part = from; part < to; ++part) {
+                         DecodePart(
+                             clip, scout,
+                             {options_.first + part * frames / parts,
+                              options_.first + (part + 1) * frames / parts,
+                              room / static_cast<std::size_t>(parts)});
+                       }
+                     });
   }
 
   bool AreStoredAlone() const {

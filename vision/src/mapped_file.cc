@@ -69,4 +69,10 @@ void MappedFile::WillRead(std::int64_t begin, std::int64_t end) const {
 #endif
 }
 
+void MappedFile::HasRead() const {
+  if (data_ == nullptr) return;
+  ::madvise(const_cast<std::byte*>(data_),
+            static_cast<std::size_t>(size_bytes_), MADV_DONTNEED);
+}
+
 }  // namespace touchdown::vision

@@ -24,6 +24,8 @@ class MappedFile {
 
   // A hint: bytes [begin, end) are going to be used.
   void WillRead(std::int64_t begin, std::int64_t end) const;
+  // Gives the pages back, which takes a large file milliseconds.
+  void HasRead() const;
 
  private:
   const std::byte* data_ = nullptr;  // null if the file is empty

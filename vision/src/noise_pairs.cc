@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "both_sides.h"
@@ -37,6 +38,37 @@ NoisePairs::NoisePairs(std::int32_t width_px, std::int32_t height_px,
                  per_point_);
 }
 
+namespace {
+
+// How often each size of a difference occurs. Differences are whole numbers:
+// the smallest ones, and the sum of their squares, follow from the counts.
+class DifferenceCounts {
+ public:
+  void Add(int difference) {
+    const auto size = static_cast<std::size_t>(std::abs(difference));
+    if (size >= counts_.size()) counts_.resize(2 * size + 1);
+    ++counts_[size];
+    ++total_;
+  }
+  std::size_t total() const { return total_; }
+  // Of the `keep` smallest.
+  double SumOfSquares(std::size_t keep) const {
+    double sum = 0.0;
+    for (std::size_t size = 0; keep > 0; ++size) {
+      const std::size_t some = std::min(keep, counts_[size]);
+      sum += static_cast<double>(some) * static_cast<double>(size * size);
+      keep -= some;
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<std::size_t> counts_;
+  std::size_t total_ = 0;
+};
+
+}  // namespace
+
 // Least squares of variance on level over bins of pixels of like level. In each
 // bin the variance is robust: (1.4826 * median |difference|)^2 / 2 of
 // neighbouring samples' differences, with a correction for whole numbers.
@@ -45,48 +77,44 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
   constexpr std::size_t kMinimumPerBin = 200;
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
-  pairs.ForEach([&](std::int32_t x, std::int32_t y, int, int) {
+  pairs.ForEachPoint([&](std::int32_t x, std::int32_t y, const auto&) {
     low = std::min(low, background.at(x, y));
     high = std::max(high, background.at(x, y));
   });
   if (!(low <= high)) return;
   const double width = std::max(1e-6, static_cast<double>(high - low));
-  std::array<std::vector<float>, kBins> bins;
-  pairs.ForEach([&](std::int32_t x, std::int32_t y, int one, int other) {
+  std::array<DifferenceCounts, kBins> bins;
+  pairs.ForEachPoint([&](std::int32_t x, std::int32_t y,
+                         const auto& for_each_pair) {
     // A clipped sample has no noise to tell of; nor has a place that is clipped
     // without the body: the samples that are left there are the body's.
     constexpr double kOff_dn = 1.0;
     const auto level = static_cast<double>(background.at(x, y));
-    if (one >= background.full_scale_dn || one == 0 ||
-        level > background.full_scale_dn - kOff_dn || level < kOff_dn) {
-      return;
-    }
+    if (level > background.full_scale_dn - kOff_dn || level < kOff_dn) return;
     const auto bin =
         std::min(kBins - 1,
                  static_cast<std::size_t>((level - static_cast<double>(low)) /
                                           width * static_cast<double>(kBins)));
-    bins[bin].push_back(static_cast<float>(one - other));
+    DifferenceCounts& differences = bins[bin];
+    for_each_pair([&](int one, int other) {
+      if (one >= background.full_scale_dn || one == 0) return;
+      differences.Add(one - other);
+    });
   });
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
-    auto& d = bins[bin];
-    if (d.size() < kMinimumPerBin) continue;
+    const DifferenceCounts& differences = bins[bin];
+    if (differences.total() < kMinimumPerBin) continue;
     // The middle 80 % of the differences, whose mean square is a fixed share
     // (0.4377) of a normal variance: robust to the body passing, and fair to
     // noise of less than one DN, where a median would read 0 or 1.
     constexpr double kShareOfVariance = 0.43772;
-    for (float& v : d) v = std::abs(v);
-    const std::size_t keep = d.size() * 8 / 10;
-    std::nth_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(keep),
-                     d.end());
-    double sum = 0.0;
-    for (std::size_t i = 0; i < keep; ++i) {
-      sum += static_cast<double>(d[i]) * static_cast<double>(d[i]);
-    }
+    const std::size_t keep = differences.total() * 8 / 10;
+    const double sum = differences.SumOfSquares(keep);
     const double variance =
         sum / static_cast<double>(keep) / kShareOfVariance / 2.0;
     const double level = low + width * (static_cast<double>(bin) + 0.5) / kBins;
-    const double w = static_cast<double>(d.size());
+    const double w = static_cast<double>(differences.total());
     sw += w;
     sx += w * level;
     sy += w * variance;

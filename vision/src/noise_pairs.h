@@ -28,18 +28,21 @@ class NoisePairs {
       }
     }
   }
-  // Calls use(x, y, one, other) for each pair, the one nearer to the clip's end
-  // first.
+  // Calls use(x, y, for_each_pair) for each point that has pairs. What it is
+  // given calls its own argument with (one, other) for each of them, the one
+  // nearer to the clip's end first.
   template <class Use>
-  void ForEach(const Use& use) const {
+  void ForEachPoint(const Use& use) const {
+    if (per_point_ == 0) return;
     for (std::int32_t row = 0; row < rows_; ++row) {
       for (std::size_t column = 0; column < columns_.size(); ++column) {
-        const std::size_t at = Point(row, column);
-        for (std::size_t k = 0; k < 2 * per_point_; k += 2) {
-          const std::size_t late = k >= per_point_ ? 1 : 0;
-          use(columns_[column], row * row_step_, values_[at + k + late],
-              values_[at + k + 1 - late]);
-        }
+        const std::uint16_t* const values = &values_[Point(row, column)];
+        use(columns_[column], row * row_step_, [&](const auto& use_pair) {
+          for (std::size_t k = 0; k < 2 * per_point_; k += 2) {
+            const std::size_t late = k >= per_point_ ? 1 : 0;
+            use_pair(int{values[k + late]}, int{values[k + 1 - late]});
+          }
+        });
       }
     }
   }

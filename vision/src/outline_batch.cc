@@ -7,8 +7,8 @@
 
 #include "kept_pixels.h"
 #include "lanes.h"
-#include "parallel.h"
 #include "read_apart.h"
+#include "touchdown/core/parallel.h"
 
 namespace touchdown::vision {
 namespace {
@@ -78,18 +78,19 @@ void FitApart(Clip& clip, const Background& background,
               int threads, std::vector<std::optional<Fitted>>& fits) {
   constexpr std::size_t kAtOnce = 8;  // jobs: a millisecond
   std::atomic<std::size_t> next = 0;
-  InParallel(ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
-    const std::unique_ptr<Clip> own = clip.Another();
-    std::vector<Window> windows;
-    for (std::size_t begin = next.fetch_add(kAtOnce); begin < jobs.size();
-         begin = next.fetch_add(kAtOnce)) {
-      const auto some =
-          jobs.subspan(begin, std::min(kAtOnce, jobs.size() - begin));
-      TakeAll(*own, some, options, windows);
-      FitThese(some, windows, background, options, 0, some.size(),
-               &fits[begin]);
-    }
-  });
+  core::InParallel(
+      core::ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
+        const std::unique_ptr<Clip> own = clip.Another();
+        std::vector<Window> windows;
+        for (std::size_t begin = next.fetch_add(kAtOnce); begin < jobs.size();
+             begin = next.fetch_add(kAtOnce)) {
+          const auto some =
+              jobs.subspan(begin, std::min(kAtOnce, jobs.size() - begin));
+          TakeAll(*own, some, options, windows);
+          FitThese(some, windows, background, options, 0, some.size(),
+                   &fits[begin]);
+        }
+      });
 }
 
 }  // namespace
@@ -139,12 +140,12 @@ std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
     const std::span<const OutlineJob> batch =
         jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
     TakeAll(clip, batch, options, windows);
-    InParallel(static_cast<std::int64_t>(batch.size()), threads,
-               [&](std::int64_t from, std::int64_t to) {
-                 FitThese(batch, windows, background, options,
-                          static_cast<std::size_t>(from),
-                          static_cast<std::size_t>(to), &fits[begin]);
-               });
+    core::InParallel(static_cast<std::int64_t>(batch.size()), threads,
+                     [&](std::int64_t from, std::int64_t to) {
+                       FitThese(batch, windows, background, options,
+                                static_cast<std::size_t>(from),
+                                static_cast<std::size_t>(to), &fits[begin]);
+                     });
   }
   return fits;
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "parallel.h"
+#include "touchdown/core/parallel.h"
 #include "touchdown/vision/clip.h"
 
 namespace touchdown::vision {
@@ -20,14 +20,14 @@ inline bool CanReadApart(const Clip& clip) {
 template <class Look>
 void ReadApart(const Clip& clip, std::size_t count, int threads,
                const Look& look) {
-  InParallel(static_cast<std::int64_t>(count), threads,
-             [&](std::int64_t from, std::int64_t to) {
-               const std::unique_ptr<Clip> own = clip.Another();
-               for (auto i = static_cast<std::size_t>(from);
-                    i < static_cast<std::size_t>(to); ++i) {
-                 look(*own, i);
-               }
-             });
+  core::InParallel(static_cast<std::int64_t>(count), threads,
+                   [&](std::int64_t from, std::int64_t to) {
+                     const std::unique_ptr<Clip> own = clip.Another();
+                     for (auto i = static_cast<std::size_t>(from);
+                          i < static_cast<std::size_t>(to); ++i) {
+                       look(*own, i);
+                     }
+                   });
 }
 
 }  // namespace touchdown::vision

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "parallel.h"
 #include "read_apart.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/parallel.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
@@ -272,20 +272,21 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
       LookAt(*clip, grid, indices, options.threads);
   SteadyLight light;
   std::vector<float> steady(looks.front().size());
-  InParallel(static_cast<std::int64_t>(steady.size()), options.threads,
-             [&](std::int64_t from, std::int64_t to) {
-               std::vector<float> column(looks.size());
-               const auto middle = column.begin() + static_cast<std::ptrdiff_t>(
-                                                        column.size() / 2);
-               for (auto i = static_cast<std::size_t>(from);
-                    i < static_cast<std::size_t>(to); ++i) {
-                 for (std::size_t k = 0; k < looks.size(); ++k) {
-                   column[k] = looks[k][i];
-                 }
-                 std::nth_element(column.begin(), middle, column.end());
-                 steady[i] = *middle;
-               }
-             });
+  core::InParallel(static_cast<std::int64_t>(steady.size()), options.threads,
+                   [&](std::int64_t from, std::int64_t to) {
+                     std::vector<float> column(looks.size());
+                     const auto middle =
+                         column.begin() +
+                         static_cast<std::ptrdiff_t>(column.size() / 2);
+                     for (auto i = static_cast<std::size_t>(from);
+                          i < static_cast<std::size_t>(to); ++i) {
+                       for (std::size_t k = 0; k < looks.size(); ++k) {
+                         column[k] = looks[k][i];
+                       }
+                       std::nth_element(column.begin(), middle, column.end());
+                       steady[i] = *middle;
+                     }
+                   });
   grid.SetSteady(std::move(steady));
   light.told = grid.Tells();
   if (!light.told) {
@@ -293,13 +294,13 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
     return light;
   }
   std::vector<double> gains(looks.size());
-  InParallel(static_cast<std::int64_t>(looks.size()), options.threads,
-             [&](std::int64_t from, std::int64_t to) {
-               for (auto k = static_cast<std::size_t>(from);
-                    k < static_cast<std::size_t>(to); ++k) {
-                 gains[k] = grid.GainOf(looks[k]);
-               }
-             });
+  core::InParallel(static_cast<std::int64_t>(looks.size()), options.threads,
+                   [&](std::int64_t from, std::int64_t to) {
+                     for (auto k = static_cast<std::size_t>(from);
+                          k < static_cast<std::size_t>(to); ++k) {
+                       gains[k] = grid.GainOf(looks[k]);
+                     }
+                   });
   double mean = 0.0;
   for (const double g : gains) mean += g / static_cast<double>(gains.size());
   double square = 0.0;

@@ -33,6 +33,7 @@ struct GroundLineOptions {
   // ideal picture, in which straight lines are straight: the result is there,
   // too.
   std::optional<Lens> lens;
+  int threads = 1;  // 0: one for each core; results do not depend on it
 };
 
 // Lines by falling support. Each is a robust straight line through the edge's

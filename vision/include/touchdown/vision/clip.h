@@ -114,6 +114,11 @@ class Clip {
   virtual void WillRead(std::int64_t /*index*/,
                         const core::PixelRect& /*window*/) {}
 
+  // A hint, after many samples were used: a mapped file's pages are given back.
+  // Views stay valid; what is read again is got again. May be called beside
+  // anything else.
+  virtual void HasRead() const {}
+
   // The last frame up to `index` from which reading can begin: itself where
   // each frame is stored alone, else a key frame.
   virtual std::int64_t EntryFrame(std::int64_t index) const { return index; }

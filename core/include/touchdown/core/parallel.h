@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace touchdown::vision {
+namespace touchdown::core {
 
 // As many as asked for; 0: one for each core.
 inline int ThreadsOf(int wanted) {
@@ -46,4 +46,4 @@ void InParallel(std::int64_t count, int threads, const Work& work) {
   }
 }
 
-}  // namespace touchdown::vision
+}  // namespace touchdown::core

@@ -1,0 +1,30 @@
+# OpenCV's archives, where they are there and what they need is known, in
+# OPENCV_ARCHIVES; otherwise that is empty. Its shared libraries bring forty
+# others, and to load them all takes a tenth of a short command's time.
+set(OPENCV_ARCHIVES)
+# What only they need, when they need it.
+set(OPENCV_ARCHIVES_SOURCE "${PROJECT_SOURCE_DIR}/app/cli/late_lapack.cc")
+set(found ON)
+foreach(part calib3d features2d flann imgproc core)
+  find_library(OPENCV_${part}_ARCHIVE libopencv_${part}.a)
+  list(APPEND archives "${OPENCV_${part}_ARCHIVE}")
+  if(NOT OPENCV_${part}_ARCHIVE)
+    set(found OFF)
+  endif()
+endforeach()
+list(APPEND archives tbb z ${CMAKE_DL_LIBS} -Wl,--gc-sections)
+if(found)
+  try_compile(
+    OPENCV_ARCHIVES_LINK SOURCES
+    "${PROJECT_SOURCE_DIR}/cmake/opencv_archives_check.cxx"
+    "${OPENCV_ARCHIVES_SOURCE}"
+    CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${OPENCV_INCLUDE_DIR}"
+    LINK_LIBRARIES ${archives}
+    CXX_STANDARD 20)
+  if(OPENCV_ARCHIVES_LINK)
+    set(OPENCV_ARCHIVES ${archives})
+  endif()
+endif()
+if(NOT OPENCV_ARCHIVES)
+  message(STATUS "OpenCV's shared libraries are linked: no archives that link")
+endif()
