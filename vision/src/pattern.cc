@@ -45,6 +45,17 @@ core::PixelPoint PlaceOf(const Pose& pose, const Axes& axes, double x,
           pose.centre.y_px + x * axes.sine + y * axes.cosine};
 }
 
+// How much the still picture changes in a pixel.
+double SlopeAt(const Background& background, std::int32_t x, std::int32_t y) {
+  const auto at = [&](std::int32_t column, std::int32_t row) {
+    return static_cast<double>(
+        background.at(std::clamp(column, 0, background.width_px - 1),
+                      std::clamp(row, 0, background.height_px - 1)));
+  };
+  return 0.5 *
+         std::hypot(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1));
+}
+
 // Of a few values: the mean with Tukey's weights about the median, and their
 // robust scatter.
 struct Usual {
@@ -154,8 +165,9 @@ Pattern::Pattern(const Outline& outline, bool turns,
       Node node;
       node.x_px = column * spacing_px_;
       node.y_px = row * spacing_px_;
-      node.inside =
-          DepthInside(own, node.x_px, node.y_px, cosine, sine) > -kBeyond_px;
+      const double depth = DepthInside(own, node.x_px, node.y_px, cosine, sine);
+      node.inside = depth > -kBeyond_px;
+      node.at_rim = depth < kBeyond_px;
       nodes_.push_back(node);
     }
   }
@@ -185,14 +197,17 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
   constexpr double kMostSeen = 0.5;  // of the frames must show a node
   // At least so often something else is behind a node of the body.
   constexpr double kOften = 0.25;
-  constexpr double kClear = 4.0;  // of its scatter
+  constexpr double kClear = 4.0;  // of the noise
+  constexpr double kSteep = 2.0;  // of the noise, in a pixel
   own_.clear();
   std::vector<double> values;
   std::vector<double> changes;
+  std::vector<double> slopes;  // of what is behind
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& node = nodes_[i];
     values.clear();
     changes.clear();
+    slopes.clear();
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Pose& pose = poses[k].pose;
       const core::PixelPoint at =
@@ -205,6 +220,7 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
       if (background_->known_at(x, y)) {
         changes.push_back(
             std::abs(value - static_cast<double>(background_->at(x, y))));
+        if (node.at_rim) slopes.push_back(SlopeAt(*background_, x, y));
       }
     }
     if (static_cast<double>(values.size()) <
@@ -222,6 +238,8 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
                                     static_cast<double>(changes.size()));
     std::nth_element(changes.begin(), often, changes.end());
     if (*often < kClear * noise || *often < usual.scatter) continue;
+    // Half body, half an edge behind it.
+    if (!slopes.empty() && Median(slopes) > kSteep * noise) continue;
     own_.push_back(i);
   }
   SetSlopes();

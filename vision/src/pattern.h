@@ -69,6 +69,7 @@ class Pattern {
     double x_px = 0.0;  // along the pattern's axes
     double y_px = 0.0;
     bool inside = false;  // the outline, or near it
+    bool at_rim = false;  // not clear inside it
     double level = 0.0;
     double slope_x = 0.0;
     double slope_y = 0.0;
