@@ -1,6 +1,6 @@
 # OpenCV's archives, where they are there and what they need is known, in
-# OPENCV_ARCHIVES; otherwise that is empty. Its shared libraries bring forty
-# others, and to load them all takes a tenth of a short command's time.
+# OPENCV_ARCHIVES; otherwise that is empty. Its shared libraries bring many
+# others, and to load them all takes much of a short command's time.
 set(OPENCV_ARCHIVES)
 # What only they need, when they need it.
 set(OPENCV_ARCHIVES_SOURCE "${PROJECT_SOURCE_DIR}/app/cli/late_lapack.cc")

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "both_sides.h"
+#include "box_around.h"
 #include "outline_image.h"
 #include "outline_pixels.h"
 #include "outline_sums.h"
@@ -46,21 +47,6 @@ Common CommonOf(std::span<const SeenOutline> frames) {
     common.shaded = common.shaded && seen.fit.shading;
   }
   return common;
-}
-
-// What of a frame is read: the body.
-core::PixelRect WindowOf(const Outline& outline, const ClipInfo& info) {
-  const double reach = Extent(outline);
-  const auto within = [](double at, std::int32_t end) {
-    return static_cast<std::int32_t>(std::clamp(at, 0.0, end - 1.0));
-  };
-  const core::PixelPoint& c = outline.centre;
-  core::PixelRect rect;
-  rect.x = within(c.x_px - reach, info.width_px);
-  rect.y = within(c.y_px - reach, info.height_px);
-  rect.width = within(c.x_px + reach + 1.0, info.width_px) - rect.x + 1;
-  rect.height = within(c.y_px + reach + 1.0, info.height_px) - rect.y + 1;
-  return rect;
 }
 
 double ShadingAt(const Shading& shading, double xi, double eta) {
@@ -122,8 +108,8 @@ void Collection::Add(const SeenOutline& seen) {
   band.inner_px = inner_px_;
   band.known_background = true;
   band.every = true;
-  const core::Frame frame =
-      clip_.Read(seen.frame, WindowOf(outline, clip_.info()));
+  const core::Frame frame = clip_.Read(
+      seen.frame, BoxAround(outline.centre, Extent(outline), clip_.info()));
   CollectOutlinePixels(frame, behind_, outline, cosine, sine, usable_, band,
                        pixels_);
   if (pixels_.size == 0) return;

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kLeast = 8;     // frames
 constexpr std::size_t kEnough = 120;  // frames that a pattern is learnt from
+constexpr double kSlack_px = 6.0;     // that a pose may move within its view
 
 double SizeOf(const BodyImage& body) {
   return body.kind == core::BodyKind::kSphere ? body.radius_px.value
@@ -38,13 +39,6 @@ struct Learnt {
   std::vector<Pose> poses;
   double misfit = 0.0;
 };
-
-double MisfitOf(const std::vector<Pose>& poses) {
-  std::vector<double> misfits;
-  misfits.reserve(poses.size());
-  for (const Pose& pose : poses) misfits.push_back(pose.misfit);
-  return Median(std::move(misfits));
-}
 
 // What all poses have moved by, which the pattern has, too.
 void TakeOutCommonMove(const std::vector<PatternPose>& before,
@@ -108,7 +102,7 @@ std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
   std::vector<Pose> learnt;
   learnt.reserve(poses.size());
   for (const PatternPose& p : poses) learnt.push_back(p.pose);
-  const double misfit = MisfitOf(learnt);
+  const double misfit = MedianMisfit(learnt);
   return Learnt{std::move(pattern), std::move(learnt), misfit};
 }
 
@@ -146,7 +140,6 @@ class Follower {
 
 std::vector<std::optional<PatternPose>> Follower::At(
     const std::vector<Pose>& starts, double within_px) const {
-  constexpr double kSlack_px = 6.0;
   constexpr std::size_t kAtOnce = 64;  // views
   std::vector<std::optional<PatternPose>> found(starts.size());
   for (std::size_t begin = 0; begin < starts.size(); begin += kAtOnce) {
@@ -233,7 +226,7 @@ Track FollowPattern(Clip& clip, const Background& background,
       track.poses.size() < kLeast) {
     return track;
   }
-  if (!(MisfitOf(track.poses) > kWellModelled)) return track;
+  if (!(MedianMisfit(track.poses) > kWellModelled)) return track;
   const std::size_t step = (track.poses.size() + kEnough - 1) / kEnough;
   const Outline outline = MiddleOutline(track);
   std::optional<Learnt> best;
@@ -243,7 +236,6 @@ Track FollowPattern(Clip& clip, const Background& background,
     Pattern pattern(outline, turns, background);
     std::vector<PatternView> views;
     std::vector<PatternPose> starts;
-    constexpr double kSlack_px = 6.0;
     for (const std::size_t i : FromBothSides(track.poses.size(), step)) {
       const Pose& pose = track.poses[i];
       starts.push_back({pose});
@@ -282,7 +274,7 @@ Track PutOn(const Track& outlines, const Track& patterned) {
   Track put = outlines;
   put.patterned = true;
   put.poses = patterned.poses;
-  std::vector<double> x, y, turn, u_x, u_y, u_turn;
+  std::vector<double> x, y, turn, u_x, u_y;
   for (const Pose& pose : patterned.poses) {
     const auto same =
         std::find_if(outlines.poses.begin(), outlines.poses.end(),
@@ -293,7 +285,6 @@ Track PutOn(const Track& outlines, const Track& patterned) {
     turn.push_back(same->angle_rad - pose.angle_rad);
     u_x.push_back(same->u_x_px);
     u_y.push_back(same->u_y_px);
-    u_turn.push_back(same->u_angle_rad);
   }
   if (x.empty()) return outlines;
   const core::Estimate dx = RobustMean(x, u_x);

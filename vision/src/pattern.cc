@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "box_around.h"
 #include "outline_pixels.h"
 #include "track_shape.h"
 
@@ -110,17 +111,8 @@ double PatternView::At(double x_px, double y_px) const {
 
 PatternView ViewAround(Clip& clip, std::int64_t frame,
                        const core::PixelPoint& centre, double reach_px) {
-  const auto within = [](double at, std::int32_t end) {
-    return static_cast<std::int32_t>(std::clamp(at, 0.0, end - 1.0));
-  };
-  const ClipInfo& info = clip.info();
   PatternView view;
-  view.rect.x = within(centre.x_px - reach_px, info.width_px);
-  view.rect.y = within(centre.y_px - reach_px, info.height_px);
-  view.rect.width =
-      within(centre.x_px + reach_px + 1.0, info.width_px) - view.rect.x + 1;
-  view.rect.height =
-      within(centre.y_px + reach_px + 1.0, info.height_px) - view.rect.y + 1;
+  view.rect = BoxAround(centre, reach_px, clip.info());
   const core::Frame pixels = clip.Read(frame, view.rect);
   view.time_s = pixels.time_s;
   view.value.reserve(static_cast<std::size_t>(view.rect.width) *

@@ -41,6 +41,13 @@ double MedianMisfit(const std::vector<Fitted>& all) {
   return Median(std::move(misfits));
 }
 
+double MedianMisfit(const std::vector<Pose>& poses) {
+  std::vector<double> misfits;
+  misfits.reserve(poses.size());
+  for (const Pose& pose : poses) misfits.push_back(pose.misfit);
+  return Median(std::move(misfits));
+}
+
 core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us) {
   const double centre = Median(values);

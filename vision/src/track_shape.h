@@ -27,6 +27,7 @@ double SizeOf(const OutlineFit& fit);
 // change sign in a mirror does so, too.
 double Median(std::vector<double> values);
 double MedianMisfit(const std::vector<Fitted>& all);
+double MedianMisfit(const std::vector<Pose>& poses);
 
 // Mean weighted by inverse variance, robustly: values off the median by more
 // than four times the scatter are left out. No value weighs more than the

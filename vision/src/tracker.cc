@@ -121,13 +121,10 @@ void FitMissing(Clip& clip, const Background& background,
   if (missing.empty()) return;
   OutlineOptions fit_options = FitOptionsOf(track);
   fit_options.fit_size = false;
-  std::vector<double> misfits;
-  misfits.reserve(track.poses.size());
-  for (const Pose& pose : track.poses) misfits.push_back(pose.misfit);
   // Twice as bad as usual is another thing; so is what is off the path.
   constexpr double kUsual = 2.0;
   constexpr double kOff = 0.1;  // of the body's size
-  const double most_misfit = kUsual * Median(std::move(misfits));
+  const double most_misfit = kUsual * MedianMisfit(track.poses);
   for (const Fitted& fit :
        FitFromTrack(clip, background, track, options, fit_options, missing)) {
     const Pose there = Expected(track, fit.frame);
@@ -240,10 +237,7 @@ bool IsTorn(const Look& look) {
 }
 
 bool IsWellModelled(const Track& track) {
-  std::vector<double> misfits;
-  misfits.reserve(track.poses.size());
-  for (const Pose& pose : track.poses) misfits.push_back(pose.misfit);
-  return Median(std::move(misfits)) <= kWellModelled;
+  return MedianMisfit(track.poses) <= kWellModelled;
 }
 
 }  // namespace
