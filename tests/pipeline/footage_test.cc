@@ -65,6 +65,11 @@ TEST(Footage, AProjectileWithoutAFilmedReboundIsUndecided) {
   EXPECT_FALSE(first.state.p_bounce);
   ASSERT_TRUE(first.motion.before_tangential_mps);
   EXPECT_NEAR(first.motion.before_tangential_mps->value, 1.49, 0.02);
+  // With its own u; by hand 9.84 +- 0.05.
+  ASSERT_TRUE(first.motion.gravity_check_mps2);
+  const core::Estimate& g = *first.motion.gravity_check_mps2;
+  EXPECT_LT(g.u, 0.05);
+  EXPECT_LT(std::abs(g.value - core::kStandardGravity_mps2), 2.0 * g.u);
 }
 
 TEST(Footage, ACartOnItsTrackNeverBounces) {

@@ -54,6 +54,14 @@ double Drum(double x, double y, double angle, double behind_dn) {
   return over(mark, 20.0, over(face, 225.0, over(side, 130.0, behind_dn)));
 }
 
+// A ball that is lit from above, with a dark spot and a bright one.
+double LitBall(double x, double y, double /*angle*/, double behind_dn) {
+  const double spots = 40.0 * Edge(3.0 - std::hypot(x + 5.0, y - 2.0)) -
+                       30.0 * Edge(2.0 - std::hypot(x - 4.0, y + 4.0));
+  return behind_dn +
+         Edge(13.0 - std::hypot(x, y)) * (185.0 - 3.0 * y - spots - behind_dn);
+}
+
 // Two dark ends, and between them a bar as bright as the wall.
 double Cart(double x, double y, double angle, double behind_dn) {
   const double u = x * std::cos(angle) + y * std::sin(angle);
@@ -69,6 +77,9 @@ struct Film {
   double turn_rad = 0.0;      // a frame
   double inclined_rad = 0.0;  // at first; what does neither turn rolls
   double above_px = 13.0;     // the centre above the ramp
+  // What the light gains from the body's middle to its upper rim, from the
+  // first frame to the last.
+  double light_rises_dn = 0.0;
 };
 
 Pose TrueAt(const Film& film, std::int64_t frame) {
@@ -116,9 +127,16 @@ class Drawn : public Clip {
     pixels_.clear();
     for (int y = 0; y < kHeight_px; ++y) {
       for (int x = 0; x < kWidth_px; ++x) {
+        const double right = x - pose.centre.x_px;
+        const double down = y - pose.centre.y_px;
+        const double cover = 1.0 - film_.look(right, down, angle, 1.0) +
+                             film_.look(right, down, angle, 0.0);
+        const double light =
+            film_.light_rises_dn *
+            (static_cast<double>(index) / static_cast<double>(kFrames) - 0.5) *
+            -down / 13.0;
         const double level =
-            film_.look(x - pose.centre.x_px, y - pose.centre.y_px, angle,
-                       BackgroundAt(x, y)) +
+            film_.look(right, down, angle, BackgroundAt(x, y)) + cover * light +
             noise(engine);
         pixels_.push_back(
             static_cast<std::byte>(std::lround(std::clamp(level, 0.0, 255.0))));
@@ -232,6 +250,18 @@ TEST(FollowPattern, AnEdgeAlongThePathDoesNotHideAHop) {
     }
     EXPECT_NEAR(in_hop, beside, 0.02) << hop_px;
   }
+}
+
+// As a body falls, its light comes more and more from above.
+TEST(FollowPattern, LightFromAnotherSideDoesNotMoveIt) {
+  Film film;
+  film.look = LitBall;
+  film.light_rises_dn = 20.0;
+  Drawn clip(film, 7);
+  const Track track = FollowPattern(
+      clip, Behind(), Wandering(film, core::BodyKind::kSphere), 1);
+  ASSERT_TRUE(track.patterned);
+  EXPECT_LT(Rms(ErrorsOf(track, film).y), 0.06);
 }
 
 TEST(FollowPattern, FramesThatOutlinesLostAreFound) {

@@ -206,7 +206,7 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
           PlaceOf(pose, AxesOf(pose, turns_), node.x_px, node.y_px);
       const double value = views[k].At(at.x_px, at.y_px);
       if (!std::isfinite(value)) continue;
-      values.push_back((value - poses[k].offset_dn) / poses[k].gain);
+      values.push_back(poses[k].light.Undone(value, node.x_px, node.y_px));
       const auto x = static_cast<std::int32_t>(std::lround(at.x_px));
       const auto y = static_cast<std::int32_t>(std::lround(at.y_px));
       if (background_->known_at(x, y)) {
@@ -235,7 +235,7 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
     own_.push_back(i);
   }
   SetSlopes();
-  constexpr std::size_t kLeast = 60;  // nodes: five parameters, and outliers
+  constexpr std::size_t kLeast = 60;  // nodes: seven parameters, and outliers
   return own_.size() >= kLeast;
 }
 
@@ -273,8 +273,13 @@ double Pattern::Mismatch(const PatternView& view, const Pose& at) const {
 std::optional<PatternPose> Pattern::Register(const PatternView& view,
                                              const Pose& start,
                                              double within_px) const {
-  using Matrix = Eigen::Matrix<double, 5, 5>;
-  using Vector = Eigen::Matrix<double, 5, 1>;
+  // Gain, offset and slopes of the light; x, y and turn of the pattern.
+  constexpr int kLight = 4;
+  constexpr int kX = kLight;
+  constexpr int kY = kLight + 1;
+  constexpr int kTurn = kLight + 2;
+  using Matrix = Eigen::Matrix<double, kLight + 3, kLight + 3>;
+  using Vector = Eigen::Matrix<double, kLight + 3, 1>;
   Pose pose = start;
   if (within_px > 0.0) {
     constexpr double kStep_px = 1.0;
@@ -310,17 +315,17 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
     Matrix normal;
     Vector p;
     // The light first, robustly; then all of it with these weights.
-    double gain = 1.0;
-    double offset = 0.0;
+    PatternLight light;
     constexpr int kLightRounds = 3;
-    for (int light = 0; light <= kLightRounds; ++light) {
-      const bool last = light == kLightRounds;
+    for (int part = 0; part <= kLightRounds; ++part) {
+      const bool last = part == kLightRounds;
       sizes.clear();
       for (std::size_t k = 0; k < n; ++k) {
         rest[k] = kNothing;
         if (!std::isfinite(value[k])) continue;
         const Node& node = nodes_[own_[k]];
-        rest[k] = (value[k] - gain * node.level - offset) / node.u;
+        rest[k] =
+            (value[k] - light.At(node.level, node.x_px, node.y_px)) / node.u;
         sizes.push_back(std::abs(rest[k]));
       }
       if (static_cast<double>(sizes.size()) <
@@ -337,43 +342,48 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         const double sy = node.slope_y;
         const double w = Tukey(rest[k] / (kTukey * scale)) / (node.u * node.u);
         Vector row;
-        row << node.level, 1.0, -sx, -sy, sx * node.y_px - sy * node.x_px;
+        row << node.level, 1.0, node.x_px, node.y_px, -sx, -sy,
+            sx * node.y_px - sy * node.x_px;
         if (!last) row.tail<3>().setZero();
-        if (!turns_) row[4] = 0.0;
+        if (!turns_) row[kTurn] = 0.0;
         normal.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
         right += w * value[k] * row;
       }
       normal = Matrix(normal.selfadjointView<Eigen::Lower>());
-      if (!last) normal(2, 2) = normal(3, 3) = 1.0;
-      if (!last || !turns_) normal(4, 4) = 1.0;
+      if (!last) normal(kX, kX) = normal(kY, kY) = 1.0;
+      if (!last || !turns_) normal(kTurn, kTurn) = 1.0;
       const Eigen::LDLT<Matrix> factor(normal);
       p = factor.solve(right);
       if (!p.allFinite()) return std::nullopt;
-      gain = p[0];
-      offset = p[1];
+      light = {p[0], p[1], p[2], p[3]};
       constexpr double kLeastGain = 0.3;  // the light's changes are smaller
-      if (!(gain > kLeastGain && gain < 1.0 / kLeastGain)) return std::nullopt;
+      if (!(light.gain > kLeastGain && light.gain < 1.0 / kLeastGain)) {
+        return std::nullopt;
+      }
     }
-    const double dx = std::clamp(p[2] / gain, -kMostStep_px, kMostStep_px);
-    const double dy = std::clamp(p[3] / gain, -kMostStep_px, kMostStep_px);
+    const double dx =
+        std::clamp(p[kX] / light.gain, -kMostStep_px, kMostStep_px);
+    const double dy =
+        std::clamp(p[kY] / light.gain, -kMostStep_px, kMostStep_px);
     const double reach = reach_px();
-    const double turn = turns_ ? std::clamp(p[4] / gain, -kMostStep_px / reach,
-                                            kMostStep_px / reach)
-                               : 0.0;
+    const double turn =
+        turns_ ? std::clamp(p[kTurn] / light.gain, -kMostStep_px / reach,
+                            kMostStep_px / reach)
+               : 0.0;
     pose.centre = PlaceOf(pose, axes, dx, dy);
     pose.angle_rad += turn;
     if (std::max({std::abs(dx), std::abs(dy), std::abs(turn) * reach}) <
         kFine_px) {
       const Matrix covariance =
           Eigen::LDLT<Matrix>(normal).solve(Matrix::Identity()) *
-          (scale * scale) / (gain * gain);
-      if (!covariance.allFinite() || !(covariance(2, 2) > 0.0) ||
-          !(covariance(3, 3) > 0.0)) {
+          (scale * scale) / (light.gain * light.gain);
+      if (!covariance.allFinite() || !(covariance(kX, kX) > 0.0) ||
+          !(covariance(kY, kY) > 0.0)) {
         return std::nullopt;
       }
-      const double xx = covariance(2, 2);
-      const double yy = covariance(3, 3);
-      const double xy = covariance(2, 3);
+      const double xx = covariance(kX, kX);
+      const double yy = covariance(kY, kY);
+      const double xy = covariance(kX, kY);
       const double c = axes.cosine;
       const double s = axes.sine;
       const double vx = c * c * xx + s * s * yy - 2.0 * c * s * xy;
@@ -382,10 +392,10 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       pose.u_y_px = std::sqrt(vy);
       pose.correlation_xy =
           (c * s * (xx - yy) + (c * c - s * s) * xy) / std::sqrt(vx * vy);
-      pose.u_angle_rad = turns_ ? std::sqrt(covariance(4, 4)) : 0.0;
+      pose.u_angle_rad = turns_ ? std::sqrt(covariance(kTurn, kTurn)) : 0.0;
       pose.misfit = MisfitOf(rest, scale);
       pose.time_s = view.time_s;
-      return PatternPose{pose, gain, offset};
+      return PatternPose{pose, light};
     }
   }
   return std::nullopt;

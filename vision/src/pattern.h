@@ -3,12 +3,13 @@
 //
 // Outlines of such a body wander, as its parts stand out more or less from what
 // lies behind them. Its picture T tells where it is whatever it shows:
-//   I(c + R q) = g T(q) + b,   q from the body's centre, along its axes
-// in each frame by least squares of c, R (rectangles) and the light's g and b
-// (image registration: Lucas and Kanade 1981; Baker and Matthews 2004, section
-// 3), with T the frames' robust mean, in turns. Only where the picture behind
-// is another does a place count for the body's: an edge along its path would
-// look as if it went with it.
+//   I(c + R q) = g T(q) + b + s q,   q from the body's centre, along its axes
+// in each frame by least squares of c, R (rectangles) and the light's g, b and
+// s (image registration: Lucas and Kanade 1981; Baker and Matthews 2004,
+// section 3), with T the frames' robust mean, in turns. A body that falls gets
+// its light from another side: without s its picture seems to move towards it.
+// Only where the picture behind is another does a place count for the body's:
+// an edge along its path would look as if it went with it.
 #pragma once
 
 #include <cstddef>
@@ -36,11 +37,24 @@ struct PatternView {
 PatternView ViewAround(Clip& clip, std::int64_t frame,
                        const core::PixelPoint& centre, double reach_px);
 
+// What the light makes of a pattern in a frame.
+struct PatternLight {
+  double gain = 1.0;
+  double offset_dn = 0.0;
+  double slope_x = 0.0;  // DN per px, along the pattern's axes
+  double slope_y = 0.0;
+  double At(double level, double x_px, double y_px) const {
+    return gain * level + offset_dn + slope_x * x_px + slope_y * y_px;
+  }
+  double Undone(double value, double x_px, double y_px) const {
+    return (value - offset_dn - slope_x * x_px - slope_y * y_px) / gain;
+  }
+};
+
 // Where a pattern lies in a frame, and the frame's light.
 struct PatternPose {
   Pose pose;
-  double gain = 1.0;
-  double offset_dn = 0.0;
+  PatternLight light;
 };
 
 class Pattern {
