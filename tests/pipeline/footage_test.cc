@@ -72,6 +72,27 @@ TEST(Footage, AProjectileWithoutAFilmedReboundIsUndecided) {
   EXPECT_LT(std::abs(g.value - core::kStandardGravity_mps2), 2.0 * g.u);
 }
 
+// From the captions of frame 0, along the rail, to the floor.
+TEST(Footage, AProjectileIsFollowedFromTheRailOn) {
+  const auto path = Clip("galileo_projectile.mp4");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 30.0;
+  options.scale_px_per_m = core::Estimate{318.3, 0.3};
+  options.ground = calib::GroundThrough({0, 440}, {640, 440});
+  const Analysis a = Analyze(path, options);
+  ASSERT_TRUE(a.body);
+  EXPECT_EQ(a.body->kind, core::BodyKind::kSphere);
+  const core::ContactRecord& first = a.contacts.first;
+  ASSERT_TRUE(first.contact.approach_angle_rad) << first.contact.reason;
+  EXPECT_NEAR(first.contact.approach_angle_rad->value / kDegree, 72.4, 0.6);
+  EXPECT_NEAR(first.contact.frame->value, 32.15, 0.25);
+  EXPECT_EQ(first.state.label, core::MotionState::kUndecided);
+  ASSERT_TRUE(first.motion.gravity_check_mps2);
+  const core::Estimate& g = *first.motion.gravity_check_mps2;
+  EXPECT_LT(std::abs(g.value - core::kStandardGravity_mps2), 2.0 * g.u);
+}
+
 TEST(Footage, ACartOnItsTrackNeverBounces) {
   const auto path = Clip("bouncing_cart.mov");
   SKIP_WITHOUT(path);

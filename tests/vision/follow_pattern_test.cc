@@ -73,6 +73,9 @@ double Cart(double x, double y, double angle, double behind_dn) {
 
 struct Film {
   Look look = Drum;
+  std::int64_t frames = kFrames;
+  double speed_px = 3.3;      // a frame
+  double faster_px = 0.04;    // a frame
   double hop_px = 0.0;        // half way, over seven frames
   double turn_rad = 0.0;      // a frame
   double inclined_rad = 0.0;  // at first; what does neither turn rolls
@@ -87,7 +90,7 @@ Pose TrueAt(const Film& film, std::int64_t frame) {
   const auto f = static_cast<double>(frame);
   pose.frame = frame;
   pose.time_s = 1e-3 * f;
-  pose.centre.x_px = 30.0 + 3.3 * f + 0.02 * f * f;
+  pose.centre.x_px = 30.0 + film.speed_px * f + 0.5 * film.faster_px * f * f;
   pose.centre.y_px = RampAt(pose.centre.x_px) - film.above_px;
   if (frame > 16 && frame < 24) pose.centre.y_px -= film.hop_px;
   pose.angle_rad = film.inclined_rad + film.turn_rad * f;
@@ -99,7 +102,7 @@ class Drawn : public Clip {
   Drawn(const Film& film, std::uint64_t seed) : film_(film), seed_(seed) {
     info_.width_px = kWidth_px;
     info_.height_px = kHeight_px;
-    info_.frames = kFrames;
+    info_.frames = film.frames;
     info_.time_base.fps = 1000.0;
   }
   const ClipInfo& info() const override { return info_; }
@@ -173,11 +176,11 @@ Track Wandering(const Film& film, core::BodyKind kind) {
   track.body.half_long_px = {20.0, 0.2};
   track.body.half_short_px = {7.0, 0.2};
   track.first_frame = 0;
-  track.last_frame = kFrames;
+  track.last_frame = film.frames;
   track.frame_interval_s = 1e-3;
   std::mt19937_64 engine(5);
   std::normal_distribution<double> noise(0.0, 0.4);
-  for (std::int64_t f = 0; f < kFrames; ++f) {
+  for (std::int64_t f = 0; f < film.frames; ++f) {
     Pose pose = TrueAt(film, f);
     pose.centre.x_px +=
         0.5 * std::sin(0.4 * static_cast<double>(f)) + noise(engine);
@@ -275,6 +278,20 @@ TEST(FollowPattern, FramesThatOutlinesLostAreFound) {
   const Track track = FollowPattern(clip, Behind(), given, 1);
   ASSERT_EQ(track.poses.size(), static_cast<std::size_t>(kFrames));
   EXPECT_LT(Rms(ErrorsOf(track, film).y), 0.03);
+}
+
+// It goes 3.4 px farther in each frame than in the one before.
+TEST(FollowPattern, TheEndOfAFallIsFound) {
+  Film film;
+  film.frames = 11;
+  film.speed_px = 0.5;
+  film.faster_px = 3.4;
+  Drawn clip(film, 8);
+  Track given = Wandering(film, core::BodyKind::kSphere);
+  given.poses.resize(9);
+  const Track track = FollowPattern(clip, Behind(), given, 1);
+  ASSERT_EQ(track.poses.size(), 11u);
+  EXPECT_LT(Rms(ErrorsOf(track, film).x), 0.05);
 }
 
 TEST(FollowPattern, ABlockOfSeveralPartsIsFollowedAsItTurns) {

@@ -84,5 +84,29 @@ TEST(FindHidden, EitherSideOfABlock) {
   }
 }
 
+// Fits along a straight line of `length_px`, as they scatter.
+std::vector<Fitted> AlongALine(double length_px, std::uint64_t seed) {
+  std::vector<Fitted> all = FitsOf(std::vector<double>(30, 0.0), seed);
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, kU_px);
+  for (Fitted& f : all) {
+    const double share = static_cast<double>(f.frame) / 29.0;
+    f.fit.outline.centre = {50.0 + 0.8 * length_px * share + noise(engine),
+                            20.0 - 0.6 * length_px * share + noise(engine)};
+  }
+  return all;
+}
+
+TEST(Moves, APartOfTheSceneDoesNot) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    std::vector<Fitted> still = AlongALine(0.0, seed);
+    EXPECT_FALSE(Moves(still)) << seed;
+    still[7].fit.outline.centre.x_px += 40.0;  // slipped
+    EXPECT_FALSE(Moves(still)) << seed;
+    EXPECT_TRUE(Moves(AlongALine(2.0, seed))) << seed;
+  }
+  EXPECT_FALSE(Moves({}));
+}
+
 }  // namespace
 }  // namespace touchdown::vision

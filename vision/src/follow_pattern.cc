@@ -106,6 +106,19 @@ std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
   return Learnt{std::move(pattern), std::move(learnt), misfit};
 }
 
+// Where the path of three poses leads: what falls goes farther in a frame than
+// in the one before.
+Pose Ahead(const Pose& end, const Pose& next, const Pose& third,
+           std::int64_t frame) {
+  Pose pose = OnTheWay(end, next, frame);
+  if (std::abs(third.frame - end.frame) != 2) return pose;
+  pose.centre.x_px +=
+      end.centre.x_px - 2.0 * next.centre.x_px + third.centre.x_px;
+  pose.centre.y_px +=
+      end.centre.y_px - 2.0 * next.centre.y_px + third.centre.y_px;
+  return pose;
+}
+
 // The scatter of third differences is that of the poses (Roughness).
 double RoughnessOf(const std::vector<Pose>& poses) {
   std::vector<Fitted> all(poses.size());
@@ -128,7 +141,7 @@ class Follower {
   std::vector<std::optional<PatternPose>> At(const std::vector<Pose>& starts,
                                              double within_px) const;
   bool IsGood(const Pose& pose) const {
-    constexpr double kUsual = 2.0;
+    constexpr double kUsual = 3.0;
     return pose.misfit <= kUsual * learnt_.misfit;
   }
 
@@ -205,11 +218,12 @@ std::vector<Pose> Follower::All() const {
   std::sort(poses.begin(), poses.end(), by_frame);
   for (const bool on : {true, false}) {
     while (true) {
-      const Pose& end = on ? poses.back() : poses.front();
-      const Pose& next = on ? poses[poses.size() - 2] : poses[1];
-      const std::int64_t frame = end.frame + (on ? 1 : -1);
+      const auto from_end = [&](std::size_t k) -> const Pose& {
+        return on ? poses[poses.size() - 1 - k] : poses[k];
+      };
+      const std::int64_t frame = from_end(0).frame + (on ? 1 : -1);
       if (frame < track_.first_frame || frame >= track_.last_frame) break;
-      const Pose start = OnTheWay(end, next, frame);
+      const Pose start = Ahead(from_end(0), from_end(1), from_end(2), frame);
       const auto found = At({start}, near).front();
       if (!found || !IsGood(found->pose) || !is_near(start, found->pose)) break;
       poses.insert(on ? poses.end() : poses.begin(), found->pose);
@@ -226,7 +240,10 @@ Track FollowPattern(Clip& clip, const Background& background,
       track.poses.size() < kLeast) {
     return track;
   }
-  if (!(MedianMisfit(track.poses) > kWellModelled)) return track;
+  // Bodies of one face stay below, however marred by light, blur or noise
+  // (tests/accuracy/design.h); those of parts, rims and marks do not.
+  constexpr double kCrude = 3.0;
+  if (!(MedianMisfit(track.poses) > kCrude)) return track;
   const std::size_t step = (track.poses.size() + kEnough - 1) / kEnough;
   const Outline outline = MiddleOutline(track);
   std::optional<Learnt> best;
@@ -257,8 +274,8 @@ Track FollowPattern(Clip& clip, const Background& background,
     return track;
   }
   // What it tells of the path, frames over the square of their scatter, must be
-  // clearly more.
-  constexpr double kMore = 1.3;
+  // clearly more: of a dozen frames the scatter is known to a quarter.
+  constexpr double kMore = 2.0;
   const double rougher = RoughnessOf(poses) / RoughnessOf(track.poses);
   if (!(static_cast<double>(poses.size()) >
         kMore * rougher * rougher * static_cast<double>(track.poses.size()))) {

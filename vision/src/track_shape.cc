@@ -319,6 +319,23 @@ double Roughness(const std::vector<Fitted>& all) {
   return Median(std::move(jumps)) / 1.18 / std::sqrt(20.0);
 }
 
+bool Moves(const std::vector<Fitted>& all) {
+  constexpr double kStill_px = 1.0;
+  // Not the farthest: a single outline may have slipped.
+  std::vector<double> x, y;
+  for (const Fitted& f : all) {
+    x.push_back(f.fit.outline.centre.x_px);
+    y.push_back(f.fit.outline.centre.y_px);
+  }
+  const auto range = [](std::vector<double>& v) {
+    if (v.size() < 2) return 0.0;
+    std::sort(v.begin(), v.end());
+    const std::size_t cut = v.size() / 20;
+    return v[v.size() - 1 - cut] - v[cut];
+  };
+  return std::hypot(range(x), range(y)) > kStill_px;
+}
+
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
                Track& track) {
   track.body = ShapeOf(all, kind);

@@ -60,6 +60,10 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all);
 // tell.
 double Roughness(const std::vector<Fitted>& all);
 
+// Whether the outlines go anywhere: what stays within a pixel is a part of the
+// scene, or a body that nothing can be said of.
+bool Moves(const std::vector<Fitted>& all);
+
 // The shape common to all frames, from those in which the outline is wholly
 // seen where there are enough of them.
 BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind);
