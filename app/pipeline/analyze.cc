@@ -114,14 +114,6 @@ class Analyzer {
   std::future<void> given_back_;  // the last: it uses the clip
 };
 
-// Whether the contact lies where the track ends: no frame has seen it, and a
-// line that the path happens to point at will have one.
-bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track) {
-  return contact.time_s && !track.poses.empty() &&
-         contact.time_s->value >
-             track.poses.back().time_s - track.frame_interval_s;
-}
-
 void Analyzer::TakeSize(const vision::Track& track) {
   const vision::BodyImage body = Seen(track).body;
   result_.scale = FindScale(options_, body);
@@ -165,8 +157,11 @@ std::optional<Judged> Analyzer::JudgeBest(
   // fitting every outline again.
   const vision::Track seen = Seen(track);
   std::vector<std::pair<int, calib::GroundLine>> ranked;
-  ranked.reserve(candidates.size());
   for (const calib::GroundLine& candidate : candidates) {
+    if (!camera_.ideal_ground &&
+        PassesThrough(SeenInPlane(camera_, seen, candidate))) {
+      continue;
+    }
     ranked.emplace_back(
         candidates.size() == 1
             ? 0
@@ -265,6 +260,12 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
         (options_.ground ? "; check --ground" : "; calibrate it again"));
   } else if (best_merit == 0) {
     result_.no_ground_reason = best->contacts.ground_refuted;
+  }
+  if (best->ground.source == calib::GroundSource::kDetected &&
+      IsAtTheEnd(best->contacts.first.contact, seen)) {
+    result_.warnings.emplace_back(
+        "no frame shows the body after it met the line, which was found in the "
+        "picture: whether that is the ground is not known; give --ground");
   }
   result_.ground = best->ground;
   result_.track = std::move(best->track);

@@ -71,6 +71,20 @@ vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
   return vision::SeenFromGround(seen, ground, YawOf(camera));
 }
 
+bool PassesThrough(const vision::PlaneTrack& plane) {
+  constexpr double kBelow_px = 2.0;
+  return std::any_of(plane.samples.begin(), plane.samples.end(),
+                     [](const vision::PlaneSample& sample) {
+                       return sample.height_px < -kBelow_px;
+                     });
+}
+
+bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track) {
+  return contact.time_s && !track.poses.empty() &&
+         contact.time_s->value >
+             track.poses.back().time_s - track.frame_interval_s;
+}
+
 vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
                                  const vision::ContactOptions& options) {
   vision::ContactOptions in_plane = options;

@@ -20,6 +20,14 @@ vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
                                const vision::Track& seen,
                                const calib::GroundLine& ground);
 
+// Whether the body's very centre gets below the line: whatever its outline near
+// the line is worth, that is not the ground.
+bool PassesThrough(const vision::PlaneTrack& plane);
+
+// Whether the contact lies where the track ends: no frame has seen it, and a
+// line that the path happens to point at will have one.
+bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track);
+
 // FindContacts with `options` as of the ideal picture: a scale that was
 // measured along the ground, or by the body, is that of the plane.
 vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,

@@ -1,5 +1,6 @@
 // Real recordings, where they are at hand: the results must agree with the hand
 // measurements in their README.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -91,6 +92,24 @@ TEST(Footage, AProjectileIsFollowedFromTheRailOn) {
   ASSERT_TRUE(first.motion.gravity_check_mps2);
   const core::Estimate& g = *first.motion.gravity_check_mps2;
   EXPECT_LT(std::abs(g.value - core::kStandardGravity_mps2), 2.0 * g.u);
+}
+
+// It ends as it lands. Edges that its path points at are in the picture.
+TEST(Footage, AProjectileDoesNotSayWhichLineIsTheGround) {
+  const auto path = Clip("galileo_projectile.mp4");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options;
+  options.fps = 30.0;
+  options.first_frame = 12;
+  options.last_frame = 33;
+  const Analysis a = Analyze(path, options);
+  ASSERT_TRUE(a.track);
+  EXPECT_EQ(a.track->poses.back().frame, 32);
+  if (!a.contacts.first.contact.found) return;
+  // Not the wall's edge, which it passes by two diameters.
+  EXPECT_GT(a.contacts.first.contact.frame->value, 31.5);
+  EXPECT_THAT(a.warnings,
+              ::testing::Contains(::testing::HasSubstr("give --ground")));
 }
 
 TEST(Footage, ACartOnItsTrackNeverBounces) {

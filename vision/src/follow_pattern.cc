@@ -273,12 +273,15 @@ Track FollowPattern(Clip& clip, const Background& background,
                    kNearlyAll * static_cast<double>(track.poses.size())) {
     return track;
   }
-  // What it tells of the path, frames over the square of their scatter, must be
-  // clearly more: of a dozen frames the scatter is known to a quarter.
-  constexpr double kMore = 2.0;
+  // Outlines of a crude body wander with what lies behind it, which neighbours
+  // in time do not show: the picture is taken unless it tells clearly less of
+  // the path, frames over the square of their scatter, which a dozen frames
+  // tell to a half.
+  constexpr double kMuchLess = 0.5;
   const double rougher = RoughnessOf(poses) / RoughnessOf(track.poses);
   if (!(static_cast<double>(poses.size()) >
-        kMore * rougher * rougher * static_cast<double>(track.poses.size()))) {
+        kMuchLess * rougher * rougher *
+            static_cast<double>(track.poses.size()))) {
     return track;
   }
   Track patterned = track;
