@@ -16,10 +16,6 @@
 namespace touchdown::vision {
 namespace {
 
-// The picture is worked on in bands of so many rows: those of all samples stay
-// in a processor's own cache.
-constexpr std::int32_t kBandRows = 8;
-
 // The mid-mean of all samples, into rows [begin, end) of `level`.
 template <class Sample>
 void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,

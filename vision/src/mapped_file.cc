@@ -22,37 +22,49 @@ namespace {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) Fail(path, errno);
+MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
+  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) Fail(path, errno);
   struct stat status {};
-  if (::fstat(file, &status) != 0) {
+  if (::fstat(file_, &status) != 0) {
     const int error = errno;
-    ::close(file);
+    ::close(file_);
     Fail(path, error);
   }
   if (!S_ISREG(status.st_mode)) {
-    ::close(file);
+    ::close(file_);
     Fail(path, EISDIR);
   }
   size_bytes_ = status.st_size;
   if (size_bytes_ > 0) {
     void* const map = ::mmap(nullptr, static_cast<std::size_t>(size_bytes_),
-                             PROT_READ, MAP_SHARED, file, 0);
+                             PROT_READ, MAP_SHARED, file_, 0);
     const int error = errno;
     if (map == MAP_FAILED) {
-      ::close(file);
+      ::close(file_);
       Fail(path, error);
     }
     data_ = static_cast<const std::byte*>(map);
   }
-  ::close(file);
 }
 
 MappedFile::~MappedFile() {
   if (data_ != nullptr) {
     ::munmap(const_cast<std::byte*>(data_),
              static_cast<std::size_t>(size_bytes_));
+  }
+  ::close(file_);
+}
+
+void MappedFile::Copy(std::int64_t begin, std::int64_t end,
+                      std::byte* to) const {
+  while (begin < end) {
+    const ssize_t got =
+        ::pread(file_, to, static_cast<std::size_t>(end - begin), begin);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) Fail(path_, got < 0 ? errno : EIO);
+    begin += got;
+    to += got;
   }
 }
 

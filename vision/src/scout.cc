@@ -202,6 +202,13 @@ std::vector<float> Scout::Off(const core::Frame& frame,
 
 std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
                               const Rows& rows) const {
+  if (clip.windows_are_cheap() && rows.step > 1) {
+    return Off(rows, [&](std::int32_t y) {
+      const core::PixelRect row = {0, y, width_px_, 1};
+      clip.WillReadOnce(index, row);
+      return clip.Read(index, row);
+    });
+  }
   clip.WillRead(index, {0, 0, width_px_, height_px_});
   // Rows alone where they must be unpacked and nothing else need be.
   if (clip.windows_are_cheap() && !clip.views_last()) {

@@ -38,14 +38,14 @@ class Grid {
     return levels;
   }
 
-  // Of a frame of the clip: rows alone where they must be unpacked.
+  // Of a frame of the clip: its rows alone where that is less.
   std::vector<float> Look(Clip& clip, std::int64_t index) const {
-    if (!clip.windows_are_cheap() || clip.views_last()) {
-      return Look(clip.Read(index));
-    }
+    if (!clip.windows_are_cheap()) return Look(clip.Read(index));
     std::vector<float> levels;
     for (std::int32_t y = step_ / 2; y < height_; y += step_) {
-      AddRow(clip.Read(index, {0, y, width_, 1}), 0, levels);
+      const core::PixelRect row = {0, y, width_, 1};
+      clip.WillReadOnce(index, row);
+      AddRow(clip.Read(index, row), 0, levels);
     }
     return levels;
   }
