@@ -76,16 +76,22 @@ void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
 void FitApart(Clip& clip, const Background& background,
               std::span<const OutlineJob> jobs, const OutlineOptions& options,
               int threads, std::vector<std::optional<Fitted>>& fits) {
-  constexpr std::size_t kAtOnce = 8;  // jobs: a millisecond
+  // Jobs: half a millisecond, or less where there are few.
+  constexpr std::size_t kMostAtOnce = 8;
+  constexpr std::size_t kTurns = 4;  // of each thread, at least
+  const std::size_t at_once = std::clamp<std::size_t>(
+      jobs.size() /
+          (kTurns * static_cast<std::size_t>(core::ThreadsOf(threads))),
+      1, kMostAtOnce);
   std::atomic<std::size_t> next = 0;
   core::InParallel(
       core::ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
         const std::unique_ptr<Clip> own = clip.Another();
         std::vector<Window> windows;
-        for (std::size_t begin = next.fetch_add(kAtOnce); begin < jobs.size();
-             begin = next.fetch_add(kAtOnce)) {
+        for (std::size_t begin = next.fetch_add(at_once); begin < jobs.size();
+             begin = next.fetch_add(at_once)) {
           const auto some =
-              jobs.subspan(begin, std::min(kAtOnce, jobs.size() - begin));
+              jobs.subspan(begin, std::min(at_once, jobs.size() - begin));
           TakeAll(*own, some, options, windows);
           FitThese(some, windows, background, options, 0, some.size(),
                    &fits[begin]);
