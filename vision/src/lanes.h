@@ -12,7 +12,8 @@
 // Sanitizers come up after the choice would be made.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-#define TOUCHDOWN_WIDEST __attribute__((target_clones("avx2", "default")))
+#define TOUCHDOWN_WIDEST \
+  __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define TOUCHDOWN_WIDEST
 #endif
