@@ -18,6 +18,14 @@ constexpr std::int32_t kSegment_px = 8;
 constexpr std::int32_t kRowStep_px = 4;
 constexpr std::int32_t kFirstRow_px = 2;  // rows 2, 6, 10, ...
 
+// Mostly none is.
+TOUCHDOWN_WIDEST
+bool AnyBeyond(const float* values, std::size_t count, float most) {
+  int beyond = 0;
+  for (std::size_t i = 0; i < count; ++i) beyond |= values[i] > most ? 1 : 0;
+  return beyond != 0;
+}
+
 // How far the sums of eight samples of a row are off those of the still
 // picture, in standard deviations.
 TOUCHDOWN_WIDEST
@@ -227,6 +235,7 @@ Changes Scout::ChangesOf(const std::vector<float>& off) const {
   for (std::size_t row = 0; row * segments < off.size(); ++row) {
     const std::size_t y = At(kFirstRow_px) + row * At(kRowStep_px);
     float* const flags = &cells[y / At(kCell_px) * At(columns_)];
+    if (!AnyBeyond(&off[row * segments], segments, most)) continue;
     for (std::size_t s = 0; s < segments; ++s) {
       const float value = off[row * segments + s];
       if (value > most) flags[s * At(kSegment_px) / At(kCell_px)] += value;
@@ -249,8 +258,7 @@ bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
       Off(clip, index, {static_cast<std::size_t>(phase) % kPhases, kPhases});
   const auto most =
       static_cast<float>(options_.threshold_sigmas * NoiseOf(off).tail);
-  return std::any_of(off.begin(), off.end(),
-                     [most](float value) { return value > most; });
+  return AnyBeyond(off.data(), off.size(), most);
 }
 
 // The boxes of connected cells, with their margin, joined where they meet.

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "bracket.h"
+#include "mid_mean.h"
 #include "read_apart.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/parallel.h"
@@ -92,10 +94,12 @@ class Grid {
   }
 
  private:
+  using Gains = std::vector<std::pair<double, double>>;  // with what they count
+
   // That of the least sum of |v - g r|: the median of v / r, each point counted
   // r times. Right as long as a body hides less than half of the light.
   double MedianGain(const std::vector<float>& levels) const {
-    std::vector<std::pair<double, double>> gains;  // with what they count
+    Gains gains;
     gains.reserve(levels.size());
     double all = 0.0;
     for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -105,10 +109,10 @@ class Grid {
       all += r;
     }
     if (gains.empty()) return 1.0;
+    double below = KeepNearMiddle(gains, all);
     // Half by half: only the part that holds it is put in order.
     auto first = gains.begin();
     auto last = gains.end();
-    double below = 0.0;  // of those before `first`
     while (last - first > 1) {
       const auto middle = first + (last - first) / 2;
       std::nth_element(first, middle, last);
@@ -122,6 +126,30 @@ class Grid {
       }
     }
     return first->first;
+  }
+
+  // Leaves of many those among which half of `all` is reached; returns what
+  // those left out below count. Levels are whole numbers: their sums are exact
+  // in any order.
+  static double KeepNearMiddle(Gains& gains, double all) {
+    if (gains.size() < kManyNumbers) return 0.0;
+    const auto [low, high] = BracketOfMedian(
+        gains.size(), [&](std::size_t i) { return gains[i].first; });
+    Gains near(gains.size());
+    double below = 0.0;
+    double within = 0.0;
+    std::size_t kept = 0;
+    for (const auto& gain : gains) {
+      near[kept] = gain;
+      const bool holds = gain.first >= low && gain.first <= high;
+      below += gain.first < low ? gain.second : 0.0;
+      within += holds ? gain.second : 0.0;
+      kept += holds ? 1 : 0;
+    }
+    if (2.0 * below >= all || 2.0 * (below + within) < all) return 0.0;
+    near.resize(kept);
+    gains = std::move(near);
+    return below;
   }
 
   // How far a point may be off.
@@ -245,6 +273,26 @@ std::vector<std::vector<float>> LookAt(Clip& clip, const Grid& grid,
   return looks;
 }
 
+// Point by point. Levels are whole numbers of 16 bits.
+std::vector<float> MediansOf(const std::vector<std::vector<float>>& looks) {
+  const SortingNetwork network(looks.size(), SortingNetwork::Order::kFull);
+  std::vector<std::uint16_t> lanes(looks.size() * kLanes);
+  std::vector<float> medians(looks.front().size());
+  for (std::size_t begin = 0; begin < medians.size(); begin += kLanes) {
+    const std::size_t count = std::min(kLanes, medians.size() - begin);
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+      for (std::size_t i = 0; i < count; ++i) {
+        lanes[k * kLanes + i] = static_cast<std::uint16_t>(looks[k][begin + i]);
+      }
+    }
+    network.Sort(lanes.data());
+    std::copy_n(
+        lanes.begin() + static_cast<std::ptrdiff_t>(looks.size() / 2 * kLanes),
+        count, medians.begin() + static_cast<std::ptrdiff_t>(begin));
+  }
+  return medians;
+}
+
 }  // namespace
 
 SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
@@ -271,23 +319,7 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
   const std::vector<std::vector<float>> looks =
       LookAt(*clip, grid, indices, options.threads);
   SteadyLight light;
-  std::vector<float> steady(looks.front().size());
-  core::InParallel(static_cast<std::int64_t>(steady.size()), options.threads,
-                   [&](std::int64_t from, std::int64_t to) {
-                     std::vector<float> column(looks.size());
-                     const auto middle =
-                         column.begin() +
-                         static_cast<std::ptrdiff_t>(column.size() / 2);
-                     for (auto i = static_cast<std::size_t>(from);
-                          i < static_cast<std::size_t>(to); ++i) {
-                       for (std::size_t k = 0; k < looks.size(); ++k) {
-                         column[k] = looks[k][i];
-                       }
-                       std::nth_element(column.begin(), middle, column.end());
-                       steady[i] = *middle;
-                     }
-                   });
-  grid.SetSteady(std::move(steady));
+  grid.SetSteady(MediansOf(looks));
   light.told = grid.Tells();
   if (!light.told) {
     light.clip = std::move(clip);
