@@ -34,6 +34,9 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
       float* const out = level + static_cast<std::ptrdiff_t>(top + y) * width;
       for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
         for (std::size_t k = 0; k < n; ++k) {
+          // The next row lies after this one. There are more pictures than
+          // streams that a processor foresees.
+          __builtin_prefetch(windows[k].row<Sample>(y) + x + width);
           LoadLanes(windows[k], x, y, &lanes[k * kLanes]);
         }
         network.Sort(lanes.data());

@@ -138,6 +138,9 @@ Scout::Noise Scout::NoiseOf(const std::vector<float>& off) const {
   const std::size_t segments = At(segments_);
   const std::size_t all_rows = off.size() / std::max<std::size_t>(1, segments);
   std::array<std::vector<float>, kParts * kParts> parts;
+  for (auto& part : parts) {
+    part.reserve(off.size() / (kStep * parts.size()) + segments);
+  }
   std::size_t large = 0;
   std::size_t count = 0;
   for (std::size_t row = 0, s = 0; row < all_rows; ++row) {

@@ -69,25 +69,22 @@ class Grid {
   // where most of the light is: least squares of all points are drawn to a body
   // that hides a tenth of the picture, and leave it in.
   double GainOf(const std::vector<float>& levels) const {
-    double gain = MedianGain(levels);
-    double most_off = MostOff(levels, gain);
+    const Points points = Usable(levels);
+    double gain = MedianGain(points);
+    double most_off = MostOff(points, gain);
     for (int round = 0; round < kRounds; ++round) {
       const double gain_before = gain;
       const double most_before = most_off;
       double over = 0.0;
       double under = 0.0;
-      for (std::size_t i = 0; i < levels.size(); ++i) {
-        const double v = static_cast<double>(levels[i]);
-        const double r = static_cast<double>(steady_[i]);
-        if (!IsUsable(levels[i], steady_[i])) continue;
-        const double residual = std::abs(v - gain * r);
-        if (residual > most_off) continue;
-        over += v * r;
-        under += r * r;
+      for (const auto& [v, r] : points) {
+        const bool is_light = !(std::abs(v - gain * r) > most_off);
+        over += is_light ? v * r : 0.0;
+        under += is_light ? r * r : 0.0;
       }
       if (under <= 0.0) return 1.0;
       gain = over / under;
-      most_off = MostOff(levels, gain);
+      most_off = MostOff(points, gain);
       if (gain == gain_before && most_off == most_before) break;
     }
     return gain;
@@ -95,17 +92,32 @@ class Grid {
 
  private:
   using Gains = std::vector<std::pair<double, double>>;  // with what they count
+  struct Point {
+    double level = 0.0;
+    double steady = 0.0;
+  };
+  using Points = std::vector<Point>;
+
+  Points Usable(const std::vector<float>& levels) const {
+    Points points(levels.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      points[count] = {static_cast<double>(levels[i]),
+                       static_cast<double>(steady_[i])};
+      count += IsUsable(levels[i], steady_[i]) ? 1 : 0;
+    }
+    points.resize(count);
+    return points;
+  }
 
   // That of the least sum of |v - g r|: the median of v / r, each point counted
   // r times. Right as long as a body hides less than half of the light.
-  double MedianGain(const std::vector<float>& levels) const {
-    Gains gains;
-    gains.reserve(levels.size());
+  static double MedianGain(const Points& points) {
+    Gains gains(points.size());
     double all = 0.0;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      if (!IsUsable(levels[i], steady_[i])) continue;
-      const double r = static_cast<double>(steady_[i]);
-      gains.emplace_back(static_cast<double>(levels[i]) / r, r);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto& [v, r] = points[i];
+      gains[i] = {v / r, r};
       all += r;
     }
     if (gains.empty()) return 1.0;
@@ -153,13 +165,10 @@ class Grid {
   }
 
   // How far a point may be off.
-  double MostOff(const std::vector<float>& levels, double gain) const {
-    std::vector<double> off;
-    off.reserve(levels.size());
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      if (!IsUsable(levels[i], steady_[i])) continue;
-      off.push_back(std::abs(static_cast<double>(levels[i]) -
-                             gain * static_cast<double>(steady_[i])));
+  static double MostOff(const Points& points, double gain) {
+    std::vector<double> off(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      off[i] = std::abs(points[i].level - gain * points[i].steady);
     }
     if (off.empty()) return 0.0;
     // Half a level: what rounding alone leaves.
