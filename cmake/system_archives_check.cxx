@@ -1,10 +1,10 @@
 // Compiled to see whether the archives link: what we use of each.
+#include <cstdio>  // before jpeglib.h, which needs it
+
 #include <jpeglib.h>
 #include <png.h>
 #include <sqlite3.h>
 #include <tiffio.h>
-
-#include <cstdio>
 
 int main() {
   TIFF* const tiff = TIFFOpen("", "r");
