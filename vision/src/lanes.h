@@ -3,7 +3,8 @@
 // for each set of instructions, and the program chooses when it starts.
 //
 // Results do not depend on the choice: sums are kept in eight places whatever
-// the width, and multiply-add is not fused (avx2 without fma).
+// the width, and multiply-add is not fused (avx2 without fma; x86-64-v4, which
+// has AVX-512, with the option -ffp-contract=off where numbers are not whole).
 #pragma once
 
 #include <cstddef>
