@@ -176,6 +176,45 @@ TEST(Mraw, SixteenBitsByTheSideOfTheirSignal) {
   EXPECT_THAT(Samples(higher->Read(0)), ElementsAre(0xFFF, 0x001));
 }
 
+// Rows of 11 samples: packed ones begin within a byte in every second row.
+TEST(Mraw, WhatIsReadOnceIsTheSame) {
+  const TemporaryFolder folder;
+  Header header;
+  header.frames = 3;
+  header.width = 11;
+  header.height = 7;
+  const auto samples =
+      static_cast<std::size_t>(header.frames * header.width * header.height);
+  std::string bytes;
+  for (std::size_t i = 0; i < 2 * samples; ++i) {
+    bytes += static_cast<char>(i % 2 == 0 ? 7 * i + i / 3 : i % 16);
+  }
+  for (const std::int64_t bits : {8, 12, 16}) {
+    header.bits = bits;
+    for (const char* side : {"Lower", "Higher"}) {
+      header.side = side;
+      folder.Write("a.cih", header.Cih());
+      const auto path = folder.Write(
+          "a.mraw", bytes.substr(0, (samples * header.bits + 7) / 8));
+      const auto clip = OpenClip(path);
+      const auto once = OpenClip(path);
+      // The whole frame, rows of it, one row; read within them and elsewhere.
+      const core::PixelRect windows[] = {
+          {0, 0, 11, 7}, {2, 1, 8, 4}, {0, 3, 11, 1}, {5, 6, 6, 1}};
+      for (std::int64_t frame = 0; frame < header.frames; ++frame) {
+        for (const core::PixelRect& ahead : windows) {
+          once->WillReadOnce(frame, ahead);
+          for (const core::PixelRect& window : windows) {
+            EXPECT_EQ(Samples(once->Read(frame, window)),
+                      Samples(clip->Read(frame, window)))
+                << bits << " bits, " << side << ", frame " << frame;
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(Mraw, SaveStepAndStartFrame) {
   const TemporaryFolder folder;
   Header header;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -29,6 +31,32 @@ std::vector<Fitted> FitsOf(const std::vector<double>& lack_px,
     all.push_back(fitted);
   }
   return all;
+}
+
+double MedianInOrder(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half]
+                                : 0.5 * (values[half - 1] + values[half]);
+}
+
+// Of many numbers only those are put in order that a sample says are near.
+TEST(Median, OfManyNumbers) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, 3.0);
+    std::vector<double> values(3000 + seed);
+    for (double& v : values) v = noise(engine);
+    EXPECT_EQ(Median(values), MedianInOrder(values)) << seed;
+    // With many equal ones.
+    for (double& v : values) v = std::round(v);
+    EXPECT_EQ(Median(values), MedianInOrder(values)) << seed;
+    // The sample, every 24th or so, tells nothing of the others.
+    for (std::size_t k = 0; k < 128; ++k) {
+      values[k * values.size() / 128] = 1e6;
+    }
+    EXPECT_EQ(Median(values), MedianInOrder(values)) << seed;
+  }
 }
 
 TEST(FindHidden, NoiseHidesNothing) {

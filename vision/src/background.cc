@@ -16,10 +16,6 @@
 namespace touchdown::vision {
 namespace {
 
-// The picture is worked on in bands of so many rows: those of all samples stay
-// in a processor's own cache.
-constexpr std::int32_t kBandRows = 8;
-
 // The mid-mean of all samples, into rows [begin, end) of `level`.
 template <class Sample>
 void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
@@ -38,6 +34,9 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
       float* const out = level + static_cast<std::ptrdiff_t>(top + y) * width;
       for (std::int32_t x = 0; x < width; x += static_cast<int>(kLanes)) {
         for (std::size_t k = 0; k < n; ++k) {
+          // The next row lies after this one. There are more pictures than
+          // streams that a processor foresees.
+          __builtin_prefetch(windows[k].row<Sample>(y) + x + width);
           LoadLanes(windows[k], x, y, &lanes[k * kLanes]);
         }
         network.Sort(lanes.data());

@@ -27,14 +27,21 @@ struct Covers {
   const std::uint16_t* CountsOf(std::int32_t y) const {
     return counts.data() + static_cast<std::ptrdiff_t>(y - box.y) * box.width;
   }
-  bool Covered(std::size_t k, std::int32_t x, std::int32_t y) const {
+  // Calls use(i) for each of `count` pixels from (x, y) on that sample k's body
+  // covers.
+  template <class Use>
+  void ForEachCovered(std::size_t k, std::int32_t x, std::int32_t y,
+                      std::size_t count, const Use& use) const {
     const Cover& cover = of[k];
     const core::PixelRect& own = cover.box;
-    return x >= own.x && y >= own.y && x < own.x + own.width &&
-           y < own.y + own.height &&
-           cover.mask[static_cast<std::size_t>(y - own.y) *
-                          static_cast<std::size_t>(own.width) +
-                      static_cast<std::size_t>(x - own.x)] != 0;
+    if (y < own.y || y >= own.y + own.height) return;
+    const std::uint8_t* const mask =
+        cover.mask.data() + static_cast<std::ptrdiff_t>(y - own.y) * own.width;
+    const std::int32_t end =
+        std::min(x + static_cast<std::int32_t>(count), own.x + own.width);
+    for (std::int32_t at = std::max(x, own.x); at < end; ++at) {
+      if (mask[at - own.x] != 0) use(static_cast<std::size_t>(at - x));
+    }
   }
   void Count(const Cover& cover) {
     const core::PixelRect& own = cover.box;
@@ -75,6 +82,9 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   FrameSamples::Reader reader(samples);
   reader.WillRead({covers.box.x, static_cast<std::int32_t>(top),
                    covers.box.width, static_cast<std::int32_t>(bottom - top)});
+  const std::vector<core::Frame>* windows = nullptr;
+  std::int32_t windows_end = 0;
+  std::int32_t windows_top = 0;
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::size_t, kLanes> low{};   // samples moved below the others
   std::array<std::size_t, kLanes> high{};  // above
@@ -94,8 +104,13 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
             counts);
     const std::size_t row = static_cast<std::size_t>(y) *
                             static_cast<std::size_t>(background.width_px);
-    const std::vector<core::Frame>& windows =
-        reader.Read({left, y, right - left, 1});
+    if (y >= windows_end) {
+      const auto rows =
+          std::min(kBandRows, static_cast<std::int32_t>(bottom) - y);
+      windows = &reader.Read({covers.box.x, y, covers.box.width, rows});
+      windows_top = y;
+      windows_end = y + rows;
+    }
     for (std::int32_t x = left; x < right; x += static_cast<int>(kLanes)) {
       const auto count =
           std::min<std::size_t>(kLanes, static_cast<std::size_t>(right - x));
@@ -106,13 +121,12 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
       high.fill(0);
       for (std::size_t k = 0; k < n; ++k) {
         Sample* const samples_k = &lanes[k * kLanes];
-        LoadLanes(windows[k], x - left, 0, samples_k);
-        for (std::size_t i = 0; i < count; ++i) {
-          if (!covers.Covered(k, x + static_cast<std::int32_t>(i), y)) continue;
+        LoadLanes((*windows)[k], x - covers.box.x, y - windows_top, samples_k);
+        covers.ForEachCovered(k, x, y, count, [&](std::size_t i) {
           const bool down = low[i] == high[i];
           samples_k[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
           ++(down ? low : high)[i];
-        }
+        });
       }
       network.Sort(lanes.data());
       for (std::size_t i = 0; i < count; ++i) {

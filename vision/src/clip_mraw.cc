@@ -127,13 +127,18 @@ class MrawClip final : public Clip {
   }
 
   void WillRead(std::int64_t index, const core::PixelRect& window) override {
-    const std::int64_t bits = header_.stored_bits;
-    const std::int64_t begin =
-        index * samples_per_frame() +
-        static_cast<std::int64_t>(window.y) * info_.width_px;
-    const std::int64_t end =
-        begin + static_cast<std::int64_t>(window.height) * info_.width_px;
-    file_->WillRead(begin * bits / 8, end * bits / 8);
+    const Bytes rows = RowsOf(index, window);
+    file_->WillRead(rows.begin, rows.end);
+    copied_ = {};
+  }
+  void WillReadOnce(std::int64_t index,
+                    const core::PixelRect& window) override {
+    const Bytes rows = RowsOf(index, window);
+    const auto size = static_cast<std::size_t>(rows.end - rows.begin);
+    if (copy_.size() < size) copy_.resize(size);
+    copied_ = {};
+    file_->Copy(rows.begin, rows.end, copy_.data());
+    copied_ = rows;
   }
   void HasRead() const override { file_->HasRead(); }
 
@@ -143,17 +148,19 @@ class MrawClip final : public Clip {
     core::Frame frame;
     frame.bit_depth = info_.bit_depth;
     frame.time_s = static_cast<double>(index) / info_.time_base.fps;
-    const std::int64_t first =
-        index * samples_per_frame() +
-        static_cast<std::int64_t>(window.y) * info_.width_px + window.x;
+    const Bytes rows = RowsOf(index, window);
+    const bool copied = rows.begin >= copied_.begin && rows.end <= copied_.end;
+    const std::byte* const data =
+        copied ? copy_.data() + (rows.begin - copied_.begin)
+               : file_->data() + rows.begin;
     if (header_.stored_bits == 8) {
-      frame.data = file_->data() + first;
+      frame.data = data + window.x;
       frame.stride_bytes = info_.width_px;
     } else if (header_.stored_bits == 16 && shift_ == 0) {
-      frame.data = file_->data() + 2 * first;
+      frame.data = data + std::ptrdiff_t{2} * window.x;
       frame.stride_bytes = std::ptrdiff_t{2} * info_.width_px;
     } else {
-      Copy(first, window);
+      Unpack(data, FirstSample(index, window), window);
       frame.data = reinterpret_cast<const std::byte*>(buffer_.data());
       frame.stride_bytes = std::ptrdiff_t{2} * window.width;
     }
@@ -161,12 +168,29 @@ class MrawClip final : public Clip {
   }
 
  private:
-  std::int64_t samples_per_frame() const {
-    return static_cast<std::int64_t>(header_.width_px) * header_.height_px;
+  // Of the file; of packed samples whole pairs.
+  struct Bytes {
+    std::int64_t begin = 0;
+    std::int64_t end = 0;
+  };
+  std::int64_t FirstSample(std::int64_t index,
+                           const core::PixelRect& window) const {
+    return index * samples_per_frame() +
+           static_cast<std::int64_t>(window.y) * info_.width_px;
+  }
+  // Those that hold a window's rows, as wide as the picture.
+  Bytes RowsOf(std::int64_t index, const core::PixelRect& window) const {
+    const std::int64_t first = FirstSample(index, window);
+    const std::int64_t last =
+        first + static_cast<std::int64_t>(window.height) * info_.width_px;
+    if (header_.stored_bits == 12) {
+      return {first / 2 * 3, std::min((last + 1) / 2 * 3, file_->size_bytes())};
+    }
+    return {first * header_.stored_bits / 8, last * header_.stored_bits / 8};
   }
 
-  const std::uint8_t* bytes() const {
-    return reinterpret_cast<const std::uint8_t*>(file_->data());
+  std::int64_t samples_per_frame() const {
+    return static_cast<std::int64_t>(header_.width_px) * header_.height_px;
   }
 
   std::string Geometry() const {
@@ -259,17 +283,20 @@ class MrawClip final : public Clip {
     }
   }
 
-  void Copy(std::int64_t first, const core::PixelRect& window) {
+  // `data`: of the rows, whose first sample is number `first` of the file.
+  void Unpack(const std::byte* data, std::int64_t first,
+              const core::PixelRect& window) {
     buffer_.resize(static_cast<std::size_t>(window.width) *
                    static_cast<std::size_t>(window.height));
     std::uint16_t* out = buffer_.data();
     for (std::int32_t y = 0; y < window.height; ++y) {
-      const std::int64_t row = first + std::int64_t{y} * info_.width_px;
+      const std::int64_t row = std::int64_t{y} * info_.width_px + window.x;
       if (header_.stored_bits == 12) {
-        UnpackRow12(bytes(), row, window.width, out);
+        UnpackRow12(reinterpret_cast<const std::uint8_t*>(data),
+                    first % 2 + row, window.width, out);
       } else {
         const auto* const in =
-            reinterpret_cast<const std::uint16_t*>(file_->data()) + row;
+            reinterpret_cast<const std::uint16_t*>(data) + row;
         for (std::int32_t x = 0; x < window.width; ++x) {
           out[x] = static_cast<std::uint16_t>(in[x] >> shift_);
         }
@@ -284,6 +311,8 @@ class MrawClip final : public Clip {
   ClipInfo info_;
   std::int32_t shift_ = 0;             // of 16-bit words
   std::vector<std::uint16_t> buffer_;  // the window, where it must be unpacked
+  std::vector<std::byte> copy_;        // of what is read once
+  Bytes copied_;                       // where it lies in the file
 };
 
 std::filesystem::path FirstThatExists(

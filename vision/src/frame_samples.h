@@ -13,6 +13,10 @@
 
 namespace touchdown::vision {
 
+// The picture is worked on in bands of so many rows: those of all samples stay
+// in a processor's own cache.
+inline constexpr std::int32_t kBandRows = 8;
+
 class FrameSamples {
  public:
   // Reads the frames, or makes ready to. Throws what Clip::Read throws. `clip`

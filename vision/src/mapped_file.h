@@ -22,12 +22,18 @@ class MappedFile {
   const std::byte* data() const { return data_; }
   std::int64_t size_bytes() const { return size_bytes_; }
 
+  // Bytes [begin, end), which lie in the file, into `to`. Throws
+  // core::InputError.
+  void Copy(std::int64_t begin, std::int64_t end, std::byte* to) const;
+
   // A hint: bytes [begin, end) are going to be used.
   void WillRead(std::int64_t begin, std::int64_t end) const;
   // Gives the pages back, which takes a large file milliseconds.
   void HasRead() const;
 
  private:
+  std::filesystem::path path_;
+  int file_ = -1;
   const std::byte* data_ = nullptr;  // null if the file is empty
   std::int64_t size_bytes_ = 0;
 };

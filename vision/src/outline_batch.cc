@@ -7,6 +7,7 @@
 
 #include "kept_pixels.h"
 #include "lanes.h"
+#include "outline_pixels.h"
 #include "read_apart.h"
 #include "touchdown/core/parallel.h"
 
@@ -18,12 +19,51 @@ constexpr std::size_t kBatch = 64;
 
 struct Window {
   core::Frame frame;
-  KeptPixels copy;  // where the clip's own view does not last
+  core::PixelRect first;  // what the fit looks at before it moves
+  KeptPixels copy;        // where the clip's own view does not last
 };
 
-Window Take(Clip& clip, std::int64_t index, const core::PixelRect& rect) {
+// Within the picture, so far to all sides of the outline's centre.
+core::PixelRect Around(const core::PixelPoint& centre, double reach_px,
+                       const ClipInfo& info) {
+  const auto from = [&](double at, std::int32_t end) {
+    return static_cast<std::int32_t>(
+        std::clamp(std::floor(at - reach_px), 0.0, end - 1.0));
+  };
+  const auto to = [&](double at, std::int32_t end) {
+    return static_cast<std::int32_t>(
+        std::clamp(std::ceil(at + reach_px), 0.0, end - 1.0));
+  };
+  core::PixelRect rect;
+  rect.x = from(centre.x_px, info.width_px);
+  rect.y = from(centre.y_px, info.height_px);
+  rect.width = to(centre.x_px, info.width_px) - rect.x + 1;
+  rect.height = to(centre.y_px, info.height_px) - rect.y + 1;
+  return rect;
+}
+
+double HalfWay_px(const OutlineOptions& options) {
+  return 0.5 * std::hypot(options.travel_px.x_px, options.travel_px.y_px);
+}
+
+// The outline and its blur where the fit begins (outline.cc).
+core::PixelRect FirstSeen(const Outline& start, const OutlineOptions& options,
+                          const ClipInfo& info) {
+  constexpr double kBlurs = 3.0;
+  constexpr double kSpare_px = 2.0;
+  return Around(start.centre,
+                Extent(start) + kBlurs * std::max(options.blur_px, 0.5) +
+                    HalfWay_px(options) + kSpare_px,
+                info);
+}
+
+Window Take(Clip& clip, const OutlineJob& job, const OutlineOptions& options) {
+  const core::PixelRect rect = WindowFor(job.start, options, clip.info());
+  const std::int64_t index = job.frame;
   Window window;
-  clip.WillRead(index, rect);
+  window.first = FirstSeen(job.start, options, clip.info());
+  // Copied, all of it is read; else mostly nothing but this.
+  clip.WillRead(index, clip.views_last() ? window.first : rect);
   window.frame = clip.Read(index, rect);
   if (!clip.views_last()) {
     window.copy = KeptPixels(window.frame);
@@ -32,9 +72,9 @@ Window Take(Clip& clip, std::int64_t index, const core::PixelRect& rect) {
   return window;
 }
 
-void PrefetchRows(const core::Frame& frame) {
-  const std::size_t bytes =
-      static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
+void PrefetchRows(const Window& window) {
+  const core::Frame frame = WindowOf(window.frame, window.first);
+  const std::size_t bytes = RowBytes(frame);
   for (std::int32_t y = 0; y < frame.height_px; ++y) {
     Prefetch(frame.data + y * frame.stride_bytes, bytes);
   }
@@ -54,7 +94,7 @@ void FitThese(std::span<const OutlineJob> jobs, std::span<const Window> windows,
               const Background& background, const OutlineOptions& options,
               std::size_t from, std::size_t to, std::optional<Fitted>* fits) {
   for (std::size_t i = from; i < to; ++i) {
-    if (i + 1 < to) PrefetchRows(windows[i + 1].frame);
+    if (i + 1 < to) PrefetchRows(windows[i + 1]);
     const core::Frame& frame = windows[i].frame;
     const auto fit = FitOutline(frame, background, jobs[i].start,
                                 OptionsFor(jobs[i], options));
@@ -66,9 +106,7 @@ void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
              const OutlineOptions& options, std::vector<Window>& windows) {
   windows.clear();
   for (const OutlineJob& job : jobs) {
-    windows.push_back(
-        Take(clip, job.frame,
-             WindowFor(job.start, OptionsFor(job, options), clip.info())));
+    windows.push_back(Take(clip, job, OptionsFor(job, options)));
   }
 }
 
@@ -76,16 +114,22 @@ void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
 void FitApart(Clip& clip, const Background& background,
               std::span<const OutlineJob> jobs, const OutlineOptions& options,
               int threads, std::vector<std::optional<Fitted>>& fits) {
-  constexpr std::size_t kAtOnce = 8;  // jobs: a millisecond
+  // Jobs: half a millisecond, or less where there are few.
+  constexpr std::size_t kMostAtOnce = 8;
+  constexpr std::size_t kTurns = 4;  // of each thread, at least
+  const std::size_t at_once = std::clamp<std::size_t>(
+      jobs.size() /
+          (kTurns * static_cast<std::size_t>(core::ThreadsOf(threads))),
+      1, kMostAtOnce);
   std::atomic<std::size_t> next = 0;
   core::InParallel(
       core::ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
         const std::unique_ptr<Clip> own = clip.Another();
         std::vector<Window> windows;
-        for (std::size_t begin = next.fetch_add(kAtOnce); begin < jobs.size();
-             begin = next.fetch_add(kAtOnce)) {
+        for (std::size_t begin = next.fetch_add(at_once); begin < jobs.size();
+             begin = next.fetch_add(at_once)) {
           const auto some =
-              jobs.subspan(begin, std::min(kAtOnce, jobs.size() - begin));
+              jobs.subspan(begin, std::min(at_once, jobs.size() - begin));
           TakeAll(*own, some, options, windows);
           FitThese(some, windows, background, options, 0, some.size(),
                    &fits[begin]);
@@ -99,30 +143,14 @@ core::PixelRect WindowFor(const Outline& start, const OutlineOptions& options,
                           const ClipInfo& info) {
   // The fit may move by a quarter of the size and double its blur, and looks
   // three blurs and half the way beyond the edge (outline.cc).
-  const double size = start.kind == core::BodyKind::kSphere
-                          ? start.radius_px
-                          : std::hypot(start.half_long_px, start.half_short_px);
   constexpr double kMayMove = 0.5;
   constexpr double kBlurs = 6.0;
   constexpr double kSpare_px = 6.0;
-  const double reach =
-      (1.0 + kMayMove) * size + kBlurs * std::max(options.blur_px, 0.5) +
-      0.5 * std::hypot(options.travel_px.x_px, options.travel_px.y_px) +
-      kSpare_px;
-  const auto from = [&](double centre, std::int32_t end) {
-    return static_cast<std::int32_t>(
-        std::clamp(std::floor(centre - reach), 0.0, end - 1.0));
-  };
-  const auto to = [&](double centre, std::int32_t end) {
-    return static_cast<std::int32_t>(
-        std::clamp(std::ceil(centre + reach), 0.0, end - 1.0));
-  };
-  core::PixelRect rect;
-  rect.x = from(start.centre.x_px, info.width_px);
-  rect.y = from(start.centre.y_px, info.height_px);
-  rect.width = to(start.centre.x_px, info.width_px) - rect.x + 1;
-  rect.height = to(start.centre.y_px, info.height_px) - rect.y + 1;
-  return rect;
+  return Around(start.centre,
+                (1.0 + kMayMove) * Extent(start) +
+                    kBlurs * std::max(options.blur_px, 0.5) +
+                    HalfWay_px(options) + kSpare_px,
+                info);
 }
 
 std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,

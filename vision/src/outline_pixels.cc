@@ -159,6 +159,12 @@ NearGroundPixels LookNearGround(const OutlinePixels& pixels,
                                 const std::vector<double>& residuals,
                                 const Height& height, double below_px) {
   NearGroundPixels result;
+  // Mostly none is.
+  int any = 0;
+  for (std::size_t i = 0; i < pixels.size; ++i) {
+    any |= height.Of(pixels.x[i], pixels.y[i]) < below_px ? 1 : 0;
+  }
+  if (any == 0) return result;
   double near = 0.0;
   double others = 0.0;
   for (std::size_t i = 0; i < pixels.size; ++i) {

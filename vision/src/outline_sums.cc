@@ -49,8 +49,17 @@ void OutlinePixels::Finish(double floor_dn2, double slope_dn,
 }
 
 double OutlinePixels::MeanBackground() const {
-  const auto end = background.begin() + static_cast<std::ptrdiff_t>(size);
-  return std::accumulate(background.begin(), end, 0.0) /
+  // No sum waits for the one before.
+  constexpr std::size_t kSums = 8;
+  std::array<double, kSums> sums{};
+  std::size_t i = 0;
+  for (; i + kSums <= size; i += kSums) {
+    for (std::size_t k = 0; k < kSums; ++k) {
+      sums[k] += static_cast<double>(background[i + k]);
+    }
+  }
+  for (; i < size; ++i) sums[0] += static_cast<double>(background[i]);
+  return std::accumulate(sums.begin(), sums.end(), 0.0) /
          static_cast<double>(size);
 }
 

@@ -18,6 +18,14 @@ constexpr std::int32_t kSegment_px = 8;
 constexpr std::int32_t kRowStep_px = 4;
 constexpr std::int32_t kFirstRow_px = 2;  // rows 2, 6, 10, ...
 
+// Mostly none is.
+TOUCHDOWN_WIDEST
+bool AnyBeyond(const float* values, std::size_t count, float most) {
+  int beyond = 0;
+  for (std::size_t i = 0; i < count; ++i) beyond |= values[i] > most ? 1 : 0;
+  return beyond != 0;
+}
+
 // How far the sums of eight samples of a row are off those of the still
 // picture, in standard deviations.
 TOUCHDOWN_WIDEST
@@ -130,6 +138,9 @@ Scout::Noise Scout::NoiseOf(const std::vector<float>& off) const {
   const std::size_t segments = At(segments_);
   const std::size_t all_rows = off.size() / std::max<std::size_t>(1, segments);
   std::array<std::vector<float>, kParts * kParts> parts;
+  for (auto& part : parts) {
+    part.reserve(off.size() / (kStep * parts.size()) + segments);
+  }
   std::size_t large = 0;
   std::size_t count = 0;
   for (std::size_t row = 0, s = 0; row < all_rows; ++row) {
@@ -202,6 +213,13 @@ std::vector<float> Scout::Off(const core::Frame& frame,
 
 std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
                               const Rows& rows) const {
+  if (clip.windows_are_cheap() && rows.step > 1) {
+    return Off(rows, [&](std::int32_t y) {
+      const core::PixelRect row = {0, y, width_px_, 1};
+      clip.WillReadOnce(index, row);
+      return clip.Read(index, row);
+    });
+  }
   clip.WillRead(index, {0, 0, width_px_, height_px_});
   // Rows alone where they must be unpacked and nothing else need be.
   if (clip.windows_are_cheap() && !clip.views_last()) {
@@ -220,6 +238,7 @@ Changes Scout::ChangesOf(const std::vector<float>& off) const {
   for (std::size_t row = 0; row * segments < off.size(); ++row) {
     const std::size_t y = At(kFirstRow_px) + row * At(kRowStep_px);
     float* const flags = &cells[y / At(kCell_px) * At(columns_)];
+    if (!AnyBeyond(&off[row * segments], segments, most)) continue;
     for (std::size_t s = 0; s < segments; ++s) {
       const float value = off[row * segments + s];
       if (value > most) flags[s * At(kSegment_px) / At(kCell_px)] += value;
@@ -242,8 +261,7 @@ bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
       Off(clip, index, {static_cast<std::size_t>(phase) % kPhases, kPhases});
   const auto most =
       static_cast<float>(options_.threshold_sigmas * NoiseOf(off).tail);
-  return std::any_of(off.begin(), off.end(),
-                     [most](float value) { return value > most; });
+  return AnyBeyond(off.data(), off.size(), most);
 }
 
 // The boxes of connected cells, with their margin, joined where they meet.

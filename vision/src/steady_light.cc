@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "bracket.h"
+#include "mid_mean.h"
 #include "read_apart.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/parallel.h"
@@ -38,14 +40,14 @@ class Grid {
     return levels;
   }
 
-  // Of a frame of the clip: rows alone where they must be unpacked.
+  // Of a frame of the clip: its rows alone where that is less.
   std::vector<float> Look(Clip& clip, std::int64_t index) const {
-    if (!clip.windows_are_cheap() || clip.views_last()) {
-      return Look(clip.Read(index));
-    }
+    if (!clip.windows_are_cheap()) return Look(clip.Read(index));
     std::vector<float> levels;
     for (std::int32_t y = step_ / 2; y < height_; y += step_) {
-      AddRow(clip.Read(index, {0, y, width_, 1}), 0, levels);
+      const core::PixelRect row = {0, y, width_, 1};
+      clip.WillReadOnce(index, row);
+      AddRow(clip.Read(index, row), 0, levels);
     }
     return levels;
   }
@@ -67,48 +69,62 @@ class Grid {
   // where most of the light is: least squares of all points are drawn to a body
   // that hides a tenth of the picture, and leave it in.
   double GainOf(const std::vector<float>& levels) const {
-    double gain = MedianGain(levels);
-    double most_off = MostOff(levels, gain);
+    const Points points = Usable(levels);
+    double gain = MedianGain(points);
+    double most_off = MostOff(points, gain);
     for (int round = 0; round < kRounds; ++round) {
       const double gain_before = gain;
       const double most_before = most_off;
       double over = 0.0;
       double under = 0.0;
-      for (std::size_t i = 0; i < levels.size(); ++i) {
-        const double v = static_cast<double>(levels[i]);
-        const double r = static_cast<double>(steady_[i]);
-        if (!IsUsable(levels[i], steady_[i])) continue;
-        const double residual = std::abs(v - gain * r);
-        if (residual > most_off) continue;
-        over += v * r;
-        under += r * r;
+      for (const auto& [v, r] : points) {
+        const bool is_light = !(std::abs(v - gain * r) > most_off);
+        over += is_light ? v * r : 0.0;
+        under += is_light ? r * r : 0.0;
       }
       if (under <= 0.0) return 1.0;
       gain = over / under;
-      most_off = MostOff(levels, gain);
+      most_off = MostOff(points, gain);
       if (gain == gain_before && most_off == most_before) break;
     }
     return gain;
   }
 
  private:
+  using Gains = std::vector<std::pair<double, double>>;  // with what they count
+  struct Point {
+    double level = 0.0;
+    double steady = 0.0;
+  };
+  using Points = std::vector<Point>;
+
+  Points Usable(const std::vector<float>& levels) const {
+    Points points(levels.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      points[count] = {static_cast<double>(levels[i]),
+                       static_cast<double>(steady_[i])};
+      count += IsUsable(levels[i], steady_[i]) ? 1 : 0;
+    }
+    points.resize(count);
+    return points;
+  }
+
   // That of the least sum of |v - g r|: the median of v / r, each point counted
   // r times. Right as long as a body hides less than half of the light.
-  double MedianGain(const std::vector<float>& levels) const {
-    std::vector<std::pair<double, double>> gains;  // with what they count
-    gains.reserve(levels.size());
+  static double MedianGain(const Points& points) {
+    Gains gains(points.size());
     double all = 0.0;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      if (!IsUsable(levels[i], steady_[i])) continue;
-      const double r = static_cast<double>(steady_[i]);
-      gains.emplace_back(static_cast<double>(levels[i]) / r, r);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto& [v, r] = points[i];
+      gains[i] = {v / r, r};
       all += r;
     }
     if (gains.empty()) return 1.0;
+    double below = KeepNearMiddle(gains, all);
     // Half by half: only the part that holds it is put in order.
     auto first = gains.begin();
     auto last = gains.end();
-    double below = 0.0;  // of those before `first`
     while (last - first > 1) {
       const auto middle = first + (last - first) / 2;
       std::nth_element(first, middle, last);
@@ -124,14 +140,35 @@ class Grid {
     return first->first;
   }
 
+  // Leaves of many those among which half of `all` is reached; returns what
+  // those left out below count. Levels are whole numbers: their sums are exact
+  // in any order.
+  static double KeepNearMiddle(Gains& gains, double all) {
+    if (gains.size() < kManyNumbers) return 0.0;
+    const auto [low, high] = BracketOfMedian(
+        gains.size(), [&](std::size_t i) { return gains[i].first; });
+    Gains near(gains.size());
+    double below = 0.0;
+    double within = 0.0;
+    std::size_t kept = 0;
+    for (const auto& gain : gains) {
+      near[kept] = gain;
+      const bool holds = gain.first >= low && gain.first <= high;
+      below += gain.first < low ? gain.second : 0.0;
+      within += holds ? gain.second : 0.0;
+      kept += holds ? 1 : 0;
+    }
+    if (2.0 * below >= all || 2.0 * (below + within) < all) return 0.0;
+    near.resize(kept);
+    gains = std::move(near);
+    return below;
+  }
+
   // How far a point may be off.
-  double MostOff(const std::vector<float>& levels, double gain) const {
-    std::vector<double> off;
-    off.reserve(levels.size());
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      if (!IsUsable(levels[i], steady_[i])) continue;
-      off.push_back(std::abs(static_cast<double>(levels[i]) -
-                             gain * static_cast<double>(steady_[i])));
+  static double MostOff(const Points& points, double gain) {
+    std::vector<double> off(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      off[i] = std::abs(points[i].level - gain * points[i].steady);
     }
     if (off.empty()) return 0.0;
     // Half a level: what rounding alone leaves.
@@ -245,6 +282,26 @@ std::vector<std::vector<float>> LookAt(Clip& clip, const Grid& grid,
   return looks;
 }
 
+// Point by point. Levels are whole numbers of 16 bits.
+std::vector<float> MediansOf(const std::vector<std::vector<float>>& looks) {
+  const SortingNetwork network(looks.size(), SortingNetwork::Order::kFull);
+  std::vector<std::uint16_t> lanes(looks.size() * kLanes);
+  std::vector<float> medians(looks.front().size());
+  for (std::size_t begin = 0; begin < medians.size(); begin += kLanes) {
+    const std::size_t count = std::min(kLanes, medians.size() - begin);
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+      for (std::size_t i = 0; i < count; ++i) {
+        lanes[k * kLanes + i] = static_cast<std::uint16_t>(looks[k][begin + i]);
+      }
+    }
+    network.Sort(lanes.data());
+    std::copy_n(
+        lanes.begin() + static_cast<std::ptrdiff_t>(looks.size() / 2 * kLanes),
+        count, medians.begin() + static_cast<std::ptrdiff_t>(begin));
+  }
+  return medians;
+}
+
 }  // namespace
 
 SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
@@ -271,23 +328,7 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
   const std::vector<std::vector<float>> looks =
       LookAt(*clip, grid, indices, options.threads);
   SteadyLight light;
-  std::vector<float> steady(looks.front().size());
-  core::InParallel(static_cast<std::int64_t>(steady.size()), options.threads,
-                   [&](std::int64_t from, std::int64_t to) {
-                     std::vector<float> column(looks.size());
-                     const auto middle =
-                         column.begin() +
-                         static_cast<std::ptrdiff_t>(column.size() / 2);
-                     for (auto i = static_cast<std::size_t>(from);
-                          i < static_cast<std::size_t>(to); ++i) {
-                       for (std::size_t k = 0; k < looks.size(); ++k) {
-                         column[k] = looks[k][i];
-                       }
-                       std::nth_element(column.begin(), middle, column.end());
-                       steady[i] = *middle;
-                     }
-                   });
-  grid.SetSteady(std::move(steady));
+  grid.SetSteady(MediansOf(looks));
   light.told = grid.Tells();
   if (!light.told) {
     light.clip = std::move(clip);

@@ -11,9 +11,10 @@ namespace touchdown::core {
 
 // As many as asked for; 0: one for each core.
 inline int ThreadsOf(int wanted) {
-  return wanted > 0 ? wanted
-                    : static_cast<int>(
-                          std::max(1U, std::thread::hardware_concurrency()));
+  // Asked once: the answer is read from a file of the system's each time.
+  static const int cores =
+      static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return wanted > 0 ? wanted : cores;
 }
 
 // Calls work(begin, end) for parts of [0, count) that together are all of it,

@@ -102,7 +102,8 @@ class Clip {
   core::Frame Read(std::int64_t index);
   core::Frame Read(std::int64_t index, const core::PixelRect& window);
 
-  // True: the views that Read returns stay valid as long as the clip.
+  // True: the views that Read returns stay valid as long as the clip, but for
+  // those of what was to be read once.
   virtual bool views_last() const { return false; }
 
   // True: a window costs what its own samples cost, and nothing else of the
@@ -113,6 +114,13 @@ class Clip {
   // are then got at once, not one by one as they are touched.
   virtual void WillRead(std::int64_t /*index*/,
                         const core::PixelRect& /*window*/) {}
+
+  // A hint, before a window is looked at once: a mapped file's bytes are then
+  // copied, which costs less than to map their pages and give them back. Views
+  // of it are valid until the next hint.
+  virtual void WillReadOnce(std::int64_t index, const core::PixelRect& window) {
+    WillRead(index, window);
+  }
 
   // A hint, after many samples were used: a mapped file's pages are given back.
   // Views stay valid; what is read again is got again. May be called beside
