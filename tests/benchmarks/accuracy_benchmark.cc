@@ -204,7 +204,9 @@ int main(int argc, char** argv) {
   });
 #ifdef TOUCHDOWN_HAS_PEERS
   constexpr std::size_t kForPeers = 200;
-  PrintPeers(of_regular, std::min(kForPeers, of_regular.size()));
+  if (!of_regular.empty()) {
+    PrintPeers(of_regular, std::min(kForPeers, of_regular.size()));
+  }
 #endif
   cases.clear();
   for (unsigned long i = 0; i < rebounds; ++i) cases.push_back(DrawRebound(i));
