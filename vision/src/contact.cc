@@ -195,7 +195,13 @@ bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
   const Kink& blow = blows.front();
   const double at_blow =
       std::min(samples[blow.after].gap_px, samples[blow.after + 1].gap_px);
-  if (blow.after < 3) return false;
+  if (blow.after < 3) {
+    // Too few before it: what is carried after it was down before, too.
+    const std::size_t from = blow.after + 1;
+    const std::size_t to = blows.size() > 1 ? blows[1].after + 1 : n;
+    return to >= from + kLeastAtFirst &&
+           IsCarried(samples.subspan(from, to - from));
+  }
   const double needed =
       std::max(0.1, 5.0 * noise / std::sqrt(static_cast<double>(m)));
   return first - at_blow < needed;

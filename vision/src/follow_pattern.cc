@@ -33,6 +33,14 @@ Outline MiddleOutline(const Track& track) {
   return OutlineAt(track.body, pose);
 }
 
+// Of what moves as one it is known whether it turns.
+bool HasTurned(const Track& track) {
+  return std::any_of(track.poses.begin(), track.poses.end(),
+                     [&](const Pose& pose) {
+                       return pose.angle_rad != track.poses.front().angle_rad;
+                     });
+}
+
 // A pattern and the poses of the frames that it was learnt from.
 struct Learnt {
   Pattern pattern;
@@ -114,6 +122,12 @@ double RoughnessOf(const std::vector<Pose>& poses) {
     all[i].fit.outline.centre = poses[i].centre;
   }
   return Roughness(all);
+}
+
+// What poses tell of the path: frames over the square of their scatter.
+double Telling(const std::vector<Pose>& poses) {
+  const double rough = RoughnessOf(poses);
+  return static_cast<double>(poses.size()) / (rough * rough);
 }
 
 class Follower {
@@ -204,15 +218,33 @@ std::vector<Pose> Follower::All() const {
   };
   std::sort(poses.begin(), poses.end(), by_frame);
   for (const bool on : {true, false}) {
-    while (true) {
-      const Pose& end = on ? poses.back() : poses.front();
-      const Pose& next = on ? poses[poses.size() - 2] : poses[1];
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      // From the last two on, whichever way, into each gap and beyond the end.
+      const std::size_t at = on ? i : poses.size() - 1 - i;
+      const Pose& end = poses[at];
+      const Pose& next = on ? poses[at - 1] : poses[at + 1];
       const std::int64_t frame = end.frame + (on ? 1 : -1);
       if (frame < track_.first_frame || frame >= track_.last_frame) break;
-      const Pose start = OnTheWay(end, next, frame);
-      const auto found = At({start}, near).front();
-      if (!found || !IsGood(found->pose) || !is_near(start, found->pose)) break;
-      poses.insert(on ? poses.end() : poses.begin(), found->pose);
+      const std::size_t beyond = on ? at + 1 : at - 1;
+      if (beyond < poses.size() && poses[beyond].frame == frame) continue;
+      // Straight on, or where a blow stopped it or turned it round.
+      const Pose last = end;
+      const Pose straight = OnTheWay(end, next, frame);
+      for (const double way : {1.0, 0.0, -1.0}) {
+        Pose start = straight;
+        start.centre.x_px =
+            last.centre.x_px + way * (straight.centre.x_px - last.centre.x_px);
+        start.centre.y_px =
+            last.centre.y_px + way * (straight.centre.y_px - last.centre.y_px);
+        const auto found = At({start}, near).front();
+        if (!found || !IsGood(found->pose) || !is_near(start, found->pose)) {
+          continue;
+        }
+        poses.insert(
+            poses.begin() + static_cast<std::ptrdiff_t>(on ? at + 1 : at),
+            found->pose);
+        break;
+      }
     }
   }
   return poses;
@@ -232,7 +264,12 @@ Track FollowPattern(Clip& clip, const Background& background,
   std::optional<Learnt> best;
   std::vector<Pose> poses;
   for (const bool turns : {false, true}) {
-    if (turns && track.body.kind == core::BodyKind::kSphere) continue;
+    if (turns &&
+        !(track.outlined ? track.body.kind == core::BodyKind::kRectangle
+                         : HasTurned(track))) {
+      continue;
+    }
+    if (!turns && !track.outlined && HasTurned(track)) continue;
     Pattern pattern(outline, turns, background);
     std::vector<PatternView> views;
     std::vector<PatternPose> starts;
@@ -246,7 +283,7 @@ Track FollowPattern(Clip& clip, const Background& background,
                             std::move(pattern), threads);
     if (!learnt) continue;
     std::vector<Pose> all = Follower(clip, track, *learnt, threads).All();
-    if (!best || RoughnessOf(all) < RoughnessOf(poses)) {
+    if (!best || Telling(all) > Telling(poses)) {
       best = std::move(learnt);
       poses = std::move(all);
     }
@@ -256,14 +293,9 @@ Track FollowPattern(Clip& clip, const Background& background,
                    kNearlyAll * static_cast<double>(track.poses.size())) {
     return track;
   }
-  // What it tells of the path, frames over the square of their scatter, must be
-  // clearly more.
+  // It must tell clearly more of the path.
   constexpr double kMore = 1.3;
-  const double rougher = RoughnessOf(poses) / RoughnessOf(track.poses);
-  if (!(static_cast<double>(poses.size()) >
-        kMore * rougher * rougher * static_cast<double>(track.poses.size()))) {
-    return track;
-  }
+  if (!(Telling(poses) > kMore * Telling(track.poses))) return track;
   Track patterned = track;
   patterned.poses = std::move(poses);
   patterned.patterned = true;

@@ -11,6 +11,7 @@
 #include "follow_pattern.h"
 #include "outline_batch.h"
 #include "touchdown/core/errors.h"
+#include "whole_body.h"
 
 namespace touchdown::vision {
 namespace {
@@ -240,6 +241,28 @@ bool IsWellModelled(const Track& track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
+// Where outlines explain the body badly, it may be a part of what moves as one.
+void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
+                 TrackResult& result, double& whole_px) {
+  Track& track = result.track;
+  if (IsWellModelled(track) || look.found.step > 1) return;
+  auto whole = FindWhole(clip, result.background, track, options);
+  const Chain& chain = look.found.chains.front();
+  constexpr double kFew = 0.5;  // of what was seen
+  if (!whole && static_cast<double>(track.poses.size()) <
+                    kFew * static_cast<double>(chain.links.size())) {
+    whole = FindWhole(clip, result.background, PathOf(chain, track), options);
+  }
+  if (!whole) return;
+  track = std::move(*whole);
+  track.known_background = true;
+  track.warnings.clear();
+  track.several_bodies = false;
+  whole_px = 0.0;
+  result.background =
+      LookBehind(clip, options, track, result.background).background;
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
@@ -339,6 +362,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     if (!cut.empty()) warning = cut;
   }
   FitMissing(clip, result.background, options, track);
+  FollowWhole(clip, options, *first, result, whole_px);
   track = FollowPattern(clip, result.background, track, options.threads);
   if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
