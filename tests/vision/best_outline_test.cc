@@ -62,7 +62,7 @@ TEST(FindBestOutline, WhatIsStillIsLeftOut) {
   });
   auto best = FindBestOutline(places, core::BodyKind::kSphere, true);
   ASSERT_TRUE(best);
-  EXPECT_NEAR(best->outline.radius_px, 15.0, 0.5);
+  EXPECT_NEAR(best->outline.radius_px, 15.0, 0.8);
   EXPECT_NEAR(best->outline.centre.x_px, 3.0, 0.5);
   EXPECT_NEAR(best->outline.centre.y_px, -2.0, 0.5);
   const auto box = FindBestOutline(places, core::BodyKind::kRectangle, true);

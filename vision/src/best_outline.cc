@@ -52,6 +52,28 @@ std::vector<Told> ToldOf(const CoMoving& places) {
   return told;
 }
 
+// Without the still places that no outline of what moves along would hold.
+void LeaveOutFar(std::vector<Told>& told) {
+  constexpr double kBeyond = 0.25;  // of the box around what moves along
+  const double far = std::numeric_limits<double>::infinity();
+  double left = far;
+  double right = -far;
+  double top = far;
+  double bottom = -far;
+  for (const Told& t : told) {
+    if (t.says < 0.0) continue;
+    left = std::min(left, t.x);
+    right = std::max(right, t.x);
+    top = std::min(top, t.y);
+    bottom = std::max(bottom, t.y);
+  }
+  const double margin = kBeyond * std::max(right - left, bottom - top);
+  std::erase_if(told, [&](const Told& t) {
+    return t.x < left - margin || t.x > right + margin || t.y < top - margin ||
+           t.y > bottom + margin;
+  });
+}
+
 // How much of a place lies within an edge so deep.
 double Within(double depth) { return std::clamp(depth + 0.5, 0.0, 1.0); }
 
@@ -175,7 +197,8 @@ std::vector<Told> Thinned(const std::vector<Told>& told, std::size_t most) {
 
 std::optional<BestOutline> FindBestOutline(const CoMoving& places,
                                            core::BodyKind kind, bool finely) {
-  const std::vector<Told> told = ToldOf(places);
+  std::vector<Told> told = ToldOf(places);
+  LeaveOutFar(told);
   const auto start = StartOf(told, kind);
   if (!start) return std::nullopt;
   // Few places do to come near.

@@ -254,13 +254,17 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
     whole = FindWhole(clip, result.background, PathOf(chain, track), options);
   }
   if (!whole) return;
-  track = std::move(*whole);
-  track.known_background = true;
-  track.warnings.clear();
-  track.several_bodies = false;
+  whole->known_background = true;
+  whole->warnings.clear();
+  whole->several_bodies = false;
+  Background behind =
+      LookBehind(clip, options, *whole, result.background).background;
+  // What does not move as one picture was none.
+  Track followed = FollowPattern(clip, behind, *whole, options.threads);
+  if (!followed.patterned) return;
+  track = std::move(followed);
+  result.background = std::move(behind);
   whole_px = 0.0;
-  result.background =
-      LookBehind(clip, options, track, result.background).background;
 }
 
 }  // namespace
@@ -363,7 +367,9 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   }
   FitMissing(clip, result.background, options, track);
   FollowWhole(clip, options, *first, result, whole_px);
-  track = FollowPattern(clip, result.background, track, options.threads);
+  if (!track.patterned) {
+    track = FollowPattern(clip, result.background, track, options.threads);
+  }
   if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
   if (whole_px > 0.0) {

@@ -78,7 +78,8 @@ std::optional<BestOutline> Within(Clip& clip, const Background& background,
   const CoMoving places = FindCoMoving(
       clip, background, part,
       [&](const CoMoving& seen) {
-        const auto found = BestOf(seen, kind, false);
+        const auto found =
+            BestOf(seen, kind.value_or(core::BodyKind::kRectangle), false);
         return CoverOf(seen, found ? found->outline : guess, kMargin_px);
       },
       options);
