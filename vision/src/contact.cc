@@ -205,7 +205,7 @@ bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
   // Carried up to there, it only seems to drop: outlines wander by more than
   // they claim.
   const std::size_t before = BeforeFirst(samples, blows);
-  if (before >= kLeastAtFirst && IsCarried(samples.first(before))) return true;
+  if (IsCarriedAtFirst(samples.first(before))) return true;
   // It came down if the first frames are clearly higher than the first blow.
   const Kink& blow = blows.front();
   const double at_blow =
