@@ -184,6 +184,35 @@ TEST(Contact, OnTheGroundFromTheStart) {
   }
 }
 
+// On an incline a spring turns it round each time it comes down; the line is
+// inclined to its path by what changes its gap by half a pixel, and that is
+// known to a hundredth.
+TEST(Contact, CarriedToAndFroFromTheStart) {
+  Throw thrown = Block(0.0);
+  thrown.contact_s = -1.0;
+  thrown.x_m = -1.2;
+  thrown.after = {1.2, 0.0, 0.0};
+  thrown.stays = true;
+  Filming filming;
+  PlaneTrack track = FilmPlane(thrown, filming);
+  ASSERT_GE(track.samples.size(), 30u);
+  const auto n = static_cast<double>(track.samples.size());
+  for (std::size_t i = 0; i < track.samples.size(); ++i) {
+    PlaneSample& sample = track.samples[i];
+    const double share = static_cast<double>(i) / n;
+    const double way = std::fmod(3.0 * share, 1.0);  // of three
+    sample.along_px = 800.0 * way * (1.0 - way);
+    sample.height_px -= sample.gap_px;
+    sample.gap_px = 0.5 * (1.0 - 4.0 * way * (1.0 - way));
+    sample.height_px += sample.gap_px;
+    sample.u_gap_px = sample.u_height_px = sample.u_along_px = 0.01;
+  }
+  const ContactResult result = FindContacts(track, WithScale(filming));
+  ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
+  EXPECT_TRUE(result.first.contact.from_start);
+  EXPECT_TRUE(core::IsNotBounce(result.first.state.label));
+}
+
 TEST(Contact, NoneWhereTheGroundLineLiesAboveTheBody) {
   Throw thrown;
   Filming filming;

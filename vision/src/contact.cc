@@ -115,6 +115,15 @@ bool IsCarried(std::span<const PlaneSample> samples) {
 
 constexpr std::size_t kLeastAtFirst = 5;  // frames that tell anything
 
+// So it is at first: what stops it or turns it round on its way bends the whole
+// of a path otherwise than its beginning.
+bool IsCarriedAtFirst(std::span<const PlaneSample> samples) {
+  for (std::size_t n = samples.size(); n >= kLeastAtFirst; n /= 2) {
+    if (IsCarried(samples.first(n))) return true;
+  }
+  return false;
+}
+
 std::size_t BeforeFirst(std::span<const PlaneSample> samples,
                         const std::vector<Kink>& blows) {
   return blows.empty() ? samples.size() / 2 : blows.front().after + 1;
@@ -136,7 +145,7 @@ bool FallsAtFirst(std::span<const PlaneSample> samples,
     }
     return sum;
   };
-  if (IsCarried(samples.first(n))) return false;
+  if (IsCarriedAtFirst(samples.first(n))) return false;
   const FlightOptions straight = Straight();
   const Flight falling = FitFlight(samples.first(n), options);
   const double without = chi2(FitFlight(samples.first(n), straight));
@@ -153,8 +162,14 @@ bool Descends(std::span<const PlaneSample> samples) {
   const double rate = line.height[1];
   const double u = std::sqrt(line.height_cov(1, 1));
   constexpr double kClear = 3.0;
+  // All of its way, to and fro.
+  double way = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    way += std::abs(samples[i].along_px - samples[i - 1].along_px);
+  }
+  const double duration = samples.back().time_s - samples.front().time_s;
   return rate < -kClear * u &&
-         -rate > std::tan(kMostInclined_rad) * std::abs(line.along[1]);
+         -rate * duration > std::tan(kMostInclined_rad) * way;
 }
 
 // So does the first half of the track, up to the first blow, or without a blow
@@ -190,11 +205,19 @@ bool OnGroundFromStart(const PlaneTrack& track, const std::vector<Kink>& blows,
   // Carried up to there, it only seems to drop: outlines wander by more than
   // they claim.
   const std::size_t before = BeforeFirst(samples, blows);
-  if (before >= kLeastAtFirst && IsCarried(samples.first(before))) return true;
+  if (IsCarriedAtFirst(samples.first(before))) return true;
   // It came down if the first frames are clearly higher than the first blow.
   const Kink& blow = blows.front();
   const double at_blow =
       std::min(samples[blow.after].gap_px, samples[blow.after + 1].gap_px);
+  if (before < kLeastAtFirst) {
+    // Too few to tell: what is carried from the blow on was down before it.
+    const std::size_t to = blows.size() > 1 ? blows[1].after + 1 : n;
+    if (to >= before + kLeastAtFirst &&
+        IsCarried(samples.subspan(before, to - before))) {
+      return true;
+    }
+  }
   if (blow.after < 3) return false;
   const double needed =
       std::max(0.1, 5.0 * noise / std::sqrt(static_cast<double>(m)));

@@ -282,11 +282,6 @@ std::int64_t EndPart(std::int64_t first, std::int64_t last) {
   return std::max<std::int64_t>(3, (last - first) / 8);
 }
 
-namespace {
-// Badness of a body that is no plain face: marks, parts, a bad picture of it.
-constexpr double kCrude = 4.0;
-}  // namespace
-
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
                   const TrackOptions& options, Surround surround) {
   constexpr std::size_t kProbes = 9;
@@ -368,33 +363,6 @@ BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options) {
   return background;
 }
 
-namespace {
-
-// Where no kind explains the pixels, and two do so about as badly, the path
-// tells: outlines of the wrong kind wander.
-void PreferSmootherKind(Clip& clip, const TrackOptions& options, Look& look) {
-  if (options.kind || look.choice.badness < kCrude) return;
-  const Chain& chain = look.found.chains.front();
-  TrackOptions as_other = options;
-  as_other.kind = look.choice.kind == core::BodyKind::kSphere
-                      ? core::BodyKind::kRectangle
-                      : core::BodyKind::kSphere;
-  const Choice other =
-      ChooseKind(clip, look.background, chain, as_other, look.surround);
-  constexpr double kAboutAsBad = 1.3;
-  if (other.badness > kAboutAsBad * look.choice.badness) return;
-  std::vector<Fitted> fits =
-      FitChain(clip, look.background, chain, other, options, look.surround);
-  DropStrangers(fits);
-  if (fits.size() >= look.fits.size() &&
-      Roughness(fits) < Roughness(look.fits)) {
-    look.choice = other;
-    look.fits = std::move(fits);
-  }
-}
-
-}  // namespace
-
 Look LookWith(Clip& clip, Background background, const TrackOptions& options,
               Detector detector, std::int64_t last, double least_links,
               double most_cost) {
@@ -414,7 +382,6 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
     look.fits = FitChain(clip, look.background, chain, look.choice, options,
                          look.surround);
     DropStrangers(look.fits);
-    PreferSmootherKind(clip, options, look);
   }
   return look;
 }
@@ -462,8 +429,9 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   Look best =
       LookWith(clip, EstimateBackground(clip, options.first, last, still),
                options, Detector::kDifference, last);
+  constexpr double kWellFitted = 4.0;
   const std::int64_t part = EndPart(options.first, last);
-  for (int attempt = 0; attempt < 4 && best.choice.badness > kCrude;
+  for (int attempt = 0; attempt < 4 && best.choice.badness > kWellFitted;
        ++attempt) {
     constexpr Detector kDetectors[] = {Detector::kDifference,
                                        Detector::kDifference, Detector::kLevels,

@@ -33,6 +33,14 @@ Outline MiddleOutline(const Track& track) {
   return OutlineAt(track.body, pose);
 }
 
+// Of what moves as one it is known whether it turns.
+bool HasTurned(const Track& track) {
+  return std::any_of(track.poses.begin(), track.poses.end(),
+                     [&](const Pose& pose) {
+                       return pose.angle_rad != track.poses.front().angle_rad;
+                     });
+}
+
 // A pattern and the poses of the frames that it was learnt from.
 struct Learnt {
   Pattern pattern;
@@ -129,6 +137,12 @@ double RoughnessOf(const std::vector<Pose>& poses) {
   return Roughness(all);
 }
 
+// What poses tell of the path: frames over the square of their scatter.
+double Telling(const std::vector<Pose>& poses) {
+  const double rough = RoughnessOf(poses);
+  return static_cast<double>(poses.size()) / (rough * rough);
+}
+
 class Follower {
  public:
   Follower(Clip& clip, const Track& track, const Learnt& learnt, int threads)
@@ -217,16 +231,36 @@ std::vector<Pose> Follower::All() const {
   };
   std::sort(poses.begin(), poses.end(), by_frame);
   for (const bool on : {true, false}) {
-    while (true) {
-      const auto from_end = [&](std::size_t k) -> const Pose& {
-        return on ? poses[poses.size() - 1 - k] : poses[k];
-      };
-      const std::int64_t frame = from_end(0).frame + (on ? 1 : -1);
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      // From the last two on, whichever way, into each gap and beyond the end.
+      const std::size_t at = on ? i : poses.size() - 1 - i;
+      const Pose& end = poses[at];
+      const Pose& next = on ? poses[at - 1] : poses[at + 1];
+      const std::int64_t frame = end.frame + (on ? 1 : -1);
       if (frame < track_.first_frame || frame >= track_.last_frame) break;
-      const Pose start = Ahead(from_end(0), from_end(1), from_end(2), frame);
-      const auto found = At({start}, near).front();
-      if (!found || !IsGood(found->pose) || !is_near(start, found->pose)) break;
-      poses.insert(on ? poses.end() : poses.begin(), found->pose);
+      const std::size_t beyond = on ? at + 1 : at - 1;
+      if (beyond < poses.size() && poses[beyond].frame == frame) continue;
+      // Straight on, or where a blow stopped it or turned it round.
+      const Pose last = end;
+      const std::size_t third_at = on ? at - 2 : at + 2;
+      const Pose straight = third_at < poses.size()
+                                ? Ahead(end, next, poses[third_at], frame)
+                                : OnTheWay(end, next, frame);
+      for (const double way : {1.0, 0.0, -1.0}) {
+        Pose start = straight;
+        start.centre.x_px =
+            last.centre.x_px + way * (straight.centre.x_px - last.centre.x_px);
+        start.centre.y_px =
+            last.centre.y_px + way * (straight.centre.y_px - last.centre.y_px);
+        const auto found = At({start}, near).front();
+        if (!found || !IsGood(found->pose) || !is_near(start, found->pose)) {
+          continue;
+        }
+        poses.insert(
+            poses.begin() + static_cast<std::ptrdiff_t>(on ? at + 1 : at),
+            found->pose);
+        break;
+      }
     }
   }
   return poses;
@@ -240,22 +274,24 @@ Track FollowPattern(Clip& clip, const Background& background,
       track.poses.size() < kLeast) {
     return track;
   }
-  // Bodies of one face stay below, however marred by light, blur or noise
-  // (tests/accuracy/design.h); those of parts, rims and marks do not.
-  constexpr double kCrude = 3.0;
   if (!(MedianMisfit(track.poses) > kCrude)) return track;
   const std::size_t step = (track.poses.size() + kEnough - 1) / kEnough;
   const Outline outline = MiddleOutline(track);
   std::optional<Learnt> best;
   std::vector<Pose> poses;
   for (const bool turns : {false, true}) {
-    if (turns && track.body.kind == core::BodyKind::kSphere) continue;
+    if (turns &&
+        !(track.outlined ? track.body.kind == core::BodyKind::kRectangle
+                         : HasTurned(track))) {
+      continue;
+    }
+    if (!turns && !track.outlined && HasTurned(track)) continue;
     Pattern pattern(outline, turns, background);
     std::vector<PatternView> views;
     std::vector<PatternPose> starts;
     for (const std::size_t i : FromBothSides(track.poses.size(), step)) {
       const Pose& pose = track.poses[i];
-      starts.push_back({pose});
+      starts.push_back({pose, {}});
       views.push_back(ViewAround(clip, pose.frame, pose.centre,
                                  pattern.reach_px() + kSlack_px));
     }
@@ -263,7 +299,7 @@ Track FollowPattern(Clip& clip, const Background& background,
                             std::move(pattern), threads);
     if (!learnt) continue;
     std::vector<Pose> all = Follower(clip, track, *learnt, threads).All();
-    if (!best || RoughnessOf(all) < RoughnessOf(poses)) {
+    if (!best || Telling(all) > Telling(poses)) {
       best = std::move(learnt);
       poses = std::move(all);
     }
@@ -275,15 +311,9 @@ Track FollowPattern(Clip& clip, const Background& background,
   }
   // Outlines of a crude body wander with what lies behind it, which neighbours
   // in time do not show: the picture is taken unless it tells clearly less of
-  // the path, frames over the square of their scatter, which a dozen frames
-  // tell to a half.
+  // the path; a dozen frames tell that to a half.
   constexpr double kMuchLess = 0.5;
-  const double rougher = RoughnessOf(poses) / RoughnessOf(track.poses);
-  if (!(static_cast<double>(poses.size()) >
-        kMuchLess * rougher * rougher *
-            static_cast<double>(track.poses.size()))) {
-    return track;
-  }
+  if (!(Telling(poses) > kMuchLess * Telling(track.poses))) return track;
   Track patterned = track;
   patterned.poses = std::move(poses);
   patterned.patterned = true;

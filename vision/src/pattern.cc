@@ -302,6 +302,8 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
   std::vector<double> sizes;
   constexpr int kRounds = 20;
   constexpr double kFine_px = 1e-3;
+  // Robust weights may go to and fro for ever, by much less than they tell.
+  constexpr double kToAndFro_px = 0.02;
   constexpr double kMostStep_px = 1.5;
   constexpr double kMostSeen = 0.5;
   double scale = 0.0;
@@ -373,7 +375,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
     pose.centre = PlaceOf(pose, axes, dx, dy);
     pose.angle_rad += turn;
     if (std::max({std::abs(dx), std::abs(dy), std::abs(turn) * reach}) <
-        kFine_px) {
+        (2 * round < kRounds ? kFine_px : kToAndFro_px)) {
       const Matrix covariance =
           Eigen::LDLT<Matrix>(normal).solve(Matrix::Identity()) *
           (scale * scale) / (light.gain * light.gain);

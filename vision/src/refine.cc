@@ -178,6 +178,8 @@ void Refiner::MeasurePoses(Track& refined) {
 
 Track Refine(Clip& clip, const Background& background, const Track& given,
              const RefineOptions& refine) {
+  // An outline of one face would sit on this part or that.
+  if (!given.outlined) return given;
   const Track track = Bridged(given);
   Track refined = track;
   Refiner refiner(clip, background, track, refine);

@@ -19,6 +19,9 @@ struct Fitted {
 // Residuals over noise of a body that is what the model says; beyond, residuals
 // and sizes tell of the model's faults first.
 inline constexpr double kWellModelled = 1.5;
+// Misfit from which on a body has parts, rims or marks: those of one face stay
+// below, however marred by light, blur or noise (tests/accuracy/design.h).
+inline constexpr double kCrude = 3.0;
 
 // Radius, or half the long side, px.
 double SizeOf(const OutlineFit& fit);

@@ -11,6 +11,7 @@
 #include "follow_pattern.h"
 #include "outline_batch.h"
 #include "touchdown/core/errors.h"
+#include "whole_body.h"
 
 namespace touchdown::vision {
 namespace {
@@ -240,6 +241,39 @@ bool IsWellModelled(const Track& track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
+// Where outlines explain the body badly and it shows in parts, or stands out by
+// its levels alone, it may be a part of what moves as one. Not a ball: what
+// moves with it is its shadow.
+void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
+                 TrackResult& result, double& whole_px) {
+  Track& track = result.track;
+  const bool in_parts =
+      whole_px > 0.0 || look.surround != Surround::kBackground;
+  if (!in_parts || track.body.kind != core::BodyKind::kRectangle ||
+      IsWellModelled(track) || !IsSteady(track) || look.found.step > 1) {
+    return;
+  }
+  auto whole = FindWhole(clip, result.background, track, options);
+  const Chain& chain = look.found.chains.front();
+  constexpr double kFew = 0.5;  // of what was seen
+  if (!whole && static_cast<double>(track.poses.size()) <
+                    kFew * static_cast<double>(chain.links.size())) {
+    whole = FindWhole(clip, result.background, PathOf(chain, track), options);
+  }
+  if (!whole) return;
+  whole->known_background = true;
+  whole->warnings.clear();
+  whole->several_bodies = false;
+  Background behind =
+      LookBehind(clip, options, *whole, result.background).background;
+  // What does not move as one picture was none.
+  Track followed = FollowPattern(clip, behind, *whole, options.threads);
+  if (!followed.patterned) return;
+  track = std::move(followed);
+  result.background = std::move(behind);
+  whole_px = 0.0;
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
@@ -339,7 +373,10 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     if (!cut.empty()) warning = cut;
   }
   FitMissing(clip, result.background, options, track);
-  track = FollowPattern(clip, result.background, track, options.threads);
+  FollowWhole(clip, options, *first, result, whole_px);
+  if (!track.patterned) {
+    track = FollowPattern(clip, result.background, track, options.threads);
+  }
   if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
   if (whole_px > 0.0) {

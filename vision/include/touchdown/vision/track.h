@@ -68,6 +68,9 @@ struct Track {
   // Whether poses are those of the body's picture, which moves with it: its
   // outlines alone were bad witnesses.
   bool patterned = false;
+  // Whether outlines fitted to the frames tell size and place. Else the body
+  // has several parts, and they are those of what moves as one.
+  bool outlined = true;
   bool several_bodies = false;  // another one of like size and contrast moves
   std::vector<std::string> warnings;
 };

@@ -1,0 +1,28 @@
+// The outline that divides what moves along a path from what does not.
+#pragma once
+
+#include <optional>
+
+#include "co_moving.h"
+#include "touchdown/core/words.h"
+#include "touchdown/vision/outline.h"
+
+namespace touchdown::vision {
+
+struct BestOutline {
+  Outline outline;     // centre from that of the places
+  double merit = 0.0;  // px^2
+  // Of the places that move along, the share within; and of those within that
+  // say anything, the share that moves along.
+  double holds = 0.0;
+  double pure = 0.0;
+};
+
+// The outline of most merit: places within that move along, less those that
+// are still, less a little of all, so that what says nothing is left out where
+// it can be. From the places' moments, by turns along each parameter in ever
+// smaller steps; `finely`: to half a place. Nothing where too few move along.
+std::optional<BestOutline> FindBestOutline(const CoMoving& places,
+                                           core::BodyKind kind, bool finely);
+
+}  // namespace touchdown::vision
