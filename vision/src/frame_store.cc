@@ -31,14 +31,16 @@ core::PixelRect Whole(const ClipInfo& info) {
 // are stored one upon the other, those on the way are kept, too.
 class FrameStore final : public GrowingClip {
  public:
-  FrameStore(std::unique_ptr<Clip> clip, std::size_t most_bytes)
+  FrameStore(std::unique_ptr<Clip> clip, std::int64_t last,
+             std::size_t most_bytes)
       : clip_(std::move(clip)),
+        last_(last),
         left_bytes_(most_bytes),
         kept_(static_cast<std::size_t>(clip_->info().frames)) {}
 
   const ClipInfo& info() const override { return clip_->info(); }
-  // It decodes when it is asked for a frame, and no farther.
-  bool GrowTo(std::int64_t /*last*/) override { return true; }
+  // It decodes when it is asked for a frame.
+  bool GrowTo(std::int64_t last) override { return last >= last_; }
   std::vector<std::int64_t> StillFrames() const override { return {}; }
   bool HoldsAllChanges() override { return true; }
   std::int64_t DecodedAgain() const override { return decoded_again_; }
@@ -79,6 +81,7 @@ class FrameStore final : public GrowingClip {
   }
 
   std::unique_ptr<Clip> clip_;
+  std::int64_t last_;
   std::size_t left_bytes_;
   std::vector<KeptPixels> kept_;
   std::int64_t decoded_again_ = 0;
@@ -451,7 +454,8 @@ std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
   // A few frames are decoded again rather than looked at for windows.
   constexpr std::size_t kFew = 100;
   if (frames <= kFew || FrameBytes(info) <= options.most_bytes / frames) {
-    return std::make_unique<FrameStore>(std::move(clip), options.most_bytes);
+    return std::make_unique<FrameStore>(std::move(clip), last,
+                                        options.most_bytes);
   }
   return std::make_unique<WindowStore>(std::move(clip), options);
 }

@@ -36,9 +36,9 @@ class GrowingClip : public Clip {
  public:
   // Decodes on, in order, so that [first, last) is at hand; what was decoded is
   // not decoded again. With all of the range it is what KeepFrames gives.
-  // False: it cannot be looked at piece by piece, because a frame is damaged or
-  // because pictures or body are too large to be kept; only all of the range is
-  // of use then.
+  // False: only all of the range is of use, because a frame is damaged, because
+  // pictures or body are too large to be kept, or because the clip is so small
+  // that it is kept whole: a second look costs more than decoding.
   virtual bool GrowTo(std::int64_t last) = 0;
 
   // Of the frames decoded, those that are kept whole, evenly spread: what
