@@ -41,22 +41,46 @@ class Borrowed final : public vision::Clip {
 
 // What the windows that differ from the still picture tell before any outline
 // is fitted.
-struct Seen {
-  std::int64_t frames = 0;       // that show anything
-  std::int32_t lowest_px = -1;   // row that the strongest window reached,
-  std::int64_t lowest_from = 0;  // first in this frame
+class Seen {
+ public:
+  explicit Seen(std::int64_t least_run) : least_run_(least_run) {}
 
+  // The next frames.
   void Add(const vision::Clip& clip, std::int64_t first, std::int64_t last) {
     for (std::int64_t i = first; i < last; ++i) {
       const vision::Changes* changes = clip.ChangesIn(i);
-      if (changes == nullptr || changes->where.empty()) continue;
-      ++frames;
-      const core::PixelRect& strongest = changes->where.front();
-      if (strongest.y + strongest.height <= lowest_px) continue;
-      lowest_px = strongest.y + strongest.height;
-      lowest_from = i;
+      if (changes == nullptr || changes->where.empty()) {
+        run_ = 0;
+        continue;
+      }
+      const core::PixelRect& now = changes->where.front();
+      run_ = run_ > 0 && Overlap(now, before_) ? run_ + 1 : 1;
+      before_ = now;
+      if (run_ < least_run_) continue;
+      frames_ += run_ == least_run_ ? least_run_ : 1;
+      if (now.y + now.height <= lowest_px_) continue;
+      lowest_px_ = now.y + now.height;
+      lowest_from_ = i;
     }
   }
+
+  // In which something moves.
+  std::int64_t frames() const { return frames_; }
+  // First one in which it reached its lowest row of the picture.
+  std::int64_t lowest_from() const { return lowest_from_; }
+
+ private:
+  static bool Overlap(const core::PixelRect& a, const core::PixelRect& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
+           b.y < a.y + a.height;
+  }
+
+  std::int64_t least_run_;
+  core::PixelRect before_;
+  std::int64_t run_ = 0;
+  std::int64_t frames_ = 0;
+  std::int32_t lowest_px_ = -1;
+  std::int64_t lowest_from_ = 0;
 };
 
 // How far a rectangle's lowest face is from lying on the ground, px: what may
@@ -99,7 +123,7 @@ std::string ReasonAgainstStay(const Analysis& analysis, double contact_s,
 bool IsWithin(const core::Measured& fewer, const core::Measured& more,
               double most_u) {
   if (fewer.has_value() != more.has_value()) return false;
-  return !more || std::abs(fewer->value - more->value) <= most_u * more->u;
+  return !more || std::abs(fewer->value - more->value) <= most_u * fewer->u;
 }
 
 }  // namespace
@@ -190,11 +214,12 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
 
   const std::int64_t range = keep.last - keep.first;
   const std::int64_t piece = std::max(rule.least_piece, range / rule.pieces);
-  Seen seen;
+  Seen seen(rule.least_run);
   std::int64_t looked_at = 0;  // of the frames that show anything
   std::optional<Analysis> decided;
   for (std::int64_t end = keep.first + piece; end < keep.last; end += piece) {
-    if (frames->DecodedAgain() > rule.most_decoded_again ||
+    if (static_cast<double>(frames->DecodedAgain()) >
+            rule.most_decoded_again * static_cast<double>(range) ||
         !frames->GrowTo(end)) {
       break;
     }
@@ -203,13 +228,13 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
       options.progress(static_cast<double>(end - keep.first) /
                        static_cast<double>(range));
     }
-    const bool more = static_cast<double>(seen.frames) >=
+    const bool more = static_cast<double>(seen.frames()) >=
                       rule.growth * static_cast<double>(looked_at);
-    if (seen.frames < rule.least_after ||
-        end < seen.lowest_from + rule.least_after || !(decided || more)) {
+    if (seen.frames() < rule.least_after ||
+        end < seen.lowest_from() + rule.least_after || !(decided || more)) {
       continue;
     }
-    looked_at = seen.frames;
+    looked_at = seen.frames();
     if (!frames->HoldsAllChanges()) continue;
     AnalyzeOptions so_far = options;
     so_far.last_frame = end;

@@ -31,8 +31,8 @@ struct StopRule {
 
   // Frames that are decoded from the touchdown on, so that the flight after it
   // says when it was. More: touchdown and rebound are known better; fewer:
-  // sooner. 48: u is at most 1.5 times that of the whole flight, and answers
-  // are within one u of it (StopEarlyTest).
+  // sooner. 48: answers are within 2 u of those of the whole flight
+  // (StopEarlyTest).
   std::int64_t least_after = 48;
 
   // What stays down was seen for so many times as long as a body needs to rise
@@ -40,8 +40,9 @@ struct StopRule {
   double least_stay = 4.0;
 
   // Two analyses in a row, of fewer and of more frames, agree within so many u
-  // about time and angles.
-  double most_apart = 0.5;
+  // of the first about time and angles. 2: what is only noise parts them in one
+  // of twenty; what was taken for something else differs by far more.
+  double most_apart = 2.0;
 
   // Frames are decoded in so many pieces, each of at least so many frames: the
   // stop comes up to two pieces late.
@@ -52,9 +53,13 @@ struct StopRule {
   // as many frames that show anything: together they cost at most five times
   // the last.
   double growth = 1.25;
-  // Where analyses look where so many frames are not kept (no outline fits, and
-  // whole pictures are tried), decoding in pieces does not pay: all is decoded.
-  std::int64_t most_decoded_again = 16;
+  // Where analyses look where so many windows are not kept (no outline fits,
+  // and whole pictures are tried), decoding in pieces does not pay: all is
+  // decoded. Share of the range.
+  double most_decoded_again = 0.05;
+  // Something moves where the strongest windows of so many frames in a row
+  // overlap: noise of the compression is here and there.
+  std::int64_t least_run = 8;
 };
 
 // Why an analysis of the frames up to `end` is no reason to stop, in a

@@ -204,8 +204,8 @@ TEST(FrameStore, GrowsWithoutDecodingTwice) {
         EXPECT_TRUE(grown->HoldsAllChanges()) << end;
         const auto still = grown->StillFrames();
         EXPECT_GE(still.size(),
-                  std::min<std::size_t>(static_cast<std::size_t>(end), 24));
-        EXPECT_LE(still.size(), 48U);
+                  std::min<std::size_t>(static_cast<std::size_t>(end), 16));
+        EXPECT_LE(still.size(), 33U);
         EXPECT_LT(still.back(), end);
         EXPECT_NE(grown->ChangesIn(end - 1), nullptr);
         EXPECT_EQ(grown->ChangesIn(end), nullptr);
@@ -259,7 +259,7 @@ TEST(FrameStore, GrowsOnlyWhereThereIsRoom) {
   const Scene scene = testing::LongScene(600);
   std::map<std::int64_t, int> decoded;
   FrameStoreOptions options;
-  options.most_bytes = 320 * 160 * 60;
+  options.most_bytes = 320 * 160 * 45;
   const auto clip = GrowFrames(
       std::make_unique<testing::InGroups>(OpenScene(scene, 1), 40, decoded),
       options);

@@ -119,7 +119,7 @@ class WindowStore final : public GrowingClip {
     }
     // Some of it through this clip.
     AddReading(clip_->reading_s() - reading_s());
-    return !damaged_ && !(in_pieces && is_cramped_);
+    return !damaged_ && !(in_pieces && is_full_);
   }
 
   std::vector<std::int64_t> StillFrames() const override {
@@ -230,10 +230,9 @@ class WindowStore final : public GrowingClip {
     return !Scout(right, scout_).Differs(Scout(*still_, scout_));
   }
 
-  // What is left for windows beside the whole frames and the grid.
+  // What is left for windows beside the whole frames.
   std::size_t Room() const {
-    const std::size_t taken =
-        whole_.size() * FrameBytes(info()) + grid_.most * FrameBytes(info());
+    const std::size_t taken = whole_.size() * FrameBytes(info());
     return options_.most_bytes - std::min(options_.most_bytes, taken);
   }
 
@@ -247,15 +246,16 @@ class WindowStore final : public GrowingClip {
     bool Begun() const { return most > 0; }
   };
 
-  // False where so few frames would fit that a body leaves its ghost.
+  // False where so few frames would fit that a body leaves its ghost. They take
+  // a third more than all else: while the clip grows, a third of the frames
+  // that stay whole, those at its end, are not there yet.
   bool BeginGrid() {
-    constexpr std::size_t kMost = 48;  // at least half of it at any time
+    constexpr std::size_t kMost = 33;  // at least half of it at any time
     constexpr std::size_t kLeast = 16;
-    const std::size_t room = Room() / 2;  // the rest is for windows
-    const std::size_t fit = std::min(kMost, room / FrameBytes(info()));
+    const std::size_t fit =
+        std::min(kMost, options_.most_bytes / 3 / FrameBytes(info()));
     if (fit < kLeast || !whole_.contains(options_.first)) return false;
     grid_.most = fit;
-    left_bytes_ = Room();
     return true;
   }
 
@@ -290,16 +290,9 @@ class WindowStore final : public GrowingClip {
 
   // All is decoded: as if it had been at once.
   void Finish() {
-    if (grid_.Begun()) {
-      const std::set<std::int64_t> frames = std::move(grid_.frames);
-      grid_ = {};
-      if (is_cramped_) {
-        DecodeAgain();
-      } else {
-        left_bytes_ = options_.most_bytes;  // it fitted beside the grid
-        for (const std::int64_t index : frames) CutDown(index);
-      }
-    }
+    const std::set<std::int64_t> frames = std::move(grid_.frames);
+    grid_ = {};
+    for (const std::int64_t index : frames) CutDown(index);
     // What is still by all samples: a body that waits where the key frames
     // show it would not have been seen.
     Background right = StillPicture();
@@ -311,7 +304,6 @@ class WindowStore final : public GrowingClip {
   }
 
   void DecodeAgain() {
-    is_cramped_ = false;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       if (!whole_.contains(static_cast<std::int64_t>(i))) frames_[i] = {};
     }
@@ -403,15 +395,12 @@ class WindowStore final : public GrowingClip {
     for (const core::PixelRect& rect : where) {
       const core::Frame window = WindowOf(frame, rect);
       const std::size_t bytes = PixelBytes(window);
-      if (!held.empty() && bytes > share) {
-        is_cramped_ = true;
-        continue;
-      }
+      if (!held.empty() && bytes > share) continue;
       held.push_back(rect);
       share -= std::min(share, bytes);
       part_bytes -= std::min(part_bytes, bytes);
       if (!TakeRoom(bytes)) {  // it is read again
-        is_cramped_ = true;
+        is_full_ = true;
         continue;
       }
       kept.windows.emplace_back(window);
@@ -439,7 +428,7 @@ class WindowStore final : public GrowingClip {
   std::int64_t end_ = 0;                       // [first, end_) is decoded
   bool damaged_ = false;
   std::int64_t decoded_again_ = 0;
-  std::atomic<bool> is_cramped_ = false;  // not every window was kept
+  std::atomic<bool> is_full_ = false;  // a window was not kept
   std::atomic<std::size_t> left_bytes_ = 0;
   std::atomic<std::int64_t> done_ = 0;  // frames of this pass, by all readers
 };

@@ -54,7 +54,7 @@ class GrowingClip : public Clip {
 };
 
 // As KeepFrames, but nothing of the range is decoded yet: GrowTo does. Not for
-// raw clips. While it grows, up to 48 frames more are kept whole, and the still
+// raw clips. While it grows, 16 to 33 frames more are kept whole, and the still
 // picture is that of the key frames of the whole range: they are decoded first.
 std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
                                         const FrameStoreOptions& options = {});
