@@ -75,6 +75,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   if (flags.bounce_height_mm) {
     options.bounce_height_m = *flags.bounce_height_mm * core::kMillimetre;
   }
+  options.stop_early = flags.stop_early;
   return options;
 }
 
@@ -115,6 +116,10 @@ void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
   command.add_option("--bounce-height-mm", flags.bounce_height_mm,
                      "rising above it is what bounce means (default: the "
                      "larger of 0.5 mm and 2 % of the body's size)");
+  command.add_flag("--stop-early", flags.stop_early,
+                   "decode no further once the first contact's state is "
+                   "decided beyond doubt; what follows is not looked at (raw "
+                   "recordings are always looked at whole)");
 }
 
 }  // namespace touchdown::cli

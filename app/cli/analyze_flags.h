@@ -29,6 +29,7 @@ struct AnalyzeFlags {
   std::string region;
   std::string angle_kind;
   std::optional<double> bounce_height_mm;
+  bool stop_early = false;
 };
 
 void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags);

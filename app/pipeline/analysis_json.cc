@@ -295,6 +295,7 @@ std::string ToJson(const Analysis& analysis) {
   json["motion"] = MotionOf(writer, "motion.", first.motion);
   json["scene_model"] = {{"used", analysis.scene_model.used},
                          {"left_out", analysis.scene_model.left_out}};
+  if (analysis.stopped_at) json["stopped_at_frame"] = *analysis.stopped_at;
   json["warnings"] = analysis.warnings;
   json["timing_s"] = {{"total", analysis.timing.total_s},
                       {"open", analysis.timing.open_s},

@@ -99,6 +99,12 @@ std::string ToText(const Analysis& a) {
     Line(out, "later",
          fmt::format("{} more contacts (see --json)", a.contacts.later.size()));
   }
+  if (a.stopped_at) {
+    Line(out, "stopped",
+         fmt::format("at frame {} of {}: the state was decided, and what "
+                     "follows was not looked at",
+                     *a.stopped_at, a.clip.frames));
+  }
   for (const std::string& warning : a.warnings) Line(out, "warning", warning);
   Line(out, "time",
        fmt::format("{:.3f} s, {:.0f} frames/s", a.timing.total_s,

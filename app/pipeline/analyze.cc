@@ -6,19 +6,20 @@
 #include <chrono>
 #include <cmath>
 #include <future>
-#include <stdexcept>
 
 #include "app/pipeline/body_size.h"
+#include "app/pipeline/check_options.h"
 #include "app/pipeline/clip_calibration.h"
+#include "app/pipeline/footage.h"
 #include "app/pipeline/judge.h"
 #include "app/pipeline/options_hash.h"
+#include "app/pipeline/stop_early.h"
 #include "app/pipeline/truth_file.h"
 #include "app/pipeline/version.h"
 #include "touchdown/calib/ground_lines.h"
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/clip_digest.h"
 #include "touchdown/vision/frame_store.h"
-#include "touchdown/vision/steady_light.h"
 #include "touchdown/vision/tracker.h"
 
 namespace touchdown::pipeline {
@@ -28,38 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 double Since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-void RequirePositive(const char* field, const std::optional<double>& value) {
-  if (value && !(*value > 0.0 && std::isfinite(*value))) {
-    throw std::invalid_argument(
-        fmt::format("{} is {}, must be positive and finite", field, *value));
-  }
-}
-
-void RequirePositive(const char* field,
-                     const std::optional<core::Estimate>& value) {
-  if (value) RequirePositive(field, std::optional<double>(value->value));
-}
-
-std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
-  if (options.diameter_m && (options.long_m || options.short_m)) {
-    throw std::invalid_argument(
-        "both a diameter and sides are given; a body is a sphere or a "
-        "rectangle");
-  }
-  if (options.long_m.has_value() != options.short_m.has_value()) {
-    throw std::invalid_argument("a rectangle needs both sides");
-  }
-  std::optional<core::BodyKind> kind = options.body_kind;
-  if (options.diameter_m) kind = core::BodyKind::kSphere;
-  if (options.long_m) kind = core::BodyKind::kRectangle;
-  if (kind && options.body_kind && *kind != *options.body_kind) {
-    throw std::invalid_argument(
-        fmt::format("body is {}, but the size given is that of a {}",
-                    Name(*options.body_kind), Name(*kind)));
-  }
-  return kind;
 }
 
 struct Judged {
@@ -78,8 +47,14 @@ int Merit(const vision::ContactResult& result) {
 
 class Analyzer {
  public:
-  Analyzer(std::unique_ptr<vision::Clip> clip, const AnalyzeOptions& options)
-      : options_(options), clip_(std::move(clip)) {}
+  Analyzer(Footage footage, const ClipCalibration& camera,
+           const AnalyzeOptions& options)
+      : options_(options),
+        footage_(std::move(footage)),
+        clip_(std::move(footage_.clip)),
+        camera_(camera) {
+    result_.clip = footage_.info;
+  }
 
   Analysis Run();
 
@@ -102,14 +77,13 @@ class Analyzer {
   }
 
   const AnalyzeOptions& options_;
+  Footage footage_;  // but for the clip
   std::unique_ptr<vision::Clip> clip_;
   Analysis result_;
-  std::optional<double> light_spread_;  // relative, where it was taken out
-  bool light_told_ = true;
   vision::Background background_;
   vision::ContactOptions contact_options_;
   std::optional<core::Estimate> aspect_;  // short over long side, measured
-  ClipCalibration camera_;
+  const ClipCalibration& camera_;
   vision::TrackOptions track_options_;
   std::future<void> given_back_;  // the last: it uses the clip
 };
@@ -293,13 +267,14 @@ void Analyzer::DescribeScene() {
         : track.known_background ? "a shadow, a reflection or an uneven edge"
                                  : "the body never left its background";
   }
-  if (light_spread_) {
-    scene.used.push_back(
-        fmt::format("flicker of {:.1f} % taken out", 100.0 * *light_spread_));
+  if (footage_.light_spread) {
+    scene.used.push_back(fmt::format("flicker of {:.1f} % taken out",
+                                     100.0 * *footage_.light_spread));
   } else {
     scene.left_out["flicker"] =
-        light_told_ ? "the light is steady to 1 %"
-                    : "most of the picture is at full scale: not to be told";
+        footage_.light_told
+            ? "the light is steady to 1 %"
+            : "most of the picture is at full scale: not to be told";
   }
   if (result_.plane) {
     scene.used.push_back(result_.scale ? "free flight with known gravity"
@@ -313,29 +288,13 @@ void Analyzer::DescribeScene() {
 }
 
 Analysis Analyzer::Run() {
-  const auto start = Clock::now();
-  RequirePositive("fps", options_.fps);
-  RequirePositive("bounce height", options_.bounce_height_m);
-  RequirePositive("scale_px_per_m", options_.scale_px_per_m);
-  RequirePositive("diameter", options_.diameter_m);
-  RequirePositive("first side", options_.long_m);
-  RequirePositive("second side", options_.short_m);
   const std::optional<core::BodyKind> kind = KindOf(options_);
-
   result_.options_hash = OptionsHash(options_);
   result_.options = options_;
   result_.options.progress = nullptr;
-  result_.clip = clip_->info();
   result_.warnings = result_.clip.warnings;
-  const std::int64_t frames = result_.clip.frames;
   const std::int64_t last =
-      options_.last_frame < 0 ? frames : options_.last_frame;
-  if (options_.first_frame < 0 || options_.first_frame >= last ||
-      last > frames) {
-    throw std::invalid_argument(
-        fmt::format("frames is {}:{}, must be a range within 0:{}",
-                    options_.first_frame, last, frames));
-  }
+      options_.last_frame < 0 ? result_.clip.frames : options_.last_frame;
 
   if (options_.long_m) {
     const core::Body measured =
@@ -343,34 +302,9 @@ Analysis Analyzer::Run() {
     aspect_ = QuotientOf(*measured.short_m, *measured.long_m);
   }
 
-  const core::PixelRect& r = options_.region;
-  if (r.width > 0 &&
-      (r.x < 0 || r.y < 0 || r.width > result_.clip.width_px - r.x ||
-       r.height > result_.clip.height_px - r.y)) {
-    throw std::invalid_argument(fmt::format(
-        "region is {},{},{},{}, must lie within the {}x{} picture", r.x, r.y,
-        r.width, r.height, result_.clip.width_px, result_.clip.height_px));
-  }
-
-  camera_ = FitToClip(options_, result_.clip);
   result_.calibration = camera_.calibration;
   result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
                           camera_.warnings.end());
-  auto lap = Clock::now();
-  vision::SteadyLightOptions light_options;
-  light_options.threads = options_.decoder_threads;
-  vision::SteadyLight light = vision::SteadyLightOf(
-      std::move(clip_), options_.first_frame, last, light_options);
-  clip_ = std::move(light.clip);
-  light_told_ = light.told;
-  if (light.corrected) light_spread_ = light.spread;
-  vision::FrameStoreOptions store_options;
-  store_options.first = options_.first_frame;
-  store_options.last = last;
-  store_options.region = options_.region;
-  store_options.threads = options_.decoder_threads;
-  store_options.progress = options_.progress;
-  clip_ = vision::KeepFrames(std::move(clip_), store_options);
   vision::TrackOptions& track_options = track_options_;
   track_options.every_frame = false;
   track_options.first = options_.first_frame;
@@ -378,12 +312,13 @@ Analysis Analyzer::Run() {
   track_options.region = options_.region;
   track_options.kind = kind;
   track_options.ground = camera_.image_ground;
+  track_options.still_frames = footage_.still_frames;
   track_options.threads = options_.decoder_threads;
   track_options.progress = options_.progress;
   auto tracked = vision::TrackBody(*clip_, track_options);
-  result_.timing.track_s = Since(lap);
+  result_.timing.track_s = Since(footage_.begun);
 
-  lap = Clock::now();
+  const auto lap = Clock::now();
   if (!tracked) {
     result_.no_body_reason = tracked.error().reason;
     result_.no_ground_reason = "no body was found";
@@ -428,15 +363,11 @@ Analysis Analyzer::Run() {
     DescribeBudget(result_, contact_options_);
   }
   result_.timing.contact_s = Since(lap);
-  result_.timing.total_s = Since(start);
+  result_.timing.total_s = Since(footage_.begun);
   result_.timing.frames_per_s =
       static_cast<double>(last - options_.first_frame) / result_.timing.total_s;
   return result_;
 }
-
-}  // namespace
-
-namespace {
 
 bool OneBody(const Analysis& analysis) {
   return analysis.body && !analysis.track->several_bodies;
@@ -488,9 +419,23 @@ Analysis Analyze(const std::filesystem::path& path,
   return analysis;
 }
 
+Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,
+                        const AnalyzeOptions& options) {
+  return Analyzer(std::move(footage), camera, options).Run();
+}
+
 Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
                      const AnalyzeOptions& options) {
-  return Analyzer(std::move(clip), options).Run();
+  const vision::ClipInfo info = clip->info();
+  CheckOptions(options, info);
+  const ClipCalibration camera = FitToClip(options, info);
+  if (options.stop_early && info.format != kRawFormat) {
+    return AnalyzeUntilDecided(std::move(clip), camera, options);
+  }
+  Footage footage = InSteadyLight(std::move(clip), options);
+  footage.clip =
+      vision::KeepFrames(std::move(footage.clip), KeepOptionsOf(options, info));
+  return AnalyzeFootage(std::move(footage), camera, options);
 }
 
 }  // namespace touchdown::pipeline

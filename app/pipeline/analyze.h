@@ -41,6 +41,11 @@ struct AnalyzeOptions {
   std::int32_t decoder_threads = 0;            // as in vision::ClipOptions
   bool digest = true;  // clip.id, by which a logged trial knows its clip
 
+  // Frames that come after the first contact's state is decided beyond doubt
+  // (stop_early.h) are not looked at, nor decoded: contacts that follow are
+  // then those seen so far. Does nothing for raw clips.
+  bool stop_early = false;
+
   // Of the camera: its lens, and scale and ground where nothing else is given.
   // Its uncertainty enters every quantity. A clip that it does not fit is
   // refused.
@@ -86,6 +91,8 @@ struct Analysis {
   std::optional<vision::PlaneTrack> plane;
   SceneModel scene_model;
   std::vector<std::string> warnings;
+  // One past the last frame that was looked at, where that is not all.
+  std::optional<std::int64_t> stopped_at;
   Timing timing;
   AnalyzeOptions options;  // that it was made with
   std::string options_hash;

@@ -113,6 +113,7 @@ Json OptionsJson(const AnalyzeOptions& o) {
     json["calibration"] = Json::parse(calib::CalibrationText(*o.calibration));
   }
   if (o.crop) json["crop"] = {o.crop->x_px, o.crop->y_px};
+  if (o.stop_early) json["stop_early"] = true;
   return json;
 }
 
@@ -147,6 +148,7 @@ AnalyzeOptions OptionsOf(const Json& json) {
     o.crop = calib::SensorCorner{Int32(json["crop"].at(0), "crop"),
                                  Int32(json["crop"].at(1), "crop")};
   }
+  o.stop_early = Optional<bool>(json, "stop_early").value_or(false);
   return o;
 }
 
@@ -261,6 +263,10 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
                                .at("left_out")
                                .get<std::map<std::string, std::string>>();
   a.warnings = document.at("warnings").get<std::vector<std::string>>();
+  if (document.contains("stopped_at_frame")) {
+    a.stopped_at =
+        WholeNumber(document["stopped_at_frame"], "stopped_at_frame");
+  }
   if (document.contains("corrections")) {
     a.corrections = document["corrections"].get<std::vector<std::string>>();
   }

@@ -195,6 +195,26 @@ TEST(Background, RangesOutsideTheClipAreRefused) {
   }
 }
 
+TEST(Background, SamplesAreTakenAmongTheFramesAtHand) {
+  BackgroundOptions options;
+  options.samples = 4;
+  EXPECT_EQ(BackgroundFrames(0, 60, options), BackgroundFrames(0, 60, 4));
+  for (std::int64_t frame = 3; frame < 60; frame += 5) {
+    options.among.push_back(frame);
+  }
+  EXPECT_EQ(BackgroundFrames(0, 60, options),
+            (std::vector<std::int64_t>{3, 18, 43, 58}));
+  EXPECT_EQ(BackgroundFrames(10, 24, options),
+            (std::vector<std::int64_t>{13, 18, 23}));
+  // None of them is in the range: any of it.
+  EXPECT_EQ(BackgroundFrames(4, 7, options),
+            (std::vector<std::int64_t>{4, 5, 6}));
+  options.among = {7};
+  const auto clip = OpenScene(Moving({}), 1);
+  EXPECT_EQ(EstimateBackground(*clip, 0, 60, options).at(5, 5),
+            static_cast<float>(clip->Read(7).at(5, 5)));
+}
+
 TEST(Background, OneFrameIsABackgroundToo) {
   const auto clip = OpenScene(Moving({}), 1);
   const Background background = EstimateBackground(*clip, 7, 8);

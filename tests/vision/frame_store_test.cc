@@ -182,6 +182,92 @@ TEST(FrameStore, LongClipsAreDecodedOnce) {
   }
 }
 
+// Piece by piece a range is decoded as often as at once, no farther than asked
+// for but for the key frames, and what is kept in the end is the same.
+TEST(FrameStore, GrowsWithoutDecodingTwice) {
+  const Scene scene = testing::LongScene(600);
+  FrameStoreOptions options;
+  options.most_bytes = 320 * 160 * 300;
+  for (const std::int64_t group : {1, 40}) {
+    for (const std::int64_t piece : {group == 1 ? 75 : 17, 300}) {
+      SCOPED_TRACE(group * 1000 + piece);
+      std::map<std::int64_t, int> once;
+      std::map<std::int64_t, int> decoded;
+      const auto open = [&](std::map<std::int64_t, int>& count) {
+        return std::make_unique<testing::InGroups>(OpenScene(scene, 1), group,
+                                                   count);
+      };
+      const auto kept = KeepFrames(open(once), options);
+      const auto grown = GrowFrames(open(decoded), options);
+      for (std::int64_t end = piece; end < 600; end += piece) {
+        ASSERT_TRUE(grown->GrowTo(end));
+        EXPECT_TRUE(grown->HoldsAllChanges()) << end;
+        const auto still = grown->StillFrames();
+        EXPECT_GE(still.size(),
+                  std::min<std::size_t>(static_cast<std::size_t>(end), 16));
+        EXPECT_LE(still.size(), 33U);
+        EXPECT_LT(still.back(), end);
+        EXPECT_NE(grown->ChangesIn(end - 1), nullptr);
+        EXPECT_EQ(grown->ChangesIn(end), nullptr);
+        int beyond = 0;
+        for (const auto& [index, count] : decoded) beyond += index >= end;
+        EXPECT_LE(beyond, 33) << end;  // key frames
+      }
+      ASSERT_TRUE(grown->GrowTo(600));
+      EXPECT_TRUE(grown->StillFrames().empty());
+      int times = 0;
+      for (const auto& [index, count] : decoded) times += count;
+      EXPECT_LE(times, 600 + 33 + 3);
+      for (std::int64_t i = 0; i < 600; ++i) {
+        ASSERT_EQ(grown->ChangesIn(i)->where, kept->ChangesIn(i)->where) << i;
+        EXPECT_EQ(grown->ChangesIn(i)->noise, kept->ChangesIn(i)->noise);
+        for (const core::PixelRect& rect : kept->ChangesIn(i)->where) {
+          grown->Read(i, rect);
+        }
+      }
+      for (const std::int64_t i : BackgroundFrames(0, 600, 33)) {
+        grown->Read(i);
+      }
+      int again = 0;
+      for (const auto& [index, count] : decoded) again += count;
+      EXPECT_EQ(again, times);
+    }
+  }
+}
+
+// A body that stands where every key frame shows it is not among the changes:
+// that is said before anyone looks.
+TEST(FrameStore, SaysThatTheStillPictureHasAGhost) {
+  Scene scene = testing::LongScene(600);
+  const auto moves = scene.pose;
+  // It waits at the right from frame 100 on, in 12 of 15 key frames.
+  scene.pose = [moves](double t) {
+    return t < 0.1 ? ScenePose{{9.0, 9.0}, 0.0} : moves(0.500);
+  };
+  FrameStoreOptions options;
+  options.most_bytes = 320 * 160 * 300;
+  std::map<std::int64_t, int> decoded;
+  const auto clip = GrowFrames(
+      std::make_unique<testing::InGroups>(OpenScene(scene, 1), 40, decoded),
+      options);
+  ASSERT_TRUE(clip->GrowTo(120));
+  EXPECT_FALSE(clip->HoldsAllChanges());
+}
+
+// Too large to be kept piece by piece: said at once, and nothing is decoded.
+TEST(FrameStore, GrowsOnlyWhereThereIsRoom) {
+  const Scene scene = testing::LongScene(600);
+  std::map<std::int64_t, int> decoded;
+  FrameStoreOptions options;
+  options.most_bytes = 320 * 160 * 45;
+  const auto clip = GrowFrames(
+      std::make_unique<testing::InGroups>(OpenScene(scene, 1), 40, decoded),
+      options);
+  EXPECT_FALSE(clip->GrowTo(100));
+  EXPECT_TRUE(decoded.empty());
+  EXPECT_TRUE(clip->GrowTo(600));
+}
+
 // The answer is that of a clip whose every pixel can be looked at.
 TEST(FrameStore, WindowsAreEnough) {
   const Scene scene = testing::LongScene(600);

@@ -109,6 +109,21 @@ std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
   return frames;
 }
 
+std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
+                                           std::int64_t last,
+                                           const BackgroundOptions& options) {
+  const std::vector<std::int64_t>& among = options.among;
+  const auto begin = std::lower_bound(among.begin(), among.end(), first);
+  const auto end = std::lower_bound(begin, among.end(), last);
+  if (begin == end) return BackgroundFrames(first, last, options.samples);
+  std::vector<std::int64_t> frames;
+  for (const std::int64_t k :
+       BackgroundFrames(0, end - begin, options.samples)) {
+    frames.push_back(begin[k]);
+  }
+  return frames;
+}
+
 Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
                               const BackgroundOptions& options) {
   const ClipInfo& info = clip.info();
@@ -117,8 +132,7 @@ Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
         fmt::format("frames is {}:{}, must be a range within 0:{}", first, last,
                     info.frames));
   }
-  return BackgroundOf(clip, BackgroundFrames(first, last, options.samples),
-                      options);
+  return BackgroundOf(clip, BackgroundFrames(first, last, options), options);
 }
 
 Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,

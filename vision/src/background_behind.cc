@@ -184,7 +184,7 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
   Covers all;
   std::vector<Cover> doubtful;
   for (const std::int64_t index :
-       BackgroundFrames(first, last, options.samples)) {
+       BackgroundFrames(first, last, options)) {
     Cover cover = covers(index);
     if (!cover.known) {
       doubtful.push_back(std::move(cover));

@@ -359,6 +359,7 @@ BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options) {
   } else if (!IsLong(clip, options) && !clip.info().has_colour) {
     background.samples = kOfShort;
   }
+  background.among = options.still_frames;
   background.threads = options.threads;
   return background;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -28,14 +29,21 @@ core::PixelRect Whole(const ClipInfo& info) {
 
 // Every frame that is read is kept whole as long as there is room. Where frames
 // are stored one upon the other, those on the way are kept, too.
-class FrameStore final : public Clip {
+class FrameStore final : public GrowingClip {
  public:
-  FrameStore(std::unique_ptr<Clip> clip, std::size_t most_bytes)
+  FrameStore(std::unique_ptr<Clip> clip, std::int64_t last,
+             std::size_t most_bytes)
       : clip_(std::move(clip)),
+        last_(last),
         left_bytes_(most_bytes),
         kept_(static_cast<std::size_t>(clip_->info().frames)) {}
 
   const ClipInfo& info() const override { return clip_->info(); }
+  // It decodes when it is asked for a frame.
+  bool GrowTo(std::int64_t last) override { return last >= last_; }
+  std::vector<std::int64_t> StillFrames() const override { return {}; }
+  bool HoldsAllChanges() override { return true; }
+  std::int64_t DecodedAgain() const override { return decoded_again_; }
 
  private:
   KeptPixels& KeptOf(std::int64_t index) {
@@ -65,43 +73,69 @@ class FrameStore final : public Clip {
         // It is for whoever asks for that frame.
       }
     }
-    if (!Keep(index)) return clip_->Read(index, window);
+    if (!Keep(index)) {
+      ++decoded_again_;
+      return clip_->Read(index, window);
+    }
     return KeptOf(index).View(window);
   }
 
   std::unique_ptr<Clip> clip_;
+  std::int64_t last_;
   std::size_t left_bytes_;
   std::vector<KeptPixels> kept_;
+  std::int64_t decoded_again_ = 0;
 };
 
 // Windows of all frames of a range, and some frames whole.
-class WindowStore final : public Clip {
+class WindowStore final : public GrowingClip {
  public:
   WindowStore(std::unique_ptr<Clip> clip, FrameStoreOptions options)
       : clip_(std::move(clip)), options_(std::move(options)) {
     const std::int64_t frames = clip_->info().frames;
     options_.last = options_.last < 0 ? frames : options_.last;
+    end_ = options_.first;
     frames_.resize(static_cast<std::size_t>(frames));
     ChooseWholeFrames();
+    left_bytes_ = Room();
     scout_.region = options_.region;
     scout_.margin_cells = kMargin;
+  }
+
+  bool GrowTo(std::int64_t last) override {
+    last = std::min(last, options_.last);
+    const bool in_pieces = last < options_.last;
+    if (last <= end_ || damaged_) return !damaged_;
+    if (in_pieces && !grid_.Begun() && !BeginGrid()) return false;
     try {
-      const Background still = KeyPicture();
-      Decode(still);
-      // What is still by all samples: a body that waits where the key frames
-      // show it would not have been seen.
-      const Background right = StillPicture();
-      if (Scout(right, scout_).Differs(Scout(still, scout_))) {
-        scout_.always.clear();
-        Decode(right);
-      }
+      if (!still_) still_ = KeyPicture();
+      if (in_pieces) WidenGrid(last);
+      Decode(last);
+      if (!in_pieces) Finish();
     } catch (const core::InputError&) {
-      // Damaged: what was kept is right; the frame is read again by whoever
-      // asks for it, and says then what is wrong.
+      // What was kept is right; the frame is read again by whoever asks for
+      // it, and says then what is wrong.
+      damaged_ = true;
     }
     // Some of it through this clip.
     AddReading(clip_->reading_s() - reading_s());
+    return !damaged_ && !(in_pieces && is_full_);
   }
+
+  std::vector<std::int64_t> StillFrames() const override {
+    if (damaged_) return {};
+    return {grid_.frames.begin(), grid_.frames.end()};
+  }
+
+  bool HoldsAllChanges() override {
+    if (!still_) return false;
+    BackgroundOptions background;
+    background.among = StillFrames();
+    background.threads = options_.threads;
+    return IsRight(EstimateBackground(*this, options_.first, end_, background));
+  }
+
+  std::int64_t DecodedAgain() const override { return decoded_again_; }
 
   const ClipInfo& info() const override { return clip_->info(); }
   std::int64_t EntryFrame(std::int64_t index) const override {
@@ -128,6 +162,7 @@ class WindowStore final : public Clip {
          frames_[static_cast<std::size_t>(index)].windows) {
       if (kept.Holds(window)) return kept.View(window);
     }
+    if (index < end_) ++decoded_again_;
     return clip_->Read(index, window);
   }
 
@@ -191,44 +226,125 @@ class WindowStore final : public Clip {
     return EstimateBackground(*this, options_.first, options_.last, background);
   }
 
-  // One pass over the range. Where frames are stored alone, in parts that do
-  // not depend on the number of threads.
-  void Decode(const Background& still) {
-    const Scout scout(still, scout_);
+  bool IsRight(const Background& right) const {
+    return !Scout(right, scout_).Differs(Scout(*still_, scout_));
+  }
+
+  // What is left for windows beside the whole frames.
+  std::size_t Room() const {
+    const std::size_t taken = whole_.size() * FrameBytes(info());
+    return options_.most_bytes - std::min(options_.most_bytes, taken);
+  }
+
+  // Frames kept whole while the clip grows, evenly over what was decoded, so
+  // that a background can be made of them wherever it stops: where there are
+  // too many, every second one is cut down to its windows.
+  struct Grid {
+    std::size_t most = 0;  // frames; 0: not begun
+    std::int64_t step = 1;
+    std::set<std::int64_t> frames;
+    bool Begun() const { return most > 0; }
+  };
+
+  // False where so few frames would fit that a body leaves its ghost. They take
+  // a third more than all else: while the clip grows, a third of the frames
+  // that stay whole, those at its end, are not there yet.
+  bool BeginGrid() {
+    constexpr std::size_t kMost = 33;  // at least half of it at any time
+    constexpr std::size_t kLeast = 16;
+    const std::size_t fit =
+        std::min(kMost, options_.most_bytes / 3 / FrameBytes(info()));
+    if (fit < kLeast || !whole_.contains(options_.first)) return false;
+    grid_.most = fit;
+    return true;
+  }
+
+  void WidenGrid(std::int64_t last) {
+    const std::int64_t frames = last - options_.first;
+    while ((frames + grid_.step - 1) / grid_.step >
+           static_cast<std::int64_t>(grid_.most)) {
+      grid_.step *= 2;
+    }
+    std::erase_if(grid_.frames, [this](std::int64_t index) {
+      const bool drop = (index - options_.first) % grid_.step != 0;
+      if (drop) CutDown(index);
+      return drop;
+    });
+    const std::int64_t past =
+        (end_ - options_.first + grid_.step - 1) / grid_.step * grid_.step;
+    for (std::int64_t i = options_.first + past; i < last; i += grid_.step) {
+      grid_.frames.insert(i);
+    }
+  }
+
+  // To its windows, unless it stays whole all the same.
+  void CutDown(std::int64_t index) {
+    if (whole_.contains(index)) return;
+    Kept& kept = frames_[static_cast<std::size_t>(index)];
+    const std::vector<KeptPixels> whole = std::move(kept.windows);
+    kept.windows.clear();
+    std::size_t bytes = left_bytes_;
+    KeepWindows(whole.front().View(), bytes,
+                std::max<std::int64_t>(1, options_.last - end_), kept);
+  }
+
+  // All is decoded: as if it had been at once.
+  void Finish() {
+    const std::set<std::int64_t> frames = std::move(grid_.frames);
+    grid_ = {};
+    for (const std::int64_t index : frames) CutDown(index);
+    // What is still by all samples: a body that waits where the key frames
+    // show it would not have been seen.
+    Background right = StillPicture();
+    if (!IsRight(right)) {
+      scout_.always.clear();
+      still_ = std::move(right);
+      DecodeAgain();
+    }
+  }
+
+  void DecodeAgain() {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       if (!whole_.contains(static_cast<std::int64_t>(i))) frames_[i] = {};
     }
-    const std::size_t whole_bytes = whole_.size() * FrameBytes(info());
-    const std::size_t room =
-        options_.most_bytes - std::min(options_.most_bytes, whole_bytes);
-    left_bytes_ = room;
+    left_bytes_ = Room();
     done_ = 0;
-    const std::int64_t frames = options_.last - options_.first;
+    end_ = options_.first;
+    Decode(options_.last);
+  }
+
+  // On from end_. Where frames are stored alone, in parts that do not depend on
+  // the number of threads.
+  void Decode(std::int64_t last) {
+    const Scout scout(*still_, scout_);
+    const std::int64_t first = end_;
+    const std::int64_t frames = last - first;
+    const std::size_t room = left_bytes_ * static_cast<std::size_t>(frames) /
+                             static_cast<std::size_t>(options_.last - first);
     std::int64_t parts = 1;
-    std::vector<std::unique_ptr<Clip>> others;
     if (AreStoredAlone()) {
       parts = 16;  // enough for the cores of a workstation
       const auto readers =
           std::min<std::int64_t>(core::ThreadsOf(options_.threads), parts);
-      while (static_cast<std::int64_t>(others.size()) + 1 < readers) {
+      while (static_cast<std::int64_t>(others_.size()) + 1 < readers) {
         auto other = clip_->Another();
         if (!other) break;
-        others.push_back(std::move(other));
+        others_.push_back(std::move(other));
       }
     }
     std::atomic<std::size_t> next = 0;
-    core::InParallel(parts, static_cast<int>(others.size()) + 1,
+    core::InParallel(parts, static_cast<int>(others_.size()) + 1,
                      [&](std::int64_t from, std::int64_t to) {
                        const std::size_t mine = next++;
-                       Clip& clip = mine == 0 ? *clip_ : *others[mine - 1];
+                       Clip& clip = mine == 0 ? *clip_ : *others_[mine - 1];
                        for (std::int64_t part = from; part < to; ++part) {
-                         DecodePart(
-                             clip, scout,
-                             {options_.first + part * frames / parts,
-                              options_.first + (part + 1) * frames / parts,
-                              room / static_cast<std::size_t>(parts)});
+                         DecodePart(clip, scout,
+                                    {first + part * frames / parts,
+                                     first + (part + 1) * frames / parts,
+                                     room / static_cast<std::size_t>(parts)});
                        }
                      });
+    end_ = last;
   }
 
   bool AreStoredAlone() const {
@@ -255,7 +371,7 @@ class WindowStore final : public Clip {
       kept.changes = scout.Look(frame);
       kept.seen = true;
       if (!is_here) {
-        if (whole_.contains(index)) {
+        if (whole_.contains(index) || grid_.frames.contains(index)) {
           kept.windows.emplace_back(frame);
         } else {
           KeepWindows(frame, part.bytes, part.last - index, kept);
@@ -283,7 +399,10 @@ class WindowStore final : public Clip {
       held.push_back(rect);
       share -= std::min(share, bytes);
       part_bytes -= std::min(part_bytes, bytes);
-      if (!TakeRoom(bytes)) continue;  // it is read again
+      if (!TakeRoom(bytes)) {  // it is read again
+        is_full_ = true;
+        continue;
+      }
       kept.windows.emplace_back(window);
     }
     where = std::move(held);
@@ -302,25 +421,40 @@ class WindowStore final : public Clip {
   FrameStoreOptions options_;
   ScoutOptions scout_;
   std::set<std::int64_t> whole_;
+  Grid grid_;
+  std::optional<Background> still_;  // that windows differ from
   std::vector<Kept> frames_;
+  std::vector<std::unique_ptr<Clip>> others_;  // readers beside clip_
+  std::int64_t end_ = 0;                       // [first, end_) is decoded
+  bool damaged_ = false;
+  std::int64_t decoded_again_ = 0;
+  std::atomic<bool> is_full_ = false;  // a window was not kept
   std::atomic<std::size_t> left_bytes_ = 0;
   std::atomic<std::int64_t> done_ = 0;  // frames of this pass, by all readers
 };
 
 }  // namespace
 
-std::unique_ptr<Clip> KeepFrames(std::unique_ptr<Clip> clip,
-                                 const FrameStoreOptions& options) {
+std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
+                                        const FrameStoreOptions& options) {
   const ClipInfo& info = clip->info();
-  if (info.format == "mraw") return clip;
   const std::int64_t last = options.last < 0 ? info.frames : options.last;
   const auto frames = static_cast<std::size_t>(last - options.first);
   // A few frames are decoded again rather than looked at for windows.
   constexpr std::size_t kFew = 100;
   if (frames <= kFew || FrameBytes(info) <= options.most_bytes / frames) {
-    return std::make_unique<FrameStore>(std::move(clip), options.most_bytes);
+    return std::make_unique<FrameStore>(std::move(clip), last,
+                                        options.most_bytes);
   }
   return std::make_unique<WindowStore>(std::move(clip), options);
+}
+
+std::unique_ptr<Clip> KeepFrames(std::unique_ptr<Clip> clip,
+                                 const FrameStoreOptions& options) {
+  if (clip->info().format == "mraw") return clip;
+  auto kept = GrowFrames(std::move(clip), options);
+  kept->GrowTo(kept->info().frames);
+  return kept;
 }
 
 }  // namespace touchdown::vision

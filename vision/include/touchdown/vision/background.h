@@ -17,12 +17,19 @@ struct BackgroundOptions {
   // ghost. 33 keeps the background's variance under 5 % of a frame's.
   int samples = 33;
 
+  // Not empty: samples are taken evenly from these frames, in order, where any
+  // of them is in the range: those that a clip has at hand whole.
+  std::vector<std::int64_t> among = {};
+
   int threads = 0;  // 0: one for each core; affects speed only
 };
 
 // The frames of [first, last) that are sampled.
 std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
                                            std::int64_t last, int samples);
+std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
+                                           std::int64_t last,
+                                           const BackgroundOptions& options);
 
 // Frames are gray; levels in DN (the file's own numbers).
 struct Background {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "touchdown/core/points.h"
 #include "touchdown/vision/clip.h"
@@ -29,6 +30,34 @@ struct FrameStoreOptions {
   // Called now and then with the share done, 0..1; may be empty.
   std::function<void(double)> progress;
 };
+
+// A clip of which frames are decoded as far as they are wanted.
+class GrowingClip : public Clip {
+ public:
+  // Decodes on, in order, so that [first, last) is at hand; what was decoded is
+  // not decoded again. With all of the range it is what KeepFrames gives.
+  // False: only all of the range is of use, because a frame is damaged, because
+  // pictures or body are too large to be kept, or because the clip is so small
+  // that it is kept whole: a second look costs more than decoding.
+  virtual bool GrowTo(std::int64_t last) = 0;
+
+  // Of the frames decoded, those that are kept whole, evenly spread: what
+  // backgrounds are made of. Empty: all are.
+  virtual std::vector<std::int64_t> StillFrames() const = 0;
+
+  // Whether what is kept holds all that differs from the still picture of
+  // StillFrames. False: the provisional still picture has a ghost.
+  virtual bool HoldsAllChanges() = 0;
+
+  // How often a frame that had been decoded was asked for where it is not kept.
+  virtual std::int64_t DecodedAgain() const = 0;
+};
+
+// As KeepFrames, but nothing of the range is decoded yet: GrowTo does. Not for
+// raw clips. While it grows, 16 to 33 frames more are kept whole, and the still
+// picture is that of the key frames of the whole range: they are decoded first.
+std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
+                                        const FrameStoreOptions& options = {});
 
 // A clip that hands out the same frames as `clip`. Raw clips, which are mapped
 // into memory, are returned as they are. A clip whose pictures all fit is kept

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/expected.h"
@@ -45,6 +46,10 @@ struct TrackOptions {
   // is seen whole and not colour video (whose frames repeat each other): a slow
   // body is in fewer of them at any pixel.
   int background_samples = 0;
+
+  // Not empty: the frames that backgrounds may be made of
+  // (BackgroundOptions::among).
+  std::vector<std::int64_t> still_frames = {};
 
   // False: of a raw clip that was looked at every so many frames, the frames of
   // a smooth path are left to Refine (Track::step). Near blows, at both ends
