@@ -183,8 +183,7 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
   std::vector<std::int64_t> frames;
   Covers all;
   std::vector<Cover> doubtful;
-  for (const std::int64_t index :
-       BackgroundFrames(first, last, options)) {
+  for (const std::int64_t index : BackgroundFrames(first, last, options)) {
     Cover cover = covers(index);
     if (!cover.known) {
       doubtful.push_back(std::move(cover));
