@@ -241,16 +241,16 @@ bool IsWellModelled(const Track& track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
-// Where outlines explain the body badly and it shows in parts, or stands out by
-// its levels alone, it may be a part of what moves as one. Not a ball: what
-// moves with it is its shadow.
+// Where outlines explain the body badly, it may be a part of what moves as one.
+// Not a disc that stands out by its levels alone: what moves with a ball before
+// an unknown background is its shadow.
 void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
                  TrackResult& result, double& whole_px) {
   Track& track = result.track;
-  const bool in_parts =
-      whole_px > 0.0 || look.surround != Surround::kBackground;
-  if (!in_parts || track.body.kind != core::BodyKind::kRectangle ||
-      IsWellModelled(track) || !IsSteady(track) || look.found.step > 1) {
+  const bool ball_by_levels = track.body.kind == core::BodyKind::kSphere &&
+                              look.surround != Surround::kBackground;
+  if (ball_by_levels || IsWellModelled(track) || !IsSteady(track) ||
+      look.found.step > 1) {
     return;
   }
   auto whole = FindWhole(clip, result.background, track, options);
