@@ -211,6 +211,10 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
               fmt::format("the visible edge is not the ground ({}); the "
                           "contact points tell where it is",
                           best->contacts.ground_refuted));
+        } else if (!candidates.empty()) {
+          result_.warnings.emplace_back(
+              "no visible edge is the ground (the body passes below each); the "
+              "contact points tell where it is");
         }
         best = std::move(judged);
         best_merit = 2;
@@ -220,8 +224,8 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
   TakeSize(best ? best->track : track);
   if (!best) {
     result_.no_ground_reason =
-        "no straight edge was found, and the body shows no rebound; give "
-        "--ground X1,Y1,X2,Y2";
+        "no straight edge was found that the body stays above, and it shows no "
+        "rebound; give --ground X1,Y1,X2,Y2";
     result_.contacts.first.contact.reason = "the ground is not known";
     result_.contacts.first.state.reason = "the ground is not known";
     result_.plane = std::nullopt;

@@ -47,13 +47,19 @@ TEST(Footage, ABacklitSphereThatHasNotLandedHasNoContact) {
   EXPECT_NEAR(calib::ImageAngle(*a.ground) / kDegree, 0.30, 0.1);
 }
 
-TEST(Footage, AProjectileWithoutAFilmedReboundIsUndecided) {
-  const auto path = Clip("galileo_projectile.mp4");
-  SKIP_WITHOUT(path);
+// With the scale and the floor as they are known.
+AnalyzeOptions OfProjectile() {
   AnalyzeOptions options;
   options.fps = 30.0;
   options.scale_px_per_m = core::Estimate{318.3, 0.3};
   options.ground = calib::GroundThrough({0, 440}, {640, 440});
+  return options;
+}
+
+TEST(Footage, AProjectileWithoutAFilmedReboundIsUndecided) {
+  const auto path = Clip("galileo_projectile.mp4");
+  SKIP_WITHOUT(path);
+  AnalyzeOptions options = OfProjectile();
   options.first_frame = 17;
   options.last_frame = 33;
   const Analysis a = Analyze(path, options);
@@ -77,11 +83,7 @@ TEST(Footage, AProjectileWithoutAFilmedReboundIsUndecided) {
 TEST(Footage, AProjectileIsFollowedFromTheRailOn) {
   const auto path = Clip("galileo_projectile.mp4");
   SKIP_WITHOUT(path);
-  AnalyzeOptions options;
-  options.fps = 30.0;
-  options.scale_px_per_m = core::Estimate{318.3, 0.3};
-  options.ground = calib::GroundThrough({0, 440}, {640, 440});
-  const Analysis a = Analyze(path, options);
+  const Analysis a = Analyze(path, OfProjectile());
   ASSERT_TRUE(a.body);
   EXPECT_EQ(a.body->kind, core::BodyKind::kSphere);
   const core::ContactRecord& first = a.contacts.first;

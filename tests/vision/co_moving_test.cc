@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/vision/drawn_clip.h"
 #include "touchdown/vision/clip.h"
 
 namespace touchdown::vision {
@@ -19,40 +20,21 @@ core::PixelPoint CentreAt(std::int64_t frame) {
 }
 
 // A dark square passes before stripes that stand upright.
-class Drawn : public Clip {
- public:
-  Drawn() {
-    info_.width_px = kSize_px;
-    info_.height_px = kSize_px;
-    info_.frames = kFrames;
-    info_.time_base.fps = 100.0;
-  }
-  const ClipInfo& info() const override { return info_; }
-
- private:
-  core::Frame ReadWindow(std::int64_t index,
-                         const core::PixelRect& window) override {
-    pixels_.clear();
-    const core::PixelPoint c = CentreAt(index);
-    for (int y = window.y; y < window.y + window.height; ++y) {
-      for (int x = window.x; x < window.x + window.width; ++x) {
-        const bool body = std::abs(x - c.x_px) <= kHalf_px &&
-                          std::abs(y - c.y_px) <= kHalf_px;
-        const double wall = y < 30 ? 150.0 : 150.0 + 40.0 * std::sin(0.4 * x);
-        pixels_.push_back(
-            static_cast<std::byte>(body ? 30 : std::lround(wall)));
-      }
+void DrawFrame(std::int64_t index, std::vector<double>& levels) {
+  const core::PixelPoint c = CentreAt(index);
+  for (int y = 0; y < kSize_px; ++y) {
+    for (int x = 0; x < kSize_px; ++x) {
+      const bool body =
+          std::abs(x - c.x_px) <= kHalf_px && std::abs(y - c.y_px) <= kHalf_px;
+      const double wall = y < 30 ? 150.0 : 150.0 + 40.0 * std::sin(0.4 * x);
+      levels.push_back(body ? 30.0 : wall);
     }
-    core::Frame frame;
-    frame.data = pixels_.data();
-    frame.stride_bytes = window.width;
-    frame.width_px = window.width;
-    frame.height_px = window.height;
-    return frame;
   }
+}
 
-  ClipInfo info_;
-  std::vector<std::byte> pixels_;
+class Drawn : public synthetic::DrawnClip {
+ public:
+  Drawn() : DrawnClip(kSize_px, kSize_px, kFrames, 100.0, DrawFrame) {}
 };
 
 Track Path() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/statistics.h"
+#include "tests/vision/drawn_clip.h"
 #include "touchdown/vision/clip.h"
 
 namespace touchdown::vision {
@@ -89,7 +90,7 @@ Pose TrueAt(const Film& film, std::int64_t frame) {
   Pose pose;
   const auto f = static_cast<double>(frame);
   pose.frame = frame;
-  pose.time_s = 1e-3 * f;
+  pose.time_s = f / 1000.0;
   pose.centre.x_px = 30.0 + film.speed_px * f + 0.5 * film.faster_px * f * f;
   pose.centre.y_px = RampAt(pose.centre.x_px) - film.above_px;
   if (frame > 16 && frame < 24) pose.centre.y_px -= film.hop_px;
@@ -97,62 +98,38 @@ Pose TrueAt(const Film& film, std::int64_t frame) {
   return pose;
 }
 
-class Drawn : public Clip {
- public:
-  Drawn(const Film& film, std::uint64_t seed) : film_(film), seed_(seed) {
-    info_.width_px = kWidth_px;
-    info_.height_px = kHeight_px;
-    info_.frames = film.frames;
-    info_.time_base.fps = 1000.0;
-  }
-  const ClipInfo& info() const override { return info_; }
-
- private:
-  core::Frame ReadWindow(std::int64_t index,
-                         const core::PixelRect& window) override {
-    if (index != drawn_) Draw(index);
-    core::Frame frame;
-    frame.data = pixels_.data() + window.y * kWidth_px + window.x;
-    frame.stride_bytes = kWidth_px;
-    frame.width_px = window.width;
-    frame.height_px = window.height;
-    frame.time_s = TrueAt(film_, index).time_s;
-    return frame;
-  }
-
-  void Draw(std::int64_t index) {
-    std::mt19937_64 engine(seed_ + static_cast<std::uint64_t>(index));
-    std::normal_distribution<double> noise(0.0, kNoise_dn);
-    const Pose pose = TrueAt(film_, index);
-    const double angle = pose.angle_rad != 0.0
-                             ? pose.angle_rad
-                             : (pose.centre.x_px - 30.0) / 15.0;
-    pixels_.clear();
-    for (int y = 0; y < kHeight_px; ++y) {
-      for (int x = 0; x < kWidth_px; ++x) {
-        const double right = x - pose.centre.x_px;
-        const double down = y - pose.centre.y_px;
-        const double cover = 1.0 - film_.look(right, down, angle, 1.0) +
-                             film_.look(right, down, angle, 0.0);
-        const double light =
-            film_.light_rises_dn *
-            (static_cast<double>(index) / static_cast<double>(kFrames) - 0.5) *
-            -down / 13.0;
-        const double level =
-            film_.look(right, down, angle, BackgroundAt(x, y)) + cover * light +
-            noise(engine);
-        pixels_.push_back(
-            static_cast<std::byte>(std::lround(std::clamp(level, 0.0, 255.0))));
-      }
+void DrawFrame(const Film& film, std::uint64_t seed, std::int64_t index,
+               std::vector<double>& levels) {
+  std::mt19937_64 engine(seed + static_cast<std::uint64_t>(index));
+  std::normal_distribution<double> noise(0.0, kNoise_dn);
+  const Pose pose = TrueAt(film, index);
+  const double angle =
+      pose.angle_rad != 0.0 ? pose.angle_rad : (pose.centre.x_px - 30.0) / 15.0;
+  for (int y = 0; y < kHeight_px; ++y) {
+    for (int x = 0; x < kWidth_px; ++x) {
+      const double right = x - pose.centre.x_px;
+      const double down = y - pose.centre.y_px;
+      const double cover = 1.0 - film.look(right, down, angle, 1.0) +
+                           film.look(right, down, angle, 0.0);
+      const double light =
+          film.light_rises_dn *
+          (static_cast<double>(index) / static_cast<double>(kFrames) - 0.5) *
+          -down / 13.0;
+      const double level = film.look(right, down, angle, BackgroundAt(x, y)) +
+                           cover * light + noise(engine);
+      levels.push_back(level);
     }
-    drawn_ = index;
   }
+}
 
-  Film film_;
-  std::uint64_t seed_;
-  ClipInfo info_;
-  std::int64_t drawn_ = -1;
-  std::vector<std::byte> pixels_;
+class Drawn : public synthetic::DrawnClip {
+ public:
+  Drawn(const Film& film, std::uint64_t seed)
+      : DrawnClip(
+            kWidth_px, kHeight_px, film.frames, 1000.0,
+            [film, seed](std::int64_t frame, std::vector<double>& levels) {
+              DrawFrame(film, seed, frame, levels);
+            }) {}
 };
 
 Background Behind() {

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/vision/drawn_clip.h"
 #include "touchdown/vision/clip.h"
 
 namespace touchdown::vision {
@@ -44,7 +45,7 @@ Pose TrueAt(const Film& film, std::int64_t frame) {
   Pose pose;
   const auto f = static_cast<double>(std::min(frame, kFrames - film.stay));
   pose.frame = frame;
-  pose.time_s = 1e-3 * static_cast<double>(frame);
+  pose.time_s = static_cast<double>(frame) / 1000.0;
   pose.centre.x_px = 40.0 + 3.6 * f;
   pose.centre.y_px =
       RampAt(pose.centre.x_px) - kHalfShort_px / std::cos(kInclined_rad);
@@ -63,59 +64,37 @@ double BodyOver(const Film& film, double u, double v, double behind_dn) {
   return behind_dn + bar * (level - behind_dn);
 }
 
-class Drawn : public Clip {
- public:
-  Drawn(const Film& film, std::uint64_t seed) : film_(film), seed_(seed) {
-    info_.width_px = kWidth_px;
-    info_.height_px = kHeight_px;
-    info_.frames = kFrames;
-    info_.time_base.fps = 1000.0;
-  }
-  const ClipInfo& info() const override { return info_; }
-
- private:
-  core::Frame ReadWindow(std::int64_t index,
-                         const core::PixelRect& window) override {
-    if (index != drawn_) Draw(index);
-    core::Frame frame;
-    frame.data = pixels_.data() + window.y * kWidth_px + window.x;
-    frame.stride_bytes = kWidth_px;
-    frame.width_px = window.width;
-    frame.height_px = window.height;
-    frame.time_s = TrueAt(film_, index).time_s;
-    return frame;
-  }
-
-  void Draw(std::int64_t index) {
-    std::mt19937_64 engine(seed_ + static_cast<std::uint64_t>(index));
-    std::normal_distribution<double> noise(0.0, kNoise_dn);
-    const Pose pose = TrueAt(film_, index);
-    const double cosine = std::cos(pose.angle_rad);
-    const double sine = std::sin(pose.angle_rad);
-    pixels_.clear();
-    for (int y = 0; y < kHeight_px; ++y) {
-      for (int x = 0; x < kWidth_px; ++x) {
-        const double dx = x - pose.centre.x_px;
-        const double dy = y - pose.centre.y_px;
-        const double u = dx * cosine + dy * sine;
-        const double v = dy * cosine - dx * sine;
-        double level = BodyOver(film_, u, v, BackgroundAt(x, y));
-        if (film_.reflects) {
-          level = BodyOver(film_, u, 2.0 * kHalfShort_px - v, level);
-        }
-        level += noise(engine);
-        pixels_.push_back(
-            static_cast<std::byte>(std::lround(std::clamp(level, 0.0, 255.0))));
+void DrawFrame(const Film& film, std::uint64_t seed, std::int64_t index,
+               std::vector<double>& levels) {
+  std::mt19937_64 engine(seed + static_cast<std::uint64_t>(index));
+  std::normal_distribution<double> noise(0.0, kNoise_dn);
+  const Pose pose = TrueAt(film, index);
+  const double cosine = std::cos(pose.angle_rad);
+  const double sine = std::sin(pose.angle_rad);
+  for (int y = 0; y < kHeight_px; ++y) {
+    for (int x = 0; x < kWidth_px; ++x) {
+      const double dx = x - pose.centre.x_px;
+      const double dy = y - pose.centre.y_px;
+      const double u = dx * cosine + dy * sine;
+      const double v = dy * cosine - dx * sine;
+      double level = BodyOver(film, u, v, BackgroundAt(x, y));
+      if (film.reflects) {
+        level = BodyOver(film, u, 2.0 * kHalfShort_px - v, level);
       }
+      level += noise(engine);
+      levels.push_back(level);
     }
-    drawn_ = index;
   }
+}
 
-  Film film_;
-  std::uint64_t seed_;
-  ClipInfo info_;
-  std::int64_t drawn_ = -1;
-  std::vector<std::byte> pixels_;
+class Drawn : public synthetic::DrawnClip {
+ public:
+  Drawn(const Film& film, std::uint64_t seed)
+      : DrawnClip(
+            kWidth_px, kHeight_px, kFrames, 1000.0,
+            [film, seed](std::int64_t frame, std::vector<double>& levels) {
+              DrawFrame(film, seed, frame, levels);
+            }) {}
 };
 
 Background Noise() {

@@ -9,9 +9,10 @@
 namespace touchdown::vision {
 
 // The same body followed by its pattern (pattern.h), in all frames where it is
-// found; Track::patterned then. Where nothing is gained, or it is no matter for
-// a pattern, the track as it was: well modelled, of changing size, before an
-// unknown background, not fitted in every frame, in fewer than 8 frames.
+// found; Track::patterned then. Where that tells clearly less of the path, or
+// it is no matter for a pattern, the track as it was: not crudely modelled
+// (kCrude), of changing size, before an unknown background, not fitted in every
+// frame, in fewer than 8 frames.
 Track FollowPattern(Clip& clip, const Background& background,
                     const Track& track, int threads);
 
