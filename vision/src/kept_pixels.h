@@ -7,8 +7,19 @@
 
 #include "touchdown/core/frame.h"
 #include "touchdown/core/points.h"
+#include "touchdown/vision/clip.h"
 
 namespace touchdown::vision {
+
+inline core::PixelRect Whole(const ClipInfo& info) {
+  return {0, 0, info.width_px, info.height_px};
+}
+
+inline std::size_t FrameBytes(const ClipInfo& info) {
+  return static_cast<std::size_t>(info.width_px) *
+         static_cast<std::size_t>(info.height_px) *
+         (info.bit_depth > 8 ? 2 : 1);
+}
 
 inline std::size_t RowBytes(const core::Frame& frame) {
   return static_cast<std::size_t>(frame.width_px) * (frame.is_16_bit() ? 2 : 1);
