@@ -117,9 +117,10 @@ void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
                      "rising above it is what bounce means (default: the "
                      "larger of 0.5 mm and 2 % of the body's size)");
   command.add_flag("--stop-early", flags.stop_early,
-                   "decode no further once the first contact's state is "
-                   "decided beyond doubt; what follows is not looked at (raw "
-                   "recordings are always looked at whole)");
+                   "decode from the key frame before the body is seen until "
+                   "the first contact's state is decided beyond doubt; the "
+                   "rest is not looked at (raw recordings are always looked "
+                   "at whole)");
 }
 
 }  // namespace touchdown::cli

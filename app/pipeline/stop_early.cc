@@ -254,6 +254,10 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     analysis.stopped_at = end;
     analysis.scene_model.left_out[fmt::format("frames {}:{}", end, keep.last)] =
         fmt::format("stopped early: by frame {} the state was decided", end);
+    for (const auto& [from, to] : frames->LeftOut()) {
+      analysis.scene_model.left_out[fmt::format("frames {}:{}", from, to)] =
+          "the key frames before and after them show nothing";
+    }
     return analysis;
   }
   frames->GrowTo(keep.last);

@@ -160,6 +160,7 @@ void ExpectStopped(const Both& both, std::int64_t latest,
   for (const std::int64_t frame : vision::BackgroundFrames(
            0, kFrames, vision::BackgroundOptions{}.samples)) {
     keys.insert(frame / keeping.group * keeping.group);
+    if (keeping.group == 1) keys.insert(frame + 1);  // to be sure of it
   }
   // Once, but for keys of groups and the frames that told the light.
   constexpr std::int64_t kLight = 30;
@@ -237,6 +238,20 @@ TEST_P(StopEarly, ALateBodyIsWaitedFor) {
   const Both both =
       AnalyzeBoth(SceneOf(Bouncing({.contact_s = 0.45037})), GetParam());
   ExpectStopped(both, 560, GetParam());
+  // It comes in frame 330: of what was before that, little was decoded.
+  constexpr std::int64_t kComes = 330;
+  constexpr std::int64_t kKeysAndLight = 33 + 30;
+  const std::int64_t group = GetParam().group;
+  const auto before = std::count_if(
+      both.decoded_early.begin(), both.decoded_early.end(),
+      [&](const auto& frame) { return frame.first < kComes - group; });
+  EXPECT_LE(before, kKeysAndLight);
+  const auto document = filmed::ExpectDocument(both.early);
+  bool said = false;
+  for (const auto& item : document["scene_model"]["left_out"].items()) {
+    said |= item.key().starts_with("frames 0:");
+  }
+  EXPECT_TRUE(said) << document["scene_model"];
 }
 
 TEST_P(StopEarly, WithoutAContactAllIsLookedAt) {

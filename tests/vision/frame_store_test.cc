@@ -201,23 +201,31 @@ TEST(FrameStore, GrowsWithoutDecodingTwice) {
       const auto grown = GrowFrames(open(decoded), options);
       for (std::int64_t end = piece; end < 600; end += piece) {
         ASSERT_TRUE(grown->GrowTo(end));
-        EXPECT_TRUE(grown->HoldsAllChanges()) << end;
-        const auto still = grown->StillFrames();
-        EXPECT_GE(still.size(),
-                  std::min<std::size_t>(static_cast<std::size_t>(end), 16));
-        EXPECT_LE(still.size(), 33U);
-        EXPECT_LT(still.back(), end);
         EXPECT_NE(grown->ChangesIn(end - 1), nullptr);
         EXPECT_EQ(grown->ChangesIn(end), nullptr);
+        // Key frames beyond the end and where nothing is (the sphere comes at
+        // frame 100), and where frames are stored alone those after them.
         int beyond = 0;
-        for (const auto& [index, count] : decoded) beyond += index >= end;
-        EXPECT_LE(beyond, 33) << end;  // key frames
+        int before = 0;
+        for (const auto& [index, count] : decoded) {
+          beyond += index >= end;
+          before += index < 100 - 40;
+        }
+        EXPECT_LE(beyond + before, group == 1 ? 2 * 33 : 33) << end;
+        const auto still = grown->StillFrames();
+        if (end < 100) continue;
+        // It has moved out of where it came in.
+        EXPECT_TRUE(end <= 240 || grown->HoldsAllChanges()) << end;
+        EXPECT_GE(still.size(), std::min<std::int64_t>(end - 100, 16));
+        EXPECT_LE(still.size(), 33U);
+        EXPECT_LT(still.back(), end);
       }
       ASSERT_TRUE(grown->GrowTo(600));
       EXPECT_TRUE(grown->StillFrames().empty());
       int times = 0;
       for (const auto& [index, count] : decoded) times += count;
-      EXPECT_LE(times, 600 + 33 + 3);
+      // What was left out is decoded in the end; one group is entered twice.
+      EXPECT_LE(times, 600 + 33 + 3 + group - 1);
       for (std::int64_t i = 0; i < 600; ++i) {
         ASSERT_EQ(grown->ChangesIn(i)->where, kept->ChangesIn(i)->where) << i;
         EXPECT_EQ(grown->ChangesIn(i)->noise, kept->ChangesIn(i)->noise);
@@ -320,6 +328,7 @@ class Alone : public Clip {
 TEST(FrameStore, ManyReadersGiveTheSameAnswer) {
   const Scene scene = testing::LongScene(600);
   std::vector<Pose> alone;
+  int once = 0;
   for (const int threads : {1, 2, 3, 5}) {
     SCOPED_TRACE(threads);
     std::atomic<int> decoded = 0;
@@ -328,7 +337,9 @@ TEST(FrameStore, ManyReadersGiveTheSameAnswer) {
     options.threads = threads;
     const auto clip =
         KeepFrames(std::make_unique<Alone>(scene, decoded), options);
-    EXPECT_EQ(decoded, 600);
+    EXPECT_LT(decoded, 600);
+    if (threads == 1) once = decoded;
+    EXPECT_EQ(decoded, once);
     const auto result = TrackBody(*clip);
     ASSERT_TRUE(result) << result.error().reason;
     const std::vector<Pose>& poses = result->track.poses;

@@ -72,6 +72,10 @@ class VideoClip final : public Clip {
       info_.warnings.push_back(
           "the file has no palette: its 8-bit samples are taken as gray");
     }
+    are_alone_ =
+        !index_.pts.empty() &&
+        std::all_of(index_.packets.begin(), index_.packets.end(),
+                    [](const VideoPacket& packet) { return packet.key; });
     StartFrom(0);
     DecodeUpTo(0);
     LookAtFirstFrame(options.channel);
@@ -86,6 +90,7 @@ class VideoClip final : public Clip {
         packet_(Libav().av_packet_alloc()),
         frame_(Libav().av_frame_alloc()),
         index_(like.index_),
+        are_alone_(like.are_alone_),
         info_(like.info_),
         reader_(like.reader_),
         chroma_(like.chroma_),
@@ -96,11 +101,8 @@ class VideoClip final : public Clip {
   const ClipInfo& info() const override { return info_; }
 
   std::unique_ptr<Clip> Another() const override {
-    const bool alone =
-        can_seek_ && !index_.pts.empty() &&
-        std::all_of(index_.packets.begin(), index_.packets.end(),
-                    [](const VideoPacket& packet) { return packet.key; });
-    return alone ? std::make_unique<VideoClip>(*this) : nullptr;
+    return can_seek_ && are_alone_ ? std::make_unique<VideoClip>(*this)
+                                   : nullptr;
   }
 
   std::int64_t EntryFrame(std::int64_t index) const override {
@@ -119,7 +121,10 @@ class VideoClip final : public Clip {
                        !index_.pts.empty() &&
                        index_.KeyPacketFor(index) >
                            sent_ + static_cast<std::size_t>(threads_);
-      if (back || far) StartFrom(index);
+      if (back || (far && can_seek_)) StartFrom(index);
+      if (far && !can_seek_ && are_alone_) {
+        DropUpTo(index_.KeyPacketFor(index));
+      }
       DecodeUpTo(index);
     }
     if (frame_->width != stored_width_ || frame_->height != stored_height_ ||
@@ -147,6 +152,19 @@ class VideoClip final : public Clip {
     can_seek_ = false;
     source_ = OpenVideoSource(path_, threads_);
     Rewind();
+  }
+
+  // Moves on to packet number `key`, of which each is a key: what lies before
+  // it is read and not decoded.
+  void DropUpTo(std::size_t key) {
+    Libav().avcodec_flush_buffers(source_.codec.get());
+    draining_ = false;
+    while (sent_ < key && ReadPacket()) {
+      Libav().av_packet_unref(packet_.get());
+      have_packet_ = false;
+      ++sent_;
+    }
+    expected_ = index_.FrameAt(index_.packets[key].pts).value_or(expected_);
   }
 
   // Forgets what the decoder was doing.
@@ -371,6 +389,7 @@ class VideoClip final : public Clip {
   LibavPtr<AVPacket> packet_;
   LibavPtr<AVFrame> frame_;
   VideoIndex index_;
+  bool are_alone_ = false;  // frames can be told apart, and each is a key
   ClipInfo info_;
   std::optional<LumaReader> reader_;
   std::optional<ChromaReader>

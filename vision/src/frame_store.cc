@@ -26,6 +26,9 @@ class FrameStore final : public GrowingClip {
   bool GrowTo(std::int64_t last) override { return last >= last_; }
   std::vector<std::int64_t> StillFrames() const override { return {}; }
   bool HoldsAllChanges() override { return true; }
+  std::vector<std::pair<std::int64_t, std::int64_t>> LeftOut() const override {
+    return {};
+  }
   std::int64_t DecodedAgain() const override { return decoded_again_; }
 
  private:

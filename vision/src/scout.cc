@@ -13,7 +13,7 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr std::int32_t kCell_px = 16;
+constexpr std::int32_t kCell_px = Scout::kCell_px;
 constexpr std::int32_t kSegment_px = 8;
 constexpr std::int32_t kRowStep_px = 4;
 constexpr std::int32_t kFirstRow_px = 2;  // rows 2, 6, 10, ...

@@ -35,6 +35,8 @@ struct ScoutOptions {
 
 class Scout {
  public:
+  static constexpr std::int32_t kCell_px = 16;
+
   Scout(const Background& still, const ScoutOptions& options = {});
 
   // `frame` is a whole picture. The strongest regions come first.

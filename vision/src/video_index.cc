@@ -38,6 +38,29 @@ void TakePalette(const AVPacket& packet, VideoIndex& index) {
   }
 }
 
+// Frames before a key frame in time may follow it in the file (open groups);
+// they need the one before. So the key frame itself must not be later.
+void FindKeyPackets(VideoIndex& index) {
+  const std::vector<VideoPacket>& packets = index.packets;
+  index.key_packets.reserve(index.pts.size());
+  std::vector<std::size_t> later;  // key packets that are shown later
+  std::size_t best = 0;
+  std::size_t i = 0;
+  for (const std::int64_t time : index.pts) {
+    for (; i < packets.size() &&
+           (packets[i].dts == AV_NOPTS_VALUE || packets[i].dts <= time);
+         ++i) {
+      if (packets[i].key) later.push_back(i);
+    }
+    std::erase_if(later, [&](std::size_t key) {
+      const bool shown = packets[key].pts <= time;
+      if (shown) best = std::max(best, key);
+      return shown;
+    });
+    index.key_packets.push_back(best);
+  }
+}
+
 // The container's own list of an uncompressed stream, if it names every frame
 // and the file has room for the last.
 std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
@@ -73,6 +96,7 @@ std::optional<VideoIndex> IndexByList(AVFormatContext& format, AVStream& stream,
   }
   if (end > size) return std::nullopt;
   index.frames = count;
+  FindKeyPackets(index);
   const LibavPtr<AVPacket> first(Libav().av_packet_alloc());
   if (Libav().av_read_frame(&format, first.get()) >= 0) {
     TakePalette(*first, index);
@@ -106,18 +130,6 @@ std::optional<std::int64_t> VideoIndex::FrameAt(std::int64_t time) const {
   const auto found = std::lower_bound(pts.begin(), pts.end(), time);
   if (found == pts.end() || *found != time) return std::nullopt;
   return found - pts.begin();
-}
-
-std::size_t VideoIndex::KeyPacketFor(std::int64_t index) const {
-  // Frames before a key frame in time may follow it in the file (open groups);
-  // they need the one before. So the key frame itself must not be later.
-  const std::int64_t time = pts[static_cast<std::size_t>(index)];
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < packets.size(); ++i) {
-    if (packets[i].dts != AV_NOPTS_VALUE && packets[i].dts > time) break;
-    if (packets[i].key && packets[i].pts <= time) best = i;
-  }
-  return best;
 }
 
 std::int64_t VideoIndex::KeyFrameAfter(std::int64_t index) const {
@@ -203,6 +215,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
   index.coarse = !distinct;
   if (!distinct) index.spacing.times_s.clear();
   if (timed && distinct) index.pts = std::move(pts);
+  FindKeyPackets(index);
   if (index.pts.empty()) {
     index.damaged = std::move(damaged_numbers);
   } else {

@@ -42,6 +42,7 @@ struct VideoIndex {
   // coarser than the frames): frames are then numbered by counting from the
   // beginning.
   std::vector<std::int64_t> pts;
+  std::vector<std::size_t> key_packets;  // KeyPacketFor each of pts
   std::int64_t frames = 0;
   bool coarse = false;                // timestamps that several frames share
   FrameSpacing spacing;               // fps is 0 if the file tells none
@@ -53,8 +54,10 @@ struct VideoIndex {
 
   // Number of the frame shown at `pts`, if there is one.
   std::optional<std::int64_t> FrameAt(std::int64_t pts) const;
-  // The last key packet from which frame `index` can be decoded.
-  std::size_t KeyPacketFor(std::int64_t index) const;
+  // The last key packet from which frame `index` can be decoded; there are pts.
+  std::size_t KeyPacketFor(std::int64_t index) const {
+    return key_packets[static_cast<std::size_t>(index)];
+  }
   // The first key frame after frame `index`, or the number of frames.
   std::int64_t KeyFrameAfter(std::int64_t index) const;
 };

@@ -4,10 +4,12 @@
 #include <atomic>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "first_look.h"
+#include "glimpses.h"
 #include "kept_pixels.h"
 #include "scout.h"
 #include "touchdown/core/errors.h"
@@ -17,7 +19,8 @@
 namespace touchdown::vision {
 namespace {
 
-// Windows of all frames of a range, and some frames whole.
+// Windows of the frames of a range that are worth decoding, and some frames
+// whole.
 class WindowStore final : public GrowingClip {
  public:
   WindowStore(std::unique_ptr<Clip> clip, FrameStoreOptions options)
@@ -38,10 +41,15 @@ class WindowStore final : public GrowingClip {
     if (last <= end_ || damaged_) return !damaged_;
     if (in_pieces && !grid_.Begun() && !BeginGrid()) return false;
     try {
-      if (!still_) still_ = KeyPicture();
-      if (in_pieces) WidenGrid(last);
-      Decode(last);
-      if (!in_pieces) Finish();
+      if (!still_) LookAtKeyFrames();
+      if (in_pieces) {
+        if (end_ == options_.first) ChooseByKeys();
+        WidenGrid(last);
+        DecodeUpTo(last);
+      } else {
+        DecodeAll();
+        Finish();
+      }
     } catch (const core::InputError&) {
       // What was kept is right; the frame is read again by whoever asks for
       // it, and says then what is wrong.
@@ -58,11 +66,23 @@ class WindowStore final : public GrowingClip {
   }
 
   bool HoldsAllChanges() override {
-    if (!still_) return false;
     BackgroundOptions background;
     background.among = StillFrames();
+    if (!still_ || (end_ < options_.last && background.among.empty())) {
+      return false;
+    }
     background.threads = options_.threads;
     return IsRight(EstimateBackground(*this, options_.first, end_, background));
+  }
+
+  std::vector<std::pair<std::int64_t, std::int64_t>> LeftOut() const override {
+    std::vector<std::pair<std::int64_t, std::int64_t>> ranges;
+    for (std::int64_t i = options_.first; i < end_; ++i) {
+      if (KeptOf(i).state != State::kLeftOut) continue;
+      if (ranges.empty() || ranges.back().second < i) ranges.emplace_back(i, i);
+      ranges.back().second = i + 1;
+    }
+    return ranges;
   }
 
   std::int64_t DecodedAgain() const override { return decoded_again_; }
@@ -72,24 +92,35 @@ class WindowStore final : public GrowingClip {
     return clip_->EntryFrame(index);
   }
   const Changes* ChangesIn(std::int64_t index) const override {
-    const Kept& kept = frames_[static_cast<std::size_t>(index)];
-    return kept.seen ? &kept.changes : nullptr;
+    const Kept& kept = KeptOf(index);
+    // What was glimpsed at is not among them yet.
+    const bool grown = index < end_ || damaged_;
+    return grown && kept.state != State::kUnknown ? &kept.changes : nullptr;
   }
 
  private:
   // 32 px around what differs: what the fit of a body of 50 px looks at.
   static constexpr std::int32_t kMargin = 2;
 
+  // Left out: glimpses near it show nothing.
+  enum class State { kUnknown, kLeftOut, kSeen };
+
   struct Kept {
-    bool seen = false;
+    State state = State::kUnknown;
     Changes changes;
     std::vector<KeptPixels> windows;  // the whole picture, or one a change
   };
 
+  Kept& KeptOf(std::int64_t index) {
+    return frames_[static_cast<std::size_t>(index)];
+  }
+  const Kept& KeptOf(std::int64_t index) const {
+    return frames_[static_cast<std::size_t>(index)];
+  }
+
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
-    for (const KeptPixels& kept :
-         frames_[static_cast<std::size_t>(index)].windows) {
+    for (const KeptPixels& kept : KeptOf(index).windows) {
       if (kept.Holds(window)) return kept.View(window);
     }
     if (index < end_) ++decoded_again_;
@@ -118,8 +149,8 @@ class WindowStore final : public GrowingClip {
     return {frames.begin(), frames.end()};
   }
 
-  // Of frames that can be read without others.
-  Background KeyPicture() {
+  // Those of the background that can be read without others.
+  std::vector<std::int64_t> KeyFrames() const {
     std::set<std::int64_t> keys;
     for (const std::int64_t frame : BackgroundFrames(
              options_.first, options_.last, BackgroundOptions{}.samples)) {
@@ -127,27 +158,34 @@ class WindowStore final : public GrowingClip {
     }
     keys.erase(keys.begin(), keys.lower_bound(options_.first));
     if (keys.empty()) keys.insert(options_.first);
-    const std::vector<std::int64_t> frames(keys.begin(), keys.end());
-    for (const std::int64_t frame : frames) {
-      if (!whole_.contains(frame)) continue;
-      frames_[static_cast<std::size_t>(frame)].windows.emplace_back(
-          clip_->Read(frame));
+    return {keys.begin(), keys.end()};
+  }
+
+  // Sets still_ by the key frames, and which of them show anything beside it.
+  void LookAtKeyFrames() {
+    keys_ = KeyFrames();
+    const bool fit = keys_.size() * FrameBytes(info()) <= options_.most_bytes;
+    for (const std::int64_t frame : keys_) {
+      if (!fit && !whole_.contains(frame)) continue;
+      KeptOf(frame).windows.emplace_back(clip_->Read(frame));
     }
     BackgroundOptions background;
     background.threads = options_.threads;
-    Background still = BackgroundOf(*this, frames, background);
+    still_ = BackgroundOf(*this, keys_, background);
     // A mid-mean of up to three is a mean: where they differ, any of them may
     // show the body, and all frames are kept there.
     constexpr std::size_t kRobust = 4;
-    if (frames.size() < kRobust) {
-      const Scout scout(still, scout_);
-      for (const std::int64_t frame : frames) {
-        const Changes changes = scout.Look(Read(frame));
-        scout_.always.insert(scout_.always.end(), changes.where.begin(),
-                             changes.where.end());
-      }
+    const Scout scout(*still_, scout_);
+    for (const std::int64_t frame : keys_) {
+      const Changes changes = scout.Look(Read(frame));
+      keys_changes_.push_back(changes);
+      if (keys_.size() >= kRobust) continue;
+      scout_.always.insert(scout_.always.end(), changes.where.begin(),
+                           changes.where.end());
     }
-    return still;
+    for (const std::int64_t frame : keys_) {
+      if (!whole_.contains(frame)) KeptOf(frame).windows.clear();
+    }
   }
 
   Background StillPicture() {
@@ -171,7 +209,7 @@ class WindowStore final : public GrowingClip {
   // too many, every second one is cut down to its windows.
   struct Grid {
     std::size_t most = 0;  // frames; 0: not begun
-    std::int64_t step = 1;
+    std::size_t step = 1;
     std::set<std::int64_t> frames;
     bool Begun() const { return most > 0; }
   };
@@ -189,37 +227,140 @@ class WindowStore final : public GrowingClip {
     return true;
   }
 
+  // Every step-th of the frames that are decoded.
   void WidenGrid(std::int64_t last) {
-    const std::int64_t frames = last - options_.first;
-    while ((frames + grid_.step - 1) / grid_.step >
-           static_cast<std::int64_t>(grid_.most)) {
-      grid_.step *= 2;
-    }
+    const std::size_t frames = Before(last);
+    while ((frames + grid_.step - 1) / grid_.step > grid_.most) grid_.step *= 2;
     std::erase_if(grid_.frames, [this](std::int64_t index) {
-      const bool drop = (index - options_.first) % grid_.step != 0;
+      const bool drop = Before(index) % grid_.step != 0;
       if (drop) CutDown(index);
       return drop;
     });
-    const std::int64_t past =
-        (end_ - options_.first + grid_.step - 1) / grid_.step * grid_.step;
-    for (std::int64_t i = options_.first + past; i < last; i += grid_.step) {
-      grid_.frames.insert(i);
+    for (std::size_t i = (next_ + grid_.step - 1) / grid_.step * grid_.step;
+         i < frames; i += grid_.step) {
+      grid_.frames.insert(todo_[i]);
     }
+  }
+
+  // How many of those to decode lie before frame `index`.
+  std::size_t Before(std::int64_t index) const {
+    return static_cast<std::size_t>(
+        std::lower_bound(todo_.begin(), todo_.end(), index) - todo_.begin());
   }
 
   // To its windows, unless it stays whole all the same.
   void CutDown(std::int64_t index) {
     if (whole_.contains(index)) return;
-    Kept& kept = frames_[static_cast<std::size_t>(index)];
+    Kept& kept = KeptOf(index);
     const std::vector<KeptPixels> whole = std::move(kept.windows);
     kept.windows.clear();
     std::size_t bytes = left_bytes_;
     KeepWindows(whole.front().View(), bytes,
-                std::max<std::int64_t>(1, options_.last - end_), kept);
+                std::max<std::size_t>(1, todo_.size() - next_), kept);
+  }
+
+  // Piece by piece: what lies between key frames that show nothing is left out
+  // however far apart they are. All is decoded where nothing is decided.
+  void ChooseByKeys() {
+    GlimpseRule rule;
+    rule.most_between = options_.most_between_keys;
+    rule.reach = 0;
+    for (std::size_t k = 0; k < keys_.size(); ++k) {
+      KeptOf(keys_[k]).changes = std::move(keys_changes_[k]);
+    }
+    keys_changes_.clear();
+    const std::vector<bool> show =
+        scout_.always.empty()
+            ? Shows(keys_,
+                    static_cast<std::size_t>(options_.last - options_.first))
+            : std::vector<bool>(keys_.size(), true);
+    todo_ = NotSeen(
+        FramesWorthDecoding(options_.first, options_.last, keys_, show, rule));
+  }
+
+  // All at once: glimpses, then what may show anything and what backgrounds are
+  // made of. What was seen before is not decoded again.
+  void DecodeAll() {
+    for (Kept& kept : frames_) {
+      if (kept.state == State::kLeftOut) kept.state = State::kUnknown;
+    }
+    const GlimpseRule rule;
+    const std::int64_t range = options_.last - options_.first;
+    std::vector<std::int64_t> glimpsed;
+    // In vain where others would have to be decoded for them, or where it is
+    // not known what is still.
+    if (AreStoredAlone() && scout_.always.empty()) {
+      for (std::int64_t i = options_.first; i < options_.last;
+           i += kGlimpseStride) {
+        glimpsed.push_back(i);
+      }
+    }
+    done_ = Seen();
+    Decode(NotSeen(glimpsed), static_cast<std::size_t>(range));
+    std::set<std::int64_t> worth = SetOf(FramesWorthDecoding(
+        options_.first, options_.last, glimpsed,
+        Shows(glimpsed, static_cast<std::size_t>(range)), rule));
+    worth.insert(whole_.begin(), whole_.end());
+    const std::vector<std::int64_t> rest =
+        NotSeen({worth.begin(), worth.end()});
+    done_ = range - static_cast<std::int64_t>(rest.size());
+    Decode(rest, rest.size());
+    end_ = options_.first;
+    LeaveOutUpTo(options_.last);
+  }
+
+  // Which of the glimpsed frames, whose changes are known, show something.
+  // Where frames are stored alone, the one after each that differs from the
+  // still picture is decoded, too; else it would cost one more decoding of the
+  // key.
+  std::vector<bool> Shows(const std::vector<std::int64_t>& glimpsed,
+                          std::size_t range) {
+    const bool alone = AreStoredAlone();
+    std::vector<std::int64_t> next;
+    for (const std::int64_t index : glimpsed) {
+      const bool differs = !KeptOf(index).changes.where.empty();
+      if (alone && differs && index + 1 < options_.last) {
+        next.push_back(index + 1);
+      }
+    }
+    Decode(NotSeen(std::move(next)), range);
+    std::vector<bool> shows;
+    shows.reserve(glimpsed.size());
+    for (const std::int64_t index : glimpsed) {
+      const Changes& changes = KeptOf(index).changes;
+      shows.push_back(
+          !alone || index + 1 == options_.last
+              ? !changes.where.empty()
+              : AreInBoth(changes, KeptOf(index + 1).changes, kMargin));
+    }
+    return shows;
+  }
+
+  std::vector<std::int64_t> NotSeen(std::vector<std::int64_t> frames) const {
+    std::erase_if(frames, [this](std::int64_t index) {
+      return KeptOf(index).state == State::kSeen;
+    });
+    return frames;
+  }
+
+  std::int64_t Seen() const {
+    return std::count_if(frames_.begin(), frames_.end(), [](const Kept& kept) {
+      return kept.state == State::kSeen;
+    });
+  }
+
+  // What was not decoded up to there will not be.
+  void LeaveOutUpTo(std::int64_t last) {
+    for (; end_ < last; ++end_) {
+      Kept& kept = KeptOf(end_);
+      if (kept.state == State::kUnknown) kept.state = State::kLeftOut;
+    }
   }
 
   // All is decoded: as if it had been at once.
   void Finish() {
+    todo_.clear();
+    next_ = 0;
     const std::set<std::int64_t> frames = std::move(grid_.frames);
     grid_ = {};
     for (const std::int64_t index : frames) CutDown(index);
@@ -238,19 +379,27 @@ class WindowStore final : public GrowingClip {
       if (!whole_.contains(static_cast<std::int64_t>(i))) frames_[i] = {};
     }
     left_bytes_ = Room();
-    done_ = 0;
-    end_ = options_.first;
-    Decode(options_.last);
+    DecodeAll();
   }
 
-  // On from end_. Where frames are stored alone, in parts that do not depend on
-  // the number of threads.
-  void Decode(std::int64_t last) {
+  // On from end_.
+  void DecodeUpTo(std::int64_t last) {
+    const std::size_t end = Before(last);
+    Decode({todo_.begin() + static_cast<std::ptrdiff_t>(next_),
+            todo_.begin() + static_cast<std::ptrdiff_t>(end)},
+           todo_.size() - next_);
+    next_ = end;
+    LeaveOutUpTo(last);
+    done_ = end_ - options_.first;
+  }
+
+  // These frames, of `of` that share the room. Where frames are stored alone,
+  // in parts that do not depend on the number of threads.
+  void Decode(const std::vector<std::int64_t>& frames, std::size_t of) {
+    if (frames.empty()) return;
     const Scout scout(*still_, scout_);
-    const std::int64_t first = end_;
-    const std::int64_t frames = last - first;
-    const std::size_t room = left_bytes_ * static_cast<std::size_t>(frames) /
-                             static_cast<std::size_t>(options_.last - first);
+    const std::size_t room =
+        left_bytes_ / std::max<std::size_t>(1, of) * frames.size();
     std::int64_t parts = 1;
     if (AreStoredAlone()) {
       parts = 16;  // enough for the cores of a workstation
@@ -262,49 +411,49 @@ class WindowStore final : public GrowingClip {
         others_.push_back(std::move(other));
       }
     }
+    const auto begin_of = [&](std::int64_t part) {
+      return frames.size() * static_cast<std::size_t>(part) /
+             static_cast<std::size_t>(parts);
+    };
     std::atomic<std::size_t> next = 0;
-    core::InParallel(parts, static_cast<int>(others_.size()) + 1,
-                     [&](std::int64_t from, std::int64_t to) {
-                       const std::size_t mine = next++;
-                       Clip& clip = mine == 0 ? *clip_ : *others_[mine - 1];
-                       for (std::int64_t part = from; part < to; ++part) {
-                         DecodePart(clip, scout,
-                                    {first + part * frames / parts,
-                                     first + (part + 1) * frames / parts,
-                                     room / static_cast<std::size_t>(parts)});
-                       }
-                     });
-    end_ = last;
+    core::InParallel(
+        parts, static_cast<int>(others_.size()) + 1,
+        [&](std::int64_t from, std::int64_t to) {
+          const std::size_t mine = next++;
+          Clip& clip = mine == 0 ? *clip_ : *others_[mine - 1];
+          for (std::int64_t part = from; part < to; ++part) {
+            DecodePart(clip, scout,
+                       std::span(frames).subspan(
+                           begin_of(part), begin_of(part + 1) - begin_of(part)),
+                       room / static_cast<std::size_t>(parts));
+          }
+        });
   }
 
-  bool AreStoredAlone() const {
-    for (std::int64_t i = options_.first; i < options_.last; ++i) {
-      if (clip_->EntryFrame(i) != i) return false;
+  bool AreStoredAlone() {
+    for (std::int64_t i = options_.first; !alone_ && i < options_.last; ++i) {
+      if (clip_->EntryFrame(i) != i) alone_ = false;
     }
-    return true;
+    if (!alone_) alone_ = true;
+    return *alone_;
   }
 
-  struct Part {
-    std::int64_t first = 0;
-    std::int64_t last = 0;
-    std::size_t bytes = 0;  // its share of the room
-  };
-
-  void DecodePart(Clip& clip, const Scout& scout, Part part) {
-    const core::PixelRect whole = Whole(info());
-    for (std::int64_t index = part.first; index < part.last; ++index) {
-      Kept& kept = frames_[static_cast<std::size_t>(index)];
+  void DecodePart(Clip& clip, const Scout& scout,
+                  std::span<const std::int64_t> frames, std::size_t bytes) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const std::int64_t index = frames[i];
+      Kept& kept = KeptOf(index);
       const bool is_here =
-          !kept.windows.empty() && kept.windows.front().Holds(whole);
+          !kept.windows.empty() && kept.windows.front().Holds(Whole(info()));
       const core::Frame frame =
           is_here ? kept.windows.front().View() : clip.Read(index);
       kept.changes = scout.Look(frame);
-      kept.seen = true;
+      kept.state = State::kSeen;
       if (!is_here) {
         if (whole_.contains(index) || grid_.frames.contains(index)) {
           kept.windows.emplace_back(frame);
         } else {
-          KeepWindows(frame, part.bytes, part.last - index, kept);
+          KeepWindows(frame, bytes, frames.size() - i, kept);
         }
       }
       const std::int64_t done = ++done_;
@@ -318,8 +467,8 @@ class WindowStore final : public GrowingClip {
   // The strongest window in any case, the others as far as each frame's share
   // of the part's bytes goes: those that are not kept are not changes.
   void KeepWindows(const core::Frame& frame, std::size_t& part_bytes,
-                   std::int64_t frames, Kept& kept) {
-    std::size_t share = part_bytes / static_cast<std::size_t>(frames);
+                   std::size_t frames, Kept& kept) {
+    std::size_t share = part_bytes / frames;
     std::vector<core::PixelRect>& where = kept.changes.where;
     std::vector<core::PixelRect> held;
     for (const core::PixelRect& rect : where) {
@@ -355,7 +504,12 @@ class WindowStore final : public GrowingClip {
   std::optional<Background> still_;  // that windows differ from
   std::vector<Kept> frames_;
   std::vector<std::unique_ptr<Clip>> others_;  // readers beside clip_
-  std::int64_t end_ = 0;                       // [first, end_) is decoded
+  std::optional<bool> alone_;                  // frames are stored alone
+  std::vector<std::int64_t> keys_;     // that still_ is made of at first
+  std::vector<Changes> keys_changes_;  // from it
+  std::vector<std::int64_t> todo_;     // to decode, piece by piece
+  std::size_t next_ = 0;               // of todo_
+  std::int64_t end_ = 0;               // [first, end_) is decoded, or left out
   bool damaged_ = false;
   std::int64_t decoded_again_ = 0;
   std::atomic<bool> is_full_ = false;  // a window was not kept

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "touchdown/core/points.h"
@@ -24,6 +25,14 @@ struct FrameStoreOptions {
   std::int64_t first = 0;
   std::int64_t last = -1;
   core::PixelRect region;
+
+  // Of a clip that grows piece by piece, what lies between two key frames that
+  // show nothing is not decoded, if they are at most so many frames apart. 300:
+  // common encoders set a key frame every 250 at the least. A body that passes
+  // between two of them, before or after it is seen in another, is not looked
+  // at; 32, the most that a glimpse may be apart otherwise, would decode such
+  // clips from their first frame on.
+  std::int64_t most_between_keys = 300;
 
   int threads = 0;  // 0: one for each core; affects speed only
 
@@ -49,6 +58,11 @@ class GrowingClip : public Clip {
   // StillFrames. False: the provisional still picture has a ghost.
   virtual bool HoldsAllChanges() = 0;
 
+  // Ranges [first, last) of what has grown that were not decoded, because key
+  // frames on both sides show nothing.
+  virtual std::vector<std::pair<std::int64_t, std::int64_t>> LeftOut()
+      const = 0;
+
   // How often a frame that had been decoded was asked for where it is not kept.
   virtual std::int64_t DecodedAgain() const = 0;
 };
@@ -62,9 +76,11 @@ std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
 // A clip that hands out the same frames as `clip`. Raw clips, which are mapped
 // into memory, are returned as they are. A clip whose pictures all fit is kept
 // whole, as it is read. Of a longer one the range is decoded here, once and in
-// order (by several readers where each frame is stored alone): the frames that
-// a background is made of are kept whole, of the others the windows that differ
-// from the still picture (Clip::ChangesIn). The still picture is that of key
+// order: the frames that a background is made of are kept whole, of the others
+// the windows that differ from the still picture (Clip::ChangesIn). Where each
+// frame is stored alone there are several readers, and what lies between
+// glimpses that show nothing is not decoded (ChangesIn: nothing; Read decodes
+// it). The still picture is that of key
 // frames, which are decoded first; where it turns out to hold a ghost of the
 // body, the range is decoded a second time with the right one. A damaged frame
 // ends the pass; reading it says what is wrong.
