@@ -256,7 +256,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
         fmt::format("stopped early: by frame {} the state was decided", end);
     for (const auto& [from, to] : frames->LeftOut()) {
       analysis.scene_model.left_out[fmt::format("frames {}:{}", from, to)] =
-          "the key frames before and after them show nothing";
+          "their key frames show nothing";
     }
     return analysis;
   }

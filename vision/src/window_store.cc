@@ -79,7 +79,11 @@ class WindowStore final : public GrowingClip {
     std::vector<std::pair<std::int64_t, std::int64_t>> ranges;
     for (std::int64_t i = options_.first; i < end_; ++i) {
       if (KeptOf(i).state != State::kLeftOut) continue;
-      if (ranges.empty() || ranges.back().second < i) ranges.emplace_back(i, i);
+      // What was glimpsed at within a range is part of it.
+      constexpr std::int64_t kGlimpse = 2;  // frames
+      if (ranges.empty() || ranges.back().second + kGlimpse < i) {
+        ranges.emplace_back(i, i);
+      }
       ranges.back().second = i + 1;
     }
     return ranges;

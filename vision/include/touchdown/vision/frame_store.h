@@ -58,8 +58,8 @@ class GrowingClip : public Clip {
   // StillFrames. False: the provisional still picture has a ghost.
   virtual bool HoldsAllChanges() = 0;
 
-  // Ranges [first, last) of what has grown that were not decoded, because key
-  // frames on both sides show nothing.
+  // Ranges [first, last) of what has grown that were not decoded, but for key
+  // frames, because those show nothing.
   virtual std::vector<std::pair<std::int64_t, std::int64_t>> LeftOut()
       const = 0;
 
