@@ -133,6 +133,9 @@ TOUCHDOWN_INLINE void AddDisc(const Place& place, const EightOfDisc& disc,
   AddEight(place.first, disc.dy * (weight * place.per_long), &out.eta[i]);
 }
 
+// From the centre and from the edge. r - R is small beside r: as
+// (r^2 - R^2)/(r + R), of which only the numerator needs many digits, it is
+// good to 2e-7 of itself without a root of long numbers.
 struct alignas(64) Distances {
   BlockColumn dx;
   BlockColumn dy;
@@ -142,14 +145,19 @@ struct alignas(64) Distances {
 
 TOUCHDOWN_INLINE void Measure(const Place& place, const double* x,
                               const double* y, Distances& at) {
+  const double radius2 = place.long_px * place.long_px;
+  const auto radius = static_cast<float>(place.long_px);
   for (std::size_t i = 0; i < kBlock; ++i) {
     const double dx = x[i] - place.x_px;
     const double dy = y[i] - place.y_px;
-    const double r = std::sqrt(dx * dx + dy * dy);
+    const double r2 = dx * dx + dy * dy;
     at.dx[i] = static_cast<float>(dx);
     at.dy[i] = static_cast<float>(dy);
-    at.r[i] = static_cast<float>(r);
-    at.outside[i] = static_cast<float>(r - place.long_px);
+    at.r[i] = std::sqrt(static_cast<float>(r2));
+    at.outside[i] = static_cast<float>(r2 - radius2);
+  }
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    at.outside[i] /= at.r[i] + radius;
   }
 }
 
@@ -199,7 +207,8 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
     const Eight g_s = e * e * (0.375F - 0.625F * e * s);
     const Eight g_e = -0.5F + e * (0.75F * s - 3.0F * e * third);
     // c^4 + s^4 = 1 - 2 c^2 s^2
-    const Eight sine_cosine = dx * dy / (r * r + kAtCentre_px);
+    const Eight per_r = 1.0F / (r + kAtCentre_px);
+    const Eight sine_cosine = (dx * per_r) * (dy * per_r);
     const Eight k =
         square_term * (1.0F - 2.0F * sine_cosine * sine_cosine) * pdf;
     const Eight s2 = s * s;
@@ -210,7 +219,7 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
     EightOfDisc disc;
     disc.dx = dx;
     disc.dy = dy;
-    disc.outwards = -by_s / (r + kAtCentre_px);
+    disc.outwards = -by_s * per_r;
     disc.value = cdf + pdf * g + square;
     disc.d_radius = -by_s - by_e * e;
     disc.d_w = by_e - by_s * s - 4.0F * per_w * square;
