@@ -1,8 +1,8 @@
 // Stops an analysis once the first contact's state is decided beyond doubt.
 // Frames are decoded in order, piece by piece, but for what lies between key
 // frames that show nothing (FrameStoreOptions::most_between_keys), and what is
-// there is analysed like a recording that ends there; an answer counts only if a
-// later piece says the same.
+// there is analysed like a recording that ends there; an answer counts only if
+// a later piece says the same.
 #pragma once
 
 #include <cstddef>

@@ -72,6 +72,46 @@ void Around::Take(std::span<const PlaneSample> before,
   add(after, sides[1]);
 }
 
+// Of one side's parabola h + s t + c t^2: h = u - v c, s = p - q c, and c of
+// this side alone. By elimination, without a covariance: good to rounding.
+struct Slopes {
+  double u, v, p, q, c;
+
+  explicit Slopes(const Moments& m) {
+    const double per = 1.0 / (m.t[0] * m.t[2] - m.t[1] * m.t[1]);
+    u = (m.t[2] * m.h[0] - m.t[1] * m.h[1]) * per;
+    v = (m.t[2] * m.t[2] - m.t[1] * m.t[3]) * per;
+    p = (m.t[0] * m.h[1] - m.t[1] * m.h[0]) * per;
+    q = (m.t[0] * m.t[3] - m.t[1] * m.t[2]) * per;
+    c = Right(m) / Left(m);
+  }
+  double Right(const Moments& m) const {
+    return m.h[2] - m.t[2] * u - m.t[3] * p;
+  }
+  double Left(const Moments& m) const {
+    return m.t[4] - m.t[2] * v - m.t[3] * q;
+  }
+};
+
+// The largest of the three: px/s. `known`: there is one with known gravity.
+double LargestJump(const Around& around, bool own, bool known, double gravity) {
+  const auto& [left, right] = around.sides;
+  const Slopes a(left);
+  const Slopes b(right);
+  const auto jump = [&](double bend_a, double bend_b) {
+    return (b.p - b.q * bend_b - a.p + a.q * bend_a) / around.unit_s;
+  };
+  const double shared =
+      (a.Right(left) + b.Right(right)) / (a.Left(left) + b.Left(right));
+  double largest = jump(shared, shared);
+  if (own) largest = std::max(largest, jump(a.c, b.c));
+  if (known) {
+    const double bend = -0.5 * gravity * around.unit_s * around.unit_s;
+    largest = std::max(largest, jump(bend, bend));
+  }
+  return largest;
+}
+
 // Left and right of the middle: value = h + v t + c t^2. Of N parameters: 4, c
 // known (that of free flight); 5, c shared; 6, one of each side.
 template <int N>
@@ -194,12 +234,21 @@ std::vector<Kink> FindKinks(std::span<const PlaneSample> samples,
     const double gravity = options.gravity_px_per_s2.value_or(0.0);
     around.Take(left, right, value, u);
     const double span_s = right.back().time_s - left.front().time_s;
+    const bool each = left.size() >= 4 && right.size() >= 4;
+    // Mostly it is far from enough.
+    constexpr double kSurely = 0.9;
+    if (0.25 * span_s *
+            LargestJump(around, each, options.gravity_px_per_s2.has_value(),
+                        gravity) <
+        kSurely * options.least_effect_px) {
+      return;
+    }
     const SidesFit<5> shared(around, gravity);
     std::optional<SidesFit<6>> own;
-    if (left.size() >= 4 && right.size() >= 4) own.emplace(around, gravity);
+    if (each) own.emplace(around, gravity);
     std::optional<SidesFit<4>> known;
     if (options.gravity_px_per_s2) known.emplace(around, gravity);
-    // Mostly none of them jumps by enough, whichever is the best.
+    // None of them may jump by enough, whichever is the best.
     const double most_jump = std::max(
         {shared.jump(), own ? own->jump() : 0.0, known ? known->jump() : 0.0});
     if (!(0.25 * most_jump * span_s >= options.least_effect_px)) return;

@@ -31,6 +31,12 @@ using FourBits = std::uint64_t __attribute__((vector_size(32)));
 using Eight = float __attribute__((vector_size(32), may_alias));
 using EightBits = std::uint32_t __attribute__((vector_size(32)));
 
+// Sixteen short numbers: one instruction of AVX-512, two of avx2. For what is
+// done to each number by itself; sums are kept in eight places.
+using Wide = float __attribute__((vector_size(64), may_alias));
+using WideBits = std::uint32_t __attribute__((vector_size(64)));
+inline constexpr std::size_t kWide = 16;
+
 // The four that begin at `first`, which lies on a multiple of 32 bytes.
 TOUCHDOWN_INLINE const Four& FourAt(const double* first) {
   return *reinterpret_cast<const Four*>(first);
@@ -43,6 +49,13 @@ TOUCHDOWN_INLINE const Eight& EightAt(const float* first) {
 }
 TOUCHDOWN_INLINE Eight& EightAt(float* first) {
   return *reinterpret_cast<Eight*>(first);
+}
+
+TOUCHDOWN_INLINE const Wide& WideAt(const float* first) {
+  return *reinterpret_cast<const Wide*>(first);
+}
+TOUCHDOWN_INLINE Wide& WideAt(float* first) {
+  return *reinterpret_cast<Wide*>(first);
 }
 
 // Asks for a stretch of memory that is used soon: a mapped recording's rows lie

@@ -52,35 +52,35 @@ TOUCHDOWN_INLINE void NormalAt(const Four& z, Four& cdf, Four& pdf) {
 
 // The same of short numbers, 0 <= y <= 85, to 2e-7 of the greatest. ln(2) in
 // two parts, of which the first has few digits: n times it is exact.
-TOUCHDOWN_INLINE void ExpOfMinus(const Eight& y, Eight& result) {
+TOUCHDOWN_INLINE void ExpOfMinus(const Wide& y, Wide& result) {
   constexpr float kRound = 0x1.8p23F;
   constexpr float kLn2High = 0.693359375F;
   constexpr float kLn2Low = -2.12194440e-4F;
-  const Eight shifted = y * std::numbers::log2e_v<float> + kRound;
-  const Eight n = shifted - kRound;
-  const Eight r = (y - n * kLn2High) - n * kLn2Low;
-  const Eight series =
+  const Wide shifted = y * std::numbers::log2e_v<float> + kRound;
+  const Wide n = shifted - kRound;
+  const Wide r = (y - n * kLn2High) - n * kLn2Low;
+  const Wide series =
       1.0F +
       r * (-1.0F +
            r * (1.0F / 2 +
                 r * (-1.0F / 6 +
                      r * (1.0F / 24 + r * (-1.0F / 120 + r * (1.0F / 720))))));
   constexpr std::uint32_t kOne = std::bit_cast<std::uint32_t>(1.0F);
-  const EightBits scale = kOne - (__builtin_bit_cast(EightBits, shifted) << 23);
-  result = series * __builtin_bit_cast(Eight, scale);
+  const WideBits scale = kOne - (__builtin_bit_cast(WideBits, shifted) << 23);
+  result = series * __builtin_bit_cast(Wide, scale);
 }
 
-TOUCHDOWN_INLINE void NormalAt(const Eight& z, Eight& cdf, Eight& pdf) {
+TOUCHDOWN_INLINE void NormalAt(const Wide& z, Wide& cdf, Wide& pdf) {
   // The density is 1e-18: nothing beside 1, and what is made of it is no
   // subnormal number yet, which would take a hundred times as long.
   constexpr float kFar = 9.0F;
-  constexpr Eight kMost = {kFar, kFar, kFar, kFar, kFar, kFar, kFar, kFar};
-  const Eight size = z < 0.0F ? -z : z;
-  const Eight near = size < kMost ? size : kMost;
+  const Wide kMost = kFar + Wide{};
+  const Wide size = z < 0.0F ? -z : z;
+  const Wide near = size < kMost ? size : kMost;
   ExpOfMinus(0.5F * near * near, pdf);
   pdf = pdf * static_cast<float>(kInverseSqrt2Pi);
-  const Eight t = 1.0F / (1.0F + 0.2316419F * near);
-  const Eight tail =
+  const Wide t = 1.0F / (1.0F + 0.2316419F * near);
+  const Wide tail =
       pdf * t *
       (0.319381530F +
        t * (-0.356563782F +
@@ -108,29 +108,29 @@ struct Place {
   float d_open_angle = 0.0F;
 };
 
-// Adds the numbers of a disc at eight pixels from number i on.
-struct EightOfDisc {
-  Eight dx, dy;
-  Eight outwards;  // minus the derivative by r, over r
-  Eight value, d_radius, d_w;
+// Adds the numbers of a disc at kWide pixels from number i on.
+struct WideOfDisc {
+  Wide dx, dy;
+  Wide outwards;  // minus the derivative by r, over r
+  Wide value, d_radius, d_w;
 };
-TOUCHDOWN_INLINE void AddEight(bool first, const Eight& value, float* sum) {
-  EightAt(sum) = first ? value : EightAt(sum) + value;
+TOUCHDOWN_INLINE void AddWide(bool first, const Wide& value, float* sum) {
+  WideAt(sum) = first ? value : WideAt(sum) + value;
 }
-TOUCHDOWN_INLINE void AddDisc(const Place& place, const EightOfDisc& disc,
+TOUCHDOWN_INLINE void AddDisc(const Place& place, const WideOfDisc& disc,
                               std::size_t i, CoverBlock& out) {
   const float weight = place.weight;
-  const Eight d_x = weight * disc.outwards * disc.dx;
-  const Eight d_y = weight * disc.outwards * disc.dy;
-  AddEight(place.first, weight * disc.value, &out.value[i]);
-  AddEight(place.first, d_x, &out.d_shape[0][i]);
-  AddEight(place.first, d_y, &out.d_shape[1][i]);
-  AddEight(place.first, weight * disc.d_radius, &out.d_shape[2][i]);
-  AddEight(place.first, weight * disc.d_w, &out.d_blur[i]);
-  AddEight(place.first, d_x * place.d_open_x + d_y * place.d_open_y,
-           &out.d_open[i]);
-  AddEight(place.first, disc.dx * (weight * place.per_long), &out.xi[i]);
-  AddEight(place.first, disc.dy * (weight * place.per_long), &out.eta[i]);
+  const Wide d_x = weight * disc.outwards * disc.dx;
+  const Wide d_y = weight * disc.outwards * disc.dy;
+  AddWide(place.first, weight * disc.value, &out.value[i]);
+  AddWide(place.first, d_x, &out.d_shape[0][i]);
+  AddWide(place.first, d_y, &out.d_shape[1][i]);
+  AddWide(place.first, weight * disc.d_radius, &out.d_shape[2][i]);
+  AddWide(place.first, weight * disc.d_w, &out.d_blur[i]);
+  AddWide(place.first, d_x * place.d_open_x + d_y * place.d_open_y,
+          &out.d_open[i]);
+  AddWide(place.first, disc.dx * (weight * place.per_long), &out.xi[i]);
+  AddWide(place.first, disc.dy * (weight * place.per_long), &out.eta[i]);
 }
 
 // From the centre and from the edge. r - R is small beside r: as
@@ -175,9 +175,9 @@ float SquareTerm(float w_px) {
 }
 
 // `term` times He_3 phi at z, and its slope -He_4 phi. Takes phi's place.
-TOUCHDOWN_INLINE void AddSquare(float term, const Eight& z, Eight& cdf,
-                                Eight& pdf, Eight& added) {
-  const Eight square = z * z;
+TOUCHDOWN_INLINE void AddSquare(float term, const Wide& z, Wide& cdf, Wide& pdf,
+                                Wide& added) {
+  const Wide square = z * z;
   added = term * z * (square - 3.0F) * pdf;
   cdf += added;
   pdf *= 1.0F - term * (square * (square - 6.0F) + 3.0F);
@@ -194,29 +194,29 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
   const float per_w = 1.0F / place.w_px;
   const float e = place.w_px * place.per_long;
   const float square_term = SquareTerm(place.w_px);
-  for (std::size_t i = 0; i < kBlock; i += 8) {
-    const Eight r = EightAt(&at.r[i]);
-    const Eight dx = EightAt(&at.dx[i]);
-    const Eight dy = EightAt(&at.dy[i]);
-    const Eight s = EightAt(&at.outside[i]) * per_w;
-    Eight cdf;
-    Eight pdf;
+  for (std::size_t i = 0; i < kBlock; i += kWide) {
+    const Wide r = WideAt(&at.r[i]);
+    const Wide dx = WideAt(&at.dx[i]);
+    const Wide dy = WideAt(&at.dy[i]);
+    const Wide s = WideAt(&at.outside[i]) * per_w;
+    Wide cdf;
+    Wide pdf;
     NormalAt(-s, cdf, pdf);
-    const Eight third = 0.0625F * (1.0F + 5.0F * s * s);
-    const Eight g = e * (-0.5F + e * (0.375F * s - e * third));
-    const Eight g_s = e * e * (0.375F - 0.625F * e * s);
-    const Eight g_e = -0.5F + e * (0.75F * s - 3.0F * e * third);
+    const Wide third = 0.0625F * (1.0F + 5.0F * s * s);
+    const Wide g = e * (-0.5F + e * (0.375F * s - e * third));
+    const Wide g_s = e * e * (0.375F - 0.625F * e * s);
+    const Wide g_e = -0.5F + e * (0.75F * s - 3.0F * e * third);
     // c^4 + s^4 = 1 - 2 c^2 s^2
-    const Eight per_r = 1.0F / (r + kAtCentre_px);
-    const Eight sine_cosine = (dx * per_r) * (dy * per_r);
-    const Eight k =
+    const Wide per_r = 1.0F / (r + kAtCentre_px);
+    const Wide sine_cosine = (dx * per_r) * (dy * per_r);
+    const Wide k =
         square_term * (1.0F - 2.0F * sine_cosine * sine_cosine) * pdf;
-    const Eight s2 = s * s;
-    const Eight square = k * s * (3.0F - s2);  // z is -s
-    const Eight by_s =
+    const Wide s2 = s * s;
+    const Wide square = k * s * (3.0F - s2);  // z is -s
+    const Wide by_s =
         (pdf * (-1.0F - s * g + g_s) + k * (s2 * (s2 - 6.0F) + 3.0F)) * per_w;
-    const Eight by_e = pdf * g_e * place.per_long;
-    EightOfDisc disc;
+    const Wide by_e = pdf * g_e * place.per_long;
+    WideOfDisc disc;
     disc.dx = dx;
     disc.dy = dy;
     disc.outwards = -by_s * per_r;
@@ -304,9 +304,9 @@ void AddSmallDisc(const Place& place, const SmallDiscTable& table,
                   const double* x, const double* y, CoverBlock& out) {
   Distances at;
   Measure(place, x, y, at);
-  for (std::size_t i = 0; i < kBlock; i += 8) {
-    EightOfDisc disc;
-    for (std::size_t l = 0; l < 8; ++l) {
+  for (std::size_t i = 0; i < kBlock; i += kWide) {
+    WideOfDisc disc;
+    for (std::size_t l = 0; l < kWide; ++l) {
       const auto r = static_cast<double>(at.r[i + l]);
       const SmallDiscTable::Profile p = table.At(r);
       disc.outwards[l] =
@@ -317,8 +317,8 @@ void AddSmallDisc(const Place& place, const SmallDiscTable& table,
           static_cast<float>(-(r * p.d_r + place.long_px * p.d_radius) /
                              static_cast<double>(place.w_px));
     }
-    disc.dx = EightAt(&at.dx[i]);
-    disc.dy = EightAt(&at.dy[i]);
+    disc.dx = WideAt(&at.dx[i]);
+    disc.dy = WideAt(&at.dy[i]);
     AddDisc(place, disc, i, out);
   }
 }
@@ -347,20 +347,20 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     at.vp[i] = static_cast<float>(v + place.short_px);
     at.vm[i] = static_cast<float>(v - place.short_px);
   }
-  for (std::size_t i = 0; i < kBlock; i += 8) {
-    const Eight u = EightAt(&at.u[i]);
-    const Eight v = EightAt(&at.v[i]);
-    const Eight up = EightAt(&at.up[i]) * per_w;
-    const Eight um = EightAt(&at.um[i]) * per_w;
-    const Eight vp = EightAt(&at.vp[i]) * per_w;
-    const Eight vm = EightAt(&at.vm[i]) * per_w;
-    Eight above_u, below_u, above_v, below_v;  // the slab's two sides
-    Eight pup, pum, pvp, pvm;
+  for (std::size_t i = 0; i < kBlock; i += kWide) {
+    const Wide u = WideAt(&at.u[i]);
+    const Wide v = WideAt(&at.v[i]);
+    const Wide up = WideAt(&at.up[i]) * per_w;
+    const Wide um = WideAt(&at.um[i]) * per_w;
+    const Wide vp = WideAt(&at.vp[i]) * per_w;
+    const Wide vm = WideAt(&at.vm[i]) * per_w;
+    Wide above_u, below_u, above_v, below_v;  // the slab's two sides
+    Wide pup, pum, pvp, pvm;
     NormalAt(up, above_u, pup);
     NormalAt(um, below_u, pum);
     NormalAt(vp, above_v, pvp);
     NormalAt(vm, below_v, pvm);
-    Eight sup, sum, svp, svm;
+    Wide sup, sum, svp, svm;
     AddSquare(k, up, above_u, pup, sup);
     AddSquare(k, um, below_u, pum, sum);
     AddSquare(k, vp, above_v, pvp, svp);
@@ -370,30 +370,30 @@ void AddRectangle(const Place& place, const double* x, const double* y,
     pvp *= per_w;
     pvm *= per_w;
     const float weight = place.weight;
-    const Eight along = above_u - below_u;
-    const Eight across = weight * (above_v - below_v);
+    const Wide along = above_u - below_u;
+    const Wide across = weight * (above_v - below_v);
     pvp *= weight;
     pvm *= weight;
     // By w at a fixed depth in w: the term goes with w^-4.
-    const Eight fades_u = 4.0F * per_w * (sup - sum);
-    const Eight fades_v = (4.0F * weight) * per_w * (svp - svm);
-    const Eight d_u = (pup - pum) * across;
-    const Eight d_v = (pvp - pvm) * along;
-    const Eight d_x = d_v * s - d_u * c;
-    const Eight d_y = -d_u * s - d_v * c;
-    EightAt(&out.value[i]) += along * across;
-    EightAt(&out.d_shape[0][i]) += d_x;
-    EightAt(&out.d_shape[1][i]) += d_y;
-    EightAt(&out.d_shape[2][i]) += (pup + pum) * across;
-    EightAt(&out.d_shape[3][i]) += (pvp + pvm) * along;
-    const Eight d_angle = d_u * v - d_v * u;
-    EightAt(&out.d_shape[4][i]) += d_angle;
-    EightAt(&out.d_blur[i]) -= (up * pup - um * pum + fades_u) * across +
-                               (vp * pvp - vm * pvm + fades_v) * along;
-    EightAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
-                               d_angle * place.d_open_angle;
-    EightAt(&out.xi[i]) += u * (weight * place.per_long);
-    EightAt(&out.eta[i]) += v * (weight * place.per_short);
+    const Wide fades_u = 4.0F * per_w * (sup - sum);
+    const Wide fades_v = (4.0F * weight) * per_w * (svp - svm);
+    const Wide d_u = (pup - pum) * across;
+    const Wide d_v = (pvp - pvm) * along;
+    const Wide d_x = d_v * s - d_u * c;
+    const Wide d_y = -d_u * s - d_v * c;
+    WideAt(&out.value[i]) += along * across;
+    WideAt(&out.d_shape[0][i]) += d_x;
+    WideAt(&out.d_shape[1][i]) += d_y;
+    WideAt(&out.d_shape[2][i]) += (pup + pum) * across;
+    WideAt(&out.d_shape[3][i]) += (pvp + pvm) * along;
+    const Wide d_angle = d_u * v - d_v * u;
+    WideAt(&out.d_shape[4][i]) += d_angle;
+    WideAt(&out.d_blur[i]) -= (up * pup - um * pum + fades_u) * across +
+                              (vp * pvp - vm * pvm + fades_v) * along;
+    WideAt(&out.d_open[i]) += d_x * place.d_open_x + d_y * place.d_open_y +
+                              d_angle * place.d_open_angle;
+    WideAt(&out.xi[i]) += u * (weight * place.per_long);
+    WideAt(&out.eta[i]) += v * (weight * place.per_short);
   }
 }
 
