@@ -150,29 +150,27 @@ TEST(Background, BehindASlowBody) {
   EXPECT_GT(worst, 60.0);  // the ghost
 
   int asked = 0;
-  double most = 0.0;
-  const Background behind = EstimateBackgroundBehind(
-      *clip, 0, 60,
-      [&](std::int64_t frame) {
-        ++asked;
-        Cover cover;
-        if (frame == 0) {  // its place is not known here
-          cover.known = false;
-          return cover;
-        }
-        const SceneTruth at = TruthOf(scene, frame);
-        cover.box = {0, 0, 160, 80};
-        for (int y = 0; y < 80; ++y) {
-          for (int x = 0; x < 160; ++x) {
-            cover.mask.push_back(
-                std::hypot(x - at.centre.x_px, y - at.centre.y_px) < 14.0);
-          }
-        }
-        return cover;
-      },
-      ghost, {}, &most);
+  const Covers covers = FindCovers(0, 60, [&](std::int64_t frame) {
+    ++asked;
+    Cover cover;
+    if (frame == 0) {  // its place is not known here
+      cover.known = false;
+      return cover;
+    }
+    const SceneTruth at = TruthOf(scene, frame);
+    cover.box = {0, 0, 160, 80};
+    for (int y = 0; y < 80; ++y) {
+      for (int x = 0; x < 160; ++x) {
+        cover.mask.push_back(
+            std::hypot(x - at.centre.x_px, y - at.centre.y_px) < 14.0);
+      }
+    }
+    return cover;
+  });
   EXPECT_EQ(asked, 33);
-  EXPECT_DOUBLE_EQ(most, 1.0);
+  EXPECT_EQ(covers.frames.size(), 32U);
+  EXPECT_DOUBLE_EQ(covers.most, 1.0);
+  const Background behind = EstimateBackgroundBehind(*clip, covers, ghost);
   EXPECT_FALSE(behind.known_at(72, 35));
   EXPECT_TRUE(behind.known_at(40, 35));
   EXPECT_TRUE(behind.known_at(110, 35));

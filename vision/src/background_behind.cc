@@ -17,47 +17,41 @@ namespace touchdown::vision {
 namespace {
 
 // Where the body was in the samples.
-struct Covers {
-  std::vector<Cover> of;  // of each sample
-  // The box around all of these and of doubtful ones, and for each of its
-  // pixels how many cover it.
-  core::PixelRect box;
-  std::vector<std::uint16_t> counts;
+const std::uint16_t* CountsOf(const Covers& covers, std::int32_t y) {
+  return covers.counts.data() +
+         static_cast<std::ptrdiff_t>(y - covers.box.y) * covers.box.width;
+}
 
-  const std::uint16_t* CountsOf(std::int32_t y) const {
-    return counts.data() + static_cast<std::ptrdiff_t>(y - box.y) * box.width;
+// Calls use(i) for each of `count` pixels from (x, y) on that is covered.
+template <class Use>
+void ForEachCovered(const Cover& cover, std::int32_t x, std::int32_t y,
+                    std::size_t count, const Use& use) {
+  const core::PixelRect& own = cover.box;
+  if (y < own.y || y >= own.y + own.height) return;
+  const std::uint8_t* const mask =
+      cover.mask.data() + static_cast<std::ptrdiff_t>(y - own.y) * own.width;
+  const std::int32_t end =
+      std::min(x + static_cast<std::int32_t>(count), own.x + own.width);
+  for (std::int32_t at = std::max(x, own.x); at < end; ++at) {
+    if (mask[at - own.x] != 0) use(static_cast<std::size_t>(at - x));
   }
-  // Calls use(i) for each of `count` pixels from (x, y) on that sample k's body
-  // covers.
-  template <class Use>
-  void ForEachCovered(std::size_t k, std::int32_t x, std::int32_t y,
-                      std::size_t count, const Use& use) const {
-    const Cover& cover = of[k];
-    const core::PixelRect& own = cover.box;
-    if (y < own.y || y >= own.y + own.height) return;
+}
+
+void Count(const Cover& cover, Covers& covers) {
+  const core::PixelRect& own = cover.box;
+  for (std::int32_t y = 0; y < own.height; ++y) {
     const std::uint8_t* const mask =
-        cover.mask.data() + static_cast<std::ptrdiff_t>(y - own.y) * own.width;
-    const std::int32_t end =
-        std::min(x + static_cast<std::int32_t>(count), own.x + own.width);
-    for (std::int32_t at = std::max(x, own.x); at < end; ++at) {
-      if (mask[at - own.x] != 0) use(static_cast<std::size_t>(at - x));
+        cover.mask.data() + static_cast<std::ptrdiff_t>(y) * own.width;
+    std::uint16_t* const count =
+        covers.counts.data() +
+        static_cast<std::ptrdiff_t>(own.y + y - covers.box.y) *
+            covers.box.width +
+        (own.x - covers.box.x);
+    for (std::int32_t x = 0; x < own.width; ++x) {
+      count[x] = static_cast<std::uint16_t>(count[x] + (mask[x] != 0));
     }
   }
-  void Count(const Cover& cover) {
-    const core::PixelRect& own = cover.box;
-    for (std::int32_t y = 0; y < own.height; ++y) {
-      const std::uint8_t* const mask =
-          cover.mask.data() + static_cast<std::ptrdiff_t>(y) * own.width;
-      std::uint16_t* const count =
-          counts.data() +
-          static_cast<std::ptrdiff_t>(own.y + y - box.y) * box.width +
-          (own.x - box.x);
-      for (std::int32_t x = 0; x < own.width; ++x) {
-        count[x] = static_cast<std::uint16_t>(count[x] + (mask[x] != 0));
-      }
-    }
-  }
-};
+}
 
 core::PixelRect BoxAround(const core::PixelRect& a, const core::PixelRect& b) {
   if (a.width == 0 || a.height == 0) return b;
@@ -90,7 +84,7 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   std::array<std::size_t, kLanes> high{};  // above
   const auto is_touched = [](std::uint16_t count) { return count != 0; };
   for (auto y = static_cast<std::int32_t>(top); y < bottom; ++y) {
-    const std::uint16_t* const counts = covers.CountsOf(y);
+    const std::uint16_t* const counts = CountsOf(covers, y);
     const std::uint16_t* const end = counts + covers.box.width;
     const std::uint16_t* const first = std::find_if(counts, end, is_touched);
     if (first == end) continue;
@@ -122,7 +116,7 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
       for (std::size_t k = 0; k < n; ++k) {
         Sample* const samples_k = &lanes[k * kLanes];
         LoadLanes((*windows)[k], x - covers.box.x, y - windows_top, samples_k);
-        covers.ForEachCovered(k, x, y, count, [&](std::size_t i) {
+        ForEachCovered(covers.of[k], x, y, count, [&](std::size_t i) {
           const bool down = low[i] == high[i];
           samples_k[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
           ++(down ? low : high)[i];
@@ -174,50 +168,50 @@ void EstimateNoiseOf(const FrameSamples& samples, int threads,
 
 }  // namespace
 
-Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
-                                    std::int64_t last,
-                                    const CoverFunction& covers,
-                                    const Background& fallback,
-                                    const BackgroundOptions& options,
-                                    double* most_covered) {
-  std::vector<std::int64_t> frames;
+Covers FindCovers(std::int64_t first, std::int64_t last,
+                  const CoverFunction& covers,
+                  const BackgroundOptions& options) {
   Covers all;
   std::vector<Cover> doubtful;
   for (const std::int64_t index : BackgroundFrames(first, last, options)) {
     Cover cover = covers(index);
+    all.box = BoxAround(all.box, cover.box);
     if (!cover.known) {
       doubtful.push_back(std::move(cover));
       continue;
     }
-    frames.push_back(index);
+    all.frames.push_back(index);
     all.of.push_back(std::move(cover));
   }
-  if (frames.size() < 2) return fallback;
-  for (const Cover& cover : all.of) all.box = BoxAround(all.box, cover.box);
-  for (const Cover& cover : doubtful) all.box = BoxAround(all.box, cover.box);
   all.counts.assign(static_cast<std::size_t>(all.box.width) *
                         static_cast<std::size_t>(all.box.height),
                     0);
-  for (const Cover& cover : all.of) all.Count(cover);
-  if (most_covered != nullptr) {
-    const int most = all.counts.empty() ? 0
-                                        : *std::max_element(all.counts.begin(),
-                                                            all.counts.end());
-    *most_covered = most / static_cast<double>(frames.size());
+  for (const Cover& cover : all.of) Count(cover, all);
+  if (!all.counts.empty() && !all.of.empty()) {
+    all.most = *std::max_element(all.counts.begin(), all.counts.end()) /
+               static_cast<double>(all.of.size());
   }
-  for (const Cover& cover : doubtful) all.Count(cover);
-  Background background = fallback;
-  background.unknown.assign(fallback.level.size(), 0);
-  const FrameSamples samples(clip, frames);
+  for (const Cover& cover : doubtful) Count(cover, all);
+  return all;
+}
+
+Background EstimateBackgroundBehind(Clip& clip, const Covers& covers,
+                                    Background fallback,
+                                    const BackgroundOptions& options) {
+  if (covers.frames.size() < 2) return fallback;
+  Background background = std::move(fallback);
+  const std::size_t pixels = background.level.size();
+  background.unknown.assign(pixels, 0);
+  const FrameSamples samples(clip, covers.frames);
   core::InParallel(
-      all.box.height, samples.Threads(options.threads),
+      covers.box.height, samples.Threads(options.threads),
       [&](std::int64_t begin, std::int64_t end) {
         if (samples.is_16_bit()) {
-          MidMeanBehind<std::uint16_t>(samples, all, all.box.y + begin,
-                                       all.box.y + end, background);
+          MidMeanBehind<std::uint16_t>(samples, covers, covers.box.y + begin,
+                                       covers.box.y + end, background);
         } else {
-          MidMeanBehind<std::uint8_t>(samples, all, all.box.y + begin,
-                                      all.box.y + end, background);
+          MidMeanBehind<std::uint8_t>(samples, covers, covers.box.y + begin,
+                                      covers.box.y + end, background);
         }
       });
   if (std::none_of(background.unknown.begin(), background.unknown.end(),
@@ -228,9 +222,10 @@ Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
   // change in a small part of it say nothing new.
   constexpr double kSmallPart = 0.05;
   const auto untouched =
-      std::count(all.counts.begin(), all.counts.end(), std::uint16_t{0});
-  if (static_cast<double>(all.counts.size()) - static_cast<double>(untouched) >
-      kSmallPart * static_cast<double>(fallback.level.size())) {
+      std::count(covers.counts.begin(), covers.counts.end(), std::uint16_t{0});
+  if (static_cast<double>(covers.counts.size()) -
+          static_cast<double>(untouched) >
+      kSmallPart * static_cast<double>(pixels)) {
     EstimateNoiseOf(samples, options.threads, background);
   }
   return background;

@@ -207,25 +207,16 @@ Track TrackOf(const Look& look, const Clip& clip, const TrackOptions& options) {
   return track;
 }
 
-// What is behind the body of a track.
-struct BehindBody {
-  Background background;
-  double most_covered = 0.0;  // share of the frames, of any pixel
-};
-
 // Covered less than a fifth of the time, a pixel's mid-mean is untouched but
 // for a tenth of the noise.
 constexpr double kUntouched = 0.2;
 
-BehindBody LookBehind(Clip& clip, const TrackOptions& options,
-                      const Track& track, const Background& fallback) {
-  BehindBody behind;
+Covers CoversOf(Clip& clip, const TrackOptions& options, const Track& track) {
   const BodyCover cover(clip, track);
-  behind.background = EstimateBackgroundBehind(
-      clip, options.first, track.last_frame,
-      [&cover](std::int64_t frame) { return cover.In(frame); }, fallback,
-      BackgroundFor(clip, options), &behind.most_covered);
-  return behind;
+  return FindCovers(
+      options.first, track.last_frame,
+      [&cover](std::int64_t frame) { return cover.In(frame); },
+      BackgroundFor(clip, options));
 }
 
 // Whether the body may have been lost where it passed its own ghost.
@@ -265,7 +256,8 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   whole->warnings.clear();
   whole->several_bodies = false;
   Background behind =
-      LookBehind(clip, options, *whole, result.background).background;
+      EstimateBackgroundBehind(clip, CoversOf(clip, options, *whole),
+                               result.background, BackgroundFor(clip, options));
   // What does not move as one picture was none.
   Track followed = FollowPattern(clip, behind, *whole, options.threads);
   if (!followed.patterned) return;
@@ -300,17 +292,27 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   Track& track = result.track;
   track = TrackOf(*first, clip, options);
   // Now that the body's place is known, the background without it.
-  BehindBody behind = LookBehind(clip, options, track, first->background);
-  if (behind.most_covered > kUntouched && IsTorn(*first)) {
-    Look again = LookWith(clip, behind.background, options,
-                          Detector::kDifference, first->found.last);
+  Covers covers = CoversOf(clip, options, track);
+  const auto look_behind = [&](Background fallback) {
+    return EstimateBackgroundBehind(clip, covers, std::move(fallback),
+                                    BackgroundFor(clip, options));
+  };
+  // Mostly that with the body is not needed again.
+  const bool once = covers.most <= kUntouched && track.known_background &&
+                    IsWellModelled(track);
+  Background behind =
+      look_behind(once ? std::move(first->background) : first->background);
+  if (covers.most > kUntouched && IsTorn(*first)) {
+    Look again = LookWith(clip, behind, options, Detector::kDifference,
+                          first->found.last);
     if (again.fits.size() > first->fits.size() && IsBetter(again, *first)) {
       *first = std::move(again);
       track = TrackOf(*first, clip, options);
-      behind = LookBehind(clip, options, track, first->background);
+      covers = CoversOf(clip, options, track);
+      behind = look_behind(first->background);
     }
   }
-  result.background = std::move(first->background);
+  result.background = once ? std::move(behind) : std::move(first->background);
   const Chain& chain = first->found.chains.front();
   double whole_px = 0.0;
   if (first->choice.kind == core::BodyKind::kRectangle) {
@@ -319,11 +321,11 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
           std::max(whole_px, LengthTogether(chain, first->found.chains[i]));
     }
   }
-  if (behind.most_covered > kUntouched || !track.known_background) {
-    const Choice again = ChooseKind(clip, behind.background, chain, options,
-                                    Surround::kBackground);
+  if (covers.most > kUntouched || !track.known_background) {
+    const Choice again =
+        ChooseKind(clip, behind, chain, options, Surround::kBackground);
     if (again.badness < first->choice.badness || track.known_background) {
-      std::swap(result.background, behind.background);
+      std::swap(result.background, behind);
       // So many fits must not get lost.
       const auto enough = [&](const std::vector<Fitted>& fits) {
         return fits.size() * 2 >= first->fits.size();
@@ -351,12 +353,12 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
         FillTrack(better, again.kind, track);
         first->fits = std::move(better);
       } else {
-        std::swap(result.background, behind.background);
+        std::swap(result.background, behind);
       }
     }
-  } else if (IsWellModelled(track)) {
+  } else if (!once && IsWellModelled(track)) {
     // A body of another shape would show through its mask.
-    result.background = std::move(behind.background);
+    result.background = std::move(behind);
   }
   // Now the frames between say where each fit begins. From rough starts, what
   // that finds is a better beginning again.

@@ -94,16 +94,27 @@ struct Cover {
 };
 using CoverFunction = std::function<Cover(std::int64_t frame)>;
 
+// Where the body is in the frames that are sampled.
+struct Covers {
+  std::vector<std::int64_t> frames;  // where that is known
+  std::vector<Cover> of;             // each of them
+  // The box around all of these and of the others, and for each of its pixels
+  // how many cover it.
+  core::PixelRect box;
+  std::vector<std::uint16_t> counts;
+  // The largest share of `frames` in which any one pixel is covered.
+  double most = 0.0;
+};
+Covers FindCovers(std::int64_t first, std::int64_t last,
+                  const CoverFunction& covers,
+                  const BackgroundOptions& options = {});
+
 // The same from frames in which the body's place is known: what it covers is
 // left out, so that a slow or large body leaves no ghost. Pixels that no
 // frame's mask covers keep the level of `fallback`, the mid-mean of the same
-// frames. `most_covered` (may be null) receives the largest share of samples in
-// which any one pixel was covered.
-Background EstimateBackgroundBehind(Clip& clip, std::int64_t first,
-                                    std::int64_t last,
-                                    const CoverFunction& covers,
-                                    const Background& fallback,
-                                    const BackgroundOptions& options = {},
-                                    double* most_covered = nullptr);
+// frames.
+Background EstimateBackgroundBehind(Clip& clip, const Covers& covers,
+                                    Background fallback,
+                                    const BackgroundOptions& options = {});
 
 }  // namespace touchdown::vision
