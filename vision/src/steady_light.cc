@@ -65,9 +65,11 @@ class Grid {
            kLeast * static_cast<double>(steady_.size());
   }
 
-  // Where most of the light is, to a tenth more than the noise of GainOf.
+  // Where most of the light is, by one point in four: with 2.5 times the noise
+  // of GainOf, which is far below what is taken out.
   double MedianGainOf(const std::vector<float>& levels) const {
-    return MedianGain(Usable(levels));
+    constexpr std::size_t kStep = 4;
+    return MedianGain(Usable(levels, kStep));
   }
 
   // Least squares of v = g r without points off by more than 4 sigma. It begins
@@ -103,10 +105,10 @@ class Grid {
   };
   using Points = std::vector<Point>;
 
-  Points Usable(const std::vector<float>& levels) const {
+  Points Usable(const std::vector<float>& levels, std::size_t step = 1) const {
     Points points(levels.size());
     std::size_t count = 0;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (std::size_t i = 0; i < levels.size(); i += step) {
       points[count] = {static_cast<double>(levels[i]),
                        static_cast<double>(steady_[i])};
       count += IsUsable(levels[i], steady_[i]) ? 1 : 0;
