@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -260,6 +262,40 @@ TEST(FrameStore, SaysThatTheStillPictureHasAGhost) {
       options);
   ASSERT_TRUE(clip->GrowTo(120));
   EXPECT_FALSE(clip->HoldsAllChanges());
+}
+
+// A body that every key frame shows and few others do: what differs from the
+// picture without it is found in all frames, those kept whole among them.
+TEST(FrameStore, WhatKeyFramesHideIsFoundInTheEnd) {
+  Scene scene = testing::LongScene(600);
+  const auto moves = scene.pose;
+  const auto shown = [](std::int64_t frame) { return frame % 40 < 8; };
+  scene.pose = [&](double t) {
+    return shown(std::lround(1000.0 * t)) ? moves(0.500)
+                                          : ScenePose{{9.0, 9.0}, 0.0};
+  };
+  FrameStoreOptions options;
+  options.most_bytes = 320 * 160 * 300;
+  std::map<std::int64_t, int> decoded;
+  const auto clip = KeepFrames(
+      std::make_unique<testing::InGroups>(OpenScene(scene, 1), 40, decoded),
+      options);
+  int kept_whole = 0;
+  for (std::int64_t i = 0; i < 600; ++i) {
+    ASSERT_NE(clip->ChangesIn(i), nullptr) << i;
+    const core::PixelPoint body = TruthOf(scene, 0).centre;
+    const auto& where = clip->ChangesIn(i)->where;
+    const bool seen = std::any_of(
+        where.begin(), where.end(), [&](const core::PixelRect& rect) {
+          return body.x_px > rect.x && body.x_px < rect.x + rect.width &&
+                 body.y_px > rect.y && body.y_px < rect.y + rect.height;
+        });
+    EXPECT_EQ(seen, shown(i)) << i;
+    const int before = decoded[i];
+    clip->Read(i);
+    kept_whole += decoded[i] == before && shown(i) ? 1 : 0;
+  }
+  EXPECT_GE(kept_whole, 5);
 }
 
 // Too large to be kept piece by piece: said at once, and nothing is decoded.

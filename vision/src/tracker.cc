@@ -232,7 +232,9 @@ bool IsWellModelled(const Track& track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
-// Where outlines explain the body badly, it may be a part of what moves as one.
+// Where outlines explain the body badly (as badly as for its picture,
+// follow_pattern.h: noise of compression is no part), it may be a part of what
+// moves as one.
 // Not a disc that stands out by its levels alone: what moves with a ball before
 // an unknown background is its shadow.
 void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
@@ -240,8 +242,8 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   Track& track = result.track;
   const bool ball_by_levels = track.body.kind == core::BodyKind::kSphere &&
                               look.surround != Surround::kBackground;
-  if (ball_by_levels || IsWellModelled(track) || !IsSteady(track) ||
-      look.found.step > 1) {
+  if (ball_by_levels || !(MedianMisfit(track.poses) > kCrude) ||
+      !IsSteady(track) || look.found.step > 1) {
     return;
   }
   auto whole = FindWhole(clip, result.background, track, options);

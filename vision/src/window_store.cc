@@ -357,7 +357,9 @@ class WindowStore final : public GrowingClip {
   void LeaveOutUpTo(std::int64_t last) {
     for (; end_ < last; ++end_) {
       Kept& kept = KeptOf(end_);
-      if (kept.state == State::kUnknown) kept.state = State::kLeftOut;
+      if (kept.state != State::kUnknown) continue;
+      kept.state = State::kLeftOut;
+      kept.changes = {};
     }
   }
 
@@ -380,7 +382,11 @@ class WindowStore final : public GrowingClip {
 
   void DecodeAgain() {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
-      if (!whole_.contains(static_cast<std::int64_t>(i))) frames_[i] = {};
+      std::vector<KeptPixels> whole;
+      if (whole_.contains(static_cast<std::int64_t>(i))) {
+        whole = std::move(frames_[i].windows);
+      }
+      frames_[i] = {State::kUnknown, {}, std::move(whole)};
     }
     left_bytes_ = Room();
     DecodeAll();
