@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "first_look.h"
+#include "frame_choice.h"
 #include "glimpses.h"
 #include "kept_pixels.h"
 #include "scout.h"
@@ -29,7 +29,8 @@ class WindowStore final : public GrowingClip {
     options_.last = options_.last < 0 ? frames : options_.last;
     end_ = options_.first;
     frames_.resize(static_cast<std::size_t>(frames));
-    ChooseWholeFrames();
+    whole_ = FramesKeptWhole(info(), options_);
+    alone_ = AreStoredAlone(*clip_, options_.first, options_.last);
     left_bytes_ = Room();
     scout_.region = options_.region;
     scout_.margin_cells = kMargin;
@@ -131,43 +132,9 @@ class WindowStore final : public GrowingClip {
     return clip_->Read(index, window);
   }
 
-  // Those of the backgrounds that first_look.cc may ask for: of the whole
-  // range, and, where there is room, of its first and last eighth.
-  void ChooseWholeFrames() {
-    const std::int64_t first = options_.first;
-    const std::int64_t last = options_.last;
-    const std::int64_t part = EndPart(first, last);
-    const std::size_t room = options_.most_bytes * 3 / 5;
-    for (const auto& [from, to] :
-         {std::pair{first, last},
-          std::pair{first, std::min(first + part, last)},
-          std::pair{std::max(first, last - part), last}}) {
-      std::set<std::int64_t> more = whole_;
-      more.merge(
-          SetOf(BackgroundFrames(from, to, BackgroundOptions{}.samples)));
-      if (more.size() * FrameBytes(info()) > room) break;
-      whole_ = std::move(more);
-    }
-  }
-  static std::set<std::int64_t> SetOf(const std::vector<std::int64_t>& frames) {
-    return {frames.begin(), frames.end()};
-  }
-
-  // Those of the background that can be read without others.
-  std::vector<std::int64_t> KeyFrames() const {
-    std::set<std::int64_t> keys;
-    for (const std::int64_t frame : BackgroundFrames(
-             options_.first, options_.last, BackgroundOptions{}.samples)) {
-      keys.insert(clip_->EntryFrame(frame));
-    }
-    keys.erase(keys.begin(), keys.lower_bound(options_.first));
-    if (keys.empty()) keys.insert(options_.first);
-    return {keys.begin(), keys.end()};
-  }
-
   // Sets still_ by the key frames, and which of them show anything beside it.
   void LookAtKeyFrames() {
-    keys_ = KeyFrames();
+    keys_ = KeyFramesIn(*clip_, options_.first, options_.last);
     const bool fit = keys_.size() * FrameBytes(info()) <= options_.most_bytes;
     for (const std::int64_t frame : keys_) {
       if (!fit && !whole_.contains(frame)) continue;
@@ -293,7 +260,7 @@ class WindowStore final : public GrowingClip {
     std::vector<std::int64_t> glimpsed;
     // In vain where others would have to be decoded for them, or where it is
     // not known what is still.
-    if (AreStoredAlone() && scout_.always.empty()) {
+    if (alone_ && scout_.always.empty()) {
       for (std::int64_t i = options_.first; i < options_.last;
            i += kGlimpseStride) {
         glimpsed.push_back(i);
@@ -301,9 +268,10 @@ class WindowStore final : public GrowingClip {
     }
     done_ = Seen();
     Decode(NotSeen(glimpsed), static_cast<std::size_t>(range));
-    std::set<std::int64_t> worth = SetOf(FramesWorthDecoding(
+    const std::vector<std::int64_t> seen = FramesWorthDecoding(
         options_.first, options_.last, glimpsed,
-        Shows(glimpsed, static_cast<std::size_t>(range)), rule));
+        Shows(glimpsed, static_cast<std::size_t>(range)), rule);
+    std::set<std::int64_t> worth(seen.begin(), seen.end());
     worth.insert(whole_.begin(), whole_.end());
     const std::vector<std::int64_t> rest =
         NotSeen({worth.begin(), worth.end()});
@@ -319,11 +287,10 @@ class WindowStore final : public GrowingClip {
   // key.
   std::vector<bool> Shows(const std::vector<std::int64_t>& glimpsed,
                           std::size_t range) {
-    const bool alone = AreStoredAlone();
     std::vector<std::int64_t> next;
     for (const std::int64_t index : glimpsed) {
       const bool differs = !KeptOf(index).changes.where.empty();
-      if (alone && differs && index + 1 < options_.last) {
+      if (alone_ && differs && index + 1 < options_.last) {
         next.push_back(index + 1);
       }
     }
@@ -333,7 +300,7 @@ class WindowStore final : public GrowingClip {
     for (const std::int64_t index : glimpsed) {
       const Changes& changes = KeptOf(index).changes;
       shows.push_back(
-          !alone || index + 1 == options_.last
+          !alone_ || index + 1 == options_.last
               ? !changes.where.empty()
               : AreInBoth(changes, KeptOf(index + 1).changes, kMargin));
     }
@@ -411,7 +378,7 @@ class WindowStore final : public GrowingClip {
     const std::size_t room =
         left_bytes_ / std::max<std::size_t>(1, of) * frames.size();
     std::int64_t parts = 1;
-    if (AreStoredAlone()) {
+    if (alone_) {
       parts = 16;  // enough for the cores of a workstation
       const auto readers =
           std::min<std::int64_t>(core::ThreadsOf(options_.threads), parts);
@@ -438,14 +405,6 @@ class WindowStore final : public GrowingClip {
                        room / static_cast<std::size_t>(parts));
           }
         });
-  }
-
-  bool AreStoredAlone() {
-    for (std::int64_t i = options_.first; !alone_ && i < options_.last; ++i) {
-      if (clip_->EntryFrame(i) != i) alone_ = false;
-    }
-    if (!alone_) alone_ = true;
-    return *alone_;
   }
 
   void DecodePart(Clip& clip, const Scout& scout,
@@ -514,7 +473,7 @@ class WindowStore final : public GrowingClip {
   std::optional<Background> still_;  // that windows differ from
   std::vector<Kept> frames_;
   std::vector<std::unique_ptr<Clip>> others_;  // readers beside clip_
-  std::optional<bool> alone_;                  // frames are stored alone
+  bool alone_ = false;                 // each frame can be read without others
   std::vector<std::int64_t> keys_;     // that still_ is made of at first
   std::vector<Changes> keys_changes_;  // from it
   std::vector<std::int64_t> todo_;     // to decode, piece by piece
