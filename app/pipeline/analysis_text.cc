@@ -90,6 +90,10 @@ std::string ToText(const Analysis& a) {
   if (first.state.micro_bounce) state += ", micro-bounce";
   Line(out, "state", state);
   Line(out, "", first.state.reason);
+  if (first.state.extrapolated_gap_m) {
+    Line(out, "would reach",
+         Number(first.state.extrapolated_gap_m, kMm, "mm"));
+  }
   if (contact.found && !contact.from_start) {
     Line(out, "speed", Number(first.motion.before_speed_mps, 1.0, "m/s"));
     Line(out, "restitut.", Number(first.motion.restitution, 1.0, ""));

@@ -62,6 +62,7 @@ PaperTrials PaperTable1Trials(double u_rad) {
       state.max_gap_m = unknown;
       state.bounce_height_m = unknown;
       state.detectable_gap_m = unknown;
+      state.extrapolated_gap_m = unknown;
       trial.author = "the paper's Table 1";
       out.trials.push_back(std::move(trial));
     }

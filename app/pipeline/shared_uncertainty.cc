@@ -7,7 +7,7 @@
 namespace touchdown::pipeline {
 namespace {
 
-constexpr std::size_t kQuantities = 18;
+constexpr std::size_t kQuantities = 19;
 
 // Every number of a contact that a shared input can move.
 std::array<core::Measured*, kQuantities> QuantitiesOf(
@@ -21,6 +21,7 @@ std::array<core::Measured*, kQuantities> QuantitiesOf(
           &c.frame,
           &c.duration_s,
           &record.state.max_gap_m,
+          &record.state.extrapolated_gap_m,
           &m.before_speed_mps,
           &m.before_normal_mps,
           &m.before_tangential_mps,

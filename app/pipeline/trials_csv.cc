@@ -77,6 +77,7 @@ core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
   core::StateDecision& state = trial.first.state;
   state.p_bounce = p_bounce;
   state.max_gap_m = core::AbsentBecause("not in the file");
+  state.extrapolated_gap_m = core::AbsentBecause("not in the file");
   switch (analysis::Observe(0.0, 0.0, p_bounce).outcome) {
     case analysis::Outcome::kBounce:
       state.label = core::MotionState::kBounce;

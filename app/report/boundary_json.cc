@@ -128,6 +128,9 @@ Json TrialJson(const core::Trial& trial, const std::string* left_out) {
           {"paper_word", PaperWord(state.label)},
           {"p_bounce", Optional(state.p_bounce)},
           {"max_gap_mm", Quantity(state.max_gap_m, kMillimetre)},
+          {"extrapolated_gap_mm",
+           Quantity(state.extrapolated_gap_m, kMillimetre)},
+          {"state_because", state.reason},
           {"bounce_height_mm", Quantity(state.bounce_height_m, kMillimetre)},
           {"micro_bounce", state.micro_bounce},
           {"left_out", left_out != nullptr ? Json(*left_out) : Json(nullptr)}};

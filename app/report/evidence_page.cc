@@ -75,8 +75,10 @@ void AddState(const core::StateDecision& state, const std::string& caption,
                         core::Name(state.label), PaperWord(state.label)));
   facts.Add("because", state.reason);
   facts.Add("P(bounce)", state.p_bounce ? Plain(*state.p_bounce, 6)
-                                        : "the rebound was not filmed");
+                                        : "absent: " + state.reason);
   facts.Add("greatest gap", state.max_gap_m, kMillimetre, "mm");
+  facts.Add("greatest gap that the flight would reach",
+            state.extrapolated_gap_m, kMillimetre, "mm");
   facts.Add("bounce height", state.bounce_height_m, kMillimetre, "mm");
   facts.Add("detectable gap", state.detectable_gap_m, kMillimetre, "mm");
   if (state.micro_bounce) facts.Add("micro-bounce", "yes");

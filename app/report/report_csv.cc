@@ -42,7 +42,7 @@ std::string MakeCsv(std::span<const Group> groups,
       "campaign,origin,watermark,body,surface,angle_kind,set_angle_deg,"
       "angle_deg,u_angle_deg,state,paper_word,p_bounce,max_gap_mm,"
       "u_max_gap_mm,bounce_height_mm,micro_bounce,left_out,clip,trial,"
-      "revision\r\n";
+      "revision,extrapolated_gap_mm,u_extrapolated_gap_mm,state_because\r\n";
   for (const Group& group : groups) {
     const auto left_out = ReasonsLeftOut(group);
     for (const std::size_t t : group.members) {
@@ -71,7 +71,10 @@ std::string MakeCsv(std::span<const Group> groups,
                                    why == left_out.end() ? "" : why->second,
                                    trial.clip.path,
                                    trial.id,
-                                   fmt::format("{}", trial.revision)};
+                                   fmt::format("{}", trial.revision),
+                                   Value(state.extrapolated_gap_m, kMillimetre),
+                                   U(state.extrapolated_gap_m, kMillimetre),
+                                   state.reason};
       for (std::size_t i = 0; i < std::size(cells); ++i) {
         if (i > 0) out += ',';
         out += CsvCell(cells[i]);

@@ -16,6 +16,8 @@ namespace touchdown::report {
 namespace {
 
 constexpr std::string_view kCampaignSchema = "touchdown.campaign/1";
+// Exports of stores below version 4 do not have it, and are read all the same.
+constexpr std::string_view kAddedLater = "extrapolated_gap_m";
 
 Json BodyJson(const core::Body& body) {
   Json json = {{"kind", core::Name(body.kind)}};
@@ -109,7 +111,13 @@ core::ContactRecord ContactOf(const Json& json) {
   record.state.reason = TextOf(json, "state_because");
   record.state.micro_bounce = FlagOf(json, "micro_bounce");
   for (const auto& quantity : db::kContactQuantities) {
-    db::At(record, quantity) = MeasuredOf(json, std::string(quantity.name));
+    const std::string name(quantity.name);
+    core::Measured& measured = db::At(record, quantity);
+    if (name == kAddedLater && !json.contains(name)) {
+      measured = core::AbsentBecause("exported before it was measured");
+      continue;
+    }
+    measured = MeasuredOf(json, name);
   }
   for (const auto& budget : db::kBudgets) {
     const std::string name = fmt::format("{}_budget", budget.name);

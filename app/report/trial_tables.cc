@@ -25,6 +25,15 @@ Cell StateCell(const core::StateDecision& state) {
   return {text, tone};
 }
 
+// What was filmed, and where the film ends too early what would have followed.
+std::string GapText(const core::StateDecision& state) {
+  std::string text = WithUOrReason(state.max_gap_m, kMillimetre);
+  if (state.extrapolated_gap_m) {
+    text += ", would reach " + WithU(*state.extrapolated_gap_m, kMillimetre);
+  }
+  return text;
+}
+
 Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
                 const analysis::TheoryComparison& theory) {
   if (o == nullptr) return {"left out", Tone::kMuted};
@@ -72,8 +81,8 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials,
     row.push_back(StateCell(state));
     row.push_back({PaperWord(state.label)});
     row.push_back({state.p_bounce ? Plain(*state.p_bounce, 4)
-                                  : std::string("not filmed")});
-    row.push_back({WithUOrReason(state.max_gap_m, kMillimetre)});
+                                  : std::string("absent")});
+    row.push_back({GapText(state)});
     if (theory != nullptr) {
       row.push_back(AgreesCell(
           trial, found == observed.end() ? nullptr : found->second, *theory));

@@ -82,7 +82,9 @@ std::string Evidence() {
       "  conditions_id INTEGER REFERENCES conditions (revision_id),\n"
       "  UNIQUE (trial_id, number)\n) STRICT;\n",
       kUuid,
-      Word("kind", "'logged', 'corrected', 'excluded', 'included', 'merged'"),
+      Word("kind",
+           "'logged', 'corrected', 'excluded', 'included', 'merged', "
+           "'proposed'"),
       Stamp("recorded_at_utc"));
   // A revision and what it states name each other. The statement goes in first
   // (its key is checked at the commit): the other way round SQLite would search

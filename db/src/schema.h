@@ -16,7 +16,8 @@ inline constexpr std::int64_t kApplicationId = 0x54445354;
 //   1  the first
 //   2  no clip, campaign or contact can be replaced by another program either
 //   3  the register is kept in versions; a revision knows its conditions
-inline constexpr std::int64_t kSchemaVersion = 3;
+//   4  a contact has its extrapolated gap; a revision may be a proposal
+inline constexpr std::int64_t kSchemaVersion = 4;
 
 // All tables, indexes and triggers of version kSchemaVersion.
 std::string SchemaSql();

@@ -115,6 +115,16 @@ void UpgradeFrom2(Connection& connection) {
       "WHERE EXISTS (SELECT 1 FROM conditions)");
 }
 
+// Version 4: a contact has its extrapolated gap, and a revision may be a
+// proposal. The new columns stand at the end of the table, so a row that does
+// not have them yet reads NULL there.
+void UpgradeFrom3(Connection& connection) {
+  ExchangeText(connection, {"contacts", "revisions"});
+  connection.Execute(
+      "UPDATE contacts SET extrapolated_gap_m_absent = "
+      "'logged before it was measured'");
+}
+
 void DropTriggers(Connection& connection) {
   std::string drop;
   Statement row(connection,
@@ -135,6 +145,9 @@ void Upgrade(Connection& connection, std::int64_t from_version) {
         break;
       case 2:
         UpgradeFrom2(connection);
+        break;
+      case 3:
+        UpgradeFrom3(connection);
         break;
       default:
         throw std::logic_error(fmt::format(

@@ -45,6 +45,47 @@ TEST(RevisionJson, RoundTripsAnything) {
   }
 }
 
+// A rebound that was not filmed to its top: no P(bounce), the gap that was
+// filmed, and the one that the flight would reach.
+TEST(RevisionJson, HoldsAReboundThatWasNotFilmedToItsTop) {
+  db::Revision revision;
+  revision.trial = db::SphereTrial(1);
+  core::StateDecision& state = revision.trial.first.state;
+  state.label = core::MotionState::kUndecided;
+  state.p_bounce.reset();
+  state.reason = "the film ends while the body rises";
+  state.max_gap_m = core::Estimate{0.4e-3, 0.02e-3, std::nullopt};
+  state.extrapolated_gap_m = core::Estimate{2.1e-3, 0.3e-3, std::nullopt};
+  const db::Revision back = RevisionFromJson(RevisionJson(revision));
+  EXPECT_EQ(back.trial.first.state, state);
+
+  std::ostringstream csv;
+  WriteTrialsCsv(csv, std::vector{revision.trial});
+  std::istringstream in(csv.str());
+  const CsvTrials read = ReadTrialsCsv(in, "trials.csv", "Ada");
+  ASSERT_THAT(read.errors, IsEmpty());
+  ASSERT_EQ(read.trials.size(), 1u);
+  const core::StateDecision& cells = read.trials[0].trial.first.state;
+  EXPECT_FALSE(cells.p_bounce);
+  EXPECT_EQ(cells.reason, state.reason);
+  ASSERT_TRUE(cells.extrapolated_gap_m);
+  EXPECT_NEAR(cells.extrapolated_gap_m->value, 2.1e-3, 1e-15);
+  EXPECT_NEAR(cells.extrapolated_gap_m->u, 0.3e-3, 1e-15);
+}
+
+TEST(RevisionJson, ReadsExportsThatAreOlderThanTheExtrapolatedGap) {
+  db::Revision revision;
+  revision.trial = db::SphereTrial(1);
+  nlohmann::json old = nlohmann::json::parse(RevisionJson(revision));
+  old["contacts"][0].erase("extrapolated_gap_m");
+  const core::Measured read =
+      RevisionFromJson(old.dump()).trial.first.state.extrapolated_gap_m;
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().reason, "exported before it was measured");
+  old["contacts"][0].erase("max_gap_m");
+  EXPECT_THROW(RevisionFromJson(old.dump()), std::invalid_argument);
+}
+
 TEST(RevisionJson, NamesTheFieldThatIsWrong) {
   db::Revision revision;
   revision.trial = db::SphereTrial(1);

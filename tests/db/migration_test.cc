@@ -94,6 +94,12 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   EXPECT_EQ(trials[2].first.contact.corner, core::Corner::kLeading);
   EXPECT_EQ(store.FindCampaign("asphalt")->theory_boundary_rad,
             11.8 * core::kDegree);
+  const core::Measured& extrapolated =
+      trials[0].first.state.extrapolated_gap_m;
+  ASSERT_FALSE(extrapolated);
+  EXPECT_EQ(extrapolated.error().reason, GetParam() < 4
+                                             ? "logged before it was measured"
+                                             : "not recorded by hand");
   if (GetParam() >= 3) {
     EXPECT_EQ(trials[0].conditions->spring.name, "S 3");
     const auto springs = VersionsOf(store, RegisterKind::kSpring, "S 3");

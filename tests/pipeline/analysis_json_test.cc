@@ -160,6 +160,22 @@ TEST(AnalyzeDocument, ReboundNotFilmedIsUndecided) {
   }
 }
 
+TEST(AnalyzeDocument, ReboundNotFilmedToItsTop) {
+  Analysis analysis = AnalyzeFilm(Default(BodyKind::kSphere));
+  core::StateDecision& state = analysis.contacts.first.state;
+  state.label = core::MotionState::kUndecided;
+  state.p_bounce.reset();
+  state.reason = "the film ends while the body rises";
+  state.max_gap_m = core::Estimate{0.4e-3, 0.02e-3, std::nullopt};
+  state.extrapolated_gap_m = core::Estimate{2.1e-3, 0.3e-3, std::nullopt};
+  const json document = ExpectDocument(analysis);
+  EXPECT_TRUE(document["state"]["p_bounce"].is_null());
+  EXPECT_EQ(document["absent"]["state.p_bounce"], state.reason);
+  EXPECT_NEAR(document["state"]["extrapolated_gap_mm"]["value"], 2.1, 1e-12);
+  EXPECT_NEAR(document["state"]["extrapolated_gap_mm"]["u"], 0.3, 1e-12);
+  EXPECT_THAT(ToText(analysis), HasSubstr("2.10 +- 0.30 mm"));
+}
+
 TEST(AnalyzeDocument, WithoutAScale) {
   const Film film = Default(BodyKind::kSphere);
   const Analysis analysis =

@@ -75,6 +75,7 @@ inline json ExpectDocument(const Analysis& analysis) {
                               "/state/max_gap_mm",
                               "/state/bounce_height_mm",
                               "/state/detectable_gap_mm",
+                              "/state/extrapolated_gap_mm",
                               "/state/micro_bounce",
                               "/later_contacts",
                               "/motion/before/speed_mps",

@@ -167,7 +167,8 @@ class RandomTrials {
                            &record.motion.restitution,
                            &record.motion.centre_rebound_ratio,
                            &record.motion.impulse_ratio,
-                           &record.motion.gravity_check_mps2}) {
+                           &record.motion.gravity_check_mps2,
+                           &record.state.extrapolated_gap_m}) {
       *measured = Measured();
     }
     if (Below(2) == 0) contact.corner = static_cast<core::Corner>(Below(3));

@@ -37,6 +37,7 @@ inline std::map<std::string, core::Estimate> Numbers(
   add("max gap", record.state.max_gap_m);
   add("bounce height", record.state.bounce_height_m);
   add("detectable gap", record.state.detectable_gap_m);
+  add("extrapolated gap", record.state.extrapolated_gap_m);
   const core::Motion& m = record.motion;
   add("speed", m.before_speed_mps);
   add("vn", m.before_normal_mps);

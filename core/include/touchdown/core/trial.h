@@ -57,11 +57,16 @@ inline Measured& Angle(Contact& contact, AngleKind kind) {
 // The motion state by the one rule of words.h, with its evidence.
 struct StateDecision {
   MotionState label = MotionState::kUndecided;
-  std::optional<double> p_bounce;  // nothing where no rebound was filmed
+  std::optional<double> p_bounce;  // nothing where `reason` says why not
   std::string reason;
   Measured max_gap_m = AbsentBecause("no contact");
   Measured bounce_height_m = AbsentBecause("no scale");  // u = 0: convention
   Measured detectable_gap_m = AbsentBecause("no contact");
+  // Where the film ends while the body rises and the gap filmed so far is below
+  // the bounce height: the greatest gap that this flight would reach. The state
+  // is then undecided, without a P(bounce). Absent for every other trial.
+  Measured extrapolated_gap_m =
+      AbsentBecause("no flight was cut off by the end of the film");
   bool micro_bounce = false;  // left the ground without reaching bounce height
 
   friend bool operator==(const StateDecision&, const StateDecision&) = default;

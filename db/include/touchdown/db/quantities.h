@@ -17,7 +17,7 @@ struct ContactQuantity {
   core::Measured core::Motion::*motion = nullptr;
 };
 
-inline constexpr std::array<ContactQuantity, 20> kContactQuantities{{
+inline constexpr std::array<ContactQuantity, 21> kContactQuantities{{
     {.name = "time_s", .contact = &core::Contact::time_s},
     {.name = "frame", .contact = &core::Contact::frame},
     {.name = "approach_angle_rad",
@@ -45,6 +45,9 @@ inline constexpr std::array<ContactQuantity, 20> kContactQuantities{{
      .motion = &core::Motion::centre_rebound_ratio},
     {.name = "impulse_ratio", .motion = &core::Motion::impulse_ratio},
     {.name = "gravity_check_mps2", .motion = &core::Motion::gravity_check_mps2},
+    // Last, because version 4 of the store added it to files that existed.
+    {.name = "extrapolated_gap_m",
+     .state = &core::StateDecision::extrapolated_gap_m},
 }};
 
 // The number itself, const as the record is.
