@@ -1,32 +1,64 @@
 #include "contact_event.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include "flight_frames.h"
 
 namespace touchdown::vision {
 namespace {
 
-// Where the gap of a flight is `level`, near `start_s` (Newton; the gap of a
-// turning rectangle is not a parabola).
-std::optional<double> TimeOfGap(const PlaneTrack& track, const Flight& flight,
-                                double start_s, double level) {
-  double t = start_s;
-  constexpr int kIterations = 40;
-  for (int i = 0; i < kIterations; ++i) {
-    const FlightGap g = GapOf(track, flight, t);
-    if (g.rate == 0.0 || !std::isfinite(g.gap_px)) return std::nullopt;
-    double step = -(g.gap_px - level) / g.rate;
-    const double limit = 20.0 * track.frame_interval_s;
-    step = std::clamp(step, -limit, limit);
-    t += step;
-    if (std::abs(step) < 1e-9 * track.frame_interval_s) return t;
-  }
-  return std::nullopt;
+std::span<const PlaneSample> SamplesIn(const PlaneTrack& track,
+                                       const SampleRange& range) {
+  return std::span(track.samples).subspan(range.begin, range.size());
 }
 
-// Weighted mean gap of samples in contact; nothing if they do not agree.
+// Frames that determine a flight.
+std::size_t LeastFrames(const EventOptions& options) {
+  return options.flight.gravity_px_per_s2 ? 2 : 4;
+}
+
+// The instant at which the gap of a flight crosses zero in [from_s, to_s], in
+// the direction of `falling`; where it only grazes the ground, the instant
+// nearest to it. A body that turns may cross more than once: touchdown is the
+// first, release the last.
+double CrossingTime(const PlaneTrack& track, const Flight& flight,
+                    double from_s, double to_s, bool falling) {
+  constexpr int kSteps = 64;
+  const double step = (to_s - from_s) / kSteps;
+  const auto gap = [&](double t) {
+    const double g = GapOfFlight(track, flight, t).gap_px;
+    return falling ? g : -g;
+  };
+  // From the end that is in flight.
+  double nearest = falling ? from_s : to_s;
+  double least = std::abs(gap(nearest));
+  double previous = gap(falling ? from_s : from_s);
+  std::optional<double> crossing;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double t = from_s + i * step;
+    const double here = gap(t);
+    if (previous >= 0.0 && here < 0.0) {
+      double low = t - step;
+      double high = t;
+      constexpr int kHalvings = 50;
+      for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (gap(middle) >= 0.0 ? low : high) = middle;
+      }
+      if (falling) return 0.5 * (low + high);
+      crossing = 0.5 * (low + high);
+    }
+    if (std::abs(here) < least) {
+      least = std::abs(here);
+      nearest = t;
+    }
+    previous = here;
+  }
+  return crossing.value_or(nearest);
+}
+
+// Weighted mean gap of samples in contact; nothing of fewer than two.
 std::optional<core::Estimate> LevelOf(std::span<const PlaneSample> samples) {
   if (samples.size() < 2) return std::nullopt;
   double sw = 0.0;
@@ -47,166 +79,121 @@ std::optional<core::Estimate> LevelOf(std::span<const PlaneSample> samples) {
   return core::Estimate{mean, std::sqrt(widen / sw), std::nullopt};
 }
 
-// The flight after a blow, if there is one: its greatest height must stand out
-// of the ground, and its frames must follow free flight better than rest.
-bool FindFlightAfter(const PlaneTrack& track, Event& event,
-                     const EventOptions& options) {
-  const std::span<const PlaneSample> samples(track.samples);
-  std::size_t begin = event.first_after;
-  std::size_t end = event.end;
-  if (end - begin < Least(options)) return false;
-  TrimAtBlow(samples, begin, end, false, options);
-  if (end - begin < Least(options)) return false;
-  const Flight flight = Grow(samples, begin, end, false, options);
-  if (end - begin < Least(options)) return false;
-  // Rest explains the same frames as well?
-  const auto rest = LevelOf(samples.subspan(begin, end - begin));
-  double chi2_rest = 0.0;
-  double chi2_flight = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const PlaneSample& s = samples[i];
-    const double at_rest = (s.gap_px - rest->value) / s.u_gap_px;
-    const double flying =
-        (s.gap_px - GapOf(track, flight, s.time_s).gap_px) / s.u_gap_px;
-    chi2_rest += at_rest * at_rest;
-    chi2_flight += flying * flying;
+// Frames after touchdown and before release that the flights explain within
+// their noise: they were in contact all the same.
+void LeaveOutContact(const PlaneTrack& track, const EventOptions& options,
+                     double touchdown_s, double release_s, Event& event) {
+  const auto& samples = track.samples;
+  SampleRange before = event.before_frames;
+  SampleRange after = event.after_frames;
+  while (before.size() > LeastFrames(options) &&
+         samples[before.end - 1].time_s > touchdown_s) {
+    --before.end;
   }
-  // 2 more parameters; 16: odds of 3000 to 1 (e^8).
-  constexpr double kFlightMustWinBy = 16.0;
-  if (chi2_rest - chi2_flight < kFlightMustWinBy) return false;
-  const double n = static_cast<double>(end - begin);
-  // Sliding with gravity pulling and nothing falling fits no flight.
-  constexpr double kTolerable = 9.0;
-  if (flight.reduced_chi2 > kTolerable && chi2_flight / n > kTolerable) {
-    return false;
+  while (after.size() > LeastFrames(options) &&
+         samples[after.begin].time_s < release_s) {
+    ++after.begin;
   }
-  event.after = flight;
-  event.after_begin = begin;
-  event.after_end = end;
-  return true;
+  event.before_frames = before;
+  event.after_frames = after;
+  event.before = FitFlight(SamplesIn(track, before), options.flight);
+  event.after = FitFlight(SamplesIn(track, after), options.flight);
 }
 
-// The frames next to a soft contact deviate from flight by less than their
-// noise, all to one side: those after touchdown or before release leave the
-// fits. False where there are none, or too few would be left.
-bool LeaveOutContact(std::span<const PlaneSample> samples, double touchdown_s,
-                     double release_s, Event& event,
-                     const EventOptions& options) {
-  std::size_t before_end = event.before_end;
-  std::size_t after_begin = event.after_begin;
-  while (before_end > event.before_begin &&
-         samples[before_end - 1].time_s > touchdown_s) {
-    --before_end;
-  }
-  while (after_begin < event.after_end &&
-         samples[after_begin].time_s < release_s) {
-    ++after_begin;
-  }
-  if (before_end == event.before_end && after_begin == event.after_begin) {
-    return false;
-  }
-  if (before_end - event.before_begin < Least(options) ||
-      event.after_end - after_begin < Least(options)) {
-    return false;
-  }
-  event.before_end = before_end;
-  event.after_begin = after_begin;
-  event.before = FitFlight(
-      samples.subspan(event.before_begin, before_end - event.before_begin),
-      options.flight);
-  event.after =
-      FitFlight(samples.subspan(after_begin, event.after_end - after_begin),
-                options.flight);
-  return true;
-}
-
-}  // namespace
-
-FlightGap GapOf(const PlaneTrack& track, const Flight& flight, double time_s) {
-  const FlightState s = flight.At(time_s);
-  const double arm = LowestPointAlong(track, s.face_rad);
-  FlightGap g;
-  g.gap_px = s.height_px - SupportHeight(track, s.face_rad);
-  g.rate = s.v_n + arm * s.omega;
-  g.u_px = std::hypot(s.u_height_px, arm * s.u_face_rad);
-  return g;
-}
-
-namespace {
-
-std::span<const PlaneSample> BeforeOf(std::span<const PlaneSample> samples,
-                                      const Event& event) {
-  return samples.subspan(event.before_begin,
-                         event.before_end - event.before_begin);
-}
-
-std::span<const PlaneSample> AfterOf(std::span<const PlaneSample> samples,
-                                     const Event& event) {
-  return samples.subspan(event.after_begin,
-                         event.after_end - event.after_begin);
+// A frame within half an interval of touchdown may have been exposed across
+// it: left out where the others suffice.
+void LeaveOutStraddling(const PlaneTrack& track, const EventOptions& options,
+                        double time_s, Event& event) {
+  constexpr double kHalfAFrame = 0.5;
+  const double reach = kHalfAFrame * track.frame_interval_s;
+  const auto near = [&](std::size_t i) {
+    return std::abs(track.samples[i].time_s - time_s) < reach;
+  };
+  SampleRange& before = event.before_frames;
+  SampleRange& after = event.after_frames;
+  const std::size_t spare = LeastFrames(options) + 1;
+  if (before.size() > spare && near(before.end - 1)) --before.end;
+  if (after.size() > spare && near(after.begin)) ++after.begin;
 }
 
 JointInput InputFor(const PlaneTrack& track, const Event& event,
                     const EventOptions& options) {
   JointInput input;
-  input.before = BeforeOf(track.samples, event);
-  if (event.after) input.after = AfterOf(track.samples, event);
+  input.before = SamplesIn(track, event.before_frames);
+  if (event.after) input.after = SamplesIn(track, event.after_frames);
   input.u_slope_rad = options.u_slope_rad;
   input.gravity_px_per_s2 = options.flight.gravity_px_per_s2;
   input.ground_px = {0.0, std::max(options.u_line_px, 1e-6), std::nullopt};
   return input;
 }
 
-// The frame nearest to touchdown may have been exposed across it: left out
-// where the others suffice.
-void LeaveOutStraddling(const PlaneTrack& track, Event& event, double time_s,
-                        const EventOptions& options) {
-  constexpr double kHalfAFrame = 0.5;
-  const double reach = kHalfAFrame * track.frame_interval_s;
-  const auto near = [&](std::size_t i) {
-    return std::abs(track.samples[i].time_s - time_s) < reach;
-  };
-  if (near(event.before_end - 1) &&
-      event.before_end - event.before_begin > Least(options)) {
-    --event.before_end;
-  }
-  if (near(event.after_begin) &&
-      event.after_end - event.after_begin > Least(options)) {
-    ++event.after_begin;
+// A contact that lasts needs up to three numbers more, and must earn them
+// (Schwarz's criterion); shorter than half a frame none shows it, and it only
+// widens the instant's u.
+void TryLasting(const PlaneTrack& track, const JointInput& input, double start_s,
+                double end_s, std::optional<JointFit>& instant, Event& event) {
+  JointInput lasting = input;
+  lasting.instant = false;
+  lasting.touchdown_s = start_s;
+  lasting.release_s = end_s;
+  const std::optional<JointFit> soft = FitJointly(track, lasting);
+  if (!soft) return;
+  const core::Estimate lasts =
+      soft->Of([](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
+  const double more = static_cast<double>(
+      soft->active.count() - (instant ? instant->active.count() : 0));
+  const double n = static_cast<double>(soft->degrees);
+  // Where neither describes the frames to their noise, noise is what is left.
+  const double excess = std::max(1.0, soft->chi2 / std::max(1.0, n));
+  constexpr double kClear = 3.0;
+  const bool clear = lasts.value > kClear * lasts.u;
+  constexpr double kResolved = 0.5;  // frames
+  if (!instant || (clear && lasts.value > kResolved &&
+                   instant->chi2 - soft->chi2 >
+                       excess * more * std::log(std::max(2.0, n)))) {
+    instant = soft;
+  } else if (clear) {
+    event.unresolved_s = 0.5 * lasts.value * soft->interval_s;
   }
 }
 
+constexpr double kDisagree = 3.0;  // sigmas between flights and line
+
 // It rebounds: one fit of both flights.
-bool MeasureRebound(const PlaneTrack& track, Event& event,
-                    const EventOptions& options) {
-  const std::span<const PlaneSample> samples(track.samples);
-  auto t1 = TimeOfGap(track, *event.before,
-                      samples[event.before_end - 1].time_s, 0.0);
-  auto t2 =
-      TimeOfGap(track, *event.after, samples[event.after_begin].time_s, 0.0);
-  if (!t1 || !t2) return false;
-  const bool in_contact = event.before_end < event.first_after ||
-                          event.after_begin > event.first_after;
-  if (in_contact && LeaveOutContact(samples, *t1, *t2, event, options)) {
-    t1 = TimeOfGap(track, *event.before, *t1, 0.0);
-    t2 = TimeOfGap(track, *event.after, *t2, 0.0);
-    if (!t1 || !t2) return false;
+bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
+                    Event& event) {
+  const auto& samples = track.samples;
+  const double dt = track.frame_interval_s;
+  const bool in_contact = event.after_frames.begin > event.before_frames.end;
+  double t1 = 0.0;
+  double t2 = 0.0;
+  const auto cross = [&] {
+    // A soft body deviates from flight for a while by less than its noise.
+    constexpr double kBefore = 3.0;  // frames
+    const double last = samples[event.before_frames.end - 1].time_s;
+    const double first = samples[event.after_frames.begin].time_s;
+    t1 = CrossingTime(track, *event.before, last - kBefore * dt, first + dt,
+                      true);
+    t2 = CrossingTime(track, *event.after, last - dt, first + kBefore * dt,
+                      false);
+  };
+  cross();
+  if (in_contact) {
+    LeaveOutContact(track, options, t1, t2, event);
+    cross();
+  } else {
+    LeaveOutStraddling(track, options, t1, event);
   }
-  if (!in_contact) LeaveOutStraddling(track, event, *t1, options);
   JointInput input = InputFor(track, event, options);
-  const double half_px = std::hypot(options.u_line_px, track.u_half_px);
-  input.touchdown_s = *t1;
-  input.release_s = *t2;
+  input.touchdown_s = input.release_s = 0.5 * (t1 + t2);
 
   // The flights alone, without the line: do they meet on it?
   constexpr double kUnknown_px = 1e3;
   JointInput without = input;
-  without.touchdown_s = without.release_s = 0.5 * (*t1 + *t2);
   without.ground_px.u = kUnknown_px;
-  std::optional<JointFit> free = FitJointly(track, without);
-  constexpr double kDisagree = 3.0;
+  const double half_px = std::hypot(options.u_line_px, track.u_half_px);
   event.disagreement = 0.0;
-  if (free) {
+  if (const auto free = FitJointly(track, without)) {
     const core::Estimate d = free->Of(
         [&](const JointVector& p) { return free->GroundAtContact(p); });
     event.disagreement = d.value / std::hypot(d.u, half_px);
@@ -216,158 +203,86 @@ bool MeasureRebound(const PlaneTrack& track, Event& event,
     }
     input.touchdown_s = input.release_s = free->TimeAt(free->p[kT]);
   }
-  // A contact that lasts needs up to three numbers more, and must earn them.
-  std::optional<JointFit> instant = FitJointly(track, input);
-  if (in_contact || !instant) {
-    JointInput lasting = input;
-    lasting.instant = false;
-    lasting.touchdown_s = *t1;
-    lasting.release_s = *t2;
-    lasting.ground_px.u = std::max(options.u_line_px, 1e-6);
-    std::optional<JointFit> soft = FitJointly(track, lasting);
-    if (soft) {
-      const core::Estimate lasts = soft->Of(
-          [](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
-      const double more = static_cast<double>(
-          soft->active.count() - (instant ? instant->active.count() : 0));
-      const double n = static_cast<double>(soft->degrees);
-      // Where neither describes the frames to their noise, noise is what is
-      // left.
-      const double excess = std::max(1.0, soft->chi2 / std::max(1.0, n));
-      constexpr double kClear = 3.0;
-      const bool clear = lasts.value > kClear * lasts.u;
-      // Shorter, no frame shows the contact: only what the flights miss of each
-      // other speaks of it, as anything else would that bends them.
-      constexpr double kResolved = 0.5;  // frames
-      const bool resolved = clear && lasts.value > kResolved;
-      if (!instant ||
-          (resolved && instant->chi2 - soft->chi2 >
-                           excess * more * std::log(std::max(2.0, n)))) {
-        instant = soft;
-      } else if (clear) {
-        event.unresolved_s = 0.5 * lasts.value * soft->interval_s;
-      }
-    }
-  }
-  if (!instant) return false;
-  event.fit = instant;
-  return true;
+  std::optional<JointFit> fit = FitJointly(track, input);
+  if (in_contact || !fit) TryLasting(track, input, t1, t2, fit, event);
+  event.fit = fit;
+  return fit.has_value();
 }
 
 // It stays down: the frames in contact tell the ground's height.
-bool MeasureStay(const PlaneTrack& track, Event& event,
-                 const EventOptions& options) {
-  const std::span<const PlaneSample> samples(track.samples);
+bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
+                 Event& event) {
+  const auto& samples = track.samples;
   JointInput input = InputFor(track, event, options);
-  const std::size_t from = event.first_after;
-  const std::size_t to = std::min(event.end, from + 40);
   // What is known of the ground's height: the line, and the body's size.
   core::Estimate ground{
       0.0, std::max(std::hypot(options.u_line_px, track.u_half_px), 1e-6),
       std::nullopt};
-  std::optional<core::Estimate> level;
-  // A few frames may still belong to the flight.
-  constexpr std::size_t kEnoughAtRest = 6;
-  if (to >= from + kEnoughAtRest) {
-    level = LevelOf(samples.subspan(from, to - from));
-    // Frames that do not agree on a height are not at rest.
-    constexpr double kAtRest_px = 0.25;
-    if (level && level->u > kAtRest_px) level = std::nullopt;
-  }
-  const double start_s = samples[event.before_end - 1].time_s;
-  if (level) {
+  // Near the contact: what is far along it speaks of the line's direction.
+  constexpr std::size_t kNear = 40;  // frames
+  SampleRange down = event.down_frames;
+  down.end = std::min(down.end, down.begin + kNear);
+  if (const auto level = LevelOf(SamplesIn(track, down))) {
     event.disagreement = level->value / std::hypot(ground.u, level->u);
-    constexpr double kDisagree = 3.0;
-    if (std::abs(event.disagreement) > kDisagree) {
-      ground = *level;
-    } else {
-      const double w0 = 1.0 / (ground.u * ground.u);
-      const double w1 = 1.0 / (level->u * level->u);
-      ground = {level->value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
-                std::nullopt};
-    }
+    const double w0 = 1.0 / (ground.u * ground.u);
+    const double w1 = 1.0 / (level->u * level->u);
+    // Where they differ by more than their u, both are less well known than
+    // they claim (Birge, Phys. Rev. 40, 1932, 207).
+    const double birge = std::max(1.0, std::abs(event.disagreement));
+    ground = {level->value * w1 / (w0 + w1), birge / std::sqrt(w0 + w1),
+              std::nullopt};
     input.ground_px = ground;
-    input.reference_along_px =
-        samples[std::min(from, samples.size() - 1)].along_px;
+    input.reference_along_px = samples[down.begin].along_px;
   }
-  const auto t = TimeOfGap(track, *event.before, start_s, ground.value);
-  if (!t) return false;
-  input.touchdown_s = input.release_s = *t;
+  const double dt = track.frame_interval_s;
+  const double last = samples[event.before_frames.end - 1].time_s;
+  const std::size_t next = event.before_frames.end;
+  const double until =
+      next < samples.size() ? samples[next].time_s + dt : last + 20.0 * dt;
+  input.touchdown_s = input.release_s =
+      CrossingTime(track, *event.before, last - 3.0 * dt, until, true);
   event.fit = FitJointly(track, input);
   return event.fit.has_value();
 }
 
-// The last of three frames may follow the blow, if none was left out there.
-void DropFirstAfterBlow(std::span<const PlaneSample> samples, Event& event,
-                        const EventOptions& options) {
-  if (event.before->frames != static_cast<int>(Least(options)) ||
-      Least(options) == LeastBefore(options) ||
-      event.before_end != event.first_after) {
-    return;
-  }
-  const std::size_t last = event.before_end - 1;
-  const Flight two = FitFlight(
-      samples.subspan(event.before_begin, kLeastBeforeRebound), options.flight);
-  if (!BelongsAfter(samples, samples[last], two, event.first_after, event.end,
-                    options)) {
-    return;
-  }
-  event.first_after = event.before_end = last;
-  event.before = two;
-}
-
-// Whether the last frame before the blow, with none to spare, is not of the
-// flight after it: a blow one frame earlier looks alike.
-bool CameBeforeRebound(std::span<const PlaneSample> samples, const Event& event,
-                       const EventOptions& options) {
-  return Deviates(samples[event.before_end - 1], *event.after,
-                  options.flight_sigmas);
-}
-
 }  // namespace
 
-bool MeasureEvent(const PlaneTrack& track, Event& event,
-                  const EventOptions& options) {
-  const std::span<const PlaneSample> samples(track.samples);
-  event.before_begin = event.begin;
-  event.before_end = event.first_after;
-  const std::size_t least = LeastBefore(options);
-  event.too_few = event.before_end - event.before_begin < least;
-  if (event.too_few) return false;
-  TrimAtBlow(samples, event.before_begin, event.before_end, true, options);
-  event.before =
-      Grow(samples, event.before_begin, event.before_end, true, options);
-  if (event.before->frames < static_cast<int>(least)) return false;
-  DropFirstAfterBlow(samples, event, options);
-  // With few frames after it a blow is placed a frame or two early: what the
-  // flight before still explains, above the ground, is of that flight.
-  while (event.before_end == event.first_after &&
-         event.first_after < event.end) {
-    const PlaneSample& s = samples[event.first_after];
-    const FlightGap g = GapOf(track, *event.before, s.time_s);
-    if (!(g.gap_px > 0.0) ||
-        Deviates(s, *event.before, options.flight_sigmas) ||
-        (event.before->frames < static_cast<int>(Least(options)) &&
-         BelongsAfter(samples, s, *event.before, event.first_after + 1,
-                      event.end, options))) {
-      break;
-    }
-    event.before_end = ++event.first_after;
-    event.before = FitFlight(BeforeOf(samples, event), options.flight);
-  }
-  const bool flies = FindFlightAfter(track, event, options);
-  const bool few = event.before_end - event.before_begin < Least(options);
-  event.too_few = few && !(flies && CameBeforeRebound(samples, event, options));
-  if (event.too_few) return false;
+FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
+                      double time_s) {
+  const FlightState s = flight.At(time_s);
+  const double arm = LowestPointAlong(track, s.face_rad);
+  FlightGap g;
+  g.gap_px = s.height_px - SupportHeight(track, s.face_rad);
+  g.rate = s.v_n + arm * s.omega;
+  g.u_px = std::hypot(s.u_height_px, arm * s.u_face_rad);
+  return g;
+}
 
-  if (!(flies ? MeasureRebound(track, event, options)
-              : MeasureStay(track, event, options))) {
+bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
+                  Event& event, std::string& reason) {
+  const std::int64_t frame =
+      track.samples[event.before_frames.end - 1].frame;
+  if (event.before_frames.size() < LeastFrames(options)) {
+    reason = fmt::format(
+        "too few frames show the body before its impact at frame {}", frame);
     return false;
   }
-  // Two frames of which one is no outline of the body (it comes out from behind
-  // something) seem to rebound, too: but not from the line.
-  constexpr double kFarOff = 6.0;  // in u
-  if (few && std::abs(event.disagreement) > kFarOff) return false;
+  event.before = FitFlight(SamplesIn(track, event.before_frames), options.flight);
+  const bool flies = event.after_frames.size() >= LeastFrames(options);
+  if (flies) {
+    event.after = FitFlight(SamplesIn(track, event.after_frames), options.flight);
+  } else if (event.before_frames.size() <= LeastFrames(options)) {
+    // With none to spare only a rebound tells where and when the flight ended.
+    reason = fmt::format(
+        "too few frames show the body before its impact at frame {}", frame);
+    return false;
+  }
+  if (!(flies ? MeasureRebound(track, options, event)
+              : MeasureStay(track, options, event))) {
+    reason = fmt::format(
+        "the frames beside the impact at frame {} do not determine it", frame);
+    return false;
+  }
   const JointFit& fit = *event.fit;
   const auto time_of = [&](JointParameter k) {
     const core::Estimate t = fit.Of([k](const JointVector& p) { return p[k]; });
@@ -379,8 +294,8 @@ bool MeasureEvent(const PlaneTrack& track, Event& event,
   event.release_s = fit.instant ? event.time_s : time_of(kT2);
   event.ground_px =
       fit.Of([&](const JointVector& p) { return fit.GroundAtContact(p); });
-  event.before = fit.Before(BeforeOf(samples, event));
-  if (flies) event.after = fit.After(AfterOf(samples, event));
+  event.before = fit.Before(SamplesIn(track, event.before_frames));
+  if (flies) event.after = fit.After(SamplesIn(track, event.after_frames));
   return true;
 }
 

@@ -1,32 +1,34 @@
 // One contact in a plane track: the two flights beside it, the instant, the
-// ground's height. Pixels and seconds; contact.cc turns them into a record.
+// ground's height. Pixels and seconds; contact_record.cc turns them into a
+// record.
 #pragma once
 
 #include <cstddef>
 #include <optional>
-#include <span>
-#include <vector>
+#include <string>
 
 #include "joint_fit.h"
-#include "touchdown/vision/contact.h"
 #include "touchdown/vision/flight.h"
 #include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
 
+struct SampleRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;  // one past the last
+  std::size_t size() const { return end - begin; }
+};
+
 struct Event {
-  std::size_t begin = 0;  // first sample that may belong to the flight before
-  std::size_t first_after = 0;  // samples [begin, first_after) precede the blow
-  bool too_few = false;  // frames before the blow, or to tell which they are
-  std::size_t end = 0;   // one past the last sample before the next blow
+  // Frames of the flight before touchdown, of the flight after release (none
+  // where it stays down), and of the supported stretch after touchdown (none
+  // where it rebounds). Frames between flights are in contact.
+  SampleRange before_frames;
+  SampleRange after_frames;
+  SampleRange down_frames;
 
   std::optional<Flight> before;
-  std::optional<Flight> after;   // nothing where the body stays down
-  std::size_t before_begin = 0;  // samples in the fits
-  std::size_t before_end = 0;
-  std::size_t after_begin = 0;
-  std::size_t after_end = 0;
-
+  std::optional<Flight> after;  // nothing where the body stays down
   std::optional<JointFit> fit;  // of all that follows
   core::Estimate time_s;        // touchdown
   core::Estimate release_s;     // valid with `after`
@@ -37,16 +39,15 @@ struct Event {
 
 struct EventOptions {
   FlightOptions flight;
-  double flight_sigmas = 4.0;
   double u_line_px = 0.0;    // of the ground line's height at its reference
   double u_slope_rad = 0.0;  // of its direction
 };
 
-// Measures the contact between samples[first_after - 1] and
-// samples[first_after]; `begin` and `end` bound the frames that may be used.
-// False where the flight before cannot be fitted.
-bool MeasureEvent(const PlaneTrack& track, Event& event,
-                  const EventOptions& options);
+// Measures the contact between the flight of `before_frames` and what follows;
+// narrows the ranges where frames were exposed across the impact, or lie in a
+// soft contact. False, with the reason, where the frames do not determine it.
+bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
+                  Event& event, std::string& reason);
 
 // Gap of a flight at an instant, with its rate and uncertainty.
 struct FlightGap {
@@ -54,6 +55,7 @@ struct FlightGap {
   double rate = 0.0;  // px/s
   double u_px = 0.0;
 };
-FlightGap GapOf(const PlaneTrack& track, const Flight& flight, double time_s);
+FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
+                      double time_s);
 
 }  // namespace touchdown::vision

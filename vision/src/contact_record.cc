@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "greatest_gap.h"
 #include "touchdown/vision/state.h"
 #include "track_shape.h"
 
@@ -195,15 +196,15 @@ void FillMotion(const RecordContext& context, const Event& event,
     double sw = 0.0;
     double swx = 0.0;
     const std::span<const PlaneSample> samples(track.samples);
-    const auto add = [&](std::size_t begin, std::size_t end) {
-      if (end - begin < 6) return;
-      const Flight free = FitFlight(samples.subspan(begin, end - begin));
+    const auto add = [&](const SampleRange& range) {
+      if (range.size() < 6) return;
+      const Flight free = FitFlight(samples.subspan(range.begin, range.size()));
       const double w = 1.0 / free.height_cov(2, 2);
       sw += w;
       swx += w * free.height[2];
     };
-    add(event.before_begin, event.before_end);
-    if (event.after) add(event.after_begin, event.after_end);
+    add(event.before_frames);
+    if (event.after) add(event.after_frames);
     if (sw > 0.0) {
       const Measured g_si =
           InMetres(context, {swx / sw, 1.0 / std::sqrt(sw), std::nullopt});
@@ -240,28 +241,27 @@ std::string LengthText(const RecordContext& context, double px, double u_px) {
   return fmt::format("{:.2f} +- {:.2f} px", px, u_px);
 }
 
-// Fills the state from the greatest gap after sample `from`.
-void FillState(const RecordContext& context, std::size_t from, double ground_px,
-               double u_ground_px, bool released, core::StateDecision& state) {
+// Fills the state from the greatest gap after sample `from`; `event`: the
+// contact before it, or null.
+void FillState(const RecordContext& context, std::size_t from,
+               const GroundLevel& ground, const Event* event,
+               core::StateDecision& state) {
   const PlaneTrack& track = context.track;
-  const std::span<const PlaneSample> samples(track.samples);
+  const std::vector<PlaneSample>& samples = track.samples;
   const double height_px = BounceHeight(context, state);
   const double noise_px = samples[samples.size() / 2].u_gap_px;
   if (context.options.scale) {
     const double s = context.options.scale->px_per_m.value;
     state.detectable_gap_m = Estimate{
         DetectableGap(noise_px / s, 1.0 / track.frame_interval_s,
-                      u_ground_px / s, context.options.gravity_mps2.value),
+                      ground.height_px.u / s,
+                      context.options.gravity_mps2.value),
         0.0, std::nullopt};
   } else {
     state.detectable_gap_m = AbsentBecause(kNoScale);
   }
-  std::vector<std::size_t> breaks;
-  for (const std::size_t b : context.breaks) {
-    if (b > from && b < samples.size()) breaks.push_back(b - from);
-  }
-  const auto greatest =
-      FindGreatestGap(samples.subspan(from), breaks, ground_px);
+  const auto greatest = FindGreatestGap(track, context.stretches, from, ground,
+                                        context.flight, event);
   constexpr std::size_t kLeastAfter = 3;
   if (!greatest || samples.size() - from < kLeastAfter) {
     state.label = core::MotionState::kUndecided;
@@ -271,25 +271,29 @@ void FillState(const RecordContext& context, std::size_t from, double ground_px,
         samples.size() - from, kLeastAfter);
     return;
   }
-  Estimate gap = greatest->gap_px;
-  gap.u = std::hypot(gap.u, u_ground_px);
+  const Estimate& gap = greatest->gap_px;
   // A gap is not negative; what is below is noise of pose and ground.
   state.max_gap_m = InMetres(context, gap);
   const StateEvidence evidence = DecideBounce(gap, height_px);
   state.label = evidence.label;
   state.p_bounce = evidence.p_bounce;
-  const std::string text = fmt::format(
-      "greatest gap {} at frame {}, bounce height {}",
-      LengthText(context, gap.value, gap.u), samples[from + greatest->at].frame,
-      LengthText(context, height_px, 0.0));
-  if (state.label == core::MotionState::kStaysDown && greatest->still_rising) {
+  state.reason = fmt::format("greatest gap {} at frame {}, bounce height {}",
+                             LengthText(context, gap.value, gap.u),
+                             greatest->frame,
+                             LengthText(context, height_px, 0.0));
+  if (state.label != core::MotionState::kBounce && greatest->reaches_px) {
+    const Estimate& reaches = *greatest->reaches_px;
     state.label = core::MotionState::kUndecided;
-    state.reason = text + "; the clip ends while the body still rises";
+    state.p_bounce.reset();
+    state.extrapolated_gap_m = InMetres(context, reaches);
+    state.reason += fmt::format(
+        "; the clip ends while the body still rises, to {} by its flight",
+        LengthText(context, reaches.value, reaches.u));
     return;
   }
   state.micro_bounce = state.label == core::MotionState::kStaysDown &&
-                       released && gap.value > core::kNormal975 * gap.u;
-  state.reason = text;
+                       event && event->after &&
+                       gap.value > core::kNormal975 * gap.u;
 }
 
 // Of what stays down: did it slide, or stick? Where that can be seen.
@@ -337,7 +341,7 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   // Frame numbers follow the time: exact where frames are equally spaced.
   const double dt = track.frame_interval_s;
   const PlaneSample& near =
-      track.samples[std::min(event.before_end - 1, track.samples.size() - 1)];
+      track.samples[std::min(event.before_frames.end - 1, track.samples.size() - 1)];
   contact.frame = Estimate{
       static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
       event.time_s.u / dt, std::nullopt};
@@ -362,15 +366,16 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
         std::abs(event.disagreement),
         event.disagreement > 0 ? "above" : "below"));
   }
-  // Only what was filmed after touchdown speaks of a rebound; the blow may have
-  // been sought a frame or two early.
-  std::size_t from = event.first_after;
+  // Only what was filmed after touchdown speaks of a rebound.
+  std::size_t from = event.before_frames.end;
   while (from < track.samples.size() &&
          track.samples[from].time_s <= event.time_s.value) {
     ++from;
   }
-  FillState(context, from, event.ground_px.value, event.ground_px.u,
-            event.after.has_value(), record.state);
+  const double along_px = event.before->At(event.time_s.value).along_px;
+  FillState(context, from,
+            {along_px, event.ground_px, track.ground.u_angle_rad}, &event,
+            record.state);
   NameWhatStaysDown(context, from, record.state);
   return record;
 }
@@ -477,7 +482,11 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
     contact.radius_angle_rad = Estimate{
         std::atan2(SupportHeight(track, face), std::abs(arm)), u, std::nullopt};
   }
-  FillState(context, 0, level, u_level, false, record.state);
+  // Its own path is the line: its direction has no u of its own here.
+  FillState(context, 0,
+            {samples.front().along_px, Estimate{level, u_level, std::nullopt},
+             0.0},
+            nullptr, record.state);
   record.state.reason = "on the ground from the start; " + record.state.reason;
   if (scatter > kMore * claimed) {
     record.state.reason += fmt::format(

@@ -1,11 +1,11 @@
 // From a measured contact, in pixels, to the record of a trial, in SI units.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "contact_event.h"
+#include "motion_segments.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/vision/contact.h"
 
@@ -15,7 +15,7 @@ struct RecordContext {
   const PlaneTrack& track;
   const ContactOptions& options;
   FlightOptions flight;
-  std::vector<std::size_t> breaks;  // samples that follow a blow
+  const std::vector<Stretch>& stretches;
 };
 
 core::ContactRecord RecordOf(const RecordContext& context, const Event& event,

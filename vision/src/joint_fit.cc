@@ -375,6 +375,19 @@ double JointFit::ShareOf(const Function& f,
   return std::sqrt(std::clamp(share, 0.0, all));
 }
 
+double JointFit::GapAfter(const JointVector& q, double t) const {
+  const Side side = SideOf(*this, true);
+  const double s = t - q[side.t];
+  const double at_release =
+      SupportOf(turns, q, turns ? q[side.face] - q[kSlope] : 0.0).value;
+  const double then =
+      SupportOf(turns, q,
+                turns ? q[side.face] + q[side.omega] * s - q[kSlope] : 0.0)
+          .value;
+  return at_release - then + (q[side.vy] - q[kSlope] * q[side.vx]) * s -
+         0.5 * q[side.gravity] * s * s;
+}
+
 Flight JointFit::Before(std::span<const PlaneSample> samples) const {
   return FlightOf(*this, SideOf(*this, false), samples);
 }

@@ -89,6 +89,9 @@ struct JointFit {
   double GroundAtContact(const JointVector& q) const {
     return q[kGround] + q[kSlope] * (q[kX] - reference_px);
   }
+  // Of the lowest point above the ground, t frames after the origin, in the
+  // flight after release; 0 at the release itself.
+  double GapAfter(const JointVector& q, double t) const;
   // The flights as the rest of vision knows them; covariances included.
   Flight Before(std::span<const PlaneSample> samples) const;
   Flight After(std::span<const PlaneSample> samples) const;

@@ -136,7 +136,11 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
         }
       }
       s.face_rad += turn;
-      s.u_face_rad = pose.u_angle_rad;
+      // Where the angle was held, its u is what the centre's moves an end by.
+      s.u_face_rad = pose.u_angle_rad > 0.0
+                         ? pose.u_angle_rad
+                         : std::hypot(pose.u_x_px, pose.u_y_px) /
+                               std::fmax(plane.half_long_px, 1.0);
       support = SupportHeight(plane, s.face_rad);
       // d(support)/d(face) is where the lowest point is along x'.
       u_support = std::abs(LowestPointAlong(plane, s.face_rad)) * s.u_face_rad;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "track_shape.h"
@@ -10,44 +12,137 @@ namespace touchdown::vision {
 namespace {
 
 std::vector<double> ThirdDifferences(const std::vector<PlaneSample>& samples,
-                                     double PlaneSample::*value) {
+                                     double PlaneSample::*value,
+                                     std::size_t lag) {
   std::vector<double> differences;
-  for (std::size_t i = 3; i < samples.size(); ++i) {
-    if (samples[i].frame - samples[i - 3].frame != 3) continue;
-    differences.push_back(
-        std::abs(samples[i].*value - 3.0 * samples[i - 1].*value +
-                 3.0 * samples[i - 2].*value - samples[i - 3].*value));
+  const auto apart = static_cast<std::int64_t>(3 * lag);
+  for (std::size_t i = 3 * lag; i < samples.size(); ++i) {
+    if (samples[i].frame - samples[i - 3 * lag].frame != apart) continue;
+    differences.push_back(std::abs(
+        samples[i].*value - 3.0 * samples[i - lag].*value +
+        3.0 * samples[i - 2 * lag].*value - samples[i - 3 * lag].*value));
   }
   return differences;
 }
 
-void Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
-           double PlaneSample::*u) {
-  std::vector<double> d = ThirdDifferences(samples, value);
-  constexpr std::size_t kLeast = 5;
-  if (d.size() < kLeast) return;
-  // A blow spoils three differences: in short tracks too many for the median.
+// Standard deviation of one pose's noise, from differences of poses `lag`
+// frames apart: what neighbours have in common shows at the longer lags.
+double NoiseOf(std::vector<double>& d) {
+  // An impact spoils three differences of neighbours: in short tracks too many
+  // for the median.
   constexpr std::size_t kMany = 12;
   const bool many = d.size() >= kMany;
   const double quantile = many ? 0.6744898 : 0.4307273;  // of |normal|
   const auto at =
       d.begin() + static_cast<std::ptrdiff_t>(d.size() / (many ? 2 : 3));
   std::nth_element(d.begin(), at, d.end());
-  const double sigma = *at / quantile / std::sqrt(20.0);
+  return *at / quantile / std::sqrt(20.0);
+}
+
+void Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
+           double PlaneSample::*u) {
   std::vector<double> claims;
   claims.reserve(samples.size());
   for (const PlaneSample& s : samples) claims.push_back(s.*u);
   constexpr double kLeastClaim = 1e-9;
-  const double factor =
-      sigma / std::max(Median(std::move(claims)), kLeastClaim);
-  // An excess within the scatter's own uncertainty is none. Third differences
-  // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
-  // not 1.2/sqrt(n); 4/sqrt(n) lets one honest track in a hundred be widened.
-  if (factor <= 1.0 + 4.0 / std::sqrt(static_cast<double>(d.size()))) return;
+  const double claim = std::max(Median(std::move(claims)), kLeastClaim);
+  double factor = 1.0;
+  // One impact may spoil a fifth of the differences.
+  constexpr std::size_t kShare = 18;
+  const std::size_t longest =
+      std::max<std::size_t>(1, samples.size() / kShare);
+  for (std::size_t lag = 1; lag <= longest; lag *= 2) {
+    std::vector<double> d = ThirdDifferences(samples, value, lag);
+    constexpr std::size_t kLeast = 5;
+    if (d.size() < kLeast) break;
+    const double excess = NoiseOf(d) / claim;
+    // An excess within the scatter's own uncertainty is none. Third differences
+    // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
+    // not 1.2/sqrt(n); 4/sqrt(n) lets one honest track in a hundred be widened.
+    // Of longer lags fewer are apart from each other.
+    const double many = static_cast<double>(d.size()) /
+                        static_cast<double>(lag);
+    if (excess > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, excess);
+  }
   for (PlaneSample& s : samples) s.*u *= factor;
 }
 
+// Sums over the flights of one coordinate's residuals, in units of its u.
+struct Residuals {
+  std::vector<std::vector<double>> of_flight;
+  int degrees = 0;
+
+  double Inflation() const;
+};
+
+double Residuals::Inflation() const {
+  double square = 0.0;
+  std::size_t n = 0;
+  for (const auto& flight : of_flight) {
+    for (const double r : flight) square += r * r;
+    n += flight.size();
+  }
+  if (degrees < 1 || !(square > 0.0)) return 1.0;
+  const double scatter = std::max(1.0, square / degrees);
+  // A correlation within its own uncertainty is none.
+  const double noise = 2.0 / std::sqrt(static_cast<double>(n));
+  double alike = 1.0;
+  constexpr std::size_t kShare = 3;  // lags beyond a third of a flight: noise
+  for (std::size_t lag = 1;; ++lag) {
+    double product = 0.0;
+    bool any = false;
+    for (const auto& flight : of_flight) {
+      if (kShare * lag > flight.size()) continue;
+      any = true;
+      for (std::size_t i = lag; i < flight.size(); ++i) {
+        product += flight[i] * flight[i - lag];
+      }
+    }
+    const double rho = product / square;
+    if (!any || rho < (lag == 1 ? noise : 0.0)) break;
+    alike += 2.0 * rho;
+  }
+  return std::sqrt(scatter * alike);
+}
+
 }  // namespace
+
+void WidenToCorrelation(const std::vector<Stretch>& stretches,
+                        const FlightOptions& options, PlaneTrack& track) {
+  Residuals along, height, face;
+  const bool turns = track.kind == core::BodyKind::kRectangle;
+  constexpr std::size_t kLeast = 8;  // frames
+  for (const Stretch& stretch : stretches) {
+    const std::size_t n = stretch.end - stretch.begin;
+    if (stretch.kind != StretchKind::kFlight || n < kLeast) continue;
+    const auto samples = std::span(track.samples).subspan(stretch.begin, n);
+    const Flight flight = FitFlight(samples, options);
+    std::vector<double> x, y, f;
+    for (const PlaneSample& s : samples) {
+      const FlightState at = flight.At(s.time_s);
+      x.push_back((s.along_px - at.along_px) / s.u_along_px);
+      y.push_back((s.height_px - at.height_px) / s.u_height_px);
+      if (turns) f.push_back((s.face_rad - at.face_rad) / s.u_face_rad);
+    }
+    const int degrees = static_cast<int>(n) - 2;
+    along.of_flight.push_back(std::move(x));
+    height.of_flight.push_back(std::move(y));
+    face.of_flight.push_back(std::move(f));
+    along.degrees += degrees;
+    height.degrees += degrees - (options.gravity_px_per_s2 ? 0 : 1);
+    face.degrees += degrees;
+  }
+  const double by_along = along.Inflation();
+  const double by_height = height.Inflation();
+  const double by_face = turns ? face.Inflation() : 1.0;
+  for (PlaneSample& s : track.samples) {
+    const double arm = s.u_face_rad * LowestPointAlong(track, s.face_rad);
+    s.u_along_px *= by_along;
+    s.u_height_px *= by_height;
+    s.u_face_rad *= by_face;
+    s.u_gap_px = std::hypot(s.u_height_px, arm * by_face);
+  }
+}
 
 void WidenToScatter(PlaneTrack& track) {
   constexpr std::size_t kLeast = 8;

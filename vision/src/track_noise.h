@@ -1,12 +1,26 @@
 // The noise of a track, judged by its own scatter.
 #pragma once
 
+#include <vector>
+
+#include "motion_segments.h"
+#include "touchdown/vision/flight.h"
 #include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
 
 // Where third differences, blind to any parabola, exceed what the poses claim,
-// the claims are widened.
+// the claims are widened. Differences of poses further apart see what
+// neighbours have in common.
 void WidenToScatter(PlaneTrack& track);
+
+// Widens the claims of poses whose errors go together, so that fits of many
+// frames do not gain by their number: by the square root of
+//   max(1, chi^2 / degrees of freedom) (1 + 2 sum_k rho_k)
+// for each coordinate, from the residuals of all flights; rho_k: their
+// correlation k frames apart, summed as long as it is positive (Geyer,
+// Statist. Sci. 7, 1992, 473).
+void WidenToCorrelation(const std::vector<Stretch>& stretches,
+                        const FlightOptions& options, PlaneTrack& track);
 
 }  // namespace touchdown::vision

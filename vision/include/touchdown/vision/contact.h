@@ -41,11 +41,6 @@ struct ContactOptions {
   // the body, whatever else looks like a blow before or beside it. Its instant
   // is still where the flight meets the ground.
   std::optional<std::int64_t> contact_frame;
-
-  // Frames that leave the prediction of a flight by more than this many
-  // standard deviations, two in a row, are no longer of it. 4: one false stop
-  // in 1e8.
-  double flight_sigmas = 4.0;
 };
 
 // How one contact was measured; for drawings and tests.

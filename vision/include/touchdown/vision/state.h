@@ -7,29 +7,12 @@
 //   undecided  neither; or the rebound was not filmed
 #pragma once
 
-#include <optional>
-#include <span>
 #include <string>
 
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/trial.h"
-#include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
-
-// The greatest gap over `samples` (all after touchdown, by time), in px above
-// `ground_px`: of parabolas fitted to a few neighbouring frames, which do not
-// reach across the `breaks` (indices of samples that start a new flight).
-// Absent where no frame was filmed. The uncertainty holds pose noise; that of
-// the ground is the caller's to add.
-struct GreatestGap {
-  core::Estimate gap_px;
-  std::size_t at = 0;         // index of the sample
-  bool still_rising = false;  // at the last frame: a greater one may follow
-};
-std::optional<GreatestGap> FindGreatestGap(std::span<const PlaneSample> samples,
-                                           std::span<const std::size_t> breaks,
-                                           double ground_px);
 
 // Smallest bounce that a recording can show (power and level 0.95), in metres:
 // the larger of the matched filter's

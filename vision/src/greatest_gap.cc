@@ -1,0 +1,178 @@
+#include "greatest_gap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace touchdown::vision {
+namespace {
+
+class Finder {
+ public:
+  Finder(const PlaneTrack& track, std::size_t from, const GroundLevel& ground,
+         const FlightOptions& options, const Event* event)
+      : track_(track),
+        from_(from),
+        ground_(ground),
+        options_(options),
+        event_(event) {}
+
+  void LookAt(const Stretch& stretch);
+  std::optional<GreatestGap> Found() const { return greatest_; }
+
+ private:
+  double UncertaintyOfGround(double along_px) const {
+    return std::hypot(ground_.height_px.u,
+                      ground_.u_slope_rad * (along_px - ground_.along_px));
+  }
+  void Offer(const core::Estimate& gap, std::int64_t frame);
+  void LookAtFlight(std::size_t begin, std::size_t end);
+  void LookAtFrames(std::size_t begin, std::size_t end);
+  void LookAtSupported(std::size_t begin, std::size_t end);
+
+  const PlaneTrack& track_;
+  std::size_t from_;
+  const GroundLevel& ground_;
+  const FlightOptions& options_;
+  const Event* event_;
+  std::optional<GreatestGap> greatest_;
+};
+
+// Among noisy heights the highest is no bounce: a value counts by what it
+// surely reaches.
+void Finder::Offer(const core::Estimate& gap, std::int64_t frame) {
+  if (greatest_ &&
+      gap.value - gap.u <= greatest_->gap_px.value - greatest_->gap_px.u) {
+    return;
+  }
+  greatest_ = GreatestGap{gap, frame, std::nullopt};
+}
+
+void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
+  const auto& samples = track_.samples;
+  const bool first = event_ && event_->after &&
+                     event_->after_frames.begin >= begin &&
+                     event_->after_frames.end == end;
+  const Flight flight =
+      first ? *event_->after
+            : FitFlight(std::span(samples).subspan(begin, end - begin),
+                        options_);
+  // With its u: of the joint fit where ground and flight are one.
+  const auto gap_at = [&](double t) {
+    if (first) {
+      const JointFit& fit = *event_->fit;
+      const double frames = (t - fit.origin_s) / fit.interval_s;
+      return fit.Of(
+          [&](const JointVector& p) { return fit.GapAfter(p, frames); });
+    }
+    const FlightGap g = GapOfFlight(track_, flight, t);
+    return core::Estimate{
+        g.gap_px - ground_.height_px.value,
+        std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px)),
+        std::nullopt};
+  };
+  const auto height_at = [&](double t) {
+    return GapOfFlight(track_, flight, t).gap_px;
+  };
+  // From where it may have left the ground to where it may have met it again.
+  const double last = samples[end - 1].time_s;
+  const double start = begin > 0 ? samples[begin - 1].time_s
+                                 : samples[begin].time_s;
+  const double stop = end < samples.size() ? samples[end].time_s : last;
+  constexpr int kSteps = 256;  // g T^2 / 2^19 is missed: nothing
+  const auto highest = [&](double t0, double t1) {
+    double best = t0;
+    for (int i = 1; i <= kSteps; ++i) {
+      const double t = t0 + (t1 - t0) * i / kSteps;
+      if (height_at(t) > height_at(best)) best = t;
+    }
+    return best;
+  };
+  const double at = highest(std::max(start, first ? event_->release_s.value
+                                                  : start),
+                            stop);
+  const auto near = std::min_element(
+      samples.begin() + static_cast<std::ptrdiff_t>(begin),
+      samples.begin() + static_cast<std::ptrdiff_t>(end),
+      [&](const PlaneSample& a, const PlaneSample& b) {
+        return std::abs(a.time_s - at) < std::abs(b.time_s - at);
+      });
+  const core::Estimate gap = gap_at(at);
+  const bool was = greatest_.has_value();
+  const double before = was ? greatest_->gap_px.value : 0.0;
+  Offer(gap, near->frame);
+  // Does the film end while it rises?
+  if (end < samples.size() || (was && greatest_->gap_px.value == before)) {
+    return;
+  }
+  const FlightState state = flight.At(last);
+  const FlightGap g = GapOfFlight(track_, flight, last);
+  if (!(g.rate > 0.0) || !(flight.height[2] > 0.0)) return;
+  const double apex =
+      last + 2.0 * std::max(state.v_n, g.rate) / flight.height[2];
+  const core::Estimate reaches = gap_at(highest(last, apex));
+  // By less than the gap's own u it is at its top.
+  if (reaches.value - gap.value > gap.u) greatest_->reaches_px = reaches;
+}
+
+void Finder::LookAtSupported(std::size_t begin, std::size_t end) {
+  double sw = 0.0, swg = 0.0, swx = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const PlaneSample& s = track_.samples[i];
+    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
+    sw += w;
+    swg += w * s.gap_px;
+    swx += w * s.along_px;
+  }
+  const double mean = swg / sw;
+  double chi2 = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const PlaneSample& s = track_.samples[i];
+    chi2 += std::pow((s.gap_px - mean) / s.u_gap_px, 2);
+  }
+  const auto n = static_cast<double>(end - begin);
+  const double widen = n > 1.0 ? std::max(1.0, chi2 / (n - 1.0)) : 1.0;
+  Offer({mean - ground_.height_px.value,
+         std::hypot(std::sqrt(widen / sw), UncertaintyOfGround(swx / sw)),
+         std::nullopt},
+        track_.samples[begin + (end - begin) / 2].frame);
+}
+
+void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const PlaneSample& s = track_.samples[i];
+    Offer({s.gap_px - ground_.height_px.value,
+           std::hypot(s.u_gap_px, UncertaintyOfGround(s.along_px)),
+           std::nullopt},
+          s.frame);
+  }
+}
+
+void Finder::LookAt(const Stretch& stretch) {
+  const std::size_t begin = std::max(stretch.begin, from_);
+  const std::size_t end = stretch.end;
+  if (begin >= end) return;
+  const std::size_t least = options_.gravity_px_per_s2 ? 2 : 4;
+  if (stretch.kind == StretchKind::kFlight && end - begin >= least) {
+    LookAtFlight(begin, end);
+  } else if (stretch.kind == StretchKind::kSupported) {
+    LookAtSupported(begin, end);
+  } else {
+    LookAtFrames(begin, end);
+  }
+}
+
+}  // namespace
+
+std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
+                                           std::span<const Stretch> stretches,
+                                           std::size_t from,
+                                           const GroundLevel& ground,
+                                           const FlightOptions& options,
+                                           const Event* event) {
+  Finder finder(track, from, ground, options, event);
+  for (const Stretch& stretch : stretches) finder.LookAt(stretch);
+  return finder.Found();
+}
+
+}  // namespace touchdown::vision

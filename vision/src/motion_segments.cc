@@ -1,0 +1,485 @@
+#include "motion_segments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "touchdown/core/units.h"
+
+namespace touchdown::vision {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kTold = 4;  // frames that tell of a motion of any kind
+
+// Weighted sums of one coordinate over the frames of a stretch, with the time
+// in frames and the value relative to its first frame: no digits cancel.
+struct Moments {
+  double w = 0, t = 0, tt = 0, ttt = 0, tttt = 0;
+  double y = 0, ty = 0, tty = 0, yy = 0;
+
+  void Add(double time, double value, double weight) {
+    const double wt = weight * time;
+    const double wtt = wt * time;
+    w += weight;
+    t += wt;
+    tt += wtt;
+    ttt += wtt * time;
+    tttt += wtt * time * time;
+    y += weight * value;
+    ty += wt * value;
+    tty += wtt * value;
+    yy += weight * value * value;
+  }
+};
+
+// Least squares in orthogonal polynomials: level, slope, bend, and the sums of
+// squares left by polynomials of degree 1 and 2.
+struct Polynomial {
+  double middle = 0, level = 0, slope = 0, bend = 0;
+  double offset = 0, tilt = 0;  // of the quadratic term's orthogonal polynomial
+  double rss1 = 0, rss2 = 0;
+
+  explicit Polynomial(const Moments& m) {
+    middle = m.t / m.w;
+    level = m.y / m.w;
+    const double spread = m.tt - m.t * middle;
+    const double lean = m.ty - middle * m.y;
+    rss1 = m.yy - level * m.y;
+    constexpr double kLeast = 1e-9;  // of the sum: one instant
+    if (spread > kLeast * (m.tt + m.w)) {
+      slope = lean / spread;
+      rss1 -= slope * lean;
+      offset = m.tt / m.w;
+      tilt = (m.ttt - middle * m.tt) / spread;
+      const double third = m.tttt - offset * m.tt -
+                           tilt * (m.ttt - middle * m.tt);
+      const double bow = m.tty - offset * m.y - tilt * lean;
+      if (third > kLeast * m.tttt) {
+        bend = bow / third;
+        rss2 = bend * bow;
+      }
+    }
+    rss1 = std::max(0.0, rss1);
+    rss2 = std::max(0.0, rss1 - rss2);
+  }
+  double Line(double t) const { return level + slope * (t - middle); }
+  double Parabola(double t) const {
+    return Line(t) + bend * (t * t - offset - tilt * (t - middle));
+  }
+};
+
+// Gaps of a supported stretch on a line with the ground's own uncertainty.
+struct LineMoments {
+  double w = 0, x = 0, xx = 0, g = 0, gx = 0, gg = 0;
+
+  void Add(double along, double gap, double weight) {
+    w += weight;
+    x += weight * along;
+    xx += weight * along * along;
+    g += weight * gap;
+    gx += weight * gap * along;
+    gg += weight * gap * gap;
+  }
+  // Squares left after the best line; priors are precisions.
+  double Rss(double prior_level, double prior_slope) const {
+    const double a = w + prior_level;
+    const double c = xx + prior_slope;
+    const double determinant = a * c - x * x;
+    constexpr double kLeast = 1e-12;
+    if (!(determinant > kLeast * a * c)) return std::max(0.0, gg - g * g / a);
+    const double level = (c * g - x * gx) / determinant;
+    const double slope = (a * gx - x * g) / determinant;
+    return std::max(0.0, gg - level * g - slope * gx);
+  }
+};
+
+// A forecast's variance over that of one frame, one frame beyond `n` frames of
+// a straight line.
+double ForecastVariance(std::size_t n) {
+  const auto m = static_cast<double>(n);
+  return 2.0 * (2.0 * m + 1.0) / (m * (m - 1.0));
+}
+
+// What the frames before a boundary were.
+enum State : std::size_t { kStart, kCarried, kTouched, kLeft, kEnded, kStates };
+
+struct Step {
+  double cost = kInfinity;
+  std::size_t begin = 0;
+  State from = kStart;
+  StretchKind kind = StretchKind::kOther;
+  double chi2 = 0.0;
+  int degrees = 0;
+};
+
+class Segmenter {
+ public:
+  // `floor_px`: added to the poses' own u.
+  Segmenter(const PlaneTrack& track, const SegmentationOptions& options,
+            double floor_px);
+  std::vector<Stretch> Run();
+  // Moves each cut by some frames to where its neighbours cost the least.
+  void PlaceCuts(std::vector<Stretch>& stretches) const;
+
+ private:
+  struct Fits;
+  void Fit(Fits& fits) const;
+  double CostOf(const Stretch& stretch, bool touches_at_end) const;
+  void GrowFrom(std::size_t begin);
+  void Offer(std::size_t begin, std::size_t end, const Fits& fits);
+  void OfferAnyMotion(std::size_t begin, std::size_t end, const Fits& fits);
+  Step StepOf(std::size_t begin, State from, StretchKind kind, double rss,
+              int parameters, int values) const;
+  void Take(std::size_t end, State to, const Step& step);
+  double FlightGap(const Fits& fits, std::size_t at) const;
+  double StartCost(const Fits& fits, std::size_t begin, std::size_t end) const;
+  double EndCost(const Fits& fits, std::size_t begin, std::size_t end) const;
+  double OffGround(double above, std::size_t at, std::size_t frames,
+                   double most) const;
+  bool MayTouch(std::size_t end) const;
+
+  const PlaneTrack& track_;
+  const SegmentationOptions& options_;
+  const std::vector<PlaneSample>& samples_;
+  bool turns_;
+  int per_frame_;   // numbers measured in a frame
+  double gravity_;  // px per frame^2
+  double per_parameter_;
+  double per_cut_;
+  double level_precision_;  // of a supported stretch's level and slope
+  double slope_precision_;
+  std::vector<std::array<Step, kStates>> best_;  // by boundary
+  std::vector<double> u_gap_;
+  std::array<std::vector<double>, 4> weights_;  // along, height, face, gap
+};
+
+// Of the frames from `begin` on, one after the other.
+struct Segmenter::Fits {
+  std::size_t begin = 0;
+  std::size_t frames = 0;
+  Moments along, height, face;
+  LineMoments gaps;
+  std::optional<Polynomial> x, y, f;  // of the frames so far
+
+  void Add(const Segmenter& of);
+  double RssOf(StretchKind kind, const Segmenter& of) const;
+};
+
+void Segmenter::Fits::Add(const Segmenter& of) {
+  const std::size_t i = begin + frames++;
+  const PlaneSample& first = of.samples_[begin];
+  const PlaneSample& s = of.samples_[i];
+  const double t = (s.time_s - first.time_s) / of.track_.frame_interval_s;
+  along.Add(t, s.along_px - first.along_px, of.weights_[0][i]);
+  height.Add(t, s.height_px - first.height_px + 0.5 * of.gravity_ * t * t,
+             of.weights_[1][i]);
+  if (of.turns_) face.Add(t, s.face_rad - first.face_rad, of.weights_[2][i]);
+  gaps.Add(s.along_px, s.gap_px, of.weights_[3][i]);
+}
+
+double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
+  if (kind == StretchKind::kFlight) {
+    const bool known = of.options_.gravity_px_per_s2.has_value();
+    return x->rss1 + (known ? y->rss1 : y->rss2) + (f ? f->rss1 : 0.0);
+  }
+  const double turned = f ? f->rss2 : 0.0;
+  if (kind == StretchKind::kSupported) {
+    return x->rss2 + gaps.Rss(0.0, of.slope_precision_) + turned;
+  }
+  return frames < kTold ? 0.0 : x->rss2 + y->rss2 + turned;
+}
+
+Segmenter::Segmenter(const PlaneTrack& track,
+                     const SegmentationOptions& options, double floor_px)
+    : track_(track),
+      options_(options),
+      samples_(track.samples),
+      turns_(track.kind == core::BodyKind::kRectangle),
+      per_frame_(turns_ ? 3 : 2),
+      gravity_(options.gravity_px_per_s2.value_or(0.0) *
+               track.frame_interval_s * track.frame_interval_s),
+      per_parameter_(0.5 * std::log(per_frame_ *
+                                    static_cast<double>(samples_.size()))),
+      per_cut_(std::log(static_cast<double>(samples_.size()))),
+      best_(samples_.size() + 1) {
+  const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
+  level_precision_ = precision(std::hypot(
+      options.u_line_px, std::hypot(track.u_half_px, options.edge_bias_px)));
+  // An edge of the ground seen in perspective differs so much from the line of
+  // contact, at most.
+  constexpr double kInclined_rad = 0.5 * core::kDegree;
+  slope_precision_ = precision(std::hypot(options.u_slope_rad, kInclined_rad));
+  const double floor_rad = floor_px / std::max(track.half_long_px, 1.0);
+  for (const PlaneSample& s : samples_) {
+    const auto weight = [](double u, double floor) {
+      return 1.0 / (u * u + floor * floor);
+    };
+    weights_[0].push_back(weight(s.u_along_px, floor_px));
+    weights_[1].push_back(weight(s.u_height_px, floor_px));
+    weights_[2].push_back(turns_ ? weight(s.u_face_rad, floor_rad) : 0.0);
+    weights_[3].push_back(weight(s.u_gap_px, floor_px));
+    u_gap_.push_back(std::hypot(s.u_gap_px, floor_px));
+  }
+}
+
+// Of the flight fitted to the frames so far, at a sample.
+double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
+  const PlaneSample& first = samples_[fits.begin];
+  const double t =
+      (samples_[at].time_s - first.time_s) / track_.frame_interval_s;
+  double height = first.height_px;
+  if (options_.gravity_px_per_s2) {
+    height += fits.y->Line(t) - 0.5 * gravity_ * t * t;
+  } else {
+    height += fits.y->Parabola(t);
+  }
+  const double face = turns_ ? first.face_rad + fits.f->Line(t) : 0.0;
+  return height - SupportHeight(track_, face);
+}
+
+// What it costs that the gap is `above` zero (or below) by more than the line
+// and the forecast are known to.
+double Segmenter::OffGround(double above, std::size_t at,
+                            std::size_t frames, double most) const {
+  if (!(above > 0.0)) return 0.0;
+  const double tilt = options_.u_slope_rad * samples_[at].along_px;
+  const double forecast = u_gap_[at] * u_gap_[at] * ForecastVariance(frames);
+  const double variance = 1.0 / level_precision_ + tilt * tilt + forecast;
+  return std::min(most, 0.5 * above * above / variance);
+}
+
+double Segmenter::StartCost(const Fits& fits, std::size_t begin,
+                            std::size_t end) const {
+  if (begin == 0) return 0.0;
+  const double most = options_.off_line_cost;
+  return OffGround(FlightGap(fits, begin - 1), begin, end - begin, most) +
+         OffGround(-FlightGap(fits, begin), begin, end - begin, most);
+}
+
+double Segmenter::EndCost(const Fits& fits, std::size_t begin,
+                          std::size_t end) const {
+  const double most = options_.off_line_cost;
+  const double last =
+      OffGround(-FlightGap(fits, end - 1), end - 1, end - begin, most);
+  if (end == samples_.size() || end == options_.touchdown) return last;
+  return last + OffGround(FlightGap(fits, end), end, end - begin, most);
+}
+
+Step Segmenter::StepOf(std::size_t begin, State from, StretchKind kind,
+                       double rss, int parameters, int values) const {
+  Step s;
+  s.begin = begin;
+  s.from = from;
+  s.kind = kind;
+  s.chi2 = rss;
+  s.degrees = std::max(0, values - parameters);
+  s.cost = best_[begin][from].cost + 0.5 * rss + per_parameter_ * parameters +
+           (begin > 0 ? per_cut_ : 0.0);
+  return s;
+}
+
+void Segmenter::Take(std::size_t end, State to, const Step& step) {
+  Step& best = best_[end][to];
+  if (step.cost < best.cost) best = step;
+}
+
+// Where a person says when it touches down, nothing touches before it, and the
+// flight up to it ends there wherever the line is.
+bool Segmenter::MayTouch(std::size_t end) const {
+  return !options_.touchdown || end >= *options_.touchdown;
+}
+
+void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
+  const std::size_t n = end - begin;
+  const int values = static_cast<int>(n) * per_frame_;
+  const auto step = [&](State from, StretchKind kind, double rss,
+                        int parameters, double ends) {
+    Step s = StepOf(begin, from, kind, rss, parameters, values);
+    s.cost += ends;
+    return s;
+  };
+  const auto reached = [&](State state) {
+    return best_[begin][state].cost < kInfinity;
+  };
+
+  // Flight.
+  const bool known = options_.gravity_px_per_s2.has_value();
+  if (n >= (known ? 2U : 4U)) {
+    const double rss = fits.RssOf(StretchKind::kFlight, *this);
+    const int k = (turns_ ? 6 : 4) + (known ? 0 : 1);
+    const double ending = EndCost(fits, begin, end);
+    for (const State from : {kStart, kCarried, kTouched}) {
+      if (!reached(from)) continue;
+      const double starting =
+          from == kTouched ? StartCost(fits, begin, end) : 0.0;
+      if (MayTouch(end)) {
+        Take(end, kTouched,
+             step(from, StretchKind::kFlight, rss, k, starting + ending));
+      }
+      Take(end, kLeft, step(from, StretchKind::kFlight, rss, k, starting));
+    }
+  }
+  // On the ground: one line of gaps, whose level and slope the ground line
+  // foretells. Another level costs no more than a flight that ends off it.
+  constexpr std::size_t kLeastSupported = 3;
+  if (n >= kLeastSupported && MayTouch(begin)) {
+    const double off = std::min(
+        options_.off_line_cost,
+        0.5 * (fits.gaps.Rss(level_precision_, slope_precision_) -
+               fits.gaps.Rss(0.0, slope_precision_)));
+    const double rss = fits.RssOf(StretchKind::kSupported, *this);
+    const int k = turns_ ? 7 : 4;
+    for (const State from : {kStart, kCarried, kTouched}) {
+      if (!reached(from)) continue;
+      Take(end, kTouched, step(from, StretchKind::kSupported, rss, k, off));
+    }
+  }
+  OfferAnyMotion(begin, end, fits);
+}
+
+// Of any kind: pressed to the ground, or in something's hand. Up to three
+// frames have a number of their own for each of theirs.
+void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
+                               const Fits& fits) {
+  const std::size_t n = end - begin;
+  const int values = static_cast<int>(n) * per_frame_;
+  const int parameters = std::min(values, 3 * per_frame_);
+  const double rss = fits.RssOf(StretchKind::kOther, *this);
+  // No motion that is known: mostly it is one, badly seen. A few frames at
+  // either end tell of none.
+  const double unknown = n < kTold ? per_cut_ : options_.unknown_cost;
+  const auto offer = [&](State from, State to, StretchKind kind, double ends) {
+    if (!(best_[begin][from].cost < kInfinity)) return;
+    Step s = StepOf(begin, from, kind, rss, parameters, values);
+    s.cost += ends;
+    Take(end, to, s);
+  };
+  const double above = fits.gaps.g / fits.gaps.w;
+  offer(kTouched, kTouched, StretchKind::kContact,
+        OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
+  for (const State from : {kStart, kCarried}) {
+    offer(from, kCarried, StretchKind::kOther, unknown);
+  }
+  if (!MayTouch(begin)) return;
+  for (const State from : {kTouched, kLeft, kEnded}) {
+    offer(from, kEnded, StretchKind::kOther, unknown);
+  }
+}
+
+void Segmenter::Fit(Fits& fits) const {
+  fits.x.emplace(fits.along);
+  fits.y.emplace(fits.height);
+  if (turns_) fits.f.emplace(fits.face);
+}
+
+void Segmenter::GrowFrom(std::size_t begin) {
+  double least = kInfinity;
+  for (const Step& step : best_[begin]) least = std::min(least, step.cost);
+  if (!(least < kInfinity)) return;
+  const bool early = options_.touchdown && begin < *options_.touchdown;
+  const std::size_t limit = early ? *options_.touchdown : samples_.size();
+  Fits fits;
+  fits.begin = begin;
+  for (std::size_t end = begin + 1; end <= limit; ++end) {
+    fits.Add(*this);
+    if (fits.frames < 2) {
+      OfferAnyMotion(begin, end, fits);
+      continue;
+    }
+    Fit(fits);
+    Offer(begin, end, fits);
+    // No stretch from here can become the best once even the loosest one, which
+    // later frames only make worse, has lost to what leads there already.
+    const double loosest = 0.5 * (fits.x->rss2 + fits.y->rss2 +
+                                  (turns_ ? fits.f->rss2 : 0.0));
+    double leads = kInfinity;
+    for (const State state : {kCarried, kTouched, kEnded}) {
+      leads = std::min(leads, best_[end][state].cost);
+    }
+    constexpr double kMargin = 80.0;  // end terms that may still be saved
+    if (least + loosest > leads + kMargin) return;
+  }
+}
+
+// Of one stretch, for the choice of its ends.
+double Segmenter::CostOf(const Stretch& stretch, bool touches_at_end) const {
+  Fits fits;
+  fits.begin = stretch.begin;
+  while (fits.frames < stretch.end - stretch.begin) fits.Add(*this);
+  Fit(fits);
+  double cost = 0.5 * fits.RssOf(stretch.kind, *this);
+  if (stretch.kind != StretchKind::kFlight) return cost;
+  cost += StartCost(fits, stretch.begin, stretch.end);
+  if (touches_at_end) cost += EndCost(fits, stretch.begin, stretch.end);
+  return cost;
+}
+
+void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
+  constexpr int kReach = 3;  // frames
+  for (std::size_t k = 0; k + 1 < stretches.size(); ++k) {
+    Stretch& a = stretches[k];
+    Stretch& b = stretches[k + 1];
+    // Stretches with a number for each of theirs explain any frame.
+    if (a.kind == StretchKind::kOther || b.kind == StretchKind::kOther ||
+        a.kind == StretchKind::kContact || b.kind == StretchKind::kContact ||
+        b.begin == options_.touchdown) {
+      continue;
+    }
+    const std::size_t least = options_.gravity_px_per_s2 ? 2 : kTold;
+    std::size_t best = b.begin;
+    double best_cost = kInfinity;
+    for (int shift = -kReach; shift <= kReach; ++shift) {
+      const std::size_t cut =
+          b.begin + static_cast<std::size_t>(shift);  // wraps: beyond an end
+      if (cut < a.begin + least || cut > a.end + kReach ||
+          cut + least > b.end) {
+        continue;
+      }
+      Stretch left = a;
+      Stretch right = b;
+      left.end = right.begin = cut;
+      const bool ends = k + 2 < stretches.size();
+      const double cost = CostOf(left, true) + CostOf(right, ends);
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = cut;
+      }
+    }
+    a.end = b.begin = best;
+  }
+}
+
+std::vector<Stretch> Segmenter::Run() {
+  const std::size_t n = samples_.size();
+  std::vector<Stretch> stretches;
+  if (n < 2) return stretches;
+  best_[0][kStart].cost = 0.0;
+  for (std::size_t begin = 0; begin < n; ++begin) GrowFrom(begin);
+  State state = kTouched;
+  for (const State other : {kCarried, kLeft, kEnded}) {
+    if (best_[n][other].cost < best_[n][state].cost) state = other;
+  }
+  for (std::size_t end = n; end > 0;) {
+    const Step& step = best_[end][state];
+    if (!(step.cost < kInfinity)) return {};
+    stretches.push_back({step.kind, step.begin, end, step.chi2, step.degrees});
+    end = step.begin;
+    state = step.from;
+  }
+  std::reverse(stretches.begin(), stretches.end());
+  return stretches;
+}
+
+}  // namespace
+
+std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
+                                   const SegmentationOptions& options) {
+  std::vector<Stretch> stretches =
+      Segmenter(track, options, options.floor_px).Run();
+  Segmenter(track, options, 0.0).PlaceCuts(stretches);
+  return stretches;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,74 @@
+// Cuts a plane track into stretches of one motion each: optimal partitioning
+// (Jackson et al., IEEE Signal Process. Lett. 12, 2005, 105) under Schwarz's
+// criterion, with the inequality pruning of Killick et al. (J. Am. Stat. Assoc.
+// 107, 2012, 1590).
+//
+//   minimise  sum over stretches of  RSS/2 + (k/2) ln N + end terms
+//             + ln n for each cut
+//
+// RSS: squared residuals over u; k: parameters of the stretch; N: measured
+// numbers; n: frames. A flight is a parabola with constant spin; where gravity
+// is known its curvature is no parameter. The end terms say that flights begin
+// and end on the ground: the gap of the flight vanishes between its last frame
+// and the next.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "touchdown/vision/plane_track.h"
+
+namespace touchdown::vision {
+
+enum class StretchKind {
+  kFlight,     // along and face linear in time, height a parabola
+  kSupported,  // the lowest point on the ground line; slides, rolls or rests
+  kContact,    // between touchdown and release of a body that takes its time
+  kOther,      // carried by a hand or a ramp before its first flight, caught or
+               // stopped by something else after its last
+};
+
+struct Stretch {
+  StretchKind kind = StretchKind::kOther;
+  std::size_t begin = 0;  // samples [begin, end)
+  std::size_t end = 0;
+  double chi2 = 0.0;  // of its poses about it
+  int degrees = 0;    // of freedom
+};
+
+struct SegmentationOptions {
+  // Along the ground's normal, px/s^2; nothing: one more parameter a flight.
+  std::optional<double> gravity_px_per_s2;
+
+  // Of the ground line, at its reference, and of its direction.
+  double u_line_px = 0.0;
+  double u_slope_rad = 0.0;
+
+  // A person says so: the first sample after touchdown. Nothing touches before
+  // it, and a flight ends there.
+  std::optional<std::size_t> touchdown;
+
+  // Added to the poses' own u in quadrature, for the choice of stretches only:
+  // a common error of outline and ground's edge, up to 0.07 px, must not pass
+  // for an impact. 0.02: the least that keeps impacts a frame apart whole.
+  double floor_px = 0.02;
+
+  // How far outlines beside the ground's edge may be off together: part of the
+  // line's u. 0.05: the middle of what was seen, 0.01 to 0.1 px.
+  double edge_bias_px = 0.05;
+
+  // In units of ln odds: what a flight's end or start costs at most that lies
+  // far from the line, and what a stretch costs whose motion is none of those
+  // known. An impact off the line, which has an end and a start, must be the
+  // cheaper: it refutes the line, a stretch of any motion hides it.
+  double off_line_cost = 30.0;
+  double unknown_cost = 70.0;
+};
+
+// Stretches that follow each other without a gap and cover all samples.
+// Throws nothing; an empty track has none.
+std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
+                                   const SegmentationOptions& options = {});
+
+}  // namespace touchdown::vision
