@@ -217,7 +217,10 @@ TEST(Contact, NoneWhereTheGroundLineLiesAboveTheBody) {
   Throw thrown;
   Filming filming;
   PlaneTrack track = FilmPlane(thrown, filming);
-  for (auto& sample : track.samples) sample.gap_px -= 1000.0;
+  for (auto& sample : track.samples) {
+    sample.gap_px -= 1000.0;
+    sample.height_px -= 1000.0;
+  }
   const ContactResult result = FindContacts(track, WithScale(filming));
   ExpectFinite(result);
   EXPECT_FALSE(result.first.contact.found);

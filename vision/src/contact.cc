@@ -225,23 +225,29 @@ core::ContactRecord MeasureFromStart(RecordContext& context, PlaneTrack& track,
   return RecordFromStart(context, trend.slope_rad);
 }
 
-// The first flight that is seen begins on the ground: it touched down before,
+// The first flight that is seen rises from the ground: it touched down before,
 // in frames that are too few to tell of a flight, or in none.
 bool BeginsAtImpact(const PlaneTrack& track,
                     const std::vector<Stretch>& stretches,
                     const FlightOptions& options) {
-  if (stretches.size() < 2 || stretches[0].kind != StretchKind::kOther ||
-      stretches[1].kind != StretchKind::kFlight) {
+  const bool unclear = stretches[0].kind == StretchKind::kOther;
+  if (unclear && stretches.size() < 2) return false;
+  const Stretch& first = stretches[unclear ? 1 : 0];
+  if (first.kind != StretchKind::kFlight || first.end - first.begin < 2) {
     return false;
   }
-  const auto frames = std::span(track.samples)
-                          .subspan(stretches[1].begin,
-                                   stretches[1].end - stretches[1].begin);
-  const Flight flight = FitFlight(frames, options);
-  const PlaneSample& first = frames.front();
+  const Flight flight = FitFlight(
+      std::span(track.samples).subspan(first.begin, first.end - first.begin),
+      options);
+  const PlaneSample& s = track.samples[first.begin];
   const FlightGap before =
-      GapOfFlight(track, flight, first.time_s - track.frame_interval_s);
-  return before.rate > 0.0 && before.gap_px < NearLine(track, first);
+      GapOfFlight(track, flight, s.time_s - track.frame_interval_s);
+  constexpr double kEdgeBias_px = 0.05;
+  constexpr double kSigmas = 3.0;
+  return before.rate > 0.0 &&
+         before.gap_px <
+             kSigmas * std::hypot(before.u_px, UncertaintyOfLine(track, s),
+                                  kEdgeBias_px);
 }
 
 bool IsDownFromStart(const std::vector<Stretch>& stretches) {

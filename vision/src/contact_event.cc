@@ -116,6 +116,19 @@ void LeaveOutStraddling(const PlaneTrack& track, const EventOptions& options,
   if (after.size() > spare && near(after.begin)) ++after.begin;
 }
 
+// Whether a sample lies more than 4 standard deviations off a flight.
+bool LeavesFlight(const PlaneSample& s, const Flight& flight) {
+  constexpr double kSigmas = 4.0;
+  const FlightState at = flight.At(s.time_s);
+  const auto off = [](double difference, double u1, double u2) {
+    return std::abs(difference) > kSigmas * std::hypot(u1, u2);
+  };
+  return off(s.height_px - at.height_px, at.u_height_px, s.u_height_px) ||
+         off(s.along_px - at.along_px, at.u_along_px, s.u_along_px) ||
+         (s.u_face_rad > 0.0 &&
+          off(s.face_rad - at.face_rad, at.u_face_rad, s.u_face_rad));
+}
+
 JointInput InputFor(const PlaneTrack& track, const Event& event,
                     const EventOptions& options) {
   JointInput input;
@@ -271,8 +284,13 @@ bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
   const bool flies = event.after_frames.size() >= LeastFrames(options);
   if (flies) {
     event.after = FitFlight(SamplesIn(track, event.after_frames), options.flight);
-  } else if (event.before_frames.size() <= LeastFrames(options)) {
-    // With none to spare only a rebound tells where and when the flight ended.
+  }
+  // With none to spare only a rebound tells where and when the flight ended,
+  // and an impact one frame earlier looks alike unless the last frame is
+  // clearly not of the flight after it.
+  if (event.before_frames.size() <= LeastFrames(options) &&
+      !(flies && LeavesFlight(track.samples[event.before_frames.end - 1],
+                              *event.after))) {
     reason = fmt::format(
         "too few frames show the body before its impact at frame {}", frame);
     return false;

@@ -304,16 +304,17 @@ void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
     return best_[begin][state].cost < kInfinity;
   };
 
-  // Flight.
+  // Flight. The last frame alone may have left the ground.
   const bool known = options_.gravity_px_per_s2.has_value();
-  if (n >= (known ? 2U : 4U)) {
+  const bool tail = n == 1 && begin > 0 && end == samples_.size();
+  if (n >= (known ? 2U : 4U) || tail) {
     const double rss = fits.RssOf(StretchKind::kFlight, *this);
-    const int k = (turns_ ? 6 : 4) + (known ? 0 : 1);
-    const double ending = EndCost(fits, begin, end);
+    const int k = std::min(values, 2 * per_frame_ + (known ? 0 : 1));
+    const double ending = tail ? 0.0 : EndCost(fits, begin, end);
     for (const State from : {kStart, kCarried, kTouched}) {
       if (!reached(from)) continue;
-      const double starting =
-          from == kTouched ? StartCost(fits, begin, end) : 0.0;
+      double starting = from == kStart ? 0.0 : options_.rebound_cost;
+      if (from == kTouched && !tail) starting += StartCost(fits, begin, end);
       if (MayTouch(end)) {
         Take(end, kTouched,
              step(from, StretchKind::kFlight, rss, k, starting + ending));
@@ -324,13 +325,15 @@ void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
   // On the ground: one line of gaps, whose level and slope the ground line
   // foretells. Another level costs no more than a flight that ends off it.
   constexpr std::size_t kLeastSupported = 3;
-  if (n >= kLeastSupported && MayTouch(begin)) {
+  const bool last = begin > 0 && end == samples_.size();
+  if ((n >= kLeastSupported || last) && MayTouch(begin)) {
     const double off = std::min(
         options_.off_line_cost,
         0.5 * (fits.gaps.Rss(level_precision_, slope_precision_) -
                fits.gaps.Rss(0.0, slope_precision_)));
     const double rss = fits.RssOf(StretchKind::kSupported, *this);
-    const int k = turns_ ? 7 : 4;
+    const int along = static_cast<int>(std::min<std::size_t>(n, 3));
+    const int k = turns_ ? 1 + 2 * along : 1 + along;
     for (const State from : {kStart, kCarried, kTouched}) {
       if (!reached(from)) continue;
       Take(end, kTouched, step(from, StretchKind::kSupported, rss, k, off));
@@ -347,9 +350,13 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
   const int values = static_cast<int>(n) * per_frame_;
   const int parameters = std::min(values, 3 * per_frame_);
   const double rss = fits.RssOf(StretchKind::kOther, *this);
-  // No motion that is known: mostly it is one, badly seen. A few frames at
-  // either end tell of none.
-  const double unknown = n < kTold ? per_cut_ : options_.unknown_cost;
+  // No motion that is known: mostly it is one, badly seen. A few frames tell of
+  // none, but those after an impact would be a rebound.
+  const double few = 2.0 * per_cut_;
+  const bool told = n >= kTold;
+  const double before = told ? options_.unknown_cost : few;
+  const double after =
+      told ? options_.unknown_cost : few + options_.rebound_cost;
   const auto offer = [&](State from, State to, StretchKind kind, double ends) {
     if (!(best_[begin][from].cost < kInfinity)) return;
     Step s = StepOf(begin, from, kind, rss, parameters, values);
@@ -357,15 +364,16 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
     Take(end, to, s);
   };
   const double above = fits.gaps.g / fits.gaps.w;
+  // As for a rebound: where the line is not known, it could stand for one.
   offer(kTouched, kTouched, StretchKind::kContact,
-        OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
-  for (const State from : {kStart, kCarried}) {
-    offer(from, kCarried, StretchKind::kOther, unknown);
-  }
+        (told ? options_.rebound_cost : 0.0) +
+            OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
+  offer(kStart, kCarried, StretchKind::kOther, before);
+  if (told) offer(kCarried, kCarried, StretchKind::kOther, before);
   if (!MayTouch(begin)) return;
-  for (const State from : {kTouched, kLeft, kEnded}) {
-    offer(from, kEnded, StretchKind::kOther, unknown);
-  }
+  offer(kTouched, kEnded, StretchKind::kOther, after);
+  offer(kLeft, kEnded, StretchKind::kOther, after);
+  if (told) offer(kEnded, kEnded, StretchKind::kOther, after);
 }
 
 void Segmenter::Fit(Fits& fits) const {
@@ -384,12 +392,9 @@ void Segmenter::GrowFrom(std::size_t begin) {
   fits.begin = begin;
   for (std::size_t end = begin + 1; end <= limit; ++end) {
     fits.Add(*this);
-    if (fits.frames < 2) {
-      OfferAnyMotion(begin, end, fits);
-      continue;
-    }
     Fit(fits);
     Offer(begin, end, fits);
+    if (fits.frames < 2) continue;
     // No stretch from here can become the best once even the loosest one, which
     // later frames only make worse, has lost to what leads there already.
     const double loosest = 0.5 * (fits.x->rss2 + fits.y->rss2 +

@@ -64,6 +64,10 @@ struct SegmentationOptions {
   // cheaper: it refutes the line, a stretch of any motion hides it.
   double off_line_cost = 30.0;
   double unknown_cost = 70.0;
+
+  // A rebound must be so much likelier than rest; else the noise of a body at
+  // rest is taken for small hops. 8: odds of 3000 to 1.
+  double rebound_cost = 8.0;
 };
 
 // Stretches that follow each other without a gap and cover all samples.
