@@ -1,11 +1,44 @@
 #include "greatest_gap.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace touchdown::vision {
 namespace {
+
+// Parabola through `samples`, read at one of them.
+core::Estimate LocalGap(std::span<const PlaneSample> samples,
+                        const PlaneSample& at) {
+  if (samples.size() < 4) return {at.gap_px, at.u_gap_px, std::nullopt};
+  const double unit =
+      std::max(samples.back().time_s - samples.front().time_s, 1e-300);
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  const auto row_of = [&](const PlaneSample& s) {
+    const double t = (s.time_s - at.time_s) / unit;
+    return Eigen::Vector3d(1.0, t, t * t);
+  };
+  for (const PlaneSample& s : samples) {
+    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
+    const Eigen::Vector3d row = row_of(s);
+    a.noalias() += w * row * row.transpose();
+    b.noalias() += w * (s.gap_px - at.gap_px) * row;
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> factor(a);
+  const Eigen::Vector3d x = factor.solve(b);
+  double chi2 = 0.0;
+  for (const PlaneSample& s : samples) {
+    chi2 += std::pow(
+        (s.gap_px - at.gap_px - row_of(s).dot(x)) / s.u_gap_px, 2);
+  }
+  const double widen =
+      std::max(1.0, chi2 / static_cast<double>(samples.size() - 3));
+  const double variance = factor.solve(Eigen::Vector3d::UnitX())[0];
+  return {at.gap_px + x[0], std::sqrt(std::max(0.0, widen * variance)),
+          std::nullopt};
+}
 
 class Finder {
  public:
@@ -28,7 +61,6 @@ class Finder {
   void Offer(const core::Estimate& gap, std::int64_t frame);
   void LookAtFlight(std::size_t begin, std::size_t end);
   void LookAtFrames(std::size_t begin, std::size_t end);
-  void LookAtSupported(std::size_t begin, std::size_t end);
 
   const PlaneTrack& track_;
   std::size_t from_;
@@ -115,36 +147,23 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
   if (reaches.value - gap.value > gap.u) greatest_->reaches_px = reaches;
 }
 
-void Finder::LookAtSupported(std::size_t begin, std::size_t end) {
-  double sw = 0.0, swg = 0.0, swx = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const PlaneSample& s = track_.samples[i];
-    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
-    sw += w;
-    swg += w * s.gap_px;
-    swx += w * s.along_px;
-  }
-  const double mean = swg / sw;
-  double chi2 = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const PlaneSample& s = track_.samples[i];
-    chi2 += std::pow((s.gap_px - mean) / s.u_gap_px, 2);
-  }
-  const auto n = static_cast<double>(end - begin);
-  const double widen = n > 1.0 ? std::max(1.0, chi2 / (n - 1.0)) : 1.0;
-  Offer({mean - ground_.height_px.value,
-         std::hypot(std::sqrt(widen / sw), UncertaintyOfGround(swx / sw)),
-         std::nullopt},
-        track_.samples[begin + (end - begin) / 2].frame);
-}
-
+// Frames of no flight: of parabolas through a few neighbours, so that a hop too
+// small to be told from rest counts with what it shows.
 void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
+  // 7: the noise of the middle falls to 0.58, and a hop of as many frames is
+  // followed exactly.
+  constexpr std::size_t kWindow = 7;
+  const std::size_t window = std::min(kWindow, end - begin);
   for (std::size_t i = begin; i < end; ++i) {
-    const PlaneSample& s = track_.samples[i];
-    Offer({s.gap_px - ground_.height_px.value,
-           std::hypot(s.u_gap_px, UncertaintyOfGround(s.along_px)),
+    const std::size_t half = window / 2;
+    const std::size_t from =
+        std::min(i > begin + half ? i - half : begin, end - window);
+    const core::Estimate local = LocalGap(
+        std::span(track_.samples).subspan(from, window), track_.samples[i]);
+    Offer({local.value - ground_.height_px.value,
+           std::hypot(local.u, UncertaintyOfGround(track_.samples[i].along_px)),
            std::nullopt},
-          s.frame);
+          track_.samples[i].frame);
   }
 }
 
@@ -155,8 +174,6 @@ void Finder::LookAt(const Stretch& stretch) {
   const std::size_t least = options_.gravity_px_per_s2 ? 2 : 4;
   if (stretch.kind == StretchKind::kFlight && end - begin >= least) {
     LookAtFlight(begin, end);
-  } else if (stretch.kind == StretchKind::kSupported) {
-    LookAtSupported(begin, end);
   } else {
     LookAtFrames(begin, end);
   }
