@@ -97,12 +97,15 @@ void FillAngles(const RecordContext& context, const Event& event,
   const auto to_ground = [](const JointVector& p) {
     return p[kFace] - p[kSlope];
   };
-  const Estimate measured = fit.Of(to_ground);
+  Estimate measured = fit.Of(to_ground);
+  const double localised = measured.u;
+  measured.u = std::hypot(measured.u, context.u_common_face_rad);
   const double pi = std::numbers::pi;
   double face = std::remainder(measured.value, pi);
   if (face <= -0.5 * pi) face += pi;
   contact.face_angle_rad = Estimate{face, measured.u, std::nullopt};
-  contact.attitude_budget = BudgetOf(fit, to_ground, measured.u);
+  contact.attitude_budget = BudgetOf(fit, to_ground, localised);
+  contact.attitude_budget.push_back({"picture", context.u_common_face_rad});
   // Flush where the second lowest corner is as low as the lowest within what
   // the attitude is known to (2 u), or within the outline's own resolution.
   const double tilt = std::abs(std::remainder(face, 0.5 * pi));
@@ -122,6 +125,8 @@ void FillAngles(const RecordContext& context, const Event& event,
                          p[kHalfShort] * std::abs(std::cos(at));
     return std::atan2(reach, std::abs(ArmOf(track, p)));
   });
+  Estimate& radius = *contact.radius_angle_rad;
+  radius.u = std::hypot(radius.u, context.u_common_face_rad);
 }
 
 void FillMotion(const RecordContext& context, const Event& event,

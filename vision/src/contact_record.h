@@ -16,6 +16,7 @@ struct RecordContext {
   const ContactOptions& options;
   FlightOptions flight;
   const std::vector<Stretch>& stretches;
+  double u_common_face_rad = 0.0;  // of all poses together
 };
 
 core::ContactRecord RecordOf(const RecordContext& context, const Event& event,

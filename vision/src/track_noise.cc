@@ -39,8 +39,9 @@ double NoiseOf(std::vector<double>& d) {
   return *at / quantile / std::sqrt(20.0);
 }
 
-void Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
-           double PlaneSample::*u) {
+// Returns the excess.
+double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
+             double PlaneSample::*u) {
   std::vector<double> claims;
   claims.reserve(samples.size());
   for (const PlaneSample& s : samples) claims.push_back(s.*u);
@@ -55,16 +56,20 @@ void Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
     std::vector<double> d = ThirdDifferences(samples, value, lag);
     constexpr std::size_t kLeast = 5;
     if (d.size() < kLeast) break;
-    const double excess = NoiseOf(d) / claim;
+    const double ratio = NoiseOf(d) / claim;
     // An excess within the scatter's own uncertainty is none. Third differences
     // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
     // not 1.2/sqrt(n); 4/sqrt(n) lets one honest track in a hundred be widened.
     // Of longer lags fewer are apart from each other.
     const double many = static_cast<double>(d.size()) /
                         static_cast<double>(lag);
-    if (excess > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, excess);
+    if (ratio > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, ratio);
   }
-  for (PlaneSample& s : samples) s.*u *= factor;
+  const double excess = factor * factor - 1.0;
+  for (PlaneSample& s : samples) {
+    s.*u *= std::sqrt(1.0 + kExcessVariance * excess);
+  }
+  return claim * std::sqrt(excess);
 }
 
 // Sums over the flights of one coordinate's residuals, in units of its u.
@@ -83,7 +88,6 @@ double Residuals::Inflation() const {
     n += flight.size();
   }
   if (degrees < 1 || !(square > 0.0)) return 1.0;
-  const double scatter = std::max(1.0, square / degrees);
   // A correlation within its own uncertainty is none.
   const double noise = 2.0 / std::sqrt(static_cast<double>(n));
   double alike = 1.0;
@@ -102,7 +106,7 @@ double Residuals::Inflation() const {
     if (!any || rho < (lag == 1 ? noise : 0.0)) break;
     alike += 2.0 * rho;
   }
-  return std::sqrt(scatter * alike);
+  return std::sqrt(std::max(1.0, square / degrees * alike));
 }
 
 }  // namespace
@@ -144,15 +148,20 @@ void WidenToCorrelation(const std::vector<Stretch>& stretches,
   }
 }
 
-void WidenToScatter(PlaneTrack& track) {
+ExcessNoise WidenToScatter(PlaneTrack& track) {
+  ExcessNoise excess;
   constexpr std::size_t kLeast = 8;
-  if (track.samples.size() < kLeast) return;
-  Widen(track.samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
-  Widen(track.samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
+  auto& samples = track.samples;
+  if (samples.size() < kLeast) return excess;
+  Widen(samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
+  excess.height_px =
+      Widen(samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
   if (track.kind == core::BodyKind::kRectangle) {
-    Widen(track.samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
+    excess.face_rad =
+        Widen(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
   }
-  Widen(track.samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);
+  Widen(samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);
+  return excess;
 }
 
 }  // namespace touchdown::vision
