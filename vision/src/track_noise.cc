@@ -48,10 +48,12 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
   constexpr double kLeastClaim = 1e-9;
   const double claim = std::max(Median(std::move(claims)), kLeastClaim);
   double factor = 1.0;
-  // One impact may spoil a fifth of the differences.
+  // An impact spoils three differences for each frame of the lag: of four, and
+  // of a fifth of all, the median still tells.
   constexpr std::size_t kShare = 18;
+  constexpr std::size_t kLongest = 4;
   const std::size_t longest =
-      std::max<std::size_t>(1, samples.size() / kShare);
+      std::clamp<std::size_t>(samples.size() / kShare, 1, kLongest);
   for (std::size_t lag = 1; lag <= longest; lag *= 2) {
     std::vector<double> d = ThirdDifferences(samples, value, lag);
     constexpr std::size_t kLeast = 5;
