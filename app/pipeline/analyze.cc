@@ -118,7 +118,9 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   // rest. Mostly no other line is tried.
   given_back_ = std::async(Beside(), [clip = clip_.get()] { clip->HasRead(); });
   TakeSize(judged.track);
-  judged.plane = SeenInPlane(camera_, Seen(judged.track), ground);
+  judged.plane = SeenInPlane(
+      camera_, WithStatedSize(Seen(judged.track), options_, result_.scale),
+      ground);
   judged.contacts = ContactsIn(judged.plane, contact_options_);
   return judged;
 }
@@ -339,6 +341,11 @@ Analysis Analyzer::Run() {
     const std::vector<std::string> of_track = Seen(*result_.track).warnings;
     result_.warnings.insert(result_.warnings.end(), of_track.begin(),
                             of_track.end());
+    if (std::string conflict = DescribeSizeConflict(Seen(*result_.track).body,
+                                                    options_, result_.scale);
+        !conflict.empty()) {
+      result_.warnings.push_back(std::move(conflict));
+    }
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());

@@ -1,8 +1,110 @@
 #include "app/pipeline/body_size.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace touchdown::pipeline {
+namespace {
+
+// A size of the body, seen and as stated at the scale, px.
+struct SizePair {
+  const char* name;
+  core::Estimate* seen;  // half of it
+  core::Estimate stated;
+  double stated_m = 0.0;
+};
+
+std::vector<SizePair> SizePairs(vision::BodyImage& seen,
+                                const AnalyzeOptions& options,
+                                const std::optional<calib::Scale>& scale) {
+  std::vector<SizePair> pairs;
+  if (!scale || scale->source == calib::ScaleSource::kBodySize ||
+      seen.whole_px > 0.0) {
+    return pairs;
+  }
+  const auto add = [&](const char* name, core::Estimate& half,
+                       const core::Estimate& metres) {
+    const core::Estimate& s = scale->px_per_m;
+    pairs.push_back({name, &half,
+                     {0.5 * metres.value * s.value,
+                      0.5 * std::hypot(metres.u * s.value, metres.value * s.u),
+                      std::nullopt},
+                     metres.value});
+  };
+  if (seen.kind == core::BodyKind::kSphere) {
+    if (options.diameter_m) add("diameter", seen.radius_px, *options.diameter_m);
+  } else if (options.long_m && options.short_m) {
+    // A rectangle's sides are stated in any order.
+    const bool ordered = options.long_m->value >= options.short_m->value;
+    add("long side", seen.half_long_px,
+        ordered ? *options.long_m : *options.short_m);
+    add("short side", seen.half_short_px,
+        ordered ? *options.short_m : *options.long_m);
+  }
+  return pairs;
+}
+
+// What one cause would explain all of the differences.
+std::string ExplanationOf(const std::vector<SizePair>& pairs, double px_per_m) {
+  const SizePair& a = pairs.front();
+  const SizePair& b = pairs.back();
+  const auto ratio = [](const SizePair& p) {
+    return p.seen->value / p.stated.value;
+  };
+  const auto outside_px = [](const SizePair& p) {
+    return p.seen->value - p.stated.value;
+  };
+  const std::string scale =
+      fmt::format("a scale of {:.1f} px/m", px_per_m * ratio(a));
+  if (pairs.size() == 1) {
+    return fmt::format("{} or a {} of {:.3f} mm would explain it", scale,
+                       a.name, 1e3 * a.stated_m * ratio(a));
+  }
+  const double by_scale = std::abs(ratio(a) - ratio(b)) * b.stated.value;
+  const double by_outline = std::abs(outside_px(a) - outside_px(b));
+  constexpr double kSame_px = 0.1;
+  if (std::min(by_scale, by_outline) > kSame_px) {
+    return "neither a scale nor a common error of the outline explains both: "
+           "check the sides, or whether another body was followed";
+  }
+  if (by_scale <= by_outline) return scale + " would explain both";
+  return fmt::format(
+      "outlines {:.2f} px too far {} would explain both, as a camera's gamma "
+      "or too much light makes them",
+      std::abs(outside_px(a)), outside_px(a) > 0.0 ? "out" : "in");
+}
+
+}  // namespace
+
+vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options,
+                             const std::optional<calib::Scale>& scale) {
+  for (const SizePair& pair : SizePairs(seen.body, options, scale)) {
+    *pair.seen = core::Combined(*pair.seen, pair.stated);
+  }
+  return seen;
+}
+
+std::string DescribeSizeConflict(const vision::BodyImage& seen,
+                                 const AnalyzeOptions& options,
+                                 const std::optional<calib::Scale>& scale) {
+  constexpr double kConflict = 4.0;  // u
+  vision::BodyImage body = seen;
+  const std::vector<SizePair> pairs = SizePairs(body, options, scale);
+  std::string text;
+  for (const SizePair& pair : pairs) {
+    const double off = core::Disagreement(*pair.seen, pair.stated);
+    if (off <= kConflict) continue;
+    text += fmt::format(
+        "{}{}: {:.2f} +- {:.2f} px are seen, {:.2f} +- {:.2f} px stated",
+        text.empty() ? "" : ", ", pair.name, 2.0 * pair.seen->value,
+        2.0 * pair.seen->u, 2.0 * pair.stated.value, 2.0 * pair.stated.u);
+  }
+  if (text.empty()) return text;
+  return text + "; " + ExplanationOf(pairs, scale->px_per_m.value);
+}
 
 core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
   const double value = a.value / b.value;

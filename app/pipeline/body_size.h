@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "app/pipeline/analyze.h"
 #include "touchdown/calib/plane.h"
@@ -14,6 +15,18 @@ namespace touchdown::pipeline {
 
 // a / b, with u of both to first order.
 core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b);
+
+// What is stated is a measurement, too: the track with the size that image and
+// statement tell together (core::Combined), where a scale that does not come of
+// the body itself makes them comparable. `seen`: in the ideal picture.
+vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options,
+                             const std::optional<calib::Scale>& scale);
+
+// Where image and statement differ by more than 4 of their u: both, and what
+// would explain it. Empty where they agree or cannot be compared.
+std::string DescribeSizeConflict(const vision::BodyImage& seen,
+                                 const AnalyzeOptions& options,
+                                 const std::optional<calib::Scale>& scale);
 
 // Pixels per metre: given, calibrated, or from the body's known size; nothing
 // where none of them is there. `image`: of the body in the ideal picture.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/pipeline/body_size.h"
 #include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/shared_uncertainty.h"
@@ -127,8 +128,10 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
         std::optional<vision::PlaneYaw> yaw;
         if (camera.yaw_rad) yaw = YawThrough(camera.yaw_rad->value, lens);
         return ContactsIn(
-            vision::SeenFromGround(vision::Undistorted(*analysis.track, lens),
-                                   *ground, yaw),
+            vision::SeenFromGround(
+                WithStatedSize(vision::Undistorted(*analysis.track, lens),
+                               analysis.options, analysis.scale),
+                *ground, yaw),
             contact_options);
       });
 }
@@ -139,7 +142,9 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
       !analysis.contacts.first.contact.found) {
     return;
   }
-  const vision::Track seen = SeenThrough(camera, *analysis.track);
+  const vision::Track seen =
+      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options,
+                     analysis.scale);
   std::vector<MovedContacts> moved;
   // On the axis the change is of second order: both sides count.
   for (const double side : {-1.0, 1.0}) {
@@ -226,8 +231,11 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
   }
   const vision::ContactOptions contact_options =
       ContactOptionsOf(analysis.options, camera, analysis.scale);
-  analysis.plane = SeenInPlane(camera, SeenThrough(camera, *analysis.track),
-                               *analysis.ground);
+  analysis.plane = SeenInPlane(
+      camera,
+      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options,
+                     analysis.scale),
+      *analysis.ground);
   analysis.contacts = ContactsIn(*analysis.plane, contact_options);
   AddLens(analysis, camera, contact_options);
   AddYaw(analysis, camera, contact_options);

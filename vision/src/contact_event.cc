@@ -237,13 +237,7 @@ bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
   down.end = std::min(down.end, down.begin + kNear);
   if (const auto level = LevelOf(SamplesIn(track, down))) {
     event.disagreement = level->value / std::hypot(ground.u, level->u);
-    const double w0 = 1.0 / (ground.u * ground.u);
-    const double w1 = 1.0 / (level->u * level->u);
-    // Where they differ by more than their u, both are less well known than
-    // they claim (Birge, Phys. Rev. 40, 1932, 207).
-    const double birge = std::max(1.0, std::abs(event.disagreement));
-    ground = {level->value * w1 / (w0 + w1), birge / std::sqrt(w0 + w1),
-              std::nullopt};
+    ground = core::Combined(ground, *level);
     input.ground_px = ground;
     input.reference_along_px = samples[down.begin].along_px;
   }

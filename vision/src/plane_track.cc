@@ -93,7 +93,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   plane.half_short_px =
       sphere ? track.body.radius_px.value : track.body.half_short_px.value;
   plane.u_half_px =
-      sphere ? track.body.radius_px.u : track.body.half_short_px.u;
+      sphere ? track.body.radius_px.u
+             : std::fmax(track.body.half_long_px.u, track.body.half_short_px.u);
   plane.size_px = std::fmax(2.0 * plane.half_long_px, track.body.whole_px);
   plane.frame_interval_s = track.frame_interval_s;
   plane.last_frame = track.last_frame;

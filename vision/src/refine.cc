@@ -15,14 +15,6 @@ namespace {
 using NearGround = OutlineOptions::NearGround;
 using Surround = OutlineOptions::Surround;
 
-// a and b of one thing, each with its uncertainty, as one.
-core::Estimate Combined(const core::Estimate& a, const core::Estimate& b) {
-  const double wa = 1.0 / std::max(a.u * a.u, 1e-18);
-  const double wb = 1.0 / std::max(b.u * b.u, 1e-18);
-  return {(a.value * wa + b.value * wb) / (wa + wb), 1.0 / std::sqrt(wa + wb),
-          std::nullopt};
-}
-
 Motion Between(const Pose& a, const Pose& b) {
   const double frames = static_cast<double>(b.frame - a.frame);
   return {(b.centre.x_px - a.centre.x_px) / frames,
@@ -198,7 +190,7 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
       track.body.whole_px == 0.0) {
     const core::Estimate& a = refined.body.half_long_px;
     const core::Estimate& ratio = *refine.aspect;
-    refined.body.half_short_px = Combined(
+    refined.body.half_short_px = core::Combined(
         refined.body.half_short_px,
         {a.value * ratio.value,
          std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});

@@ -49,6 +49,29 @@ inline Estimate Scaled(const Estimate& e, double factor) {
   return out;
 }
 
+// Two measurements of one quantity as one: their mean, weighted by 1/u^2. Where
+// they differ by more than their u, both get the same further variance,
+//   tau^2 = ((a - b)^2 - u_a^2 - u_b^2) / 2,
+// that makes them agree (Mandel and Paule, Anal. Chem. 42, 1970, 1194): the
+// better claim no longer wins, and u covers either.
+inline Estimate Combined(const Estimate& a, const Estimate& b) {
+  constexpr double kLeast = 1e-18;  // of u^2: a convention has none
+  const double aa = std::fmax(a.u * a.u, kLeast);
+  const double bb = std::fmax(b.u * b.u, kLeast);
+  const double d = a.value - b.value;
+  const double more = std::fmax(0.0, 0.5 * (d * d - aa - bb));
+  const double wa = 1.0 / (aa + more);
+  const double wb = 1.0 / (bb + more);
+  return {(a.value * wa + b.value * wb) / (wa + wb), 1.0 / std::sqrt(wa + wb),
+          std::nullopt};
+}
+
+// The difference of two measurements of one quantity in its own u.
+inline double Disagreement(const Estimate& a, const Estimate& b) {
+  const double u = std::hypot(a.u, b.u);
+  return u > 0.0 ? std::abs(a.value - b.value) / u : 0.0;
+}
+
 // Every measured number is present with its uncertainty or absent with a
 // reason; a number that was not measured is never 0.
 using Measured = Expected<Estimate>;
