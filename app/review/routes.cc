@@ -247,8 +247,9 @@ Reply Post(Desk& desk, const Request& request) {
     return JsonReply(LoggedJson(LogRecording(desk.store(), asked)));
   }
   if (path == "/api/report") {
-    return JsonReply({{"trials", BuildReport(desk.store(), desk.reports())},
-                      {"folder", desk.reports().string()}});
+    return JsonReply(
+        {{"trials", BuildReport(desk.store(), desk.reports(), desk.reach_of())},
+         {"folder", desk.reports().string()}});
   }
   throw NotThere(path);
 }
