@@ -101,13 +101,23 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
   // that can be thrown: Clipped() sees to that.
   double best = mean;
   double best_variance = std::numeric_limits<double>::infinity();
+  // The same without the rig's limits, which tells whether they matter.
+  double wanted = mean;
+  double wanted_variance = best_variance;
   const auto last = std::llround(std::floor((mean + reach) / step));
   for (auto i = std::llround(std::ceil((mean - reach) / step)); i <= last;
        ++i) {
     const double c = static_cast<double>(i) * step;
-    if (c < options.feasible_rad.low || c > options.feasible_rad.high) continue;
+    const bool feasible =
+        c >= options.feasible_rad.low && c <= options.feasible_rad.high;
+    if (!feasible && (c < 0.0 || c > std::numbers::pi / 2)) continue;
     const double expected =
         ExpectedVariance(design.grid, c, inverse_scatter, mean, variance);
+    if (expected < wanted_variance * (1.0 - 1e-12)) {
+      wanted_variance = expected;
+      wanted = c;
+    }
+    if (!feasible) continue;
     // A tie, to rounding, stays with the lower angle.
     if (expected < best_variance * (1.0 - 1e-12)) {
       best_variance = expected;
@@ -116,6 +126,9 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
   }
   NextAngle out = Clipped(best + Spread(trials_so_far, options.spread_rad),
                           options.feasible_rad);
+  // Not because of the spread alone.
+  out.clipped =
+      wanted < options.feasible_rad.low || wanted > options.feasible_rad.high;
   out.expected_sd_rad = ExpectedSd(posterior, out.angle_rad, options);
   out.half_width_rad = HalfWidth(posterior);
   if (out.half_width_rad <= options.target_half_width_rad) {

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "touchdown/core/units.h"
+
 namespace touchdown::analysis {
 namespace {
 
@@ -33,6 +35,31 @@ double DecidedProbability(const core::StateDecision& state, bool bounced) {
   const bool same =
       bounced ? p >= kDecidedProbability : p <= 1.0 - kDecidedProbability;
   return same ? std::clamp(p, 0.0, 1.0) : bounced ? 1.0 : 0.0;
+}
+
+// What an undecided trial says of the boundary. A label corrected by hand, or a
+// film that ends before the top of the rebound, may stand beside a probability
+// that decides; the label counts, and then the trial says nothing.
+std::optional<double> UndecidedProbability(const core::StateDecision& state) {
+  if (!state.p_bounce) return std::nullopt;
+  const double p = std::clamp(*state.p_bounce, 0.0, 1.0);
+  if (OutcomeOf(p) != Outcome::kUndecided) return std::nullopt;
+  return p;
+}
+
+// Why an undecided trial has no P(bounce), with what its flight would reach:
+// that height presumes an undisturbed flight, for which the statistics have no
+// model, so that it is told and not used.
+std::string WhyNoProbability(const core::StateDecision& state) {
+  std::string why = "undecided, without a P(bounce)";
+  if (!state.reason.empty()) why += ": " + state.reason;
+  if (state.extrapolated_gap_m) {
+    constexpr double kMm = 1.0 / core::kMillimetre;
+    why += fmt::format("; the flight would reach {:.3g} +- {:.2g} mm",
+                       state.extrapolated_gap_m->value * kMm,
+                       state.extrapolated_gap_m->u * kMm);
+  }
+  return why;
 }
 
 // Nothing where the trial cannot enter; then `why` says why.
@@ -67,7 +94,12 @@ std::optional<Observation> ObserveTrial(const core::Trial& trial,
     out.outcome = Outcome::kNotBounce;
     out.p_bounce = DecidedProbability(state, false);
   } else {
-    out.p_bounce = std::clamp(state.p_bounce.value_or(0.5), 0.0, 1.0);
+    const auto p_bounce = UndecidedProbability(state);
+    if (!p_bounce) {
+      why = WhyNoProbability(state);
+      return std::nullopt;
+    }
+    out.p_bounce = *p_bounce;
   }
   return out;
 }

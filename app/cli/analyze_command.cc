@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,21 @@ struct Flags {
   bool no_digest = false;
   bool json = false;
 };
+
+// The document, with what became of it in the store.
+std::string DocumentOf(const pipeline::Analysis& analysis,
+                       const std::optional<pipeline::Logged>& logged,
+                       const Flags& flags) {
+  const std::string document = pipeline::ToJson(analysis);
+  if (!logged) return document;
+  using nlohmann::ordered_json;
+  ordered_json json = ordered_json::parse(document);
+  json["logged"] = {{"trial", logged->trial_id},
+                    {"revision", logged->revision},
+                    {"is_proposal", logged->is_proposal},
+                    {"store", flags.db}};
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
 
 int Run(const Flags& flags) {
   KeepMemory();
@@ -60,12 +76,18 @@ int Run(const Flags& flags) {
         pipeline::LogAnalysis(analysis, flags.db, flags.campaign, conditions);
   }
   if (flags.json) {
-    fmt::print("{}\n", pipeline::ToJson(analysis));
+    fmt::print("{}\n", DocumentOf(analysis, logged, flags));
   } else {
     fmt::print("{}", pipeline::ToText(analysis));
     if (logged) {
       fmt::print("logged     trial {} revision {} in {}\n", logged->trial_id,
                  logged->revision, flags.db);
+      if (logged->is_proposal) {
+        fmt::print(
+            "proposed   a person's correction stays in force; `touchdown show "
+            "{} --db {}` says what differs and how to accept this analysis\n",
+            logged->trial_id.substr(0, 8), flags.db);
+      }
     }
   }
   return 0;

@@ -40,6 +40,7 @@ Answer MakeAnswer(const BoundaryFlags& flags) {
   out.input.trials.clear();
   report::SortTrials(out.trials);
   out.groups = report::MakeGroups(out.input, out.trials);
+  RefuseCheckShots(flags, out.input);
   if (out.groups.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: no trial matches; give other filters or log trials first",
@@ -61,11 +62,17 @@ void PrintGroup(const report::Group& group) {
   fmt::print("  trials      {} slide, {} bounce, {} undecided, {} left out\n",
              study.counts.not_bounce, study.counts.bounce,
              study.counts.undecided, group.trials.left_out.size());
+  PrintLeftOut(group, "  left out    ");
   fmt::print("  alone       {}\n", report::BracketSentence(study.bracket));
   fmt::print("  boundary    {} deg, 95 % {} to {} deg, 90 % {} to {} deg\n",
              Degrees(p.median_rad), Degrees(p.interval95_rad.low),
              Degrees(p.interval95_rad.high), Degrees(p.interval90_rad.low),
              Degrees(p.interval90_rad.high));
+  fmt::print(
+      "  scatter     {} deg, 95 % {} to {} deg (sd of the estimate {} "
+      "deg)\n",
+      Degrees(p.scatter_median_rad), Degrees(p.scatter95_rad.low),
+      Degrees(p.scatter95_rad.high), Degrees(p.sd_rad));
   for (const auto& line : p.sensitivity) {
     fmt::print(
         "              {} deg, 95 % {} to {} deg if the scatter is about "
@@ -93,6 +100,7 @@ void PrintGroup(const report::Group& group) {
              report::VerdictSentence(group));
   const std::string outlook = report::OutlookSentence(group);
   if (!outlook.empty()) fmt::print("              {}\n", outlook);
+  fmt::print("  next angle  {}\n", report::NextSentence(group));
 }
 
 int RunBoundary(const BoundaryFlags& flags) {
@@ -154,7 +162,12 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
                document.dump(2, ' ', false,
                              nlohmann::ordered_json::error_handler_t::replace));
   } else {
-    fmt::print("{} trial{}: {}\n", n, n == 1 ? "" : "s", page);
+    fmt::print("{} trial{}: {}", n, n == 1 ? "" : "s", page);
+    if (flags.evidence) {
+      fmt::print("; {} pages of evidence, {} with a picture", n,
+                 input.pictures.size());
+    }
+    fmt::print("\n");
   }
   return 0;
 }
@@ -181,8 +194,6 @@ void AddReport(CLI::App& app, Action& action) {
   command->add_option("--bin-deg", flags->bin_deg,
                       "width of the bins of the angle in Table 1 (default: one "
                       "row an angle, bins where there are many)");
-  command->add_option("--rig", flags->rig,
-                      "rig.toml: its predictions beside the measurements");
   CLI::Option* evidence =
       command
           ->add_option("--evidence", flags->evidence_pictures,

@@ -3,12 +3,15 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 
+#include "app/cli/store_text.h"
 #include "app/pipeline/report_input.h"
+#include "app/pipeline/thrower.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -80,6 +83,37 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
   return range;
 }
 
+std::optional<core::Corner> CornerOf(const BoundaryFlags& flags) {
+  return Word("--corner", flags.corner, core::ParseCorner,
+              "leading, trailing or flush");
+}
+
+void RefuseCheckShots(const BoundaryFlags& flags,
+                      const report::ReportInput& input) {
+  for (const core::Campaign& campaign : input.campaigns) {
+    if (campaign.name == flags.campaign && core::HasCheckShots(campaign)) {
+      throw std::invalid_argument(fmt::format(
+          "--campaign: '{}' is of check shots, which have no boundary and no "
+          "next angle; `touchdown report` draws their control chart",
+          campaign.name));
+    }
+  }
+}
+
+void PrintLeftOut(const report::Group& group, std::string_view heading) {
+  constexpr std::size_t kShown = 5;
+  const std::size_t shown = std::min(group.left_out.size(), kShown);
+  for (std::size_t i = 0; i < shown; ++i) {
+    fmt::print("{:<{}}{}: {}\n", i == 0 ? heading : "", heading.size(),
+               Printable(group.left_out[i].name),
+               Printable(group.left_out[i].reason));
+  }
+  if (group.left_out.size() > shown) {
+    fmt::print("{:<{}}and {} more (--json lists them)\n", "", heading.size(),
+               group.left_out.size() - shown);
+  }
+}
+
 pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
   pipeline::SelectionOptions out;
   out.store = flags.store;
@@ -120,9 +154,6 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   out.next.target_half_width_rad = flags.target_deg * kDegree;
   out.next.set_u_rad = flags.set_u_deg * kDegree;
   out.next.max_trials = flags.max_trials;
-  if (!flags.feasible.empty()) {
-    out.next.feasible_rad = ParseRange("--feasible-deg", flags.feasible);
-  }
   return out;
 }
 
@@ -132,6 +163,15 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   report::ReportInput input =
       pipeline::InputOf(pipeline::SelectTrials(options));
   input.study = MakeStudy(flags);
+  if (!flags.feasible.empty()) {  // as the user says, whatever the rig can do
+    const core::Interval asked = ParseRange("--feasible-deg", flags.feasible);
+    input.reach_of = [asked](const core::Campaign&) {
+      return report::Reach{asked, "as --feasible-deg says"};
+    };
+  } else if (!flags.rig.empty()) {
+    input.reach_of =
+        pipeline::ReachOfRig(flags.rig, flags.speed_mps, CornerOf(flags));
+  }
   // A file of bare angles is compared with the published boundary of the body
   // that it is said to be of.
   if (!flags.csv.empty() && flags.body.empty()) input.theories.clear();
@@ -188,6 +228,15 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
       ->capture_default_str();
   command.add_option("--max-trials", flags.max_trials, "stop there")
       ->capture_default_str();
+  command.add_option("--rig", flags.rig,
+                     "rig.toml: the next angle stays within its reach; `next` "
+                     "prints its set-points, `report` its predictions");
+  command.add_option("--speed-mps", flags.speed_mps,
+                     "with --rig: speed at touchdown (default: the middle of "
+                     "the campaign's band)");
+  command.add_option("--corner", flags.corner,
+                     "with --rig: corner that lands first, leading, trailing "
+                     "or flush");
   command.add_flag("--json", flags.json, "one JSON document");
 }
 

@@ -1,9 +1,12 @@
 // The flags that boundary, next and report share.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "app/pipeline/trial_selection.h"
+#include "app/report/group.h"
 #include "app/report/report.h"
 #include "touchdown/analysis/boundary_study.h"
 #include "touchdown/core/estimate.h"
@@ -54,6 +57,18 @@ struct BoundaryFlags {
 // Adds the flags of the source of trials, its filters, theory and stopping
 // rule.
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags);
+
+// The corner that lands first. Throws std::invalid_argument naming the flag.
+std::optional<core::Corner> CornerOf(const BoundaryFlags& flags);
+
+// Check shots have no boundary and no next angle. Throws std::invalid_argument
+// where `--campaign` names theirs.
+void RefuseCheckShots(const BoundaryFlags& flags,
+                      const report::ReportInput& input);
+
+// A line for each trial that the statistics leave out, `heading` before the
+// first and as much space before the others; the first few, and how many more.
+void PrintLeftOut(const report::Group& group, std::string_view heading);
 
 // What the flags ask for. Throw std::invalid_argument naming the flag.
 pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags);

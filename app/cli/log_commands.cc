@@ -91,19 +91,24 @@ struct CorrectFlags {
   std::string why;
   bool exclude = false;
   bool include = false;
+  std::int64_t accept = 0;  // revision; 0: none
   bool json = false;
 };
 
 int Correct(const CorrectFlags& flags) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   const core::Trial seen = RequireTrial(store, flags.id);
-  core::Trial corrected = seen;
-  pipeline::Apply(StatementOf(flags.statement, seen.conditions), corrected);
+  core::Trial corrected =
+      flags.accept == 0 ? seen
+                        : pipeline::Restated("accept", store.History(seen.id),
+                                             seen, flags.accept);
+  pipeline::Apply(StatementOf(flags.statement, corrected.conditions),
+                  corrected);
   const bool changed = !db::Changes(seen, corrected).empty();
   if (!changed && !flags.exclude && !flags.include) {
     throw std::invalid_argument(
-        "nothing would change; give what is to be corrected, --exclude or "
-        "--include");
+        "nothing would change; give what is to be corrected, --accept, "
+        "--exclude or --include");
   }
   if (changed && (flags.exclude || flags.include)) {
     throw std::invalid_argument(
@@ -145,6 +150,9 @@ void AddCorrect(CLI::App& app, Action& action) {
       ->required();
   AddDbFlag(*command, flags->db);
   AddStatementFlags(*command, flags->statement);
+  command->add_option("--accept", flags->accept,
+                      "state again what this revision states, such as an "
+                      "analysis that was proposed");
   command->add_option("--by", flags->by, "who corrects")->required();
   command->add_option("--why", flags->why, "the reason")->required();
   CLI::Option* exclude = command->add_flag("--exclude", flags->exclude,

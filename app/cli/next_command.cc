@@ -13,6 +13,7 @@
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/rig_print.h"
+#include "app/pipeline/thrower.h"
 #include "app/report/boundary_json.h"
 #include "app/report/format.h"
 #include "app/report/group.h"
@@ -89,37 +90,14 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
   return next;
 }
 
-session::Thrower MakeThrower(const BoundaryFlags& flags,
-                             const report::Group& group) {
-  std::optional<core::Corner> corner;
-  if (!flags.corner.empty()) {
-    corner = core::ParseCorner(flags.corner);
-    if (!corner) {
-      throw std::invalid_argument(fmt::format(
-          "--corner: '{}'; expected leading, trailing or flush", flags.corner));
-    }
-  }
-  return session::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
-                              corner);
-}
-
-// The study once more, with the angles that the rig can throw.
-void KeepFeasible(const BoundaryFlags& flags, const session::Thrower& thrower,
-                  report::Group& group, analysis::NextAngleOptions& options) {
-  if (!flags.feasible.empty()) return;  // as the user says
-  options.feasible_rad = session::RequireReach(thrower);
-  group.study.next = analysis::ChooseNextAngle(
-      group.study.posterior, group.study.counts.total(), options);
-}
-
-nlohmann::ordered_json PlanJson(const session::Thrower& thrower,
+nlohmann::ordered_json PlanJson(const pipeline::Thrower& thrower,
                                 const core::Expected<rig::SetPoint>& point) {
   nlohmann::ordered_json out = session::SetPointsJson(thrower, point);
   if (point) out["contact"] = Json(point->contact);
   return out;
 }
 
-void PrintSetPoints(const session::Thrower& thrower,
+void PrintSetPoints(const pipeline::Thrower& thrower,
                     const core::Expected<rig::SetPoint>& point) {
   fmt::print("set-points        {}\n", session::SetPointsText(thrower, point));
   if (!point) return;
@@ -147,6 +125,7 @@ core::Campaign EmptyCampaign(const BoundaryFlags& flags,
 
 int RunNext(const BoundaryFlags& flags) {
   report::ReportInput input = MakeInput(flags);
+  RefuseCheckShots(flags, input);
   const std::vector<core::Trial> as_given = std::move(input.trials);
   std::vector<core::Trial> sorted = as_given;
   report::SortTrials(sorted);
@@ -163,16 +142,17 @@ int RunNext(const BoundaryFlags& flags) {
         groups.size(), names));
   }
   if (groups.empty()) {
-    groups.push_back(
-        session::EmptyGroup(EmptyCampaign(flags, input), input.study));
+    groups.push_back(report::EmptyGroup(input, EmptyCampaign(flags, input)));
   }
   report::Group& group = groups.front();
-  analysis::NextAngleOptions options = MakeStudy(flags).next;
-  std::optional<session::Thrower> thrower;
+  std::optional<pipeline::Thrower> thrower;
   if (!flags.rig.empty()) {
-    thrower = MakeThrower(flags, group);
-    KeepFeasible(flags, *thrower, group, options);
+    thrower = pipeline::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
+                                    CornerOf(flags));
+    if (!group.reach) throw std::invalid_argument(group.reach.error().reason);
   }
+  analysis::NextAngleOptions options = input.study.next;
+  if (group.reach) options.feasible_rad = group.reach->angle_rad;
   group.study.next = ApplyRule(flags, options, as_given, group);
   const analysis::NextAngle& next = group.study.next;
   if (flags.json) {
@@ -182,6 +162,8 @@ int RunNext(const BoundaryFlags& flags) {
       document[field] = document["next"][field];
     }
     document["rule"] = flags.rule;
+    document["target_deg"] = flags.target_deg;
+    document["max_trials"] = flags.max_trials;
     if (thrower) {
       document["set_points"] =
           PlanJson(*thrower, session::PlanNext(*thrower, next.angle_rad));
@@ -191,12 +173,13 @@ int RunNext(const BoundaryFlags& flags) {
                              nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
-  fmt::print("next angle        {} deg{}\n", Degrees(next.angle_rad),
-             next.clipped ? " (the end of what is feasible)" : "");
+  fmt::print("next angle        {}\n", report::NextSentence(group));
+  fmt::print("rule              {}\n", flags.rule);
   if (thrower) {
     PrintSetPoints(*thrower, session::PlanNext(*thrower, next.angle_rad));
   }
   fmt::print("boundary now      {}\n", report::BoundarySentence(group.study));
+  PrintLeftOut(group, "left out          ");
   fmt::print("sd after it       {} deg expected, {} deg now\n",
              Degrees(next.expected_sd_rad),
              Degrees(group.study.posterior.sd_rad));
@@ -242,14 +225,6 @@ void AddNext(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--step-deg", flags->step_deg, "up-down: step")
       ->capture_default_str();
-  command->add_option("--rig", flags->rig,
-                      "rig.toml: print its set-points, stay within its reach");
-  command->add_option("--speed-mps", flags->speed_mps,
-                      "with --rig: speed at touchdown (default: the middle of "
-                      "the campaign's band)");
-  command->add_option("--corner", flags->corner,
-                      "with --rig: corner that lands first, leading, trailing "
-                      "or flush");
   command->callback(
       [flags, &action] { action = [flags] { return RunNext(*flags); }; });
 }

@@ -12,12 +12,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
+#include "app/pipeline/thrower.h"
 #include "app/review/server.h"
 
 namespace touchdown::cli {
@@ -31,6 +33,9 @@ struct ReviewFlags {
   int port = 0;
   bool no_open = false;
   std::string reports;
+  std::string rig;
+  double speed_mps = 0.0;
+  std::string corner;
 };
 
 // Shows the page in the user's browser where there is a desktop. Whether that
@@ -69,6 +74,15 @@ int Run(const ReviewFlags& flags) {
       flags.reports.empty()
           ? std::filesystem::absolute(flags.db).parent_path() / "report"
           : std::filesystem::path(flags.reports);
+  if (!flags.rig.empty()) {
+    std::optional<core::Corner> corner;
+    if (!flags.corner.empty()) {
+      corner =
+          ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
+                                  "leading, trailing or flush");
+    }
+    options.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps, corner);
+  }
   // The server's threads leave these signals to the one that waits for them.
   sigset_t signals;
   sigemptyset(&signals);
@@ -111,6 +125,14 @@ void AddReview(CLI::App& app, Action& action) {
   command->add_option("--reports", flags->reports,
                       "folder for reports built on the page (default: "
                       "`report` beside the store)");
+  command->add_option("--rig", flags->rig,
+                      "rig.toml: the next angle stays within its reach");
+  command->add_option("--speed-mps", flags->speed_mps,
+                      "with --rig: speed at touchdown (default: the middle of "
+                      "the campaign's band)");
+  command->add_option("--corner", flags->corner,
+                      "with --rig: corner that lands first, leading, trailing "
+                      "or flush");
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });
 }

@@ -183,8 +183,8 @@ int Run(const Flags& flags) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   const core::Campaign campaign =
       pipeline::RequireCampaign(store, flags.campaign);
-  session::Thrower thrower =
-      session::MakeThrower(flags.rig, campaign, flags.speed_mps, corner);
+  pipeline::Thrower thrower =
+      pipeline::MakeThrower(flags.rig, campaign, flags.speed_mps, corner);
   if (!flags.no_check) options.check = CheckOf(flags, campaign, thrower.rig);
   const session::SessionLock lock(flags.db);
   const auto before = session::ReadSession(flags.db);

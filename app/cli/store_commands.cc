@@ -11,6 +11,7 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/statement.h"
+#include "app/pipeline/triage.h"
 #include "app/report/trial_json.h"
 #include "app/report/trial_list.h"
 #include "touchdown/core/units.h"
@@ -224,6 +225,19 @@ std::string ShowText(const core::Trial& trial) {
   return text + Aligned(rows);
 }
 
+// An analysis that waits for a person.
+std::string ProposalText(const core::Trial& trial,
+                         const core::Trial& proposal) {
+  std::string text =
+      fmt::format("proposal\n  {}\n",
+                  Printable(pipeline::ProposalSentence(trial, proposal)));
+  for (const auto& change : db::Changes(trial, proposal)) {
+    text += fmt::format("       {}: {} -> {}\n", change.field,
+                        Printable(change.from), Printable(change.to));
+  }
+  return text;
+}
+
 std::string HistoryText(const std::vector<db::Revision>& history) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < history.size(); ++i) {
@@ -234,7 +248,8 @@ std::string HistoryText(const std::vector<db::Revision>& history) {
         trial.reason.empty() ? "" : ": ", Printable(trial.reason));
     if (i == 0) continue;
     for (const auto& change :
-         db::Changes(history[i - 1].trial, history[i].trial)) {
+         db::Changes(db::RevisionInForce({history.data(), i}).trial,
+                     history[i].trial)) {
       text += fmt::format("       {}: {} -> {}\n", change.field,
                           Printable(change.from), Printable(change.to));
     }
@@ -302,6 +317,9 @@ void AddShow(CLI::App& app, Action& action) {
         return 0;
       }
       fmt::print("{}", ShowText(trial));
+      if (const db::Revision* proposal = db::OpenProposal(history)) {
+        fmt::print("{}", ProposalText(trial, proposal->trial));
+      }
       if (flags->history) fmt::print("{}", HistoryText(history));
       return 0;
     };

@@ -22,8 +22,51 @@ std::string Number(const core::Measured& m, double factor, const char* unit) {
                      unit);
 }
 
+// A number that has no uncertainty of its own.
+std::string Convention(const core::Measured& m, double factor,
+                       const char* unit) {
+  return m ? fmt::format("{:.3g} {}", m->value * factor, unit)
+           : "absent: " + m.error().reason;
+}
+
 void Line(std::string& out, const char* name, const std::string& text) {
   out += fmt::format("{:<10} {}\n", name, text);
+}
+
+void AddGaps(std::string& out, const core::StateDecision& state) {
+  constexpr double kMm = 1.0 / core::kMillimetre;
+  Line(out, "gap",
+       fmt::format("greatest {}, bounce height {}, detectable from {}",
+                   Number(state.max_gap_m, kMm, "mm"),
+                   Convention(state.bounce_height_m, kMm, "mm"),
+                   Convention(state.detectable_gap_m, kMm, "mm")));
+  if (state.extrapolated_gap_m) {
+    Line(out, "flight",
+         fmt::format("would reach {} after the end of the film",
+                     Number(state.extrapolated_gap_m, kMm, "mm")));
+  }
+}
+
+void AddMotion(std::string& out, const core::Motion& motion) {
+  Line(out, "speed", Number(motion.before_speed_mps, 1.0, "m/s"));
+  const auto parts = [](const core::Measured& normal,
+                        const core::Measured& tangential,
+                        const core::Measured& omega) {
+    return fmt::format(
+        "normal {}, along the ground {}, spin {}", Number(normal, 1.0, "m/s"),
+        Number(tangential, 1.0, "m/s"), Number(omega, 1.0, "rad/s"));
+  };
+  Line(out, "before",
+       parts(motion.before_normal_mps, motion.before_tangential_mps,
+             motion.before_omega_rad_per_s));
+  Line(out, "after",
+       parts(motion.after_normal_mps, motion.after_tangential_mps,
+             motion.after_omega_rad_per_s));
+  Line(out, "restitut.", Number(motion.restitution, 1.0, ""));
+  Line(out, "centre",
+       Number(motion.centre_rebound_ratio, 1.0, "") + " (rebound ratio)");
+  Line(out, "impulses", Number(motion.impulse_ratio, 1.0, "") + " (ratio)");
+  Line(out, "gravity", Number(motion.gravity_check_mps2, 1.0, "m/s2"));
 }
 
 }  // namespace
@@ -53,6 +96,10 @@ std::string ToText(const Analysis& a) {
   } else {
     Line(out, "body", "none: " + a.no_body_reason);
   }
+  Line(out, "scale",
+       a.scale ? fmt::format("{} ({})", Number(a.scale->px_per_m, 1.0, "px/m"),
+                             calib::Name(a.scale->source))
+               : "none: " + a.no_scale_reason);
   if (a.ground) {
     Line(out, "ground",
          fmt::format(
@@ -60,6 +107,8 @@ std::string ToText(const Analysis& a) {
              a.ground->p1.x_px, a.ground->p1.y_px, a.ground->p2.x_px,
              a.ground->p2.y_px, a.ground->u_angle_rad * kDeg,
              calib::Name(a.ground->source)));
+  } else {
+    Line(out, "ground", "none: " + a.no_ground_reason);
   }
   if (!contact.found) {
     Line(out, "contact", "none: " + contact.reason);
@@ -78,10 +127,18 @@ std::string ToText(const Analysis& a) {
     Line(out, "angle",
          Number(angle, kDeg, "deg") +
              fmt::format(" ({} angle)", core::Name(a.angle_kind)));
+    // The other kinds, where the body has them.
     if (a.angle_kind != core::AngleKind::kApproach) {
       Line(out, "approach", Number(contact.approach_angle_rad, kDeg, "deg"));
     }
+    if (a.angle_kind != core::AngleKind::kRadius && contact.radius_angle_rad) {
+      Line(out, "radius", Number(contact.radius_angle_rad, kDeg, "deg"));
+    }
+    if (a.angle_kind != core::AngleKind::kFace && contact.face_angle_rad) {
+      Line(out, "face", Number(contact.face_angle_rad, kDeg, "deg"));
+    }
     if (contact.corner) Line(out, "corner", std::string(Name(*contact.corner)));
+    Line(out, "duration", Number(contact.duration_s, 1e3, "ms"));
   }
   std::string state(core::Name(first.state.label));
   if (first.state.p_bounce) {
@@ -90,18 +147,20 @@ std::string ToText(const Analysis& a) {
   if (first.state.micro_bounce) state += ", micro-bounce";
   Line(out, "state", state);
   Line(out, "", first.state.reason);
-  if (first.state.extrapolated_gap_m) {
-    Line(out, "would reach",
-         Number(first.state.extrapolated_gap_m, kMm, "mm"));
-  }
+  AddGaps(out, first.state);
   if (contact.found && !contact.from_start) {
-    Line(out, "speed", Number(first.motion.before_speed_mps, 1.0, "m/s"));
-    Line(out, "restitut.", Number(first.motion.restitution, 1.0, ""));
-    Line(out, "gravity", Number(first.motion.gravity_check_mps2, 1.0, "m/s2"));
+    AddMotion(out, first.motion);
   }
-  if (!a.contacts.later.empty()) {
+  for (const core::ContactRecord& later : a.contacts.later) {
+    core::Measured angle = Angle(later.contact, a.angle_kind);
+    if (angle && a.angle_kind == core::AngleKind::kFace) {
+      angle->value = std::abs(angle->value);
+    }
     Line(out, "later",
-         fmt::format("{} more contacts (see --json)", a.contacts.later.size()));
+         fmt::format("contact at {}, {} angle {}, {}",
+                     Number(later.contact.time_s, 1e3, "ms"),
+                     core::Name(a.angle_kind), Number(angle, kDeg, "deg"),
+                     core::Name(later.state.label)));
   }
   if (a.stopped_at) {
     Line(out, "stopped",

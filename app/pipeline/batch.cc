@@ -193,16 +193,23 @@ class Batch {
       return entry;
     }
     if (const auto* known = std::get_if<Known>(&answer.what)) {
-      return TriageOf(clip.name, Done::kKnown, RequireTrial(known->trial_id));
+      return StoredEntry(clip.name, Done::kKnown, known->trial_id);
     }
     try {
       const db::Logged logged =
           store_.LogTrial(std::get<core::Trial>(answer.what));
-      return TriageOf(clip.name, Done::kLogged, RequireTrial(logged.id));
+      return StoredEntry(clip.name, Done::kLogged, logged.id);
     } catch (const std::invalid_argument& refused) {
       entry.reason = refused.what();
       return entry;
     }
+  }
+
+  TriageEntry StoredEntry(const std::string& name, Done done,
+                          const std::string& id) const {
+    const auto proposals = store_.Proposals(id);
+    return TriageOf(name, done, RequireTrial(id),
+                    proposals.empty() ? nullptr : &proposals.front());
   }
 
   core::Trial RequireTrial(const std::string& id) const {

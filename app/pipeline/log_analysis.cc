@@ -95,7 +95,7 @@ Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
     }
   }
   const db::Logged logged = store.LogTrial(trial);
-  return {logged.id, logged.revision};
+  return {logged.id, logged.revision, logged.is_proposal};
 }
 
 }  // namespace touchdown::pipeline

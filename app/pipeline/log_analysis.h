@@ -29,6 +29,8 @@ core::Campaign RequireCampaign(const db::Store& store, const std::string& name);
 struct Logged {
   std::string trial_id;
   std::int64_t revision = 0;
+  // A person's correction stays in force, and this analysis is a proposal.
+  bool is_proposal = false;
 };
 
 // The trial as the store takes it: with an absolute path and the clip's full
@@ -41,7 +43,8 @@ core::Trial LoggableTrial(const Analysis& analysis,
 
 // Logs the trial that `analysis` makes, with the clip's full SHA-256, in the
 // store at `db` (made where there is none): a new trial, or a further revision
-// where the campaign has one of the same clip. On the disk on return. Throws
+// where the campaign has one of the same clip (a proposal, where a person has
+// corrected it). On the disk on return. Throws
 // core::StoreError; core::InputError if the clip cannot be read.
 Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
                    const std::string& campaign,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/pipeline/version.h"
@@ -90,6 +91,21 @@ void Apply(const Statement& statement, core::Trial& trial) {
     trial.set_speed_mps = *statement.set_speed_mps;
   }
   if (statement.conditions) trial.conditions = statement.conditions;
+}
+
+core::Trial Restated(const std::string& field,
+                     const std::vector<db::Revision>& history,
+                     const core::Trial& seen, std::int64_t number) {
+  const auto found = std::find_if(
+      history.begin(), history.end(),
+      [&](const auto& revision) { return revision.trial.revision == number; });
+  if (found == history.end()) {
+    throw FieldError(field, fmt::format("is {}, must be a revision in 1 .. {}",
+                                        number, history.size()));
+  }
+  core::Trial trial = found->trial;
+  trial.revision = seen.revision;
+  return trial;
 }
 
 db::Logged LogByHand(const std::filesystem::path& path,

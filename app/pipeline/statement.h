@@ -2,10 +2,12 @@
 // the review page.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "touchdown/core/body.h"
 #include "touchdown/core/conditions.h"
@@ -50,6 +52,12 @@ struct Statement {
 // Puts what was stated into `trial`; the rest stays as it is. Throws
 // FieldError.
 void Apply(const Statement& statement, core::Trial& trial);
+
+// What revision `number` stated, an analysis that was proposed as well, as a
+// correction of `seen`. Throws FieldError, naming `field`, where there is none.
+core::Trial Restated(const std::string& field,
+                     const std::vector<db::Revision>& history,
+                     const core::Trial& seen, std::int64_t number);
 
 // A trial by hand.
 struct ManualEntry {

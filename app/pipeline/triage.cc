@@ -6,14 +6,18 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/report/format.h"
 #include "app/report/text.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/records.h"
 
 namespace touchdown::pipeline {
 namespace {
 
 using core::kDegree;
 using nlohmann::ordered_json;
+
+constexpr std::size_t kShownId = 8;  // of a trial's id: enough to find it by
 
 // The warnings of the analysis, from its document.
 std::vector<std::string> WarningsOf(const core::Trial& trial) {
@@ -61,6 +65,8 @@ std::string_view Name(Attention attention) {
       return "undecided";
     case Attention::kNoAngle:
       return "no angle";
+    case Attention::kProposed:
+      return "proposed";
     case Attention::kWarned:
       return "warned";
     case Attention::kCopy:
@@ -71,8 +77,26 @@ std::string_view Name(Attention attention) {
   return "-";
 }
 
+std::string ProposalSentence(const core::Trial& trial,
+                             const core::Trial& proposal) {
+  const auto words = [](const core::Trial& one) {
+    return fmt::format("{}, {} angle {} deg", core::Name(one.first.state.label),
+                       core::Name(one.angle_kind),
+                       report::WithUOrReason(AngleOf(one), kDegree));
+  };
+  const std::size_t differences = db::Changes(trial, proposal).size();
+  return fmt::format(
+      "a person's correction ({}) stays in force; the analysis of {} proposes "
+      "{} ({} difference{} in all, `touchdown show {} --history` lists them). "
+      "Accept it with `touchdown correct {} --accept {} --by NAME --why "
+      "REASON`",
+      words(trial), proposal.recorded_at_utc, words(proposal), differences,
+      differences == 1 ? "" : "s", trial.id.substr(0, kShownId),
+      trial.id.substr(0, kShownId), proposal.revision);
+}
+
 TriageEntry TriageOf(const std::string& clip, Done done,
-                     const core::Trial& trial) {
+                     const core::Trial& trial, const core::Trial* proposal) {
   TriageEntry entry;
   entry.clip = clip;
   entry.done = done;
@@ -104,6 +128,14 @@ TriageEntry TriageOf(const std::string& clip, Done done,
     entry.attention = Attention::kNone;
     entry.urgency = entry.angle_rad->u / kDegree;
   }
+  if (proposal == nullptr) return entry;
+  if (entry.attention > Attention::kProposed) {
+    entry.attention = Attention::kProposed;
+    entry.urgency = 0.0;
+    entry.reason.clear();
+  }
+  entry.reason +=
+      (entry.reason.empty() ? "" : "; ") + ProposalSentence(trial, *proposal);
   return entry;
 }
 

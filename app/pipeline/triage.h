@@ -29,6 +29,7 @@ enum class Attention {
   kNoContact,  // no body, several bodies, or no touchdown was seen
   kUndecided,  // neither bounce nor not, at 95 %
   kNoAngle,    // decided, but the contact angle is absent
+  kProposed,   // a new analysis differs from a person's correction
   kWarned,     // an answer with warnings
   kCopy,       // recorded twice
   kNone
@@ -52,9 +53,15 @@ struct TriageEntry {
   core::Measured angle_rad = core::AbsentBecause("not analysed");
 };
 
-// The entry of a recording whose trial the store has.
+// The entry of a recording whose trial the store has. `proposal`: a new
+// analysis that waits for a person (db::Store::Proposals), or null.
 TriageEntry TriageOf(const std::string& clip, Done done,
-                     const core::Trial& trial);
+                     const core::Trial& trial,
+                     const core::Trial* proposal = nullptr);
+
+// What `proposal` would change, and how a person accepts it, in a sentence.
+std::string ProposalSentence(const core::Trial& trial,
+                             const core::Trial& proposal);
 
 // Whether a person should look at `a` before `b`.
 bool NeedsMore(const TriageEntry& a, const TriageEntry& b);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/report/check_shots.h"
 #include "app/report/document.h"
 #include "app/report/sentences.h"
 #include "touchdown/core/units.h"
@@ -18,6 +19,11 @@ using Json = nlohmann::ordered_json;
 
 Json Degrees(const std::optional<double>& angle_rad) {
   return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
+}
+
+Json Degrees(const core::Expected<Reach>& reach) {
+  if (!reach) return nullptr;
+  return {reach->angle_rad.low / kDegree, reach->angle_rad.high / kDegree};
 }
 
 Json Optional(const std::optional<double>& value) {
@@ -54,6 +60,7 @@ Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
           {"verdict_reason", t.judgement.reason},
           {"trials_to_decide",
            t.trials_to_decide ? Json(*t.trials_to_decide) : Json(nullptr)},
+          {"agreement_sentence", AgreementSentence(t)},
           {"agreement",
            {{"right", a.all.right()},
             {"decided", a.all.total()},
@@ -79,6 +86,8 @@ Json PosteriorJson(const Group& group) {
   Json out = {{"median_deg", p.median_rad / kDegree},
               {"low95_deg", p.interval95_rad.low / kDegree},
               {"high95_deg", p.interval95_rad.high / kDegree},
+              {"open_low", p.status == analysis::DataStatus::kOnlyBounces},
+              {"open_high", p.status == analysis::DataStatus::kOnlySlides},
               {"low90_deg", p.interval90_rad.low / kDegree},
               {"high90_deg", p.interval90_rad.high / kDegree},
               {"mean_deg", p.mean_rad / kDegree},
@@ -119,21 +128,54 @@ std::string StopWord(analysis::StopReason stop) {
 
 Json TrialJson(const core::Trial& trial, const std::string* left_out) {
   const core::StateDecision& state = trial.first.state;
-  return {{"id", trial.id},
-          {"revision", trial.revision},
-          {"clip", trial.clip.path},
-          {"set_angle_deg", Degrees(trial.set_angle_rad)},
-          {"angle_deg", Quantity(core::ContactAngle(trial), kDegree)},
-          {"state", std::string(core::Name(state.label))},
-          {"paper_word", PaperWord(state.label)},
-          {"p_bounce", Optional(state.p_bounce)},
-          {"max_gap_mm", Quantity(state.max_gap_m, kMillimetre)},
-          {"extrapolated_gap_mm",
-           Quantity(state.extrapolated_gap_m, kMillimetre)},
-          {"state_because", state.reason},
-          {"bounce_height_mm", Quantity(state.bounce_height_m, kMillimetre)},
-          {"micro_bounce", state.micro_bounce},
-          {"left_out", left_out != nullptr ? Json(*left_out) : Json(nullptr)}};
+  return {
+      {"id", trial.id},
+      {"revision", trial.revision},
+      {"clip", trial.clip.path},
+      {"set_angle_deg", Degrees(trial.set_angle_rad)},
+      {"angle_deg", Quantity(core::ContactAngle(trial), kDegree)},
+      {"state", std::string(core::Name(state.label))},
+      {"paper_word", PaperWord(state.label)},
+      {"p_bounce", Optional(state.p_bounce)},
+      {"max_gap_mm", Quantity(state.max_gap_m, kMillimetre)},
+      {"extrapolated_gap_mm", Quantity(state.extrapolated_gap_m, kMillimetre)},
+      {"state_because", state.reason},
+      {"bounce_height_mm", Quantity(state.bounce_height_m, kMillimetre)},
+      {"micro_bounce", state.micro_bounce},
+      {"left_out", left_out != nullptr ? Json(*left_out) : Json(nullptr)}};
+}
+
+Json CheckSeriesJson(const CheckSeries& series, const CheckShots& checks,
+                     std::span<const core::Trial> trials) {
+  Json out = {{"quantity", series.quantity},
+              {"sentence", CheckSentence(series)},
+              {"values", Json::array()},
+              {"chart", nullptr}};
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    out["values"].push_back(
+        {{"trial", trials[checks.shots[series.shots[i]]].id},
+         {"value", series.values[i].value},
+         {"u", series.values[i].u}});
+  }
+  if (series.chart) {
+    out["chart"] = {{"centre", series.chart->centre},
+                    {"sigma", series.chart->sigma},
+                    {"lower", series.chart->lower},
+                    {"upper", series.chart->upper},
+                    {"beyond", series.chart->beyond},
+                    {"provisional", series.chart->provisional}};
+  }
+  return out;
+}
+
+Json CheckShotsJson(const CheckShots& checks,
+                    std::span<const core::Trial> trials) {
+  return {
+      {"campaign", checks.campaign.name},
+      {"origin", std::string(core::Name(checks.origin))},
+      {"shots", checks.shots.size()},
+      {"speed_mps", CheckSeriesJson(checks.speed, checks, trials)},
+      {"approach_angle_deg", CheckSeriesJson(checks.angle, checks, trials)}};
 }
 
 }  // namespace
@@ -180,7 +222,20 @@ Json BoundaryJson(const Group& group) {
                  {"trials_to_target", study.next.trials_to_target},
                  {"half_width_deg", study.next.half_width_rad / kDegree},
                  {"clipped", study.next.clipped},
-                 {"stop", StopWord(study.next.stop)}};
+                 {"stop", StopWord(study.next.stop)},
+                 {"within_deg", Degrees(group.reach)}};
+  out["sentences"] = {{"boundary", BoundarySentence(study)},
+                      {"bracket", BracketSentence(bracket)},
+                      {"status", StatusSentence(study)},
+                      {"verdict", VerdictWord(group)},
+                      {"verdict_reason", VerdictSentence(group)},
+                      {"outlook", OutlookSentence(group)},
+                      {"next", NextSentence(group)}};
+  out["left_out"] = Json::array();
+  for (const NamedLeftOut& left : group.left_out) {
+    out["left_out"].push_back(
+        {{"trial", left.trial}, {"name", left.name}, {"reason", left.reason}});
+  }
   return out;
 }
 
@@ -217,6 +272,10 @@ Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
           TrialJson(trials[t], why == left_out.end() ? nullptr : why->second));
     }
     out["groups"].push_back(std::move(entry));
+  }
+  out["check_shots"] = Json::array();
+  for (const CheckShots& checks : CollectCheckShots(input, trials)) {
+    out["check_shots"].push_back(CheckShotsJson(checks, trials));
   }
   return out;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -35,8 +34,8 @@ struct Range {
   double high_deg = 90.0;
 };
 
-// All of 0..90 where the trials need most of it, else what they and the lines
-// occupy, to whole 5 degrees.
+// All of 0..90 where the trials need most of it, else what they, the lines and
+// the whole interval of the boundary occupy, to whole 5 degrees.
 Range RangeOf(const BoundaryPlot& plot) {
   double low = 90.0;
   double high = 0.0;
@@ -49,6 +48,9 @@ Range RangeOf(const BoundaryPlot& plot) {
   }
   for (const PlotLine& line : plot.lines) {
     include(line.angle_rad, line.angle_rad);
+  }
+  if (plot.interval) {
+    include(plot.interval->angle_rad.low, plot.interval->angle_rad.high);
   }
   if (low > high) return {};
   Range range{std::floor((low - 2) / 5) * 5, std::ceil((high + 2) / 5) * 5};
@@ -77,6 +79,38 @@ bool Any(const BoundaryPlot& plot, Outcome outcome) {
   return std::any_of(
       plot.observations.begin(), plot.observations.end(),
       [outcome](const Observation& o) { return o.outcome == outcome; });
+}
+
+// The bar of the interval, at half height, its ends marked or open.
+void AddInterval(const PlotInterval& interval, const Range& range,
+                 std::string& script, std::vector<std::string>& parts) {
+  constexpr double kLevel = 0.5;
+  constexpr double kEnd = 0.05;  // half-height of a closed end
+  constexpr std::string_view kColour = "#5b2a86";
+  const double low =
+      interval.open_low ? range.low_deg : interval.angle_rad.low / kDegree;
+  const double high =
+      interval.open_high ? range.high_deg : interval.angle_rad.high / kDegree;
+  const double middle = interval.middle_rad / kDegree;
+  const auto arrow = [&](double end, bool open) {
+    script += fmt::format(
+        "set arrow from {0:.6f},{1} to {2:.6f},{1} {3} lw 3 lc rgb '{4}' "
+        "front\n",
+        middle, kLevel, end,
+        open ? "head filled size screen 0.012,20" : "nohead", kColour);
+    if (open) return;
+    script += fmt::format(
+        "set arrow from {0:.6f},{1} to {0:.6f},{2} nohead lw 3 lc rgb '{3}' "
+        "front\n",
+        end, kLevel - kEnd, kLevel + kEnd, kColour);
+  };
+  arrow(low, interval.open_low);
+  arrow(high, interval.open_high);
+  script += fmt::format("$middle << EOD\n{:.6f} {}\nEOD\n", middle, kLevel);
+  parts.push_back(fmt::format(
+      "$middle using 1:2 with points pt 13 ps 1.2 lc rgb '{}' title '95 % "
+      "interval'",
+      kColour));
 }
 
 std::string Script(const BoundaryPlot& plot) {
@@ -161,6 +195,7 @@ std::string Script(const BoundaryPlot& plot) {
   marks(Outcome::kNotBounce, "slides", 7, "#17548f", "slide");
   marks(Outcome::kBounce, "bounces", 9, "#b3430f", "bounce");
   marks(Outcome::kUndecided, "undecided", 4, "#40505c", "undecided");
+  if (plot.interval) AddInterval(*plot.interval, range, s, parts);
   if (parts.empty()) parts.push_back("NaN notitle");
   s += "plot ";
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -169,49 +204,10 @@ std::string Script(const BoundaryPlot& plot) {
   return s + "\n";
 }
 
-void ReplaceAll(std::string& text, const std::string& what,
-                const std::string& with) {
-  for (std::size_t at = text.find(what); at != std::string::npos;
-       at = text.find(what, at + with.size())) {
-    text.replace(at, what.size(), with);
-  }
-}
-
-std::set<std::string> Identifiers(const std::string& svg) {
-  std::set<std::string> out;
-  for (std::size_t at = svg.find(" id="); at != std::string::npos;
-       at = svg.find(" id=", at + 4)) {
-    const std::size_t end = svg.find(svg[at + 4], at + 5);
-    if (end != std::string::npos) out.insert(svg.substr(at + 5, end - at - 5));
-  }
-  return out;
-}
-
-// gnuplot writes a whole XML file and gives its parts the same identifiers in
-// each; inside a page they must be an element with identifiers of its own.
-std::string ToInline(std::string svg, const std::string& id) {
-  const std::size_t start = svg.find("<svg");
-  if (start != std::string::npos) svg.erase(0, start);
-  for (const std::string& name : Identifiers(svg)) {
-    for (const char end : {'\'', '"', ')'}) {
-      const std::string own = name + end;
-      for (const char* before : {"id='", "id=\"", "'#", "\"#", "(#"}) {
-        ReplaceAll(svg, before + own, before + (id + own));
-      }
-    }
-  }
-  const std::size_t title = svg.find("<title>");
-  const std::size_t title_end = svg.find("</title>");
-  if (title != std::string::npos && title_end != std::string::npos) {
-    svg.erase(title, title_end + 8 - title);
-  }
-  return svg;
-}
-
 }  // namespace
 
 std::string DrawBoundaryPlot(const BoundaryPlot& plot) {
-  return ToInline(RunGnuplot(Script(plot)), plot.id);
+  return InlineSvg(RunGnuplot(Script(plot)), plot.id);
 }
 
 }  // namespace touchdown::report

@@ -1,11 +1,13 @@
 // The plot of one group of trials: what was seen at which angle.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/observation.h"
+#include "touchdown/core/estimate.h"
 
 namespace touchdown::report {
 
@@ -23,12 +25,22 @@ struct PlotCurve {
   std::vector<double> height;
 };
 
+// The interval of the boundary, drawn whole as a bar. An end that the trials
+// leave open has an arrow, which goes to the end of the axis.
+struct PlotInterval {
+  core::Interval angle_rad;
+  double middle_rad = 0.0;
+  bool open_low = false;
+  bool open_high = false;
+};
+
 struct BoundaryPlot {
   std::string angle_name;  // of the horizontal axis, e.g. "approach angle"
   std::vector<analysis::Observation> observations;
   analysis::Bracket bracket;
   std::vector<PlotLine> lines;
-  PlotCurve density;  // of the boundary angle; empty: none
+  std::optional<PlotInterval> interval;  // of the boundary angle, 95 %
+  PlotCurve density;                     // of the boundary angle; empty: none
   bool simulated = false;
   std::string id;  // prefix of the identifiers inside the SVG: unique in a
                    // document, letters and digits

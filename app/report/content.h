@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/check_shots.h"
 #include "app/report/document.h"
 #include "app/report/group.h"
 #include "app/report/report.h"
@@ -43,6 +44,11 @@ Figure MakeFigure(const Group& group, std::size_t index);
 
 // The group's verdict in a box, for page 1 (group_section.cc).
 Callout MakeVerdict(const Group& group, std::span<const Group> groups);
+
+// The control charts of one campaign's check shots (check_shots.cc).
+Section MakeCheckSection(const CheckShots& checks,
+                         std::span<const core::Trial> trials,
+                         const ReportInput& input, std::size_t& figures);
 
 // What the paper's own Table 1 supports, and its errata (paper_section.cc).
 Section MakePaperSection();

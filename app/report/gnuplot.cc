@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "touchdown/core/errors.h"
@@ -139,6 +141,24 @@ pid_t Spawn(const Pipe& in, const Pipe& out, const Pipe& err) {
   return child;
 }
 
+void ReplaceAll(std::string& text, const std::string& what,
+                const std::string& with) {
+  for (std::size_t at = text.find(what); at != std::string::npos;
+       at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+}
+
+std::set<std::string> Identifiers(const std::string& svg) {
+  std::set<std::string> out;
+  for (std::size_t at = svg.find(" id="); at != std::string::npos;
+       at = svg.find(" id=", at + 4)) {
+    const std::size_t end = svg.find(svg[at + 4], at + 5);
+    if (end != std::string::npos) out.insert(svg.substr(at + 5, end - at - 5));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string RunGnuplot(const std::string& script) {
@@ -185,6 +205,25 @@ std::string GnuplotQuote(std::string_view text) {
   }
   out += '\'';
   return out;
+}
+
+std::string InlineSvg(std::string svg, const std::string& id) {
+  const std::size_t start = svg.find("<svg");
+  if (start != std::string::npos) svg.erase(0, start);
+  for (const std::string& name : Identifiers(svg)) {
+    for (const char end : {'\'', '"', ')'}) {
+      const std::string own = name + end;
+      for (const char* before : {"id='", "id=\"", "'#", "\"#", "(#"}) {
+        ReplaceAll(svg, before + own, before + (id + own));
+      }
+    }
+  }
+  const std::size_t title = svg.find("<title>");
+  const std::size_t title_end = svg.find("</title>");
+  if (title != std::string::npos && title_end != std::string::npos) {
+    svg.erase(title, title_end + 8 - title);
+  }
+  return svg;
 }
 
 }  // namespace touchdown::report

@@ -13,6 +13,11 @@ namespace touchdown::report {
 // gnuplot is missing or refuses the script.
 std::string RunGnuplot(const std::string& script);
 
+// An SVG of gnuplot as an element of a page. gnuplot writes a whole XML file
+// and gives its parts the same identifiers in each; they get `id` before them,
+// so that several can stand in one page.
+std::string InlineSvg(std::string svg, const std::string& id);
+
 // Text as a gnuplot string constant: in single quotes, in which gnuplot
 // substitutes nothing; an apostrophe becomes a typographic one, control
 // characters become spaces.

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "app/report/set_points.h"
+
 namespace touchdown::report {
 namespace {
 
@@ -33,9 +35,17 @@ std::map<std::string, const core::Campaign*> ByName(
   return out;
 }
 
+// The options of a study, with the angles that can be thrown in the group.
+analysis::StudyOptions BoundedStudy(const ReportInput& input, Group& group) {
+  analysis::StudyOptions options = input.study;
+  if (input.reach_of) group.reach = input.reach_of(group.campaign);
+  if (group.reach) options.next.feasible_rad = group.reach->angle_rad;
+  return options;
+}
+
 // The study of a group, with the theories that speak of it.
 void Study(const ReportInput& input, Group& group) {
-  analysis::StudyOptions options = input.study;
+  analysis::StudyOptions options = BoundedStudy(input, group);
   const core::Campaign& campaign = group.campaign;
   options.origin = group.trials.origin;
   options.margin_rad = campaign.margin_rad;
@@ -92,19 +102,25 @@ std::vector<Group> MakeGroups(const ReportInput& input,
   for (const LabelPair& pair : input.labels) labels[pair.trial] = &pair;
   std::vector<Group> out;
   for (analysis::TrialGroup& trial_group : analysis::GroupTrials(trials)) {
+    const auto known = campaigns.find(trial_group.campaign);
+    // They have no boundary: check_shots.cc makes what is said of them.
+    if (known != campaigns.end() && core::HasCheckShots(*known->second)) {
+      continue;
+    }
     Group group;
     for (const auto& o : trial_group.observations) {
       group.members.push_back(o.trial);
     }
     for (const auto& left : trial_group.left_out) {
       group.members.push_back(left.trial);
+      const core::Trial& trial = trials[left.trial];
+      group.left_out.push_back({trial.id, TrialName(trial), left.reason});
     }
     std::sort(group.members.begin(), group.members.end());
     for (const std::size_t t : group.members) {
       const auto pair = labels.find(trials[t].id);
       if (pair != labels.end()) group.labels.push_back(*pair->second);
     }
-    const auto known = campaigns.find(trial_group.campaign);
     group.registered = known != campaigns.end();
     if (group.registered) {
       group.campaign = *known->second;
@@ -122,6 +138,17 @@ std::vector<Group> MakeGroups(const ReportInput& input,
     return a.trials.body < b.trials.body;
   });
   return out;
+}
+
+Group EmptyGroup(const ReportInput& input, const core::Campaign& campaign) {
+  Group group;
+  group.campaign = campaign;
+  group.trials.campaign = campaign.name;
+  group.trials.body = campaign.body.kind;
+  group.trials.angle_kind = campaign.angle_kind;
+  group.prior = input.study.fit.scatter;
+  group.study = analysis::StudyBoundary({}, BoundedStudy(input, group));
+  return group;
 }
 
 std::string FullName(const Group& group) {

@@ -14,6 +14,13 @@
 
 namespace touchdown::report {
 
+// A trial that the statistics leave out, as a person knows it.
+struct NamedLeftOut {
+  std::string trial;   // id
+  std::string name;    // of the clip, else the beginning of the id
+  std::string reason;  //
+};
+
 struct Group {
   analysis::TrialGroup trials;
   core::Campaign campaign;  // made up from the trials where not registered
@@ -21,6 +28,8 @@ struct Group {
   std::vector<std::size_t> members;  // its trials, in the order of the tables
   analysis::ScatterPrior prior;      // that the posterior was made with
   analysis::BoundaryStudy study;
+  core::Expected<Reach> reach = core::AbsentBecause("no rig was given");
+  std::vector<NamedLeftOut> left_out;
   std::vector<LabelPair> labels;   // of those members that bear both
   std::vector<std::string> notes;  // where each of study.theories comes from
 
@@ -35,10 +44,14 @@ struct Group {
 void SortTrials(std::vector<core::Trial>& trials);
 
 // All groups of `trials`, which SortTrials() has sorted; spheres first, as in
-// the paper, then by campaign. Throws std::invalid_argument where two campaigns
-// have one name.
+// the paper, then by campaign. Check shots are in none. Throws
+// std::invalid_argument where two campaigns have one name.
 std::vector<Group> MakeGroups(const ReportInput& input,
                               std::span<const core::Trial> trials);
+
+// A group without a trial yet: there is nothing but the prior, and the angle to
+// begin with.
+Group EmptyGroup(const ReportInput& input, const core::Campaign& campaign);
 
 // "asphalt: sphere, approach angle, recorded": tells any two groups apart.
 std::string FullName(const Group& group);

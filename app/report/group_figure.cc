@@ -32,6 +32,20 @@ Table Numbers(const Group& group) {
   return table;
 }
 
+// Why one end of the interval is an arrow.
+std::string OpenEndSentence(analysis::DataStatus status) {
+  if (status == analysis::DataStatus::kOnlySlides) {
+    return " Arrow: every body stayed down, so that the trials set no upper "
+           "end "
+           "to the interval; the number given for it is the prior's.";
+  }
+  if (status == analysis::DataStatus::kOnlyBounces) {
+    return " Arrow: every body bounced, so that the trials set no lower end to "
+           "the interval; the number given for it is the prior's.";
+  }
+  return "";
+}
+
 }  // namespace
 
 Figure MakeFigure(const Group& group, std::size_t index) {
@@ -53,15 +67,24 @@ Figure MakeFigure(const Group& group, std::size_t index) {
                     study.posterior.density_per_rad};
   }
 
+  const analysis::BoundaryPosterior& posterior = study.posterior;
+  if (study.counts.decided() > 0) {
+    plot.interval =
+        PlotInterval{posterior.interval95_rad, posterior.median_rad,
+                     posterior.status == analysis::DataStatus::kOnlyBounces,
+                     posterior.status == analysis::DataStatus::kOnlySlides};
+  }
+
   Figure figure;
   figure.svg = DrawBoundaryPlot(plot);
   figure.caption = fmt::format(
       "{}{}, {}: what was seen at each {}. Bars are {} 2 u (95 %). Shaded: the "
       "bracket. Hill: posterior density of the boundary angle, to its own "
-      "height.",
+      "height; bar: its median and 95 % interval.",
       group.simulated() ? "Simulated. " : "", core::Name(group.trials.body),
       group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,
       AngleName(group), kPlusMinus);
+  figure.caption += OpenEndSentence(posterior.status);
   figure.alt = fmt::format(
       "{}Plot of {} trials of a {} over the {} in degrees: {} slide, {} "
       "bounce, {} undecided; {}. Posterior of the boundary: {}.",

@@ -83,6 +83,7 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
       fmt::format("{} to {} deg", Plain(study.least_u_rad / kDegree, 3),
                   Plain(study.greatest_u_rad / kDegree, 3)));
   row("what the trials alone say", BracketSentence(study.bracket));
+  row("next angle", NextSentence(group));
   return table;
 }
 

@@ -67,7 +67,8 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
        "\u00b2 + u\u00b2)); the boundary is as likely anywhere from 0 to 90 "
        "deg "
        "beforehand, the scatter has the prior named beside the estimate. "
-       "Undecided trials count by their P(bounce).",
+       "Undecided trials count by their P(bounce); those without one, because "
+       "the film ends before the top of the rebound, are left out and listed.",
        "Likelihood profile: the same model without a prior; 95 % where twice "
        "the fall from the maximum is below 3.84.",
        "Bracket: from the greatest angle at which a body stayed down to the "
@@ -117,6 +118,10 @@ Report MakeReport(const ReportInput& input) {
   }
   for (const Group& group : groups) {
     document.sections.push_back(MakeGroupSection(group, groups, trials, input));
+  }
+  for (const CheckShots& checks : CollectCheckShots(input, trials)) {
+    document.sections.push_back(
+        MakeCheckSection(checks, trials, input, figures));
   }
   document.sections.push_back(MakePaperSection());
   const std::string csv = MakeCsv(groups, trials);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/boundary_study.h"
 #include "touchdown/core/campaign.h"
+#include "touchdown/core/expected.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::report {
@@ -32,6 +34,14 @@ struct LabelPair {
   core::MotionState by_person = core::MotionState::kUndecided;
 };
 
+// The contact angles that can be thrown: the next angle stays within them.
+struct Reach {
+  core::Interval angle_rad;
+  std::string by;  // in words: "what bench throws at 1.3 m/s"
+};
+// Of one campaign; absent with the reason where nothing can be thrown for it.
+using ReachOf = std::function<core::Expected<Reach>(const core::Campaign&)>;
+
 struct ReportInput {
   std::vector<core::Trial> trials;  // in any order; last revisions only
   std::vector<core::Campaign> campaigns;
@@ -40,6 +50,7 @@ struct ReportInput {
   // How boundaries are estimated; what depends on the campaign (theory, margin,
   // origin) is filled in.
   analysis::StudyOptions study;
+  ReachOf reach_of;  // empty: no rig was given, any angle can be thrown
   // The rig that threw them; without facts none was given.
   RigUsed rig;
   // Whether every trial has a page of evidence (evidence_page.h) to link to,

@@ -115,6 +115,50 @@ std::string OutlookSentence(const Group& group) {
       group.study.posterior.median_rad / kDegree);
 }
 
+namespace {
+
+// Where the next angle may lie.
+std::string ReachClause(const Group& group) {
+  if (!group.reach) {
+    return fmt::format(" (not bounded by a rig: {})",
+                       group.reach.error().reason);
+  }
+  return fmt::format(" ({} {:.2f} to {:.2f} deg, {})",
+                     group.study.next.clipped ? "the nearer end of" : "within",
+                     group.reach->angle_rad.low / kDegree,
+                     group.reach->angle_rad.high / kDegree, group.reach->by);
+}
+
+// What is done where all trials say the same.
+std::string OneSidedClause(const Group& group) {
+  const analysis::BoundaryStudy& study = group.study;
+  const DataStatus status = study.posterior.status;
+  if (status == DataStatus::kNoTrials) {
+    return ". No trial is decided: this angle says most beforehand";
+  }
+  const bool all_bounced = status == DataStatus::kOnlyBounces;
+  if (!all_bounced && status != DataStatus::kOnlySlides) return "";
+  const std::string seen =
+      all_bounced ? ". Every body bounced: the boundary lies lower"
+                  : ". Every body stayed down: the boundary lies higher";
+  if (!study.next.clipped) {
+    return fmt::format("{}, and the angle goes {}", seen,
+                       all_bounced ? "down" : "up");
+  }
+  return fmt::format(
+      "{}, perhaps beyond what can be thrown; where this angle says the same "
+      "again, a new campaign with another speed or bounce height can bring it "
+      "within reach",
+      seen);
+}
+
+}  // namespace
+
+std::string NextSentence(const Group& group) {
+  return fmt::format("{:.2f} deg{}{}.", group.study.next.angle_rad / kDegree,
+                     ReachClause(group), OneSidedClause(group));
+}
+
 std::string StatusSentence(const analysis::BoundaryStudy& study) {
   std::string text;
   switch (study.posterior.status) {

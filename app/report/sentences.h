@@ -26,6 +26,11 @@ std::string VerdictSentence(const Group& group);
 // "About 8 more trials near 11 deg would decide ..."; empty where decided.
 std::string OutlookSentence(const Group& group);
 
+// "12.40 deg (within 5.00 to 60.00 deg, what bench throws at 1.3 m/s).", and
+// what is done where all trials bounced or none did: the one next angle, in the
+// same words wherever it is said.
+std::string NextSentence(const Group& group);
+
 // What kind of data these are, and what follows for the estimate.
 std::string StatusSentence(const analysis::BoundaryStudy& study);
 

@@ -174,11 +174,12 @@ std::string RevisionJson(const db::Revision& revision) {
 std::string HistoryJson(const std::vector<db::Revision>& history) {
   Json json = {{"schema", "touchdown.trial/1"}};
   if (history.empty()) return json.dump(1);
-  Json current = RevisionObject(history.back());
+  const db::Revision& in_force = db::RevisionInForce(history);
+  Json current = RevisionObject(in_force);
   current.erase("schema");
   // The analysis document as what it is, where it is one.
   const Json document =
-      Json::parse(history.back().trial.document_json, nullptr, false);
+      Json::parse(in_force.trial.document_json, nullptr, false);
   current["document"] = document.is_discarded() ? Json(nullptr) : document;
   json.update(current);
   Json revisions = Json::array();
@@ -193,7 +194,8 @@ std::string HistoryJson(const std::vector<db::Revision>& history) {
                 {"changes", Json::array()}};
     if (i > 0) {
       for (const auto& change :
-           db::Changes(history[i - 1].trial, history[i].trial)) {
+           db::Changes(db::RevisionInForce({history.data(), i}).trial,
+                       history[i].trial)) {
         one["changes"].push_back({{"field", change.field},
                                   {"from", TextJson(change.from)},
                                   {"to", TextJson(change.to)}});
@@ -202,6 +204,10 @@ std::string HistoryJson(const std::vector<db::Revision>& history) {
     revisions.push_back(std::move(one));
   }
   json["history"] = std::move(revisions);
+  // Its differences are those of its entry in the history.
+  const db::Revision* proposal = db::OpenProposal(history);
+  json["proposal"] =
+      proposal != nullptr ? Json(proposal->trial.revision) : Json(nullptr);
   return json.dump(1);
 }
 

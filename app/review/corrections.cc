@@ -85,21 +85,6 @@ std::string ReasonOf(const db::Revision& last) {
                      last.trial.reason.empty() ? "" : ": ", last.trial.reason);
 }
 
-// What revision `number` stated, as a revision of `seen`.
-core::Trial Restated(const std::vector<db::Revision>& history,
-                     const core::Trial& seen, std::int64_t number) {
-  const auto found = std::find_if(
-      history.begin(), history.end(),
-      [&](const auto& revision) { return revision.trial.revision == number; });
-  if (found == history.end()) {
-    throw std::invalid_argument(fmt::format(
-        "restore is {}, must be a revision in 1 .. {}", number, seen.revision));
-  }
-  core::Trial trial = found->trial;
-  trial.revision = seen.revision;
-  return trial;
-}
-
 }  // namespace
 
 Json PreviewJson(const core::Trial& seen, const nlohmann::json& asked) {
@@ -123,12 +108,13 @@ db::Logged Revise(db::Store& store, const std::string& id,
   if (history.empty()) {
     throw core::StoreError(fmt::format("there is no trial {}", id));
   }
-  const core::Trial& last = history.back().trial;
+  const db::Revision& in_force = db::RevisionInForce(history);
+  const core::Trial& last = in_force.trial;
   const auto require_last = [&] {
     if (last.revision == expected) return;
     throw Conflict(fmt::format(
         "revision {} was made meanwhile ({}); look at it and correct again",
-        last.revision, ReasonOf(history.back())));
+        last.revision, ReasonOf(in_force)));
   };
   require_last();
   if (asked.value("exclude", false)) {
@@ -139,8 +125,9 @@ db::Logged Revise(db::Store& store, const std::string& id,
   }
   core::Trial trial;
   if (asked.contains("restore")) {
-    trial = Restated(history, last,
-                     pipeline::WholeNumber(asked["restore"], "restore"));
+    trial =
+        pipeline::Restated("restore", history, last,
+                           pipeline::WholeNumber(asked["restore"], "restore"));
   } else {
     trial = MakeCorrected(last, asked).trial;
   }

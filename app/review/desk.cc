@@ -4,8 +4,11 @@
 
 namespace touchdown::review {
 
-Desk::Desk(std::filesystem::path store, std::filesystem::path reports)
-    : store_(std::move(store)), reports_(std::move(reports)) {}
+Desk::Desk(std::filesystem::path store, std::filesystem::path reports,
+           report::ReachOf reach_of)
+    : store_(std::move(store)),
+      reports_(std::move(reports)),
+      reach_of_(std::move(reach_of)) {}
 
 db::Store Desk::Open(db::OpenMode mode) const {
   return db::Store::Open(store_, mode);
@@ -32,7 +35,8 @@ std::shared_ptr<const Statistics> Desk::StatisticsNow() {
   // Taken before reading: what changes meanwhile makes them stale.
   const std::string stamp = Stamp();
   if (!statistics_ || stamp != statistics_stamp_) {
-    statistics_ = std::make_shared<const Statistics>(MakeStatistics(store_));
+    statistics_ =
+        std::make_shared<const Statistics>(MakeStatistics(store_, reach_of_));
     statistics_stamp_ = stamp;
   }
   return statistics_;

@@ -17,12 +17,15 @@ namespace touchdown::review {
 
 class Desk {
  public:
-  Desk(std::filesystem::path store, std::filesystem::path reports);
+  // `reach_of`: what the next angle stays within; empty: any angle.
+  Desk(std::filesystem::path store, std::filesystem::path reports,
+       report::ReachOf reach_of = {});
 
   // A connection of the caller's own: one Store belongs to one thread.
   db::Store Open(db::OpenMode mode) const;
   const std::filesystem::path& store() const { return store_; }
   const std::filesystem::path& reports() const { return reports_; }
+  const report::ReachOf& reach_of() const { return reach_of_; }
 
   // Differs whenever the store may have changed: size and time of its files.
   std::string Stamp() const;
@@ -41,6 +44,7 @@ class Desk {
  private:
   std::filesystem::path store_;
   std::filesystem::path reports_;
+  report::ReachOf reach_of_;
 
   std::mutex statistics_guard_;
   std::string statistics_stamp_;

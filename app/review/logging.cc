@@ -70,12 +70,14 @@ db::Logged LogRecording(const std::filesystem::path& store,
 }
 
 std::size_t BuildReport(const std::filesystem::path& store,
-                        const std::filesystem::path& folder) {
+                        const std::filesystem::path& folder,
+                        const report::ReachOf& reach_of) {
   pipeline::SelectionOptions options;
   options.store = store;
   options.with_evidence = true;
-  const report::ReportInput input =
+  report::ReportInput input =
       pipeline::InputOf(pipeline::SelectTrials(options));
+  input.reach_of = reach_of;
   report::WriteReport(report::MakeReport(input), folder);
   return input.trials.size();
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/report/report.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::review {
@@ -21,7 +22,9 @@ db::Logged LogRecording(const std::filesystem::path& store,
                         const nlohmann::json& asked);
 
 // The report of the whole store, into `folder`; how many trials are in it.
+// `reach_of`: what the next angle stays within.
 std::size_t BuildReport(const std::filesystem::path& store,
-                        const std::filesystem::path& folder);
+                        const std::filesystem::path& folder,
+                        const report::ReachOf& reach_of = {});
 
 }  // namespace touchdown::review

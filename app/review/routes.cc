@@ -82,7 +82,9 @@ Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
 core::Trial RevisionOf(const std::vector<db::Revision>& history,
                        const Request& request) {
   const auto asked = request.query.find("revision");
-  if (asked == request.query.end()) return history.back().trial;
+  if (asked == request.query.end()) {
+    return db::RevisionInForce(history).trial;
+  }
   const std::int64_t n = NumberIn(asked->second, request.path);
   for (const auto& revision : history) {
     if (revision.trial.revision == n) return revision.trial;
@@ -109,9 +111,12 @@ Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
   const auto history = store.History(id);
   if (history.empty()) throw NotThere(request.path);
   const core::Trial trial = RevisionOf(history, request);
+  const db::Revision* proposal = db::OpenProposal(history);
   Json json = {{"schema", "touchdown.review.trial/1"},
                {"row", report::TrialRowJson(trial)},
-               {"last_revision", history.back().trial.revision},
+               {"last_revision", db::RevisionInForce(history).trial.revision},
+               {"proposal", proposal != nullptr ? Json(proposal->trial.revision)
+                                                : Json(nullptr)},
                {"simulated", trial.origin == core::Origin::kSimulated},
                {"numbers", NumbersJson(trial)},
                {"history", HistoryJson(history)},
@@ -242,8 +247,9 @@ Reply Post(Desk& desk, const Request& request) {
     return JsonReply(LoggedJson(LogRecording(desk.store(), asked)));
   }
   if (path == "/api/report") {
-    return JsonReply({{"trials", BuildReport(desk.store(), desk.reports())},
-                      {"folder", desk.reports().string()}});
+    return JsonReply(
+        {{"trials", BuildReport(desk.store(), desk.reports(), desk.reach_of())},
+         {"folder", desk.reports().string()}});
   }
   throw NotThere(path);
 }

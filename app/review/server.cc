@@ -58,7 +58,7 @@ void Send(const Reply& reply, httplib::Response& response) {
 
 struct Server::Impl {
   explicit Impl(const ServerOptions& options)
-      : desk(options.store, options.reports) {}
+      : desk(options.store, options.reports, options.reach_of) {}
 
   void Answer(const httplib::Request& from, httplib::Response& response) {
     const Request request = RequestOf(from);

@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "app/report/report.h"
+
 namespace touchdown::review {
 
 struct ServerOptions {
@@ -12,6 +14,8 @@ struct ServerOptions {
   int port = 0;  // 0: any that is free
   // Where reports go that the page builds.
   std::filesystem::path reports;
+  // What the next angle stays within; empty: no rig was given, any angle.
+  report::ReachOf reach_of;
 };
 
 class Server {

@@ -6,6 +6,7 @@
 
 #include "app/pipeline/report_input.h"
 #include "app/report/boundary_json.h"
+#include "app/report/check_shots.h"
 #include "app/report/content.h"
 #include "app/report/group.h"
 #include "app/report/report.h"
@@ -81,11 +82,13 @@ Json Table1Json(std::span<const report::Group> groups,
 
 }  // namespace
 
-Statistics MakeStatistics(const std::filesystem::path& store) {
+Statistics MakeStatistics(const std::filesystem::path& store,
+                          const report::ReachOf& reach_of) {
   pipeline::SelectionOptions options;
   options.store = store;
   report::ReportInput input =
       pipeline::InputOf(pipeline::SelectTrials(options));
+  input.reach_of = reach_of;
   std::vector<core::Trial> trials = std::move(input.trials);
   input.trials.clear();
   report::SortTrials(trials);
@@ -99,13 +102,6 @@ Statistics MakeStatistics(const std::filesystem::path& store) {
     report::Figure figure = report::MakeFigure(group, i);
     Json one = report::BoundaryJson(group);
     one["name"] = report::FullName(group);
-    one["sentences"] = {
-        {"boundary", report::BoundarySentence(group.study)},
-        {"bracket", report::BracketSentence(group.study.bracket)},
-        {"status", report::StatusSentence(group.study)},
-        {"verdict", report::VerdictWord(group)},
-        {"verdict_reason", report::VerdictSentence(group)},
-        {"outlook", report::OutlookSentence(group)}};
     one["plot"] = {{"alt", figure.alt}, {"caption", figure.caption}};
     out.plots.push_back(std::move(figure.svg));
     json["groups"].push_back(std::move(one));
@@ -113,16 +109,26 @@ Statistics MakeStatistics(const std::filesystem::path& store) {
   json["table1"] = Table1Json(groups, trials, input);
   json["without_trials"] = Json::array();
   for (const core::Campaign& campaign : input.campaigns) {
+    if (core::HasCheckShots(campaign)) continue;
     const bool thrown =
         std::any_of(groups.begin(), groups.end(), [&](const auto& group) {
           return group.trials.campaign == campaign.name;
         });
     if (thrown) continue;
-    const auto study = analysis::StudyBoundary({}, input.study);
+    const report::Group empty = report::EmptyGroup(input, campaign);
     json["without_trials"].push_back(
         {{"campaign", campaign.name},
          {"angle_kind", core::Name(campaign.angle_kind)},
-         {"first_angle_deg", study.next.angle_rad / core::kDegree}});
+         {"first_angle_deg", empty.study.next.angle_rad / core::kDegree},
+         {"next", report::NextSentence(empty)}});
+  }
+  json["check_shots"] = Json::array();
+  for (const auto& checks : report::CollectCheckShots(input, trials)) {
+    json["check_shots"].push_back(
+        {{"campaign", checks.campaign.name},
+         {"origin", core::Name(checks.origin)},
+         {"speed", report::CheckSentence(checks.speed)},
+         {"angle", report::CheckSentence(checks.angle)}});
   }
   out.json = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   return out;

@@ -41,12 +41,23 @@ Json CampaignsJson(const db::Store& store,
 std::vector<TriageEntry> TriageMemory::Of(
     const db::Store& store, const std::vector<core::Trial>& trials) {
   const std::lock_guard lock(guard_);
-  const auto key = [](const core::Trial& trial) {
-    return std::pair(trial.id, trial.revision);
+  std::map<std::string, core::Trial> proposals;
+  for (core::Trial& proposal : store.Proposals()) {
+    proposals.emplace(proposal.id, std::move(proposal));
+  }
+  const auto proposal_of = [&](const core::Trial& trial) {
+    const auto found = proposals.find(trial.id);
+    return found == proposals.end() ? nullptr : &found->second;
+  };
+  // A proposal is a later revision than the one in force.
+  const auto key = [&](const core::Trial& trial) {
+    const core::Trial* proposal = proposal_of(trial);
+    return std::pair(trial.id,
+                     proposal != nullptr ? proposal->revision : trial.revision);
   };
   const auto learn = [&](const core::Trial& trial) {
-    known_[key(trial)] =
-        pipeline::TriageOf(trial.clip.path, pipeline::Done::kKnown, trial);
+    known_[key(trial)] = pipeline::TriageOf(
+        trial.clip.path, pipeline::Done::kKnown, trial, proposal_of(trial));
   };
   std::vector<const core::Trial*> unknown;
   for (const core::Trial& trial : trials) {
@@ -67,7 +78,8 @@ std::vector<TriageEntry> TriageMemory::Of(
     out.push_back(found != known_.end()
                       ? found->second
                       : pipeline::TriageOf(trial.clip.path,
-                                           pipeline::Done::kKnown, trial));
+                                           pipeline::Done::kKnown, trial,
+                                           proposal_of(trial)));
     if (trial.excluded) out.back().attention = Attention::kNone;
   }
   return out;

@@ -257,7 +257,9 @@ Json HistoryJson(const std::vector<db::Revision>& history) {
          {"why", trial.reason},
          {"when", trial.recorded_at_utc},
          {"changes",
-          i == 0 ? Json::array() : ChangesJson(history[i - 1].trial, trial)}});
+          i == 0 ? Json::array()
+                 : ChangesJson(db::RevisionInForce({history.data(), i}).trial,
+                               trial)}});
   }
   return out;
 }

@@ -51,7 +51,7 @@ core::Campaign CheckCampaign(const CheckShot& check) {
       fmt::format("check: {} from {} mm", DroppedBody(check),
                   report::Plain(check.height_m.value / kMillimetre));
   campaign.body = check.body;
-  campaign.surface = "check shot, dropped";
+  campaign.surface = core::kCheckShotSurface;
   campaign.angle_kind = core::AngleKind::kApproach;
   campaign.bounce_height_m =
       core::DefaultBounceHeight(RequireSize(check).value);

@@ -4,48 +4,13 @@
 
 #include <nlohmann/json.hpp>
 #include <random>
-#include <stdexcept>
 
-#include "app/pipeline/rig_reach.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::session {
 
 using core::kDegree;
 using core::kMillimetre;
-
-Thrower MakeThrower(const std::filesystem::path& rig_file,
-                    const core::Campaign& campaign, double speed_mps,
-                    std::optional<core::Corner> corner) {
-  Thrower out;
-  out.file = rig_file.string();
-  out.rig = rig::ReadDescription(rig_file);
-  if (out.rig.body && out.rig.body->kind != campaign.body.kind) {
-    throw std::invalid_argument(fmt::format(
-        "--rig: the body of {} is a {}, the trials are of a {}", out.file,
-        core::Name(out.rig.body->kind), core::Name(campaign.body.kind)));
-  }
-  out.wish.kind = campaign.angle_kind;
-  out.wish.corner = corner;
-  out.wish.speed_mps =
-      speed_mps > 0.0 ? speed_mps
-                      : (campaign.speed_min_mps + campaign.speed_max_mps) / 2;
-  if (!(out.wish.speed_mps > 0.0)) {
-    throw std::invalid_argument(
-        "--rig: needs --speed-mps, the speed at touchdown: the campaign "
-        "declares no speed band");
-  }
-  return out;
-}
-
-core::Interval RequireReach(const Thrower& thrower) {
-  const auto reach = pipeline::ReachableAngles(thrower.rig, thrower.wish);
-  if (reach) return *reach;
-  throw std::invalid_argument(
-      fmt::format("--rig: {} cannot throw any {} angle at {:g} m/s: {}",
-                  thrower.file, core::Name(thrower.wish.kind),
-                  thrower.wish.speed_mps, reach.error().reason));
-}
 
 core::Expected<rig::SetPoint> PlanNext(const Thrower& thrower,
                                        double angle_rad) {
@@ -84,15 +49,6 @@ std::string SetPointsText(const Thrower& thrower,
       point->setting.muzzle_height_m / kMillimetre,
       thrower.rig.name.empty() ? "the rig" : thrower.rig.name,
       thrower.wish.speed_mps);
-}
-
-report::Group EmptyGroup(const core::Campaign& campaign,
-                         const analysis::StudyOptions& study) {
-  report::Group group;
-  group.campaign = campaign;
-  group.prior = study.fit.scatter;
-  group.study = analysis::StudyBoundary({}, study);
-  return group;
 }
 
 }  // namespace touchdown::session

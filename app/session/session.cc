@@ -62,8 +62,8 @@ Session::Session(db::Store& store, const core::Campaign& campaign,
       thrower_(std::move(thrower)),
       options_(std::move(options)),
       ends_(std::move(ends)),
-      reach_(RequireReach(thrower_)) {
-  options_.study.next.feasible_rad = reach_;
+      reach_(pipeline::ReachOfThrower(thrower_)) {
+  options_.study.next.feasible_rad = reach_.angle_rad;
   if (options_.check) check_campaign_ = CheckCampaign(*options_.check);
   file_.campaign = campaign_.name;
   file_.operator_name = options_.operator_name;
@@ -136,6 +136,7 @@ report::Group Session::Now() const {
   report::ReportInput input;
   input.campaigns = {campaign_};
   input.study = options_.study;
+  input.reach_of = [this](const core::Campaign&) { return reach_; };
   auto trials =
       store_.Trials({.campaign = campaign_.name, .with_documents = false});
   const auto origin =
@@ -144,17 +145,18 @@ report::Group Session::Now() const {
   for (report::Group& group : report::MakeGroups(input, trials)) {
     if (group.trials.origin == origin) return std::move(group);
   }
-  return EmptyGroup(campaign_, options_.study);
+  return report::EmptyGroup(input, campaign_);
 }
 
 void Session::Plan() {
   file_.planned = true;
   file_.trials_before = CountTrials();
   const report::Group group = Now();
-  file_.boundary = fmt::format(
-      "{} ({} stayed down, {} bounced, {} undecided)",
-      report::BoundarySentence(group.study), group.study.counts.not_bounce,
-      group.study.counts.bounce, group.study.counts.undecided);
+  file_.boundary =
+      fmt::format("{} ({} stayed down, {} bounced, {} undecided, {} left out)",
+                  report::BoundarySentence(group.study),
+                  group.study.counts.not_bounce, group.study.counts.bounce,
+                  group.study.counts.undecided, group.left_out.size());
   const bool resumed = std::exchange(resumed_plan_, false);
   plan_lines_.clear();
   if (resumed ? file_.is_check : CheckIsDue()) {
@@ -176,6 +178,14 @@ void Session::Plan() {
           skipped_rad_.empty() ? group.study.next.angle_rad : AngleBesides();
     }
     PlanAngle();
+    // Another angle is planned after `skip`, or where a plan of before goes on.
+    if (skipped_rad_.empty()) {
+      constexpr double kShown_rad = 0.005 * kDegree;  // as it is printed
+      const bool same = std::abs(file_.angle_rad - group.study.next.angle_rad) <
+                        kShown_rad;
+      plan_lines_.push_back((same ? "  asked for  " : "  now asked for ") +
+                            report::NextSentence(group));
+    }
     if (group.study.next.stop != analysis::StopReason::kNone) {
       plan_lines_.push_back(
           "  enough     the boundary is known as well as was asked for; more "
@@ -193,7 +203,7 @@ double Session::AngleBesides() const {
   // by chance.
   const double beside = 2.0 * options_.study.next.set_u_rad;
   std::optional<analysis::NextAngle> best;
-  double low = reach_.low;
+  double low = reach_.angle_rad.low;
   const auto consider = [&](double high) {
     if (!(high > low)) return;
     analysis::NextAngleOptions next = options_.study.next;
@@ -203,10 +213,10 @@ double Session::AngleBesides() const {
     if (!best || angle.expected_sd_rad < best->expected_sd_rad) best = angle;
   };
   for (const double skipped : skipped_rad_) {  // in order
-    consider(std::min(skipped - beside, reach_.high));
+    consider(std::min(skipped - beside, reach_.angle_rad.high));
     low = std::max(low, skipped + beside);
   }
-  consider(reach_.high);
+  consider(reach_.angle_rad.high);
   return best ? best->angle_rad : group.study.next.angle_rad;
 }
 

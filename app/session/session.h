@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/pipeline/analyze.h"
+#include "app/report/group.h"
 #include "app/session/check_shot.h"
 #include "app/session/next_shot.h"
 #include "app/session/session_file.h"
@@ -111,7 +112,7 @@ class Session {
   SessionOptions options_;
   SessionEnds ends_;
   std::optional<core::Campaign> check_campaign_;
-  core::Interval reach_;
+  report::Reach reach_;
   SessionFile file_;
   bool resumed_plan_ = false;
   std::optional<rig::Setting> setting_;  // of the plan

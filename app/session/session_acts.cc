@@ -142,11 +142,12 @@ void Session::Repeat() {
 
 void Session::Angle(const std::string& degrees) {
   const auto value = Number(degrees);
-  if (!value || *value * kDegree < reach_.low - 1e-9 ||
-      *value * kDegree > reach_.high + 1e-9) {
+  if (!value || *value * kDegree < reach_.angle_rad.low - 1e-9 ||
+      *value * kDegree > reach_.angle_rad.high + 1e-9) {
     throw std::invalid_argument(fmt::format(
         "angle is '{}', must be {:.2f} to {:.2f} deg, what the rig can throw",
-        degrees, reach_.low / kDegree, reach_.high / kDegree));
+        degrees, reach_.angle_rad.low / kDegree,
+        reach_.angle_rad.high / kDegree));
   }
   file_.angle_rad = *value * kDegree;
   file_.is_check = false;

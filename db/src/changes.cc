@@ -30,12 +30,13 @@ std::string RegisteredText(const core::Registered& entry) {
 
 namespace {
 
-constexpr std::array<std::pair<RevisionKind, std::string_view>, 5> kKinds{{
+constexpr std::array<std::pair<RevisionKind, std::string_view>, 6> kKinds{{
     {RevisionKind::kLogged, "logged"},
     {RevisionKind::kCorrected, "corrected"},
     {RevisionKind::kExcluded, "excluded"},
     {RevisionKind::kIncluded, "included"},
     {RevisionKind::kMerged, "merged"},
+    {RevisionKind::kProposed, "proposed"},
 }};
 
 std::string Text(const std::optional<double>& value) {
@@ -131,6 +132,24 @@ std::optional<RevisionKind> ParseRevisionKind(std::string_view word) {
     if (name == word) return key;
   }
   return std::nullopt;
+}
+
+const Revision& RevisionInForce(std::span<const Revision> history) {
+  std::size_t i = history.size() - 1;
+  while (i > 0 && history[i].kind == RevisionKind::kProposed) --i;
+  return history[i];
+}
+
+const Revision* OpenProposal(std::span<const Revision> history) {
+  for (std::size_t i = history.size(); i-- > 0;) {
+    const RevisionKind kind = history[i].kind;
+    if (kind == RevisionKind::kProposed) return &history[i];
+    // These state nothing of the trial itself.
+    if (kind != RevisionKind::kExcluded && kind != RevisionKind::kIncluded) {
+      break;
+    }
+  }
+  return nullptr;
 }
 
 std::vector<Change> Changes(const core::Trial& before,

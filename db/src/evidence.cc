@@ -12,18 +12,32 @@ namespace touchdown::db {
 
 std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row) {
   Statement row(connection,
-                "SELECT number, uuid, statement_id, exclusion_id, "
-                "conditions_id FROM revisions WHERE trial_id = ? ORDER BY "
-                "number DESC LIMIT 1");
+                "SELECT (SELECT max(number) FROM revisions WHERE trial_id = "
+                "?1), number, uuid, statement_id, exclusion_id, "
+                "conditions_id FROM revisions WHERE trial_id = ?1 AND kind <> "
+                "'proposed' ORDER BY number DESC LIMIT 1");
   row.Add(trial_row);
   if (!row.Step()) return std::nullopt;
   Head head;
+  head.last_number = row.TakeInteger();
   head.number = row.TakeInteger();
   head.uuid = row.TakeText();
   head.statement_id = row.TakeInteger();
   head.exclusion_id = row.TakeOptionalInteger();
   head.conditions_id = row.TakeOptionalInteger();
   return head;
+}
+
+bool IsCorrected(Connection& connection, const Head& head) {
+  // A revision that settles a merge restates another, of the same person and
+  // time.
+  Statement row(connection,
+                "SELECT 1 FROM revisions s JOIN revisions p ON p.trial_id = "
+                "s.trial_id WHERE s.id = ? AND p.kind = 'corrected' AND "
+                "p.author = s.author AND p.recorded_at_utc = "
+                "s.recorded_at_utc");
+  row.Add(head.statement_id);
+  return row.Step();
 }
 
 std::optional<TrialRow> FindTrial(Connection& connection,
@@ -162,7 +176,7 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   // first, so the row is chosen here; the write lock is ours.
   const std::int64_t row =
       connection.Integer("SELECT ifnull(max(id), 0) + 1 FROM revisions");
-  const std::int64_t number = head ? head->number + 1 : 1;
+  const std::int64_t number = head ? head->last_number + 1 : 1;
   const bool own_statement = revision.own_statement || !head;
   std::optional<std::int64_t> exclusion;
   if (!revision.own_exclusion && head) {

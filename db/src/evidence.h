@@ -14,15 +14,20 @@
 
 namespace touchdown::db {
 
-// The last revision of a trial.
+// The end of a trial's chain: the revision in force, and the number of the
+// last, which may be a proposal.
 struct Head {
-  std::int64_t number = 0;
+  std::int64_t last_number = 0;
+  std::int64_t number = 0;  // of the revision in force, as all that follows
   std::string uuid;
   std::int64_t statement_id = 0;
   std::optional<std::int64_t> exclusion_id;
   std::optional<std::int64_t> conditions_id;
 };
 std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row);
+
+// True if a person corrected the trial to what is in force now.
+bool IsCorrected(Connection& connection, const Head& head);
 
 struct TrialRow {
   std::int64_t row = 0;

@@ -62,10 +62,16 @@ class Restorer {
     const TrialRow row = KeepTrial(history);
     const auto before = HeadOf(connection_, row.row);
     // Theirs only goes on from ours: then theirs is in force, as it was there.
-    const bool goes_on = !before || (!HasOthers(row.row, history) &&
-                                     unknown.back() == &history.back());
+    // Proposals are never in force, and there is nothing to settle about them.
+    const auto theirs =
+        std::find_if(unknown.rbegin(), unknown.rend(), [](const Revision* one) {
+          return one->kind != RevisionKind::kProposed;
+        });
+    const bool goes_on =
+        !before || theirs == unknown.rend() ||
+        (!HasOthers(row.row, history) && *theirs == &RevisionInForce(history));
     for (const Revision* revision : unknown) Append(row, *revision);
-    if (!goes_on) Settle(row, *before, *unknown.back());
+    if (!goes_on) Settle(row, *before, **theirs);
   }
 
   // All of the other side's, in the order of AllVersions.
@@ -185,11 +191,14 @@ class Restorer {
                     first.recorded_at_utc);
   }
 
-  // True if the trial has revisions here that the other side does not know.
+  // True if the trial has revisions here, other than proposals, that the other
+  // side does not know.
   bool HasOthers(std::int64_t trial_row, const std::vector<Revision>& history) {
     std::set<std::string_view> theirs;
     for (const auto& revision : history) theirs.insert(revision.id);
-    Statement row(connection_, "SELECT uuid FROM revisions WHERE trial_id = ?");
+    Statement row(connection_,
+                  "SELECT uuid FROM revisions WHERE trial_id = ? AND kind <> "
+                  "'proposed'");
     row.Add(trial_row);
     while (row.Step()) {
       if (!theirs.contains(row.TakeText())) return true;

@@ -354,7 +354,7 @@ std::string TrialsSql(const TrialFilter& filter) {
   }
   sql +=
       "WHERE r.number = (SELECT max(number) FROM revisions "
-      "WHERE trial_id = t.id)";
+      "WHERE trial_id = t.id AND kind <> 'proposed')";
   if (filter.campaign) {
     sql +=
         " AND ifnull(t.campaign_id, 0) = ifnull((SELECT id FROM campaigns "
@@ -377,7 +377,8 @@ std::string_view LastLoggedSql() {
          "FROM clips k JOIN trials t ON t.clip_id = k.id "
          "AND ifnull(t.campaign_id, 0) = "
          "ifnull((SELECT id FROM campaigns WHERE name = ?1), 0) "
-         "JOIN revisions r ON r.trial_id = t.id AND r.kind = 'logged' "
+         "JOIN revisions r ON r.trial_id = t.id "
+         "AND (r.kind = 'logged' OR r.kind = 'proposed') "
          "JOIN statements s ON s.revision_id = r.statement_id "
          "WHERE k.clip_id = ?2 ORDER BY t.id DESC, r.number DESC LIMIT 1";
 }

@@ -112,6 +112,20 @@ void RequireStated(std::string_view who, std::string_view why) {
   }
 }
 
+// A program that is not told the set-points leaves them as they are.
+void KeepSetPoints(Connection& connection, const Head& head,
+                   core::Trial& trial) {
+  Statement row(connection,
+                "SELECT set_angle_rad, set_speed_mps FROM statements WHERE "
+                "revision_id = ?");
+  row.Add(head.statement_id);
+  if (!row.Step()) return;
+  const auto angle = row.TakeOptionalReal();
+  const auto speed = row.TakeOptionalReal();
+  if (!trial.set_angle_rad) trial.set_angle_rad = angle;
+  if (!trial.set_speed_mps) trial.set_speed_mps = speed;
+}
+
 std::string Quoted(std::string_view text) { return fmt::format("'{}'", text); }
 
 }  // namespace
@@ -213,9 +227,20 @@ Logged Store::Impl::Log(const core::Trial& trial) {
   revision.own_exclusion = !head || (trial.excluded && !head->exclusion_id);
   // Whoever states none, as a re-analysis does, leaves those that were stated.
   revision.own_conditions = trial.conditions.has_value();
+  // An analysis has its document. It never takes the place of what a person
+  // corrected.
+  if (head && !trial.document_json.empty() && IsCorrected(connection, *head)) {
+    revision.kind = RevisionKind::kProposed;
+    revision.own_exclusion = false;
+    core::Trial proposal = trial;
+    KeepSetPoints(connection, *head, proposal);
+    const std::int64_t number =
+        AddRevision(connection, row->row, head, revision, proposal);
+    return {row->uuid, number, false, true};
+  }
   const std::int64_t number =
       AddRevision(connection, row->row, head, revision, trial);
-  return {row->uuid, number, is_new};
+  return {row->uuid, number, is_new, false};
 }
 
 Logged Store::LogTrial(const core::Trial& trial) {
@@ -281,7 +306,7 @@ Logged Store::Correct(const core::Trial& seen, std::string_view who,
   const std::int64_t number =
       AddRevision(connection, row->row, head, revision, trial);
   transaction.Commit();
-  return {row->uuid, number, false};
+  return {row->uuid, number, false, false};
 }
 
 Logged Store::Impl::Mark(std::string_view id, std::string_view who,
@@ -315,7 +340,7 @@ Logged Store::Impl::Mark(std::string_view id, std::string_view who,
   const std::int64_t number =
       AddRevision(connection, row->row, head, revision, act);
   transaction.Commit();
-  return {row->uuid, number, false};
+  return {row->uuid, number, false, false};
 }
 
 Logged Store::Exclude(std::string_view id, std::string_view who,
@@ -380,9 +405,9 @@ std::optional<core::Trial> Store::Find(std::string_view id_or_prefix) const {
                     path().string(), id_or_prefix, found[0], found[1],
                     found.size() > 2 ? ", ..." : ""));
   }
-  Statement row(connection,
-                SelectRevisions(true) +
-                    "WHERE t.uuid = ? ORDER BY r.number DESC LIMIT 1");
+  Statement row(connection, SelectRevisions(true) +
+                                "WHERE t.uuid = ? AND r.kind <> 'proposed' "
+                                "ORDER BY r.number DESC LIMIT 1");
   row.Add(found[0]);
   if (!row.Step()) return std::nullopt;
   return TakeRevision(connection, row).trial;
@@ -401,6 +426,23 @@ std::optional<LastLogged> Store::FindLogged(std::string_view campaign,
   last.set_angle_rad = row.TakeOptionalReal();
   last.set_speed_mps = row.TakeOptionalReal();
   return last;
+}
+
+std::vector<core::Trial> Store::Proposals(std::string_view id) const {
+  Connection& connection = impl_->connection;
+  Transaction snapshot(connection, Transaction::Kind::kRead);
+  // Acts that state nothing of the trial do not close a proposal.
+  std::string sql =
+      SelectRevisions(true) +
+      "WHERE r.kind = 'proposed' AND r.number = (SELECT max(number) FROM "
+      "revisions WHERE trial_id = t.id AND kind <> 'excluded' AND kind <> "
+      "'included')";
+  if (!id.empty()) sql += " AND t.uuid = ?";
+  Statement row(connection, sql + " ORDER BY t.id");
+  if (!id.empty()) row.Add(id);
+  std::vector<core::Trial> proposals;
+  while (row.Step()) proposals.push_back(TakeRevision(connection, row).trial);
+  return proposals;
 }
 
 std::vector<Revision> Store::History(std::string_view id) const {

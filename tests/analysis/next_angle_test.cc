@@ -78,6 +78,24 @@ TEST(ChooseNextAngle, StaysFeasibleAndSaysSo) {
   EXPECT_TRUE(next.clipped);
 }
 
+// Whether the limits matter does not depend on the spread, which may lead away
+// from the end that is thrown.
+TEST(ChooseNextAngle, SaysThatTheLimitsMatterWhateverTheSpread) {
+  std::vector<Observation> sharp;
+  for (int i = 0; i < 40; ++i) {
+    sharp.push_back(Observe((8.0 + 0.2 * i) * kDegree, 0.0, i > 20));
+  }
+  const BoundaryPosterior posterior = FitBoundary(sharp);
+  NextAngleOptions options;
+  options.forecast_futures = 0;
+  for (int trials = 40; trials < 46; ++trials) {
+    options.feasible_rad = {30 * kDegree, 40 * kDegree};
+    EXPECT_TRUE(ChooseNextAngle(posterior, trials, options).clipped);
+    options.feasible_rad = {10 * kDegree, 40 * kDegree};
+    EXPECT_FALSE(ChooseNextAngle(posterior, trials, options).clipped);
+  }
+}
+
 TEST(ChooseNextAngle, StopsAtTheTargetOrAtTheMaximum) {
   std::vector<Observation> sharp;
   for (int i = 0; i < 60; ++i) {

@@ -98,12 +98,29 @@ TEST(GroupTrials, ADecidedTrialKeepsAProbabilityThatAgrees) {
 }
 
 TEST(GroupTrials, AnUndecidedTrialKeepsItsProbability) {
-  std::vector trials(2, ATrial(10, core::MotionState::kUndecided));
+  std::vector trials(1, ATrial(10, core::MotionState::kUndecided));
   trials[0].first.state.p_bounce = 0.8;
   const auto groups = GroupTrials(trials);
   EXPECT_EQ(groups[0].observations[0].p_bounce, 0.8);
-  EXPECT_EQ(groups[0].observations[1].p_bounce, 0.5);
   EXPECT_EQ(groups[0].observations[0].outcome, Outcome::kUndecided);
+}
+
+// A film that ends while the body rises says nothing of the boundary, also
+// where an earlier program computed P(bounce) from the gap filmed so far.
+TEST(GroupTrials, AReboundThatWasNotFilmedToItsTopIsLeftOutWithItsReason) {
+  std::vector trials(2, ATrial(10, core::MotionState::kUndecided));
+  core::StateDecision& state = trials[0].first.state;
+  state.reason = "the film ends while the body rises";
+  state.extrapolated_gap_m = core::Estimate{2.1e-3, 0.3e-3};
+  trials[1].first.state.p_bounce = 0.0;
+  const auto groups = GroupTrials(trials);
+  ASSERT_THAT(groups, SizeIs(1));
+  EXPECT_THAT(groups[0].observations, SizeIs(0));
+  ASSERT_THAT(groups[0].left_out, SizeIs(2));
+  EXPECT_EQ(groups[0].left_out[0].reason,
+            "undecided, without a P(bounce): the film ends while the body "
+            "rises; the flight would reach 2.1 +- 0.3 mm");
+  EXPECT_EQ(groups[0].left_out[1].reason, "undecided, without a P(bounce)");
 }
 
 TEST(GroupTrials, AFaceAngleEntersByItsMagnitude) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -260,6 +261,81 @@ TEST(MakeReport, ManyTrialsAreBinned) {
   }
   EXPECT_THAT(MakeReport(input).markdown,
               HasSubstr("set angle, bins of 1 deg"));
+}
+
+// Daily drops of a known body; the 13th after somebody moved the camera.
+ReportInput WithCheckShots(ReportInput input, int shots) {
+  core::Campaign checks;
+  checks.name = "check: sphere 24 mm from 300 mm";
+  checks.body = core::Sphere({24 * kMillimetre, 0.02 * kMillimetre});
+  checks.surface = core::kCheckShotSurface;
+  input.campaigns.push_back(checks);
+  for (int i = 0; i < shots; ++i) {
+    core::Trial trial;
+    trial.campaign = checks.name;
+    trial.body = checks.body;
+    trial.id = "check-" + std::to_string(i);
+    trial.recorded_at_utc =
+        "2026-08-" + std::string(i < 9 ? "0" : "") + std::to_string(i + 1);
+    trial.set_angle_rad = 90 * kDegree;
+    trial.first.contact.found = true;
+    trial.first.contact.approach_angle_rad =
+        core::Estimate{(89.8 - 0.05 * (i % 3)) * kDegree, 0.1 * kDegree};
+    trial.first.state.label = core::MotionState::kBounce;
+    trial.first.motion.before_speed_mps =
+        core::Estimate{2.425 + 0.004 * (i % 4) + (i == 12 ? 0.1 : 0.0), 0.003};
+    // The order in which they are given does not matter.
+    input.trials.insert(input.trials.begin(), trial);
+  }
+  return input;
+}
+
+TEST(MakeReport, CheckShotsHaveAControlChartAndNothingElse) {
+  const ReportInput plain = Table1Input(core::Origin::kRecorded);
+  const Report without = MakeReport(plain);
+  const Report with = MakeReport(WithCheckShots(plain, 22));
+  // Neither a row nor a column of Table 1.
+  EXPECT_EQ(with.latex, without.latex);
+  EXPECT_EQ(with.csv, without.csv);
+  EXPECT_FALSE(Has(with.markdown, "sphere (check"));
+  EXPECT_THAT(with.markdown,
+              HasSubstr("## check: sphere 24 mm from 300 mm, recorded"));
+  EXPECT_THAT(with.markdown, HasSubstr("beyond them: no. 13."));
+  EXPECT_THAT(with.html, HasSubstr("individuals control chart"));
+  const auto json = nlohmann::json::parse(with.json);
+  EXPECT_EQ(json["groups"].size(), 2u);
+  ASSERT_EQ(json["check_shots"].size(), 1u);
+  const auto& speed = json["check_shots"][0]["speed_mps"];
+  EXPECT_EQ(speed["values"].size(), 22u);
+  EXPECT_EQ(speed["values"][0]["trial"], "check-0");
+  EXPECT_EQ(speed["chart"]["beyond"], nlohmann::json::array({12}));
+  EXPECT_FALSE(speed["chart"]["provisional"].get<bool>());
+}
+
+TEST(MakeReport, OneCheckShotHasNoLimits) {
+  const Report report =
+      MakeReport(WithCheckShots(Table1Input(core::Origin::kRecorded), 1));
+  EXPECT_THAT(report.markdown,
+              HasSubstr("1 value: a control chart needs two values."));
+}
+
+// The whole interval is on the plot, also where it is far wider than the
+// trials; an end that the trials leave open says so.
+TEST(DrawBoundaryPlot, ShowsTheWholeInterval) {
+  ReportInput input;
+  for (const double angle : {10.0, 11.0, 12.0}) {
+    input.trials.push_back(MakeTrial({angle, angle, false},
+                                     core::BodyKind::kSphere,
+                                     core::Origin::kRecorded));
+  }
+  const Report open = MakeReport(input);
+  EXPECT_THAT(open.html, HasSubstr("set no upper end"));
+  EXPECT_THAT(open.html, HasSubstr("95 % interval"));
+  // The axis reaches the last of its tics.
+  EXPECT_THAT(open.html, HasSubstr(">90</text>"));
+  input.trials.push_back(MakeTrial({30, 30, true}, core::BodyKind::kSphere,
+                                   core::Origin::kRecorded));
+  EXPECT_FALSE(Has(MakeReport(input).html, "set no upper end"));
 }
 
 TEST(MakeReport, TheUserChoosesTheBins) {

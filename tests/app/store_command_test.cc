@@ -18,6 +18,7 @@ namespace touchdown {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 struct Ran {
@@ -102,6 +103,41 @@ TEST_F(StoreCommand, LogListShowCorrect) {
   EXPECT_THAT(Run("list --db lab.db").out,
               AllOf(HasSubstr("EXCLUDED: dust"), HasSubstr("1 excluded")));
   EXPECT_THAT(Run("list --db lab.db --counting").out, HasSubstr("0 trials"));
+}
+
+TEST_F(StoreCommand, ShowsAProposalAndAcceptsIt) {
+  std::string id;
+  {
+    auto store = db::Store::Open(folder_ / "lab.db", db::OpenMode::kCreate);
+    core::Trial trial = db::SphereTrial(1, "");
+    trial.document_json = "{}";
+    id = store.LogTrial(trial).id;
+    ASSERT_EQ(
+        Run("correct " + id + " --db lab.db --state roll --by Ada --why seen")
+            .status,
+        0);
+    trial.first.state.label = core::MotionState::kBounce;
+    ASSERT_TRUE(store.LogTrial(trial).is_proposal);
+  }
+  const Ran show = Run("show " + id + " --db lab.db");
+  EXPECT_THAT(show.out,
+              AllOf(HasSubstr("proposal\n"), HasSubstr("state: roll -> bounce"),
+                    HasSubstr("correct " + id.substr(0, 8) + " --accept 3")));
+  const auto json =
+      nlohmann::json::parse(Run("show " + id + " --db lab.db --json").out);
+  EXPECT_EQ(json["proposal"], 3);
+  EXPECT_EQ(json["revision"], 2);
+  EXPECT_EQ(json["contacts"][0]["state"], "roll");
+  EXPECT_EQ(json["history"][2]["kind"], "proposed");
+  ExpectMistake("correct " + id + " --db lab.db --accept 9 --by Ada --why x", 2,
+                "--accept is 9, must be a revision in 1 .. 3");
+  ASSERT_EQ(Run("correct " + id +
+                " --db lab.db --accept 3 --by Ada --why 'it was right'")
+                .status,
+            0);
+  const Ran after = Run("show " + id + " --db lab.db");
+  EXPECT_THAT(after.out, HasSubstr("bounce"));
+  EXPECT_THAT(after.out, Not(HasSubstr("proposal\n")));
 }
 
 TEST_F(StoreCommand, MistakesAreOneLineWithTheirExit) {

@@ -28,7 +28,7 @@ TEST(RevisionJson, RoundTripsAnything) {
   for (int i = 0; i < 300; ++i) {
     db::Revision revision;
     revision.id = db::RandomUuid(engine);
-    revision.kind = static_cast<db::RevisionKind>(i % 5);
+    revision.kind = static_cast<db::RevisionKind>(i % 6);
     revision.trial = random.Trial();
     revision.trial.id = db::RandomUuid(engine);
     revision.trial.revision = 1 + i;

@@ -291,6 +291,42 @@ TEST(Merge, DivergedStoresAgreeWhicheverIsMergedFirst) {
   }
 }
 
+// A proposal comes along, is in force nowhere, and makes no conflict.
+TEST(Merge, ProposalsStayProposals) {
+  Folder folder;
+  std::string id;
+  {
+    Store a = OpenFixed(folder / "a.db", 1);
+    id = Fill(a);
+    core::Trial trial = *a.Find(id);
+    trial.first.state.label = core::MotionState::kRoll;
+    a.Correct(trial, "Ada", "seen");
+    Backup(a, folder / "b.db");
+  }
+  Store a = OpenFixed(folder / "a.db", 10);
+  Store b = OpenFixed(folder / "b.db", 20);
+  core::Trial analysed = *a.Find(id);
+  analysed.first.state.label = core::MotionState::kStick;
+  analysed.document_json = "{}";
+  ASSERT_TRUE(a.LogTrial(analysed).is_proposal);
+  const MergeReport report = Merge(b, a);
+  EXPECT_EQ(report.revisions_added, 1);
+  EXPECT_THAT(report.conflicts, IsEmpty());
+  EXPECT_EQ(b.Find(id)->first.state.label, core::MotionState::kRoll);
+  ASSERT_EQ(b.Proposals().size(), 1u);
+  EXPECT_EQ(b.Proposals()[0].first.state.label, core::MotionState::kStick);
+  EXPECT_EQ(Sayings(a), Sayings(b));
+  // A correction elsewhere goes on from what is in force.
+  core::Trial trial = *b.Find(id);
+  trial.first.state.label = core::MotionState::kBounce;
+  b.Correct(trial, "Bob", "seen again");
+  EXPECT_THAT(Merge(a, b).conflicts, IsEmpty());
+  EXPECT_EQ(a.Find(id)->first.state.label, core::MotionState::kBounce);
+  EXPECT_THAT(a.Proposals(), IsEmpty());
+  EXPECT_EQ(Sayings(a), Sayings(b));
+  EXPECT_THAT(Check(a).problems, IsEmpty());
+}
+
 TEST(Merge, ListsWhatTheTwoSayDifferentlyAndDropsNothing) {
   Folder folder;
   Store a = OpenFixed(folder / "a.db", 1);

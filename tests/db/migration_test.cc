@@ -94,8 +94,7 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   EXPECT_EQ(trials[2].first.contact.corner, core::Corner::kLeading);
   EXPECT_EQ(store.FindCampaign("asphalt")->theory_boundary_rad,
             11.8 * core::kDegree);
-  const core::Measured& extrapolated =
-      trials[0].first.state.extrapolated_gap_m;
+  const core::Measured& extrapolated = trials[0].first.state.extrapolated_gap_m;
   ASSERT_FALSE(extrapolated);
   EXPECT_EQ(extrapolated.error().reason, GetParam() < 4
                                              ? "logged before it was measured"
@@ -106,6 +105,12 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
     ASSERT_EQ(springs.size(), 2u);
     EXPECT_EQ(trials[0].conditions->spring.id, springs[0].id);
     EXPECT_EQ(springs[1].measured.at("stiffness_n_per_m")->value, 1150.0);
+  }
+  if (GetParam() >= 4) {
+    const auto proposals = store.Proposals();
+    ASSERT_EQ(proposals.size(), 1u);
+    EXPECT_EQ(proposals[0].id, trials[1].id);
+    EXPECT_EQ(proposals[0].first.state.extrapolated_gap_m->value, 2.1e-3);
   }
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);

@@ -196,6 +196,72 @@ TEST(LogTrial, RefusesWhatCannotBeTrue) {
       HasSubstr("origin"));
 }
 
+// What a program says of a clip that a person corrected is kept beside it.
+TEST(LogTrial, AnAnalysisNeverTakesThePlaceOfACorrection) {
+  Folder folder;
+  Store store = OpenFixed(folder / "lab.db");
+  store.AddCampaign(SphereCampaign());
+  core::Trial analysed = SphereTrial(1);
+  analysed.document_json = "{}";
+  analysed.options_hash = "a";
+  const std::string id = store.LogTrial(analysed).id;
+  core::Trial corrected = *store.Find(id);
+  corrected.first.state.label = core::MotionState::kRoll;
+  corrected.set_angle_rad = 0.4;
+  store.Correct(corrected, "Ada", "seen on the contact sheet");
+  EXPECT_TRUE(store.Proposals().empty());
+
+  analysed.first.state.label = core::MotionState::kBounce;
+  analysed.options_hash = "b";
+  const Logged again = store.LogTrial(analysed);
+  EXPECT_TRUE(again.is_proposal);
+  EXPECT_EQ(again.id, id);
+  EXPECT_EQ(again.revision, 3);
+  const core::Trial now = *store.Find(id);
+  EXPECT_EQ(now.revision, 2);
+  EXPECT_EQ(now.author, "Ada");
+  EXPECT_EQ(now.first.state.label, core::MotionState::kRoll);
+  EXPECT_EQ(store.Trials().at(0).first.state.label, core::MotionState::kRoll);
+  // It is known as analysed, and waits for a person.
+  EXPECT_EQ(store.FindLogged("asphalt", analysed.clip.id)->options_hash, "b");
+  const auto proposals = store.Proposals(id);
+  ASSERT_EQ(proposals.size(), 1u);
+  EXPECT_EQ(proposals[0].first.state.label, core::MotionState::kBounce);
+  EXPECT_EQ(proposals[0].set_angle_rad, 0.4);  // an analysis is not told
+  const auto history = store.History(id);
+  EXPECT_EQ(RevisionInForce(history).trial.revision, 2);
+  EXPECT_EQ(OpenProposal(history)->trial.revision, 3);
+
+  // It waits also while the trial does not count.
+  store.Exclude(id, "Ada", "lamp");
+  EXPECT_TRUE(store.Find(id)->excluded);
+  EXPECT_EQ(store.Find(id)->first.state.label, core::MotionState::kRoll);
+  EXPECT_EQ(store.Proposals().size(), 1u);
+  store.Include(id, "Ada", "lamp was right");
+  EXPECT_EQ(store.Find(id)->first.state.label, core::MotionState::kRoll);
+
+  // A person takes it.
+  core::Trial accepted = proposals[0];
+  accepted.revision = store.Find(id)->revision;
+  EXPECT_EQ(store.Correct(accepted, "Ada", "it was right").revision, 6);
+  EXPECT_EQ(store.Find(id)->first.state.label, core::MotionState::kBounce);
+  EXPECT_TRUE(store.Proposals().empty());
+  // What a person accepted is a person's.
+  EXPECT_TRUE(store.LogTrial(analysed).is_proposal);
+}
+
+// A person who states the clip anew (an import, say) does what was asked.
+TEST(LogTrial, AStatementWithoutADocumentIsNoProposal) {
+  Folder folder;
+  Store store = OpenFixed(folder / "lab.db");
+  const std::string id = store.LogTrial(SphereTrial(1, "")).id;
+  core::Trial corrected = *store.Find(id);
+  corrected.first.state.label = core::MotionState::kRoll;
+  store.Correct(corrected, "Ada", "seen");
+  EXPECT_FALSE(store.LogTrial(SphereTrial(1, "")).is_proposal);
+  EXPECT_EQ(store.Find(id)->revision, 3);
+}
+
 TEST(LogTrials, RecordsAllOrNone) {
   Folder folder;
   Store store = OpenFixed(folder / "lab.db");

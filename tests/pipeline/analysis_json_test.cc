@@ -173,7 +173,7 @@ TEST(AnalyzeDocument, ReboundNotFilmedToItsTop) {
   EXPECT_EQ(document["absent"]["state.p_bounce"], state.reason);
   EXPECT_NEAR(document["state"]["extrapolated_gap_mm"]["value"], 2.1, 1e-12);
   EXPECT_NEAR(document["state"]["extrapolated_gap_mm"]["u"], 0.3, 1e-12);
-  EXPECT_THAT(ToText(analysis), HasSubstr("2.10 +- 0.30 mm"));
+  EXPECT_THAT(ToText(analysis), HasSubstr("would reach 2.10 +- 0.30 mm"));
 }
 
 TEST(AnalyzeDocument, WithoutAScale) {

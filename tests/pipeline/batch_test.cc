@@ -157,6 +157,30 @@ TEST_F(RunBatchTest, CorrectionsStay) {
   EXPECT_EQ(store.Trials()[0].first.state.label, core::MotionState::kRoll);
 }
 
+// Nor by analysing it again: the new answer is a proposal, which triage shows
+// with what differs and how to accept it.
+TEST_F(RunBatchTest, AnalysedAgainACorrectionStaysInForce) {
+  auto store = Open("lab.db");
+  RunBatch(store, Clips());
+  core::Trial trial = store.Trials()[0];
+  trial.first.state.label = core::MotionState::kRoll;
+  store.Correct(trial, "Ada", "seen on the contact sheet");
+  const auto again = RunBatch(store, Clips(), {.again = true});
+  EXPECT_EQ(store.Trials()[0].first.state.label, core::MotionState::kRoll);
+  EXPECT_EQ(store.Trials()[0].author, "Ada");
+  EXPECT_EQ(again[0].attention, Attention::kProposed);
+  EXPECT_EQ(again[0].revision, 2);
+  EXPECT_THAT(again[0].reason,
+              AllOf(HasSubstr("correction (roll, approach angle"),
+                    HasSubstr("proposes bounce, approach angle"),
+                    HasSubstr("--accept 3")));
+  EXPECT_EQ(again[1].attention, Attention::kNone) << again[1].reason;
+  // Also where nothing is analysed.
+  const auto known = RunBatch(store, Clips());
+  EXPECT_EQ(known[0].done, Done::kKnown);
+  EXPECT_EQ(known[0].attention, Attention::kProposed);
+}
+
 // Killed at every step of its progress, then started again: nothing that was
 // told as done is lost or done twice.
 TEST_F(RunBatchTest, GoesOnWhereItWasKilled) {

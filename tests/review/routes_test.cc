@@ -152,6 +152,41 @@ TEST_F(Routes, StatesAnEarlierRevisionAgain) {
   EXPECT_EQ(now.document_json, first.document_json);
 }
 
+// A new analysis of a corrected trial waits for a person.
+TEST_F(Routes, ShowsAProposalAndTakesItWhenToldTo) {
+  const core::Trial first = lab.Now();
+  ASSERT_EQ(Post(Trial("/revisions"), {{"revision", 1},
+                                       {"who", "Ada"},
+                                       {"why", "seen by eye"},
+                                       {"state", "slide"}})
+                .status,
+            200);
+  EXPECT_TRUE(Json::parse(Get(Trial()).body)["proposal"].is_null());
+  {
+    core::Trial again = first;
+    again.id.clear();
+    db::Store::Open(lab.store, db::OpenMode::kWrite).LogTrial(again);
+  }
+  const Json shown = Json::parse(Get(Trial()).body);
+  EXPECT_EQ(shown["row"]["state"], "slide");
+  EXPECT_EQ(shown["last_revision"], 2);
+  EXPECT_EQ(shown["proposal"], 3);
+  EXPECT_EQ(shown["history"][2]["kind"], "proposed");
+  EXPECT_EQ(shown["history"][2]["changes"][0]["field"], "state");
+  const Json list = Json::parse(Get("/api/trials").body);
+  EXPECT_EQ(list["trials"][0]["attention"], "proposed");
+  EXPECT_THAT(list["trials"][0]["why"].get<std::string>(),
+              HasSubstr("proposes bounce"));
+  ASSERT_EQ(Post(Trial("/revisions"), {{"revision", 2},
+                                       {"who", "Ada"},
+                                       {"why", "it was right"},
+                                       {"restore", 3}})
+                .status,
+            200);
+  EXPECT_EQ(lab.Now().first, first.first);
+  EXPECT_TRUE(Json::parse(Get(Trial()).body)["proposal"].is_null());
+}
+
 TEST_F(Routes, AsksForANameAndAReason) {
   const Reply nameless =
       Post(Trial("/revisions"),

@@ -41,8 +41,8 @@ class SessionTest : public ::testing::Test {
     };
     ends.driver = &driver_;
     session_.emplace(*store_, Bench::campaign(),
-                     MakeThrower(bench_.rig(), Bench::campaign()), options,
-                     ends, ReadSession(bench_.db()));
+                     pipeline::MakeThrower(bench_.rig(), Bench::campaign()),
+                     options, ends, ReadSession(bench_.db()));
     session_->Start();
   }
   std::string Obey(const std::string& line) {

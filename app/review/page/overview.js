@@ -13,10 +13,23 @@ function campaignTable(campaigns) {
 
 function nextText(group) {
   const next = group.next;
-  if (next.stop === 'target-reached') return 'the target is reached';
-  if (next.stop === 'max-trials') return 'as many trials as planned are thrown';
-  return `${degrees(next.angle_deg)} deg` +
-      ` (about ${next.trials_to_target} more trials)`;
+  if (next.stop === 'target-reached') {
+    return `${group.sentences.next} The target is reached.`;
+  }
+  if (next.stop === 'max-trials') {
+    return `${group.sentences.next} As many trials as planned are thrown.`;
+  }
+  return `${group.sentences.next} About ${next.trials_to_target} more trials.`;
+}
+
+function leftOut(group) {
+  if (group.left_out.length === 0) return null;
+  return element('details', {},
+      element('summary', {text: `${group.left_out.length} left out`}),
+      element('ul', {}, ...group.left_out.map(
+          left => element('li', {}, element('a', {
+            href: `#/trial/${left.trial}`, text: left.name}),
+            `: ${left.reason}`))));
 }
 
 function groupCard(group, number, stamp) {
@@ -35,6 +48,7 @@ function groupCard(group, number, stamp) {
               element('dt', {text: 'Verdict'}),
               element('dd', {text: group.sentences.verdict + ': ' +
                                    group.sentences.verdict_reason})),
+      leftOut(group),
       element('figure', {},
               element('img', {src: `/api/plots/${number}?${stamp}`,
                               alt: group.plot.alt, loading: 'lazy'}),
@@ -146,9 +160,15 @@ export async function overview(main) {
                   ...s.without_trials.map(
                       c => element('section', {class: 'card'},
                                    element('h3', {text: c.campaign}),
-                                   element('p', {text:
+                                   element('p', {class: 'next', text:
                       `No trial yet. Begin at ${c.angle_kind} angle ` +
-                      `${degrees(c.first_angle_deg)} deg.`})))),
+                      c.next}))),
+                  ...s.check_shots.map(
+                      c => element('section', {class: 'card'},
+                                   element('h3', {text: c.campaign}),
+                                   element('p', {text: `Speed: ${c.speed}`}),
+                                   element('p', {text:
+                      `Approach angle: ${c.angle}`})))),
           element('h2', {text: 'Table 1 as it stands'}),
           element('div', {class: 'wide', tabindex: '0', role: 'region',
                           'aria-label': 'Table 1'}, ...table1(s.table1)));

@@ -33,8 +33,7 @@ function said(numbers) {
       element('dd', {text: numbers.state_reason || numbers.reason || '–'}));
 }
 
-function historyList(history, shown, id, restore) {
-  const last = history[history.length - 1].revision;
+function historyList(history, shown, last, id, restore) {
   return element('ol', {class: 'history', reversed: true},
       ...[...history].reverse().map(h => element('li', {value: h.revision},
           h.revision === shown
@@ -54,6 +53,23 @@ function historyList(history, shown, id, restore) {
                         (h.changes.length > 3 ? ' …' : '')}),
                     element('ul', {}, ...h.changes.map(c => element('li', {text:
                         `${c.field}: ${c.from} → ${c.to}`})))))));
+}
+
+// An analysis that waits for a person; a person's correction stays in force.
+function proposalNote(data) {
+  if (data.proposal === null) return '';
+  const shown = data.row.revision === data.proposal;
+  const changes = data.history.find(h => h.revision === data.proposal).changes;
+  return element('div', {class: 'proposal'},
+      element('p', {},
+          shown ? 'This is an analysis that was proposed; the correction by a ' +
+                  'person stays in force. "State this again" accepts it.'
+                : 'A new analysis differs from this correction: ',
+          shown ? '' : element('a', {
+            href: `#/trial/${data.row.id}/${data.proposal}`,
+            text: `look at revision ${data.proposal} and accept it there`})),
+      element('ul', {}, ...changes.slice(0, 6).map(c => element('li', {text:
+          `${c.field}: ${c.from} → ${c.to}`}))));
 }
 
 export async function trial(main, id, revision) {
@@ -162,14 +178,14 @@ export async function trial(main, id, revision) {
       element('h1', {text: baseName(data.row.clip.path) || 'Trial by hand'}),
       element('p', {class: 'under'},
           `${data.row.campaign || 'no campaign'} · ${data.row.origin} · ` +
-          `revision ${data.row.revision} of ${data.last_revision}`,
+          `revision ${data.row.revision} of ${data.history.length}`,
           data.row.excluded ? element('strong', {class: 'bad', text:
               ` · EXCLUDED: ${data.row.exclusion_reason}`}) : '',
           data.simulated ? element('strong', {class: 'bad',
               text: ' · SIMULATED: no verdict on a theory rests on it'}) : '',
-          old ? element('strong', {}, ' · an earlier revision; ',
+          old ? element('strong', {}, ' · not the revision in force; ',
                         element('a', {href: `#/trial/${data.row.id}`,
-                                      text: 'show the last'})) : ''),
+                                      text: 'show that one'})) : ''),
       element('div', {class: 'trial'},
           element('div', {class: 'see'},
               picture?.node ?? element('p', {class: 'bad', text:
@@ -187,6 +203,7 @@ export async function trial(main, id, revision) {
                   'here, e reason'}),
               element('div', {class: 'plots'}, gaps.node, residuals.node)),
           element('div', {class: 'tell'}, summary,
+              proposalNote(data),
               warnings.length === 0 ? '' : element('ul', {class: 'warnings'},
                   ...warnings.map(w => element('li', {text: w}))),
               (view.corrections ?? []).length === 0 ? '' :
@@ -194,7 +211,8 @@ export async function trial(main, id, revision) {
                                 view.corrections.join('; ')}),
               old ? '' : correcting.node,
               element('h2', {text: 'History'}),
-              historyList(data.history, data.row.revision, data.row.id,
+              historyList(data.history, data.row.revision,
+                          data.last_revision, data.row.id,
                           async n => {
                 correcting.why.value ||= `revision ${n} was right`;
                 await correcting.store({restore: n});
@@ -229,7 +247,7 @@ export async function trial(main, id, revision) {
     async changed() {
       const now = await get(`/api/trials/${data.row.id}`);
       if (now.last_revision === data.last_revision) return;
-      const last = now.history[now.history.length - 1];
+      const last = now.history.find(h => h.revision === now.last_revision);
       if (correcting.pending() || old) {
         tell(`Revision ${last.revision} was made meanwhile: ${last.kind} by ` +
              `${last.who}${last.why ? ': ' + last.why : ''}.`, true);

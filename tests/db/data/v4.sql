@@ -1,7 +1,6 @@
--- A store of version 4, as touchdown 0.1.0 wrote it (register add, campaign new,
--- log three times, correct, exclude, register change), by `sqlite3 lab.db .dump`,
--- with the two pragmas that .dump leaves out. Frozen: a store of this version
--- must be read for ever.
+-- A store of version 4: that of v3.sql with the columns that version 4 added to
+-- contacts, and a proposal (revision 6) of a trial that a person corrected.
+-- Frozen: a store of this version must be read for ever.
 PRAGMA application_id = 1413763924; PRAGMA user_version = 4;
 PRAGMA foreign_keys=OFF;
 BEGIN TRANSACTION;
@@ -205,6 +204,7 @@ INSERT INTO revisions VALUES(2,'c7d4ce6f-f3eb-47dc-82e8-120b487c0482',2,1,'logge
 INSERT INTO revisions VALUES(3,'848385fa-8d84-49e7-8927-2c76512029bf',3,1,'logged',3,NULL,'Ada','','2026-11-21T11:19:25.483Z',NULL);
 INSERT INTO revisions VALUES(4,'549b3f82-12d2-48cf-b15a-a054fe7d1f16',2,2,'corrected',4,NULL,'Bob','seen again','2026-11-21T11:19:27.004Z',NULL);
 INSERT INTO revisions VALUES(5,'f8c90b34-2756-470f-9983-78d8df1c083e',2,3,'excluded',4,5,'Bob','the lamp failed','2026-11-21T11:19:27.780Z',NULL);
+INSERT INTO revisions VALUES(6,'2f6c1a5e-7d1b-4c55-9a41-0f7b8d3e6c21',2,4,'proposed',6,5,'touchdown','','2026-11-22T08:00:00.000Z',NULL);
 CREATE TABLE exclusions (
   revision_id INTEGER PRIMARY KEY REFERENCES revisions (id)
     DEFERRABLE INITIALLY DEFERRED,
@@ -234,6 +234,7 @@ INSERT INTO statements VALUES(1,'','approach','sphere',0.040000000000000000832,2
 INSERT INTO statements VALUES(2,'','approach','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,1,'0.1.0','','');
 INSERT INTO statements VALUES(3,'','radius','rectangle',NULL,NULL,NULL,NULL,'not a sphere',0.059999999999999997779,2.0000000000000001634e-05,NULL,NULL,NULL,0.020000000000000000416,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,1,'0.1.0','','');
 INSERT INTO statements VALUES(4,'','approach','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,1,'0.1.0','','');
+INSERT INTO statements VALUES(6,'','approach','sphere',0.040000000000000000832,2.0000000000000001634e-05,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,NULL,NULL,'not a rectangle',NULL,NULL,1,'0.1.0','','{}');
 CREATE TABLE contacts (
   revision_id INTEGER NOT NULL REFERENCES statements (revision_id),
   ordinal INTEGER NOT NULL CHECK (ordinal >= 0),
@@ -293,6 +294,7 @@ INSERT INTO contacts VALUES(1,0,1,'',0,NULL,'bounce',NULL,'stated by hand',0,NUL
 INSERT INTO contacts VALUES(2,0,1,'',0,NULL,'slide',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.13962634015954636379,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
 INSERT INTO contacts VALUES(3,0,1,'',0,'leading','bounce',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.69813170079773179121,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
 INSERT INTO contacts VALUES(4,0,1,'',0,NULL,'roll',NULL,'stated by hand',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.13962634015954636379,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand');
+INSERT INTO contacts VALUES(6,0,1,'',0,NULL,'undecided',NULL,'the film ends while the body rises',0,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.13962634015954636379,0.0087266462599716477371,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.00080000000000000003833,0.0,NULL,NULL,NULL,NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',NULL,NULL,NULL,NULL,'not recorded by hand',0.0020999999999999998737,0.00029999999999999997372,NULL,NULL,NULL);
 CREATE TABLE budget_lines (
   revision_id INTEGER NOT NULL,
   ordinal INTEGER NOT NULL,

@@ -54,10 +54,11 @@ struct TrialGroup {
 };
 
 // Splits trials into groups, in the order of (campaign, body, kind of angle,
-// origin). A trial is left out, with the reason, where it is excluded or where
-// its contact angle is absent. A decided state keeps its P(bounce) where that
-// says the same as the label, else it becomes 1 or 0; an undecided one keeps
-// its P(bounce), or 0.5 (which says nothing) where the rebound was not filmed.
+// origin). A trial is left out, with the reason, where it is excluded, where
+// its contact angle is absent, or where it is undecided without a P(bounce)
+// from 0.025 to 0.975: its rebound was not filmed to its top, so that it says
+// nothing of the boundary. A decided state keeps its P(bounce) where that says
+// the same as the label, else it becomes 1 or 0.
 std::vector<TrialGroup> GroupTrials(std::span<const core::Trial> trials);
 
 }  // namespace touchdown::analysis

@@ -31,4 +31,13 @@ struct Campaign {
   double margin_rad = 0.017453292519943295;
 };
 
+// The surface of the campaigns that check shots are logged in: a known body
+// dropped from a known height, to see that camera and software are as they
+// were. Check shots have no boundary angle and no next angle, and no theory
+// speaks of them; they have a control chart.
+inline constexpr const char* kCheckShotSurface = "check shot, dropped";
+inline bool HasCheckShots(const Campaign& campaign) {
+  return campaign.surface == kCheckShotSurface;
+}
+
 }  // namespace touchdown::core

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,7 +20,16 @@ namespace touchdown::db {
 //   corrected  a person changed what an earlier revision stated
 //   excluded, included   the trial no longer, or again, counts
 //   merged     two stores had diverged; restates the later of the two
-enum class RevisionKind { kLogged, kCorrected, kExcluded, kIncluded, kMerged };
+//   proposed   a program analysed again what a person had corrected: never in
+//              force, until a person corrects the trial to what it says
+enum class RevisionKind {
+  kLogged,
+  kCorrected,
+  kExcluded,
+  kIncluded,
+  kMerged,
+  kProposed
+};
 std::string_view Name(RevisionKind kind);
 std::optional<RevisionKind> ParseRevisionKind(std::string_view word);
 
@@ -30,6 +40,14 @@ struct Revision {
   RevisionKind kind = RevisionKind::kLogged;
   core::Trial trial;
 };
+
+// The last of `history` (oldest first) that is not a proposal: the revision in
+// force. `history` must not be empty; its first is never a proposal.
+const Revision& RevisionInForce(std::span<const Revision> history);
+
+// The last proposal of `history`, where nothing was stated after it; null where
+// no proposal waits for a person.
+const Revision* OpenProposal(std::span<const Revision> history);
 
 // One difference between two revisions, for a person: "approach_angle_rad",
 // "0.35 +- 0.001", "0.36 +- 0.001".
@@ -95,6 +113,8 @@ struct Logged {
   std::string id;
   std::int64_t revision = 0;
   bool is_new = true;  // false: a further revision of a trial already there
+  // A proposal: the person's correction that was there stays in force.
+  bool is_proposal = false;
 };
 
 }  // namespace touchdown::db

@@ -71,7 +71,9 @@ class Store {
   // Records a trial: a new one, or, where the same clip is already in the same
   // campaign (or `trial.id` names a trial), a further revision of it. Ignores
   // revision and recorded_at_utc, which the store gives. A trial that had been
-  // excluded stays so. Body and angle kind must be those of the campaign, which
+  // excluded stays so. An analysis (a trial with a document) of what a person
+  // has corrected becomes a proposal: it is kept, and the correction stays in
+  // force. Body and angle kind must be those of the campaign, which
   // must exist; the origin of a trial cannot change.
   Logged LogTrial(const core::Trial& trial);
   // The same for many, in one transaction: all or none. A trial that LogTrial
@@ -80,7 +82,7 @@ class Store {
 
   // A person's revision. `seen` is the trial as Find gave it, with the fields
   // changed that are wrong; if somebody revised the trial since (seen.revision
-  // is no longer the last), throws StoreError. Changes() tells from what to
+  // is no longer in force), throws StoreError. Changes() tells from what to
   // what.
   Logged Correct(const core::Trial& seen, std::string_view who,
                  std::string_view why);
@@ -102,6 +104,9 @@ class Store {
   // its id); nothing where it has none.
   std::optional<LastLogged> FindLogged(std::string_view campaign,
                                        std::string_view clip_id) const;
+  // Analyses that wait for a person (OpenProposal). With `id`, of that trial
+  // alone.
+  std::vector<core::Trial> Proposals(std::string_view id = "") const;
   // Every revision of a trial, oldest first; empty if there is no such id.
   std::vector<Revision> History(std::string_view id) const;
   // Calls `visit` with the history of every trial, oldest trial first, from one
