@@ -67,7 +67,17 @@ int Run(const Flags& flags) {
   }
   ProgressBar bar("analyze");
   options.progress = [&bar](double share) { bar.Show(share); };
-  const pipeline::Analysis analysis = pipeline::Analyze(flags.clip, options);
+  const pipeline::Analysis analysis = [&] {
+    try {
+      return pipeline::Analyze(flags.clip, options);
+    } catch (const pipeline::Unfinished& unfinished) {
+      bar.Finish();
+      if (flags.json) {
+        fmt::print("{}\n", pipeline::ToJson(unfinished.so_far()));
+      }
+      throw;
+    }
+  }();
   bar.Finish();
   if (!flags.out.empty()) pipeline::WriteEvidence(analysis, options, flags.out);
   std::optional<pipeline::Logged> logged;

@@ -1,5 +1,7 @@
 #include "app/cli/analyze_flags.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <tuple>
@@ -16,6 +18,14 @@ namespace {
 constexpr DefaultU kReading = {.relative = 1e-3};
 
 }  // namespace
+
+double ToLimit(double limit_s) {
+  if (!(limit_s > 0.0)) {
+    throw std::invalid_argument(fmt::format(
+        "--limit-s is {:g}, must be above 0: seconds for one clip", limit_s));
+  }
+  return limit_s;
+}
 
 pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   pipeline::AnalyzeOptions options;
@@ -76,7 +86,16 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
     options.bounce_height_m = *flags.bounce_height_mm * core::kMillimetre;
   }
   options.stop_early = flags.stop_early;
+  options.limit_s = ToLimit(flags.limit_s);
   return options;
+}
+
+void AddLimitFlag(CLI::App& command, double& limit_s) {
+  command
+      .add_option("--limit-s", limit_s,
+                  "an analysis that takes longer is ended, with how far it got "
+                  "(seconds of wall time for one clip)")
+      ->capture_default_str();
 }
 
 void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
@@ -121,6 +140,7 @@ void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
                    "the first contact's state is decided beyond doubt; the "
                    "rest is not looked at (raw recordings are always looked "
                    "at whole)");
+  AddLimitFlag(command, flags.limit_s);
 }
 
 }  // namespace touchdown::cli

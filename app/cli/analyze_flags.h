@@ -30,7 +30,13 @@ struct AnalyzeFlags {
   std::string angle_kind;
   std::optional<double> bounce_height_mm;
   bool stop_early = false;
+  double limit_s = pipeline::kUsualLimit_s;
 };
+
+// --limit-s alone, for commands that analyse clips of their own.
+void AddLimitFlag(CLI::App& command, double& limit_s);
+// Throws std::invalid_argument for a limit that is none.
+double ToLimit(double limit_s);
 
 void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags);
 

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "app/cli/command.h"
 #include "app/cli/condition_flags.h"
 #include "app/cli/folder_watch.h"
+#include "app/cli/interruption.h"
 #include "app/cli/progress.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
@@ -50,10 +52,20 @@ struct Flags {
   bool columns = false;
 };
 
-// Set by SIGINT and SIGTERM: the watch ends after what is being analysed.
-volatile std::sig_atomic_t interrupted = 0;
+// For the handler of SIGINT and SIGTERM: the watch ends, and what is being
+// analysed with it.
+std::atomic<bool> interrupted = false;
+std::atomic<bool> analysing = false;
+std::atomic<int> ended_by = 0;  // the signal, where it cut an analysis off
+static_assert(std::atomic<bool>::is_always_lock_free);
+static_assert(std::atomic<int>::is_always_lock_free);
 
-void OnSignal(int /*signal*/) { interrupted = 1; }
+void OnSignal(int signal) {
+  interrupted = true;
+  if (!analysing) return;
+  ended_by = signal;
+  EndSoon(signal);
+}
 
 void CatchSignals() {
   struct sigaction action = {};
@@ -164,21 +176,24 @@ pipeline::BatchOptions OptionsOf(const Flags& flags, const db::Store& store,
              fmt::format("{} of {}, {} failed, ", progress.done, progress.all,
                          progress.failed));
   };
-  options.stop = [] { return interrupted != 0; };
+  options.stop = [] { return interrupted.load(); };
   return options;
 }
 
 // Takes what comes until SIGINT or SIGTERM.
-int WatchFolder(const Flags& flags, const pipeline::AnalyzeOptions& analyze) {
+int WatchFolder(const Flags& flags, pipeline::AnalyzeOptions analyze) {
+  analyze.interrupted = &interrupted;
   auto store = OpenStore(flags);
   CatchSignals();
   std::vector<TriageEntry> all;
   const auto take = [&](const std::vector<fs::path>& complete) {
     ProgressBar bar("batch");
+    analysing = true;
     const auto entries = pipeline::RunBatch(
         store,
         pipeline::ClipsOf(complete, flags.source, flags.campaign, analyze),
         OptionsOf(flags, store, bar));
+    analysing = false;
     bar.Finish();
     for (const TriageEntry& entry : entries) {
       if (!flags.json) {
@@ -198,13 +213,15 @@ int WatchFolder(const Flags& flags, const pipeline::AnalyzeOptions& analyze) {
   options.wait = [&](bool growing) {
     // Of a network drive nothing is heard: look now and then.
     constexpr std::chrono::milliseconds kNowAndThen{10000};
-    if (interrupted == 0) {
+    if (!interrupted) {
       changes.Wait(growing ? pipeline::Settling::kQuiet : kNowAndThen);
     }
-    return interrupted == 0;
+    return !interrupted;
   };
   pipeline::Watch(flags.source, options, take);
-  return Finish(std::move(all), flags);
+  const int status = Finish(std::move(all), flags);
+  constexpr int kBySignal = 128;  // as shells count
+  return ended_by != 0 ? kBySignal + ended_by : status;
 }
 
 std::vector<pipeline::BatchClip> ListClips(

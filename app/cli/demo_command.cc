@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/progress.h"
 #include "app/pipeline/demo.h"
@@ -18,6 +19,7 @@ namespace {
 struct Flags {
   std::string out = "touchdown-demo";
   std::uint64_t seed = 1;
+  double limit_s = pipeline::kUsualLimit_s;
 };
 
 std::string TwoWords(core::MotionState state) {
@@ -29,6 +31,7 @@ int Run(const Flags& flags) {
   pipeline::DemoOptions options;
   options.folder = flags.out;
   options.seed = flags.seed;
+  options.limit_s = ToLimit(flags.limit_s);
   ProgressBar bar("demo");
   options.progress = [&bar](double share, const std::string&) {
     bar.Show(share);
@@ -76,6 +79,7 @@ void AddDemo(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--seed", flags->seed, "of the clips' noise")
       ->capture_default_str();
+  AddLimitFlag(*command, flags->limit_s);
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });
 }

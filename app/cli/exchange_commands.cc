@@ -21,6 +21,7 @@
 #include "app/report/trial_csv.h"
 #include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/register.h"
@@ -105,6 +106,7 @@ int Export(const ExportFlags& flags) {
   }
   // Whole or absent: written beside under another name, then renamed.
   const fs::path part = fmt::format("{}.{}.part", flags.out, getpid());
+  const core::Unfinished unfinished(part);
   {
     std::ofstream out(part, std::ios::binary);
     WriteAll(out, store, flags, format);
@@ -268,6 +270,7 @@ class Rehearsal {
           fs::temp_directory_path().string()));
     }
     folder_ = name;
+    unfinished_.emplace(folder_);
   }
   ~Rehearsal() {
     std::error_code ignored;
@@ -279,6 +282,7 @@ class Rehearsal {
 
  private:
   fs::path folder_;
+  std::optional<core::Unfinished> unfinished_;
 };
 
 // All of the paper's Table 1 or, where one of its campaigns is there, nothing.

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "app/cli/command.h"
+#include "app/cli/interruption.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 
@@ -85,6 +86,7 @@ int Complain(int status, const char* what) {
 
 int main(int argc, char** argv) {
   StopIdleThreads();
+  touchdown::cli::CatchInterruptions();
   // stdout carries results only.
   spdlog::set_default_logger(spdlog::stderr_color_mt("touchdown"));
   spdlog::set_pattern("touchdown: %^%l%$: %v");

@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "app/cli/command.h"
+#include "app/cli/interruption.h"
 #include "app/cli/store_flags.h"
 #include "app/pipeline/thrower.h"
 #include "app/review/server.h"
@@ -98,6 +99,8 @@ int Run(const ReviewFlags& flags) {
   std::thread waiter([&] {
     int signal = 0;
     sigwait(&signals, &signal);
+    // Requests that are answered may take long: an analysis does.
+    if (!ended) EndSoon(signal);
     // A server that has not begun yet forgets that it is to end.
     for (; !ended; std::this_thread::sleep_for(kStopEvery)) server.Stop();
   });

@@ -13,6 +13,7 @@
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/folder_watch.h"
+#include "app/cli/interruption.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/cli/terminal_lines.h"
@@ -50,11 +51,14 @@ struct Flags {
 // For the handlers of signals.
 volatile std::sig_atomic_t ended = 0;
 volatile std::sig_atomic_t stopped = 0;  // the rig, and nobody was told
+volatile std::sig_atomic_t analysing = 0;
 std::atomic<rig::Driver*> driven = nullptr;
 static_assert(std::atomic<rig::Driver*>::is_always_lock_free);
 
 // Whatever the signal, a rig that moves is stopped first. Ctrl-C does no more
-// than that while there is something to stop; the next one ends the session.
+// than that while there is something to stop; the next one ends the session,
+// and what it analyses with it: the recording is taken when it is started
+// again.
 void OnSignal(int signal) {
   rig::Driver* const driver = driven.load();
   const bool moves = driver != nullptr && !driver->is_stopped();
@@ -62,7 +66,9 @@ void OnSignal(int signal) {
     driver->Stop();
     stopped = 1;
   }
-  if (!moves || signal != SIGINT) ended = 1;
+  if (moves && signal == SIGINT) return;
+  ended = 1;
+  if (analysing != 0) EndSoon(signal);
 }
 
 // While it lives, a signal stops the rig. However it ends, nobody is left with
@@ -156,7 +162,10 @@ void Serve(const Flags& flags, session::Session& session,
   pipeline::Watch(flags.watch, options,
                   [&](const std::vector<fs::path>& complete) {
                     for (const fs::path& recording : complete) {
-                      if (ended == 0) session.Take(recording);
+                      if (ended != 0) return;
+                      analysing = 1;
+                      session.Take(recording);
+                      analysing = 0;
                     }
                   });
 }

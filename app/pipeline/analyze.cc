@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <limits>
 
 #include "app/pipeline/body_size.h"
 #include "app/pipeline/check_options.h"
@@ -15,6 +16,7 @@
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/stop_early.h"
 #include "app/pipeline/truth_file.h"
+#include "app/pipeline/unfinished_analysis.h"
 #include "app/pipeline/version.h"
 #include "touchdown/calib/ground_lines.h"
 #include "touchdown/vision/background.h"
@@ -105,6 +107,7 @@ void Analyzer::TakeSize(const vision::Track& track) {
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
                        const vision::Track& track) {
+  clip_->cancellation().Check();
   Judged judged;
   judged.ground = ground;
   calib::GroundLine in_image = ground;
@@ -164,6 +167,7 @@ std::optional<Judged> Analyzer::JudgeBest(
 }
 
 void Analyzer::FindGroundAndContacts(vision::Track track) {
+  clip_->cancellation().Enter("the ground is looked for");
   std::vector<calib::GroundLine> candidates;
   if (camera_.ideal_ground) {
     candidates.push_back(*camera_.ideal_ground);
@@ -298,6 +302,7 @@ Analysis Analyzer::Run() {
   result_.options_hash = OptionsHash(options_);
   result_.options = options_;
   result_.options.progress = nullptr;
+  result_.options.interrupted = nullptr;
   result_.warnings = result_.clip.warnings;
   const std::int64_t last =
       options_.last_frame < 0 ? result_.clip.frames : options_.last_frame;
@@ -384,11 +389,46 @@ bool OneBody(const Analysis& analysis) {
   return analysis.body && !analysis.track->several_bodies;
 }
 
+Analysis AnalyzeUntil(std::unique_ptr<vision::Clip> clip,
+                      const AnalyzeOptions& options,
+                      const core::Cancellation& until) {
+  const vision::ClipInfo info = clip->info();
+  CheckOptions(options, info);
+  clip->set_cancellation(until);
+  try {
+    const ClipCalibration camera = FitToClip(options, info);
+    if (options.stop_early && info.format != kRawFormat) {
+      return AnalyzeUntilDecided(std::move(clip), camera, options);
+    }
+    until.Enter("the light is measured");
+    Footage footage = InSteadyLight(std::move(clip), options);
+    until.Enter("the clip is decoded");
+    footage.clip = vision::KeepFrames(std::move(footage.clip),
+                                      KeepOptionsOf(options, info));
+    return AnalyzeFootage(std::move(footage), camera, options);
+  } catch (const core::Cancelled& ended) {
+    if (options.interrupted != nullptr && *options.interrupted) throw;
+    throw UnfinishedAnalysis(info, options, ended.what());
+  }
+}
+
+core::Cancellation UntilOf(const AnalyzeOptions& options) {
+  if (!options.limit_s && options.interrupted == nullptr) return {};
+  return core::Cancellation::After(
+      options.limit_s.value_or(std::numeric_limits<double>::infinity()),
+      options.interrupted);
+}
+
 }  // namespace
+
+Unfinished::Unfinished(const std::string& what, Analysis so_far)
+    : core::InputError(what),
+      so_far_(std::make_shared<const Analysis>(std::move(so_far))) {}
 
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
   const auto start = Clock::now();
+  const core::Cancellation until = UntilOf(options);
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
   clip_options.decoder_threads = options.decoder_threads;
@@ -405,29 +445,38 @@ Analysis Analyze(const std::filesystem::path& path,
         digest_s = Since(begun);
         return digest;
       });
-  Analysis analysis = AnalyzeClip(std::move(clip), options);
-  if (analysis.clip.has_colour && !OneBody(analysis)) {
-    for (const vision::Channel channel :
-         {vision::Channel::kRedDifference, vision::Channel::kBlueDifference}) {
-      clip_options.channel = channel;
-      Analysis other =
-          AnalyzeClip(vision::OpenClip(path, clip_options), options);
-      if (!OneBody(other)) continue;
-      other.channel = channel;
-      other.scene_model.used.push_back(std::string(vision::Name(channel)));
-      other.warnings.push_back(
-          fmt::format("in luma no single body stands out; the {} was used",
-                      vision::Name(channel)));
-      analysis = std::move(other);
-      break;
+  const auto complete = [&](Analysis& analysis) {
+    analysis.clip_id = id.get();
+    analysis.timing.digest_s = digest_s;
+    analysis.simulated = HasTruthFile(path);
+    analysis.timing.open_s = open_s;
+    analysis.timing.total_s = Since(start);
+  };
+  try {
+    Analysis analysis = AnalyzeUntil(std::move(clip), options, until);
+    if (analysis.clip.has_colour && !OneBody(analysis)) {
+      for (const vision::Channel channel : {vision::Channel::kRedDifference,
+                                            vision::Channel::kBlueDifference}) {
+        clip_options.channel = channel;
+        Analysis other =
+            AnalyzeUntil(vision::OpenClip(path, clip_options), options, until);
+        if (!OneBody(other)) continue;
+        other.channel = channel;
+        other.scene_model.used.push_back(std::string(vision::Name(channel)));
+        other.warnings.push_back(
+            fmt::format("in luma no single body stands out; the {} was used",
+                        vision::Name(channel)));
+        analysis = std::move(other);
+        break;
+      }
     }
+    complete(analysis);
+    return analysis;
+  } catch (const Unfinished& unfinished) {
+    Analysis so_far = unfinished.so_far();
+    complete(so_far);
+    throw Unfinished(unfinished.what(), std::move(so_far));
   }
-  analysis.clip_id = id.get();
-  analysis.timing.digest_s = digest_s;
-  analysis.simulated = HasTruthFile(path);
-  analysis.timing.open_s = open_s;
-  analysis.timing.total_s = Since(start);
-  return analysis;
 }
 
 Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,
@@ -437,16 +486,7 @@ Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,
 
 Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
                      const AnalyzeOptions& options) {
-  const vision::ClipInfo info = clip->info();
-  CheckOptions(options, info);
-  const ClipCalibration camera = FitToClip(options, info);
-  if (options.stop_early && info.format != kRawFormat) {
-    return AnalyzeUntilDecided(std::move(clip), camera, options);
-  }
-  Footage footage = InSteadyLight(std::move(clip), options);
-  footage.clip =
-      vision::KeepFrames(std::move(footage.clip), KeepOptionsOf(options, info));
-  return AnalyzeFootage(std::move(footage), camera, options);
+  return AnalyzeUntil(std::move(clip), options, UntilOf(options));
 }
 
 }  // namespace touchdown::pipeline

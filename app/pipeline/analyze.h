@@ -2,6 +2,7 @@
 //   Clip -> Frame -> Outline -> Pose(t) -> Trajectory -> Contact -> MotionState
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -14,6 +15,7 @@
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/body.h"
+#include "touchdown/core/errors.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/vision/clip.h"
 #include "touchdown/vision/contact.h"
@@ -21,6 +23,12 @@
 #include "touchdown/vision/track.h"
 
 namespace touchdown::pipeline {
+
+// Wall time after which one clip's analysis is given up where nobody says
+// otherwise, in seconds. 120: no recording that we know takes half of it on an
+// idle machine; a person or a batch that waits longer for one clip waits in
+// vain mostly.
+inline constexpr double kUsualLimit_s = 120.0;
 
 struct AnalyzeOptions {
   std::optional<double> fps;
@@ -39,6 +47,11 @@ struct AnalyzeOptions {
   std::optional<double> bounce_height_m;       // nothing: default convention
   std::function<void(double share)> progress;  // may be empty
   std::int32_t decoder_threads = 0;            // as in vision::ClipOptions
+  // Wall time after which the analysis ends with Unfinished; nothing: never. It
+  // decides no answer: the options' hash leaves it out.
+  std::optional<double> limit_s;
+  // True ends the analysis with core::Cancelled; must outlive it; may be null.
+  const std::atomic<bool>* interrupted = nullptr;
   bool digest = true;  // clip.id, by which a logged trial knows its clip
 
   // Frames that come after the first contact's state is decided beyond doubt
@@ -99,11 +112,26 @@ struct Analysis {
   std::vector<std::string> corrections;  // by a person, one sentence each
 };
 
+// The analysis was ended by its limit (AnalyzeOptions::limit_s). what() is one
+// line: which clip, how far it got, what to do.
+class Unfinished : public core::InputError {
+ public:
+  Unfinished(const std::string& what, Analysis so_far);
+
+  // What is true all the same: the clip. Body, ground and contact are absent,
+  // with the limit as the reason. Not to be logged as a trial.
+  const Analysis& so_far() const { return *so_far_; }
+
+ private:
+  std::shared_ptr<const Analysis> so_far_;
+};
+
 // Analyses the clip at `path`. Where a colour recording shows nothing, or
 // several bodies, in luma (a shadow as dark as the body), its colour
 // differences are tried. What science cannot say is in the result, with
 // reasons; throws std::invalid_argument for impossible options and
-// core::InputError for unreadable clips and for calibrations of other pictures.
+// core::InputError for unreadable clips and for calibrations of other pictures,
+// Unfinished at the limit.
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options = {});
 

@@ -16,6 +16,7 @@
 #include "app/pipeline/evidence.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/options_hash.h"
+#include "touchdown/core/cancellation.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/clip_digest.h"
 
@@ -92,6 +93,9 @@ class Batch {
         const std::lock_guard lock(mutex_);
         waiting_.emplace(*index, std::move(answer));
         Settle();
+      } catch (const core::Cancelled&) {  // as `stop` would, but at once
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
       } catch (...) {  // trouble with the store: the batch ends
         const std::lock_guard lock(mutex_);
         if (!fatal_) fatal_ = std::current_exception();
@@ -103,7 +107,7 @@ class Batch {
   std::optional<std::size_t> Claim() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] {
-      return fatal_ || next_ == clips_.size() ||
+      return fatal_ || stopped_ || next_ == clips_.size() ||
              next_ < entries_.size() + window_;
     });
     stopped_ = stopped_ || (options_.stop && options_.stop());
@@ -153,6 +157,8 @@ class Batch {
       trial.conditions = options_.conditions;
       answer.what = std::move(trial);
     } catch (const core::StoreError&) {
+      throw;
+    } catch (const core::Cancelled&) {
       throw;
     } catch (const std::exception& error) {
       answer.what = Failed{error.what()};

@@ -80,7 +80,9 @@ struct BatchOptions {
 // be analysed or logged is an entry with its reason and stops nothing; trouble
 // with the store itself (core::StoreError) ends the batch.
 //
-// One entry a recording, in the order of `clips`; fewer if `stop` said so.
+// One entry a recording, in the order of `clips`; fewer if `stop` said so or an
+// analysis was interrupted (AnalyzeOptions::interrupted): what was under way
+// then leaves nothing.
 // Throws core::StoreError also if a campaign does not exist.
 std::vector<TriageEntry> RunBatch(db::Store& store,
                                   std::span<const BatchClip> clips,

@@ -123,7 +123,8 @@ DemoResult RunDemo(const DemoOptions& options) {
     simulate.folder = options.folder / "clips";
     simulate.seed = options.seed;
     const SimulatedClip made = WriteShot(shot, simulate);
-    const AnalyzeOptions analyze = OptionsFor(CampaignOf(shot));
+    AnalyzeOptions analyze = OptionsFor(CampaignOf(shot));
+    analyze.limit_s = options.limit_s;
     analyses[at] = Analyze(made.clip, analyze);
     WriteEvidence(analyses[at], analyze,
                   options.folder / "evidence" / shot.name);

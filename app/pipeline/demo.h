@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@
 namespace touchdown::pipeline {
 
 struct DemoOptions {
-  std::filesystem::path folder;  // made if it is not there
-  std::uint64_t seed = 1;        // of the clips' noise
-  int threads = 0;               // 0: one for each core
+  std::filesystem::path folder;   // made if it is not there
+  std::uint64_t seed = 1;         // of the clips' noise
+  int threads = 0;                // 0: one for each core
+  std::optional<double> limit_s;  // as AnalyzeOptions::limit_s, of each clip
   std::function<void(double share, const std::string& what)> progress;
 };
 

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
+#include <optional>
+#include <string>
 
 #include "app/pipeline/undistorted_clip.h"
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/contact_sheet.h"
 #include "touchdown/vision/image_file.h"
@@ -61,20 +63,11 @@ std::string Title(const Analysis& analysis) {
   return title;
 }
 
-}  // namespace
-
-void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
-                   const std::filesystem::path& folder) {
-  std::error_code trouble;
-  std::filesystem::create_directories(folder, trouble);
-  if (trouble) {
-    throw core::InputError(fmt::format("{}: cannot make this folder: {}",
-                                       folder.string(), trouble.message()));
-  }
-  report::WriteTextFile(folder / "track.csv", TrackCsv(analysis));
-  report::WriteTextFile(folder / "analysis.json", ToJson(analysis) + "\n");
+// Nothing where no body was followed over a ground.
+std::optional<vision::ColourImage> ContactSheetOf(
+    const Analysis& analysis, const AnalyzeOptions& options) {
   if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
-    return;
+    return std::nullopt;
   }
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
@@ -87,10 +80,33 @@ void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
   }
   vision::ContactSheetOptions sheet_options;
   sheet_options.title = Title(analysis);
-  const vision::ColourImage sheet = vision::DrawContactSheet(
-      *clip, track, *analysis.plane, analysis.contacts, sheet_options);
-  vision::WritePngRgb(folder / "contact.png", sheet.width_px, sheet.height_px,
-                      sheet.rgb);
+  return vision::DrawContactSheet(*clip, track, *analysis.plane,
+                                  analysis.contacts, sheet_options);
+}
+
+}  // namespace
+
+void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
+                   const std::filesystem::path& folder) {
+  // All of it is made before any is written: who ends the program between two
+  // files leaves none.
+  const std::string track = TrackCsv(analysis);
+  const std::string document = ToJson(analysis) + "\n";
+  const std::optional<vision::ColourImage> sheet =
+      ContactSheetOf(analysis, options);
+  const core::AllOrNothing together;
+  std::error_code trouble;
+  std::filesystem::create_directories(folder, trouble);
+  if (trouble) {
+    throw core::InputError(fmt::format("{}: cannot make this folder: {}",
+                                       folder.string(), trouble.message()));
+  }
+  report::WriteTextFile(folder / "track.csv", track);
+  report::WriteTextFile(folder / "analysis.json", document);
+  if (sheet) {
+    vision::WritePngRgb(folder / "contact.png", sheet->width_px,
+                        sheet->height_px, sheet->rgb);
+  }
 }
 
 }  // namespace touchdown::pipeline

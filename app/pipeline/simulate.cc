@@ -16,6 +16,7 @@
 #include "app/report/text_file.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 #include "touchdown/vision/clip_writer.h"
 #include "touchdown/vision/render.h"
 
@@ -253,15 +254,23 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   }
   RefuseFolderInUse(out.clip, options.format);
   const std::optional<std::string> old_truth = ReadText(out.truth_file);
-  report::WriteTextFile(
-      out.truth_file,
+  const std::string truth =
       TruthText(shot, out.truth, out.clip.filename().string(),
-                std::string(Word(options.format)), options.seed));
+                std::string(Word(options.format)), options.seed);
+  // A clip without its truth would pass for a recording: the truth comes first,
+  // when all of the clip is rendered, and neither without the other.
+  std::optional<core::AllOrNothing> together;
   std::mt19937_64 engine = NoiseEngine(options.seed, shot.name);
   std::int64_t index = 0;
   vision::SensorImage image;
   const auto next = [&]() -> std::optional<core::Frame> {
-    if (index == shot.frames) return std::nullopt;
+    if (index == shot.frames) {
+      if (!together) {
+        together.emplace();
+        report::WriteTextFile(out.truth_file, truth);
+      }
+      return std::nullopt;
+    }
     if (options.progress) {
       options.progress(static_cast<double>(index) /
                        static_cast<double>(shot.frames));

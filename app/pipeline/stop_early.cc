@@ -18,7 +18,9 @@ namespace {
 // A clip that another owns.
 class Borrowed final : public vision::Clip {
  public:
-  explicit Borrowed(vision::Clip& clip) : clip_(clip) {}
+  explicit Borrowed(vision::Clip& clip) : clip_(clip) {
+    set_cancellation(clip.cancellation());
+  }
 
   const vision::ClipInfo& info() const override { return clip_.info(); }
   bool views_last() const override { return clip_.views_last(); }

@@ -26,7 +26,9 @@ double LevelAt(const core::Frame& frame, core::PixelPoint p) {
 class Straightened final : public vision::Clip {
  public:
   Straightened(std::unique_ptr<vision::Clip> clip, const calib::Lens& lens)
-      : clip_(std::move(clip)), lens_(lens) {}
+      : clip_(std::move(clip)), lens_(lens) {
+    set_cancellation(clip_->cancellation());
+  }
 
   const vision::ClipInfo& info() const override { return clip_->info(); }
 

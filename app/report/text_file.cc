@@ -10,12 +10,14 @@
 #include <iterator>
 
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 
 namespace touchdown::report {
 
 void WriteTextFile(const std::filesystem::path& path, std::string_view text) {
   std::filesystem::path part = path;
   part += fmt::format(".part{}", getpid());
+  const core::Unfinished unfinished(part);
   const auto fail = [&](int error) {
     std::remove(part.c_str());
     throw core::InputError(fmt::format("{}: cannot be written: {}",

@@ -62,6 +62,7 @@ db::Logged LogRecording(const std::filesystem::path& store,
   const core::Campaign campaign = pipeline::RequireCampaign(
       db::Store::Open(store, db::OpenMode::kRead), name);
   pipeline::FillFromCampaign(campaign, options);
+  options.limit_s = pipeline::kUsualLimit_s;
   core::Trial trial =
       pipeline::LoggableTrial(pipeline::Analyze(clip, options), &campaign);
   pipeline::Apply(setting, trial);

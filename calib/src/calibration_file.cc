@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::calib {
@@ -353,6 +354,7 @@ void WriteCalibration(const std::filesystem::path& path,
                       const Calibration& calibration) {
   std::filesystem::path partial = path;
   partial += ".part";
+  const core::Unfinished unfinished(partial);
   {
     std::ofstream out(partial, std::ios::binary | std::ios::trunc);
     out << CalibrationText(calibration);

@@ -4,10 +4,13 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <vector>
 
 #include "schema.h"
 #include "statement.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 #include "touchdown/db/maintenance.h"
 
 namespace touchdown::db {
@@ -31,10 +34,15 @@ void Sync(const fs::path& path) {
 // Removes what is left of a copy that failed.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {
+    for (const char* suffix : kSuffixes) {
+      unfinished_.push_back(
+          std::make_unique<core::Unfinished>(path_.string() + suffix));
+    }
+  }
   ~TemporaryFile() {
     std::error_code ignored;
-    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    for (const char* suffix : kSuffixes) {
       fs::remove(path_.string() + suffix, ignored);
     }
   }
@@ -43,7 +51,10 @@ class TemporaryFile {
   const fs::path& path() const { return path_; }
 
  private:
+  static constexpr const char* kSuffixes[] = {"", "-wal", "-shm", "-journal"};
+
   fs::path path_;
+  std::vector<std::unique_ptr<core::Unfinished>> unfinished_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 // instant. TOUCHDOWN_LONG_TESTS=1 runs the long form.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <cstdlib>
 #include <ctime>
@@ -14,6 +15,7 @@
 #include "app/session/session_file.h"
 #include "tests/rig/driver/simulated_controller.h"
 #include "tests/session/bench.h"
+#include "tests/support/busy_clip.h"
 #include "tests/support/program.h"
 #include "tests/support/running_program.h"
 #include "touchdown/db/maintenance.h"
@@ -74,6 +76,21 @@ TEST_F(SessionCommand, TakesWhatComesAndEndsWhenTold) {
   RunningProgram again(Arguments({"--no-check"}));
   again.Until("known, trial");
   EXPECT_EQ(again.End(SIGTERM), 0);
+}
+
+TEST_F(SessionCommand, CtrlCEndsWhatItAnalyses) {
+  RunningProgram session(Arguments({"--operator", "A. Lee", "--no-check"}));
+  session.Until("press Enter");
+  session.Type("");
+  session.Until("predicted");
+  testing::WriteBusyClip(bench_.films() / "busy.mraw", 400);
+  while (ReadSession(bench_.db())->phase != Phase::kAnalysing) sched_yield();
+  constexpr int kBySignal = 128;  // as shells count
+  EXPECT_EQ(session.End(SIGINT), kBySignal + SIGINT);
+  EXPECT_THAT(Trials(), IsEmpty());
+  // Another may begin where it was.
+  RunningProgram again(Arguments({"--no-check"}));
+  EXPECT_THAT(again.Until("predicted"), HasSubstr("next shot"));
 }
 
 class SessionAtASerialPort : public SessionCommand {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -70,6 +73,29 @@ class RunningProgram {
     const std::string bytes = line + "\n";
     if (write(in_, bytes.data(), bytes.size()) < 0) {
       throw std::runtime_error("the program reads no more");
+    }
+  }
+  // Waits until the program has worked for so long on its processors; false if
+  // it ended before.
+  bool UntilItHasWorked_s(double least_s) const {
+    const std::string path = "/proc/" + std::to_string(child_) + "/stat";
+    while (true) {
+      std::ifstream in(path);
+      std::string text;
+      std::getline(in, text);
+      // After the name in brackets: state, ten numbers, user and system time.
+      std::istringstream fields(text.substr(text.rfind(')') + 1));
+      std::string state;
+      fields >> state;
+      if (state.empty() || state == "Z") return false;
+      double ticks = 0.0;
+      for (int k = 0; k < 10; ++k) fields >> ticks;
+      double user = 0.0;
+      double system = 0.0;
+      fields >> user >> system;
+      if (user + system >= least_s * static_cast<double>(sysconf(_SC_CLK_TCK)))
+        return true;
+      sched_yield();
     }
   }
   void Signal(int signal) { kill(child_, signal); }

@@ -165,21 +165,25 @@ std::vector<Outline> NextTo(const Outline& outline, double step) {
   return next;
 }
 
-// To the best of the outlines next to it, as long as there is a better one.
-void Climb(const std::vector<Told>& told, double step, Outline& outline) {
+// To the best of the outlines next to it, as long as there is a better one;
+// false where there still is one when the bound of turns is met.
+bool Climb(const std::vector<Told>& told, double step,
+           const core::Cancellation& until, Outline& outline) {
   constexpr int kMostTurns = 60;
   double best = MeritOf(told, outline);
   for (int turn = 0; turn < kMostTurns; ++turn) {
     const double before = best;
     for (const Outline& other : NextTo(outline, step)) {
+      until.Check();
       const double merit = MeritOf(told, other);
       if (merit > best) {
         best = merit;
         outline = other;
       }
     }
-    if (!(best > before)) break;
+    if (!(best > before)) return true;
   }
+  return false;
 }
 
 // Some of them, each standing for as many as make up all.
@@ -196,7 +200,8 @@ std::vector<Told> Thinned(const std::vector<Told>& told, std::size_t most) {
 }  // namespace
 
 std::optional<BestOutline> FindBestOutline(const CoMoving& places,
-                                           core::BodyKind kind, bool finely) {
+                                           core::BodyKind kind, bool finely,
+                                           const core::Cancellation& until) {
   std::vector<Told> told = ToldOf(places);
   LeaveOutFar(told);
   const auto start = StartOf(told, kind);
@@ -210,19 +215,23 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
   best.merit = -std::numeric_limits<double>::infinity();
   for (const double times : {1.0 / kLarger, kLarger}) {
     Outline outline = *start;
+    bool settled = true;
     outline.radius_px *= times;
     outline.half_long_px *= times;
     outline.half_short_px *= times;
     for (const double step : {16.0, 8.0, 4.0, 2.0, 1.0}) {
-      Climb(few, step, outline);
+      settled = Climb(few, step, until, outline);
     }
     if (const double merit = MeritOf(few, outline); merit > best.merit) {
       best.merit = merit;
       best.outline = outline;
+      best.settled = settled;
     }
   }
   if (finely) {
-    for (const double step : {1.0, 0.5}) Climb(told, step, best.outline);
+    for (const double step : {1.0, 0.5}) {
+      best.settled = Climb(told, step, until, best.outline);
+    }
   }
   best.merit = MeritOf(told, best.outline);
   const double cosine = std::cos(best.outline.angle_rad);

@@ -58,6 +58,45 @@ double Misfit(const Chain& chain, std::int64_t frame, const Blob& blob) {
   return Distance(predicted, blob.centre) / reach;
 }
 
+// One body, interrupted: the next chain starts after the last has ended. In
+// order of their first frames.
+void JoinInterrupted(std::vector<Chain>& chains) {
+  constexpr double kSameBody = 1.8;  // ratio of areas and of contrasts
+  // Medians over links: found once a chain, not once a pair.
+  struct Kind {
+    double area = 0.0;
+    double contrast = 0.0;
+  };
+  std::vector<Kind> kinds;
+  kinds.reserve(chains.size());
+  for (const Chain& chain : chains) {
+    kinds.push_back({chain.Area(), chain.Contrast()});
+  }
+  std::vector<bool> joined(chains.size(), false);
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    if (joined[i]) continue;
+    for (std::size_t j = i + 1; j < chains.size(); ++j) {
+      if (joined[j] ||
+          chains[j].links.front().frame <= chains[i].links.back().frame ||
+          !Alike(kinds[i].area, kinds[i].contrast, kinds[j].area,
+                 kinds[j].contrast, kSameBody)) {
+        continue;
+      }
+      chains[i].links.insert(chains[i].links.end(), chains[j].links.begin(),
+                             chains[j].links.end());
+      kinds[i] = {chains[i].Area(), chains[i].Contrast()};
+      joined[j] = true;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    if (joined[i]) continue;
+    if (kept != i) chains[kept] = std::move(chains[i]);
+    ++kept;
+  }
+  chains.resize(kept);
+}
+
 }  // namespace
 
 double Chain::Strength() const {
@@ -127,24 +166,18 @@ std::vector<Chain> ChainBuilder::Finish() {
   open_.clear();
   closed_.clear();
   std::erase_if(chains, [](const Chain& c) { return c.links.size() < 3; });
+  if (chains.size() > options_.most_chains) {
+    left_out_ = chains.size() - options_.most_chains;
+    std::stable_sort(chains.begin(), chains.end(),
+                     [](const Chain& a, const Chain& b) {
+                       return a.Strength() > b.Strength();
+                     });
+    chains.resize(options_.most_chains);
+  }
   std::sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
     return a.links.front().frame < b.links.front().frame;
   });
-  // One body, interrupted: the next chain starts after the last has ended.
-  constexpr double kSameBody = 1.8;  // ratio of areas and of contrasts
-  for (std::size_t i = 0; i < chains.size(); ++i) {
-    for (std::size_t j = i + 1; j < chains.size();) {
-      if (chains[j].links.front().frame > chains[i].links.back().frame &&
-          Alike(chains[i].Area(), chains[i].Contrast(), chains[j].Area(),
-                chains[j].Contrast(), kSameBody)) {
-        chains[i].links.insert(chains[i].links.end(), chains[j].links.begin(),
-                               chains[j].links.end());
-        chains.erase(chains.begin() + static_cast<std::ptrdiff_t>(j));
-      } else {
-        ++j;
-      }
-    }
-  }
+  JoinInterrupted(chains);
   std::erase_if(chains, [](const Chain& c) {
     constexpr double kLeastMotion_px = 2.0;
     constexpr double kLeastShareOfSize = 0.1;

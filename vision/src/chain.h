@@ -28,6 +28,11 @@ struct LinkOptions {
   // A chain ends when it was not seen for so many frames: an occlusion of the
   // body by a post of the rig passes, a new object is not joined to an old one.
   int most_missing = 5;
+
+  // Of more chains only the strongest are joined and ranked, which costs the
+  // square of their number. 2000: a few hundredths of a second; a clip of one
+  // body has some ten, busy everyday footage some hundred.
+  std::size_t most_chains = 2000;
 };
 
 // Adds the blobs of the next frame to the chains: each goes to the chain whose
@@ -43,10 +48,14 @@ class ChainBuilder {
   // first. Things that do not move are left out.
   std::vector<Chain> Finish();
 
+  // How many of them most_chains left out.
+  std::size_t left_out() const { return left_out_; }
+
  private:
   LinkOptions options_;
   std::vector<Chain> open_;
   std::vector<Chain> closed_;
+  std::size_t left_out_ = 0;
 };
 
 // True if the two keep their distance while they move: parts of one body (or a

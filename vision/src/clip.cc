@@ -64,6 +64,7 @@ core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
         "window is {},{},{},{}, must lie within the {}x{} picture", window.x,
         window.y, window.width, window.height, clip.width_px, clip.height_px));
   }
+  cancellation_.Check(index);
   const auto start = std::chrono::steady_clock::now();
   core::Frame frame = ReadWindow(index, window);
   frame.width_px = window.width;
@@ -75,6 +76,12 @@ core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
   return frame;
+}
+
+std::unique_ptr<Clip> Clip::OpenAnother() const {
+  std::unique_ptr<Clip> another = Another();
+  if (another) another->set_cancellation(cancellation_);
+  return another;
 }
 
 std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,

@@ -265,6 +265,8 @@ class VideoClip final : public Clip {
   // Decodes one more frame into frame_ and sets current_; false at the end.
   bool DecodeNext() {
     for (;;) {
+      // Up to a key frame's distance of them for one that is asked for.
+      cancellation().Check();
       const int result =
           Libav().avcodec_receive_frame(source_.codec.get(), frame_.get());
       if (result == AVERROR_EOF) return false;

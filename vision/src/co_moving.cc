@@ -112,9 +112,11 @@ float MedianOf(std::vector<float>& values) {
 
 class Layers {
  public:
-  Layers(Stack stack, const Background& noise, const CoMovingOptions& options)
+  Layers(Stack stack, const Background& noise, const CoMovingOptions& options,
+         const core::Cancellation& until)
       : stack_(std::move(stack)),
         noise_(noise),
+        until_(until),
         height_(options.ground),
         turns_(options.turns),
         threads_(options.threads) {
@@ -177,6 +179,7 @@ class Layers {
 
   Stack stack_;
   const Background& noise_;
+  const core::Cancellation& until_;
   Height height_;
   bool turns_;
   int threads_;
@@ -208,6 +211,7 @@ void Layers::LookBehind(const std::vector<unsigned char>& covered) {
       stack_.height, threads_, [&](std::int64_t begin, std::int64_t end) {
         std::vector<float> values;
         for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+          until_.Check();
           for (int x = 0; x < stack_.width; ++x) {
             const std::size_t i = stack_.Index(x, y);
             values.clear();
@@ -273,6 +277,7 @@ void Layers::Judge(double least_share) {
         const auto n = static_cast<std::size_t>(places_.size());
         for (auto i = static_cast<std::size_t>(begin) * n;
              i < static_cast<std::size_t>(end) * n; ++i) {
+          if (i % n == 0) until_.Check();
           places_.says[i] = Say(i, values, least_share, differs[i]);
         }
       });
@@ -309,7 +314,8 @@ CoMoving FindCoMoving(Clip& clip, const Background& noise, const Track& path,
                       const CoverOfPlaces& cover,
                       const CoMovingOptions& options) {
   if (path.poses.size() < kLeast) return {};
-  Layers layers(StackOf(clip, path, options.reach_px), noise, options);
+  Layers layers(StackOf(clip, path, options.reach_px), noise, options,
+                clip.cancellation());
   constexpr int kRounds = 4;
   // At first much of what is behind is not known.
   constexpr double kLeastAtFirst = 0.1;  // of the frames must tell

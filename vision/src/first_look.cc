@@ -7,88 +7,15 @@
 #include <limits>
 #include <optional>
 
-#include "detect.h"
 #include "outline_batch.h"
 #include "read_apart.h"
-#include "scout.h"
 #include "touchdown/core/errors.h"
+#include "watcher.h"
 
 namespace touchdown::vision {
 namespace {
 
 using Surround = OutlineOptions::Surround;
-
-// Short looks pay where there is much to look at.
-bool IsLong(const Clip& clip, const TrackOptions& options) {
-  const ClipInfo& info = clip.info();
-  const std::int64_t last = options.last < 0 ? info.frames : options.last;
-  return clip.ChangesIn(options.first) != nullptr ||
-         static_cast<double>(last - options.first) *
-                 static_cast<double>(info.width_px) *
-                 static_cast<double>(info.height_px) >
-             options.seen_whole_px;
-}
-
-// What was seen in one frame.
-struct Seen {
-  double time_s = 0.0;  // where there are any blobs
-  std::vector<Blob> blobs;
-};
-
-// Looks at frames, each by itself.
-class Watcher {
- public:
-  Watcher(const Clip& clip, const Background& background,
-          const TrackOptions& options, Detector detector)
-      : background_(background) {
-    detect_.detector = detector;
-    detect_.region = options.region;
-    if (detector != Detector::kLevels && IsLong(clip, options)) {
-      ScoutOptions scout;
-      scout.region = options.region;
-      scout_.emplace(background, scout);
-    }
-  }
-
-  // Where a clip can be glimpsed at, whether frame `index` may show anything.
-  bool CanGlimpse(const Clip& clip) const {
-    return scout_ && clip.windows_are_cheap();
-  }
-  bool Glimpse(Clip& clip, std::int64_t index, int phase) const {
-    return scout_->Glimpse(clip, index, phase);
-  }
-
-  Seen Look(Clip& clip, std::int64_t index) const {
-    Seen seen;
-    if (!scout_) {
-      const core::Frame frame = clip.Read(index);
-      seen.time_s = frame.time_s;
-      seen.blobs = DetectBlobs(frame, background_, detect_);
-      return seen;
-    }
-    Changes changes;
-    if (const Changes* known = clip.ChangesIn(index)) {
-      changes = *known;
-    } else {
-      changes = scout_->Look(clip, index);
-    }
-    DetectOptions detect = detect_;
-    detect.noise = changes.noise;
-    for (const core::PixelRect& rect : changes.where) {
-      const core::Frame window = clip.Read(index, rect);
-      seen.time_s = window.time_s;
-      const auto more = DetectBlobs(window, background_, detect);
-      seen.blobs.insert(seen.blobs.end(), more.begin(), more.end());
-    }
-    KeepLargest(seen.blobs, detect_);
-    return seen;
-  }
-
- private:
-  const Background& background_;
-  DetectOptions detect_;
-  std::optional<Scout> scout_;
-};
 
 struct Range {
   std::int64_t first = 0;
@@ -139,6 +66,28 @@ std::vector<bool> WorthALook(Clip& clip, const Watcher& watcher,
   return any ? seen : worth;
 }
 
+// Bounds that were met: in `more` of `looks` frames there was more to follow
+// than is kept, and `left_out` chains were too many.
+std::vector<std::string> BoundsMet(std::size_t more, std::size_t looks,
+                                   std::size_t left_out) {
+  // Fewer frames cost a chain a link here and there, as an occlusion does.
+  constexpr double kTold = 0.1;
+  std::vector<std::string> bounds;
+  if (static_cast<double>(more) > kTold * static_cast<double>(looks)) {
+    bounds.push_back(fmt::format(
+        "in {} of {} frames looked at more than {} things move: the strongest "
+        "were followed; give --region X,Y,W,H if the body is not among them",
+        more, looks, DetectOptions{}.most_blobs));
+  }
+  if (left_out > 0) {
+    bounds.push_back(fmt::format(
+        "{} paths of things that move were left out, beyond the {} strongest; "
+        "give --region X,Y,W,H or --frames A:B",
+        left_out, LinkOptions{}.most_chains));
+  }
+  return bounds;
+}
+
 // Every `step`-th frame of the range, and its last one. `seen` receives the
 // range in which anything was seen. `first`: nothing is known of it yet.
 Detections DetectIn(Clip& clip, const Background& background,
@@ -172,12 +121,14 @@ Detections DetectIn(Clip& clip, const Background& background,
       looks.clear();  // one by one: up to the damage
     }
   }
+  std::size_t more = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::int64_t index = indices[i];
     try {
       const Seen look =
           looks.empty() ? watcher.Look(clip, index) : std::move(looks[i]);
       builder.Add(index, look.time_s, look.blobs);
+      more += look.more ? 1 : 0;
       if (!look.blobs.empty()) {
         seen.first = std::min(seen.first, index);
         seen.last = index + 1;
@@ -195,7 +146,9 @@ Detections DetectIn(Clip& clip, const Background& background,
                        static_cast<double>(range.last - options.first));
     }
   }
+  clip.cancellation().Check();
   found.chains = builder.Finish();
+  found.bounds = BoundsMet(more, indices.size(), builder.left_out());
   return found;
 }
 

@@ -21,6 +21,8 @@ struct Detections {
   std::int64_t last = 0;      // frames [first, last) could be read
   std::int64_t step = 1;      // every so many frames were looked at
   std::string warning;
+  // Bounds of the search that were met, one sentence each.
+  std::vector<std::string> bounds;
 };
 
 // What to fit, with the evidence.

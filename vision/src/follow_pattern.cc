@@ -1,5 +1,7 @@
 #include "follow_pattern.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +19,7 @@ namespace {
 
 constexpr std::size_t kLeast = 8;     // frames
 constexpr std::size_t kEnough = 120;  // frames that a pattern is learnt from
+constexpr int kLearningRounds = 12;   // of a pattern; most settle in five
 constexpr double kSlack_px = 6.0;     // that a pose may move within its view
 
 double SizeOf(const BodyImage& body) {
@@ -46,6 +49,7 @@ struct Learnt {
   Pattern pattern;
   std::vector<Pose> poses;
   double misfit = 0.0;
+  bool settled = false;  // within the bound of rounds
 };
 
 // What all poses have moved by, which the pattern has, too.
@@ -72,16 +76,17 @@ void TakeOutCommonMove(const std::vector<PatternPose>& before,
 // In turns, the pattern of the frames and where it lies in each.
 std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
                                 std::vector<PatternPose> poses, Pattern pattern,
-                                int threads) {
-  constexpr int kRounds = 12;
+                                const core::Cancellation& until, int threads) {
   constexpr double kStill_px = 0.01;
-  for (int round = 0; round < kRounds; ++round) {
+  bool settled = false;
+  for (int round = 0; round < kLearningRounds; ++round) {
     if (!pattern.Learn(views, poses)) return std::nullopt;
     std::vector<std::optional<PatternPose>> found(views.size());
     core::InParallel(static_cast<std::int64_t>(views.size()), threads,
                      [&](std::int64_t from, std::int64_t to) {
                        for (auto k = static_cast<std::size_t>(from);
                             k < static_cast<std::size_t>(to); ++k) {
+                         until.Check(poses[k].pose.frame);
                          found[k] = pattern.Register(views[k], poses[k].pose);
                        }
                      });
@@ -104,14 +109,15 @@ std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
     }
     views = std::move(kept);
     poses = std::move(after);
-    if (Median(std::move(moved)) < kStill_px) break;
+    settled = Median(std::move(moved)) < kStill_px;
+    if (settled) break;
   }
   if (!pattern.Learn(views, poses)) return std::nullopt;
   std::vector<Pose> learnt;
   learnt.reserve(poses.size());
   for (const PatternPose& p : poses) learnt.push_back(p.pose);
   const double misfit = MedianMisfit(learnt);
-  return Learnt{std::move(pattern), std::move(learnt), misfit};
+  return Learnt{std::move(pattern), std::move(learnt), misfit, settled};
 }
 
 // Where the path of three poses leads: what falls goes farther in a frame than
@@ -181,6 +187,7 @@ std::vector<std::optional<PatternPose>> Follower::At(
                      [&](std::int64_t from, std::int64_t to) {
                        for (auto k = static_cast<std::size_t>(from);
                             k < static_cast<std::size_t>(to); ++k) {
+                         clip_.cancellation().Check(starts[begin + k].frame);
                          found[begin + k] = learnt_.pattern.Register(
                              views[k], starts[begin + k], within_px);
                        }
@@ -275,6 +282,7 @@ Track FollowPattern(Clip& clip, const Background& background,
     return track;
   }
   if (!(MedianMisfit(track.poses) > kCrude)) return track;
+  clip.cancellation().Enter("the body's own picture is followed");
   const std::size_t step = (track.poses.size() + kEnough - 1) / kEnough;
   const Outline outline = MiddleOutline(track);
   std::optional<Learnt> best;
@@ -296,7 +304,7 @@ Track FollowPattern(Clip& clip, const Background& background,
                                  pattern.reach_px() + kSlack_px));
     }
     auto learnt = LearnFrom(std::move(views), std::move(starts),
-                            std::move(pattern), threads);
+                            std::move(pattern), clip.cancellation(), threads);
     if (!learnt) continue;
     std::vector<Pose> all = Follower(clip, track, *learnt, threads).All();
     if (!best || Telling(all) > Telling(poses)) {
@@ -317,7 +325,14 @@ Track FollowPattern(Clip& clip, const Background& background,
   Track patterned = track;
   patterned.poses = std::move(poses);
   patterned.patterned = true;
-  return PutOn(track, patterned);
+  Track put = PutOn(track, patterned);
+  if (!best->settled) {
+    put.warnings.push_back(fmt::format(
+        "the body's own picture had not come to rest after {} rounds of "
+        "learning it; its places may wander",
+        kLearningRounds));
+  }
+  return put;
 }
 
 Track PutOn(const Track& outlines, const Track& patterned) {

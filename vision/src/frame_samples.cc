@@ -21,7 +21,7 @@ int FrameSamples::Threads(int wanted) const {
 
 FrameSamples::Reader::Reader(const FrameSamples& samples) : samples_(samples) {
   // A reader of a compressed clip would decode it anew.
-  if (samples.are_raw()) own_ = samples.clip_.Another();
+  if (samples.are_raw()) own_ = samples.clip_.OpenAnother();
 }
 
 void FrameSamples::Reader::WillRead(const core::PixelRect& window) {
@@ -33,6 +33,7 @@ void FrameSamples::Reader::WillRead(const core::PixelRect& window) {
 
 const std::vector<core::Frame>& FrameSamples::Reader::Read(
     const core::PixelRect& window) {
+  samples_.clip_.cancellation().Check();
   windows_.clear();
   for (const core::Frame& frame : samples_.whole_) {
     windows_.push_back(WindowOf(frame, window));

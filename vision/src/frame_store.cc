@@ -19,7 +19,9 @@ class FrameStore final : public GrowingClip {
       : clip_(std::move(clip)),
         last_(last),
         left_bytes_(most_bytes),
-        kept_(static_cast<std::size_t>(clip_->info().frames)) {}
+        kept_(static_cast<std::size_t>(clip_->info().frames)) {
+    set_cancellation(clip_->cancellation());
+  }
 
   const ClipInfo& info() const override { return clip_->info(); }
   // It decodes when it is asked for a frame.

@@ -92,8 +92,10 @@ OutlineOptions OptionsFor(const OutlineJob& job,
 // The fits of jobs [from, to) in their windows.
 void FitThese(std::span<const OutlineJob> jobs, std::span<const Window> windows,
               const Background& background, const OutlineOptions& options,
-              std::size_t from, std::size_t to, std::optional<Fitted>* fits) {
+              const core::Cancellation& until, std::size_t from, std::size_t to,
+              std::optional<Fitted>* fits) {
   for (std::size_t i = from; i < to; ++i) {
+    until.Check(jobs[i].frame);
     if (i + 1 < to) PrefetchRows(windows[i + 1]);
     const core::Frame& frame = windows[i].frame;
     const auto fit = FitOutline(frame, background, jobs[i].start,
@@ -124,15 +126,15 @@ void FitApart(Clip& clip, const Background& background,
   std::atomic<std::size_t> next = 0;
   core::InParallel(
       core::ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
-        const std::unique_ptr<Clip> own = clip.Another();
+        const std::unique_ptr<Clip> own = clip.OpenAnother();
         std::vector<Window> windows;
         for (std::size_t begin = next.fetch_add(at_once); begin < jobs.size();
              begin = next.fetch_add(at_once)) {
           const auto some =
               jobs.subspan(begin, std::min(at_once, jobs.size() - begin));
           TakeAll(*own, some, options, windows);
-          FitThese(some, windows, background, options, 0, some.size(),
-                   &fits[begin]);
+          FitThese(some, windows, background, options, own->cancellation(), 0,
+                   some.size(), &fits[begin]);
         }
       });
 }
@@ -171,6 +173,7 @@ std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
     core::InParallel(static_cast<std::int64_t>(batch.size()), threads,
                      [&](std::int64_t from, std::int64_t to) {
                        FitThese(batch, windows, background, options,
+                                clip.cancellation(),
                                 static_cast<std::size_t>(from),
                                 static_cast<std::size_t>(to), &fits[begin]);
                      });

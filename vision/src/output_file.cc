@@ -29,6 +29,7 @@ TemporaryName::TemporaryName(std::filesystem::path target)
   // The process number keeps two writers of the same output apart.
   path_ = target_.parent_path() /
           fmt::format(".{}.{}.part", target_.filename().string(), ::getpid());
+  unfinished_ = std::make_unique<core::Unfinished>(path_);
 }
 
 TemporaryName::~TemporaryName() {

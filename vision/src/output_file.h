@@ -4,7 +4,10 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <span>
+
+#include "touchdown/core/unfinished.h"
 
 namespace touchdown::vision {
 
@@ -26,6 +29,7 @@ class TemporaryName {
  private:
   std::filesystem::path target_;
   std::filesystem::path path_;
+  std::unique_ptr<core::Unfinished> unfinished_;
   bool committed_ = false;
 };
 

@@ -195,6 +195,9 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
   std::vector<double> values;
   std::vector<double> changes;
   std::vector<double> slopes;  // of what is behind
+  std::vector<Axes> axes;
+  axes.reserve(poses.size());
+  for (const PatternPose& p : poses) axes.push_back(AxesOf(p.pose, turns_));
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& node = nodes_[i];
     values.clear();
@@ -202,8 +205,7 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
     slopes.clear();
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Pose& pose = poses[k].pose;
-      const core::PixelPoint at =
-          PlaceOf(pose, AxesOf(pose, turns_), node.x_px, node.y_px);
+      const core::PixelPoint at = PlaceOf(pose, axes[k], node.x_px, node.y_px);
       const double value = views[k].At(at.x_px, at.y_px);
       if (!std::isfinite(value)) continue;
       values.push_back(poses[k].light.Undone(value, node.x_px, node.y_px));
@@ -253,12 +255,18 @@ double Pattern::MisfitOf(const std::vector<double>& rest, double scale) const {
   return std::sqrt(sum / std::max(sw, 1.0));
 }
 
-double Pattern::Mismatch(const PatternView& view, const Pose& at) const {
+double Pattern::Mismatch(const PatternView& view, const Pose& at,
+                         double least) const {
   // Medians are slow: the mean of what is cut off does to choose a start.
   const Axes axes = AxesOf(at, turns_);
   double sum = 0.0;
   double seen = 0.0;
-  for (std::size_t k = 0; k < own_.size(); k += 3) {
+  // Were all nodes seen and the others without any mismatch, it would still be
+  // no less: a place that is far off is known as such by its first nodes.
+  constexpr double kRounding = 1.0 + 1e-12;
+  const double enough =
+      kRounding * least * static_cast<double>((own_.size() + 2) / 3);
+  for (std::size_t k = 0; k < own_.size() && sum < enough; k += 3) {
     const Node& node = nodes_[own_[k]];
     const core::PixelPoint p = PlaceOf(at, axes, node.x_px, node.y_px);
     const double value = view.At(p.x_px, p.y_px);
@@ -283,13 +291,14 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
   Pose pose = start;
   if (within_px > 0.0) {
     constexpr double kStep_px = 1.0;
-    double least = Mismatch(view, start);
+    double least =
+        Mismatch(view, start, std::numeric_limits<double>::infinity());
     for (double y = -within_px; y <= within_px; y += kStep_px) {
       for (double x = -within_px; x <= within_px; x += kStep_px) {
         Pose other = start;
         other.centre.x_px += x;
         other.centre.y_px += y;
-        if (const double m = Mismatch(view, other); m < least) {
+        if (const double m = Mismatch(view, other, least); m < least) {
           least = m;
           pose = other;
         }

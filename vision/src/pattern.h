@@ -92,7 +92,8 @@ class Pattern {
 
   // Root mean square of what is left, over the noise, without outliers.
   double MisfitOf(const std::vector<double>& rest, double scale) const;
-  double Mismatch(const PatternView& view, const Pose& at) const;
+  // Any value not below `least` where it is not below it: no more is asked.
+  double Mismatch(const PatternView& view, const Pose& at, double least) const;
   void SetSlopes();
 
   const Background* background_;  // must outlive it

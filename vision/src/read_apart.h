@@ -22,7 +22,7 @@ void ReadApart(const Clip& clip, std::size_t count, int threads,
                const Look& look) {
   core::InParallel(static_cast<std::int64_t>(count), threads,
                    [&](std::int64_t from, std::int64_t to) {
-                     const std::unique_ptr<Clip> own = clip.Another();
+                     const std::unique_ptr<Clip> own = clip.OpenAnother();
                      for (auto i = static_cast<std::size_t>(from);
                           i < static_cast<std::size_t>(to); ++i) {
                        look(*own, i);

@@ -172,6 +172,7 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
              const RefineOptions& refine) {
   // An outline of one face would sit on this part or that.
   if (!given.outlined) return given;
+  clip.cancellation().Enter("outlines are fitted with the ground known");
   const Track track = Bridged(given);
   Track refined = track;
   Refiner refiner(clip, background, track, refine);

@@ -206,6 +206,7 @@ class CorrectedClip final : public Clip {
  public:
   CorrectedClip(std::unique_ptr<Clip> clip, Grid grid, double least_gain)
       : clip_(std::move(clip)), grid_(std::move(grid)), info_(clip_->info()) {
+    set_cancellation(clip_->cancellation());
     full_ = (1 << info_.bit_depth) - 1;
     info_.bit_depth = kBits;
     per_level_ = least_gain * kFull / full_;

@@ -274,6 +274,8 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   std::int64_t last = options.last < 0
                           ? clip.info().frames
                           : std::min(options.last, clip.info().frames);
+  const core::Cancellation& until = clip.cancellation();
+  until.Enter("the body is looked for");
   TrackResult result;
   std::string warning;
   core::Expected<Look> first = core::AbsentBecause("not looked at");
@@ -291,6 +293,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   if (!first) return tl::unexpected(first.error());
   if (warning.empty()) warning = first->found.warning;
 
+  until.Enter("the background behind the body is estimated");
   Track& track = result.track;
   track = TrackOf(*first, clip, options);
   // Now that the body's place is known, the background without it.
@@ -362,6 +365,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     // A body of another shape would show through its mask.
     result.background = std::move(behind);
   }
+  until.Enter("outlines are fitted");
   // Now the frames between say where each fit begins. From rough starts, what
   // that finds is a better beginning again.
   int passes = first->rough_starts ? 2 : first->found.step > 1 ? 1 : 0;
@@ -382,6 +386,8 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     track = FollowPattern(clip, result.background, track, options.threads);
   }
   if (!warning.empty()) track.warnings.push_back(warning);
+  track.warnings.insert(track.warnings.end(), first->found.bounds.begin(),
+                        first->found.bounds.end());
   track.body.whole_px = whole_px;
   if (whole_px > 0.0) {
     track.warnings.push_back(fmt::format(
@@ -396,6 +402,7 @@ Track FitEveryFrame(Clip& clip, const Background& background,
                     const Track& track, const TrackOptions& options) {
   Track whole = track;
   if (track.step <= 1) return whole;
+  clip.cancellation().Enter("outlines are fitted");
   whole.step = 1;
   whole.warnings.clear();
   const std::string cut =

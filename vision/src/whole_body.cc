@@ -58,12 +58,13 @@ std::vector<unsigned char> CoverOf(const CoMoving& places,
 
 std::optional<BestOutline> BestOf(const CoMoving& places,
                                   const std::optional<core::BodyKind>& kind,
-                                  bool finely) {
+                                  bool finely,
+                                  const core::Cancellation& until) {
   std::optional<BestOutline> best;
   for (const core::BodyKind k :
        {core::BodyKind::kRectangle, core::BodyKind::kSphere}) {
     if (kind && *kind != k) continue;
-    const auto found = FindBestOutline(places, k, finely);
+    const auto found = FindBestOutline(places, k, finely, until);
     if (found && (!best || found->merit > best->merit)) best = found;
   }
   return best;
@@ -79,12 +80,13 @@ std::optional<BestOutline> Within(Clip& clip, const Background& background,
       clip, background, part,
       [&](const CoMoving& seen) {
         const auto found =
-            BestOf(seen, kind.value_or(core::BodyKind::kRectangle), false);
+            BestOf(seen, kind.value_or(core::BodyKind::kRectangle), false,
+                   clip.cancellation());
         return CoverOf(seen, found ? found->outline : guess, kMargin_px);
       },
       options);
   if (places.half == 0) return std::nullopt;
-  return BestOf(places, kind, true);
+  return BestOf(places, kind, true, clip.cancellation());
 }
 
 // One outline holds what moves along, and little else.
@@ -151,6 +153,7 @@ bool Turns(const Track& part) {
 std::optional<Track> FindWhole(Clip& clip, const Background& background,
                                const Track& part, const TrackOptions& options) {
   if (part.step > 1 || !IsSteady(part)) return std::nullopt;
+  clip.cancellation().Enter("the whole of the body is looked for");
   constexpr double kLarger = 1.5;  // than the part
   std::optional<BestOutline> best;
   bool best_turns = false;
@@ -168,6 +171,11 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
   }
   Track whole = part;
   whole.outlined = false;
+  if (!best->settled) {
+    whole.warnings.emplace_back(
+        "the outline of all that moves as one was still growing at the bound "
+        "of its search; its size may be off");
+  }
   const Outline& outline = best->outline;
   whole.body = {};
   whole.body.kind = outline.kind;

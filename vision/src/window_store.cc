@@ -25,6 +25,7 @@ class WindowStore final : public GrowingClip {
  public:
   WindowStore(std::unique_ptr<Clip> clip, FrameStoreOptions options)
       : clip_(std::move(clip)), options_(std::move(options)) {
+    set_cancellation(clip_->cancellation());
     const std::int64_t frames = clip_->info().frames;
     options_.last = options_.last < 0 ? frames : options_.last;
     end_ = options_.first;
@@ -383,7 +384,7 @@ class WindowStore final : public GrowingClip {
       const auto readers =
           std::min<std::int64_t>(core::ThreadsOf(options_.threads), parts);
       while (static_cast<std::int64_t>(others_.size()) + 1 < readers) {
-        auto other = clip_->Another();
+        auto other = clip_->OpenAnother();
         if (!other) break;
         others_.push_back(std::move(other));
       }

@@ -20,8 +20,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "touchdown/core/cancellation.h"
 #include "touchdown/core/frame.h"
 
 namespace touchdown::vision {
@@ -98,7 +100,8 @@ class Clip {
   // run downwards: stride_bytes of the view is positive in every format.
   //
   // Throws std::invalid_argument if `index` or `window` lies outside the clip,
-  // core::InputError (file, frame) if the frame's data are damaged or missing.
+  // core::InputError (file, frame) if the frame's data are damaged or missing,
+  // core::Cancelled if the work is to end.
   core::Frame Read(std::int64_t index);
   core::Frame Read(std::int64_t index, const core::PixelRect& window);
 
@@ -135,6 +138,17 @@ class Clip {
   // frame is not stored alone, so that two readers would decode the same ones.
   virtual std::unique_ptr<Clip> Another() const { return nullptr; }
 
+  // The same, which ends when this one does.
+  std::unique_ptr<Clip> OpenAnother() const;
+
+  // What ends the work on this clip: Read asks it for every frame, and work
+  // between two reads asks it where that may take long. A clip made of another
+  // takes over what that one has.
+  const core::Cancellation& cancellation() const { return cancellation_; }
+  void set_cancellation(core::Cancellation cancellation) {
+    cancellation_ = std::move(cancellation);
+  }
+
   // Where frame `index` may differ from the still picture, if the clip has
   // looked (frame_store.h): elsewhere nothing needs to be looked at, and
   // reading there may be slow. Null: it has not.
@@ -158,6 +172,7 @@ class Clip {
 
  private:
   double reading_s_ = 0.0;
+  core::Cancellation cancellation_;
 };
 
 // Opens a recording: a video file, an .mraw (or its .cih/.cihx), a TIFF of

@@ -1,0 +1,75 @@
+#include "app/cli/interruption.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "touchdown/core/unfinished.h"
+
+namespace touchdown::cli {
+namespace {
+
+// For the handler: where the thread listens.
+std::array<int, 2> listens = {-1, -1};
+
+// What the thread is told: the signal's number, and whether the command may end
+// by itself first.
+constexpr unsigned char kSoon = 0x80;
+
+void Tell(unsigned char what) {
+  const int before = errno;
+  // A full pipe has told enough.
+  [[maybe_unused]] const auto written = write(listens[1], &what, 1);
+  errno = before;
+}
+
+void OnSignal(int signal) { Tell(static_cast<unsigned char>(signal)); }
+
+[[noreturn]] void End(int signal) {
+  core::RemoveUnfinished();
+  // A progress bar's line is not left half drawn.
+  if (isatty(STDERR_FILENO) != 0) {
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, "\n", 1);
+  }
+  constexpr int kBySignal = 128;  // as shells count
+  _exit(kBySignal + signal);
+}
+
+void Listen() {
+  constexpr std::chrono::milliseconds kMoment{100};
+  unsigned char told = 0;
+  while (read(listens[0], &told, 1) != 1) {
+    if (errno != EINTR) return;
+  }
+  if ((told & kSoon) != 0) std::this_thread::sleep_for(kMoment);
+  End(told & ~kSoon);
+}
+
+}  // namespace
+
+void CatchInterruptions() {
+  if (pipe2(listens.data(), O_CLOEXEC) != 0) return;  // the system's way, then
+  // Signals are for the other threads: waiting must end by them.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread(Listen).detach();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  struct sigaction action = {};
+  action.sa_handler = OnSignal;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+void EndSoon(int signal) { Tell(static_cast<unsigned char>(signal) | kSoon); }
+
+}  // namespace touchdown::cli

@@ -1,0 +1,49 @@
+// Coarse looks at single frames: which regions could be the body.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "detect.h"
+#include "scout.h"
+#include "touchdown/vision/background.h"
+#include "touchdown/vision/clip.h"
+#include "touchdown/vision/tracker.h"
+
+namespace touchdown::vision {
+
+// Whether short looks pay: where there is much to look at.
+bool IsLong(const Clip& clip, const TrackOptions& options);
+
+// What was seen in one frame.
+struct Seen {
+  double time_s = 0.0;  // where there are any blobs
+  std::vector<Blob> blobs;
+  bool more = false;  // than are kept (DetectOptions::most_blobs)
+};
+
+// Looks at frames, each by itself.
+class Watcher {
+ public:
+  // `background` must outlive it.
+  Watcher(const Clip& clip, const Background& background,
+          const TrackOptions& options, Detector detector);
+
+  // Where a clip can be glimpsed at, whether frame `index` may show anything.
+  bool CanGlimpse(const Clip& clip) const {
+    return scout_ && clip.windows_are_cheap();
+  }
+  bool Glimpse(Clip& clip, std::int64_t index, int phase) const {
+    return scout_->Glimpse(clip, index, phase);
+  }
+
+  Seen Look(Clip& clip, std::int64_t index) const;
+
+ private:
+  const Background& background_;
+  DetectOptions detect_;
+  std::optional<Scout> scout_;
+};
+
+}  // namespace touchdown::vision
