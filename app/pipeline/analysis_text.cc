@@ -95,6 +95,16 @@ std::string ToText(const Analysis& a) {
     Line(out, "restitut.", Number(first.motion.restitution, 1.0, ""));
     Line(out, "gravity", Number(first.motion.gravity_check_mps2, 1.0, "m/s2"));
   }
+  if (a.explained) {
+    Line(
+        out, "explained",
+        fmt::format("{:.4f} of what changes near the body, by {} frames; {:.1f}"
+                    " % of the change is elsewhere",
+                    a.explained->near, a.explained->frames,
+                    100.0 * a.explained->elsewhere));
+  } else {
+    Line(out, "explained", "absent: " + a.explained.error().reason);
+  }
   if (!a.contacts.later.empty()) {
     Line(out, "later",
          fmt::format("{} more contacts (see --json)", a.contacts.later.size()));
