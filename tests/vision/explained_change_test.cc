@@ -155,11 +155,11 @@ TEST(ExplainedChange, GhostExplainsNothing) {
   EXPECT_LT(Measured({}, track).near, 0.02);
 }
 
-// A body's size behind itself: worse than no body at all.
-TEST(ExplainedChange, WrongPlaceIsWorseThanNoBody) {
+// Beside the body: the still picture is learned with the body in it.
+TEST(ExplainedChange, WrongPlaceExplainsHardlyAnything) {
   Track track = TrueTrack();
   for (Pose& pose : track.poses) pose.centre.y_px += 2.0 * kHalfShort_px;
-  EXPECT_LT(Measured({}, track).near, 0.0);
+  EXPECT_LT(Measured({}, track).near, 0.2);
 }
 
 TEST(ExplainedChange, LostFramesAreUnexplained) {

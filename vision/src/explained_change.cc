@@ -56,14 +56,15 @@ OverTime SumOverTime(const LatticeLevels& levels, std::size_t frames,
   return over;
 }
 
-// Variance of a pixel over time where nothing moves: the median over all
-// points, corrected for the median of chi^2 of n - 1 degrees of freedom, which
-// is (n - 1) (1 - 2 / (9 (n - 1)))^3.
+// Variance of a pixel over time where nothing moves: the median over the points
+// far from the body's path, where there are enough of them (near it most pixels
+// are crossed by the body); corrected for the median of chi^2 of n - 1 degrees
+// of freedom, which is (n - 1) (1 - 2 / (9 (n - 1)))^3.
 double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
                      std::size_t frames) {
-  std::vector<float> squares = near.square;
-  squares.insert(squares.end(), elsewhere.square.begin(),
-                 elsewhere.square.end());
+  constexpr std::size_t kEnough = 200;  // the median is then known to 2 %
+  std::vector<float> squares =
+      elsewhere.square.size() >= kEnough ? elsewhere.square : near.square;
   const auto middle =
       squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
