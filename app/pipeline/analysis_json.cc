@@ -208,6 +208,31 @@ Json CalibrationOf(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
+// The check by synthesis (explained_change.h).
+Json ExplainedOf(Writer& writer, const Analysis& analysis) {
+  if (!analysis.explained) {
+    return writer.Missing("explained", analysis.explained.error().reason);
+  }
+  const vision::ExplainedChange& explained = *analysis.explained;
+  Json json = {
+      {"near", explained.near},           {"elsewhere", explained.elsewhere},
+      {"band_chi2", explained.band_chi2}, {"noise_dn", explained.noise_dn},
+      {"frames", explained.frames},       {"lost_frames", explained.lost},
+      {"pixels", explained.pixels}};
+  if (analysis.outlines_corrected) json["outlines_corrected"] = true;
+  return json;
+}
+
+Json ChecksJson(const Analysis& analysis) {
+  Json json = Json::array();
+  for (const AnswerCheck& check : analysis.checks) {
+    json.push_back({{"name", check.name},
+                    {"verdict", Name(check.verdict)},
+                    {"reason", check.reason}});
+  }
+  return json;
+}
+
 // The ground line through two points at which the camera sees it.
 calib::GroundLine InImage(const Analysis& analysis,
                           const calib::GroundLine& ground) {
@@ -296,6 +321,8 @@ std::string ToJson(const Analysis& analysis) {
          {"motion", MotionOf(writer, at + "motion.", later.motion)}});
   }
   json["motion"] = MotionOf(writer, "motion.", first.motion);
+  json["explained"] = ExplainedOf(writer, analysis);
+  json["checks"] = ChecksJson(analysis);
   json["scene_model"] = {{"used", analysis.scene_model.used},
                          {"left_out", analysis.scene_model.left_out}};
   if (analysis.stopped_at) json["stopped_at_frame"] = *analysis.stopped_at;
@@ -305,6 +332,7 @@ std::string ToJson(const Analysis& analysis) {
                       {"decode", analysis.timing.decode_s},
                       {"track", analysis.timing.track_s},
                       {"contact", analysis.timing.contact_s},
+                      {"check", analysis.timing.check_s},
                       {"digest", analysis.timing.digest_s},
                       {"frames_per_s", analysis.timing.frames_per_s}};
   json["absent"] = writer.TakeAbsent();

@@ -151,6 +151,16 @@ std::string ToText(const Analysis& a) {
   if (contact.found && !contact.from_start) {
     AddMotion(out, first.motion);
   }
+  if (a.explained) {
+    Line(
+        out, "explained",
+        fmt::format("{:.4f} of what changes near the body, by {} frames; {:.1f}"
+                    " % of the change is elsewhere",
+                    a.explained->near, a.explained->frames,
+                    100.0 * a.explained->elsewhere));
+  } else {
+    Line(out, "explained", "absent: " + a.explained.error().reason);
+  }
   for (const core::ContactRecord& later : a.contacts.later) {
     core::Measured angle = Angle(later.contact, a.angle_kind);
     if (angle && a.angle_kind == core::AngleKind::kFace) {

@@ -8,6 +8,7 @@
 #include <future>
 #include <limits>
 
+#include "app/pipeline/answer_check.h"
 #include "app/pipeline/body_size.h"
 #include "app/pipeline/check_options.h"
 #include "app/pipeline/clip_calibration.h"
@@ -21,6 +22,7 @@
 #include "touchdown/calib/ground_lines.h"
 #include "touchdown/vision/background.h"
 #include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/explained_change.h"
 #include "touchdown/vision/frame_store.h"
 #include "touchdown/vision/tracker.h"
 
@@ -67,6 +69,7 @@ class Analyzer {
   // The scale, the body's size and what hangs on them, from a track.
   void TakeSize(const vision::Track& track);
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
+  void MeasureExplained();
   std::optional<Judged> JudgeBest(
       const std::vector<calib::GroundLine>& candidates,
       const vision::Track& track);
@@ -257,6 +260,23 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
   result_.contacts = std::move(best->contacts);
 }
 
+// The clip compared with what the track says that it shows.
+void Analyzer::MeasureExplained() {
+  if (!result_.track) return;
+  vision::ExplainedChangeOptions options;
+  options.region = options_.region;
+  options.still_frames = footage_.still_frames;
+  options.threads = options_.decoder_threads;
+  const core::Contact& contact = result_.contacts.first.contact;
+  if (contact.found && contact.frame) {
+    options.frame_of_interest = contact.frame->value;
+  }
+  const auto begun = Clock::now();
+  result_.explained =
+      vision::MeasureExplainedChange(*clip_, *result_.track, options);
+  result_.timing.check_s = Since(begun);
+}
+
 void Analyzer::DescribeScene() {
   SceneModel& scene = result_.scene_model;
   if (!result_.track) return;
@@ -361,6 +381,8 @@ Analysis Analyzer::Run() {
       result_.contacts.first.contact.reason = reason;
       result_.contacts.first.state.reason = reason;
     }
+    MeasureExplained();
+    CheckAnswer(result_);
   }
   result_.angle_kind =
       options_.angle_kind

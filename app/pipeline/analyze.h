@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "app/pipeline/answer_check.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/body.h"
@@ -80,6 +81,7 @@ struct Timing {
   double decode_s = 0.0;  // inside Clip::Read
   double track_s = 0.0;   // reading and fitting
   double contact_s = 0.0;
+  double check_s = 0.0;   // comparing the clip with the answer
   double digest_s = 0.0;  // of clip_id, beside the rest
   double frames_per_s = 0.0;
 };
@@ -102,6 +104,11 @@ struct Analysis {
   std::optional<calib::Calibration> calibration;
   std::optional<vision::Track> track;  // in the image as it was recorded
   std::optional<vision::PlaneTrack> plane;
+  // How much of what changes in the clip the track explains.
+  core::Expected<vision::ExplainedChange> explained =
+      core::AbsentBecause("no track was measured");
+  bool outlines_corrected = false;  // by a person, since that was measured
+  std::vector<AnswerCheck> checks;  // answer_check.h; with their consequences
   SceneModel scene_model;
   std::vector<std::string> warnings;
   // One past the last frame that was looked at, where that is not all.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/pipeline/answer_check.h"
 #include "app/pipeline/body_size.h"
 #include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
@@ -201,6 +202,8 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
     throw std::invalid_argument("the analysis has no track to be judged");
   }
   MoveOutlines(correction, analysis);
+  analysis.outlines_corrected |=
+      !correction.moved.empty() || !correction.left_out.empty();
   if (correction.ground) {
     analysis.options.ground = correction.ground;
     const calib::GroundLine& line = *correction.ground;
@@ -246,6 +249,7 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
       analysis.warnings.push_back(warning);
     }
   }
+  CheckAnswer(analysis);
   analysis.options_hash = OptionsHash(analysis.options);
   return analysis;
 }

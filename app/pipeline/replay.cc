@@ -229,6 +229,27 @@ vision::ClipInfo ClipOf(const Json& json) {
   return clip;
 }
 
+// As it was stored: there are no pixels to measure it anew.
+core::Expected<vision::ExplainedChange> ExplainedOf(const Json& document) {
+  if (!document.contains("explained")) {
+    return core::AbsentBecause("an earlier program did not compare the clip");
+  }
+  const Json& json = document["explained"];
+  if (json.is_null()) {
+    return core::AbsentBecause(
+        document.at("absent").at("explained").get<std::string>());
+  }
+  vision::ExplainedChange explained;
+  explained.near = json.at("near");
+  explained.elsewhere = json.at("elsewhere");
+  explained.band_chi2 = json.at("band_chi2");
+  explained.noise_dn = json.at("noise_dn");
+  explained.frames = Int32(json.at("frames"), "explained.frames");
+  explained.lost = Int32(json.at("lost_frames"), "explained.lost_frames");
+  explained.pixels = WholeNumber(json.at("pixels"), "explained.pixels");
+  return explained;
+}
+
 Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   using enum calib::ScaleSource;
   using enum vision::Channel;
@@ -266,6 +287,11 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   if (document.contains("stopped_at_frame")) {
     a.stopped_at =
         WholeNumber(document["stopped_at_frame"], "stopped_at_frame");
+  }
+  a.explained = ExplainedOf(document);
+  if (a.explained) {
+    a.outlines_corrected =
+        document["explained"].value("outlines_corrected", false);
   }
   if (document.contains("corrections")) {
     a.corrections = document["corrections"].get<std::vector<std::string>>();

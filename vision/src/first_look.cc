@@ -373,6 +373,48 @@ bool IsBetter(const Look& look, const Look& other) {
          (CostOf(look) < CostOf(other) && !MuchSmoother(other, look));
 }
 
+namespace {
+
+// Above this badness an outline is no good model of the body's picture, or the
+// background holds its ghost.
+constexpr double kWellFitted = 4.0;
+
+const char* ShapeOf(core::BodyKind kind) {
+  return kind == core::BodyKind::kSphere ? "a sphere" : "a rectangle";
+}
+
+// Why the body is of another kind than the one that was stated; empty: nothing
+// speaks against that. Only an outline that fits well is a witness, and only
+// where that of the stated kind leaves twice as much: a good picture of a body
+// tells a circle from a rectangle by a factor of five and more.
+std::string ReasonAgainstKind(Clip& clip, const Look& look,
+                              const TrackOptions& options) {
+  constexpr double kClearly = 2.0;
+  if (!options.kind || look.found.chains.empty() ||
+      look.choice.badness <= kWellFitted) {
+    return {};
+  }
+  TrackOptions otherwise = options;
+  otherwise.kind = *options.kind == core::BodyKind::kSphere
+                       ? core::BodyKind::kRectangle
+                       : core::BodyKind::kSphere;
+  const Choice other =
+      ChooseKind(clip, look.background, look.found.chains.front(), otherwise,
+                 look.surround);
+  if (other.badness > kWellFitted ||
+      kClearly * other.badness > look.choice.badness) {
+    return {};
+  }
+  return fmt::format(
+      "the body looks like {}, not like {} as was stated: in a few frames {} "
+      "leaves residuals of {:.1f} times the noise, {} {:.1f}; state the kind "
+      "that it is",
+      ShapeOf(other.kind), ShapeOf(*options.kind), ShapeOf(other.kind),
+      other.badness, ShapeOf(*options.kind), look.choice.badness);
+}
+
+}  // namespace
+
 // A body that stays long where it is leaves its ghost in the mean of all
 // frames, and outlines fit badly. Then the picture may be empty at the
 // beginning, or at the end; where it never is, the frame's own two levels must
@@ -383,7 +425,11 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   Look best =
       LookWith(clip, EstimateBackground(clip, options.first, last, still),
                options, Detector::kDifference, last);
-  constexpr double kWellFitted = 4.0;
+  // A body of another kind fits badly by every background: that is told before
+  // any other is tried.
+  if (auto reason = ReasonAgainstKind(clip, best, options); !reason.empty()) {
+    return core::AbsentBecause(std::move(reason));
+  }
   const std::int64_t part = EndPart(options.first, last);
   for (int attempt = 0; attempt < 4 && best.choice.badness > kWellFitted;
        ++attempt) {
@@ -421,6 +467,9 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   }
   if (best.found.chains.empty()) {
     return core::AbsentBecause("nothing moves in these frames");
+  }
+  if (auto reason = ReasonAgainstKind(clip, best, options); !reason.empty()) {
+    return core::AbsentBecause(std::move(reason));
   }
   constexpr std::size_t kLeastFrames = 3;
   if (best.fits.size() < kLeastFrames) {

@@ -149,6 +149,7 @@ void Refiner::MeasurePoses(Track& refined) {
   options_.fit_size = false;
   options_.fit_blur = false;
   options_.starts_near = true;
+  refined.body.shutter_fraction = options_.open;
   refined.poses.clear();
   std::vector<Fitted> fits = Found(FitPoses(refined.body, 1));
   // Between two looks none has been asked yet whether it is of the body.

@@ -48,6 +48,9 @@ struct BodyImage {
   // of the strongest part, and this is the length of the whole; else 0.
   double whole_px = 0.0;
   double blur_px = 0.0;      // standard deviation of the edge's blur
+  // Share of the frame interval in which the shutter is open; 0: not measured,
+  // or too short to blur the edge. After Refine.
+  double shutter_fraction = 0.0;
   double contrast_dn = 0.0;  // body minus background, median over frames
 };
 

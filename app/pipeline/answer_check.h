@@ -1,0 +1,50 @@
+// Checks of an answer before it is given: does it explain the clip? Each check
+// says what it found and whether the answer stands. A further check is one more
+// function here and one more line in ChecksOf.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "touchdown/core/expected.h"
+#include "touchdown/vision/explained_change.h"
+
+namespace touchdown::pipeline {
+
+struct Analysis;
+
+enum class Verdict {
+  kPassed,
+  kDoubtful,  // the answer is given, with a warning
+  kRefused,   // it is withheld
+  kNotMade    // there was nothing to check, or no means
+};
+std::string_view Name(Verdict verdict);  // "passed", "doubtful", ...
+
+struct AnswerCheck {
+  std::string name;  // "explained"
+  Verdict verdict = Verdict::kNotMade;
+  std::string reason;  // one sentence of what was seen; empty where it passed
+};
+
+struct AnswerCheckLimits {
+  // Of vision::ExplainedChange::near. Below `least_near` an answer is refused:
+  // the clip is explained as well by a picture in which nothing moves. Below
+  // `usual_near` there is a warning: the greater part of what changes near the
+  // body is left unexplained or nearly so.
+  double least_near = 0.0;
+  double usual_near = 0.5;
+};
+
+// All checks of an analysis of which the track was measured, by what
+// `analysis.explained` holds. Reads no pixel.
+std::vector<AnswerCheck> ChecksOf(const Analysis& analysis,
+                                  const AnswerCheckLimits& limits = {});
+
+// Makes the checks and takes their consequences: where one refuses, contacts
+// and state are absent with its reason (track, ground and scale stay, so that a
+// person can look at them); where one doubts, there is a warning.
+void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits = {});
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,150 @@
+#include "app/pipeline/answer_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/pipeline/judge.h"
+#include "app/pipeline/log_analysis.h"
+#include "app/pipeline/replay.h"
+#include "app/pipeline/triage.h"
+#include "tests/pipeline/analyzed_film.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using filmed::Default;
+using filmed::Film;
+using ::testing::HasSubstr;
+
+AnalyzeOptions Stated(const Film& film, core::BodyKind kind) {
+  AnalyzeOptions options = filmed::Known(film);
+  options.body_kind = kind;
+  return options;
+}
+
+Analysis Answer() {
+  Analysis analysis = filmed::AnalyzeFilm(Default(core::BodyKind::kSphere));
+  analysis.clip.path = "shot.mraw";
+  return analysis;
+}
+
+// As if the outline had followed something else.
+Analysis WithNear(double near) {
+  Analysis analysis = Answer();
+  EXPECT_TRUE(analysis.explained);
+  analysis.explained->near = near;
+  CheckAnswer(analysis);
+  return analysis;
+}
+
+core::Trial Logged(const Analysis& analysis) {
+  core::Trial trial = ToTrial(analysis);
+  trial.clip.id = "id";
+  return trial;
+}
+
+TEST(AnswerCheck, RightAnswersPass) {
+  for (const core::BodyKind kind :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    for (const double shadow : {0.0, 0.25}) {
+      Film film = Default(kind);
+      film.trouble.shadow_depth = shadow;
+      const Analysis analysis = filmed::AnalyzeFilm(film);
+      ASSERT_TRUE(analysis.explained) << analysis.explained.error().reason;
+      EXPECT_GT(analysis.explained->near, 0.8) << shadow;
+      ASSERT_EQ(analysis.checks.size(), 1U);
+      EXPECT_EQ(analysis.checks.front().verdict, Verdict::kPassed);
+      EXPECT_TRUE(analysis.contacts.first.contact.found);
+    }
+  }
+}
+
+TEST(AnswerCheck, RefusesWhatExplainsNothing) {
+  const Analysis analysis = WithNear(-0.69);
+  EXPECT_FALSE(analysis.contacts.first.contact.found);
+  EXPECT_THAT(analysis.contacts.first.contact.reason, HasSubstr("Q = -0.69"));
+  EXPECT_EQ(analysis.contacts.first.state.label, core::MotionState::kUndecided);
+  EXPECT_THAT(analysis.contacts.first.state.reason, HasSubstr("explains none"));
+  ASSERT_TRUE(analysis.track);  // a person can look at it
+  EXPECT_TRUE(analysis.ground);
+  const TriageEntry entry = TriageOf("shot", Done::kLogged, Logged(analysis));
+  EXPECT_EQ(entry.attention, Attention::kNoContact);
+  EXPECT_THAT(entry.reason, HasSubstr("Q = -0.69"));
+}
+
+TEST(AnswerCheck, DoubtIsAWarning) {
+  const Analysis analysis = WithNear(0.3);
+  EXPECT_TRUE(analysis.contacts.first.contact.found);
+  const TriageEntry entry = TriageOf("shot", Done::kLogged, Logged(analysis));
+  EXPECT_EQ(entry.attention, Attention::kWarned);
+  EXPECT_THAT(entry.reason, HasSubstr("Q = 0.30"));
+}
+
+TEST(AnswerCheck, AbsentChangeIsNoReasonToRefuse) {
+  Analysis analysis = Answer();
+  analysis.explained = core::AbsentBecause("noise");
+  CheckAnswer(analysis);
+  EXPECT_TRUE(analysis.contacts.first.contact.found);
+  EXPECT_EQ(analysis.checks.front().verdict, Verdict::kNotMade);
+}
+
+TEST(AnswerCheck, ReplayKeepsWhatWasMeasured) {
+  for (const double near : {-0.69, 0.99}) {
+    const Analysis analysis = WithNear(near);
+    const auto again = Replay(Logged(analysis));
+    ASSERT_TRUE(again) << again.error().reason;
+    ASSERT_TRUE(again->explained);
+    EXPECT_EQ(again->explained->near, near);
+    EXPECT_EQ(again->explained->frames, analysis.explained->frames);
+    EXPECT_EQ(again->contacts.first.contact.found, near > 0.0);
+  }
+}
+
+// The clip was compared with other outlines then.
+TEST(AnswerCheck, SaysNothingOfOutlinesThatAPersonMoved) {
+  auto refused = Replay(Logged(WithNear(-0.69)));
+  ASSERT_TRUE(refused);
+  Correction correction;
+  correction.moved[refused->track->poses[20].frame] = {0.5, 0.0};
+  const Analysis corrected = Rejudge(*refused, correction);
+  EXPECT_TRUE(corrected.contacts.first.contact.found);
+  EXPECT_EQ(corrected.checks.front().verdict, Verdict::kNotMade);
+  const auto again = Replay(WithAnalysis(Logged(*refused), corrected));
+  ASSERT_TRUE(again) << again.error().reason;
+  EXPECT_TRUE(again->outlines_corrected);
+  EXPECT_TRUE(again->contacts.first.contact.found);
+}
+
+TEST(AnswerCheck, DocumentSaysWhatWasFound) {
+  const auto json = nlohmann::json::parse(ToJson(WithNear(-0.69)));
+  EXPECT_EQ(json["explained"]["near"], -0.69);
+  EXPECT_GT(json["explained"]["frames"], 10);
+  EXPECT_EQ(json["checks"][0]["name"], "explained");
+  EXPECT_EQ(json["checks"][0]["verdict"], "refused");
+}
+
+// A body of another kind than was stated is told by name.
+TEST(AnswerCheck, NamesTheKindThatWasSeen) {
+  for (const core::BodyKind seen :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    const bool sphere = seen == core::BodyKind::kSphere;
+    const Film film = Default(seen);
+    const Analysis wrong =
+        AnalyzeClip(vision::OpenScene(SceneOf(film), 1),
+                    Stated(film, sphere ? core::BodyKind::kRectangle
+                                        : core::BodyKind::kSphere));
+    EXPECT_FALSE(wrong.contacts.first.contact.found);
+    EXPECT_THAT(
+        wrong.contacts.first.contact.reason,
+        HasSubstr(sphere ? "looks like a sphere, not like a rectangle"
+                         : "looks like a rectangle, not like a sphere"));
+    const Analysis right =
+        AnalyzeClip(vision::OpenScene(SceneOf(film), 1), Stated(film, seen));
+    EXPECT_TRUE(right.contacts.first.contact.found);
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::pipeline
