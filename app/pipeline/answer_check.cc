@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/pipeline/analyze.h"
+#include "touchdown/core/units.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -48,6 +50,87 @@ AnswerCheck CheckExplained(const Analysis& analysis,
   return check;
 }
 
+// The flights that measure the first contact, against their own poses.
+AnswerCheck CheckPath(const Analysis& analysis,
+                      const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "path";
+  const vision::ContactResult& contacts = analysis.contacts;
+  if (contacts.evidence.empty()) {
+    check.reason = "no flight was measured";
+    return check;
+  }
+  check.verdict = Verdict::kPassed;
+  const vision::ContactEvidence& first = contacts.evidence.front();
+  for (const auto* flight : {&first.before, &first.after}) {
+    if (!*flight) continue;
+    for (const vision::PathStretch& stretch : contacts.path) {
+      const bool measures = stretch.first_frame <= (*flight)->first_frame &&
+                            stretch.last_frame >= (*flight)->last_frame;
+      if (!measures || stretch.degrees < limits.least_degrees ||
+          stretch.chi2 <= limits.most_reduced_chi2 * stretch.degrees) {
+        continue;
+      }
+      check.verdict = Verdict::kRefused;
+      check.reason = fmt::format(
+          "the path from frame {} to {} is no free flight: chi^2 per degree of "
+          "freedom is {:.1f}, must be at most {:g}",
+          stretch.first_frame, stretch.last_frame,
+          stretch.chi2 / stretch.degrees, limits.most_reduced_chi2);
+      return check;
+    }
+  }
+  return check;
+}
+
+// What is measured beside what nature allows.
+AnswerCheck CheckRestitution(const Analysis& analysis,
+                             const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "restitution";
+  const core::Measured& e = analysis.contacts.first.motion.restitution;
+  if (!e) {
+    check.reason = e.error().reason;
+    return check;
+  }
+  const double beyond = std::max(-e->value, e->value - 1.0);
+  check.verdict = Verdict::kPassed;
+  if (beyond > limits.most_sigmas * e->u) {
+    check.verdict = beyond > limits.most_beyond ? Verdict::kRefused
+                                                : Verdict::kDoubtful;
+    check.reason = fmt::format(
+        "the restitution is {:.3f} +- {:.3f}, must be in 0 .. 1: the frames "
+        "beside the contact show no rebound from this line; check --ground",
+        e->value, e->u);
+  }
+  return check;
+}
+
+AnswerCheck CheckGravity(const Analysis& analysis,
+                         const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "gravity";
+  const core::Measured& g = analysis.contacts.first.motion.gravity_check_mps2;
+  if (!g) {
+    check.reason = g.error().reason;
+    return check;
+  }
+  const core::Estimate known{core::kStandardGravity_mps2,
+                             0.002 * core::kStandardGravity_mps2};
+  check.verdict = Verdict::kPassed;
+  if (core::Disagreement(*g, known) > limits.most_sigmas) {
+    check.verdict = Verdict::kDoubtful;
+    const double ratio = g->value / known.value;
+    check.reason = fmt::format(
+        "gravity fitted freely is {:.3f} +- {:.3f} m/s2 for {:.3f}: a scale of "
+        "{:.1f} px/m or {:.1f} frames/s would explain it",
+        g->value, g->u, known.value,
+        analysis.scale->px_per_m.value * ratio,
+        analysis.clip.time_base.fps / std::sqrt(std::max(ratio, 1e-6)));
+  }
+  return check;
+}
+
 // Contacts and state as they are where there is no answer.
 void Withhold(const std::string& reason, Analysis& analysis) {
   analysis.contacts = {};
@@ -73,7 +156,8 @@ std::string_view Name(Verdict verdict) {
 
 std::vector<AnswerCheck> ChecksOf(const Analysis& analysis,
                                   const AnswerCheckLimits& limits) {
-  return {CheckExplained(analysis, limits)};
+  return {CheckExplained(analysis, limits), CheckPath(analysis, limits),
+          CheckRestitution(analysis, limits), CheckGravity(analysis, limits)};
 }
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {

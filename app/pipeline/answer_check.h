@@ -35,6 +35,19 @@ struct AnswerCheckLimits {
   // body is left unexplained or nearly so.
   double least_near = 0.0;
   double usual_near = 0.5;
+
+  // Of chi^2 per degree of freedom of the flights beside the first contact,
+  // after u has grown to the poses' scatter. 3: of normal poses one in 1e4 with
+  // eight degrees of freedom.
+  double most_reduced_chi2 = 3.0;
+  int least_degrees = 8;  // fewer tell nothing
+
+  // Numbers that nature bounds or knows (restitution, gravity): standard
+  // deviations beyond which there is a warning, and, for restitution, how far
+  // out of 0 .. 1 an answer is refused. 0.25: more than a block's second corner
+  // between two frames makes of it.
+  double most_sigmas = 4.0;
+  double most_beyond = 0.25;
 };
 
 // All checks of an analysis of which the track was measured, by what

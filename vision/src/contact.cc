@@ -294,6 +294,11 @@ ContactResult FindContacts(const PlaneTrack& given,
   stretches = SegmentMotion(track, segmentation);
   RecordContext context{track, options, flight, stretches,
                         kCommonPlace * excess.face_rad};
+  for (const Stretch& stretch : stretches) {
+    result.path.push_back({stretch.kind, track.samples[stretch.begin].frame,
+                           track.samples[stretch.end - 1].frame, stretch.chi2,
+                           stretch.degrees});
+  }
   const std::vector<Touch> touches = FindTouches(track, stretches, flight);
 
   EventOptions event_options;

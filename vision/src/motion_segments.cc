@@ -479,6 +479,20 @@ std::vector<Stretch> Segmenter::Run() {
 
 }  // namespace
 
+std::string_view Name(StretchKind kind) {
+  switch (kind) {
+    case StretchKind::kFlight:
+      return "flight";
+    case StretchKind::kSupported:
+      return "supported";
+    case StretchKind::kContact:
+      return "contact";
+    case StretchKind::kOther:
+      break;
+  }
+  return "other";
+}
+
 std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
                                    const SegmentationOptions& options) {
   std::vector<Stretch> stretches =

@@ -17,17 +17,10 @@
 #include <optional>
 #include <vector>
 
+#include "touchdown/vision/path.h"
 #include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
-
-enum class StretchKind {
-  kFlight,     // along and face linear in time, height a parabola
-  kSupported,  // the lowest point on the ground line; slides, rolls or rests
-  kContact,    // between touchdown and release of a body that takes its time
-  kOther,      // carried by a hand or a ramp before its first flight, caught or
-               // stopped by something else after its last
-};
 
 struct Stretch {
   StretchKind kind = StretchKind::kOther;

@@ -19,6 +19,7 @@
 #include "touchdown/core/trial.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/flight.h"
+#include "touchdown/vision/path.h"
 #include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
@@ -59,6 +60,7 @@ struct ContactResult {
   core::ContactRecord first;
   std::vector<core::ContactRecord> later;
   std::vector<ContactEvidence> evidence;  // of first, then of later
+  std::vector<PathStretch> path;          // all of it, by time
 
   // The body rebounds well above the line, or passes through it: the line is
   // not the ground. Empty where line and track agree.
