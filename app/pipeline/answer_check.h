@@ -31,8 +31,9 @@ struct AnswerCheck {
 struct AnswerCheckLimits {
   // Of vision::ExplainedChange::near. Below `least_near` an answer is refused:
   // the clip is explained as well by a picture in which nothing moves. Below
-  // `usual_near` there is a warning: the greater part of what changes near the
-  // body is left unexplained or nearly so.
+  // `usual_near` there is a warning: half of what changes near the body or more
+  // is left unexplained. 0 follows from what Q means; 0.5 is the level that
+  // right answers should keep, not measured yet on clips of known truth.
   double least_near = 0.0;
   double usual_near = 0.5;
 

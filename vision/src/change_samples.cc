@@ -20,8 +20,8 @@ core::PixelRect RegionOf(const Clip& clip,
 }
 
 // Where the body would be at a steady pace beyond either end of the track. A
-// blow or gravity soon bends the path: nothing is said beyond a tenth of a
-// hundred frames, as many as the ends of a track usually miss.
+// blow or gravity soon bends the path: nothing is said beyond so many
+// frames (a choice, not measured).
 constexpr std::int64_t kFarthest = 10;
 constexpr std::size_t kPaceOver = 4;  // poses that the pace is of
 

@@ -77,9 +77,9 @@ double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
 // Change beyond noise of the points whose own variance stands out of it.
 double ChangeOf(const OverTime& over, double variance, std::size_t frames) {
   const double freedom = static_cast<double>(frames) - 1.0;
-  // Noise of other levels, of compression and of light that is not quite steady
-  // stays below three times the usual standard deviation; plus six standard
-  // deviations of the estimate itself.
+  // Meant to leave out noise of other levels, of compression and of light that
+  // is not quite steady: three times the usual standard deviation (a choice,
+  // not measured yet), plus six standard deviations of the estimate itself.
   constexpr double kOfNoise = 9.0;
   constexpr double kSigmas = 6.0;
   const double least =

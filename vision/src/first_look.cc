@@ -385,8 +385,8 @@ const char* ShapeOf(core::BodyKind kind) {
 
 // Why the body is of another kind than the one that was stated; empty: nothing
 // speaks against that. Only an outline that fits well is a witness, and only
-// where that of the stated kind leaves twice as much: a good picture of a body
-// tells a circle from a rectangle by a factor of five and more.
+// where that of the stated kind leaves twice as much: a choice, not measured
+// yet.
 std::string ReasonAgainstKind(Clip& clip, const Look& look,
                               const TrackOptions& options) {
   constexpr double kClearly = 2.0;
