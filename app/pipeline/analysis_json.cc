@@ -114,9 +114,8 @@ Json StateOf(Writer& writer, const std::string& at,
     json["detectable_gap_mm"] = writer.Missing(
         at + "detectable_gap_mm", state.detectable_gap_m.error().reason);
   }
-  json["extrapolated_gap_mm"] =
-      writer.Number(at + "extrapolated_gap_mm", state.extrapolated_gap_m,
-                    kToMillimetres);
+  json["extrapolated_gap_mm"] = writer.Number(
+      at + "extrapolated_gap_mm", state.extrapolated_gap_m, kToMillimetres);
   json["micro_bounce"] = state.micro_bounce;
   return json;
 }

@@ -96,8 +96,8 @@ AnswerCheck CheckRestitution(const Analysis& analysis,
   const double beyond = std::max(-e->value, e->value - 1.0);
   check.verdict = Verdict::kPassed;
   if (beyond > limits.most_sigmas * e->u) {
-    check.verdict = beyond > limits.most_beyond ? Verdict::kRefused
-                                                : Verdict::kDoubtful;
+    check.verdict =
+        beyond > limits.most_beyond ? Verdict::kRefused : Verdict::kDoubtful;
     check.reason = fmt::format(
         "the restitution is {:.3f} +- {:.3f}, must be in 0 .. 1: the frames "
         "beside the contact show no rebound from this line; check --ground",
@@ -124,8 +124,7 @@ AnswerCheck CheckGravity(const Analysis& analysis,
     check.reason = fmt::format(
         "gravity fitted freely is {:.3f} +- {:.3f} m/s2 for {:.3f}: a scale of "
         "{:.1f} px/m or {:.1f} frames/s would explain it",
-        g->value, g->u, known.value,
-        analysis.scale->px_per_m.value * ratio,
+        g->value, g->u, known.value, analysis.scale->px_per_m.value * ratio,
         analysis.clip.time_base.fps / std::sqrt(std::max(ratio, 1e-6)));
   }
   return check;

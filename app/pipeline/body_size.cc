@@ -28,14 +28,16 @@ std::vector<SizePair> SizePairs(vision::BodyImage& seen,
   const auto add = [&](const char* name, core::Estimate& half,
                        const core::Estimate& metres) {
     const core::Estimate& s = scale->px_per_m;
-    pairs.push_back({name, &half,
+    pairs.push_back({name,
+                     &half,
                      {0.5 * metres.value * s.value,
                       0.5 * std::hypot(metres.u * s.value, metres.value * s.u),
                       std::nullopt},
                      metres.value});
   };
   if (seen.kind == core::BodyKind::kSphere) {
-    if (options.diameter_m) add("diameter", seen.radius_px, *options.diameter_m);
+    if (options.diameter_m)
+      add("diameter", seen.radius_px, *options.diameter_m);
   } else if (options.long_m && options.short_m) {
     // A rectangle's sides are stated in any order.
     const bool ordered = options.long_m->value >= options.short_m->value;

@@ -143,9 +143,8 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
       !analysis.contacts.first.contact.found) {
     return;
   }
-  const vision::Track seen =
-      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options,
-                     analysis.scale);
+  const vision::Track seen = WithStatedSize(
+      SeenThrough(camera, *analysis.track), analysis.options, analysis.scale);
   std::vector<MovedContacts> moved;
   // On the axis the change is of second order: both sides count.
   for (const double side : {-1.0, 1.0}) {
@@ -234,11 +233,11 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
   }
   const vision::ContactOptions contact_options =
       ContactOptionsOf(analysis.options, camera, analysis.scale);
-  analysis.plane = SeenInPlane(
-      camera,
-      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options,
-                     analysis.scale),
-      *analysis.ground);
+  analysis.plane =
+      SeenInPlane(camera,
+                  WithStatedSize(SeenThrough(camera, *analysis.track),
+                                 analysis.options, analysis.scale),
+                  *analysis.ground);
   analysis.contacts = ContactsIn(*analysis.plane, contact_options);
   AddLens(analysis, camera, contact_options);
   AddYaw(analysis, camera, contact_options);

@@ -181,8 +181,8 @@ void Session::Plan() {
     // Another angle is planned after `skip`, or where a plan of before goes on.
     if (skipped_rad_.empty()) {
       constexpr double kShown_rad = 0.005 * kDegree;  // as it is printed
-      const bool same = std::abs(file_.angle_rad - group.study.next.angle_rad) <
-                        kShown_rad;
+      const bool same =
+          std::abs(file_.angle_rad - group.study.next.angle_rad) < kShown_rad;
       plan_lines_.push_back((same ? "  asked for  " : "  now asked for ") +
                             report::NextSentence(group));
     }

@@ -44,9 +44,8 @@ SegmentationOptions SegmentationFor(const PlaneTrack& track,
   out.u_slope_rad = track.ground.u_angle_rad;
   if (options.contact_frame) {
     const auto next = std::find_if(
-        track.samples.begin(), track.samples.end(), [&](const PlaneSample& s) {
-          return s.frame > *options.contact_frame;
-        });
+        track.samples.begin(), track.samples.end(),
+        [&](const PlaneSample& s) { return s.frame > *options.contact_frame; });
     if (next != track.samples.begin() && next != track.samples.end()) {
       out.touchdown = static_cast<std::size_t>(next - track.samples.begin());
     }
@@ -254,9 +253,9 @@ bool BeginsAtImpact(const PlaneTrack& track,
   constexpr double kEdgeBias_px = 0.05;
   constexpr double kSigmas = 3.0;
   return before.rate > 0.0 &&
-         before.gap_px <
-             kSigmas * std::hypot(before.u_px, UncertaintyOfLine(track, s),
-                                  kEdgeBias_px);
+         before.gap_px < kSigmas * std::hypot(before.u_px,
+                                              UncertaintyOfLine(track, s),
+                                              kEdgeBias_px);
 }
 
 bool IsDownFromStart(const std::vector<Stretch>& stretches) {
@@ -282,8 +281,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   }
   PlaneTrack track = given;
   const ExcessNoise excess = WidenToScatter(track);
-  track.u_half_px = std::hypot(track.u_half_px, kOutline_px,
-                               kCommonSize * excess.height_px);
+  track.u_half_px =
+      std::hypot(track.u_half_px, kOutline_px, kCommonSize * excess.height_px);
   track.ground.u_offset_px =
       std::hypot(track.ground.u_offset_px, kCommonPlace * excess.height_px);
   const FlightOptions flight = FlightFor(options);

@@ -143,8 +143,9 @@ JointInput InputFor(const PlaneTrack& track, const Event& event,
 // A contact that lasts needs up to three numbers more, and must earn them
 // (Schwarz's criterion); shorter than half a frame none shows it, and it only
 // widens the instant's u.
-void TryLasting(const PlaneTrack& track, const JointInput& input, double start_s,
-                double end_s, std::optional<JointFit>& instant, Event& event) {
+void TryLasting(const PlaneTrack& track, const JointInput& input,
+                double start_s, double end_s, std::optional<JointFit>& instant,
+                Event& event) {
   JointInput lasting = input;
   lasting.instant = false;
   lasting.touchdown_s = start_s;
@@ -267,17 +268,18 @@ FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
 
 bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
                   Event& event, std::string& reason) {
-  const std::int64_t frame =
-      track.samples[event.before_frames.end - 1].frame;
+  const std::int64_t frame = track.samples[event.before_frames.end - 1].frame;
   if (event.before_frames.size() < LeastFrames(options)) {
     reason = fmt::format(
         "too few frames show the body before its impact at frame {}", frame);
     return false;
   }
-  event.before = FitFlight(SamplesIn(track, event.before_frames), options.flight);
+  event.before =
+      FitFlight(SamplesIn(track, event.before_frames), options.flight);
   const bool flies = event.after_frames.size() >= LeastFrames(options);
   if (flies) {
-    event.after = FitFlight(SamplesIn(track, event.after_frames), options.flight);
+    event.after =
+        FitFlight(SamplesIn(track, event.after_frames), options.flight);
   }
   // With none to spare only a rebound tells where and when the flight ended,
   // and an impact one frame earlier looks alike unless the last frame is

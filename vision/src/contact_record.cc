@@ -257,11 +257,11 @@ void FillState(const RecordContext& context, std::size_t from,
   const double noise_px = samples[samples.size() / 2].u_gap_px;
   if (context.options.scale) {
     const double s = context.options.scale->px_per_m.value;
-    state.detectable_gap_m = Estimate{
-        DetectableGap(noise_px / s, 1.0 / track.frame_interval_s,
-                      ground.height_px.u / s,
-                      context.options.gravity_mps2.value),
-        0.0, std::nullopt};
+    state.detectable_gap_m =
+        Estimate{DetectableGap(noise_px / s, 1.0 / track.frame_interval_s,
+                               ground.height_px.u / s,
+                               context.options.gravity_mps2.value),
+                 0.0, std::nullopt};
   } else {
     state.detectable_gap_m = AbsentBecause(kNoScale);
   }
@@ -282,10 +282,10 @@ void FillState(const RecordContext& context, std::size_t from,
   const StateEvidence evidence = DecideBounce(gap, height_px);
   state.label = evidence.label;
   state.p_bounce = evidence.p_bounce;
-  state.reason = fmt::format("greatest gap {} at frame {}, bounce height {}",
-                             LengthText(context, gap.value, gap.u),
-                             greatest->frame,
-                             LengthText(context, height_px, 0.0));
+  state.reason =
+      fmt::format("greatest gap {} at frame {}, bounce height {}",
+                  LengthText(context, gap.value, gap.u), greatest->frame,
+                  LengthText(context, height_px, 0.0));
   if (state.label != core::MotionState::kBounce && greatest->reaches_px) {
     const Estimate& reaches = *greatest->reaches_px;
     state.label = core::MotionState::kUndecided;
@@ -296,9 +296,8 @@ void FillState(const RecordContext& context, std::size_t from,
         LengthText(context, reaches.value, reaches.u));
     return;
   }
-  state.micro_bounce = state.label == core::MotionState::kStaysDown &&
-                       event && event->after &&
-                       gap.value > core::kNormal975 * gap.u;
+  state.micro_bounce = state.label == core::MotionState::kStaysDown && event &&
+                       event->after && gap.value > core::kNormal975 * gap.u;
 }
 
 // Of what stays down: did it slide, or stick? Where that can be seen.
@@ -345,8 +344,8 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   contact.time_s = event.time_s;
   // Frame numbers follow the time: exact where frames are equally spaced.
   const double dt = track.frame_interval_s;
-  const PlaneSample& near =
-      track.samples[std::min(event.before_frames.end - 1, track.samples.size() - 1)];
+  const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
+                                                   track.samples.size() - 1)];
   contact.frame = Estimate{
       static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
       event.time_s.u / dt, std::nullopt};
@@ -488,10 +487,10 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
         std::atan2(SupportHeight(track, face), std::abs(arm)), u, std::nullopt};
   }
   // Its own path is the line: its direction has no u of its own here.
-  FillState(context, 0,
-            {samples.front().along_px, Estimate{level, u_level, std::nullopt},
-             0.0},
-            nullptr, record.state);
+  FillState(
+      context, 0,
+      {samples.front().along_px, Estimate{level, u_level, std::nullopt}, 0.0},
+      nullptr, record.state);
   record.state.reason = "on the ground from the start; " + record.state.reason;
   if (scatter > kMore * claimed) {
     record.state.reason += fmt::format(

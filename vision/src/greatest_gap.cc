@@ -30,8 +30,7 @@ core::Estimate LocalGap(std::span<const PlaneSample> samples,
   const Eigen::Vector3d x = factor.solve(b);
   double chi2 = 0.0;
   for (const PlaneSample& s : samples) {
-    chi2 += std::pow(
-        (s.gap_px - at.gap_px - row_of(s).dot(x)) / s.u_gap_px, 2);
+    chi2 += std::pow((s.gap_px - at.gap_px - row_of(s).dot(x)) / s.u_gap_px, 2);
   }
   const double widen =
       std::max(1.0, chi2 / static_cast<double>(samples.size() - 3));
@@ -86,9 +85,9 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
                      event_->after_frames.begin >= begin &&
                      event_->after_frames.end == end;
   const Flight flight =
-      first ? *event_->after
-            : FitFlight(std::span(samples).subspan(begin, end - begin),
-                        options_);
+      first
+          ? *event_->after
+          : FitFlight(std::span(samples).subspan(begin, end - begin), options_);
   // With its u: of the joint fit where ground and flight are one.
   const auto gap_at = [&](double t) {
     if (first) {
@@ -108,8 +107,8 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
   };
   // From where it may have left the ground to where it may have met it again.
   const double last = samples[end - 1].time_s;
-  const double start = begin > 0 ? samples[begin - 1].time_s
-                                 : samples[begin].time_s;
+  const double start =
+      begin > 0 ? samples[begin - 1].time_s : samples[begin].time_s;
   const double stop = end < samples.size() ? samples[end].time_s : last;
   constexpr int kSteps = 256;  // g T^2 / 2^19 is missed: nothing
   const auto highest = [&](double t0, double t1) {
@@ -120,9 +119,8 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
     }
     return best;
   };
-  const double at = highest(std::max(start, first ? event_->release_s.value
-                                                  : start),
-                            stop);
+  const double at =
+      highest(std::max(start, first ? event_->release_s.value : start), stop);
   const auto near = std::min_element(
       samples.begin() + static_cast<std::ptrdiff_t>(begin),
       samples.begin() + static_cast<std::ptrdiff_t>(end),

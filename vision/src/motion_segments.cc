@@ -53,8 +53,8 @@ struct Polynomial {
       rss1 -= slope * lean;
       offset = m.tt / m.w;
       tilt = (m.ttt - middle * m.tt) / spread;
-      const double third = m.tttt - offset * m.tt -
-                           tilt * (m.ttt - middle * m.tt);
+      const double third =
+          m.tttt - offset * m.tt - tilt * (m.ttt - middle * m.tt);
       const double bow = m.tty - offset * m.y - tilt * lean;
       if (third > kLeast * m.tttt) {
         bend = bow / third;
@@ -200,8 +200,8 @@ Segmenter::Segmenter(const PlaneTrack& track,
       per_frame_(turns_ ? 3 : 2),
       gravity_(options.gravity_px_per_s2.value_or(0.0) *
                track.frame_interval_s * track.frame_interval_s),
-      per_parameter_(0.5 * std::log(per_frame_ *
-                                    static_cast<double>(samples_.size()))),
+      per_parameter_(
+          0.5 * std::log(per_frame_ * static_cast<double>(samples_.size()))),
       per_cut_(std::log(static_cast<double>(samples_.size()))),
       best_(samples_.size() + 1) {
   const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
@@ -241,8 +241,8 @@ double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
 
 // What it costs that the gap is `above` zero (or below) by more than the line
 // and the forecast are known to.
-double Segmenter::OffGround(double above, std::size_t at,
-                            std::size_t frames, double most) const {
+double Segmenter::OffGround(double above, std::size_t at, std::size_t frames,
+                            double most) const {
   if (!(above > 0.0)) return 0.0;
   const double tilt = options_.u_slope_rad * samples_[at].along_px;
   const double forecast = u_gap_[at] * u_gap_[at] * ForecastVariance(frames);
@@ -327,10 +327,10 @@ void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
   constexpr std::size_t kLeastSupported = 3;
   const bool last = begin > 0 && end == samples_.size();
   if ((n >= kLeastSupported || last) && MayTouch(begin)) {
-    const double off = std::min(
-        options_.off_line_cost,
-        0.5 * (fits.gaps.Rss(level_precision_, slope_precision_) -
-               fits.gaps.Rss(0.0, slope_precision_)));
+    const double off =
+        std::min(options_.off_line_cost,
+                 0.5 * (fits.gaps.Rss(level_precision_, slope_precision_) -
+                        fits.gaps.Rss(0.0, slope_precision_)));
     const double rss = fits.RssOf(StretchKind::kSupported, *this);
     const int along = static_cast<int>(std::min<std::size_t>(n, 3));
     const int k = turns_ ? 1 + 2 * along : 1 + along;
@@ -397,8 +397,8 @@ void Segmenter::GrowFrom(std::size_t begin) {
     if (fits.frames < 2) continue;
     // No stretch from here can become the best once even the loosest one, which
     // later frames only make worse, has lost to what leads there already.
-    const double loosest = 0.5 * (fits.x->rss2 + fits.y->rss2 +
-                                  (turns_ ? fits.f->rss2 : 0.0));
+    const double loosest =
+        0.5 * (fits.x->rss2 + fits.y->rss2 + (turns_ ? fits.f->rss2 : 0.0));
     double leads = kInfinity;
     for (const State state : {kCarried, kTouched, kEnded}) {
       leads = std::min(leads, best_[end][state].cost);

@@ -63,8 +63,8 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
     // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
     // not 1.2/sqrt(n); 4/sqrt(n) lets one honest track in a hundred be widened.
     // Of longer lags fewer are apart from each other.
-    const double many = static_cast<double>(d.size()) /
-                        static_cast<double>(lag);
+    const double many =
+        static_cast<double>(d.size()) / static_cast<double>(lag);
     if (ratio > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, ratio);
   }
   const double excess = factor * factor - 1.0;

@@ -47,7 +47,7 @@ struct BodyImage {
   // Where the body shows as several parts that move as one, the outline is that
   // of the strongest part, and this is the length of the whole; else 0.
   double whole_px = 0.0;
-  double blur_px = 0.0;      // standard deviation of the edge's blur
+  double blur_px = 0.0;  // standard deviation of the edge's blur
   // Share of the frame interval in which the shutter is open; 0: not measured,
   // or too short to blur the edge. After Refine.
   double shutter_fraction = 0.0;

@@ -1,0 +1,130 @@
+// The greatest gap after touchdown, of flights and of frames.
+#include "vision/src/greatest_gap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "touchdown/core/units.h"
+#include "touchdown/vision/state.h"
+
+namespace touchdown::vision {
+namespace {
+
+constexpr double kGravity = core::kStandardGravity_mps2 * 1000.0;  // px/s^2
+constexpr double kRadius_px = 20.0;
+
+PlaneTrack Gaps(const std::vector<double>& gaps, double u,
+                double interval_s = 1e-3) {
+  PlaneTrack track;
+  track.half_long_px = track.half_short_px = kRadius_px;
+  track.frame_interval_s = interval_s;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    PlaneSample s;
+    s.frame = static_cast<std::int64_t>(i);
+    s.time_s = static_cast<double>(i) * interval_s;
+    s.gap_px = gaps[i];
+    s.height_px = gaps[i] + kRadius_px;
+    s.u_gap_px = s.u_height_px = s.u_along_px = u;
+    track.samples.push_back(s);
+  }
+  return track;
+}
+
+std::optional<GreatestGap> Find(const PlaneTrack& track,
+                                const std::vector<Stretch>& stretches,
+                                const GroundLevel& ground = {}) {
+  FlightOptions options;
+  options.gravity_px_per_s2 = core::Estimate{kGravity, 1e-6 * kGravity};
+  return FindGreatestGap(track, stretches, 0, ground, options, nullptr);
+}
+
+double Fall(double v, double t) { return v * t - 0.5 * kGravity * t * t; }
+
+TEST(GreatestGap, OfAFlightIsItsTopBetweenFrames) {
+  std::vector<double> gaps;
+  for (int i = 0; i < 60; ++i) gaps.push_back(Fall(300.0, i * 1e-3));
+  const PlaneTrack track = Gaps(gaps, 0.02);
+  const auto found =
+      Find(track, {{StretchKind::kFlight, 0, gaps.size(), 0.0, 0}});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->gap_px.value, 300.0 * 300.0 / (2.0 * kGravity), 1e-3);
+  EXPECT_NEAR(static_cast<double>(found->frame), 30.6, 1.0);
+  EXPECT_FALSE(found->reaches_px);
+  // Above a ground elsewhere, whose u it takes over.
+  const auto shifted =
+      Find(track, {{StretchKind::kFlight, 0, gaps.size(), 0.0, 0}},
+           {0.0, {1.5, 0.3}, 0.0});
+  EXPECT_NEAR(shifted->gap_px.value, found->gap_px.value - 1.5, 1e-9);
+  EXPECT_NEAR(shifted->gap_px.u, std::hypot(found->gap_px.u, 0.3), 1e-9);
+}
+
+// A hop of two frames, whose top lies between them.
+TEST(GreatestGap, OfAHopOfTwoFrames) {
+  const double dt = 2e-3;
+  const double v = 1.5 * kGravity * dt;  // three frame intervals in the air
+  const std::vector<double> gaps = {0.0, Fall(v, dt), Fall(v, 2.0 * dt), 0.0,
+                                    0.0};
+  const auto found =
+      Find(Gaps(gaps, 1e-3, dt), {{StretchKind::kSupported, 0, 1, 0.0, 0},
+                                  {StretchKind::kFlight, 1, 3, 0.0, 0},
+                                  {StretchKind::kSupported, 3, 5, 0.0, 0}});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->gap_px.value, v * v / (2.0 * kGravity), 1e-3);
+}
+
+TEST(GreatestGap, FilmThatEndsWhileTheBodyRisesTellsWhereItWouldReach) {
+  std::vector<double> gaps;
+  for (int i = 0; i < 12; ++i) gaps.push_back(Fall(300.0, i * 1e-3));
+  const auto found =
+      Find(Gaps(gaps, 0.02), {{StretchKind::kFlight, 0, gaps.size(), 0.0, 0}});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->gap_px.value, gaps.back(), 0.05);
+  ASSERT_TRUE(found->reaches_px);
+  EXPECT_NEAR(found->reaches_px->value, 300.0 * 300.0 / (2.0 * kGravity),
+              4.0 * found->reaches_px->u);
+}
+
+// No parabola reaches across an impact.
+TEST(GreatestGap, OfTwoHopsIsTheHigher) {
+  std::vector<double> gaps;
+  for (int i = 0; i < 20; ++i) gaps.push_back(0.1 * (20 - i));
+  for (int i = 0; i < 24; ++i) gaps.push_back(Fall(110.0, i * 1e-3));
+  const auto found =
+      Find(Gaps(gaps, 0.02), {{StretchKind::kOther, 0, 20, 0.0, 0},
+                              {StretchKind::kFlight, 20, 44, 0.0, 0}});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->gap_px.value, 2.0, 0.05);
+}
+
+TEST(GreatestGap, NothingFilmedIsAbsent) {
+  EXPECT_FALSE(Find(PlaneTrack{}, {}));
+  const auto one =
+      Find(Gaps({1.25}, 0.1), {{StretchKind::kSupported, 0, 1, 0.0, 0}});
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->gap_px.value, 1.25);
+  EXPECT_EQ(one->gap_px.u, 0.1);
+}
+
+// A body at rest whose height is noise: the greatest of many noisy values, at
+// its face, would be a bounce.
+TEST(GreatestGap, NoiseOfABodyAtRestIsNoBounce) {
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal;
+  int bounces = 0;
+  constexpr int kClips = 300;
+  for (int k = 0; k < kClips; ++k) {
+    std::vector<double> gaps;
+    for (int i = 0; i < 200; ++i) gaps.push_back(0.1 * normal(engine));
+    const auto found =
+        Find(Gaps(gaps, 0.1), {{StretchKind::kSupported, 0, 200, 0.0, 0}});
+    bounces +=
+        DecideBounce(found->gap_px, 0.2).label == core::MotionState::kBounce;
+  }
+  EXPECT_EQ(bounces, 0);
+}
+
+}  // namespace
+}  // namespace touchdown::vision
