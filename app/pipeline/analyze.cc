@@ -366,11 +366,8 @@ Analysis Analyzer::Run() {
     const std::vector<std::string> of_track = Seen(*result_.track).warnings;
     result_.warnings.insert(result_.warnings.end(), of_track.begin(),
                             of_track.end());
-    if (std::string conflict = DescribeSizeConflict(Seen(*result_.track).body,
-                                                    options_, result_.scale);
-        !conflict.empty()) {
-      result_.warnings.push_back(std::move(conflict));
-    }
+    result_.size_conflict =
+        FindSizeConflict(Seen(*result_.track).body, options_, result_.scale);
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());

@@ -86,6 +86,12 @@ struct Timing {
   double frames_per_s = 0.0;
 };
 
+// A size of the body that is seen otherwise than it was stated (body_size.h).
+struct SizeConflict {
+  std::string reason;
+  double relative = 0.0;  // of the stated size
+};
+
 struct Analysis {
   vision::ClipInfo clip;
   vision::Channel channel = vision::Channel::kLuma;  // what was looked at
@@ -108,6 +114,7 @@ struct Analysis {
   core::Expected<vision::ExplainedChange> explained =
       core::AbsentBecause("no track was measured");
   bool outlines_corrected = false;  // by a person, since that was measured
+  std::optional<SizeConflict> size_conflict;
   std::vector<AnswerCheck> checks;  // answer_check.h; with their consequences
   SceneModel scene_model;
   std::vector<std::string> warnings;

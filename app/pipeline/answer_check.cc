@@ -83,6 +83,23 @@ AnswerCheck CheckPath(const Analysis& analysis,
   return check;
 }
 
+// The body that was stated beside the one that was followed. A person who
+// corrected the answer has looked at it.
+AnswerCheck CheckSize(const Analysis& analysis,
+                      const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "size";
+  check.verdict = Verdict::kPassed;
+  if (!analysis.size_conflict) return check;
+  check.reason = analysis.size_conflict->reason;
+  check.verdict =
+      analysis.size_conflict->relative > limits.most_size_conflict &&
+              analysis.corrections.empty()
+          ? Verdict::kRefused
+          : Verdict::kDoubtful;
+  return check;
+}
+
 // What is measured beside what nature allows.
 AnswerCheck CheckRestitution(const Analysis& analysis,
                              const AnswerCheckLimits& limits) {
@@ -155,8 +172,9 @@ std::string_view Name(Verdict verdict) {
 
 std::vector<AnswerCheck> ChecksOf(const Analysis& analysis,
                                   const AnswerCheckLimits& limits) {
-  return {CheckExplained(analysis, limits), CheckPath(analysis, limits),
-          CheckRestitution(analysis, limits), CheckGravity(analysis, limits)};
+  return {CheckExplained(analysis, limits), CheckSize(analysis, limits),
+          CheckPath(analysis, limits), CheckRestitution(analysis, limits),
+          CheckGravity(analysis, limits)};
 }
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {

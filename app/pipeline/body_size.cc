@@ -89,23 +89,27 @@ vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options,
   return seen;
 }
 
-std::string DescribeSizeConflict(const vision::BodyImage& seen,
-                                 const AnalyzeOptions& options,
-                                 const std::optional<calib::Scale>& scale) {
+std::optional<SizeConflict> FindSizeConflict(
+    const vision::BodyImage& seen, const AnalyzeOptions& options,
+    const std::optional<calib::Scale>& scale) {
   constexpr double kConflict = 4.0;  // u
   vision::BodyImage body = seen;
   const std::vector<SizePair> pairs = SizePairs(body, options, scale);
-  std::string text;
+  SizeConflict conflict;
   for (const SizePair& pair : pairs) {
     const double off = core::Disagreement(*pair.seen, pair.stated);
     if (off <= kConflict) continue;
-    text += fmt::format(
+    conflict.relative =
+        std::max(conflict.relative,
+                 std::abs(pair.seen->value / pair.stated.value - 1.0));
+    conflict.reason += fmt::format(
         "{}{}: {:.2f} +- {:.2f} px are seen, {:.2f} +- {:.2f} px stated",
-        text.empty() ? "" : ", ", pair.name, 2.0 * pair.seen->value,
+        conflict.reason.empty() ? "" : ", ", pair.name, 2.0 * pair.seen->value,
         2.0 * pair.seen->u, 2.0 * pair.stated.value, 2.0 * pair.stated.u);
   }
-  if (text.empty()) return text;
-  return text + "; " + ExplanationOf(pairs, scale->px_per_m.value);
+  if (conflict.reason.empty()) return std::nullopt;
+  conflict.reason += "; " + ExplanationOf(pairs, scale->px_per_m.value);
+  return conflict;
 }
 
 core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {

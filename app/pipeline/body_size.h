@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "app/pipeline/analyze.h"
 #include "touchdown/calib/plane.h"
@@ -22,11 +21,12 @@ core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b);
 vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options,
                              const std::optional<calib::Scale>& scale);
 
-// Where image and statement differ by more than 4 of their u: both, and what
-// would explain it. Empty where they agree or cannot be compared.
-std::string DescribeSizeConflict(const vision::BodyImage& seen,
-                                 const AnalyzeOptions& options,
-                                 const std::optional<calib::Scale>& scale);
+// Where image and statement differ by more than 4 of their u: both, what would
+// explain it, and the largest difference over the stated size. Nothing where
+// they agree or cannot be compared.
+std::optional<SizeConflict> FindSizeConflict(
+    const vision::BodyImage& seen, const AnalyzeOptions& options,
+    const std::optional<calib::Scale>& scale);
 
 // Pixels per metre: given, calibrated, or from the body's known size; nothing
 // where none of them is there. `image`: of the body in the ideal picture.

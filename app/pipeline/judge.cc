@@ -248,6 +248,9 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
       analysis.warnings.push_back(warning);
     }
   }
+  analysis.size_conflict =
+      FindSizeConflict(SeenThrough(camera, *analysis.track).body,
+                       analysis.options, analysis.scale);
   CheckAnswer(analysis);
   analysis.options_hash = OptionsHash(analysis.options);
   return analysis;

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "touchdown/calib/plane.h"
 
 namespace touchdown::pipeline {
@@ -28,13 +32,17 @@ vision::Track Seen(double long_px, double short_px, double u = 0.004) {
   return track;
 }
 
+std::string ReasonOf(const std::optional<SizeConflict>& conflict) {
+  return conflict ? conflict->reason : "";
+}
+
 TEST(BodySize, StatementThatAgreesHardlyChangesWhatIsSeen) {
   const AnalyzeOptions options = Stated(0.060, 0.020);
   const vision::Track seen = Seen(60.01, 20.00);
   const vision::Track sized = WithStatedSize(seen, options, kScale);
   EXPECT_NEAR(sized.body.half_long_px.value, 30.005, 0.001);
   EXPECT_LE(sized.body.half_long_px.u, seen.body.half_long_px.u);
-  EXPECT_EQ(DescribeSizeConflict(seen.body, options, kScale), "");
+  EXPECT_FALSE(FindSizeConflict(seen.body, options, kScale));
 }
 
 // Twelve u apart, as a camera's gamma makes it: u reaches the statement, and
@@ -49,20 +57,20 @@ TEST(BodySize, ConflictGrowsUAndIsExplainedByTheOutline) {
     EXPECT_LT(std::abs(half.value - true_px), 2.0 * half.u);
     EXPECT_GT(half.u, 0.1);
   }
-  EXPECT_THAT(DescribeSizeConflict(seen.body, options, kScale),
+  EXPECT_THAT(ReasonOf(FindSizeConflict(seen.body, options, kScale)),
               HasSubstr("outlines 0.45 px too far in"));
 }
 
 TEST(BodySize, ConflictOfBothSidesAlikeIsExplainedByTheScale) {
-  EXPECT_THAT(
-      DescribeSizeConflict(Seen(63.0, 21.0).body, Stated(0.060, 0.020), kScale),
-      HasSubstr("a scale of 1050.0 px/m would explain both"));
+  EXPECT_THAT(ReasonOf(FindSizeConflict(Seen(63.0, 21.0).body,
+                                        Stated(0.060, 0.020), kScale)),
+              HasSubstr("a scale of 1050.0 px/m would explain both"));
 }
 
 TEST(BodySize, ConflictThatNothingExplainsAsksForAnotherBody) {
-  EXPECT_THAT(
-      DescribeSizeConflict(Seen(40.0, 24.0).body, Stated(0.060, 0.020), kScale),
-      HasSubstr("another body"));
+  EXPECT_THAT(ReasonOf(FindSizeConflict(Seen(40.0, 24.0).body,
+                                        Stated(0.060, 0.020), kScale)),
+              HasSubstr("another body"));
 }
 
 TEST(BodySize, SphereOfAnotherDiameterIsTold) {
@@ -71,7 +79,7 @@ TEST(BodySize, SphereOfAnotherDiameterIsTold) {
   vision::Track track;
   track.body.kind = core::BodyKind::kSphere;
   track.body.radius_px = {7.5, 0.002};
-  EXPECT_THAT(DescribeSizeConflict(track.body, options, kScale),
+  EXPECT_THAT(ReasonOf(FindSizeConflict(track.body, options, kScale)),
               HasSubstr("a scale of 750.0 px/m or a diameter of 15.000 mm"));
 }
 
@@ -82,8 +90,8 @@ TEST(BodySize, NothingIsComparedWithTheBodysOwnScale) {
   const vision::Track seen = Seen(54.0, 19.0);
   EXPECT_EQ(WithStatedSize(seen, options, own).body.half_short_px,
             seen.body.half_short_px);
-  EXPECT_EQ(DescribeSizeConflict(seen.body, options, own), "");
-  EXPECT_EQ(DescribeSizeConflict(seen.body, options, std::nullopt), "");
+  EXPECT_FALSE(FindSizeConflict(seen.body, options, own));
+  EXPECT_FALSE(FindSizeConflict(seen.body, options, std::nullopt));
 }
 
 }  // namespace
