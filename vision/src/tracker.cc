@@ -9,6 +9,7 @@
 #include "body_cover.h"
 #include "first_look.h"
 #include "follow_pattern.h"
+#include "layered_track.h"
 #include "outline_batch.h"
 #include "touchdown/core/errors.h"
 #include "whole_body.h"
@@ -268,6 +269,30 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   whole_px = 0.0;
 }
 
+// The track from a layered start in place of the result's own, where it shows
+// the stated body in more frames.
+bool TakeLayered(Clip& clip, const TrackOptions& options, TrackResult& result) {
+  auto layered = TrackFromLayers(clip, options, result.track.last_frame,
+                                 result.background);
+  // Equally good ones differ by noise.
+  constexpr double kMore = 1.05;
+  if (!layered ||
+      CountExplainedFrames(layered->track, *options.size) <=
+          kMore * CountExplainedFrames(result.track, *options.size)) {
+    return false;
+  }
+  result = std::move(*layered);
+  return true;
+}
+
+// Fills a track of every frame, and registers the body's own picture where
+// outlines explain it badly.
+void FollowBody(Clip& clip, const TrackOptions& options, TrackResult& result) {
+  FitMissing(clip, result.background, options, result.track);
+  result.track =
+      FollowPattern(clip, result.background, result.track, options.threads);
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
@@ -288,7 +313,19 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     warning = fmt::format("frames from {} on cannot be read: {}", last, reason);
     first = FirstLook(clip, options, last);
   }
-  if (!first) return tl::unexpected(first.error());
+  if (!first) {
+    if (!CanStartFromLayers(clip, options)) {
+      return tl::unexpected(first.error());
+    }
+    auto layered =
+        TrackFromLayers(clip, options, last,
+                        EstimateBackground(clip, options.first, last,
+                                           BackgroundFor(clip, options)));
+    if (!layered) return tl::unexpected(first.error());
+    FollowBody(clip, options, *layered);
+    if (!warning.empty()) layered->track.warnings.push_back(warning);
+    return layered;
+  }
   if (warning.empty()) warning = first->found.warning;
 
   Track& track = result.track;
@@ -376,10 +413,16 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                    first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
-  FitMissing(clip, result.background, options, track);
-  FollowWhole(clip, options, *first, result, whole_px);
-  if (!track.patterned) {
-    track = FollowPattern(clip, result.background, track, options.threads);
+  if (MayFollowGhost(clip, options, track, covers.most) &&
+      TakeLayered(clip, options, result)) {
+    whole_px = 0.0;
+    FollowBody(clip, options, result);
+  } else {
+    FitMissing(clip, result.background, options, track);
+    FollowWhole(clip, options, *first, result, whole_px);
+    if (!track.patterned) {
+      track = FollowPattern(clip, result.background, track, options.threads);
+    }
   }
   if (!warning.empty()) track.warnings.push_back(warning);
   track.body.whole_px = whole_px;
