@@ -100,7 +100,8 @@ bool CanStartFromLayers(const Clip& clip, const TrackOptions& options) {
   constexpr std::int64_t kMostFrames = 400;
   const std::int64_t last =
       options.last < 0 ? clip.info().frames : options.last;
-  return options.size && options.kind && last - options.first <= kMostFrames &&
+  return options.size && options.kind && options.region.width == 0 &&
+         last - options.first <= kMostFrames &&
          clip.ChangesIn(options.first) == nullptr;
 }
 

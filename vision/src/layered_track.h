@@ -16,7 +16,8 @@ namespace touchdown::vision {
 bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                     const Track& track, double most_covered);
 
-// Whether a layered start can be tried.
+// Whether a layered start can be tried: as above, and in the whole picture
+// only (TrackOptions::region).
 bool CanStartFromLayers(const Clip& clip, const TrackOptions& options);
 
 // Frames of a track that show the stated body: none where its size is another,
