@@ -55,12 +55,35 @@ cv::Mat MaskOf(const PlacedShape& at, const KnownShape& shape, double grow,
   return mask;
 }
 
-std::vector<float> Coarsen(const cv::Mat& change, std::int32_t by) {
-  const cv::Size size(change.cols / by, change.rows / by);
+// The part of the change that is searched, a cell the mean of by x by.
+std::vector<float> Coarsen(const cv::Mat& change, const cv::Rect& searched,
+                           std::int32_t by) {
   cv::Mat coarse;
-  cv::resize(change({0, 0, size.width * by, size.height * by}), coarse, size,
-             0.0, 0.0, cv::INTER_AREA);
+  cv::resize(change(searched), coarse,
+             {searched.width / by, searched.height / by}, 0.0, 0.0,
+             cv::INTER_AREA);
   return {coarse.begin<float>(), coarse.end<float>()};
+}
+
+// Where anything changes in any frame, with `reach` to all sides; sides and
+// corner are multiples of `by`. Empty where nothing does.
+cv::Rect RegionOfChange(const ReducedFrames& sampled, const StillLayer& still,
+                        const ChangeScale& scale, double reach,
+                        std::int32_t by) {
+  constexpr double kChanged = 0.5;
+  cv::Mat most(still.level.size(), CV_32F, cv::Scalar(0));
+  for (const cv::Mat& picture : sampled.pictures) {
+    cv::max(most, ChangeFrom(still, picture, scale), most);
+  }
+  const cv::Mat changed = most > kChanged;
+  const cv::Rect box = cv::boundingRect(changed);
+  if (box.width == 0) return {};
+  const int grow = static_cast<int>(std::ceil(reach));
+  const int left = std::max(0, box.x - grow) / by * by;
+  const int top = std::max(0, box.y - grow) / by * by;
+  const int right = std::min(most.cols, box.x + box.width + grow) / by * by;
+  const int bottom = std::min(most.rows, box.y + box.height + grow) / by * by;
+  return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
 }
 
 KnownShape Scaled(const KnownShape& shape, double by) {
@@ -80,7 +103,8 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
                                   const StillLayer& still,
                                   const ChangeScale& scale,
                                   const ShapeSearch& search,
-                                  const KnownShape& shape, std::int32_t by,
+                                  const KnownShape& shape,
+                                  const cv::Rect& searched, std::int32_t by,
                                   std::size_t every, int threads) {
   constexpr std::size_t kMaxima = 6;
   std::vector<std::vector<PlacedShape>> candidates(sampled.pictures.size());
@@ -90,14 +114,15 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
         for (auto t = static_cast<std::size_t>(begin);
              t < static_cast<std::size_t>(end); ++t) {
           candidates[t] = search.FindMaxima(
-              Coarsen(ChangeFrom(still, sampled.pictures[t], scale), by),
+              Coarsen(ChangeFrom(still, sampled.pictures[t], scale), searched,
+                      by),
               kMaxima, every);
           for (PlacedShape& candidate : candidates[t]) {
-            const auto to_px = [by](double cell) {
-              return cell * by + 0.5 * (by - 1);
+            const auto to_px = [by](double cell, int corner) {
+              return corner + cell * by + 0.5 * (by - 1);
             };
-            candidate.centre = {to_px(candidate.centre.x_px),
-                                to_px(candidate.centre.y_px)};
+            candidate.centre = {to_px(candidate.centre.x_px, searched.x),
+                                to_px(candidate.centre.y_px, searched.y)};
           }
           if (candidates[t].empty()) {
             const cv::Size size = sampled.pictures[t].size();
@@ -167,11 +192,6 @@ core::Expected<LayeredStart> FindLayeredStart(
   const auto by = static_cast<std::int32_t>(
       std::max(1.0, std::round(reduced.short_side / kSearchedAcross)));
   const cv::Size size = sampled.pictures.front().size();
-  if (size.width < by || size.height < by) {
-    return core::AbsentBecause("the body is larger than the picture");
-  }
-  const ShapeSearch search(Scaled(reduced, by), size.width / by,
-                           size.height / by);
   const double noise_dn = EstimateCellNoise(sampled);
   const ChangeScale scale = ScaleOfChange(noise_dn, sampled.full_scale_dn);
   // Beyond the outline the body's blur, and the path's error.
@@ -181,12 +201,21 @@ core::Expected<LayeredStart> FindLayeredStart(
 
   StillLayer still = MedianStill(sampled, options.threads);
   const cv::Mat median = still.level;
+  const cv::Rect searched = RegionOfChange(
+      sampled, still, scale,
+      0.5 * std::hypot(reduced.long_side, reduced.short_side), by);
+  if (searched.empty()) {
+    return core::AbsentBecause(
+        "nothing of the stated size changes in these frames");
+  }
+  const ShapeSearch search(Scaled(reduced, by), searched.width / by,
+                           searched.height / by);
   std::vector<PlacedShape> path;
   std::vector<cv::Mat> masks;
   for (int round = 0; round < options.rounds; ++round) {
     // At first half of the angles do: the median's ghost is in the way.
     const std::size_t every = round == 0 && search.angles() > 1 ? 2 : 1;
-    path = FindPath(sampled, still, scale, search, reduced, by, every,
+    path = FindPath(sampled, still, scale, search, reduced, searched, by, every,
                     options.threads);
     masks.clear();
     for (const PlacedShape& at : path) {

@@ -105,18 +105,23 @@ bool CanStartFromLayers(const Clip& clip, const TrackOptions& options) {
          clip.ChangesIn(options.first) == nullptr;
 }
 
+bool IsTheBackground(double most_covered) {
+  // The mid-mean is the mean of the middle half.
+  constexpr double kMostCovered = 0.75;
+  return most_covered > kMostCovered;
+}
+
 bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                     const Track& track, double most_covered) {
   if (!CanStartFromLayers(clip, options)) return false;
-  // From a quarter on a mid-mean mixes body and background, and shows the body
-  // from three quarters on: the middle between them.
-  constexpr double kMostCovered = 0.5;
-  constexpr double kFewFrames = 0.8;  // of all
-  return most_covered > kMostCovered || !IsOfSize(track.body, *options.size) ||
-         (track.step == 1 &&
-          static_cast<double>(track.poses.size()) <
-              kFewFrames *
-                  static_cast<double>(track.last_frame - track.first_frame));
+  // What explains more cannot be surpassed by the margin that a second opinion
+  // needs (tracker.cc), and clips that are right cost no more time.
+  constexpr double kExplained = 0.9;
+  const auto frames = static_cast<double>(track.last_frame - track.first_frame);
+  return IsTheBackground(most_covered) ||
+         CountExplainedFrames(track, *options.size) *
+                 static_cast<double>(track.step) <
+             kExplained * frames;
 }
 
 double CountExplainedFrames(const Track& track, const BodySize& size) {
@@ -160,8 +165,11 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
     std::vector<Fitted> fits =
         FitAlong(clip, result.background, options, track, fit_options);
     DropStrangers(fits);
+    // One frame tells its size less well than all of them.
     std::erase_if(fits, [&](const Fitted& f) {
-      return !IsOfSize(2.0 * SizeOf(f.fit), options.size->long_px);
+      core::Estimate stated = options.size->long_px;
+      stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
+      return !IsOfSize(2.0 * SizeOf(f.fit), stated);
     });
     if (fits.size() < kLeast) return too_few();
     track.warnings.clear();

@@ -271,14 +271,16 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
 
 // The track from a layered start in place of the result's own, where it shows
 // the stated body in more frames.
-bool TakeLayered(Clip& clip, const TrackOptions& options, TrackResult& result) {
+bool TakeLayered(Clip& clip, const TrackOptions& options, double most_covered,
+                 TrackResult& result) {
   auto layered = TrackFromLayers(clip, options, result.track.last_frame,
                                  result.background);
-  // Equally good ones differ by noise.
-  constexpr double kMore = 1.05;
+  // Equally good ones differ by noise. But where the body was part of the
+  // background, a path that is drawn to its ghost explains as many frames.
+  const double more = IsTheBackground(most_covered) ? 0.95 : 1.05;
   if (!layered ||
       CountExplainedFrames(layered->track, *options.size) <=
-          kMore * CountExplainedFrames(result.track, *options.size)) {
+          more * CountExplainedFrames(result.track, *options.size)) {
     return false;
   }
   result = std::move(*layered);
@@ -414,7 +416,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     if (!cut.empty()) warning = cut;
   }
   if (MayFollowGhost(clip, options, track, covers.most) &&
-      TakeLayered(clip, options, result)) {
+      TakeLayered(clip, options, covers.most, result)) {
     whole_px = 0.0;
     FollowBody(clip, options, result);
   } else {
