@@ -164,6 +164,7 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
     if (fit_size) fit_options.blur_px = track.body.blur_px;
     std::vector<Fitted> fits =
         FitAlong(clip, result.background, options, track, fit_options);
+    std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
     DropStrangers(fits);
     // One frame tells its size less well than all of them.
     std::erase_if(fits, [&](const Fitted& f) {

@@ -133,8 +133,8 @@ void FitMissing(Clip& clip, const Background& background,
     const double off =
         std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
                    fit.fit.outline.centre.y_px - there.centre.y_px);
-    if (fit.fit.misfit > most_misfit || fit.fit.hidden > kMostHidden ||
-        off > kOff * 2.0 * SizeOf(fit.fit)) {
+    if (!IsMeasured(fit.fit) || fit.fit.misfit > most_misfit ||
+        fit.fit.hidden > kMostHidden || off > kOff * 2.0 * SizeOf(fit.fit)) {
       continue;
     }
     const auto at = std::lower_bound(
