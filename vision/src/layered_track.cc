@@ -155,13 +155,15 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
   };
   if (track.poses.size() < kLeast) return too_few();
   // The stated size is held until the places are right; then the picture tells
-  // it, from the places found, before what these leave uncovered.
-  for (const bool fit_size : {false, true}) {
+  // it. Where the background is not known at one end of the body, a free size
+  // draws the place along: at last the size of all frames is held.
+  enum class Size { kStated, kFree, kCommon };
+  for (const Size held : {Size::kStated, Size::kFree, Size::kCommon}) {
     result.background = LookBehind(clip, options, track, fallback);
     OutlineOptions fit_options;
     fit_options.ground = options.ground;
-    fit_options.fit_size = fit_size;
-    if (fit_size) fit_options.blur_px = track.body.blur_px;
+    fit_options.fit_size = held == Size::kFree;
+    if (held != Size::kStated) fit_options.blur_px = track.body.blur_px;
     std::vector<Fitted> fits =
         FitAlong(clip, result.background, options, track, fit_options);
     std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
@@ -173,8 +175,15 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
       return !IsOfSize(2.0 * SizeOf(f.fit), stated);
     });
     if (fits.size() < kLeast) return too_few();
+    const BodyImage sized = track.body;
     track.warnings.clear();
     FillTrack(fits, *options.kind, track);
+    // Held sizes have no u of their own.
+    if (held == Size::kCommon) {
+      track.body.radius_px = sized.radius_px;
+      track.body.half_long_px = sized.half_long_px;
+      track.body.half_short_px = sized.half_short_px;
+    }
   }
   return result;
 }
