@@ -145,6 +145,28 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
   return std::nullopt;
 }
 
+std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
+  // Of a body without a size in the picture only what was told is a scale.
+  vision::BodyImage unseen;
+  unseen.whole_px = 1.0;
+  const std::optional<calib::Scale> scale = FindScale(options, unseen);
+  if (!scale) return std::nullopt;
+  const core::Estimate& s = scale->px_per_m;
+  const auto in_px = [&s](const core::Estimate& length_m) {
+    const double value = length_m.value * s.value;
+    return core::Estimate{
+        value, std::hypot(length_m.u * s.value, length_m.value * s.u),
+        std::nullopt};
+  };
+  if (options.diameter_m) {
+    return vision::BodySize{in_px(*options.diameter_m),
+                            in_px(*options.diameter_m)};
+  }
+  if (!options.long_m) return std::nullopt;
+  const core::Body sides = core::Rectangle(*options.long_m, *options.short_m);
+  return vision::BodySize{in_px(*sides.long_m), in_px(*sides.short_m)};
+}
+
 core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,
                   const std::optional<calib::Scale>& scale) {
   const auto metres = [&](const core::Estimate& half_px) -> core::Measured {

@@ -9,6 +9,7 @@
 #include "touchdown/core/body.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/vision/track.h"
+#include "touchdown/vision/tracker.h"
 
 namespace touchdown::pipeline {
 
@@ -32,6 +33,10 @@ std::optional<SizeConflict> FindSizeConflict(
 // where none of them is there. `image`: of the body in the ideal picture.
 std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
                                       const vision::BodyImage& image);
+
+// The body's size in the picture, where both its sides and a scale of their own
+// are told; else nothing.
+std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options);
 
 // The body's size: as given, or from the image and the scale.
 core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,

@@ -136,5 +136,22 @@ TEST(Moves, APartOfTheSceneDoesNot) {
   EXPECT_FALSE(Moves({}));
 }
 
+TEST(IsMeasured, TakesNoneWithoutUncertainty) {
+  OutlineFit fit;
+  fit.outline.kind = core::BodyKind::kRectangle;
+  fit.u_x_px = 0.01;
+  fit.u_y_px = 0.01;
+  EXPECT_FALSE(IsMeasured(fit));
+  fit.u_angle_rad = 0.001;
+  EXPECT_TRUE(IsMeasured(fit));
+  fit.u_x_px = 0.0;
+  EXPECT_FALSE(IsMeasured(fit));
+  // A disc's angle is never told.
+  fit.outline.kind = core::BodyKind::kSphere;
+  fit.u_x_px = 0.01;
+  fit.u_angle_rad = 0.0;
+  EXPECT_TRUE(IsMeasured(fit));
+}
+
 }  // namespace
 }  // namespace touchdown::vision

@@ -48,6 +48,11 @@ double SizeOf(const OutlineFit& fit) {
                                                      : fit.outline.half_long_px;
 }
 
+bool IsMeasured(const OutlineFit& fit) {
+  return fit.u_x_px > 0.0 && fit.u_y_px > 0.0 &&
+         (fit.outline.kind == core::BodyKind::kSphere || fit.u_angle_rad > 0.0);
+}
+
 double Median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const bool odd = values.size() % 2 == 1;

@@ -26,6 +26,11 @@ inline constexpr double kCrude = 3.0;
 // Radius, or half the long side, px.
 double SizeOf(const OutlineFit& fit);
 
+// Whether the picture tells all of a fit's pose: no u is 0, which stands for
+// what nothing was seen of, such as both ends of a block before a background
+// that is not known there.
+bool IsMeasured(const OutlineFit& fit);
+
 // Of an even number the mean of the two in the middle: that of values which
 // change sign in a mirror does so, too.
 double Median(std::vector<double> values);

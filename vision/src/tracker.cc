@@ -9,6 +9,7 @@
 #include "body_cover.h"
 #include "first_look.h"
 #include "follow_pattern.h"
+#include "layered_track.h"
 #include "outline_batch.h"
 #include "touchdown/core/errors.h"
 #include "whole_body.h"
@@ -132,8 +133,8 @@ void FitMissing(Clip& clip, const Background& background,
     const double off =
         std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
                    fit.fit.outline.centre.y_px - there.centre.y_px);
-    if (fit.fit.misfit > most_misfit || fit.fit.hidden > kMostHidden ||
-        off > kOff * 2.0 * SizeOf(fit.fit)) {
+    if (!IsMeasured(fit.fit) || fit.fit.misfit > most_misfit ||
+        fit.fit.hidden > kMostHidden || off > kOff * 2.0 * SizeOf(fit.fit)) {
       continue;
     }
     const auto at = std::lower_bound(
@@ -268,6 +269,32 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   whole_px = 0.0;
 }
 
+// The track from a layered start in place of the result's own, where it shows
+// the stated body in more frames.
+bool TakeLayered(Clip& clip, const TrackOptions& options, double most_covered,
+                 TrackResult& result) {
+  auto layered = TrackFromLayers(clip, options, result.track.last_frame,
+                                 result.background);
+  // Equally good ones differ by noise. But where the body was part of the
+  // background, a path that is drawn to its ghost explains as many frames.
+  const double more = IsTheBackground(most_covered) ? 0.95 : 1.05;
+  if (!layered ||
+      CountExplainedFrames(layered->track, *options.size) <=
+          more * CountExplainedFrames(result.track, *options.size)) {
+    return false;
+  }
+  result = std::move(*layered);
+  return true;
+}
+
+// Fills a track of every frame, and registers the body's own picture where
+// outlines explain it badly.
+void FollowBody(Clip& clip, const TrackOptions& options, TrackResult& result) {
+  FitMissing(clip, result.background, options, result.track);
+  result.track =
+      FollowPattern(clip, result.background, result.track, options.threads);
+}
+
 }  // namespace
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
@@ -290,7 +317,19 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
     warning = fmt::format("frames from {} on cannot be read: {}", last, reason);
     first = FirstLook(clip, options, last);
   }
-  if (!first) return tl::unexpected(first.error());
+  if (!first) {
+    if (!CanStartFromLayers(clip, options)) {
+      return tl::unexpected(first.error());
+    }
+    auto layered =
+        TrackFromLayers(clip, options, last,
+                        EstimateBackground(clip, options.first, last,
+                                           BackgroundFor(clip, options)));
+    if (!layered) return tl::unexpected(first.error());
+    FollowBody(clip, options, *layered);
+    if (!warning.empty()) layered->track.warnings.push_back(warning);
+    return layered;
+  }
   if (warning.empty()) warning = first->found.warning;
 
   until.Enter("the background behind the body is estimated");
@@ -380,10 +419,16 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                    first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
-  FitMissing(clip, result.background, options, track);
-  FollowWhole(clip, options, *first, result, whole_px);
-  if (!track.patterned) {
-    track = FollowPattern(clip, result.background, track, options.threads);
+  if (MayFollowGhost(clip, options, track, covers.most) &&
+      TakeLayered(clip, options, covers.most, result)) {
+    whole_px = 0.0;
+    FollowBody(clip, options, result);
+  } else {
+    FitMissing(clip, result.background, options, track);
+    FollowWhole(clip, options, *first, result, whole_px);
+    if (!track.patterned) {
+      track = FollowPattern(clip, result.background, track, options.threads);
+    }
   }
   if (!warning.empty()) track.warnings.push_back(warning);
   track.warnings.insert(track.warnings.end(), first->found.bounds.begin(),

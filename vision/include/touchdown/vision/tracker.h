@@ -16,6 +16,12 @@
 
 namespace touchdown::vision {
 
+// Of the body in the picture, where scale and sides are known, with u of both.
+struct BodySize {
+  core::Estimate long_px;   // long side of a rectangle, diameter of a sphere
+  core::Estimate short_px;  // short side; a sphere's diameter
+};
+
 struct TrackOptions {
   // Frames [first, last) to search; last < 0: to the end.
   std::int64_t first = 0;
@@ -25,6 +31,12 @@ struct TrackOptions {
 
   // Nothing: sphere or rectangle, whichever outline fits the pixels better.
   std::optional<core::BodyKind> kind;
+
+  // Given with `kind`: what is followed must be of this size. Where the track
+  // may be that of a ghost (the body covers a pixel in half of the frames or
+  // more, or the size found is another), the body is sought once more together
+  // with the picture behind it (src/layered_start.h). Nothing: not asked.
+  std::optional<BodySize> size;
 
   // Pixels below it are left out of the outline's fit.
   std::optional<calib::GroundLine> ground;

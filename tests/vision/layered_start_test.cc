@@ -1,0 +1,89 @@
+#include "vision/src/layered_start.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <stdexcept>
+
+#include "tests/vision/drawn_block.h"
+
+namespace touchdown::vision {
+namespace {
+
+using synthetic::DrawBlock;
+using synthetic::DrawnBlock;
+
+LayeredStartOptions OptionsFor(const DrawnBlock& block) {
+  LayeredStartOptions options;
+  options.shape = {core::BodyKind::kRectangle, 2.0 * block.half_long_px,
+                   2.0 * block.half_short_px};
+  options.threads = 1;
+  return options;
+}
+
+// A block of 48 px that goes 60 px in all: the mean of the frames is the body.
+DrawnBlock Slow() {
+  DrawnBlock block;
+  block.pose = [](std::int64_t frame) {
+    const auto t = static_cast<double>(frame);
+    return synthetic::BlockPose{70.0 + 1.5 * t,
+                                70.0 - 0.01 * (t - 20.0) * (t - 20.0),
+                                0.01 * (t - 20.0)};
+  };
+  return block;
+}
+
+TEST(FindLayeredStart, FollowsABodyThatCoversItsOwnPlace) {
+  const DrawnBlock block = Slow();
+  const auto clip = DrawBlock(block);
+  const auto start = FindLayeredStart(*clip, OptionsFor(block));
+  ASSERT_TRUE(start) << start.error().reason;
+  EXPECT_GT(start->most_covered, 0.75);
+  EXPECT_LT(start->unexplained, 0.4);
+  ASSERT_EQ(start->poses.size(), 40U);
+  for (const StartPose& pose : start->poses) {
+    const synthetic::BlockPose truth = block.pose(pose.frame);
+    EXPECT_TRUE(pose.seen) << pose.frame;
+    EXPECT_NEAR(pose.centre.x_px, truth.x_px, 4.0) << pose.frame;
+    EXPECT_NEAR(pose.centre.y_px, truth.y_px, 4.0) << pose.frame;
+    EXPECT_NEAR(
+        std::remainder(pose.angle_rad - truth.angle_rad, std::numbers::pi), 0.0,
+        8.0 * std::numbers::pi / 180.0)
+        << pose.frame;
+  }
+}
+
+TEST(FindLayeredStart, DoesNotDependOnThreads) {
+  const DrawnBlock block = Slow();
+  const auto clip = DrawBlock(block);
+  LayeredStartOptions options = OptionsFor(block);
+  const auto one = FindLayeredStart(*clip, options);
+  options.threads = 3;
+  const auto three = FindLayeredStart(*clip, options);
+  ASSERT_TRUE(one);
+  ASSERT_TRUE(three);
+  EXPECT_EQ(one->level, three->level);
+  EXPECT_EQ(one->poses.back().centre.x_px, three->poses.back().centre.x_px);
+}
+
+TEST(FindLayeredStart, SaysThatNothingMoves) {
+  DrawnBlock block;
+  block.pose = [](std::int64_t) {
+    return synthetic::BlockPose{90.0, 60.0, 0.2};
+  };
+  const auto clip = DrawBlock(block);
+  const auto start = FindLayeredStart(*clip, OptionsFor(block));
+  ASSERT_FALSE(start);
+  EXPECT_THAT(start.error().reason, testing::HasSubstr("stated size"));
+}
+
+TEST(FindLayeredStart, RefusesAShapeWithoutSize) {
+  const auto clip = DrawBlock(Slow());
+  EXPECT_THROW(FindLayeredStart(*clip, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::vision

@@ -1,0 +1,87 @@
+#include "vision/src/layered_track.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "tests/vision/drawn_block.h"
+
+namespace touchdown::vision {
+namespace {
+
+using synthetic::BlockPose;
+using synthetic::DrawBlock;
+using synthetic::DrawnBlock;
+
+TrackOptions OptionsFor(const DrawnBlock& block) {
+  TrackOptions options;
+  options.kind = core::BodyKind::kRectangle;
+  options.size = BodySize{{2.0 * block.half_long_px, 0.05, std::nullopt},
+                          {2.0 * block.half_short_px, 0.05, std::nullopt}};
+  options.threads = 1;
+  return options;
+}
+
+// As far as its own length and a quarter, so that one pixel is covered in four
+// frames of five.
+DrawnBlock Slow() {
+  DrawnBlock block;
+  block.pose = [](std::int64_t frame) {
+    const auto t = static_cast<double>(frame);
+    return BlockPose{70.0 + 1.5 * t, 70.0 - 0.01 * (t - 20.0) * (t - 20.0),
+                     0.01 * (t - 20.0)};
+  };
+  return block;
+}
+
+TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
+  const DrawnBlock block = Slow();
+  const auto clip = DrawBlock(block);
+  const auto result = TrackBody(*clip, OptionsFor(block));
+  ASSERT_TRUE(result) << result.error().reason;
+  const Track& track = result->track;
+  EXPECT_NEAR(track.body.half_long_px.value, block.half_long_px, 0.2);
+  EXPECT_NEAR(track.body.half_short_px.value, block.half_short_px, 0.2);
+  EXPECT_GE(track.poses.size(), 36U);
+  for (const Pose& pose : track.poses) {
+    const BlockPose truth = block.pose(pose.frame);
+    EXPECT_NEAR(pose.centre.x_px, truth.x_px, 0.3) << pose.frame;
+    EXPECT_NEAR(pose.centre.y_px, truth.y_px, 0.3) << pose.frame;
+    EXPECT_NEAR(
+        std::remainder(pose.angle_rad - truth.angle_rad, std::numbers::pi), 0.0,
+        0.02)
+        << pose.frame;
+  }
+}
+
+TEST(CountExplainedFrames, CountsNoneOfAnotherSize) {
+  Track track;
+  track.body.kind = core::BodyKind::kRectangle;
+  track.body.half_long_px = {24.0, 0.01, std::nullopt};
+  track.body.half_short_px = {8.0, 0.01, std::nullopt};
+  Pose pose;
+  pose.misfit = 0.9;
+  track.poses.push_back(pose);
+  pose.misfit = 2.0;
+  track.poses.push_back(pose);
+  const BodySize size{{48.1, 0.05, std::nullopt}, {16.1, 0.05, std::nullopt}};
+  EXPECT_DOUBLE_EQ(CountExplainedFrames(track, size), 1.25);
+  track.body.half_short_px.value = 10.0;
+  EXPECT_EQ(CountExplainedFrames(track, size), 0.0);
+}
+
+TEST(MayFollowGhost, NeedsAStatedSize) {
+  const DrawnBlock block = Slow();
+  const auto clip = DrawBlock(block);
+  Track track;
+  track.last_frame = clip->info().frames;
+  TrackOptions options = OptionsFor(block);
+  EXPECT_TRUE(MayFollowGhost(*clip, options, track, 0.9));
+  options.size.reset();
+  EXPECT_FALSE(MayFollowGhost(*clip, options, track, 0.9));
+}
+
+}  // namespace
+}  // namespace touchdown::vision
