@@ -176,9 +176,9 @@ TEST_F(Interruption, ALimitFailsAClipOfABatchAndNoOther) {
   Busy("films/a.mraw");
   Film("films/b.mraw");
   const ProgramResult ran = Run({"batch", In("films"), "--db", store,
-                                 "--campaign", "asphalt", "--limit-s", "1"});
+                                 "--campaign", "asphalt", "--limit-s", "4"});
   EXPECT_EQ(ran.status, 5) << ran.err;
-  EXPECT_THAT(ran.out, HasSubstr("not done within 1 s"));
+  EXPECT_THAT(ran.out, HasSubstr("not done within 4 s"));
   EXPECT_EQ(Trials().size(), 1u);
 }
 

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "tests/support/statistics.h"
 #include "tests/vision/composite_clip.h"
+#include "tests/vision/drawn_clip.h"
 #include "tests/vision/long_clip.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -208,6 +211,45 @@ TEST(Tracker, TwoBodiesAreSaid) {
   const auto result = TrackBody(clip);
   ASSERT_TRUE(result) << result.error().reason;
   EXPECT_TRUE(result->track.several_bodies);
+}
+
+TEST(Tracker, TellsThatMoreMovesThanIsFollowed) {
+  // Thirty specks, each of which goes its own way, and noise.
+  static constexpr int kWidth = 320;
+  static constexpr int kHeight = 200;
+  synthetic::DrawnClip clip(
+      kWidth, kHeight, 40, 1000.0, [](std::int64_t frame, auto& levels) {
+        std::mt19937_64 random(static_cast<std::uint64_t>(frame));
+        std::normal_distribution<double> noise(0.0, 1.0);
+        for (int i = 0; i < kWidth * kHeight; ++i) {
+          levels.push_back(120.0 + noise(random));
+        }
+        for (int k = 0; k < 30; ++k) {
+          const int left = 10 + 30 * (k % 10) + static_cast<int>(frame / 2);
+          const int top =
+              20 + 60 * (k / 10) + static_cast<int>(frame) % (k + 2);
+          for (int y = top; y < top + 8; ++y) {
+            for (int x = left; x < std::min(left + 8, kWidth); ++x) {
+              levels[static_cast<std::size_t>(y * kWidth + x)] = 20.0;
+            }
+          }
+        }
+      });
+  const auto result = TrackBody(clip);
+  const std::string told =
+      result ? ::testing::PrintToString(result->track.warnings)
+             : result.error().reason;
+  EXPECT_THAT(told,
+              HasSubstr("of 40 frames looked at more than 12 things move"));
+}
+
+TEST(Tracker, EndsWhenItIsTold) {
+  for (const core::BodyKind kind :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    const auto clip = OpenScene(Flying(kind), 1);
+    clip->set_cancellation(core::Cancellation::After(1e-9));
+    EXPECT_THROW(TrackBody(*clip), core::Cancelled);
+  }
 }
 
 TEST(Tracker, RegionChoosesOneOfTwo) {

@@ -473,8 +473,10 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   }
   constexpr std::size_t kLeastFrames = 3;
   if (best.fits.size() < kLeastFrames) {
-    return core::AbsentBecause(
-        "something moves, but no outline of a sphere or rectangle fits it");
+    std::string reason =
+        "something moves, but no outline of a sphere or rectangle fits it";
+    for (const std::string& bound : best.found.bounds) reason += "; " + bound;
+    return core::AbsentBecause(std::move(reason));
   }
   return best;
 }
