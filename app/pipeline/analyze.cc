@@ -125,8 +125,7 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   given_back_ = std::async(Beside(), [clip = clip_.get()] { clip->HasRead(); });
   TakeSize(judged.track);
   judged.plane = SeenInPlane(
-      camera_, WithStatedSize(Seen(judged.track), options_, result_.scale),
-      ground);
+      camera_, WithStatedSize(Seen(judged.track), options_), ground);
   judged.contacts = ContactsIn(judged.plane, contact_options_);
   return judged;
 }
@@ -368,7 +367,7 @@ Analysis Analyzer::Run() {
     result_.warnings.insert(result_.warnings.end(), of_track.begin(),
                             of_track.end());
     result_.size_conflict =
-        FindSizeConflict(Seen(*result_.track).body, options_, result_.scale);
+        FindSizeConflict(Seen(*result_.track).body, options_);
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());

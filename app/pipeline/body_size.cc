@@ -18,39 +18,27 @@ struct SizePair {
 };
 
 std::vector<SizePair> SizePairs(vision::BodyImage& seen,
-                                const AnalyzeOptions& options,
-                                const std::optional<calib::Scale>& scale) {
+                                const AnalyzeOptions& options) {
   std::vector<SizePair> pairs;
-  if (!scale || scale->source == calib::ScaleSource::kBodySize ||
-      seen.whole_px > 0.0) {
-    return pairs;
-  }
+  const std::optional<vision::BodySize> stated = StatedSize(options);
+  if (!stated || seen.whole_px > 0.0) return pairs;
   const auto add = [&](const char* name, core::Estimate& half,
+                       const core::Estimate& whole,
                        const core::Estimate& metres) {
-    const core::Estimate& s = scale->px_per_m;
-    pairs.push_back({name,
-                     &half,
-                     {0.5 * metres.value * s.value,
-                      0.5 * std::hypot(metres.u * s.value, metres.value * s.u),
-                      std::nullopt},
-                     metres.value});
+    pairs.push_back({name, &half, core::Scaled(whole, 0.5), metres.value});
   };
-  if (seen.kind == core::BodyKind::kSphere) {
-    if (options.diameter_m)
-      add("diameter", seen.radius_px, *options.diameter_m);
-  } else if (options.long_m && options.short_m) {
-    // A rectangle's sides are stated in any order.
-    const bool ordered = options.long_m->value >= options.short_m->value;
-    add("long side", seen.half_long_px,
-        ordered ? *options.long_m : *options.short_m);
-    add("short side", seen.half_short_px,
-        ordered ? *options.short_m : *options.long_m);
+  if (seen.kind == core::BodyKind::kSphere && options.diameter_m) {
+    add("diameter", seen.radius_px, stated->long_px, *options.diameter_m);
+  } else if (seen.kind == core::BodyKind::kRectangle && options.long_m) {
+    const core::Body sides = core::Rectangle(*options.long_m, *options.short_m);
+    add("long side", seen.half_long_px, stated->long_px, *sides.long_m);
+    add("short side", seen.half_short_px, stated->short_px, *sides.short_m);
   }
   return pairs;
 }
 
 // What one cause would explain all of the differences.
-std::string ExplanationOf(const std::vector<SizePair>& pairs, double px_per_m) {
+std::string ExplanationOf(const std::vector<SizePair>& pairs) {
   const SizePair& a = pairs.front();
   const SizePair& b = pairs.back();
   const auto ratio = [](const SizePair& p) {
@@ -60,7 +48,7 @@ std::string ExplanationOf(const std::vector<SizePair>& pairs, double px_per_m) {
     return p.seen->value - p.stated.value;
   };
   const std::string scale =
-      fmt::format("a scale of {:.1f} px/m", px_per_m * ratio(a));
+      fmt::format("a scale of {:.1f} px/m", 2.0 * a.seen->value / a.stated_m);
   if (pairs.size() == 1) {
     return fmt::format("{} or a {} of {:.3f} mm would explain it", scale,
                        a.name, 1e3 * a.stated_m * ratio(a));
@@ -81,20 +69,19 @@ std::string ExplanationOf(const std::vector<SizePair>& pairs, double px_per_m) {
 
 }  // namespace
 
-vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options,
-                             const std::optional<calib::Scale>& scale) {
-  for (const SizePair& pair : SizePairs(seen.body, options, scale)) {
+vision::Track WithStatedSize(vision::Track seen,
+                             const AnalyzeOptions& options) {
+  for (const SizePair& pair : SizePairs(seen.body, options)) {
     *pair.seen = core::Combined(*pair.seen, pair.stated);
   }
   return seen;
 }
 
-std::optional<SizeConflict> FindSizeConflict(
-    const vision::BodyImage& seen, const AnalyzeOptions& options,
-    const std::optional<calib::Scale>& scale) {
+std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
+                                             const AnalyzeOptions& options) {
   constexpr double kConflict = 4.0;  // u
   vision::BodyImage body = seen;
-  const std::vector<SizePair> pairs = SizePairs(body, options, scale);
+  const std::vector<SizePair> pairs = SizePairs(body, options);
   SizeConflict conflict;
   for (const SizePair& pair : pairs) {
     const double off = core::Disagreement(*pair.seen, pair.stated);
@@ -108,7 +95,7 @@ std::optional<SizeConflict> FindSizeConflict(
         2.0 * pair.seen->u, 2.0 * pair.stated.value, 2.0 * pair.stated.u);
   }
   if (conflict.reason.empty()) return std::nullopt;
-  conflict.reason += "; " + ExplanationOf(pairs, scale->px_per_m.value);
+  conflict.reason += "; " + ExplanationOf(pairs);
   return conflict;
 }
 

@@ -19,15 +19,13 @@ core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b);
 // What is stated is a measurement, too: the track with the size that image and
 // statement tell together (core::Combined), where a scale that does not come of
 // the body itself makes them comparable. `seen`: in the ideal picture.
-vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options,
-                             const std::optional<calib::Scale>& scale);
+vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options);
 
 // Where image and statement differ by more than 4 of their u: both, what would
 // explain it, and the largest difference over the stated size. Nothing where
 // they agree or cannot be compared.
-std::optional<SizeConflict> FindSizeConflict(
-    const vision::BodyImage& seen, const AnalyzeOptions& options,
-    const std::optional<calib::Scale>& scale);
+std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
+                                             const AnalyzeOptions& options);
 
 // Pixels per metre: given, calibrated, or from the body's known size; nothing
 // where none of them is there. `image`: of the body in the ideal picture.

@@ -131,7 +131,7 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
         return ContactsIn(
             vision::SeenFromGround(
                 WithStatedSize(vision::Undistorted(*analysis.track, lens),
-                               analysis.options, analysis.scale),
+                               analysis.options),
                 *ground, yaw),
             contact_options);
       });
@@ -143,8 +143,8 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
       !analysis.contacts.first.contact.found) {
     return;
   }
-  const vision::Track seen = WithStatedSize(
-      SeenThrough(camera, *analysis.track), analysis.options, analysis.scale);
+  const vision::Track seen =
+      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options);
   std::vector<MovedContacts> moved;
   // On the axis the change is of second order: both sides count.
   for (const double side : {-1.0, 1.0}) {
@@ -233,11 +233,10 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
   }
   const vision::ContactOptions contact_options =
       ContactOptionsOf(analysis.options, camera, analysis.scale);
-  analysis.plane =
-      SeenInPlane(camera,
-                  WithStatedSize(SeenThrough(camera, *analysis.track),
-                                 analysis.options, analysis.scale),
-                  *analysis.ground);
+  analysis.plane = SeenInPlane(
+      camera,
+      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options),
+      *analysis.ground);
   analysis.contacts = ContactsIn(*analysis.plane, contact_options);
   AddLens(analysis, camera, contact_options);
   AddYaw(analysis, camera, contact_options);
@@ -248,9 +247,8 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
       analysis.warnings.push_back(warning);
     }
   }
-  analysis.size_conflict =
-      FindSizeConflict(SeenThrough(camera, *analysis.track).body,
-                       analysis.options, analysis.scale);
+  analysis.size_conflict = FindSizeConflict(
+      SeenThrough(camera, *analysis.track).body, analysis.options);
   CheckAnswer(analysis);
   analysis.options_hash = OptionsHash(analysis.options);
   return analysis;
