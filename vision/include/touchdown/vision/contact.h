@@ -8,7 +8,8 @@
 // what is known of the line (least squares in (t, d)):
 //   gap_before(t) = d,  gap_after(t) = d,  d = 0 +- u_ground.
 // Where it stays down, the gaps of the frames in contact tell the ground's
-// height.
+// height. Which frames are of which flight a segmentation of the whole path
+// tells (path.h).
 #pragma once
 
 #include <optional>
