@@ -108,8 +108,7 @@ void AddInterval(const PlotInterval& interval, const Range& range,
   arrow(high, interval.open_high);
   script += fmt::format("$middle << EOD\n{:.6f} {}\nEOD\n", middle, kLevel);
   parts.push_back(fmt::format(
-      "$middle using 1:2 with points pt 13 ps 1.2 lc rgb '{}' title '95 % "
-      "interval'",
+      "$middle using 1:2 with points pt 13 ps 1.2 lc rgb '{}' title '95 %'",
       kColour));
 }
 

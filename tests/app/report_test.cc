@@ -330,9 +330,9 @@ TEST(DrawBoundaryPlot, ShowsTheWholeInterval) {
   }
   const Report open = MakeReport(input);
   EXPECT_THAT(open.html, HasSubstr("set no upper end"));
-  EXPECT_THAT(open.html, HasSubstr("95 % interval"));
+  EXPECT_THAT(open.html, HasSubstr(">95 %</text>"));
   // The axis reaches the last of its tics.
-  EXPECT_THAT(open.html, HasSubstr(">90</text>"));
+  EXPECT_THAT(open.html, HasSubstr("> 90</text>"));
   input.trials.push_back(MakeTrial({30, 30, true}, core::BodyKind::kSphere,
                                    core::Origin::kRecorded));
   EXPECT_FALSE(Has(MakeReport(input).html, "set no upper end"));
