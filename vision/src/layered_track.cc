@@ -114,14 +114,18 @@ bool IsTheBackground(double most_covered) {
 bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                     const Track& track, double most_covered) {
   if (!CanStartFromLayers(clip, options)) return false;
-  // What explains more cannot be surpassed by the margin that a second opinion
-  // needs (tracker.cc), and clips that are right cost no more time.
-  constexpr double kExplained = 0.9;
-  const auto frames = static_cast<double>(track.last_frame - track.first_frame);
+  // A body that is seen so in nine of ten frames is no ghost, and its clip
+  // costs no more time.
+  constexpr double kSeen = 0.9;
+  const auto seen = IsOfSize(track.body, *options.size)
+                        ? std::count_if(track.poses.begin(), track.poses.end(),
+                                        [](const Pose& pose) {
+                                          return pose.misfit <= kWellModelled;
+                                        })
+                        : 0;
   return IsTheBackground(most_covered) ||
-         CountExplainedFrames(track, *options.size) *
-                 static_cast<double>(track.step) <
-             kExplained * frames;
+         static_cast<double>(seen * track.step) <
+             kSeen * static_cast<double>(track.last_frame - track.first_frame);
 }
 
 double CountExplainedFrames(const Track& track, const BodySize& size) {
@@ -174,6 +178,13 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
       stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
       return !IsOfSize(2.0 * SizeOf(f.fit), stated);
     });
+    // What is lost by holding the size was better known without.
+    constexpr double kMostLost = 0.2;
+    if (held == Size::kCommon &&
+        static_cast<double>(fits.size()) <
+            (1.0 - kMostLost) * static_cast<double>(track.poses.size())) {
+      break;
+    }
     if (fits.size() < kLeast) return too_few();
     const BodyImage sized = track.body;
     track.warnings.clear();

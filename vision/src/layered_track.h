@@ -14,11 +14,11 @@ namespace touchdown::vision {
 bool IsTheBackground(double most_covered);
 
 // Whether a track may be that of a ghost, so that a second opinion is worth its
-// time: the body is the background somewhere, or the stated body is not seen in
-// nine of ten frames. `most_covered`: the largest share of the frames in which
-// the track covers one and the same pixel. False where no size is stated, and
-// of clips that are not at hand whole (Clip::ChangesIn) or longer than 400
-// frames.
+// time: the body is the background somewhere, or the stated body is not seen
+// well modelled in nine of ten frames. `most_covered`: the largest share of the
+// frames in which the track covers one and the same pixel. False where no size
+// is stated, and of clips that are not at hand whole (Clip::ChangesIn) or
+// longer than 400 frames.
 bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                     const Track& track, double most_covered);
 
