@@ -81,11 +81,12 @@ bool Any(const BoundaryPlot& plot, Outcome outcome) {
       [outcome](const Observation& o) { return o.outcome == outcome; });
 }
 
-// The bar of the interval, at half height, its ends marked or open.
+// The bar of the interval, its ends marked or open: below the slides, where no
+// mark is. The caption names it; the key has no room.
 void AddInterval(const PlotInterval& interval, const Range& range,
                  std::string& script, std::vector<std::string>& parts) {
-  constexpr double kLevel = 0.5;
-  constexpr double kEnd = 0.05;  // half-height of a closed end
+  constexpr double kLevel = -0.1;
+  constexpr double kEnd = 0.04;  // half-height of a closed end
   constexpr std::string_view kColour = "#5b2a86";
   const double low =
       interval.open_low ? range.low_deg : interval.angle_rad.low / kDegree;
@@ -108,7 +109,7 @@ void AddInterval(const PlotInterval& interval, const Range& range,
   arrow(high, interval.open_high);
   script += fmt::format("$middle << EOD\n{:.6f} {}\nEOD\n", middle, kLevel);
   parts.push_back(fmt::format(
-      "$middle using 1:2 with points pt 13 ps 1.2 lc rgb '{}' title '95 %'",
+      "$middle using 1:2 with points pt 13 ps 1.2 lc rgb '{}' notitle",
       kColour));
 }
 

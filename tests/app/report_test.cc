@@ -330,7 +330,7 @@ TEST(DrawBoundaryPlot, ShowsTheWholeInterval) {
   }
   const Report open = MakeReport(input);
   EXPECT_THAT(open.html, HasSubstr("set no upper end"));
-  EXPECT_THAT(open.html, HasSubstr(">95 %</text>"));
+  EXPECT_THAT(open.html, HasSubstr("its median and 95 % interval"));
   // The axis reaches the last of its tics.
   EXPECT_THAT(open.html, HasSubstr("> 90</text>"));
   input.trials.push_back(MakeTrial({30, 30, true}, core::BodyKind::kSphere,
