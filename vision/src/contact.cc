@@ -258,13 +258,30 @@ bool BeginsAtImpact(const PlaneTrack& track,
                                               kEdgeBias_px);
 }
 
-bool IsDownFromStart(const std::vector<Stretch>& stretches) {
+// The stretch in which the body is down, where it is so from the start.
+const Stretch* DownFromStart(const std::vector<Stretch>& stretches) {
   std::size_t first = 0;
   while (first + 1 < stretches.size() &&
          stretches[first].kind == StretchKind::kOther) {
     ++first;
   }
-  return stretches[first].kind == StretchKind::kSupported;
+  return stretches[first].kind == StretchKind::kSupported ? &stretches[first]
+                                                          : nullptr;
+}
+
+// How far a supported stretch lies above the line, where that is so far that
+// something else carries the body; else 0.
+double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
+  double sum = 0.0;
+  for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+    sum += track.samples[i].gap_px;
+  }
+  const double gap = sum / static_cast<double>(stretch.end - stretch.begin);
+  // An edge that is seen need not be the line of contact.
+  constexpr double kShare = 0.3;  // of half the body's size
+  const double near = std::max(NearLine(track, track.samples[stretch.begin]),
+                               kShare * track.half_short_px);
+  return std::abs(gap) > near ? gap : 0.0;
 }
 
 }  // namespace
@@ -289,8 +306,9 @@ ContactResult FindContacts(const PlaneTrack& given,
   const SegmentationOptions segmentation =
       SegmentationFor(track, options, flight);
   std::vector<Stretch> stretches = SegmentMotion(track, segmentation);
-  WidenToCorrelation(stretches, flight, track);
-  stretches = SegmentMotion(track, segmentation);
+  if (WidenToCorrelation(stretches, flight, track)) {
+    stretches = SegmentMotion(track, segmentation);
+  }
   RecordContext context{track, options, flight, stretches,
                         kCommonPlace * excess.face_rad};
   for (const Stretch& stretch : stretches) {
@@ -304,7 +322,14 @@ ContactResult FindContacts(const PlaneTrack& given,
   event_options.flight = flight;
   event_options.u_line_px = track.ground.u_offset_px;
   event_options.u_slope_rad = track.ground.u_angle_rad;
-  if (IsDownFromStart(stretches)) {
+  if (const Stretch* down = DownFromStart(stretches)) {
+    if (const double above = HeightAboveGround(track, *down); above != 0.0) {
+      result.ground_refuted = fmt::format(
+          "the body moves along a line {:.1f} px {} the ground line",
+          std::abs(above), above > 0.0 ? "above" : "below");
+      result.first = NoContact(result.ground_refuted);
+      return result;
+    }
     result.first = MeasureFromStart(context, track, result.warnings);
     return result;
   }

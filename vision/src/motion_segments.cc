@@ -125,6 +125,7 @@ class Segmenter {
 
  private:
   struct Fits;
+  std::vector<Stretch> BestPath();
   void Fit(Fits& fits) const;
   double CostOf(const Stretch& stretch, bool touches_at_end) const;
   void GrowFrom(std::size_t begin);
@@ -150,6 +151,7 @@ class Segmenter {
   double per_cut_;
   double level_precision_;  // of a supported stretch's level and slope
   double slope_precision_;
+  std::vector<bool> allowed_;                    // cuts before these samples
   std::vector<std::array<Step, kStates>> best_;  // by boundary
   std::vector<double> u_gap_;
   std::array<std::vector<double>, 4> weights_;  // along, height, face, gap
@@ -392,6 +394,7 @@ void Segmenter::GrowFrom(std::size_t begin) {
   fits.begin = begin;
   for (std::size_t end = begin + 1; end <= limit; ++end) {
     fits.Add(*this);
+    if (!allowed_[end]) continue;
     Fit(fits);
     Offer(begin, end, fits);
     if (fits.frames < 2) continue;
@@ -458,14 +461,45 @@ void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
 
 std::vector<Stretch> Segmenter::Run() {
   const std::size_t n = samples_.size();
-  std::vector<Stretch> stretches;
-  if (n < 2) return stretches;
+  if (n < 2) return {};
+  // Cuts at every few frames first; then at every frame beside those found,
+  // until they stay. What a coarse cut cannot explain asks for cuts beside it.
+  constexpr std::size_t kExact = 120;  // boundaries: about a millisecond
+  const std::size_t step = (n + kExact - 1) / kExact;
+  std::vector<bool> grid(n + 1, false);
+  for (std::size_t i = 0; i <= n; i += step) grid[i] = true;
+  grid[n] = true;
+  if (options_.touchdown) grid[*options_.touchdown] = true;
+  allowed_ = grid;
+  std::vector<Stretch> stretches = BestPath();
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds && step > 1; ++round) {
+    const std::vector<bool> before = allowed_;
+    for (const Stretch& stretch : stretches) {
+      const std::size_t reach = 2 * step;
+      const std::size_t from =
+          stretch.begin > reach ? stretch.begin - reach : 0;
+      const std::size_t to = std::min(n, stretch.begin + reach);
+      for (std::size_t i = from; i <= to; ++i) allowed_[i] = true;
+    }
+    if (allowed_ == before) break;
+    stretches = BestPath();
+  }
+  return stretches;
+}
+
+std::vector<Stretch> Segmenter::BestPath() {
+  const std::size_t n = samples_.size();
+  best_.assign(n + 1, {});
   best_[0][kStart].cost = 0.0;
-  for (std::size_t begin = 0; begin < n; ++begin) GrowFrom(begin);
+  for (std::size_t begin = 0; begin < n; ++begin) {
+    if (allowed_[begin]) GrowFrom(begin);
+  }
   State state = kTouched;
   for (const State other : {kCarried, kLeft, kEnded}) {
     if (best_[n][other].cost < best_[n][state].cost) state = other;
   }
+  std::vector<Stretch> stretches;
   for (std::size_t end = n; end > 0;) {
     const Step& step = best_[end][state];
     if (!(step.cost < kInfinity)) return {};

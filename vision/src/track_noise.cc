@@ -113,7 +113,7 @@ double Residuals::Inflation() const {
 
 }  // namespace
 
-void WidenToCorrelation(const std::vector<Stretch>& stretches,
+bool WidenToCorrelation(const std::vector<Stretch>& stretches,
                         const FlightOptions& options, PlaneTrack& track) {
   Residuals along, height, face;
   const bool turns = track.kind == core::BodyKind::kRectangle;
@@ -148,6 +148,7 @@ void WidenToCorrelation(const std::vector<Stretch>& stretches,
     s.u_face_rad *= by_face;
     s.u_gap_px = std::hypot(s.u_height_px, arm * by_face);
   }
+  return std::max({by_along, by_height, by_face}) > 1.0;
 }
 
 ExcessNoise WidenToScatter(PlaneTrack& track) {

@@ -31,8 +31,8 @@ inline constexpr double kExcessVariance = 2.2;
 //   max(1, chi^2 / (degrees of freedom) (1 + 2 sum_k rho_k))
 // for each coordinate, from the residuals of all flights; rho_k: their
 // correlation k frames apart, summed as long as it is positive (Geyer,
-// Statist. Sci. 7, 1992, 473).
-void WidenToCorrelation(const std::vector<Stretch>& stretches,
+// Statist. Sci. 7, 1992, 473). Whether any was widened.
+bool WidenToCorrelation(const std::vector<Stretch>& stretches,
                         const FlightOptions& options, PlaneTrack& track);
 
 }  // namespace touchdown::vision
