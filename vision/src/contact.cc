@@ -309,7 +309,11 @@ ContactResult FindContacts(const PlaneTrack& given,
   if (WidenToCorrelation(stretches, flight, track)) {
     stretches = SegmentMotion(track, segmentation);
   }
-  RecordContext context{track, options, flight, stretches,
+  RecordContext context{track,
+                        options,
+                        flight,
+                        stretches,
+                        kCommonPlace * excess.height_px,
                         kCommonPlace * excess.face_rad};
   for (const Stretch& stretch : stretches) {
     result.path.push_back({stretch.kind, track.samples[stretch.begin].frame,

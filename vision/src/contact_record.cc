@@ -276,7 +276,10 @@ void FillState(const RecordContext& context, std::size_t from,
         samples.size() - from, kLeastAfter);
     return;
   }
-  const Estimate& gap = greatest->gap_px;
+  // A gap is a difference of poses far from each other, each with what its
+  // neighbours have in common.
+  Estimate gap = greatest->gap_px;
+  gap.u = std::hypot(gap.u, std::numbers::sqrt2 * context.u_common_place_px);
   // A gap is not negative; what is below is noise of pose and ground.
   state.max_gap_m = InMetres(context, gap);
   const StateEvidence evidence = DecideBounce(gap, height_px);
@@ -287,7 +290,9 @@ void FillState(const RecordContext& context, std::size_t from,
                   LengthText(context, gap.value, gap.u), greatest->frame,
                   LengthText(context, height_px, 0.0));
   if (state.label != core::MotionState::kBounce && greatest->reaches_px) {
-    const Estimate& reaches = *greatest->reaches_px;
+    Estimate reaches = *greatest->reaches_px;
+    reaches.u =
+        std::hypot(reaches.u, std::numbers::sqrt2 * context.u_common_place_px);
     state.label = core::MotionState::kUndecided;
     state.p_bounce.reset();
     state.extrapolated_gap_m = InMetres(context, reaches);

@@ -16,7 +16,9 @@ struct RecordContext {
   const ContactOptions& options;
   FlightOptions flight;
   const std::vector<Stretch>& stretches;
-  double u_common_face_rad = 0.0;  // of all poses together
+  // Of neighbouring poses together, in place and attitude.
+  double u_common_place_px = 0.0;
+  double u_common_face_rad = 0.0;
 };
 
 core::ContactRecord RecordOf(const RecordContext& context, const Event& event,

@@ -162,6 +162,17 @@ ExcessNoise WidenToScatter(PlaneTrack& track) {
   if (track.kind == core::BodyKind::kRectangle) {
     excess.face_rad =
         Widen(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
+    // An attitude that was smoothed does not scatter, and is known no better
+    // than the ends of the long side are.
+    constexpr double kOfPlace = 0.5;  // 0.9 to 1.2 where each frame has its own
+    for (PlaneSample& s : samples) {
+      s.u_face_rad = std::max(s.u_face_rad,
+                              kOfPlace * std::min(s.u_along_px, s.u_height_px) /
+                                  std::max(track.half_long_px, 1.0));
+    }
+    excess.face_rad =
+        std::max(excess.face_rad, kOfPlace * excess.height_px /
+                                      std::max(track.half_long_px, 1.0));
   }
   Widen(samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);
   return excess;
