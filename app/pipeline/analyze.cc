@@ -70,6 +70,7 @@ class Analyzer {
   void TakeSize(const vision::Track& track);
   Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   void MeasureExplained();
+  void JudgeSeveralBodies();
   std::optional<Judged> JudgeBest(
       const std::vector<calib::GroundLine>& candidates,
       const vision::Track& track);
@@ -276,6 +277,26 @@ void Analyzer::MeasureExplained() {
   result_.timing.check_s = Since(begun);
 }
 
+// Others move, too: powder, a shadow, or a second body. The answer stands where
+// the one that was followed explains nearly all that changes.
+void Analyzer::JudgeSeveralBodies() {
+  const AnswerCheckLimits limits;
+  constexpr double kMostElsewhere = 0.1;  // of all change
+  if (result_.explained && result_.explained->near >= limits.usual_near &&
+      result_.explained->elsewhere <= kMostElsewhere) {
+    result_.track->several_bodies = false;
+    result_.warnings.emplace_back(
+        "other things move, too; the body that was followed explains nearly "
+        "all that changes");
+    return;
+  }
+  const std::string reason = "several bodies move; give --region X,Y,W,H";
+  result_.warnings.push_back(reason);
+  result_.contacts = {};
+  result_.contacts.first.contact.reason = reason;
+  result_.contacts.first.state.reason = reason;
+}
+
 void Analyzer::DescribeScene() {
   SceneModel& scene = result_.scene_model;
   if (!result_.track) return;
@@ -371,14 +392,8 @@ Analysis Analyzer::Run() {
     result_.warnings.insert(result_.warnings.end(),
                             result_.contacts.warnings.begin(),
                             result_.contacts.warnings.end());
-    if (track.several_bodies) {
-      const std::string reason = "several bodies move; give --region X,Y,W,H";
-      result_.warnings.push_back(reason);
-      result_.contacts = {};
-      result_.contacts.first.contact.reason = reason;
-      result_.contacts.first.state.reason = reason;
-    }
     MeasureExplained();
+    if (track.several_bodies) JudgeSeveralBodies();
     CheckAnswer(result_);
   }
   result_.angle_kind =

@@ -10,6 +10,7 @@
 #include "motion_segments.h"
 #include "path_trend.h"
 #include "track_noise.h"
+#include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
@@ -229,6 +230,19 @@ core::ContactRecord MeasureFromStart(RecordContext& context, PlaneTrack& track,
         fmt::format("the body's path is inclined by {:.2f} deg to the ground "
                     "line; its gap is taken from the path",
                     trend.slope_rad / core::kDegree));
+  }
+  // Whatever is down from the start does not sink into what carries it.
+  std::vector<double> gaps;
+  for (const PlaneSample& s : track.samples) gaps.push_back(s.gap_px);
+  const double level = Median(gaps);
+  const double sunk = level - *std::min_element(gaps.begin(), gaps.end());
+  constexpr double kShare = 0.3;  // of half the body's size
+  if (sunk > std::max(NearLine(track, track.samples.front()),
+                      kShare * track.half_short_px)) {
+    return NoContact(
+        fmt::format("its path is neither a flight nor along the ground line: "
+                    "it sinks {:.1f} px below where it is half of the time",
+                    sunk));
   }
   return RecordFromStart(context, trend.slope_rad);
 }

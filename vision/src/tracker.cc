@@ -237,13 +237,15 @@ bool IsWellModelled(const Track& track) {
 // follow_pattern.h: noise of compression is no part), it may be a part of what
 // moves as one.
 // Not a disc that stands out by its levels alone: what moves with a ball before
-// an unknown background is its shadow.
+// an unknown background is its shadow. And not where a sphere was stated: its
+// whole outline is the circle that was fitted.
 void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
                  TrackResult& result, double& whole_px) {
   Track& track = result.track;
   const bool ball_by_levels = track.body.kind == core::BodyKind::kSphere &&
                               look.surround != Surround::kBackground;
-  if (ball_by_levels || !(MedianMisfit(track.poses) > kCrude) ||
+  const bool stated_ball = options.kind == core::BodyKind::kSphere;
+  if (ball_by_levels || stated_ball || !(MedianMisfit(track.poses) > kCrude) ||
       !IsSteady(track) || look.found.step > 1) {
     return;
   }
