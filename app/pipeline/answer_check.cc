@@ -31,13 +31,17 @@ AnswerCheck CheckExplained(const Analysis& analysis,
     return check;
   }
   const vision::ExplainedChange& explained = *analysis.explained;
-  if (!(explained.near >= limits.least_near)) {
+  const bool patterned = analysis.track && analysis.track->patterned;
+  const double least =
+      patterned ? limits.least_near_patterned : limits.least_near;
+  if (!(explained.near >= least)) {
     check.verdict = Verdict::kRefused;
     check.reason = fmt::format(
-        "the answer's outline explains none of what changes near it (Q = "
-        "{:.2f}, must be at least {:g}): it follows something else than the "
-        "body{}; give --region X,Y,W,H or the body's size",
-        explained.near, limits.least_near, LostFrames(explained));
+        "the answer's outline explains {} of what changes near it (Q = {:.2f}, "
+        "must be at least {:g}): it follows something else than the body, or "
+        "lost it{}; give --region X,Y,W,H or the body's size",
+        explained.near > 0.0 ? "only a part" : "none", explained.near, least,
+        LostFrames(explained));
   } else if (!(explained.near >= limits.usual_near)) {
     check.verdict = Verdict::kDoubtful;
     check.reason = fmt::format(

@@ -340,14 +340,10 @@ ContactResult FindContacts(const PlaneTrack& given,
   event_options.flight = flight;
   event_options.u_line_px = track.ground.u_offset_px;
   event_options.u_slope_rad = track.ground.u_angle_rad;
-  if (const Stretch* down = DownFromStart(stretches)) {
-    if (const double above = HeightAboveGround(track, *down); above != 0.0) {
-      result.ground_refuted = fmt::format(
-          "the body moves along a line {:.1f} px {} the ground line",
-          std::abs(above), above > 0.0 ? "above" : "below");
-      result.first = NoContact(result.ground_refuted);
-      return result;
-    }
+  // What carries it far from the line is not the ground: a rail, a hand.
+  const Stretch* down = DownFromStart(stretches);
+  const double above = down ? HeightAboveGround(track, *down) : 0.0;
+  if (down && above == 0.0) {
     result.first = MeasureFromStart(context, track, result.warnings);
     return result;
   }
@@ -385,6 +381,11 @@ ContactResult FindContacts(const PlaneTrack& given,
             MeasureAtEnd(track, stretches, event_options, reason)) {
       result.first = RecordOf(context, *event, result.warnings);
       result.evidence.push_back(EvidenceOf(track, *event));
+    } else if (down && stretches.size() == 1) {
+      result.ground_refuted = fmt::format(
+          "the body moves along a line {:.1f} px {} the ground line",
+          std::abs(above), above > 0.0 ? "above" : "below");
+      result.first = NoContact(result.ground_refuted);
     } else {
       result.first = NoContact(reason);
     }
@@ -426,14 +427,16 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   EventOptions options;
   options.u_line_px = kUnknown_px;
   options.u_slope_rad = u_level_rad;
-  // A body does not pass below the ground: of several the lowest contact.
-  std::optional<calib::GroundLine> found;
+  // The first contact below which the body does not sink by half its size: what
+  // is met later lies elsewhere in perspective, and a body does not pass below
+  // its ground.
+  const double deepest = lowest - least;
   for (Touch& touch :
        FindTouches(plane, SegmentMotion(plane, segmentation), {})) {
     std::string reason;
     if (!MeasureEvent(plane, options, touch.event, reason)) continue;
     const ContactEvidence at = EvidenceOf(plane, touch.event);
-    if (found && at.touching.y_px <= found->reference.y_px) continue;
+    if (deepest - at.touching.y_px > plane.half_short_px) continue;
     calib::GroundLine ground;
     ground.p1 = {left, at.touching.y_px};
     ground.p2 = {std::max(right, left + 1.0), at.touching.y_px};
@@ -441,9 +444,9 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     ground.u_offset_px = std::min(touch.event.ground_px.u, 5.0);
     ground.u_angle_rad = u_level_rad;
     ground.source = calib::GroundSource::kContactPoints;
-    found = ground;
+    return ground;
   }
-  return found;
+  return std::nullopt;
 }
 
 }  // namespace touchdown::vision
