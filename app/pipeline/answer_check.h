@@ -38,7 +38,7 @@ struct AnswerCheckLimits {
   // right.
   double least_near = 0.75;
   double usual_near = 0.85;
-  double least_near_patterned = 0.4;
+  double least_near_patterned = 0.3;
 
   // Of a stated size that is seen otherwise, relative. Nearer to it, u has
   // grown and a sentence says so; from here on it is another body that was

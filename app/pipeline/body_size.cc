@@ -133,6 +133,11 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
 }
 
 std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
+  // In a turned plane the picture's size is not that of the plane.
+  if (options.calibration && options.calibration->ground &&
+      options.calibration->ground->yaw_rad) {
+    return std::nullopt;
+  }
   // Of a body without a size in the picture only what was told is a scale.
   vision::BodyImage unseen;
   unseen.whole_px = 1.0;

@@ -105,7 +105,8 @@ TEST_P(HardClips, AReversedClipIsTheReversedThrow) {
     SCOPED_TRACE(seed);
     const core::ContactRecord& one = a.contacts.first;
     const core::ContactRecord& other = b.contacts.first;
-    ASSERT_TRUE(one.contact.frame && other.contact.frame);
+    ASSERT_TRUE(one.contact.frame && other.contact.frame)
+        << one.contact.reason << other.contact.reason;
     EXPECT_NEAR(one.contact.frame->value,
                 static_cast<double>(last) - other.contact.frame->value,
                 kMost_u * one.contact.frame->u);

@@ -61,7 +61,7 @@ constexpr double kCommonPlace = 0.45;
 constexpr double kCommonSize = 0.3;
 // No lens blurs as the model has it: sizes in clean clips of another renderer
 // were off by 0.001 to 0.003 px.
-constexpr double kOutline_px = 0.002;
+constexpr double kOutline_px = 0.0015;
 
 // A flight that ends as something stops it or throws it back, and what follows.
 struct Touch {
@@ -427,7 +427,7 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   EventOptions options;
   options.u_line_px = kUnknown_px;
   options.u_slope_rad = u_level_rad;
-  // The first contact below which the body does not sink by half its size: what
+  // The first contact below which the body does not sink by its own size: what
   // is met later lies elsewhere in perspective, and a body does not pass below
   // its ground.
   const double deepest = lowest - least;
@@ -436,7 +436,7 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     std::string reason;
     if (!MeasureEvent(plane, options, touch.event, reason)) continue;
     const ContactEvidence at = EvidenceOf(plane, touch.event);
-    if (deepest - at.touching.y_px > plane.half_short_px) continue;
+    if (deepest - at.touching.y_px > plane.size_px) continue;
     calib::GroundLine ground;
     ground.p1 = {left, at.touching.y_px};
     ground.p2 = {std::max(right, left + 1.0), at.touching.y_px};

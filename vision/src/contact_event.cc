@@ -238,7 +238,14 @@ bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
   down.end = std::min(down.end, down.begin + kNear);
   if (const auto level = LevelOf(SamplesIn(track, down))) {
     event.disagreement = level->value / std::hypot(ground.u, level->u);
-    ground = core::Combined(ground, *level);
+    if (std::abs(event.disagreement) > kDisagree) {
+      ground = core::Combined(ground, *level);
+    } else {
+      const double w0 = 1.0 / (ground.u * ground.u);
+      const double w1 = 1.0 / (level->u * level->u);
+      ground = {level->value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
+                std::nullopt};
+    }
     input.ground_px = ground;
     input.reference_along_px = samples[down.begin].along_px;
   }

@@ -90,8 +90,9 @@ double Residuals::Inflation() const {
     n += flight.size();
   }
   if (degrees < 1 || !(square > 0.0)) return 1.0;
-  // A correlation within its own uncertainty is none.
-  const double noise = 2.0 / std::sqrt(static_cast<double>(n));
+  // A correlation within its own uncertainty is none; 4: as for the scatter, one
+  // honest track in a hundred is widened, all lags and coordinates together.
+  const double noise = 4.0 / std::sqrt(static_cast<double>(n));
   double alike = 1.0;
   constexpr std::size_t kShare = 3;  // lags beyond a third of a flight: noise
   for (std::size_t lag = 1;; ++lag) {
