@@ -1,9 +1,15 @@
 #include "watcher.h"
 
+#include <cmath>
 #include <cstddef>
 
 namespace touchdown::vision {
 namespace {
+
+// By which KeepLargest ranks.
+double Strength(const Blob& blob) {
+  return blob.area_px2 * std::abs(blob.contrast_dn);
+}
 
 // One more than is kept shows whether there are more.
 DetectOptions OneMore(DetectOptions detect) {
@@ -12,8 +18,15 @@ DetectOptions OneMore(DetectOptions detect) {
 }
 
 void KeepStrongest(const DetectOptions& detect, Seen& seen) {
-  seen.more = seen.blobs.size() > static_cast<std::size_t>(detect.most_blobs);
-  KeepLargest(seen.blobs, detect);
+  // Of the strongest: specks of noise and of compression, of which there may be
+  // any number, are no body that was overlooked.
+  constexpr double kLikeABody = 0.1;
+  KeepLargest(seen.blobs, OneMore(detect));
+  const auto most = static_cast<std::size_t>(detect.most_blobs);
+  if (seen.blobs.size() <= most) return;
+  seen.more =
+      Strength(seen.blobs[most]) > kLikeABody * Strength(seen.blobs.front());
+  seen.blobs.resize(most);
 }
 
 }  // namespace

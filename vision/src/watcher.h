@@ -20,7 +20,8 @@ bool IsLong(const Clip& clip, const TrackOptions& options);
 struct Seen {
   double time_s = 0.0;  // where there are any blobs
   std::vector<Blob> blobs;
-  bool more = false;  // than are kept (DetectOptions::most_blobs)
+  // Than are kept (DetectOptions::most_blobs), and not mere specks.
+  bool more = false;
 };
 
 // Looks at frames, each by itself.
