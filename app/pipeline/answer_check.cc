@@ -117,8 +117,10 @@ AnswerCheck CheckRestitution(const Analysis& analysis,
   const double beyond = std::max(-e->value, e->value - 1.0);
   check.verdict = Verdict::kPassed;
   if (beyond > limits.most_sigmas * e->u) {
+    // It comes out below the line: no rebound at all. Above 1 the film may run
+    // backwards, or a second corner have struck between two frames.
     check.verdict =
-        beyond > limits.most_beyond ? Verdict::kRefused : Verdict::kDoubtful;
+        -e->value > limits.most_beyond ? Verdict::kRefused : Verdict::kDoubtful;
     check.reason = fmt::format(
         "the restitution is {:.3f} +- {:.3f}, must be in 0 .. 1: the frames "
         "beside the contact show no rebound from this line; check --ground",

@@ -236,7 +236,11 @@ bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
   constexpr std::size_t kNear = 40;  // frames
   SampleRange down = event.down_frames;
   down.end = std::min(down.end, down.begin + kNear);
-  if (const auto level = LevelOf(SamplesIn(track, down))) {
+  // A few frames may still belong to a rebound.
+  constexpr std::size_t kEnough = 6;
+  const auto level =
+      down.size() >= kEnough ? LevelOf(SamplesIn(track, down)) : std::nullopt;
+  if (level) {
     event.disagreement = level->value / std::hypot(ground.u, level->u);
     if (std::abs(event.disagreement) > kDisagree) {
       ground = core::Combined(ground, *level);

@@ -163,6 +163,8 @@ struct Segmenter::Fits {
   std::size_t frames = 0;
   Moments along, height, face;
   LineMoments gaps;
+  double lowest_px = kInfinity;  // of the gaps
+  double highest_px = -kInfinity;
   std::optional<Polynomial> x, y, f;  // of the frames so far
 
   void Add(const Segmenter& of);
@@ -179,6 +181,8 @@ void Segmenter::Fits::Add(const Segmenter& of) {
              of.weights_[1][i]);
   if (of.turns_) face.Add(t, s.face_rad - first.face_rad, of.weights_[2][i]);
   gaps.Add(s.along_px, s.gap_px, of.weights_[3][i]);
+  lowest_px = std::min(lowest_px, s.gap_px);
+  highest_px = std::max(highest_px, s.gap_px);
 }
 
 double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
@@ -366,10 +370,14 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
     Take(end, to, s);
   };
   const double above = fits.gaps.g / fits.gaps.w;
-  // As for a rebound: where the line is not known, it could stand for one.
-  offer(kTouched, kTouched, StretchKind::kContact,
-        (told ? options_.rebound_cost : 0.0) +
-            OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
+  // As for a rebound: where the line is not known, or is not quite where the
+  // flights meet, it could stand for one.
+  // What is pressed down gives way by less than half of its size.
+  if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
+    offer(kTouched, kTouched, StretchKind::kContact,
+          options_.rebound_cost +
+              OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
+  }
   offer(kStart, kCarried, StretchKind::kOther, before);
   if (told) offer(kCarried, kCarried, StretchKind::kOther, before);
   if (!MayTouch(begin)) return;

@@ -48,9 +48,10 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
   constexpr double kLeastClaim = 1e-9;
   const double claim = std::max(Median(std::move(claims)), kLeastClaim);
   double factor = 1.0;
+  double neighbours = 0.0;
   // An impact spoils three differences for each frame of the lag: of four, and
   // of a fifth of all, the median still tells.
-  constexpr std::size_t kShare = 18;
+  constexpr std::size_t kShare = 30;
   constexpr std::size_t kLongest = 4;
   const std::size_t longest =
       std::clamp<std::size_t>(samples.size() / kShare, 1, kLongest);
@@ -65,6 +66,11 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
     // Of longer lags fewer are apart from each other.
     const double many =
         static_cast<double>(d.size()) / static_cast<double>(lag);
+    // Neighbours share most of a drift; what differs by more over some frames
+    // is the path's own: of a body that bounces every few frames.
+    constexpr double kMostDrift = 4.0;  // times what neighbours differ by
+    if (lag > 1 && ratio > kMostDrift * std::max(1.0, neighbours)) break;
+    if (lag == 1) neighbours = ratio;
     if (ratio > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, ratio);
   }
   const double excess = factor * factor - 1.0;
@@ -90,8 +96,9 @@ double Residuals::Inflation() const {
     n += flight.size();
   }
   if (degrees < 1 || !(square > 0.0)) return 1.0;
-  // A correlation within its own uncertainty is none; 4: as for the scatter, one
-  // honest track in a hundred is widened, all lags and coordinates together.
+  // A correlation within its own uncertainty is none; 4: as for the scatter,
+  // one honest track in a hundred is widened, all lags and coordinates
+  // together.
   const double noise = 4.0 / std::sqrt(static_cast<double>(n));
   double alike = 1.0;
   constexpr std::size_t kShare = 3;  // lags beyond a third of a flight: noise
@@ -165,7 +172,7 @@ ExcessNoise WidenToScatter(PlaneTrack& track) {
         Widen(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
     // An attitude that was smoothed does not scatter, and is known no better
     // than the ends of the long side are.
-    constexpr double kOfPlace = 0.5;  // 0.9 to 1.2 where each frame has its own
+    constexpr double kOfPlace = 0.25;  // about 1 where each frame has its own
     for (PlaneSample& s : samples) {
       s.u_face_rad = std::max(s.u_face_rad,
                               kOfPlace * std::min(s.u_along_px, s.u_height_px) /
