@@ -75,10 +75,16 @@ AnswerCheck CheckPath(const Analysis& analysis,
           stretch.chi2 <= limits.most_reduced_chi2 * stretch.degrees) {
         continue;
       }
-      check.verdict = Verdict::kRefused;
+      // u of the answer has grown by its square root; ten times as much is not
+      // a body that comes nearer, but another motion.
+      constexpr double kAnotherMotion = 10.0;
+      check.verdict = stretch.chi2 > kAnotherMotion * limits.most_reduced_chi2 *
+                                         stretch.degrees
+                          ? Verdict::kRefused
+                          : Verdict::kDoubtful;
       check.reason = fmt::format(
           "the path from frame {} to {} is no free flight: chi^2 per degree of "
-          "freedom is {:.1f}, must be at most {:g}",
+          "freedom is {:.1f}, usually at most {:g}",
           stretch.first_frame, stretch.last_frame,
           stretch.chi2 / stretch.degrees, limits.most_reduced_chi2);
       return check;

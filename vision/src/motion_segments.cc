@@ -370,12 +370,12 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
     Take(end, to, s);
   };
   const double above = fits.gaps.g / fits.gaps.w;
-  // As for a rebound: where the line is not known, or is not quite where the
-  // flights meet, it could stand for one.
+  // Twice as for a rebound: where the line is not known, or is not quite where
+  // the flights meet, it could stand for one.
   // What is pressed down gives way by less than half of its size.
   if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
     offer(kTouched, kTouched, StretchKind::kContact,
-          options_.rebound_cost +
+          2.0 * options_.rebound_cost +
               OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
   }
   offer(kStart, kCarried, StretchKind::kOther, before);
