@@ -141,7 +141,8 @@ TEST(Contact, FaceAngleLiesInItsHalfTurn) {
     filming.frames = 38;
     const ContactResult result =
         FindContacts(FilmPlane(thrown, filming), WithScale(filming));
-    ASSERT_TRUE(result.first.contact.face_angle_rad);
+    ASSERT_TRUE(result.first.contact.face_angle_rad)
+        << face << ": " << result.first.contact.reason;
     const double measured = result.first.contact.face_angle_rad->value;
     EXPECT_GT(measured, -90.0_deg - 1e-12);
     EXPECT_LE(measured, 90.0_deg);

@@ -287,7 +287,7 @@ bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
   }
   event.before =
       FitFlight(SamplesIn(track, event.before_frames), options.flight);
-  const bool flies = event.after_frames.size() >= LeastFrames(options);
+  bool flies = event.after_frames.size() >= LeastFrames(options);
   if (flies) {
     event.after =
         FitFlight(SamplesIn(track, event.after_frames), options.flight);
@@ -302,8 +302,13 @@ bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
         "too few frames show the body before its impact at frame {}", frame);
     return false;
   }
-  if (!(flies ? MeasureRebound(track, options, event)
-              : MeasureStay(track, options, event))) {
+  if (flies && !MeasureRebound(track, options, event)) {
+    // What follows does not leave the ground as a flight does.
+    flies = false;
+    event.after.reset();
+    event.after_frames = {};
+  }
+  if (!flies && !MeasureStay(track, options, event)) {
     reason = fmt::format(
         "the frames beside the impact at frame {} do not determine it", frame);
     return false;
