@@ -111,17 +111,21 @@ TEST(MotionSegments, DownFromTheStartIsOneSupportedStretch) {
 // Two frames in the air between two corners' impacts are a flight of their own.
 TEST(MotionSegments, HopOfTwoFramesIsAFlight) {
   Filming filming;
-  filming.camera.fps = 500.0;
+  filming.camera.fps = 100.0;
   filming.frames = 40;
   Throw thrown;
   thrown.stays = true;
-  thrown.contact_s = 20.3 / 500.0;
-  const PlaneTrack track = Moved(FilmPlane(thrown, filming),
-                                 [](std::size_t i, const PlaneSample& s) {
-                                   if (i == 21) return s.gap_px + 0.7;
-                                   if (i == 22) return s.gap_px + 1.2;
-                                   return s.gap_px;
-                                 });
+  thrown.contact_s = 20.5 / filming.camera.fps;
+  // From frame 20.5 to 22.9 in the air.
+  const double g = core::kStandardGravity_mps2 * filming.camera.px_per_m /
+                   (filming.camera.fps * filming.camera.fps);
+  const auto rise = [g](double frames) {
+    return 0.5 * g * frames * (2.4 - frames);
+  };
+  const PlaneTrack track = Moved(
+      FilmPlane(thrown, filming), [&](std::size_t i, const PlaneSample& s) {
+        return s.gap_px + (i == 21 ? rise(0.5) : i == 22 ? rise(1.5) : 0.0);
+      });
   const auto stretches = SegmentMotion(track, OptionsFor(track, filming));
   ASSERT_EQ(KindsOf(stretches), "ffs");
   EXPECT_EQ(track.samples[stretches[1].begin].frame, 21);
