@@ -33,7 +33,7 @@ double CrossingTime(const PlaneTrack& track, const Flight& flight,
   // From the end that is in flight.
   double nearest = falling ? from_s : to_s;
   double least = std::abs(gap(nearest));
-  double previous = gap(falling ? from_s : from_s);
+  double previous = gap(from_s);
   std::optional<double> crossing;
   for (int i = 1; i <= kSteps; ++i) {
     const double t = from_s + i * step;

@@ -49,8 +49,8 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
   const double claim = std::max(Median(std::move(claims)), kLeastClaim);
   double factor = 1.0;
   double neighbours = 0.0;
-  // An impact spoils three differences for each frame of the lag: of four, and
-  // of a fifth of all, the median still tells.
+  // An impact spoils three differences for each frame of the lag: here a tenth
+  // of all, so that the median still tells beside a few impacts.
   constexpr std::size_t kShare = 30;
   constexpr std::size_t kLongest = 4;
   const std::size_t longest =
