@@ -162,6 +162,8 @@ Json TrackJson(const vision::Track& track) {
                {"whole_px", body.whole_px},
                {"blur_px", body.blur_px},
                {"contrast_dn", body.contrast_dn},
+               {"u_common_px", body.u_common_px},
+               {"u_common_angle_rad", body.u_common_angle_rad},
                {"frames", {track.first_frame, track.last_frame}},
                {"frame_interval_s", track.frame_interval_s},
                {"known_background", track.known_background},
@@ -188,6 +190,9 @@ vision::Track TrackOf(const Json& json, core::BodyKind kind) {
   track.body.whole_px = json.at("whole_px");
   track.body.blur_px = json.at("blur_px");
   track.body.contrast_dn = json.at("contrast_dn");
+  // Earlier documents have none.
+  track.body.u_common_px = json.value("u_common_px", 0.0);
+  track.body.u_common_angle_rad = json.value("u_common_angle_rad", 0.0);
   track.first_frame = WholeNumber(json.at("frames").at(0), "frames");
   track.last_frame = WholeNumber(json.at("frames").at(1), "frames");
   track.frame_interval_s = json.at("frame_interval_s");

@@ -312,8 +312,12 @@ ContactResult FindContacts(const PlaneTrack& given,
   }
   PlaneTrack track = given;
   const ExcessNoise excess = WidenToScatter(track);
-  track.u_half_px =
-      std::hypot(track.u_half_px, kOutline_px, kCommonSize * excess.height_px);
+  const double u_common_px =
+      std::hypot(kCommonPlace * excess.height_px, track.u_common_px);
+  const double u_common_face =
+      std::hypot(kCommonPlace * excess.face_rad, track.u_common_face_rad);
+  track.u_half_px = std::hypot(std::hypot(track.u_half_px, track.u_common_px),
+                               kOutline_px, kCommonSize * excess.height_px);
   track.ground.u_offset_px =
       std::hypot(track.ground.u_offset_px, kCommonPlace * excess.height_px);
   const FlightOptions flight = FlightFor(options);
@@ -327,8 +331,8 @@ ContactResult FindContacts(const PlaneTrack& given,
                         options,
                         flight,
                         stretches,
-                        kCommonPlace * excess.height_px,
-                        kCommonPlace * excess.face_rad};
+                        u_common_px,
+                        u_common_face};
   for (const Stretch& stretch : stretches) {
     result.path.push_back({stretch.kind, track.samples[stretch.begin].frame,
                            track.samples[stretch.end - 1].frame, stretch.chi2,

@@ -24,14 +24,6 @@ bool IsOfSize(double found_px, const core::Estimate& stated) {
          std::max(kStandardUncertainties * stated.u, kSameSize * stated.value);
 }
 
-bool IsOfSize(const BodyImage& body, const BodySize& size) {
-  if (body.kind == core::BodyKind::kSphere) {
-    return IsOfSize(2.0 * body.radius_px.value, size.long_px);
-  }
-  return IsOfSize(2.0 * body.half_long_px.value, size.long_px) &&
-         IsOfSize(2.0 * body.half_short_px.value, size.short_px);
-}
-
 KnownShape ShapeOf(core::BodyKind kind, const BodySize& size) {
   return {kind, size.long_px.value,
           kind == core::BodyKind::kSphere ? size.long_px.value
@@ -94,6 +86,14 @@ std::vector<Fitted> FitAlong(Clip& clip, const Background& background,
 
 }  // namespace
 
+bool IsOfSize(const BodyImage& body, const BodySize& size) {
+  if (body.kind == core::BodyKind::kSphere) {
+    return IsOfSize(2.0 * body.radius_px.value, size.long_px);
+  }
+  return IsOfSize(2.0 * body.half_long_px.value, size.long_px) &&
+         IsOfSize(2.0 * body.half_short_px.value, size.short_px);
+}
+
 bool CanStartFromLayers(const Clip& clip, const TrackOptions& options) {
   // Every eighth frame is then sampled: between two the body moves about its
   // own size.
@@ -119,8 +119,9 @@ bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
   constexpr double kSeen = 0.9;
   const auto seen = IsOfSize(track.body, *options.size)
                         ? std::count_if(track.poses.begin(), track.poses.end(),
-                                        [](const Pose& pose) {
-                                          return pose.misfit <= kWellModelled;
+                                        [&track](const Pose& pose) {
+                                          return track.layered ||
+                                                 pose.misfit <= kWellModelled;
                                         })
                         : 0;
   return IsTheBackground(most_covered) ||

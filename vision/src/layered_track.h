@@ -9,6 +9,10 @@
 
 namespace touchdown::vision {
 
+// Whether the picture of a body has the stated size, but for what gamma, blur
+// and rims do to its edges.
+bool IsOfSize(const BodyImage& body, const BodySize& size);
+
 // Whether a pixel that the body covers in this share of the frames shows
 // nothing but the body in their mid-mean.
 bool IsTheBackground(double most_covered);

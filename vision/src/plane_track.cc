@@ -95,6 +95,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   plane.u_half_px =
       sphere ? track.body.radius_px.u
              : std::fmax(track.body.half_long_px.u, track.body.half_short_px.u);
+  plane.u_common_px = track.body.u_common_px;
+  plane.u_common_face_rad = track.body.u_common_angle_rad;
   plane.size_px = std::fmax(2.0 * plane.half_long_px, track.body.whole_px);
   plane.frame_interval_s = track.frame_interval_s;
   plane.last_frame = track.last_frame;

@@ -171,8 +171,9 @@ void Refiner::MeasurePoses(Track& refined) {
 
 Track Refine(Clip& clip, const Background& background, const Track& given,
              const RefineOptions& refine) {
-  // An outline of one face would sit on this part or that.
-  if (!given.outlined) return given;
+  // An outline of one face would sit on this part or that; layers leave nothing
+  // to refine.
+  if (!given.outlined || given.layered) return given;
   clip.cancellation().Enter("outlines are fitted with the ground known");
   const Track track = Bridged(given);
   Track refined = track;

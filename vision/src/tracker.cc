@@ -8,6 +8,7 @@
 #include "between_looks.h"
 #include "body_cover.h"
 #include "first_look.h"
+#include "follow_in_layers.h"
 #include "follow_pattern.h"
 #include "layered_track.h"
 #include "outline_batch.h"
@@ -271,30 +272,50 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   whole_px = 0.0;
 }
 
-// The track from a layered start in place of the result's own, where it shows
-// the stated body in more frames.
-bool TakeLayered(Clip& clip, const TrackOptions& options, double most_covered,
-                 TrackResult& result) {
-  auto layered = TrackFromLayers(clip, options, result.track.last_frame,
-                                 result.background);
-  // Equally good ones differ by noise. But where the body was part of the
-  // background, a path that is drawn to its ghost explains as many frames.
-  const double more = IsTheBackground(most_covered) ? 0.95 : 1.05;
-  if (!layered ||
-      CountExplainedFrames(layered->track, *options.size) <=
-          more * CountExplainedFrames(result.track, *options.size)) {
-    return false;
-  }
-  result = std::move(*layered);
-  return true;
+// Frames of the stated body that a result shows.
+double CountExplained(const core::Expected<TrackResult>& result,
+                      const TrackOptions& options) {
+  return result ? CountExplainedFrames(result->track, *options.size) : 0.0;
 }
 
-// Fills a track of every frame, and registers the body's own picture where
-// outlines explain it badly.
-void FollowBody(Clip& clip, const TrackOptions& options, TrackResult& result) {
-  FitMissing(clip, result.background, options, result.track);
-  result.track =
-      FollowPattern(clip, result.background, result.track, options.threads);
+// A result measured again by layers.
+core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
+                                     TrackResult result) {
+  auto track = FollowInLayers(clip, result.background, result.track,
+                              options.size, options.threads);
+  if (!track) return tl::unexpected(track.error());
+  result.track = std::move(*track);
+  return result;
+}
+
+// The stated body in two layers in place of the result's own outlines, from
+// these or, where they may be those of a ghost, from a layered start.
+bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
+                TrackResult& result) {
+  core::Expected<TrackResult> best = core::AbsentBecause("not of the size");
+  if (IsOfSize(result.track.body, *options.size)) {
+    best = InLayers(clip, options, result);
+  }
+  if (MayFollowGhost(clip, options, best ? best->track : result.track,
+                     most_covered)) {
+    auto started = TrackFromLayers(clip, options, result.track.last_frame,
+                                   result.background);
+    if (started) started = InLayers(clip, options, std::move(*started));
+    // Equally good ones differ by noise. But where the body was part of the
+    // background, a path that is drawn to its ghost explains as many frames.
+    const double more = IsTheBackground(most_covered) ? 0.95 : 1.05;
+    if (started && CountExplained(started, options) >
+                       more * CountExplained(best, options)) {
+      best = std::move(started);
+    }
+  }
+  constexpr double kAsMany = 0.9;
+  if (!best || CountExplained(best, options) <
+                   kAsMany * CountExplainedFrames(result.track, *options.size)) {
+    return false;
+  }
+  result = std::move(*best);
+  return true;
 }
 
 }  // namespace
@@ -328,7 +349,7 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                         EstimateBackground(clip, options.first, last,
                                            BackgroundFor(clip, options)));
     if (!layered) return tl::unexpected(first.error());
-    FollowBody(clip, options, *layered);
+    if (auto followed = InLayers(clip, options, *layered)) layered = followed;
     if (!warning.empty()) layered->track.warnings.push_back(warning);
     return layered;
   }
@@ -421,10 +442,9 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                    first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
-  if (MayFollowGhost(clip, options, track, covers.most) &&
-      TakeLayered(clip, options, covers.most, result)) {
+  if (options.size && NeedsLayers(track, covers.most) &&
+      TakeLayers(clip, options, covers.most, result)) {
     whole_px = 0.0;
-    FollowBody(clip, options, result);
   } else {
     FitMissing(clip, result.background, options, track);
     FollowWhole(clip, options, *first, result, whole_px);

@@ -37,6 +37,8 @@ struct PlaneTrack {
   double half_long_px = 0.0;   // rectangle; for a sphere both are the radius
   double half_short_px = 0.0;  //
   double u_half_px = 0.0;      // of the size
+  double u_common_px = 0.0;    // BodyImage's, of all poses together
+  double u_common_face_rad = 0.0;
   double size_px = 0.0;        // of the whole body: diameter or long side
   int direction = 1;  // +1: travels to the right in the image, -1: left
   double frame_interval_s = 0.0;

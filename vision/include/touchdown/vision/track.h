@@ -51,6 +51,10 @@ struct BodyImage {
   // Share of the frame interval in which the shutter is open; 0: not measured,
   // or too short to blur the edge. After Refine.
   double shutter_fraction = 0.0;
+  // What outline and poses may be off together in all frames, along any
+  // direction of the body, and in angle: a texture hides it.
+  double u_common_px = 0.0;
+  double u_common_angle_rad = 0.0;
   double contrast_dn = 0.0;  // body minus background, median over frames
 };
 
@@ -71,6 +75,9 @@ struct Track {
   // Whether poses are those of the body's picture, which moves with it: its
   // outlines alone were bad witnesses.
   bool patterned = false;
+  // Whether poses are those of two layers (src/follow_in_layers.h), which leave
+  // nothing to Refine.
+  bool layered = false;
   // Whether outlines fitted to the frames tell size and place. Else the body
   // has several parts, and they are those of what moves as one.
   bool outlined = true;

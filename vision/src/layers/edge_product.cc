@@ -1,0 +1,101 @@
+#include "edge_product.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace touchdown::vision::layers {
+namespace {
+
+double Phi(double z) {
+  return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0);
+}
+
+constexpr float kPerTwoPi = static_cast<float>(0.5 * std::numbers::inv_pi);
+// Parallel edges are taken as a little askew: the integrand stays finite.
+constexpr float kMostRho = 0.9999F;
+
+}  // namespace
+
+StillEdges::StillEdges(const float* still, std::int32_t width, double blur,
+                       double least_dn)
+    : still_(still), width_(width), least_dn_(static_cast<float>(least_dn)) {
+  // Neighbours one pixel away. The curvature over the step falls from 1 to -1
+  // as z grows.
+  constexpr double kFarthest = 3.5;
+  const double h = 1.0 / blur;
+  const auto step = [h](double z) { return Phi(z + h) - Phi(z - h); };
+  const auto ratio = [h, &step](double z) {
+    return (Phi(z + h) + Phi(z - h) - 2.0 * Phi(z)) / std::max(step(z), 1e-9);
+  };
+  for (std::size_t i = 0; i <= kCells; ++i) {
+    const double wanted = 2.0 * static_cast<double>(i) / kCells - 1.0;
+    double low = -kFarthest;
+    double high = kFarthest;
+    constexpr int kHalvings = 20;
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      (ratio(middle) > wanted ? low : high) = middle;
+    }
+    z_[i] = static_cast<float>(0.5 * (low + high));
+    share_[i] = static_cast<float>(step(0.5 * (low + high)));
+  }
+}
+
+StillEdge StillEdges::At(std::int32_t pixel) const {
+  StillEdge edge;
+  const float* const here = still_ + pixel;
+  const float step_x = here[1] - here[-1];
+  const float step_y = here[width_] - here[-width_];
+  const bool upright = std::abs(step_y) >= std::abs(step_x);
+  const float step = upright ? step_y : step_x;
+  if (std::abs(step) < least_dn_) return edge;
+  const float bend = upright ? here[width_] + here[-width_] - 2.0F * here[0]
+                             : here[1] + here[-1] - 2.0F * here[0];
+  const float length = std::hypot(step_x, step_y);
+  edge.normal_x = step_x / length;
+  edge.normal_y = step_y / length;
+  const float at = std::clamp(
+      0.5F * (bend / std::abs(step) + 1.0F) * static_cast<float>(kCells), 0.0F,
+      static_cast<float>(kCells) - 1e-3F);
+  const auto cell = static_cast<std::size_t>(at);
+  const float share = at - static_cast<float>(cell);
+  edge.z = z_[cell] + share * (z_[cell + 1] - z_[cell]);
+  const float of = share_[cell] + share * (share_[cell + 1] - share_[cell]);
+  // Far from an edge, what little steps is as likely something else.
+  constexpr float kLeastShare = 0.02F;
+  if (of < kLeastShare) return {};
+  edge.contrast = std::abs(step) / of;
+  return edge;
+}
+
+float EdgeProduct(float z1, float z2, float rho) {
+  static constexpr std::array<float, 6> kNodes = {
+      0.033765243F, 0.169395307F, 0.380690407F,
+      0.619309593F, 0.830604693F, 0.966234757F};
+  static constexpr std::array<float, 6> kWeights = {
+      0.085662246F, 0.180380787F, 0.233956967F,
+      0.233956967F, 0.180380787F, 0.085662246F};
+  const float end = std::asin(std::clamp(rho, -kMostRho, kMostRho));
+  const float squares = z1 * z1 + z2 * z2;
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < kNodes.size(); ++i) {
+    const float sine = std::sin(kNodes[i] * end);
+    const float cosine2 = 1.0F - sine * sine;
+    sum += kWeights[i] *
+           std::exp(-0.5F * (squares - 2.0F * z1 * z2 * sine) / cosine2);
+  }
+  return kPerTwoPi * end * sum;
+}
+
+float EdgeProductSlope(float z1, float z2, float rho) {
+  const double r = std::clamp(rho, -kMostRho, kMostRho);
+  const double density = std::exp(-0.5 * static_cast<double>(z1 * z1)) *
+                         std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+  const double given = (static_cast<double>(z2) - r * static_cast<double>(z1)) /
+                       std::sqrt(1.0 - r * r);
+  return static_cast<float>(density *
+                            (Phi(given) - Phi(static_cast<double>(z2))));
+}
+
+}  // namespace touchdown::vision::layers

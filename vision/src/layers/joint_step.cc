@@ -1,0 +1,460 @@
+#include "joint_step.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "touchdown/core/parallel.h"
+
+namespace touchdown::vision::layers {
+namespace {
+
+// Sums over frames are taken in so many parts, whatever the threads.
+constexpr std::size_t kParts = 4;
+
+using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
+using SharedVector = Eigen::Matrix<double, kShared, 1>;
+
+// All unknowns.
+struct Unknowns {
+  std::vector<double> poses;  // x, y, angle of each frame
+  std::array<double, kShared> shared{};
+  std::vector<float> picture;
+  std::vector<float> still;
+  std::vector<float> change;  // of each sample: a part's own
+
+  Unknowns(std::size_t frames, std::size_t cells, std::size_t pixels)
+      : poses(kPose * frames), picture(cells), still(pixels) {}
+};
+
+double Dot(const Unknowns& a, const Unknowns& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.poses.size(); ++i) sum += a.poses[i] * b.poses[i];
+  for (std::size_t i = 0; i < kShared; ++i) sum += a.shared[i] * b.shared[i];
+  for (std::size_t i = 0; i < a.picture.size(); ++i) {
+    sum += static_cast<double>(a.picture[i]) * static_cast<double>(b.picture[i]);
+  }
+  for (std::size_t i = 0; i < a.still.size(); ++i) {
+    sum += static_cast<double>(a.still[i]) * static_cast<double>(b.still[i]);
+  }
+  return sum;
+}
+
+// a += factor * b
+void Add(Unknowns& a, double factor, const Unknowns& b) {
+  const auto by = static_cast<float>(factor);
+  for (std::size_t i = 0; i < a.poses.size(); ++i) a.poses[i] += factor * b.poses[i];
+  for (std::size_t i = 0; i < kShared; ++i) a.shared[i] += factor * b.shared[i];
+  for (std::size_t i = 0; i < a.picture.size(); ++i) a.picture[i] += by * b.picture[i];
+  for (std::size_t i = 0; i < a.still.size(); ++i) a.still[i] += by * b.still[i];
+}
+
+// b = a + factor * b
+void Turn(Unknowns& b, double factor, const Unknowns& a) {
+  const auto by = static_cast<float>(factor);
+  for (std::size_t i = 0; i < a.poses.size(); ++i) b.poses[i] = a.poses[i] + factor * b.poses[i];
+  for (std::size_t i = 0; i < kShared; ++i) b.shared[i] = a.shared[i] + factor * b.shared[i];
+  for (std::size_t i = 0; i < a.picture.size(); ++i) b.picture[i] = a.picture[i] + by * b.picture[i];
+  for (std::size_t i = 0; i < a.still.size(); ++i) b.still[i] = a.still[i] + by * b.still[i];
+}
+
+// Coefficients of T that are unknown: a flat body's picture is shared numbers.
+std::size_t CellsOf(const Layers& layers) {
+  return layers.flat ? 0 : layers.picture.size();
+}
+
+// Sum of w a b, in eight places (lanes.h) so that the order of the sum is the
+// same everywhere.
+double WeightedSum(const FrameSamples& samples, const std::vector<float>& a,
+                   const std::vector<float>& b) {
+  constexpr std::size_t kLanes = 8;
+  std::array<float, kLanes> sums{};
+  const std::size_t n = samples.size();
+  const std::size_t whole = n / kLanes * kLanes;
+  const float* const w = samples.weight.data();
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      sums[k] += w[i + k] * a[i + k] * b[i + k];
+    }
+  }
+  double sum = 0.0;
+  for (const float part : sums) sum += static_cast<double>(part);
+  for (std::size_t i = whole; i < n; ++i) {
+    sum += static_cast<double>(w[i] * a[i] * b[i]);
+  }
+  return sum;
+}
+
+void AddColumn(const std::vector<float>& column, double factor,
+               std::vector<float>& to) {
+  const auto by = static_cast<float>(factor);
+  const std::size_t n = to.size();
+  for (std::size_t i = 0; i < n; ++i) to[i] += by * column[i];
+}
+
+class NormalEquations {
+ public:
+  NormalEquations(const Layers& layers, const std::vector<FrameSamples>& frames,
+                  const StillEvidence& evidence, const FreePart& free,
+                  const JointStepOptions& options)
+      : layers_(layers),
+        frames_(frames),
+        evidence_(evidence),
+        free_(free),
+        options_(options),
+        cells_(CellsOf(layers)),
+        columns_(layers.flat ? kShared : std::size_t{kQuadratic}),
+        parts_(kParts, Unknowns(0, cells_, layers.still.size())),
+        outside_(cells_) {
+    const double variance = layers.noise_dn * layers.noise_dn;
+    const double texture = std::max(layers.texture_dn, 1e-2 * layers.noise_dn);
+    stiffness_ = static_cast<float>(variance / (texture * texture));
+    for (std::size_t i = 0; i < kShared; ++i) {
+      const double u = options.prior.u[i];
+      prior_[i] = u > 0.0 && i < columns_ ? variance / (u * u) : kHeld;
+    }
+  }
+
+  // Right side.
+  void Fill(Unknowns& right);
+  void Multiply(const Unknowns& in, Unknowns& out);
+  void Precondition(const Unknowns& in, Unknowns& out) const;
+
+ private:
+  static constexpr double kHeld = 1e15;
+  // B of a pixel that nothing tells keeps its level: as if a hundredth of a
+  // frame had shown it.
+  static constexpr float kLeastStill = 0.01F;
+
+  // work(samples, frame, part) over all frames, part by part.
+  template <class Work>
+  void Over(const Work& work);
+  void Collect(Unknowns& out);
+
+  const Layers& layers_;
+  const std::vector<FrameSamples>& frames_;
+  const StillEvidence& evidence_;
+  const FreePart& free_;
+  const JointStepOptions& options_;
+  std::size_t cells_;
+  std::size_t columns_;  // of the shared parameters that are not held
+  std::vector<Unknowns> parts_;  // each part's sums of what frames share
+  std::vector<float> outside_;
+  float stiffness_ = 0.0F;
+  std::array<double, kShared> prior_{};
+
+  // The preconditioner.
+  std::vector<Eigen::Matrix3d> pose_inverse_;
+  SharedMatrix shared_inverse_;
+  std::vector<float> picture_inverse_;
+  std::vector<float> still_inverse_;
+};
+
+template <class Work>
+void NormalEquations::Over(const Work& work) {
+  core::InParallel(
+      static_cast<std::int64_t>(kParts), options_.threads,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto part = static_cast<std::size_t>(begin);
+             part < static_cast<std::size_t>(end); ++part) {
+          Unknowns& sums = parts_[part];
+          sums.shared.fill(0.0);
+          std::fill(sums.picture.begin(), sums.picture.end(), 0.0F);
+          std::fill(sums.still.begin(), sums.still.end(), 0.0F);
+          const std::size_t n = frames_.size();
+          for (std::size_t t = part * n / kParts; t < (part + 1) * n / kParts;
+               ++t) {
+            work(frames_[t], t, sums);
+          }
+        }
+      });
+}
+
+void NormalEquations::Collect(Unknowns& out) {
+  out.shared.fill(0.0);
+  std::fill(out.picture.begin(), out.picture.end(), 0.0F);
+  std::fill(out.still.begin(), out.still.end(), 0.0F);
+  for (const Unknowns& part : parts_) {
+    for (std::size_t i = 0; i < kShared; ++i) out.shared[i] += part.shared[i];
+    for (std::size_t i = 0; i < out.picture.size(); ++i) {
+      out.picture[i] += part.picture[i];
+    }
+    for (std::size_t i = 0; i < out.still.size(); ++i) {
+      out.still[i] += part.still[i];
+    }
+  }
+}
+
+void NormalEquations::Fill(Unknowns& right) {
+  const std::size_t n = frames_.size();
+  pose_inverse_.assign(n, Eigen::Matrix3d::Identity());
+  std::vector<SharedMatrix> shared(kParts, SharedMatrix::Zero());
+  std::vector<std::vector<float>> picture(kParts, std::vector<float>(cells_));
+  std::vector<std::vector<float>> still(
+      kParts, std::vector<float>(layers_.still.size()));
+  Over([&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
+    const auto part = static_cast<std::size_t>(&sums - parts_.data());
+    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+    for (std::size_t a = 0; a < kPose; ++a) {
+      const auto row = static_cast<int>(a);
+      right.poses[kPose * t + a] =
+          WeightedSum(samples, samples.by_pose[a], samples.residual);
+      for (std::size_t b = 0; b <= a; ++b) {
+        block(row, static_cast<int>(b)) =
+            WeightedSum(samples, samples.by_pose[a], samples.by_pose[b]);
+      }
+    }
+    for (std::size_t a = 0; a < columns_; ++a) {
+      const auto row = static_cast<int>(a);
+      sums.shared[a] +=
+          WeightedSum(samples, samples.by_shared[a], samples.residual);
+      for (std::size_t b = 0; b <= a; ++b) {
+        shared[part](row, static_cast<int>(b)) +=
+            WeightedSum(samples, samples.by_shared[a], samples.by_shared[b]);
+      }
+    }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const float w = samples.weight[i];
+      const float wr = w * samples.residual[i];
+      const auto pixel = static_cast<std::size_t>(samples.pixel[i]);
+      sums.still[pixel] += samples.open[i] * wr;
+      still[part][pixel] += w * samples.open[i] * samples.open[i];
+      for (std::size_t k = 0; k < samples.nodes; ++k) {
+        const std::size_t at = i * samples.nodes + k;
+        const float share = samples.share[at];
+        layers_.grid.Spread(share * wr, samples.place[at], sums.picture.data());
+        layers_.grid.Spread(w * share * samples.cover[i], samples.place[at],
+                            picture[part].data());
+      }
+    }
+    block = block.selfadjointView<Eigen::Lower>();
+    if (!options_.turns) block(2, 2) += kHeld;
+    block.diagonal() *= 1.0 + 1e-6;
+    block.diagonal().array() += 1e-9;
+    pose_inverse_[t] = block.inverse();
+  });
+  Collect(right);
+  SharedMatrix all = SharedMatrix::Zero();
+  for (const auto& part : shared) all += part;
+  all = all.selfadjointView<Eigen::Lower>();
+  std::array<double, kShared> now = {
+      layers_.blur,    layers_.exposure, layers_.shape.half_long,
+      layers_.shape.half_short, layers_.slope_x, layers_.slope_y};
+  std::copy(layers_.quadratic.begin(), layers_.quadratic.end(),
+            now.begin() + kQuadratic);
+  for (std::size_t a = 0; a < kShared; ++a) {
+    all(static_cast<int>(a), static_cast<int>(a)) += prior_[a] + 1e-9;
+    if (a < columns_) {
+      right.shared[a] -= prior_[a] * (now[a] - options_.prior.value[a]);
+    }
+  }
+  shared_inverse_ = all.inverse();
+  picture_inverse_.assign(cells_, 0.0F);
+  if (cells_ > 0) {
+    free_.RemoveFrom(layers_.picture.data(), outside_.data());
+  }
+  for (std::size_t c = 0; c < cells_; ++c) {
+    float sum = 0.0F;
+    for (const auto& part : picture) sum += part[c];
+    right.picture[c] -= stiffness_ * outside_[c];
+    picture_inverse_[c] = 1.0F / (sum + stiffness_ + 1e-3F);
+  }
+  still_inverse_.assign(layers_.still.size(), 0.0F);
+  for (std::size_t x = 0; x < still_inverse_.size(); ++x) {
+    float sum = evidence_.weight[x] + kLeastStill;
+    for (const auto& part : still) sum += part[x];
+    right.still[x] += evidence_.residual[x];
+    still_inverse_[x] = 1.0F / sum;
+  }
+}
+
+void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
+  Over([&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
+    // Column by column, so that the loops become vector instructions.
+    const std::size_t n = samples.size();
+    std::vector<float>& change = sums.change;
+    change.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      change[i] = samples.open[i] *
+                  in.still[static_cast<std::size_t>(samples.pixel[i])];
+    }
+    for (std::size_t a = 0; a < kPose; ++a) {
+      AddColumn(samples.by_pose[a], in.poses[kPose * t + a], change);
+    }
+    for (std::size_t a = 0; a < columns_; ++a) {
+      AddColumn(samples.by_shared[a], in.shared[a], change);
+    }
+    for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
+      for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
+        change[i] += samples.share[at] * layers_.grid.ValueAt(
+                                             in.picture.data(),
+                                             samples.place[at]);
+      }
+    }
+    for (std::size_t a = 0; a < kPose; ++a) {
+      out.poses[kPose * t + a] = WeightedSum(samples, samples.by_pose[a], change);
+    }
+    if (!options_.turns) {
+      out.poses[kPose * t + 2] += kHeld * in.poses[kPose * t + 2];
+    }
+    for (std::size_t a = 0; a < columns_; ++a) {
+      sums.shared[a] += WeightedSum(samples, samples.by_shared[a], change);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      change[i] *= samples.weight[i];
+      sums.still[static_cast<std::size_t>(samples.pixel[i])] +=
+          samples.open[i] * change[i];
+    }
+    for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
+      for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
+        layers_.grid.Spread(samples.share[at] * change[i], samples.place[at],
+                            sums.picture.data());
+      }
+    }
+  });
+  Collect(out);
+  for (std::size_t a = 0; a < kShared; ++a) {
+    out.shared[a] += (prior_[a] + 1e-9) * in.shared[a];
+  }
+  if (cells_ > 0) free_.RemoveFrom(in.picture.data(), outside_.data());
+  for (std::size_t c = 0; c < cells_; ++c) {
+    out.picture[c] += stiffness_ * outside_[c] + 1e-3F * in.picture[c];
+  }
+  for (std::size_t x = 0; x < out.still.size(); ++x) {
+    out.still[x] += (evidence_.weight[x] + kLeastStill) * in.still[x];
+  }
+}
+
+void NormalEquations::Precondition(const Unknowns& in, Unknowns& out) const {
+  for (std::size_t t = 0; t < frames_.size(); ++t) {
+    const Eigen::Map<const Eigen::Vector3d> from(&in.poses[kPose * t]);
+    Eigen::Map<Eigen::Vector3d>(&out.poses[kPose * t]) = pose_inverse_[t] * from;
+  }
+  const Eigen::Map<const SharedVector> from(in.shared.data());
+  Eigen::Map<SharedVector>(out.shared.data()) =
+      shared_inverse_ * from;
+  for (std::size_t c = 0; c < out.picture.size(); ++c) {
+    out.picture[c] = picture_inverse_[c] * in.picture[c];
+  }
+  for (std::size_t x = 0; x < out.still.size(); ++x) {
+    out.still[x] = still_inverse_[x] * in.still[x];
+  }
+}
+
+}  // namespace
+
+StillEvidence WeighStill(const PictureStack& stack, const Layers& layers,
+                         const std::vector<FrameSamples>& frames, int threads) {
+  StillEvidence evidence;
+  evidence.weight.assign(stack.pixels(), 0.0F);
+  evidence.residual.assign(stack.pixels(), 0.0F);
+  const auto add = [&](std::size_t t, std::size_t x, float sign) {
+    const float off = stack.of(t)[x] - layers.still[x];
+    const float weight = sign * RobustWeight(off, layers.noise_dn);
+    evidence.weight[x] += weight;
+    evidence.residual[x] += weight * off;
+  };
+  core::InParallel(static_cast<std::int64_t>(stack.pixels()), threads,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     for (std::size_t t = 0; t < frames.size(); ++t) {
+                       if (frames[t].size() == 0) continue;
+                       for (auto x = static_cast<std::size_t>(begin);
+                            x < static_cast<std::size_t>(end); ++x) {
+                         add(t, x, 1.0F);
+                       }
+                     }
+                   });
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    for (const std::int32_t pixel : frames[t].pixel) {
+      add(t, static_cast<std::size_t>(pixel), -1.0F);
+    }
+  }
+  for (float& weight : evidence.weight) weight = std::max(weight, 0.0F);
+  return evidence;
+}
+
+FreePart::FreePart(const PictureGrid& grid) {
+  std::vector<std::vector<double>> columns;
+  const double half_x = 0.5 * grid.columns();
+  const double half_y = 0.5 * grid.rows();
+  for (int power = 0; power < 6; ++power) {
+    std::vector<double> column;
+    column.reserve(grid.size());
+    for (std::int32_t j = 0; j < grid.rows(); ++j) {
+      for (std::int32_t i = 0; i < grid.columns(); ++i) {
+        const double x = static_cast<double>(grid.x_of(i)) / half_x;
+        const double y = static_cast<double>(grid.y_of(j)) / half_y;
+        const std::array<double, 6> terms = {1.0, x, y, x * x, x * y, y * y};
+        column.push_back(terms[static_cast<std::size_t>(power)]);
+      }
+    }
+    for (const auto& other : columns) {
+      double along = 0.0;
+      for (std::size_t c = 0; c < column.size(); ++c) along += other[c] * column[c];
+      for (std::size_t c = 0; c < column.size(); ++c) column[c] -= along * other[c];
+    }
+    double square = 0.0;
+    for (const double value : column) square += value * value;
+    for (double& value : column) value /= std::sqrt(square);
+    columns.push_back(std::move(column));
+  }
+  for (const auto& column : columns) {
+    basis_.emplace_back(column.begin(), column.end());
+  }
+}
+
+void FreePart::RemoveFrom(const float* from, float* to) const {
+  const std::size_t cells = basis_.front().size();
+  std::copy(from, from + cells, to);
+  for (const std::vector<float>& column : basis_) {
+    double along = 0.0;
+    for (std::size_t c = 0; c < cells; ++c) {
+      along += static_cast<double>(column[c]) * static_cast<double>(from[c]);
+    }
+    const auto by = static_cast<float>(along);
+    for (std::size_t c = 0; c < cells; ++c) to[c] -= by * column[c];
+  }
+}
+
+JointStep SolveJointStep(const Layers& layers,
+                         const std::vector<FrameSamples>& frames,
+                         const StillEvidence& evidence, const FreePart& free,
+                         const JointStepOptions& options) {
+  const std::size_t n = frames.size();
+  NormalEquations equations(layers, frames, evidence, free, options);
+  const std::size_t cells = CellsOf(layers);
+  Unknowns residual(n, cells, layers.still.size());
+  equations.Fill(residual);
+  Unknowns step(n, cells, layers.still.size());
+  Unknowns scaled = step;
+  equations.Precondition(residual, scaled);
+  Unknowns direction = scaled;
+  Unknowns product = step;
+  double power = Dot(residual, scaled);
+  const double goal = power * options.tolerance * options.tolerance;
+  JointStep out;
+  while (out.products < options.most_products && power > goal) {
+    equations.Multiply(direction, product);
+    ++out.products;
+    const double along = Dot(direction, product);
+    if (!(along > 0.0)) break;
+    const double length = power / along;
+    Add(step, length, direction);
+    Add(residual, -length, product);
+    equations.Precondition(residual, scaled);
+    const double next = Dot(residual, scaled);
+    Turn(direction, next / power, scaled);
+    power = next;
+  }
+  for (std::size_t t = 0; t < n; ++t) {
+    out.poses.push_back({step.poses[kPose * t], step.poses[kPose * t + 1],
+                         step.poses[kPose * t + 2]});
+  }
+  out.shared = step.shared;
+  out.picture = std::move(step.picture);
+  out.still = std::move(step.still);
+  return out;
+}
+
+}  // namespace touchdown::vision::layers

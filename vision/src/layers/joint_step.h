@@ -1,0 +1,71 @@
+// One Gauss-Newton step in everything at once: poses, what the frames share,
+// the body's picture T and the still picture B.
+//
+// A common offset of the outline against T, and with it of all poses, is told
+// only by the edges: minimising over poses and pictures in turns finds it in
+// hundreds of rounds. So the normal equations
+//   (sum_i w_i J_i J_i' + P) d = sum_i w_i J_i r_i - P (x - x0)
+// are solved for all unknowns together, by conjugate gradients with blocks as
+// preconditioner (M. R. Hestenes and E. Stiefel, J. Res. NBS 49, 1952; Jacobi
+// blocks of each pose and of the shared ones, the diagonal of T and B). No
+// matrix is stored: a product costs two passes over the samples.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "layer_model.h"
+
+namespace touchdown::vision::layers {
+
+// What is known beforehand of the shared parameters: standard uncertainties;
+// 0: held.
+struct SharedPrior {
+  std::array<double, kShared> value{};
+  std::array<double, kShared> u{};
+};
+
+// What all pixels say of B that no sample of a body contains.
+struct StillEvidence {
+  std::vector<float> weight;
+  std::vector<float> residual;  // sum of w (I - B)
+};
+// `frames`: samples of each picture of the stack.
+StillEvidence WeighStill(const PictureStack& stack, const Layers& layers,
+                         const std::vector<FrameSamples>& frames, int threads);
+
+// The quadratics that T is free to be, as an orthonormal basis of its
+// coefficients: what lies outside of them has the variance texture_dn^2.
+class FreePart {
+ public:
+  explicit FreePart(const PictureGrid& grid);
+  // x - Pi x.
+  void RemoveFrom(const float* from, float* to) const;
+
+ private:
+  std::vector<std::vector<float>> basis_;
+};
+
+struct JointStepOptions {
+  SharedPrior prior;
+  bool turns = true;  // false: angles are held (a disc without marks)
+  // Conjugate gradients end when the residual has fallen to this share.
+  double tolerance = 1e-3;
+  int most_products = 60;
+  int threads = 0;
+};
+
+struct JointStep {
+  std::vector<LayerPose> poses;
+  std::array<double, kShared> shared{};
+  std::vector<float> picture;
+  std::vector<float> still;
+  int products = 0;
+};
+
+JointStep SolveJointStep(const Layers& layers,
+                         const std::vector<FrameSamples>& frames,
+                         const StillEvidence& evidence, const FreePart& free,
+                         const JointStepOptions& options);
+
+}  // namespace touchdown::vision::layers

@@ -1,0 +1,297 @@
+#include "layer_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "edge_product.h"
+
+namespace touchdown::vision::layers {
+namespace {
+
+struct Node {
+  double tau;
+  double weight;
+};
+
+// More nodes where the body's farthest point moves more px in the exposure.
+std::span<const Node> NodesFor(double way) {
+  static constexpr std::array<Node, 1> kOne = {{{0.0, 1.0}}};
+  static constexpr std::array<Node, 2> kTwo = {
+      {{-0.28867513459481287, 0.5}, {0.28867513459481287, 0.5}}};
+  static constexpr std::array<Node, 3> kThree = {{{-0.3872983346207417, 5.0 / 18.0},
+                                                  {0.0, 8.0 / 18.0},
+                                                  {0.3872983346207417, 5.0 / 18.0}}};
+  static constexpr std::array<Node, 5> kFive = {
+      {{-0.453089922969332, 0.11846344252809454},
+       {-0.2692346550528415, 0.23931433524968324},
+       {0.0, 0.28444444444444444},
+       {0.2692346550528415, 0.23931433524968324},
+       {0.453089922969332, 0.11846344252809454}}};
+  if (way < 0.3) return kOne;
+  if (way < 2.0) return kTwo;
+  if (way < 4.5) return kThree;
+  return kFive;
+}
+
+struct Window {
+  std::int32_t left = 0;
+  std::int32_t top = 0;
+  std::int32_t right = 0;
+  std::int32_t bottom = 0;
+};
+
+Window WindowOf(const PictureStack& stack, const Layers& layers,
+                const LayerPose& pose, const LayerPose& motion) {
+  constexpr double kBlurs = 3.5;  // coverage is below 3e-4 beyond
+  const double rim = kBlurs * layers.blur + 1.0;
+  double reach_x = layers.shape.half_long;
+  double reach_y = layers.shape.half_long;
+  if (!layers.shape.disc) {
+    const double cosine = std::abs(std::cos(pose.angle_rad));
+    const double sine = std::abs(std::sin(pose.angle_rad));
+    reach_x = cosine * layers.shape.half_long + sine * layers.shape.half_short;
+    reach_y = sine * layers.shape.half_long + cosine * layers.shape.half_short;
+  }
+  const double turn = 0.5 * std::abs(motion.angle_rad) * layers.exposure *
+                      layers.shape.Reach();
+  reach_x += rim + 0.5 * std::abs(motion.x) * layers.exposure + turn;
+  reach_y += rim + 0.5 * std::abs(motion.y) * layers.exposure + turn;
+  const auto from = [](double at) {
+    return std::max(1, static_cast<std::int32_t>(std::ceil(at)));
+  };
+  const auto to = [](double at, std::int32_t end) {
+    return std::min(end - 1, static_cast<std::int32_t>(std::floor(at)) + 1);
+  };
+  return {from(pose.x - reach_x), from(pose.y - reach_y),
+          to(pose.x + reach_x, stack.width), to(pose.y + reach_y, stack.height)};
+}
+
+// A node's own numbers.
+struct Placed {
+  float x = 0.0F;
+  float y = 0.0F;
+  float cosine = 1.0F;
+  float sine = 0.0F;
+  float weight = 1.0F;
+  float tau = 0.0F;
+};
+
+using Terms = std::array<float, kTerms>;
+Terms TermsAt(float x, float y) { return {1.0F, x, y, x * x, x * y, y * y}; }
+
+PictureGrid::Tilt TiltOf(const Terms& quadratic, const Terms& terms,
+                         float per_reach) {
+  PictureGrid::Tilt tilt;
+  for (std::size_t j = 0; j < kTerms; ++j) {
+    tilt.value += quadratic[j] * terms[j];
+  }
+  const float x = terms[1];
+  const float y = terms[2];
+  tilt.by_x = (quadratic[1] + 2.0F * quadratic[3] * x + quadratic[4] * y) *
+              per_reach;
+  tilt.by_y = (quadratic[2] + quadratic[4] * x + 2.0F * quadratic[5] * y) *
+              per_reach;
+  return tilt;
+}
+
+double Apart(const LayerPose& a, const LayerPose& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+}  // namespace
+
+float RobustWeight(float residual, double noise_dn) {
+  constexpr float kCut = 4.0F;
+  const float off = residual / (kCut * static_cast<float>(noise_dn));
+  return 1.0F / (1.0F + off * off);
+}
+
+FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
+                       const Layers& layers, const LayerPose& pose,
+                       const LayerPose& motion) {
+  // Below it a pixel shows nothing of the body.
+  constexpr float kLeastCover = 2e-4F;
+
+  FrameSamples samples;
+  const Window window = WindowOf(stack, layers, pose, motion);
+  if (window.right <= window.left || window.bottom <= window.top) {
+    return samples;
+  }
+  const double reach = layers.shape.Reach();
+  const double way =
+      layers.exposure * (std::hypot(motion.x, motion.y) +
+                         std::abs(motion.angle_rad) * reach);
+  std::vector<Placed> placed;
+  for (const Node& node : NodesFor(way)) {
+    const double shift = node.tau * layers.exposure;
+    const double angle = pose.angle_rad + motion.angle_rad * shift;
+    placed.push_back({static_cast<float>(pose.x + motion.x * shift),
+                      static_cast<float>(pose.y + motion.y * shift),
+                      static_cast<float>(std::cos(angle)),
+                      static_cast<float>(std::sin(angle)),
+                      static_cast<float>(node.weight),
+                      static_cast<float>(node.tau)});
+  }
+  samples.nodes = layers.flat ? 0 : placed.size();
+  const std::size_t most =
+      static_cast<std::size_t>(window.right - window.left) *
+      static_cast<std::size_t>(window.bottom - window.top);
+  samples.pixel.reserve(most);
+  samples.residual.reserve(most);
+  samples.weight.reserve(most);
+  samples.open.reserve(most);
+  samples.cover.reserve(most);
+  for (auto& column : samples.by_pose) column.reserve(most);
+  for (auto& column : samples.by_shared) column.reserve(most);
+  samples.place.reserve(most * samples.nodes);
+  samples.share.reserve(most * samples.nodes);
+
+  const ShapeCover cover(layers.shape, layers.blur);
+  const float* const levels = stack.of(picture);
+  const float* const still = layers.still.data();
+  constexpr double kLeastStep = 2.0;  // of the noise
+  const StillEdges edges(still, stack.width, layers.blur,
+                         kLeastStep * layers.noise_dn);
+  const auto per_reach = static_cast<float>(1.0 / reach);
+  const auto slope_x = static_cast<float>(layers.slope_x) * per_reach;
+  const auto slope_y = static_cast<float>(layers.slope_y) * per_reach;
+  const auto v_x = static_cast<float>(motion.x);
+  const auto v_y = static_cast<float>(motion.y);
+  const auto v_turn = static_cast<float>(motion.angle_rad);
+
+  Terms quadratic{};
+  std::copy(layers.quadratic.begin(), layers.quadratic.end(),
+            quadratic.begin());
+  std::vector<SplinePlace> places(placed.size());
+  std::vector<float> shares(placed.size());
+  for (std::int32_t row = window.top; row < window.bottom; ++row) {
+    for (std::int32_t column = window.left; column < window.right; ++column) {
+      const std::int32_t pixel = row * stack.width + column;
+      const float behind = still[pixel];
+      const StillEdge edge = edges.At(pixel);
+      float covered = 0.0F;
+      float model = behind;
+      std::array<float, kPose> by_pose{};
+      std::array<float, kShared> by_shared{};
+      for (std::size_t k = 0; k < placed.size(); ++k) {
+        const Placed& node = placed[k];
+        const float dx = static_cast<float>(column) - node.x;
+        const float dy = static_cast<float>(row) - node.y;
+        const float x = node.cosine * dx + node.sine * dy;
+        const float y = node.cosine * dy - node.sine * dx;
+        const CoverAt m = cover.At(x, y);
+        shares[k] = node.weight * m.value;
+        if (!layers.flat) places[k] = layers.grid.PlaceOf(x, y);
+        if (m.value < kLeastCover && m.by_blur == 0.0F) continue;
+        PictureGrid::Tilt tilt;
+        if (layers.flat) {
+          const Terms terms = TermsAt(x * per_reach, y * per_reach);
+          tilt = TiltOf(quadratic, terms, per_reach);
+          for (std::size_t j = 0; j < kTerms; ++j) {
+            by_shared[kQuadratic + j] += shares[k] * terms[j];
+          }
+        } else {
+          tilt = layers.grid.TiltAt(layers.picture.data(), places[k]);
+        }
+        const float over =
+            tilt.value + slope_x * dx + slope_y * dy - behind;
+        Product product;
+        if (edge.contrast != 0.0F) {
+          product = cover.WithEdge(x, y, edge, node.cosine, node.sine);
+        }
+        covered += shares[k];
+        model += shares[k] * over - node.weight * product.value;
+        const float g_x = m.by_x * over + m.value * tilt.by_x - product.by_x;
+        const float g_y = m.by_y * over + m.value * tilt.by_y - product.by_y;
+        const float d_x = node.weight * (-node.cosine * g_x + node.sine * g_y -
+                                         m.value * slope_x);
+        const float d_y = node.weight * (-node.sine * g_x - node.cosine * g_y -
+                                         m.value * slope_y);
+        const float d_turn = node.weight * (g_x * y - g_y * x);
+        by_pose[0] += d_x;
+        by_pose[1] += d_y;
+        by_pose[2] += d_turn;
+        by_shared[kBlur] +=
+            node.weight * m.by_blur * over;
+        by_shared[kExposure] +=
+            node.tau * (d_x * v_x + d_y * v_y + d_turn * v_turn);
+        by_shared[kLong] += node.weight * m.by_long * over;
+        by_shared[kShort] += node.weight * m.by_short * over;
+        by_shared[kSlopeX] += shares[k] * dx * per_reach;
+        by_shared[kSlopeY] += shares[k] * dy * per_reach;
+      }
+      if (covered < kLeastCover) continue;
+      const float residual = levels[pixel] - model;
+      samples.pixel.push_back(pixel);
+      samples.residual.push_back(residual);
+      samples.weight.push_back(RobustWeight(residual, layers.noise_dn));
+      samples.open.push_back(1.0F - covered);
+      samples.cover.push_back(covered);
+      for (std::size_t i = 0; i < kPose; ++i) {
+        samples.by_pose[i].push_back(by_pose[i]);
+      }
+      for (std::size_t i = 0; i < kShared; ++i) {
+        samples.by_shared[i].push_back(by_shared[i]);
+      }
+      if (layers.flat) continue;
+      samples.place.insert(samples.place.end(), places.begin(), places.end());
+      samples.share.insert(samples.share.end(), shares.begin(), shares.end());
+    }
+  }
+  return samples;
+}
+
+void LearnTexture(Layers& layers) {
+  layers.flat = false;
+  const auto per_reach = static_cast<float>(1.0 / layers.shape.Reach());
+  // The spline of a square's samples lies a third above it.
+  const float above = per_reach * per_reach / 3.0F;
+  for (std::int32_t j = 0; j < layers.grid.rows(); ++j) {
+    for (std::int32_t i = 0; i < layers.grid.columns(); ++i) {
+      Terms terms = TermsAt(layers.grid.x_of(i) * per_reach,
+                            layers.grid.y_of(j) * per_reach);
+      terms[3] -= above;
+      terms[5] -= above;
+      float level = 0.0F;
+      for (std::size_t k = 0; k < kTerms; ++k) {
+        level += static_cast<float>(layers.quadratic[k]) * terms[k];
+      }
+      layers.picture[static_cast<std::size_t>(j * layers.grid.columns() + i)] =
+          level;
+    }
+  }
+}
+
+std::vector<LayerPose> MotionsOf(const std::vector<LayerPose>& poses,
+                                 const std::vector<std::int64_t>& frames) {
+  const std::size_t n = poses.size();
+  std::vector<LayerPose> motions(n);
+  if (n < 2) return motions;
+  const auto between = [&](std::size_t a, std::size_t b) {
+    const auto gap = static_cast<double>(frames[b] - frames[a]);
+    return LayerPose{(poses[b].x - poses[a].x) / gap,
+                     (poses[b].y - poses[a].y) / gap,
+                     (poses[b].angle_rad - poses[a].angle_rad) / gap};
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i == 0 || i + 1 == n) {
+      motions[i] = i == 0 ? between(0, 1) : between(n - 2, n - 1);
+      continue;
+    }
+    const LayerPose back = between(i - 1, i);
+    const LayerPose on = between(i, i + 1);
+    const double change_back = i >= 2 ? Apart(between(i - 2, i - 1), back) : 0.0;
+    const double change_on =
+        i + 2 < n ? Apart(on, between(i + 1, i + 2)) : 0.0;
+    if (Apart(back, on) < 2.0 * std::max({change_back, change_on, 0.1})) {
+      motions[i] = {0.5 * (back.x + on.x), 0.5 * (back.y + on.y),
+                    0.5 * (back.angle_rad + on.angle_rad)};
+    } else {
+      motions[i] = change_back <= change_on ? back : on;
+    }
+  }
+  return motions;
+}
+
+}  // namespace touchdown::vision::layers

@@ -1,0 +1,113 @@
+// One frame as two layers: a picture that stands still, and before it the
+// body's own picture, which moves and turns with it (J. Y. A. Wang and E. H.
+// Adelson, IEEE Trans. Image Process. 3(5), 1994; N. Jojic and B. J. Frey, CVPR
+// 2001).
+//
+//   I(x) = B(x) + sum_k w_k [ M(l_k) (T(l_k) + S(x - c_k) - B(x))
+//                             - P(l_k) ]
+//   l_k = R(phi_k)' (x - c_k),  pose_k = pose + v tau_k e
+//
+// B  still picture            T  the body's picture (body_picture.h)
+// M  coverage of blur s (shape_cover.h)
+// S  shading that stays with the light: a slope over the body
+// w_k, tau_k  Gauss-Legendre nodes of the exposure, the share e of a frame
+//    interval; v  the pose's change in one interval
+// P  what the camera's blur makes of the product of two edges
+//    (edge_product.h): where a body lies on the ground's edge, without it the
+//    outline would be a tenth of a pixel off
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "body_picture.h"
+#include "picture_stack.h"
+#include "shape_cover.h"
+
+namespace touchdown::vision::layers {
+
+// In px of the stack's pictures; angle from +x to +y.
+struct LayerPose {
+  double x = 0.0;
+  double y = 0.0;
+  double angle_rad = 0.0;
+};
+
+inline constexpr std::size_t kPose = 3;    // x, y, angle
+inline constexpr std::size_t kTerms = 6;   // of a quadratic: 1 x y xx xy yy
+inline constexpr std::size_t kShared = 12;  // what the frames share, see below
+
+// What all frames have in common.
+struct Layers {
+  Shape shape;
+  double blur = 1.0;      // s, px
+  double exposure = 0.3;  // e, of a frame interval
+  double slope_x = 0.0;   // S: DN across the body's reach
+  double slope_y = 0.0;
+
+  // T: a quadratic in x and y over the body's reach where the body is flat
+  // (most are: then no picture is learned, which is ten times faster), else a
+  // spline.
+  bool flat = true;
+  std::array<double, kTerms> quadratic{};
+  PictureGrid grid;
+  std::vector<float> picture;  // T's coefficients
+  std::vector<float> still;    // B
+  // What B and T are worth: sums of squared coverage, as if so many frames
+  // showed a pixel alone.
+  std::vector<float> still_weight;
+  std::vector<float> picture_weight;
+
+  double noise_dn = 2.0;       // of a pixel
+  double texture_dn = 0.0;     // standard deviation of T about a quadratic
+};
+
+// The order of the shared parameters in the derivatives.
+enum SharedParameter : std::size_t {
+  kBlur,
+  kExposure,
+  kLong,
+  kShort,
+  kSlopeX,
+  kSlopeY,
+  kQuadratic  // the first of kTerms
+};
+
+// One frame's pixels that show something of the body: residuals and all first
+// derivatives.
+struct FrameSamples {
+  std::vector<std::int32_t> pixel;
+  std::vector<float> residual;  // I - model, DN
+  std::vector<float> weight;    // robust, 0..1
+  std::vector<float> open;      // 1 - M: derivative by B
+  std::vector<float> cover;     // M
+  std::array<std::vector<float>, kPose> by_pose;
+  std::array<std::vector<float>, kShared> by_shared;
+  // Derivatives by a spline T: `nodes` places a pixel, each with its share of
+  // coverage. Of a flat body none.
+  std::size_t nodes = 0;
+  std::vector<SplinePlace> place;
+  std::vector<float> share;
+
+  std::size_t size() const { return pixel.size(); }
+};
+
+// A flat T as a spline.
+void LearnTexture(Layers& layers);
+
+// Cauchy's, at four standard deviations of noise.
+float RobustWeight(float residual, double noise_dn);
+
+// `motion`: v. Pixels that the body does not reach are left out.
+FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
+                       const Layers& layers, const LayerPose& pose,
+                       const LayerPose& motion);
+
+// The pose's change in one frame interval, from the poses beside it: of both
+// sides, or of the steadier one where a blow lies between.
+std::vector<LayerPose> MotionsOf(const std::vector<LayerPose>& poses,
+                                 const std::vector<std::int64_t>& frames);
+
+}  // namespace touchdown::vision::layers

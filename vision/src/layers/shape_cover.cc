@@ -1,0 +1,134 @@
+#include "shape_cover.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace touchdown::vision::layers {
+namespace {
+
+const NormalTable& Table() {
+  static const NormalTable table;
+  return table;
+}
+
+// A(u; h) and its derivatives by u, h and s.
+struct Span {
+  float value = 0.0F;
+  float by_u = 0.0F;
+  float by_half = 0.0F;
+  float by_blur = 0.0F;
+};
+
+Span SpanAt(const NormalTable& table, float u, float half, float per_blur) {
+  const float right = (half - u) * per_blur;
+  const float left = (half + u) * per_blur;
+  float phi_right = 0.0F;
+  float density_right = 0.0F;
+  float phi_left = 0.0F;
+  float density_left = 0.0F;
+  table.Look(right, phi_right, density_right);
+  table.Look(left, phi_left, density_left);
+  return {phi_right + phi_left - 1.0F,
+          (density_left - density_right) * per_blur,
+          (density_left + density_right) * per_blur,
+          -(right * density_right + left * density_left) * per_blur};
+}
+
+}  // namespace
+
+double Shape::Reach() const {
+  return disc ? half_long : std::hypot(half_long, half_short);
+}
+
+double Shape::Area() const {
+  return disc ? std::numbers::pi * half_long * half_long
+              : 4.0 * half_long * half_short;
+}
+
+NormalTable::NormalTable() {
+  for (std::size_t i = 0; i < phi_.size(); ++i) {
+    const double z = static_cast<double>(i) / kPerUnit - kReach;
+    phi_[i] =
+        static_cast<float>(0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0));
+    density_[i] = static_cast<float>(std::exp(-0.5 * z * z) *
+                                     std::numbers::inv_sqrtpi /
+                                     std::numbers::sqrt2);
+  }
+}
+
+ShapeCover::ShapeCover(const Shape& shape, double blur)
+    : table_(Table()),
+      disc_(shape.disc),
+      half_long_(static_cast<float>(shape.half_long)),
+      half_short_(static_cast<float>(shape.half_short)),
+      per_blur_(static_cast<float>(1.0 / blur)) {}
+
+CoverAt ShapeCover::At(float x, float y) const {
+  CoverAt at;
+  if (disc_) {
+    const float distance = std::sqrt(x * x + y * y) + 1e-6F;
+    const float z = (half_long_ - distance) * per_blur_;
+    float density = 0.0F;
+    table_.Look(z, at.value, density);
+    at.by_long = density * per_blur_;
+    at.by_x = -at.by_long * x / distance;
+    at.by_y = -at.by_long * y / distance;
+    at.by_blur = -at.by_long * z;
+    return at;
+  }
+  const Span along = SpanAt(table_, x, half_long_, per_blur_);
+  const Span across = SpanAt(table_, y, half_short_, per_blur_);
+  at.value = along.value * across.value;
+  at.by_x = along.by_u * across.value;
+  at.by_y = along.value * across.by_u;
+  at.by_long = along.by_half * across.value;
+  at.by_short = along.value * across.by_half;
+  at.by_blur = along.by_blur * across.value + along.value * across.by_blur;
+  return at;
+}
+
+Product ShapeCover::WithEdge(float x, float y, const StillEdge& edge,
+                             float cosine, float sine) const {
+  // Beyond so many blurs from its own edge the body has none.
+  constexpr float kFar = 3.5F;
+  Product product;
+  // The still edge's normal in the body's coordinates.
+  const float normal_x = cosine * edge.normal_x + sine * edge.normal_y;
+  const float normal_y = cosine * edge.normal_y - sine * edge.normal_x;
+  if (disc_) {
+    const float distance = std::sqrt(x * x + y * y) + 1e-6F;
+    const float z = (half_long_ - distance) * per_blur_;
+    if (std::abs(z) > kFar) return product;
+    const float rho = -(normal_x * x + normal_y * y) / distance;
+    product.value = edge.contrast * EdgeProduct(z, edge.z, rho);
+    const float slope =
+        -edge.contrast * per_blur_ * EdgeProductSlope(z, edge.z, rho) / distance;
+    product.by_x = slope * x;
+    product.by_y = slope * y;
+    return product;
+  }
+  // Each side by itself, as far as the other two let it be seen.
+  const float along = SpanAt(table_, x, half_long_, per_blur_).value;
+  const float across = SpanAt(table_, y, half_short_, per_blur_).value;
+  for (const float side : {-1.0F, 1.0F}) {
+    const float z_x = (half_long_ - side * x) * per_blur_;
+    if (std::abs(z_x) < kFar && across > 1e-3F) {
+      const float rho = -side * normal_x;
+      const float seen = edge.contrast * across;
+      product.value += seen * EdgeProduct(z_x, edge.z, rho);
+      product.by_x -=
+          side * per_blur_ * seen * EdgeProductSlope(z_x, edge.z, rho);
+    }
+    const float z_y = (half_short_ - side * y) * per_blur_;
+    if (std::abs(z_y) < kFar && along > 1e-3F) {
+      const float rho = -side * normal_y;
+      const float seen = edge.contrast * along;
+      product.value += seen * EdgeProduct(z_y, edge.z, rho);
+      product.by_y -=
+          side * per_blur_ * seen * EdgeProductSlope(z_y, edge.z, rho);
+    }
+  }
+  return product;
+}
+
+}  // namespace touchdown::vision::layers

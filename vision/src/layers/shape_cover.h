@@ -1,0 +1,90 @@
+// How much of a pixel a blurred shape covers, and its derivatives.
+//
+// Rectangle of half sides a, b with its centre at the origin, blurred by a
+// Gaussian of standard deviation s (the edge's blur and the pixel's own width,
+// s^2 = psf^2 + 1/12):
+//   M = A(x; a) A(y; b),  A(u; h) = Phi((h - u) / s) + Phi((h + u) / s) - 1
+// Disc of radius a: M = Phi((a - |p|) / s), which holds for a >> s; for a = 4 s
+// the middle of the edge lies 0.1 s further out.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "edge_product.h"
+
+namespace touchdown::vision::layers {
+
+struct Shape {
+  bool disc = false;
+  double half_long = 0.0;   // px; a disc's radius
+  double half_short = 0.0;  // px; a disc's radius, too
+  double Reach() const;     // from the centre to the farthest point
+  double Area() const;
+};
+
+struct CoverAt {
+  float value = 0.0F;
+  float by_x = 0.0F;  // derivatives by the pixel's place in the body
+  float by_y = 0.0F;
+  float by_blur = 0.0F;
+  float by_long = 0.0F;  // by the half sides; a disc's radius: by_long
+  float by_short = 0.0F;
+};
+
+// Phi and its density from a table: 1e-6 off at most.
+class NormalTable {
+ public:
+  NormalTable();
+  // Below -5 and above 5 the ends' values.
+  void Look(float z, float& phi, float& density) const {
+    const float at = (z + kReach) * kPerUnit;
+    if (!(at > 0.0F)) {
+      phi = 0.0F;
+      density = 0.0F;
+      return;
+    }
+    if (at >= static_cast<float>(kCells)) {
+      phi = 1.0F;
+      density = 0.0F;
+      return;
+    }
+    const auto cell = static_cast<std::size_t>(at);
+    const float share = at - static_cast<float>(cell);
+    phi = phi_[cell] + share * (phi_[cell + 1] - phi_[cell]);
+    density = density_[cell] + share * (density_[cell + 1] - density_[cell]);
+  }
+
+ private:
+  static constexpr float kReach = 5.0F;
+  static constexpr float kPerUnit = 200.0F;
+  static constexpr std::size_t kCells = 2000;
+  std::array<float, kCells + 2> phi_{};
+  std::array<float, kCells + 2> density_{};
+};
+
+// The product of the shape's edges with one of the still picture, DN.
+struct Product {
+  float value = 0.0F;
+  float by_x = 0.0F;  // as in CoverAt
+  float by_y = 0.0F;
+};
+
+// The coverage of pixels by one shape of one blur.
+class ShapeCover {
+ public:
+  ShapeCover(const Shape& shape, double blur);
+  CoverAt At(float x, float y) const;
+  // `cosine`, `sine`: of the body's direction, in which x and y are.
+  Product WithEdge(float x, float y, const StillEdge& edge, float cosine,
+                   float sine) const;
+
+ private:
+  const NormalTable& table_;
+  bool disc_;
+  float half_long_;
+  float half_short_;
+  float per_blur_;
+};
+
+}  // namespace touchdown::vision::layers
