@@ -318,8 +318,7 @@ ContactResult FindContacts(const PlaneTrack& given,
       std::hypot(kCommonPlace * excess.face_rad, track.u_common_face_rad);
   track.u_half_px =
       std::hypot(track.u_half_px, kOutline_px, kCommonSize * excess.height_px);
-  track.ground.u_offset_px =
-      std::hypot(track.ground.u_offset_px, u_common_px);
+  track.ground.u_offset_px = std::hypot(track.ground.u_offset_px, u_common_px);
   const FlightOptions flight = FlightFor(options);
   const SegmentationOptions segmentation =
       SegmentationFor(track, options, flight);
@@ -327,12 +326,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   if (WidenToCorrelation(stretches, flight, track)) {
     stretches = SegmentMotion(track, segmentation);
   }
-  RecordContext context{track,
-                        options,
-                        flight,
-                        stretches,
-                        u_common_px,
-                        u_common_face};
+  RecordContext context{track,     options,     flight,
+                        stretches, u_common_px, u_common_face};
   for (const Stretch& stretch : stretches) {
     result.path.push_back({stretch.kind, track.samples[stretch.begin].frame,
                            track.samples[stretch.end - 1].frame, stretch.chi2,

@@ -75,7 +75,8 @@ class PictureGrid {
   };
   Tilt TiltAt(const float* coefficients, const SplinePlace& place) const;
   // The transpose of ValueAt: adds `amount` times each weight.
-  void Spread(float amount, const SplinePlace& place, float* coefficients) const;
+  void Spread(float amount, const SplinePlace& place,
+              float* coefficients) const;
 
  private:
   std::int32_t columns_ = 0;

@@ -7,9 +7,7 @@
 namespace touchdown::vision::layers {
 namespace {
 
-double Phi(double z) {
-  return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0);
-}
+double Phi(double z) { return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0); }
 
 constexpr float kPerTwoPi = static_cast<float>(0.5 * std::numbers::inv_pi);
 // Parallel edges are taken as a little askew: the integrand stays finite.
@@ -70,12 +68,12 @@ StillEdge StillEdges::At(std::int32_t pixel) const {
 }
 
 float EdgeProduct(float z1, float z2, float rho) {
-  static constexpr std::array<float, 6> kNodes = {
-      0.033765243F, 0.169395307F, 0.380690407F,
-      0.619309593F, 0.830604693F, 0.966234757F};
-  static constexpr std::array<float, 6> kWeights = {
-      0.085662246F, 0.180380787F, 0.233956967F,
-      0.233956967F, 0.180380787F, 0.085662246F};
+  static constexpr std::array<float, 6> kNodes = {0.033765243F, 0.169395307F,
+                                                  0.380690407F, 0.619309593F,
+                                                  0.830604693F, 0.966234757F};
+  static constexpr std::array<float, 6> kWeights = {0.085662246F, 0.180380787F,
+                                                    0.233956967F, 0.233956967F,
+                                                    0.180380787F, 0.085662246F};
   const float end = std::asin(std::clamp(rho, -kMostRho, kMostRho));
   const float squares = z1 * z1 + z2 * z2;
   float sum = 0.0F;

@@ -30,10 +30,12 @@ struct Unknowns {
 
 double Dot(const Unknowns& a, const Unknowns& b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.poses.size(); ++i) sum += a.poses[i] * b.poses[i];
+  for (std::size_t i = 0; i < a.poses.size(); ++i)
+    sum += a.poses[i] * b.poses[i];
   for (std::size_t i = 0; i < kShared; ++i) sum += a.shared[i] * b.shared[i];
   for (std::size_t i = 0; i < a.picture.size(); ++i) {
-    sum += static_cast<double>(a.picture[i]) * static_cast<double>(b.picture[i]);
+    sum +=
+        static_cast<double>(a.picture[i]) * static_cast<double>(b.picture[i]);
   }
   for (std::size_t i = 0; i < a.still.size(); ++i) {
     sum += static_cast<double>(a.still[i]) * static_cast<double>(b.still[i]);
@@ -44,19 +46,26 @@ double Dot(const Unknowns& a, const Unknowns& b) {
 // a += factor * b
 void Add(Unknowns& a, double factor, const Unknowns& b) {
   const auto by = static_cast<float>(factor);
-  for (std::size_t i = 0; i < a.poses.size(); ++i) a.poses[i] += factor * b.poses[i];
+  for (std::size_t i = 0; i < a.poses.size(); ++i)
+    a.poses[i] += factor * b.poses[i];
   for (std::size_t i = 0; i < kShared; ++i) a.shared[i] += factor * b.shared[i];
-  for (std::size_t i = 0; i < a.picture.size(); ++i) a.picture[i] += by * b.picture[i];
-  for (std::size_t i = 0; i < a.still.size(); ++i) a.still[i] += by * b.still[i];
+  for (std::size_t i = 0; i < a.picture.size(); ++i)
+    a.picture[i] += by * b.picture[i];
+  for (std::size_t i = 0; i < a.still.size(); ++i)
+    a.still[i] += by * b.still[i];
 }
 
 // b = a + factor * b
 void Turn(Unknowns& b, double factor, const Unknowns& a) {
   const auto by = static_cast<float>(factor);
-  for (std::size_t i = 0; i < a.poses.size(); ++i) b.poses[i] = a.poses[i] + factor * b.poses[i];
-  for (std::size_t i = 0; i < kShared; ++i) b.shared[i] = a.shared[i] + factor * b.shared[i];
-  for (std::size_t i = 0; i < a.picture.size(); ++i) b.picture[i] = a.picture[i] + by * b.picture[i];
-  for (std::size_t i = 0; i < a.still.size(); ++i) b.still[i] = a.still[i] + by * b.still[i];
+  for (std::size_t i = 0; i < a.poses.size(); ++i)
+    b.poses[i] = a.poses[i] + factor * b.poses[i];
+  for (std::size_t i = 0; i < kShared; ++i)
+    b.shared[i] = a.shared[i] + factor * b.shared[i];
+  for (std::size_t i = 0; i < a.picture.size(); ++i)
+    b.picture[i] = a.picture[i] + by * b.picture[i];
+  for (std::size_t i = 0; i < a.still.size(); ++i)
+    b.still[i] = a.still[i] + by * b.still[i];
 }
 
 // Coefficients of T that are unknown: a flat body's picture is shared numbers.
@@ -138,7 +147,7 @@ class NormalEquations {
   const FreePart& free_;
   const JointStepOptions& options_;
   std::size_t cells_;
-  std::size_t columns_;  // of the shared parameters that are not held
+  std::size_t columns_;          // of the shared parameters that are not held
   std::vector<Unknowns> parts_;  // each part's sums of what frames share
   std::vector<float> outside_;
   float stiffness_ = 0.0F;
@@ -153,22 +162,22 @@ class NormalEquations {
 
 template <class Work>
 void NormalEquations::Over(const Work& work) {
-  core::InParallel(
-      static_cast<std::int64_t>(kParts), options_.threads,
-      [&](std::int64_t begin, std::int64_t end) {
-        for (auto part = static_cast<std::size_t>(begin);
-             part < static_cast<std::size_t>(end); ++part) {
-          Unknowns& sums = parts_[part];
-          sums.shared.fill(0.0);
-          std::fill(sums.picture.begin(), sums.picture.end(), 0.0F);
-          std::fill(sums.still.begin(), sums.still.end(), 0.0F);
-          const std::size_t n = frames_.size();
-          for (std::size_t t = part * n / kParts; t < (part + 1) * n / kParts;
-               ++t) {
-            work(frames_[t], t, sums);
-          }
-        }
-      });
+  core::InParallel(static_cast<std::int64_t>(kParts), options_.threads,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     for (auto part = static_cast<std::size_t>(begin);
+                          part < static_cast<std::size_t>(end); ++part) {
+                       Unknowns& sums = parts_[part];
+                       sums.shared.fill(0.0);
+                       std::fill(sums.picture.begin(), sums.picture.end(),
+                                 0.0F);
+                       std::fill(sums.still.begin(), sums.still.end(), 0.0F);
+                       const std::size_t n = frames_.size();
+                       for (std::size_t t = part * n / kParts;
+                            t < (part + 1) * n / kParts; ++t) {
+                         work(frames_[t], t, sums);
+                       }
+                     }
+                   });
 }
 
 void NormalEquations::Collect(Unknowns& out) {
@@ -238,9 +247,12 @@ void NormalEquations::Fill(Unknowns& right) {
   SharedMatrix all = SharedMatrix::Zero();
   for (const auto& part : shared) all += part;
   all = all.selfadjointView<Eigen::Lower>();
-  std::array<double, kShared> now = {
-      layers_.blur,    layers_.exposure, layers_.shape.half_long,
-      layers_.shape.half_short, layers_.slope_x, layers_.slope_y};
+  std::array<double, kShared> now = {layers_.blur,
+                                     layers_.exposure,
+                                     layers_.shape.half_long,
+                                     layers_.shape.half_short,
+                                     layers_.slope_x,
+                                     layers_.slope_y};
   std::copy(layers_.quadratic.begin(), layers_.quadratic.end(),
             now.begin() + kQuadratic);
   for (std::size_t a = 0; a < kShared; ++a) {
@@ -287,13 +299,13 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
     }
     for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
       for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
-        change[i] += samples.share[at] * layers_.grid.ValueAt(
-                                             in.picture.data(),
-                                             samples.place[at]);
+        change[i] += samples.share[at] *
+                     layers_.grid.ValueAt(in.picture.data(), samples.place[at]);
       }
     }
     for (std::size_t a = 0; a < kPose; ++a) {
-      out.poses[kPose * t + a] = WeightedSum(samples, samples.by_pose[a], change);
+      out.poses[kPose * t + a] =
+          WeightedSum(samples, samples.by_pose[a], change);
     }
     if (!options_.turns) {
       out.poses[kPose * t + 2] += kHeld * in.poses[kPose * t + 2];
@@ -329,11 +341,11 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
 void NormalEquations::Precondition(const Unknowns& in, Unknowns& out) const {
   for (std::size_t t = 0; t < frames_.size(); ++t) {
     const Eigen::Map<const Eigen::Vector3d> from(&in.poses[kPose * t]);
-    Eigen::Map<Eigen::Vector3d>(&out.poses[kPose * t]) = pose_inverse_[t] * from;
+    Eigen::Map<Eigen::Vector3d>(&out.poses[kPose * t]) =
+        pose_inverse_[t] * from;
   }
   const Eigen::Map<const SharedVector> from(in.shared.data());
-  Eigen::Map<SharedVector>(out.shared.data()) =
-      shared_inverse_ * from;
+  Eigen::Map<SharedVector>(out.shared.data()) = shared_inverse_ * from;
   for (std::size_t c = 0; c < out.picture.size(); ++c) {
     out.picture[c] = picture_inverse_[c] * in.picture[c];
   }
@@ -391,8 +403,10 @@ FreePart::FreePart(const PictureGrid& grid) {
     }
     for (const auto& other : columns) {
       double along = 0.0;
-      for (std::size_t c = 0; c < column.size(); ++c) along += other[c] * column[c];
-      for (std::size_t c = 0; c < column.size(); ++c) column[c] -= along * other[c];
+      for (std::size_t c = 0; c < column.size(); ++c)
+        along += other[c] * column[c];
+      for (std::size_t c = 0; c < column.size(); ++c)
+        column[c] -= along * other[c];
     }
     double square = 0.0;
     for (const double value : column) square += value * value;

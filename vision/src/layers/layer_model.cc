@@ -19,9 +19,10 @@ std::span<const Node> NodesFor(double way) {
   static constexpr std::array<Node, 1> kOne = {{{0.0, 1.0}}};
   static constexpr std::array<Node, 2> kTwo = {
       {{-0.28867513459481287, 0.5}, {0.28867513459481287, 0.5}}};
-  static constexpr std::array<Node, 3> kThree = {{{-0.3872983346207417, 5.0 / 18.0},
-                                                  {0.0, 8.0 / 18.0},
-                                                  {0.3872983346207417, 5.0 / 18.0}}};
+  static constexpr std::array<Node, 3> kThree = {
+      {{-0.3872983346207417, 5.0 / 18.0},
+       {0.0, 8.0 / 18.0},
+       {0.3872983346207417, 5.0 / 18.0}}};
   static constexpr std::array<Node, 5> kFive = {
       {{-0.453089922969332, 0.11846344252809454},
        {-0.2692346550528415, 0.23931433524968324},
@@ -53,8 +54,8 @@ Window WindowOf(const PictureStack& stack, const Layers& layers,
     reach_x = cosine * layers.shape.half_long + sine * layers.shape.half_short;
     reach_y = sine * layers.shape.half_long + cosine * layers.shape.half_short;
   }
-  const double turn = 0.5 * std::abs(motion.angle_rad) * layers.exposure *
-                      layers.shape.Reach();
+  const double turn =
+      0.5 * std::abs(motion.angle_rad) * layers.exposure * layers.shape.Reach();
   reach_x += rim + 0.5 * std::abs(motion.x) * layers.exposure + turn;
   reach_y += rim + 0.5 * std::abs(motion.y) * layers.exposure + turn;
   const auto from = [](double at) {
@@ -64,7 +65,8 @@ Window WindowOf(const PictureStack& stack, const Layers& layers,
     return std::min(end - 1, static_cast<std::int32_t>(std::floor(at)) + 1);
   };
   return {from(pose.x - reach_x), from(pose.y - reach_y),
-          to(pose.x + reach_x, stack.width), to(pose.y + reach_y, stack.height)};
+          to(pose.x + reach_x, stack.width),
+          to(pose.y + reach_y, stack.height)};
 }
 
 // A node's own numbers.
@@ -88,10 +90,10 @@ PictureGrid::Tilt TiltOf(const Terms& quadratic, const Terms& terms,
   }
   const float x = terms[1];
   const float y = terms[2];
-  tilt.by_x = (quadratic[1] + 2.0F * quadratic[3] * x + quadratic[4] * y) *
-              per_reach;
-  tilt.by_y = (quadratic[2] + quadratic[4] * x + 2.0F * quadratic[5] * y) *
-              per_reach;
+  tilt.by_x =
+      (quadratic[1] + 2.0F * quadratic[3] * x + quadratic[4] * y) * per_reach;
+  tilt.by_y =
+      (quadratic[2] + quadratic[4] * x + 2.0F * quadratic[5] * y) * per_reach;
   return tilt;
 }
 
@@ -131,9 +133,8 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
     return samples;
   }
   const double reach = layers.shape.Reach();
-  const double way =
-      layers.exposure * (std::hypot(motion.x, motion.y) +
-                         std::abs(motion.angle_rad) * reach);
+  const double way = layers.exposure * (std::hypot(motion.x, motion.y) +
+                                        std::abs(motion.angle_rad) * reach);
   std::vector<Placed> placed;
   for (const Node& node : NodesFor(way)) {
     const double shift = node.tau * layers.exposure;
@@ -213,8 +214,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         } else {
           tilt = layers.grid.TiltAt(layers.picture.data(), places[k]);
         }
-        const float over =
-            tilt.value + slope_x * dx + slope_y * dy - behind;
+        const float over = tilt.value + slope_x * dx + slope_y * dy - behind;
         // What the blur makes of products: of a smooth picture to first order,
         // of an edge exactly.
         const float m_x = node.cosine * m.by_x - node.sine * m.by_y;
@@ -240,8 +240,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         by_shared[kSlopeX] += node.weight * blur2 * per_reach * m_x;
         by_shared[kSlopeY] += node.weight * blur2 * per_reach * m_y;
         covered += shares[k];
-        model += shares[k] * over +
-                 node.weight * (blur2 * own - product.value);
+        model += shares[k] * over + node.weight * (blur2 * own - product.value);
         const float g_x = m.by_x * over + m.value * tilt.by_x - product.by_x;
         const float g_y = m.by_y * over + m.value * tilt.by_y - product.by_y;
         const float d_x = node.weight * (-node.cosine * g_x + node.sine * g_y -
@@ -252,8 +251,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         by_pose[0] += d_x;
         by_pose[1] += d_y;
         by_pose[2] += d_turn;
-        by_shared[kBlur] +=
-            node.weight * (m.by_blur * over + twice_blur * own);
+        by_shared[kBlur] += node.weight * (m.by_blur * over + twice_blur * own);
         by_shared[kExposure] +=
             node.tau * (d_x * v_x + d_y * v_y + d_turn * v_turn);
         by_shared[kLong] += node.weight * m.by_long * over;
@@ -321,9 +319,9 @@ std::vector<LayerPose> MotionsOf(const std::vector<LayerPose>& poses,
     }
     const LayerPose back = between(i - 1, i);
     const LayerPose on = between(i, i + 1);
-    const double change_back = i >= 2 ? Apart(between(i - 2, i - 1), back) : 0.0;
-    const double change_on =
-        i + 2 < n ? Apart(on, between(i + 1, i + 2)) : 0.0;
+    const double change_back =
+        i >= 2 ? Apart(between(i - 2, i - 1), back) : 0.0;
+    const double change_on = i + 2 < n ? Apart(on, between(i + 1, i + 2)) : 0.0;
     if (Apart(back, on) < 2.0 * std::max({change_back, change_on, 0.1})) {
       motions[i] = {0.5 * (back.x + on.x), 0.5 * (back.y + on.y),
                     0.5 * (back.angle_rad + on.angle_rad)};

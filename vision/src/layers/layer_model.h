@@ -38,8 +38,8 @@ struct LayerPose {
   double angle_rad = 0.0;
 };
 
-inline constexpr std::size_t kPose = 3;    // x, y, angle
-inline constexpr std::size_t kTerms = 6;   // of a quadratic: 1 x y xx xy yy
+inline constexpr std::size_t kPose = 3;     // x, y, angle
+inline constexpr std::size_t kTerms = 6;    // of a quadratic: 1 x y xx xy yy
 inline constexpr std::size_t kShared = 12;  // what the frames share, see below
 
 // What all frames have in common.
@@ -63,8 +63,8 @@ struct Layers {
   std::vector<float> still_weight;
   std::vector<float> picture_weight;
 
-  double noise_dn = 2.0;       // of a pixel
-  double texture_dn = 0.0;     // standard deviation of T about a quadratic
+  double noise_dn = 2.0;    // of a pixel
+  double texture_dn = 0.0;  // standard deviation of T about a quadratic
 };
 
 // The order of the shared parameters in the derivatives.

@@ -4,11 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
-
-#include "touchdown/core/points.h"
-#include "touchdown/vision/clip.h"
 
 namespace touchdown::vision::layers {
 
@@ -28,12 +24,11 @@ struct PictureStack {
   }
 };
 
-// The pixels of `box`, which lies within the picture, of given frames. Throws
-// what Clip::Read throws.
-PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
-                          const core::PixelRect& box);
+// Some of them.
+PictureStack Choose(const PictureStack& all,
+                    const std::vector<std::size_t>& chosen);
 
-// The same at half the resolution: means of two by two pixels. Pixel (i, j) of
+// All at half the resolution: means of two by two pixels. Pixel (i, j) of
 // it has its centre at 2 i + 0.5, 2 j + 0.5.
 PictureStack Halve(const PictureStack& full, int threads);
 std::vector<float> Halve(const std::vector<float>& picture, std::int32_t width,

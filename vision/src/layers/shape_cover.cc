@@ -50,9 +50,9 @@ NormalTable::NormalTable() {
     const double z = static_cast<double>(i) / kPerUnit - kReach;
     phi_[i] =
         static_cast<float>(0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0));
-    density_[i] = static_cast<float>(std::exp(-0.5 * z * z) *
-                                     std::numbers::inv_sqrtpi /
-                                     std::numbers::sqrt2);
+    density_[i] =
+        static_cast<float>(std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
+                           std::numbers::sqrt2);
   }
 }
 
@@ -101,8 +101,8 @@ Product ShapeCover::WithEdge(float x, float y, const StillEdge& edge,
     if (std::abs(z) > kFar) return product;
     const float rho = -(normal_x * x + normal_y * y) / distance;
     product.value = edge.contrast * EdgeProduct(z, edge.z, rho);
-    const float slope =
-        -edge.contrast * per_blur_ * EdgeProductSlope(z, edge.z, rho) / distance;
+    const float slope = -edge.contrast * per_blur_ *
+                        EdgeProductSlope(z, edge.z, rho) / distance;
     product.by_x = slope * x;
     product.by_y = slope * y;
     return product;

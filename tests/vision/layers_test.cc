@@ -1,0 +1,369 @@
+// The two-layer model against pictures made the long way (layered_scene.h),
+// against closed forms, and its derivatives against differences.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "tests/vision/layered_scene.h"
+#include "vision/src/layers/align_pose.h"
+#include "vision/src/layers/body_picture.h"
+#include "vision/src/layers/edge_product.h"
+#include "vision/src/layers/fit_layers.h"
+#include "vision/src/layers/layer_model.h"
+#include "vision/src/layers/shape_cover.h"
+
+namespace touchdown::vision::layers {
+namespace {
+
+double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+TEST(EdgeProduct, OfEdgesThroughAPointIsSheppards) {
+  // Sheppard (1899): Phi2(0, 0; rho) = 1/4 + asin(rho) / (2 pi).
+  for (const float rho : {-0.99F, -0.5F, 0.0F, 0.3F, 0.9F, 0.999F}) {
+    EXPECT_NEAR(EdgeProduct(0.0F, 0.0F, rho),
+                0.5 * std::numbers::inv_pi * std::asin(rho), 1e-4)
+        << rho;
+  }
+}
+
+TEST(EdgeProduct, OfCoincidentEdgesIsThatOfOneEdge) {
+  // rho = 1 and z1 = z2: min(Phi, Phi) - Phi^2.
+  for (const double z : {-2.0, -0.7, 0.0, 0.4, 1.5}) {
+    const auto at = static_cast<float>(z);
+    EXPECT_NEAR(EdgeProduct(at, at, 1.0F), Phi(z) * (1.0 - Phi(z)), 4e-3) << z;
+  }
+}
+
+TEST(EdgeProduct, AgreesWithIntegrationOverThePlane) {
+  for (const auto& [z1, z2, rho] :
+       {std::array{0.5, -0.3, 0.8}, {1.2, 0.9, -0.6}, {-0.8, 0.4, 0.95}}) {
+    // Phi2 = int_{-inf}^{z1} phi(t) Phi((z2 - rho t) / sqrt(1 - rho^2)) dt.
+    double both = 0.0;
+    constexpr double kStep = 1e-3;
+    for (double t = -8.0; t < z1; t += kStep) {
+      both += kStep * std::exp(-0.5 * t * t) /
+              std::sqrt(2.0 * std::numbers::pi) *
+              Phi((z2 - rho * t) / std::sqrt(1.0 - rho * rho));
+    }
+    EXPECT_NEAR(EdgeProduct(static_cast<float>(z1), static_cast<float>(z2),
+                            static_cast<float>(rho)),
+                both - Phi(z1) * Phi(z2), 1e-3);
+  }
+}
+
+TEST(EdgeProduct, SlopeIsItsDerivative) {
+  constexpr float kStep = 0.01F;
+  for (const float rho : {-0.7F, 0.2F, 0.9F}) {
+    for (const float z1 : {-1.0F, 0.1F, 1.4F}) {
+      const float by = (EdgeProduct(z1 + kStep, 0.4F, rho) -
+                        EdgeProduct(z1 - kStep, 0.4F, rho)) /
+                       (2.0F * kStep);
+      EXPECT_NEAR(EdgeProductSlope(z1, 0.4F, rho), by, 2e-3);
+    }
+  }
+}
+
+TEST(StillEdges, ReadContrastAndDistanceOffABlurredEdge) {
+  constexpr std::int32_t kWidth = 5;
+  constexpr double kBlur = 1.1;
+  for (const double edge : {10.0, 10.3, 10.77}) {
+    std::vector<float> still;
+    for (int y = 0; y < 21; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        still.push_back(
+            static_cast<float>(70.0 + 120.0 * Phi((edge - y) / kBlur)));
+      }
+    }
+    const StillEdges edges(still.data(), kWidth, kBlur, 1.0);
+    for (int y = 9; y <= 12; ++y) {
+      const StillEdge at = edges.At(y * kWidth + 2);
+      EXPECT_NEAR(at.contrast, 120.0, 1.0) << y;
+      EXPECT_NEAR(at.z, (edge - y) / kBlur, 0.02) << y;
+      EXPECT_NEAR(at.normal_y, -1.0, 1e-6);
+    }
+    EXPECT_EQ(edges.At(2 * kWidth + 2).contrast, 0.0F);
+  }
+}
+
+TEST(ShapeCover, DerivativesAreThoseOfTheValue) {
+  constexpr float kStep = 0.01F;
+  for (const bool disc : {false, true}) {
+    const Shape shape{disc, 9.0, disc ? 9.0 : 4.0};
+    const ShapeCover cover(shape, 1.2);
+    for (const auto& [x, y] : {std::array{8.6F, 1.0F},
+                               {7.5F, 4.4F},
+                               {-9.3F, -3.0F},
+                               {2.0F, -4.1F}}) {
+      const CoverAt at = cover.At(x, y);
+      const auto difference = [&](const Shape& larger, const Shape& smaller,
+                                  double blur, double other, float dx,
+                                  float dy) {
+        return (ShapeCover(larger, blur).At(x + dx, y + dy).value -
+                ShapeCover(smaller, other).At(x - dx, y - dy).value) /
+               (2.0F * kStep);
+      };
+      EXPECT_NEAR(at.by_x, difference(shape, shape, 1.2, 1.2, kStep, 0.0F),
+                  2e-3);
+      EXPECT_NEAR(at.by_y, difference(shape, shape, 1.2, 1.2, 0.0F, kStep),
+                  2e-3);
+      EXPECT_NEAR(at.by_blur, difference(shape, shape, 1.21, 1.19, 0.0F, 0.0F),
+                  2e-3);
+      Shape longer = shape;
+      longer.half_long += 0.01;
+      Shape shorter = shape;
+      shorter.half_long -= 0.01;
+      EXPECT_NEAR(at.by_long, difference(longer, shorter, 1.2, 1.2, 0.0F, 0.0F),
+                  2e-3);
+    }
+  }
+}
+
+TEST(PictureGrid, SpreadIsTheTransposeOfValueAt) {
+  const PictureGrid grid(Shape{false, 6.0, 3.0}, 2.0);
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<float> level(-1.0F, 1.0F);
+  std::vector<float> coefficients(grid.size());
+  for (float& c : coefficients) c = level(engine);
+  for (int i = 0; i < 20; ++i) {
+    const SplinePlace place =
+        grid.PlaceOf(6.0F * level(engine), 3.0F * level(engine));
+    std::vector<float> spread(grid.size());
+    grid.Spread(2.0F, place, spread.data());
+    double sum = 0.0;
+    for (std::size_t c = 0; c < spread.size(); ++c) {
+      sum +=
+          static_cast<double>(spread[c]) * static_cast<double>(coefficients[c]);
+    }
+    EXPECT_NEAR(2.0 * grid.ValueAt(coefficients.data(), place), sum, 1e-5);
+  }
+}
+
+TEST(PictureGrid, TiltIsTheGradient) {
+  const PictureGrid grid(Shape{false, 6.0, 3.0}, 2.0);
+  std::mt19937_64 engine(9);
+  std::uniform_real_distribution<float> level(0.0F, 100.0F);
+  std::vector<float> coefficients(grid.size());
+  for (float& c : coefficients) c = level(engine);
+  constexpr float kStep = 0.02F;
+  const auto value = [&](float x, float y) {
+    return grid.ValueAt(coefficients.data(), grid.PlaceOf(x, y));
+  };
+  const PictureGrid::Tilt tilt =
+      grid.TiltAt(coefficients.data(), grid.PlaceOf(1.3F, -0.6F));
+  EXPECT_NEAR(tilt.value, value(1.3F, -0.6F), 1e-4);
+  EXPECT_NEAR(tilt.by_x,
+              (value(1.32F, -0.6F) - value(1.28F, -0.6F)) / (2.0F * kStep),
+              0.05);
+  EXPECT_NEAR(tilt.by_y,
+              (value(1.3F, -0.58F) - value(1.3F, -0.62F)) / (2.0F * kStep),
+              0.05);
+}
+
+TEST(PictureGrid, AFlatBodyIsTheSameAsASpline) {
+  Layers layers;
+  layers.shape = Shape{false, 12.0, 6.0};
+  layers.grid = PictureGrid(layers.shape, 4.0);
+  layers.picture.assign(layers.grid.size(), 0.0F);
+  layers.quadratic = {90.0, 4.0, -3.0, 12.0, 5.0, -8.0};
+  LearnTexture(layers);
+  EXPECT_FALSE(layers.flat);
+  const double reach = layers.shape.Reach();
+  for (const auto& [x, y] : {std::array{0.3F, 1.7F}, {-7.2F, 4.4F}}) {
+    const double u = static_cast<double>(x) / reach;
+    const double v = static_cast<double>(y) / reach;
+    EXPECT_NEAR(
+        layers.grid.ValueAt(layers.picture.data(), layers.grid.PlaceOf(x, y)),
+        90.0 + 4.0 * u - 3.0 * v + 12.0 * u * u + 5.0 * u * v - 8.0 * v * v,
+        1e-3);
+  }
+}
+
+// A block that comes down on a dark ground, lies there and slides on.
+LayeredScene BlockOnGround() {
+  LayeredScene scene;
+  scene.still = [](double, double y) { return y > 40.3 ? 110.0 : 190.0; };
+  for (int t = 0; t < 36; ++t) {
+    const double fall = 33.3 - 7.0 - std::max(0.0, 0.9 * (18 - t));
+    scene.poses.push_back({20.0 + 1.37 * t, t < 18 ? fall + 7.0 : 33.3, 0.0});
+  }
+  return scene;
+}
+
+FitLayersOptions OptionsOf(const LayeredScene& scene) {
+  FitLayersOptions options;
+  options.prior.value[kBlur] = 1.0;
+  options.prior.u[kBlur] = 0.5;
+  options.prior.value[kLong] = scene.shape.half_long;
+  options.prior.value[kShort] = scene.shape.half_short;
+  options.prior.u[kLong] = 0.1;
+  options.prior.u[kShort] = scene.shape.disc ? 0.0 : 0.1;
+  options.prior.u[kSlopeX] = 20.0;
+  options.prior.u[kSlopeY] = 20.0;
+  for (std::size_t k = 0; k < kTerms; ++k)
+    options.prior.u[kQuadratic + k] = 1e4;
+  options.turns = !scene.shape.disc;
+  options.threads = 1;
+  return options;
+}
+
+std::vector<LayerPose> Shaken(const std::vector<LayerPose>& poses, double px) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> off(0.0, px);
+  std::vector<LayerPose> shaken = poses;
+  for (LayerPose& pose : shaken) {
+    pose.x += off(engine);
+    pose.y += off(engine);
+    pose.angle_rad += 0.02 * off(engine);
+  }
+  return shaken;
+}
+
+struct Errors {
+  double worst_px = 0.0;
+  double mean_y_px = 0.0;
+  double z2 = 0.0;  // mean of (error / u)^2 in x and y
+};
+Errors ErrorsOf(const LayeredScene& scene, const PictureStack& stack,
+                const LayerFit& fit, bool turns) {
+  Errors errors;
+  const std::vector<LayerPose> motions = MotionsOf(fit.poses, stack.frames);
+  for (std::size_t t = 0; t < fit.poses.size(); ++t) {
+    const PoseFit at =
+        AlignPose(stack, t, fit.layers, fit.poses[t], motions[t], turns);
+    EXPECT_TRUE(at.found);
+    const double dx = at.pose.x - scene.poses[t].x;
+    const double dy = at.pose.y - scene.poses[t].y;
+    errors.worst_px = std::max({errors.worst_px, std::abs(dx), std::abs(dy)});
+    errors.mean_y_px += dy / static_cast<double>(fit.poses.size());
+    errors.z2 +=
+        0.5 * (dx * dx / at.covariance[0][0] + dy * dy / at.covariance[1][1]) /
+        static_cast<double>(fit.poses.size());
+  }
+  return errors;
+}
+
+TEST(FitLayers, ABlockThatLiesOnTheGroundsEdge) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 11);
+  const LayerFit fit =
+      FitLayers(stack, scene.shape, Shaken(scene.poses, 0.4),
+                Paint(scene, nullptr), scene.noise_dn, OptionsOf(scene));
+  EXPECT_TRUE(fit.converged);
+  EXPECT_TRUE(fit.layers.flat);
+  EXPECT_NEAR(fit.layers.blur, std::hypot(0.9, std::sqrt(1.0 / 12.0)), 0.03);
+  EXPECT_NEAR(fit.layers.noise_dn, 1.0, 0.1);
+  const Errors errors = ErrorsOf(scene, stack, fit, true);
+  EXPECT_LT(errors.worst_px, 0.03);
+  // Without what the blur makes of both edges it is 0.04 px and more.
+  EXPECT_LT(std::abs(errors.mean_y_px), 0.01);
+  EXPECT_LT(errors.z2, 3.0);
+}
+
+TEST(FitLayers, AShadedBodyIsNotDrawnToOneSide) {
+  LayeredScene scene;
+  scene.shape = Shape{true, 10.0, 10.0};
+  scene.psf_px = 1.3;
+  scene.body = [](double, double v) { return 90.0 + 3.0 * v; };
+  for (int t = 0; t < 24; ++t) {
+    scene.poses.push_back({18.0 + 2.3 * t, 20.0 + 0.02 * t * t, 0.0});
+  }
+  const PictureStack stack = Film(scene, 3);
+  const LayerFit fit =
+      FitLayers(stack, scene.shape, Shaken(scene.poses, 0.3),
+                Paint(scene, nullptr), scene.noise_dn, OptionsOf(scene));
+  const Errors errors = ErrorsOf(scene, stack, fit, false);
+  // s^2 |grad T| / contrast = 0.06 px without it.
+  EXPECT_LT(std::abs(errors.mean_y_px), 0.01);
+  EXPECT_LT(errors.z2, 3.0);
+}
+
+TEST(FitLayers, ATexturedFace) {
+  LayeredScene scene = BlockOnGround();
+  scene.body = [](double u, double v) {
+    return 60.0 + 20.0 * std::sin(0.9 * u + 0.3) * std::cos(0.7 * v) +
+           10.0 * std::sin(0.5 * u * v);
+  };
+  const PictureStack stack = Film(scene, 17);
+  FitLayersOptions options = OptionsOf(scene);
+  options.prior.u[kLong] = 0.0;
+  options.prior.u[kShort] = 0.0;
+  const LayerFit fit =
+      FitLayers(stack, scene.shape, Shaken(scene.poses, 0.3),
+                Paint(scene, nullptr), scene.noise_dn, options);
+  EXPECT_FALSE(fit.layers.flat);
+  EXPECT_GT(fit.layers.texture_dn, 5.0);
+  const Errors errors = ErrorsOf(scene, stack, fit, true);
+  // A texture hides where the outline lies: a tenth of a pixel at most.
+  EXPECT_LT(errors.worst_px, 0.12);
+}
+
+TEST(FitLayers, DoesNotDependOnThreads) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 23);
+  FitLayersOptions options = OptionsOf(scene);
+  options.steps = 3;
+  const std::vector<LayerPose> start = Shaken(scene.poses, 0.2);
+  const std::vector<float> still = Paint(scene, nullptr);
+  const LayerFit one =
+      FitLayers(stack, scene.shape, start, still, 1.0, options);
+  options.threads = 3;
+  const LayerFit three =
+      FitLayers(stack, scene.shape, start, still, 1.0, options);
+  for (std::size_t t = 0; t < one.poses.size(); ++t) {
+    EXPECT_EQ(one.poses[t].x, three.poses[t].x);
+    EXPECT_EQ(one.poses[t].y, three.poses[t].y);
+    EXPECT_EQ(one.poses[t].angle_rad, three.poses[t].angle_rad);
+  }
+}
+
+TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 29);
+  Layers layers;
+  layers.shape = scene.shape;
+  layers.blur = 0.95;
+  layers.still = Paint(scene, nullptr);
+  layers.grid = PictureGrid(scene.shape, 6.0);
+  layers.picture.assign(layers.grid.size(), 0.0F);
+  layers.quadratic = {60.0, 3.0, -2.0, 1.0, 0.0, 2.0};
+  layers.noise_dn = 1.0;
+  const LayerPose pose = scene.poses[10];
+  const LayerPose motion{1.37, 0.9, 0.01};
+  const FrameSamples at = Linearize(stack, 10, layers, pose, motion);
+  constexpr double kStep = 0.02;
+  const auto residual_at = [&](double dx, double dy, double turn) {
+    std::vector<double> residual(stack.pixels());
+    const FrameSamples moved =
+        Linearize(stack, 10, layers,
+                  {pose.x + dx, pose.y + dy, pose.angle_rad + turn}, motion);
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      residual[static_cast<std::size_t>(moved.pixel[i])] =
+          static_cast<double>(moved.residual[i]);
+    }
+    return residual;
+  };
+  const double turn = kStep / scene.shape.Reach();
+  const std::array<std::array<std::vector<double>, 2>, 3> ends = {
+      {{residual_at(kStep, 0, 0), residual_at(-kStep, 0, 0)},
+       {residual_at(0, kStep, 0), residual_at(0, -kStep, 0)},
+       {residual_at(0, 0, turn), residual_at(0, 0, -turn)}}};
+  // Of the whole, not pixel by pixel: second derivatives are left out beside
+  // edges of the scene.
+  for (std::size_t a = 0; a < 3; ++a) {
+    double product = 0.0;
+    double square = 0.0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (at.cover[i] < 0.01F) continue;
+      const auto pixel = static_cast<std::size_t>(at.pixel[i]);
+      const double by = -(ends[a][0][pixel] - ends[a][1][pixel]) /
+                        (2.0 * (a == 2 ? turn : kStep));
+      product += by * static_cast<double>(at.by_pose[a][i]);
+      square += by * by;
+    }
+    EXPECT_NEAR(product / square, 1.0, 0.03) << a;
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::vision::layers

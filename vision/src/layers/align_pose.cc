@@ -1,0 +1,240 @@
+#include "align_pose.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::vision::layers {
+namespace {
+
+// 1 over the variance of a pixel in units of noise^2: its own and what B and T
+// are not known to. An error of B is the same in all frames in which the
+// outline lies on the pixel, and does not average out over them: it counts so
+// many times.
+void WeighByLayers(const Layers& layers, const LayerPose& motion,
+                   FrameSamples& samples) {
+  constexpr float kLeastStill = 0.3F;  // below, B was never seen
+  constexpr float kWhole = 0.95F;
+  constexpr float kMostFrames = 40.0F;
+  const auto edge = static_cast<float>(4.0 * layers.blur);  // its width, px
+  const auto v_x = static_cast<float>(motion.x);
+  const auto v_y = static_cast<float>(motion.y);
+  const double texture2 = layers.texture_dn * layers.texture_dn;
+  const auto prior = static_cast<float>(layers.noise_dn * layers.noise_dn /
+                                        std::max(texture2, 1e-12));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const float seen =
+        layers.still_weight[static_cast<std::size_t>(samples.pixel[i])];
+    const float open = samples.open[i];
+    const float cover = samples.cover[i];
+    if (seen < kLeastStill && cover < kWhole) {
+      samples.weight[i] = 0.0F;
+      continue;
+    }
+    const float g_x = samples.by_pose[0][i];
+    const float g_y = samples.by_pose[1][i];
+    const float steep = std::hypot(g_x, g_y);
+    const float pace = std::abs(g_x * v_x + g_y * v_y);
+    const float frames =
+        std::clamp(edge * steep / std::max(pace, 1e-6F), 1.0F, kMostFrames);
+    float unknown = open * open * frames / std::max(seen, kLeastStill);
+    if (!layers.flat) {
+      const float picture = layers.grid.ValueAt(
+          layers.picture_weight.data(),
+          samples.place[i * samples.nodes + samples.nodes / 2]);
+      unknown += cover * cover / (std::max(picture, 0.0F) + prior);
+    }
+    samples.weight[i] /= 1.0F + unknown;
+  }
+}
+
+using Matrix = Eigen::Matrix3d;
+
+// Sum over pairs of pixels: c(lag) g(x) g(x + lag)', g = w J.
+Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
+                  double variance) {
+  constexpr std::int32_t kLags = 4;  // px
+  // The samples on a grid of their own.
+  std::int32_t left = width;
+  std::int32_t right = 0;
+  std::int32_t top = samples.pixel.front() / width;
+  std::int32_t bottom = samples.pixel.back() / width;
+  for (const std::int32_t pixel : samples.pixel) {
+    left = std::min(left, pixel % width);
+    right = std::max(right, pixel % width);
+  }
+  const std::int32_t columns = right - left + 1;
+  const std::int32_t rows = bottom - top + 1;
+  const auto cells =
+      static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  std::array<std::vector<float>, kPose> g;
+  for (auto& column : g) column.assign(cells, 0.0F);
+  std::vector<float> residual(cells, 0.0F);
+  std::vector<float> known(cells, 0.0F);
+  const auto cut = static_cast<float>(5.0 * std::sqrt(variance));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto at =
+        static_cast<std::size_t>((samples.pixel[i] / width - top) * columns +
+                                 samples.pixel[i] % width - left);
+    for (std::size_t a = 0; a < kPose; ++a) {
+      g[a][at] = samples.weight[i] * samples.by_pose[a][i];
+    }
+    if (samples.weight[i] > 0.1F) {
+      residual[at] = std::clamp(samples.residual[i], -cut, cut);
+      known[at] = 1.0F;
+    }
+  }
+  Matrix sum = Matrix::Zero();
+  for (std::int32_t down = 0; down <= kLags; ++down) {
+    for (std::int32_t across = down == 0 ? 0 : -kLags; across <= kLags;
+         ++across) {
+      double products = 0.0;
+      double pairs = 0.0;
+      Matrix own = Matrix::Zero();
+      for (std::int32_t y = 0; y + down < rows; ++y) {
+        const std::int32_t from = std::max(0, -across);
+        const std::int32_t to = std::min(columns, columns - across);
+        if (to <= from) continue;
+        const auto row = static_cast<std::size_t>(y * columns);
+        const auto other =
+            static_cast<std::size_t>((y + down) * columns + across);
+        float product = 0.0F;
+        float pair = 0.0F;
+        std::array<float, 9> g_g{};
+        for (auto x = static_cast<std::size_t>(from);
+             x < static_cast<std::size_t>(to); ++x) {
+          product += residual[row + x] * residual[other + x];
+          pair += known[row + x] * known[other + x];
+          for (std::size_t a = 0; a < kPose; ++a) {
+            for (std::size_t b = 0; b < kPose; ++b) {
+              g_g[kPose * a + b] += g[a][row + x] * g[b][other + x];
+            }
+          }
+        }
+        products += static_cast<double>(product);
+        pairs += static_cast<double>(pair);
+        for (std::size_t a = 0; a < kPose; ++a) {
+          for (std::size_t b = 0; b < kPose; ++b) {
+            own(static_cast<int>(a), static_cast<int>(b)) +=
+                static_cast<double>(g_g[kPose * a + b]);
+          }
+        }
+      }
+      if (pairs < 1.0) continue;
+      const double away =
+          std::hypot(static_cast<double>(across), static_cast<double>(down));
+      const double taper = std::max(0.0, 1.0 - away / (kLags + 1));  // Bartlett
+      double correlation = taper * products / pairs;
+      if (down == 0 && across == 0) {
+        sum += std::max(correlation, variance) * own;
+      } else {
+        sum += correlation * (own + own.transpose());
+      }
+    }
+  }
+  return sum;
+}
+
+// Moves no farther than `most`.
+double Limited(double value, double most) {
+  return std::clamp(value, -most, most);
+}
+
+}  // namespace
+
+PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
+                  const Layers& layers, const LayerPose& start,
+                  const LayerPose& motion, bool turns) {
+  constexpr int kSteps = 5;
+  constexpr double kStill_px = 2e-3;
+  constexpr std::size_t kLeastPixels = 12;
+  PoseFit out;
+  out.pose = start;
+  const double reach = layers.shape.Reach();
+  const double most_px = 1.5 * layers.blur;
+  Matrix normal = Matrix::Identity();
+  FrameSamples samples;
+  for (int step = 0; step < kSteps; ++step) {
+    samples = Linearize(stack, picture, layers, out.pose, motion);
+    if (samples.size() < kLeastPixels) return out;
+    WeighByLayers(layers, motion, samples);
+    normal.setZero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Eigen::Vector3d j(static_cast<double>(samples.by_pose[0][i]),
+                              static_cast<double>(samples.by_pose[1][i]),
+                              static_cast<double>(samples.by_pose[2][i]));
+      const auto w = static_cast<double>(samples.weight[i]);
+      normal += w * j * j.transpose();
+      right += w * static_cast<double>(samples.residual[i]) * j;
+    }
+    if (!turns) {
+      normal.row(2).setZero();
+      normal.col(2).setZero();
+      normal(2, 2) = 1.0;
+      right(2) = 0.0;
+    }
+    if (!(std::abs(normal.determinant()) > 0.0)) return out;
+    const Eigen::Vector3d by = normal.ldlt().solve(right);
+    if (!by.allFinite()) return out;
+    out.pose.x += Limited(by(0), most_px);
+    out.pose.y += Limited(by(1), most_px);
+    out.pose.angle_rad += Limited(by(2), most_px / reach);
+    if (std::max({std::abs(by(0)), std::abs(by(1)), std::abs(by(2)) * reach}) <
+        kStill_px) {
+      break;
+    }
+  }
+  const double variance = layers.noise_dn * layers.noise_dn;
+  Matrix sandwich = SandwichOf(samples, stack.width, variance);
+  if (!turns) {
+    sandwich.row(2).setZero();
+    sandwich.col(2).setZero();
+  }
+  const Matrix inverse = normal.inverse();
+  const Matrix covariance = inverse * sandwich * inverse;
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.weight[i] <= 0.0F) continue;
+    sum += static_cast<double>(samples.residual[i]) *
+           static_cast<double>(samples.residual[i]);
+    count += 1.0;
+  }
+  out.chi2 = sum / std::max(count, 1.0) / variance;
+  for (std::size_t a = 0; a < 2; ++a) {
+    double second = 0.0;
+    double fourth = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto j = static_cast<double>(samples.by_pose[a][i]);
+      const double square = j * j * static_cast<double>(samples.weight[i]);
+      second += square;
+      fourth += square * j * j;
+    }
+    out.steepness[a] = second > 0.0 ? std::sqrt(fourth / second) : 0.0;
+  }
+  out.widened = std::sqrt((covariance(0, 0) + covariance(1, 1)) /
+                          (variance * (inverse(0, 0) + inverse(1, 1))));
+  double covered = 0.0;
+  for (const float cover : samples.cover) {
+    covered += static_cast<double>(cover);
+  }
+  out.seen = covered / layers.shape.Area();
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      out.covariance[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
+          covariance(a, b);
+    }
+  }
+  // A covariance of white noise at the least.
+  for (std::size_t a = 0; a < kPose; ++a) {
+    const double least =
+        variance * inverse(static_cast<int>(a), static_cast<int>(a));
+    out.covariance[a][a] =
+        std::max(out.covariance[a][a], turns || a < 2 ? least : 0.0);
+  }
+  out.found = true;
+  return out;
+}
+
+}  // namespace touchdown::vision::layers

@@ -1,0 +1,31 @@
+// One frame's pose with the layers held, and what it is worth.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "layer_model.h"
+
+namespace touchdown::vision::layers {
+
+// What a pose is worth, from the pixels of its frame.
+struct PoseFit {
+  LayerPose pose;
+  std::array<std::array<double, kPose>, kPose> covariance{};
+  double chi2 = 0.0;  // mean squared residual over noise^2
+  double seen = 0.0;  // share of the body that lies within the picture
+  // How steeply levels rise across the edges that tell x and y, DN/px, and how
+  // much the residuals' correlation widens the covariance.
+  std::array<double, 2> steepness{};
+  double widened = 1.0;
+  bool found = false;
+};
+
+// One frame's pose with all layers held, its weight falling with what is not
+// known of them; the covariance takes the residuals' correlation from pixel to
+// pixel into account (sandwich).
+PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
+                  const Layers& layers, const LayerPose& start,
+                  const LayerPose& motion, bool turns);
+
+}  // namespace touchdown::vision::layers

@@ -1,0 +1,115 @@
+#include "texture.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace touchdown::vision::layers {
+
+// Standard deviation of what a flat body's residuals have in common, cell by
+// cell of its own picture: means over the frames, less the noise of a mean.
+double CommonTextureOf(const PictureStack& stack, const Layers& layers,
+                       const std::vector<LayerPose>& poses,
+                       const std::vector<FrameSamples>& frames) {
+  constexpr float kWhole = 0.97F;
+  std::vector<double> sums(layers.grid.size());
+  std::vector<double> counts(layers.grid.size());
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    const FrameSamples& samples = frames[t];
+    const double cosine = std::cos(poses[t].angle_rad);
+    const double sine = std::sin(poses[t].angle_rad);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (samples.cover[i] < kWhole) continue;
+      const double dx = samples.pixel[i] % stack.width - poses[t].x;
+      const double dy = samples.pixel[i] / stack.width - poses[t].y;
+      const SplinePlace place = layers.grid.PlaceOf(
+          static_cast<float>(cosine * dx + sine * dy + 0.5),
+          static_cast<float>(cosine * dy - sine * dx + 0.5));
+      const auto cell = static_cast<std::size_t>(place.first);
+      sums[cell] += static_cast<double>(samples.residual[i]);
+      counts[cell] += 1.0;
+    }
+  }
+  constexpr double kEnough = 3.0;
+  const double variance = layers.noise_dn * layers.noise_dn;
+  double texture2 = 0.0;
+  double cells = 0.0;
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    if (counts[c] < kEnough) continue;
+    const double mean = sums[c] / counts[c];
+    texture2 += mean * mean - variance / counts[c];
+    cells += 1.0;
+  }
+  return cells > 0.0 ? std::sqrt(std::max(texture2 / cells, 0.0)) : 0.0;
+}
+
+// How often each coefficient of T is seen: the sum of squared coverage.
+std::vector<float> WeighPicture(const Layers& layers,
+                                const std::vector<FrameSamples>& frames) {
+  std::vector<float> weight(layers.grid.size());
+  for (const FrameSamples& samples : frames) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const float w = samples.weight[i] * samples.cover[i];
+      for (std::size_t k = 0; k < samples.nodes; ++k) {
+        const std::size_t at = i * samples.nodes + k;
+        layers.grid.Spread(w * samples.share[at], samples.place[at],
+                           weight.data());
+      }
+    }
+  }
+  return weight;
+}
+
+// Empirical Bayes: the variance of T about its own quadratic, over the cells
+// inside of the blurred edge, where T is not to be mistaken for the outline's
+// place.
+double TextureOf(const Layers& layers, const std::vector<float>& weight) {
+  constexpr double kBlurs = 1.5;
+  constexpr double kLeastHalf = 0.3;  // of a thin body's half side
+  using Terms = Eigen::Matrix<double, 6, 1>;
+  const Shape& shape = layers.shape;
+  const auto inner = [&](double half) {
+    return std::max(half - kBlurs * layers.blur, kLeastHalf * half);
+  };
+  const double half_x = inner(shape.half_long);
+  const double half_y = inner(shape.half_short);
+  std::vector<std::pair<std::size_t, Terms>> inside;
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  Terms right = Terms::Zero();
+  for (std::size_t c = 0; c < weight.size(); ++c) {
+    const auto cell = static_cast<std::int32_t>(c);
+    const double x =
+        static_cast<double>(layers.grid.x_of(cell % layers.grid.columns())) /
+        half_x;
+    const double y =
+        static_cast<double>(layers.grid.y_of(cell / layers.grid.columns())) /
+        half_y;
+    const bool is_inside = shape.disc
+                               ? std::hypot(x, y) <= 1.0
+                               : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
+    if (!is_inside) continue;
+    Terms terms;
+    terms << 1.0, x, y, x * x, x * y, y * y;
+    normal += terms * terms.transpose();
+    right += static_cast<double>(layers.picture[c]) * terms;
+    inside.emplace_back(c, terms);
+  }
+  constexpr std::size_t kLeastCells = 12;
+  if (inside.size() < kLeastCells) return layers.texture_dn;
+  normal.diagonal().array() += 1e-6;
+  const Terms quadratic = normal.ldlt().solve(right);
+  const double variance = layers.noise_dn * layers.noise_dn;
+  const double texture2 = layers.texture_dn * layers.texture_dn;
+  double sum = 0.0;
+  for (const auto& [c, terms] : inside) {
+    const double off =
+        static_cast<double>(layers.picture[c]) - quadratic.dot(terms);
+    // The posterior's own variance is added: expectation maximisation.
+    sum += off * off + 1.0 / (static_cast<double>(weight[c]) / variance +
+                              1.0 / std::max(texture2, 1e-12));
+  }
+  return std::sqrt(sum / static_cast<double>(inside.size()));
+}
+
+}  // namespace touchdown::vision::layers
