@@ -28,6 +28,11 @@ using layers::Shape;
 constexpr std::size_t kMostLearned = 96;
 constexpr std::size_t kLeastPoses = 5;
 
+// A body that comes nearer by more is of another size in each frame. Less is as
+// often an outline that was led astray (by compression, a neighbour's edge) as
+// a change of size.
+constexpr double kMostGrowth = 0.02;
+
 // Standard uncertainty of the outline's place against a texture, in units of
 // blur times the texture's share of the contrast: two clips with photographed
 // faces were off by 0.3 and 0.5.
@@ -128,6 +133,15 @@ double DriftOf(const PoseFit& at, double noise_dn) {
   if (at.widened <= 1.0 || steep <= 0.0) return 0.0;
   return kOfNoise * noise_dn / steep *
          std::sqrt(1.0 - 1.0 / (at.widened * at.widened));
+}
+
+// By which share the body's image changes its size over the track.
+double GrowthOf(const Track& track) {
+  const auto [least, most] = std::minmax_element(
+      track.poses.begin(), track.poses.end(), [](const Pose& a, const Pose& b) {
+        return a.relative_size < b.relative_size;
+      });
+  return most->relative_size - least->relative_size;
 }
 
 // Frames that are much worse explained than the others show something else: an
@@ -315,15 +329,17 @@ bool NeedsLayers(const Track& track, double most_covered) {
 }
 
 core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
-                                     const Track& track,
+                                     const Track& given,
                                      const std::optional<BodySize>& size,
                                      int threads) {
-  if (track.poses.size() < kLeastPoses) {
+  if (given.poses.size() < kLeastPoses) {
     return core::AbsentBecause("fewer than five poses");
   }
-  if (!IsSteady(track)) {
+  if (GrowthOf(given) > kMostGrowth) {
     return core::AbsentBecause("the body's image does not keep its size");
   }
+  Track track = given;
+  KeepSize(track);
   const core::Cancellation& until = clip.cancellation();
   until.Enter("the body's picture is learned");
   const Shape shape = ShapeOf(track.body, size);

@@ -288,15 +288,16 @@ core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
   return result;
 }
 
-// The stated body in two layers in place of the result's own outlines, from
+// The told body in two layers in place of the result's own outlines, from
 // these or, where they may be those of a ghost, from a layered start.
 bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
                 TrackResult& result) {
   core::Expected<TrackResult> best = core::AbsentBecause("not of the size");
-  if (IsOfSize(result.track.body, *options.size)) {
+  if (!options.size || IsOfSize(result.track.body, *options.size)) {
     best = InLayers(clip, options, result);
   }
-  if (MayFollowGhost(clip, options, best ? best->track : result.track,
+  if (options.size &&
+      MayFollowGhost(clip, options, best ? best->track : result.track,
                      most_covered)) {
     auto started = TrackFromLayers(clip, options, result.track.last_frame,
                                    result.background);
@@ -442,7 +443,10 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
                    first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
-  if (options.size && NeedsLayers(track, covers.most) &&
+  // Of a ball the outline is a circle whatever it shows; of a block it must be
+  // known that what was followed is the whole of it.
+  const bool is_told = options.size || options.kind == core::BodyKind::kSphere;
+  if (is_told && NeedsLayers(track, covers.most) &&
       TakeLayers(clip, options, covers.most, result)) {
     whole_px = 0.0;
   } else {
