@@ -251,7 +251,7 @@ Track WithLayers(const Track& track, const LayerFit& fit) {
                       : kCommonShare * fit.layers.blur *
                             std::min(1.0, fit.layers.texture_dn / contrast);
   // Sizes of raw clips of known truth were off by a few thousandths.
-  constexpr double kSizeU_px = 0.01;
+  constexpr double kSizeU_px = 0.004;
   const double u_size = std::hypot(kSizeU_px, out.body.u_common_px);
   if (shape.disc) {
     out.body.radius_px = {shape.half_long, u_size};
@@ -306,8 +306,8 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
     }
   }
   if (drifts.empty()) return;
-  // Along an edge it differs: a quarter of it turns the body.
-  constexpr double kTurns = 0.25;
+  // Along an edge it differs: a fifth of it turns the body.
+  constexpr double kTurns = 0.2;
   const double drift = Median(std::move(drifts));
   BodyImage& body = out.body;
   body.u_common_px = std::hypot(body.u_common_px, drift);
