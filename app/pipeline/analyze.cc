@@ -306,7 +306,9 @@ void Analyzer::DescribeScene() {
   scene.used.push_back(
       track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
   scene.used.push_back("quadratic shading");
-  if (track.patterned) {
+  if (track.layered) {
+    scene.used.push_back("two layers, learned from the clip");
+  } else if (track.patterned) {
     scene.used.push_back("the body's own picture, which moves with it");
   }
   if (track.near_ground_modelled) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "body_cover.h"
 #include "both_sides.h"
 #include "follow_pattern.h"
+#include "layers/layer_model.h"
 #include "refiner.h"
 
 namespace touchdown::vision {
@@ -15,36 +17,18 @@ namespace {
 using NearGround = OutlineOptions::NearGround;
 using Surround = OutlineOptions::Surround;
 
-Motion Between(const Pose& a, const Pose& b) {
-  const double frames = static_cast<double>(b.frame - a.frame);
-  return {(b.centre.x_px - a.centre.x_px) / frames,
-          (b.centre.y_px - a.centre.y_px) / frames,
-          (b.angle_rad - a.angle_rad) / frames};
-}
-
-double Apart(const Motion& a, const Motion& b) {
-  return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
-}
-
-// The motion at pose i, from the side on which it is the steadier: a blow
-// changes it from one frame to the next.
-Motion MotionAt(const std::vector<Pose>& poses, std::size_t i) {
-  const std::size_t n = poses.size();
-  if (n < 2) return {};
-  if (i == 0) return Between(poses[0], poses[1]);
-  if (i + 1 == n) return Between(poses[n - 2], poses[n - 1]);
-  const Motion back = Between(poses[i - 1], poses[i]);
-  const Motion on = Between(poses[i], poses[i + 1]);
-  const double change_back =
-      i >= 2 ? Apart(Between(poses[i - 2], poses[i - 1]), back) : 0.0;
-  const double change_on =
-      i + 2 < n ? Apart(on, Between(poses[i + 1], poses[i + 2])) : 0.0;
-  // Alike on both sides: the mean is the less noisy.
-  if (Apart(back, on) < 2.0 * std::max({change_back, change_on, 0.1})) {
-    return {0.5 * (back.x_px + on.x_px), 0.5 * (back.y_px + on.y_px),
-            0.5 * (back.turn_rad + on.turn_rad)};
+std::vector<Motion> MotionsOf(const std::vector<Pose>& poses) {
+  std::vector<layers::LayerPose> path;
+  std::vector<std::int64_t> frames;
+  for (const Pose& pose : poses) {
+    path.push_back({pose.centre.x_px, pose.centre.y_px, pose.angle_rad});
+    frames.push_back(pose.frame);
   }
-  return change_back <= change_on ? back : on;
+  std::vector<Motion> motions;
+  for (const layers::LayerPose& step : layers::MotionsOf(path, frames)) {
+    motions.push_back({step.x, step.y, step.angle_rad});
+  }
+  return motions;
 }
 
 }  // namespace
@@ -70,9 +54,7 @@ Refiner::Refiner(Clip& clip, const Background& background, const Track& track,
   options_.ground_margin_px =
       std::max(options_.ground_margin_px,
                std::min(kBlurs * track.body.blur_px, kMostOfHalf * half));
-  for (std::size_t i = 0; i < track.poses.size(); ++i) {
-    motion_.push_back(MotionAt(track.poses, i));
-  }
+  motion_ = MotionsOf(track.poses);
 }
 
 void Refiner::LookNearGround(Track& refined) {

@@ -193,12 +193,13 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   }
   const Matrix inverse = normal.inverse();
   const Matrix covariance = inverse * sandwich * inverse;
+  constexpr double kMostSquare = 16.0;  // of the noise: four deviations
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.weight[i] <= 0.0F) continue;
-    sum += static_cast<double>(samples.residual[i]) *
-           static_cast<double>(samples.residual[i]);
+    const auto residual = static_cast<double>(samples.residual[i]);
+    sum += std::min(residual * residual, kMostSquare * variance);
     count += 1.0;
   }
   out.chi2 = sum / std::max(count, 1.0) / variance;

@@ -12,7 +12,9 @@ namespace touchdown::vision::layers {
 struct PoseFit {
   LayerPose pose;
   std::array<std::array<double, kPose>, kPose> covariance{};
-  double chi2 = 0.0;  // mean squared residual over noise^2
+  // Mean squared residual over noise^2, no pixel counted as more than 16: a few
+  // that show something else are no matter, a fifth of them are.
+  double chi2 = 0.0;
   double seen = 0.0;  // share of the body that lies within the picture
   // How steeply levels rise across the edges that tell x and y, DN/px, and how
   // much the residuals' correlation widens the covariance.
