@@ -211,7 +211,7 @@ struct GolfShot {
   double restitution;
 };
 
-class FootageOfGolf : public testing::TestWithParam<GolfShot> {};
+class FootageOfGolf : public ::testing::TestWithParam<GolfShot> {};
 
 TEST_P(FootageOfGolf, IsRightOrAbsent) {
   const GolfShot& shot = GetParam();
@@ -243,11 +243,11 @@ TEST_P(FootageOfGolf, IsRightOrAbsent) {
 
 INSTANTIATE_TEST_SUITE_P(
     Shots, FootageOfGolf,
-    testing::Values(GolfShot{"oblique_1", 30.9, 51.1, 0.846},
-                    GolfShot{"oblique_2", 31.0, 44.9, 0.865},
-                    GolfShot{"oblique_3", 31.1, 38.0, 0.876},
-                    GolfShot{"shallow_1", 68.2, 39.7, 0.816},
-                    GolfShot{"shallow_2", 68.5, 30.8, 0.837}),
+    ::testing::Values(GolfShot{"oblique_1", 30.9, 51.1, 0.846},
+                      GolfShot{"oblique_2", 31.0, 44.9, 0.865},
+                      GolfShot{"oblique_3", 31.1, 38.0, 0.876},
+                      GolfShot{"shallow_1", 68.2, 39.7, 0.816},
+                      GolfShot{"shallow_2", 68.5, 30.8, 0.837}),
     [](const auto& info) { return std::string(info.param.name); });
 
 // Balls filmed in passing: hands, people, a soft net, a rolling shutter. None
@@ -260,7 +260,7 @@ struct EverydayClip {
   double u_frame;
 };
 
-class EverydayFootage : public testing::TestWithParam<EverydayClip> {};
+class EverydayFootage : public ::testing::TestWithParam<EverydayClip> {};
 
 TEST_P(EverydayFootage, IsRightOrAbsent) {
   const EverydayClip& clip = GetParam();
@@ -284,10 +284,11 @@ TEST_P(EverydayFootage, IsRightOrAbsent) {
 
 INSTANTIATE_TEST_SUITE_P(
     Clips, EverydayFootage,
-    testing::Values(EverydayClip{"tennis_table", 25.0, 0.066, 66.42, 0.02},
-                    EverydayClip{"table_tennis_door", 20.0, 0.04, 16.43, 0.03},
-                    EverydayClip{"spikeball_net", 240.0, 0.089, 9.0, 1.5},
-                    EverydayClip{"tennis_portrait", 30.0, 0.066, 14.58, 0.1}),
+    ::testing::Values(EverydayClip{"tennis_table", 25.0, 0.066, 66.42, 0.02},
+                      EverydayClip{"table_tennis_door", 20.0, 0.04, 16.43,
+                                   0.03},
+                      EverydayClip{"spikeball_net", 240.0, 0.089, 9.0, 1.5},
+                      EverydayClip{"tennis_portrait", 30.0, 0.066, 14.58, 0.1}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

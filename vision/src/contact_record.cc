@@ -342,6 +342,7 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
 
 core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
                              std::vector<std::string>& warnings) {
+  constexpr double kLeastPace = 0.01;  // px a frame
   const PlaneTrack& track = context.track;
   core::ContactRecord record;
   core::Contact& contact = record.contact;
@@ -349,11 +350,19 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   contact.time_s = event.time_s;
   // Frame numbers follow the time: exact where frames are equally spaced.
   const double dt = track.frame_interval_s;
+  // A codec that leaves out slow changes lags behind the body: before an impact
+  // it is above its place, after it below, so that the flights meet too late.
+  // Time errors of 80 clips in H.264 were half of the common error of place.
+  constexpr double kOfPlace = 0.5;
+  const double pace =
+      std::max(std::abs(event.fit->Of(NormalBefore).value), kLeastPace);
+  contact.time_s->u = std::hypot(
+      contact.time_s->u, kOfPlace * context.u_common_place_px / pace * dt);
   const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
                                                    track.samples.size() - 1)];
   contact.frame = Estimate{
       static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
-      event.time_s.u / dt, std::nullopt};
+      contact.time_s->u / dt, std::nullopt};
   FillAngles(context, event, contact);
   if (event.after) {
     contact.duration_s =
