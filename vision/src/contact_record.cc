@@ -20,6 +20,9 @@ using core::Measured;
 const char kNoScale[] =
     "no scale: give a calibration, a scale or the body's size";
 
+// Paces below it are no motion, px a frame.
+constexpr double kLeastPace = 0.01;
+
 // px (or px/s) to metres (or m/s), with the scale's uncertainty.
 Measured InMetres(const RecordContext& context, const Estimate& px) {
   if (!context.options.scale) return AbsentBecause(kNoScale);
@@ -78,7 +81,20 @@ void FillAngles(const RecordContext& context, const Event& event,
   const auto approach = [](const JointVector& p) {
     return std::atan2(-NormalBefore(p), std::abs(TangentialBefore(p)));
   };
-  const Estimate angle = fit.Of(approach);
+  Estimate angle = fit.Of(approach);
+  const double localised_approach = angle.u;
+  // What all poses are off in the body's own directions turns with it, as if
+  // the centre moved.
+  const double turning =
+      track.kind == core::BodyKind::kSphere
+          ? 0.0
+          : context.u_common_place_px *
+                std::abs(fit.Of([](const JointVector& p) { return p[kOmega]; })
+                             .value) /
+                std::max(std::hypot(fit.Of(NormalBefore).value,
+                                    fit.Of(TangentialBefore).value),
+                         kLeastPace);
+  angle.u = std::hypot(angle.u, turning);
   contact.approach_angle_rad =
       Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u,
                std::nullopt};
@@ -88,7 +104,8 @@ void FillAngles(const RecordContext& context, const Event& event,
     flat.interval95 =
         core::Interval{0.0, flat.value + core::kNormal975 * angle.u};
   }
-  contact.approach_budget = BudgetOf(fit, approach, angle.u);
+  contact.approach_budget = BudgetOf(fit, approach, localised_approach);
+  if (turning > 0.0) contact.approach_budget.push_back({"picture", turning});
   if (track.kind == core::BodyKind::kSphere) {
     contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
     contact.face_angle_rad = AbsentBecause("sphere");
@@ -342,7 +359,6 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
 
 core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
                              std::vector<std::string>& warnings) {
-  constexpr double kLeastPace = 0.01;  // px a frame
   const PlaneTrack& track = context.track;
   core::ContactRecord record;
   core::Contact& contact = record.contact;
