@@ -233,7 +233,9 @@ void PrepareForTexture(const std::optional<BodySize>& size,
 }
 
 // The track's body as the layers have it, and what they say of all poses.
-Track WithLayers(const Track& track, const LayerFit& fit) {
+// A size that was not stated stays that of the outlines: layers know it no
+// better, and the scale may hang on it.
+Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized) {
   Track out = track;
   out.poses.clear();
   out.step = 1;
@@ -253,12 +255,14 @@ Track WithLayers(const Track& track, const LayerFit& fit) {
   // Sizes of raw clips of known truth were off by a few thousandths.
   constexpr double kSizeU_px = 0.004;
   const double u_size = std::hypot(kSizeU_px, out.body.u_common_px);
-  if (shape.disc) {
+  if (!shape.disc) {
+    out.body.u_common_angle_rad = out.body.u_common_px / shape.half_long;
+  }
+  if (is_sized && shape.disc) {
     out.body.radius_px = {shape.half_long, u_size};
-  } else {
+  } else if (is_sized) {
     out.body.half_long_px = {shape.half_long, u_size};
     out.body.half_short_px = {shape.half_short, u_size};
-    out.body.u_common_angle_rad = out.body.u_common_px / shape.half_long;
   }
   return out;
 }
@@ -354,7 +358,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const LayerFit fit = FitLayers(evidence.stack, shape, evidence.path.poses,
                                  evidence.still, evidence.noise_dn, options);
   until.Check();
-  Track out = WithLayers(track, fit);
+  Track out = WithLayers(track, fit, size.has_value());
   evidence.path.poses = fit.poses;
   // Frames between the learned ones begin where they are expected.
   const Track learned = TrackInPicture(out, evidence.path, evidence.box);
