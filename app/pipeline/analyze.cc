@@ -364,6 +364,7 @@ Analysis Analyzer::Run() {
   track_options.last = last;
   track_options.region = options_.region;
   track_options.kind = kind;
+  track_options.measured = options_.diameter_m.has_value();
   track_options.size = StatedSize(options_);
   track_options.ground = camera_.image_ground;
   track_options.still_frames = footage_.still_frames;

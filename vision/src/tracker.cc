@@ -310,11 +310,6 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
       best = std::move(started);
     }
   }
-  // Where only the outlines say how large it is, layers must explain more.
-  if (!options.size && best &&
-      MedianMisfit(best->track.poses) > MedianMisfit(result.track.poses)) {
-    return false;
-  }
   constexpr double kAsMany = 0.9;
   if (!best || static_cast<double>(best->track.poses.size()) <
                    kAsMany * static_cast<double>(result.track.poses.size())) {

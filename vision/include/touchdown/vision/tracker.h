@@ -32,6 +32,10 @@ struct TrackOptions {
   // Nothing: sphere or rectangle, whichever outline fits the pixels better.
   std::optional<core::BodyKind> kind;
 
+  // Whether a person measured the body, of which nothing may be known in px: a
+  // ball then is a whole circle, whatever its face shows.
+  bool measured = false;
+
   // Given with `kind`: what is followed must be of this size. Where the track
   // may be that of a ghost (the body covers a pixel in half of the frames or
   // more, or the size found is another), the body is sought once more together
