@@ -445,7 +445,9 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   }
   // Of a ball the outline is a circle whatever it shows; of a block it must be
   // known that what was followed is the whole of it.
-  const bool is_told = options.size || options.kind == core::BodyKind::kSphere;
+  const bool is_told =
+      options.size ||
+      (options.measured && options.kind == core::BodyKind::kSphere);
   if (is_told && NeedsLayers(track, covers.most) &&
       TakeLayers(clip, options, covers.most, result)) {
     whole_px = 0.0;
