@@ -209,6 +209,7 @@ struct GolfShot {
   double approach_deg;
   double speed_mps;
   double restitution;
+  bool may_be_absent = false;  // with a reason; but never wrong
 };
 
 class FootageOfGolf : public ::testing::TestWithParam<GolfShot> {};
@@ -222,11 +223,9 @@ TEST_P(FootageOfGolf, IsRightOrAbsent) {
   options.diameter_m = core::Estimate{0.04267, 0.0};
   const Analysis a = Analyze(path, options);
   const core::ContactRecord& first = a.contacts.first;
-  // The ball of this shot leaves too little of the picture's change explained:
-  // powder flies up with it.
-  if (std::string(shot.name) == "shallow_1") {
-    EXPECT_FALSE(first.contact.found);
+  if (shot.may_be_absent && !first.contact.found) {
     EXPECT_FALSE(first.contact.reason.empty());
+    EXPECT_EQ(first.state.label, core::MotionState::kUndecided);
     return;
   }
   ASSERT_TRUE(first.contact.found) << first.contact.reason;
@@ -246,9 +245,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(GolfShot{"oblique_1", 30.9, 51.1, 0.846},
                       GolfShot{"oblique_2", 31.0, 44.9, 0.865},
                       GolfShot{"oblique_3", 31.1, 38.0, 0.876},
-                      GolfShot{"shallow_1", 68.2, 39.7, 0.816},
+                      GolfShot{"shallow_1", 68.2, 39.7, 0.816, true},
                       GolfShot{"shallow_2", 68.5, 30.8, 0.837}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& shot) { return std::string(shot.param.name); });
 
 // Balls filmed in passing: hands, people, a soft net, a rolling shutter. None
 // is found yet; none may be found wrong.
@@ -289,7 +288,7 @@ INSTANTIATE_TEST_SUITE_P(
                                    0.03},
                       EverydayClip{"spikeball_net", 240.0, 0.089, 9.0, 1.5},
                       EverydayClip{"tennis_portrait", 30.0, 0.066, 14.58, 0.1}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& shot) { return std::string(shot.param.name); });
 
 }  // namespace
 }  // namespace touchdown::pipeline

@@ -324,8 +324,6 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
 }  // namespace
 
 bool NeedsLayers(const Track& track, double most_covered) {
-  // Covered less, a pixel of the background is untouched by the body.
-  constexpr double kUntouched = 0.2;
   // Outlines that are this near to the noise leave nothing to be explained.
   constexpr double kExplained = 1.2;
   return most_covered > kUntouched || !track.known_background ||

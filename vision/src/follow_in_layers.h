@@ -11,6 +11,10 @@
 
 namespace touchdown::vision {
 
+// Covered in a smaller share of the frames, a pixel's mid-mean is untouched by
+// the body but for a tenth of the noise.
+inline constexpr double kUntouched = 0.2;
+
 // What TrackBody asks of a track, so that it is worth the time: a body that its
 // outlines explain before a background that is known well needs no pictures.
 // `most_covered`: the largest share of the frames in which the track covers one

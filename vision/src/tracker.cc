@@ -209,10 +209,6 @@ Track TrackOf(const Look& look, const Clip& clip, const TrackOptions& options) {
   return track;
 }
 
-// Covered less than a fifth of the time, a pixel's mid-mean is untouched but
-// for a tenth of the noise.
-constexpr double kUntouched = 0.2;
-
 Covers CoversOf(Clip& clip, const TrackOptions& options, const Track& track) {
   const BodyCover cover(clip, track);
   return FindCovers(

@@ -135,11 +135,6 @@ Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
   return sum;
 }
 
-// Moves no farther than `most`.
-double Limited(double value, double most) {
-  return std::clamp(value, -most, most);
-}
-
 }  // namespace
 
 PoseFit AlignPose(const PictureStack& stack, std::size_t picture,

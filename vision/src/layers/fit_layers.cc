@@ -74,10 +74,6 @@ float MeanLevel(const PictureStack& stack,
   return count > 0.0 ? static_cast<float>(sum / count) : 0.0F;
 }
 
-double Clamp(double value, double most) {
-  return std::clamp(value, -most, most);
-}
-
 }  // namespace
 
 LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
@@ -148,9 +144,9 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
     double moved = 0.0;
     for (std::size_t t = 0; t < fit.poses.size(); ++t) {
       LayerPose& pose = fit.poses[t];
-      const double d_x = Clamp(joint.poses[t].x, most_px);
-      const double d_y = Clamp(joint.poses[t].y, most_px);
-      const double turn = Clamp(joint.poses[t].angle_rad, most_rad);
+      const double d_x = Limited(joint.poses[t].x, most_px);
+      const double d_y = Limited(joint.poses[t].y, most_px);
+      const double turn = Limited(joint.poses[t].angle_rad, most_rad);
       pose.x += d_x;
       pose.y += d_y;
       pose.angle_rad += turn;
@@ -158,16 +154,16 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
                         std::abs(turn) * shape.Reach()});
     }
     layers.blur =
-        std::clamp(layers.blur + Clamp(joint.shared[kBlur], kMostBlurStep), 0.3,
-                   kMostBlur * options.prior.value[kBlur]);
+        std::clamp(layers.blur + Limited(joint.shared[kBlur], kMostBlurStep),
+                   0.3, kMostBlur * options.prior.value[kBlur]);
     layers.exposure = std::clamp(
-        layers.exposure + Clamp(joint.shared[kExposure], kMostExposureStep),
+        layers.exposure + Limited(joint.shared[kExposure], kMostExposureStep),
         0.0, 1.0);
-    layers.shape.half_long += Clamp(joint.shared[kLong], kMostSizeStep_px);
+    layers.shape.half_long += Limited(joint.shared[kLong], kMostSizeStep_px);
     layers.shape.half_short =
         shape.disc ? layers.shape.half_long
                    : layers.shape.half_short +
-                         Clamp(joint.shared[kShort], kMostSizeStep_px);
+                         Limited(joint.shared[kShort], kMostSizeStep_px);
     layers.slope_x += joint.shared[kSlopeX];
     layers.slope_y += joint.shared[kSlopeY];
     for (std::size_t k = 0; k < kTerms && layers.flat; ++k) {
@@ -193,18 +189,12 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   const StillEvidence evidence =
       WeighStill(stack, layers, frames, options.threads);
   layers.still_weight = evidence.weight;
-  double sum = 0.0;
-  double count = 0.0;
   for (const FrameSamples& samples : frames) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       layers.still_weight[static_cast<std::size_t>(samples.pixel[i])] +=
           samples.weight[i] * samples.open[i] * samples.open[i];
-      sum += static_cast<double>(samples.residual[i]) *
-             static_cast<double>(samples.residual[i]);
-      count += 1.0;
     }
   }
-  fit.chi2 = count > 0.0 ? sum / count : 0.0;
   return fit;
 }
 

@@ -24,7 +24,6 @@ struct FitLayersOptions {
 struct LayerFit {
   Layers layers;
   std::vector<LayerPose> poses;  // of each picture of the stack
-  double chi2 = 0.0;             // of all pixels that the body reaches
   bool converged = false;
 };
 

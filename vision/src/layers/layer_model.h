@@ -20,6 +20,7 @@
 //    gradient: where a body lies on the ground's edge it is a tenth of a pixel
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -66,6 +67,11 @@ struct Layers {
   double noise_dn = 2.0;    // of a pixel
   double texture_dn = 0.0;  // standard deviation of T about a quadratic
 };
+
+// A step of no more than `most` to either side.
+inline double Limited(double value, double most) {
+  return std::clamp(value, -most, most);
+}
 
 // The order of the shared parameters in the derivatives.
 enum SharedParameter : std::size_t {

@@ -110,24 +110,20 @@ Product ShapeCover::WithEdge(float x, float y, const StillEdge& edge,
   // Each side by itself, as far as the other two let it be seen.
   const float along = SpanAt(table_, x, half_long_, per_blur_).value;
   const float across = SpanAt(table_, y, half_short_, per_blur_).value;
-  for (const float side : {-1.0F, 1.0F}) {
-    const float z_x = (half_long_ - side * x) * per_blur_;
-    if (std::abs(z_x) < kFar && across > 1e-3F) {
-      const float rho = -side * normal_x;
-      const float seen = edge.contrast * across;
-      product.value += seen * EdgeProduct(z_x, edge.z, rho);
-      product.by_x -=
-          side * per_blur_ * seen * EdgeProductSlope(z_x, edge.z, rho);
+  const auto add = [&](float half, float at, float seen, float normal,
+                       float& slope) {
+    if (seen <= 1e-3F) return;
+    for (const float side : {-1.0F, 1.0F}) {
+      const float z = (half - side * at) * per_blur_;
+      if (std::abs(z) >= kFar) continue;
+      const float rho = -side * normal;
+      product.value += edge.contrast * seen * EdgeProduct(z, edge.z, rho);
+      slope -= side * per_blur_ * edge.contrast * seen *
+               EdgeProductSlope(z, edge.z, rho);
     }
-    const float z_y = (half_short_ - side * y) * per_blur_;
-    if (std::abs(z_y) < kFar && along > 1e-3F) {
-      const float rho = -side * normal_y;
-      const float seen = edge.contrast * along;
-      product.value += seen * EdgeProduct(z_y, edge.z, rho);
-      product.by_y -=
-          side * per_blur_ * seen * EdgeProductSlope(z_y, edge.z, rho);
-    }
-  }
+  };
+  add(half_long_, x, across, normal_x, product.by_x);
+  add(half_short_, y, along, normal_y, product.by_y);
   return product;
 }
 
