@@ -141,8 +141,9 @@ JointInput InputFor(const PlaneTrack& track, const Event& event,
 }
 
 // A contact that lasts needs up to three numbers more, and must earn them
-// (Schwarz's criterion); shorter than half a frame none shows it, and it only
-// widens the instant's u.
+// (Schwarz's criterion): of a soft body, or of a block that strikes with one
+// corner and then with the other before the next frame. Else it only widens the
+// instant's u.
 void TryLasting(const PlaneTrack& track, const JointInput& input,
                 double start_s, double end_s, std::optional<JointFit>& instant,
                 Event& event) {
@@ -161,10 +162,9 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   const double excess = std::max(1.0, soft->chi2 / std::max(1.0, n));
   constexpr double kClear = 3.0;
   const bool clear = lasts.value > kClear * lasts.u;
-  constexpr double kResolved = 0.5;  // frames
-  if (!instant || (clear && lasts.value > kResolved &&
-                   instant->chi2 - soft->chi2 >
-                       excess * more * std::log(std::max(2.0, n)))) {
+  if (!instant ||
+      (lasts.value > 0.0 && instant->chi2 - soft->chi2 >
+                                excess * more * std::log(std::max(2.0, n)))) {
     instant = soft;
   } else if (clear) {
     event.unresolved_s = 0.5 * lasts.value * soft->interval_s;
@@ -204,6 +204,7 @@ bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
   // The flights alone, without the line: do they meet on it?
   constexpr double kUnknown_px = 1e3;
   JointInput without = input;
+  const core::Estimate on_line = input.ground_px;
   without.ground_px.u = kUnknown_px;
   const double half_px = std::hypot(options.u_line_px, track.u_half_px);
   event.disagreement = 0.0;
@@ -211,14 +212,21 @@ bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
     const core::Estimate d = free->Of(
         [&](const JointVector& p) { return free->GroundAtContact(p); });
     event.disagreement = d.value / std::hypot(d.u, half_px);
-    if (std::abs(event.disagreement) > kDisagree && !in_contact) {
+    const bool disagree = std::abs(event.disagreement) > kDisagree;
+    // A flight of two frames, with gravity known, is told by nothing but them:
+    // the line says that they are not of one flight.
+    if (disagree && event.after_frames.size() <= LeastFrames(options)) {
+      return false;
+    }
+    if (disagree && !in_contact) {
       // No frame in contact: the flights know the ground better than the line.
       input.ground_px.u = std::abs(d.value);
     }
     input.touchdown_s = input.release_s = free->TimeAt(free->p[kT]);
   }
   std::optional<JointFit> fit = FitJointly(track, input);
-  if (in_contact || !fit) TryLasting(track, input, t1, t2, fit, event);
+  input.ground_px.u = on_line.u;
+  TryLasting(track, input, t1, t2, fit, event);
   event.fit = fit;
   return fit.has_value();
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace touchdown::vision {
 namespace {
@@ -60,6 +61,7 @@ class Finder {
   void Offer(const core::Estimate& gap, std::int64_t frame);
   void LookAtFlight(std::size_t begin, std::size_t end);
   void LookAtFrames(std::size_t begin, std::size_t end);
+  void LookBetween(const PlaneSample& a, const PlaneSample& b);
 
   const PlaneTrack& track_;
   std::size_t from_;
@@ -110,14 +112,27 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
   const double start =
       begin > 0 ? samples[begin - 1].time_s : samples[begin].time_s;
   const double stop = end < samples.size() ? samples[end].time_s : last;
-  constexpr int kSteps = 256;  // g T^2 / 2^19 is missed: nothing
+  // A block that turns has a cusp where its lowest corner changes: the best of
+  // some steps, then the best beside it, by thirds.
+  constexpr int kSteps = 256;
+  constexpr int kThirds = 30;  // to 1e-5 of a step
   const auto highest = [&](double t0, double t1) {
     double best = t0;
     for (int i = 1; i <= kSteps; ++i) {
       const double t = t0 + (t1 - t0) * i / kSteps;
       if (height_at(t) > height_at(best)) best = t;
     }
-    return best;
+    double low = std::max(t0, best - (t1 - t0) / kSteps);
+    double high = std::min(t1, best + (t1 - t0) / kSteps);
+    for (int i = 0; i < kThirds; ++i) {
+      const double third = (high - low) / 3.0;
+      if (height_at(low + third) < height_at(high - third)) {
+        low += third;
+      } else {
+        high -= third;
+      }
+    }
+    return 0.5 * (low + high);
   };
   const double at =
       highest(std::max(start, first ? event_->release_s.value : start), stop);
@@ -162,7 +177,33 @@ void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
            std::hypot(local.u, UncertaintyOfGround(track_.samples[i].along_px)),
            std::nullopt},
           track_.samples[i].frame);
+    if (i > from_) LookBetween(track_.samples[i - 1], track_.samples[i]);
   }
+}
+
+// A block that falls from one corner onto another is lifted off the ground on
+// the way, which no frame need show. Its poses in between are those of a steady
+// motion; how much more they show than both frames is known to nothing better
+// than that: a rectangular distribution of that half-width.
+void Finder::LookBetween(const PlaneSample& a, const PlaneSample& b) {
+  if (track_.kind != core::BodyKind::kRectangle) return;
+  constexpr int kSteps = 16;  // misses a 32nd of what the motion shows
+  double most = 0.0;
+  const double seen = std::max(a.gap_px, b.gap_px);
+  for (int i = 1; i < kSteps; ++i) {
+    const double part = static_cast<double>(i) / kSteps;
+    const double face = std::lerp(a.face_rad, b.face_rad, part);
+    const double height = std::lerp(a.height_px, b.height_px, part);
+    most = std::max(most, height - SupportHeight(track_, face) - seen);
+  }
+  const double u_seen = std::max(a.u_gap_px, b.u_gap_px);
+  constexpr double kClear = 2.0;  // less is noise of the attitude
+  if (most < kClear * u_seen) return;
+  Offer({seen + most - ground_.height_px.value,
+         std::hypot(most / std::numbers::sqrt3, u_seen,
+                    UncertaintyOfGround(a.along_px)),
+         std::nullopt},
+        b.frame);
 }
 
 void Finder::LookAt(const Stretch& stretch) {
