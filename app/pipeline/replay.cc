@@ -167,6 +167,7 @@ Json TrackJson(const vision::Track& track) {
                {"frames", {track.first_frame, track.last_frame}},
                {"frame_interval_s", track.frame_interval_s},
                {"known_background", track.known_background},
+               {"is_predicted", track.is_predicted},
                {"several_bodies", track.several_bodies},
                {"columns", kColumns}};
   Json rows = Json::array();
@@ -197,6 +198,7 @@ vision::Track TrackOf(const Json& json, core::BodyKind kind) {
   track.last_frame = WholeNumber(json.at("frames").at(1), "frames");
   track.frame_interval_s = json.at("frame_interval_s");
   track.known_background = json.at("known_background");
+  track.is_predicted = json.value("is_predicted", false);
   track.several_bodies = json.at("several_bodies");
   for (const Json& row : json.at("rows")) {
     std::istringstream in(row.get<std::string>());

@@ -76,6 +76,7 @@ class VideoClip final : public Clip {
         !index_.pts.empty() &&
         std::all_of(index_.packets.begin(), index_.packets.end(),
                     [](const VideoPacket& packet) { return packet.key; });
+    info_.is_predicted = !index_.pts.empty() && !are_alone_;
     StartFrom(0);
     DecodeUpTo(0);
     LookAtFirstFrame(options.channel);

@@ -366,15 +366,18 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   contact.time_s = event.time_s;
   // Frame numbers follow the time: exact where frames are equally spaced.
   const double dt = track.frame_interval_s;
-  // A codec that leaves out slow changes lags behind the body: before an impact
-  // it is above its place, after it below, so that the flights meet too late.
-  // Half of the common error of place: chosen on 79 clips in H.264 (crf 23), of
-  // which 61 of 76 lay within 1.96 u without it; on 113 others 108 lie with it.
+  // A codec that leaves out slow changes from frame to frame lags behind the
+  // body: before an impact it is above its place, after it below, so that the
+  // flights meet too late. Half of the common error of place: chosen on 79
+  // clips in H.264 (crf 23), of which 61 of 76 lay within 1.96 u without it; on
+  // 113 others 108 lie with it.
   constexpr double kOfPlace = 0.5;
   const double pace =
       std::max(std::abs(event.fit->Of(NormalBefore).value), kLeastPace);
-  contact.time_s->u = std::hypot(
-      contact.time_s->u, kOfPlace * context.u_common_place_px / pace * dt);
+  if (track.is_predicted) {
+    contact.time_s->u = std::hypot(
+        contact.time_s->u, kOfPlace * context.u_common_place_px / pace * dt);
+  }
   const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
                                                    track.samples.size() - 1)];
   contact.frame = Estimate{

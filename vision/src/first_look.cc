@@ -385,8 +385,9 @@ const char* ShapeOf(core::BodyKind kind) {
 
 // Why the body is of another kind than the one that was stated; empty: nothing
 // speaks against that. Only an outline that fits well is a witness, and only
-// where that of the stated kind leaves twice as much: a choice, not measured
-// yet.
+// where that of the stated kind leaves twice as much. 25 of 26 spheres that
+// were called blocks left 0.9 to 2.0 as spheres, one 3.0; blocks before their
+// own ghosts left 3.5 to 4.0 as spheres.
 std::string ReasonAgainstKind(Clip& clip, const Look& look,
                               const TrackOptions& options) {
   constexpr double kClearly = 2.0;
@@ -401,7 +402,8 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
   const Choice other =
       ChooseKind(clip, look.background, look.found.chains.front(), otherwise,
                  look.surround);
-  if (other.badness > kWellFitted ||
+  constexpr double kWitness = 2.5;
+  if (other.badness > kWitness ||
       kClearly * other.badness > look.choice.badness) {
     return {};
   }

@@ -193,10 +193,13 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
   const Shape half{shape.disc, 0.5 * shape.half_long, 0.5 * shape.half_short};
   LayerPath& path = evidence.path;
   for (LayerPose& pose : path.poses) pose = Halved(pose);
-  const LayerFit fit = FitLayers(
-      layers::Halve(evidence.stack, options.threads), half, path.poses,
+  const PictureStack halved = layers::Halve(evidence.stack, options.threads);
+  LayerFit fit = FitLayers(
+      halved, half, path.poses,
       layers::Halve(evidence.still, evidence.box.width, evidence.box.height),
       0.5 * evidence.noise_dn, coarse);
+  layers::LeaveLocalMinima(halved, fit.layers, options.turns, options.threads,
+                           fit.poses);
   path.poses = fit.poses;
   const std::size_t found = path.frames.size();
   if (clip.ChangesIn(path.frames.front()) == nullptr) {

@@ -97,6 +97,7 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
              : std::fmax(track.body.half_long_px.u, track.body.half_short_px.u);
   plane.u_common_px = track.body.u_common_px;
   plane.u_common_face_rad = track.body.u_common_angle_rad;
+  plane.is_predicted = track.is_predicted;
   plane.size_px = std::fmax(2.0 * plane.half_long_px, track.body.whole_px);
   plane.frame_interval_s = track.frame_interval_s;
   plane.last_frame = track.last_frame;

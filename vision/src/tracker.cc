@@ -315,9 +315,8 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
   return true;
 }
 
-}  // namespace
-
-core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
+core::Expected<TrackResult> FollowBody(Clip& clip,
+                                       const TrackOptions& options) {
   std::int64_t last = options.last < 0
                           ? clip.info().frames
                           : std::min(options.last, clip.info().frames);
@@ -464,6 +463,14 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
         "strongest part was followed",
         whole_px));
   }
+  return result;
+}
+
+}  // namespace
+
+core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
+  core::Expected<TrackResult> result = FollowBody(clip, options);
+  if (result) result->track.is_predicted = clip.info().is_predicted;
   return result;
 }
 

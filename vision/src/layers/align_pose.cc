@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "touchdown/core/parallel.h"
+
 namespace touchdown::vision::layers {
 namespace {
 
@@ -231,6 +233,55 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   }
   out.found = true;
   return out;
+}
+
+std::size_t LeaveLocalMinima(const PictureStack& stack, const Layers& layers,
+                             bool turns, int threads,
+                             std::vector<LayerPose>& poses) {
+  constexpr double kWorse = 1.25;   // of the median chi^2: clearly worse
+  constexpr double kBetter = 0.85;  // of the chi^2 before: no noise does that
+  // As far around as a step reaches from both sides.
+  const double reach = std::max(1.0, 2.0 * layers.blur);  // px
+  const std::vector<LayerPose> motions = MotionsOf(poses, stack.frames);
+  std::vector<double> chi2(poses.size());
+  const auto each = [&](const auto& align) {
+    core::InParallel(static_cast<std::int64_t>(poses.size()), threads,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto t = static_cast<std::size_t>(begin);
+                            t < static_cast<std::size_t>(end); ++t) {
+                         align(t);
+                       }
+                     });
+  };
+  each([&](std::size_t t) {
+    chi2[t] = AlignPose(stack, t, layers, poses[t], motions[t], turns).chi2;
+  });
+  std::vector<double> sorted = chi2;
+  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2,
+                   sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  std::vector<LayerPose> better = poses;
+  std::vector<char> moved(poses.size(), 0);
+  each([&](std::size_t t) {
+    if (chi2[t] < kWorse * usual) return;
+    double least = kBetter * chi2[t];
+    for (int down = -1; down <= 1; ++down) {
+      for (int across = -1; across <= 1; ++across) {
+        if (down == 0 && across == 0) continue;
+        LayerPose start = poses[t];
+        start.x += across * reach;
+        start.y += down * reach;
+        const PoseFit fit =
+            AlignPose(stack, t, layers, start, motions[t], turns);
+        if (!fit.found || fit.chi2 >= least) continue;
+        least = fit.chi2;
+        better[t] = fit.pose;
+        moved[t] = 1;
+      }
+    }
+  });
+  poses = std::move(better);
+  return static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
 }
 
 }  // namespace touchdown::vision::layers

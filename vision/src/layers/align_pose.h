@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "layer_model.h"
 
@@ -29,5 +30,12 @@ struct PoseFit {
 PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
                   const Layers& layers, const LayerPose& start,
                   const LayerPose& motion, bool turns);
+
+// Where a frame is explained clearly worse than others, its pose may be a local
+// minimum: an outline that settled on another edge. It is aligned again from
+// around, and moved where it is explained better there. How many were moved.
+std::size_t LeaveLocalMinima(const PictureStack& stack, const Layers& layers,
+                             bool turns, int threads,
+                             std::vector<LayerPose>& poses);
 
 }  // namespace touchdown::vision::layers

@@ -53,7 +53,9 @@ struct ClipInfo {
   std::string format;  // "mraw", "avi", "mp4", "tiff-stack", ...
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
-  std::int32_t bit_depth = 8;           // significant bits of a sample, 1..16
+  std::int32_t bit_depth = 8;  // significant bits of a sample, 1..16
+  // Whether frames are coded by what differs from others (H.264 is, MJPEG not).
+  bool is_predicted = false;
   bool has_colour = false;              // colour differences can be read, too
   std::int64_t frames = 0;              // that can be read
   std::int64_t first_camera_frame = 0;  // the camera's own number of frame 0

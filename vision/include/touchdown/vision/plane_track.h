@@ -39,8 +39,9 @@ struct PlaneTrack {
   double u_half_px = 0.0;      // of the size
   double u_common_px = 0.0;    // BodyImage's, of all poses together
   double u_common_face_rad = 0.0;
-  double size_px = 0.0;  // of the whole body: diameter or long side
-  int direction = 1;     // +1: travels to the right in the image, -1: left
+  bool is_predicted = false;  // ClipInfo's
+  double size_px = 0.0;       // of the whole body: diameter or long side
+  int direction = 1;          // +1: travels to the right in the image, -1: left
   double frame_interval_s = 0.0;
   std::int64_t last_frame = 0;  // one past the last frame of the range
   calib::GroundLine ground;

@@ -81,6 +81,7 @@ struct Track {
   // Whether outlines fitted to the frames tell size and place. Else the body
   // has several parts, and they are those of what moves as one.
   bool outlined = true;
+  bool is_predicted = false;    // ClipInfo's: poses may lag behind the body
   bool several_bodies = false;  // another one of like size and contrast moves
   std::vector<std::string> warnings;
 };
