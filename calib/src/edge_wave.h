@@ -16,6 +16,9 @@ struct EdgePoint {
 struct Line {
   double offset = 0.0;
   double slope = 0.0;
+  double At(double x_from_middle) const {
+    return offset + slope * x_from_middle;
+  }
 };
 
 // Takes the one wave  a cos(k x) + b sin(k x)  out of the points that, fitted

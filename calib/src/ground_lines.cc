@@ -9,6 +9,7 @@
 
 #include "edge_texture.h"
 #include "edge_wave.h"
+#include "touchdown/core/estimate.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::calib {
@@ -217,8 +218,7 @@ double NormalCdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 // Gauss-Newton in position with the two levels solved exactly. Negative
 // strength of success (points.strength = 0) means no edge.
 EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
-                     double blur, double& residual2) {
-  const double reach = 3.0 * blur + 2.0;
+                     double blur, double reach, double& residual2) {
   EdgePoint edge{static_cast<double>(x), y0, 0.0};
   residual2 = 0.0;
   std::vector<double> phi;
@@ -285,8 +285,8 @@ struct ColumnFit {
 std::vector<ColumnFit> ColumnEdges(const StillImage& image,
                                    const GroundLineOptions& options,
                                    const std::vector<std::int32_t>& columns,
-                                   const Line& line, double middle,
-                                   double blur) {
+                                   const Line& line, double middle, double blur,
+                                   double reach) {
   std::vector<ColumnFit> fits(columns.size());
   core::InParallel(static_cast<std::int64_t>(columns.size()), options.threads,
                    [&](std::int64_t begin, std::int64_t end) {
@@ -295,11 +295,17 @@ std::vector<ColumnFit> ColumnEdges(const StillImage& image,
                        const double y =
                            SeenAt(options.lens, line, middle, columns[k]);
                        fits[k].edge = ColumnEdge(image, columns[k], y, blur,
-                                                 fits[k].residual2);
+                                                 reach, fits[k].residual2);
                      }
                    });
   return fits;
 }
+
+// How far beside the edge a column is looked at, px. Less does not tell both
+// levels from the blur; textures draw the edge along in proportion to more.
+double ReachOf(double blur) { return 3.0 * blur + 2.0; }
+// The same, so much farther.
+constexpr double kFarther_px = 4.0;
 
 // The edge's blur: the one that explains a sample of columns best.
 double EstimateBlur(const StillImage& image, const GroundLineOptions& options,
@@ -313,8 +319,8 @@ double EstimateBlur(const StillImage& image, const GroundLineOptions& options,
       FromBothSides(2, 1 + image.width_px / 120, image.width_px);
   for (const double blur : kTried) {
     std::vector<double> residuals;
-    for (const ColumnFit& fit :
-         ColumnEdges(image, options, columns, line, middle, blur)) {
+    for (const ColumnFit& fit : ColumnEdges(image, options, columns, line,
+                                            middle, blur, ReachOf(blur))) {
       if (fit.edge.strength != 0.0) residuals.push_back(fit.residual2);
     }
     if (residuals.size() < 8) continue;
@@ -359,42 +365,77 @@ double CorrelationLength(const std::vector<EdgePoint>& points,
   return sum;
 }
 
+// A straight line through the edge's places in all columns.
+struct EdgeLine {
+  Line line;
+  double centre = 0.0;       // of the columns, px
+  core::Estimate height_px;  // of the line, there
+  core::Estimate slope;
+  double wave_px = 0.0;
+};
+
+std::optional<EdgeLine> LineThrough(std::vector<EdgePoint>& edge,
+                                    const Line& near, double middle) {
+  EdgeLine out;
+  out.line = near;
+  std::vector<double> weights;
+  double scatter = FitLine(edge, middle, out.line, weights);
+  if (scatter < 0.0) return std::nullopt;
+  // Neighbours that go up and down together may do so evenly.
+  constexpr double kAlike = 3.0;
+  if (CorrelationLength(edge, weights, out.line, middle) > kAlike) {
+    out.wave_px = TakeOutWave(out.line, middle, weights, edge);
+  }
+  if (out.wave_px > 0.0) {
+    scatter = FitLine(edge, middle, out.line, weights);
+    if (scatter < 0.0) return std::nullopt;
+  }
+  double sw = 0, sx = 0;
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    sw += weights[i];
+    sx += weights[i] * edge[i].x;
+  }
+  out.centre = sx / sw;
+  double sxx = 0.0;
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    sxx += weights[i] * std::pow(edge[i].x - out.centre, 2);
+  }
+  const double alike = CorrelationLength(edge, weights, out.line, middle);
+  out.height_px = {out.line.At(out.centre - middle),
+                   scatter * std::sqrt(alike / sw), std::nullopt};
+  out.slope = {out.line.slope, scatter * std::sqrt(alike / sxx), std::nullopt};
+  return out;
+}
+
+// Two measurements from the same pixels: no better than the better one, and as
+// far off as they are apart.
+core::Estimate Agreed(const core::Estimate& a, const core::Estimate& b) {
+  core::Estimate both = core::Combined(a, b);
+  both.u = std::max(both.u, std::min(a.u, b.u));
+  return both;
+}
+
 // The direction of an edge of textured ground from the edge's foot, where that
 // is clearly better known; not its height, which hangs there on the blur.
-void TakeTexture(const StillImage& image, const std::optional<Lens>& lens,
-                 double blur, double middle, double centre, Line& line,
-                 double& u_slope) {
+core::Estimate SlopeOfTexture(const StillImage& image,
+                              const std::optional<Lens>& lens, double blur,
+                              double middle, const EdgeLine& plain) {
   std::vector<double> seen(static_cast<std::size_t>(image.width_px));
   for (std::size_t x = 0; x < seen.size(); ++x) {
-    seen[x] = SeenAt(lens, line, middle, static_cast<double>(x));
+    seen[x] = SeenAt(lens, plain.line, middle, static_cast<double>(x));
   }
   constexpr double kBlurs = 3.0;
   const auto texture = LearnTexture(image, seen, kBlurs * blur);
-  if (!texture) return;
+  if (!texture) return plain.slope;
   std::vector<EdgePoint> edge;
   for (std::int32_t x = 0; x < image.width_px; ++x) {
     EdgePoint p = TexturedEdge(image, *texture, x,
                                seen[static_cast<std::size_t>(x)], blur);
     if (p.strength != 0.0 && ToIdeal(lens, p)) edge.push_back(p);
   }
-  Line better = line;
-  std::vector<double> weights;
-  const double scatter = FitLine(edge, middle, better, weights);
-  if (scatter < 0.0) return;
-  double sw = 0, sx = 0, sxx = 0;
-  for (std::size_t i = 0; i < edge.size(); ++i) {
-    sw += weights[i];
-    sx += weights[i] * edge[i].x;
-    sxx += weights[i] * edge[i].x * edge[i].x;
-  }
-  const double u =
-      scatter * std::sqrt(CorrelationLength(edge, weights, better, middle) /
-                          (sxx - sx * sx / sw));
-  if (!(u < u_slope)) return;
-  const double height = line.offset + line.slope * (centre - middle);
-  line.slope = better.slope;
-  line.offset = height - line.slope * (centre - middle);
-  u_slope = u;
+  const auto better = LineThrough(edge, plain.line, middle);
+  if (!better || better->slope.u >= plain.slope.u) return plain.slope;
+  return Agreed(plain.slope, better->slope);
 }
 
 }  // namespace
@@ -433,57 +474,45 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
     }
     // To sub-pixel, from every column.
     const double blur = EstimateBlur(image, options, best, middle);
-    std::vector<EdgePoint> edge;
-    for (const ColumnFit& fit :
-         ColumnEdges(image, options, all_columns, best, middle, blur)) {
-      EdgePoint p = fit.edge;
-      if (std::abs(p.strength) > least && ToIdeal(options.lens, p)) {
-        edge.push_back(p);
+    const auto line_within = [&](double reach) -> std::optional<EdgeLine> {
+      std::vector<EdgePoint> edge;
+      for (const ColumnFit& fit : ColumnEdges(image, options, all_columns, best,
+                                              middle, blur, reach)) {
+        EdgePoint p = fit.edge;
+        if (std::abs(p.strength) > least && ToIdeal(options.lens, p)) {
+          edge.push_back(p);
+        }
       }
-    }
-    if (static_cast<double>(edge.size()) <
-        options.least_share * image.width_px) {
-      continue;
-    }
-    std::vector<double> weights;
-    double scatter = FitLine(edge, middle, best, weights);
-    if (scatter < 0.0) continue;
-    // Neighbours that go up and down together may do so evenly.
-    constexpr double kAlike = 3.0;
-    double wave_px = 0.0;
-    if (CorrelationLength(edge, weights, best, middle) > kAlike) {
-      wave_px = TakeOutWave(best, middle, weights, edge);
-    }
-    if (wave_px > 0.0) {
-      scatter = FitLine(edge, middle, best, weights);
-      if (scatter < 0.0) continue;
-    }
-    double sw = 0, sx = 0;
-    for (std::size_t i = 0; i < edge.size(); ++i) {
-      sw += weights[i];
-      sx += weights[i] * edge[i].x;
-    }
-    const double centre = sx / sw;
-    double sxx = 0.0;
-    for (std::size_t i = 0; i < edge.size(); ++i) {
-      sxx += weights[i] * (edge[i].x - centre) * (edge[i].x - centre);
-    }
-    const double correlation = CorrelationLength(edge, weights, best, middle);
-    double u_slope = scatter * std::sqrt(correlation / sxx);
-    TakeTexture(image, options.lens, blur, middle, centre, best, u_slope);
-    const double cosine = 1.0 / std::hypot(1.0, best.slope);
-    const auto y_at = [&](double x) {
-      return best.offset + best.slope * (x - middle);
+      if (static_cast<double>(edge.size()) <
+          options.least_share * image.width_px) {
+        return std::nullopt;
+      }
+      return LineThrough(edge, best, middle);
     };
+    const std::optional<EdgeLine> seen = line_within(ReachOf(blur));
+    if (!seen) continue;
+    EdgeLine at = *seen;
+    // What more of the picture changes is not known to better than that.
+    if (const auto wider = line_within(ReachOf(blur) + kFarther_px)) {
+      at.slope.u = std::hypot(at.slope.u, wider->slope.value - at.slope.value);
+      at.height_px.u =
+          std::hypot(at.height_px.u,
+                     wider->line.At(at.centre - middle) - at.height_px.value);
+    }
+    at.slope = SlopeOfTexture(image, options.lens, blur, middle, at);
+    const auto y_at = [&](double x) {
+      return at.height_px.value + at.slope.value * (x - at.centre);
+    };
+    const double cosine = 1.0 / std::hypot(1.0, at.slope.value);
     GroundLine line;
     line.p1 = {0.0, y_at(0.0)};
     line.p2 = {static_cast<double>(image.width_px - 1),
                y_at(image.width_px - 1.0)};
-    line.reference = {centre, y_at(centre)};
-    line.u_offset_px = cosine * scatter * std::sqrt(correlation / sw);
-    line.u_angle_rad = cosine * cosine * u_slope;
+    line.reference = {at.centre, y_at(at.centre)};
+    line.u_offset_px = cosine * at.height_px.u;
+    line.u_angle_rad = cosine * cosine * at.slope.u;
     line.source = GroundSource::kDetected;
-    line.wave_px = wave_px;
+    line.wave_px = at.wave_px;
     lines.push_back(line);
   }
   return lines;
