@@ -30,6 +30,7 @@ double ToLimit(double limit_s) {
 pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   pipeline::AnalyzeOptions options;
   options.fps = flags.fps;
+  options.gamma = flags.gamma;
   if (!flags.calibration.empty()) {
     options.calibration = calib::ReadCalibration(flags.calibration);
     options.today = Today();
@@ -116,6 +117,10 @@ void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
                      "the scale too");
   command.add_option("--fps", flags.fps,
                      "frames per second of the recording, not of playback");
+  command.add_option("--gamma", flags.gamma,
+                     "the camera's: its levels are light to this power (1: a "
+                     "linear camera; most that make pictures to look at: "
+                     "0.45); default: 1, or what a block's outlines say");
   command.add_option("--ground", flags.ground,
                      "ground line through two points, X1,Y1,X2,Y2 in pixels");
   command

@@ -22,6 +22,7 @@ struct AnalyzeFlags {
   std::string diameter;
   std::string sides;
   std::optional<double> fps;
+  std::optional<double> gamma;
   std::string ground;
   double ground_u_px = 0.5;
   std::optional<std::int64_t> contact_frame;

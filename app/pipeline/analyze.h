@@ -33,6 +33,9 @@ inline constexpr double kUsualLimit_s = 120.0;
 
 struct AnalyzeOptions {
   std::optional<double> fps;
+  // Of the camera (vision/linear_clip.h); nothing: 1, or what a block's
+  // outlines say.
+  std::optional<double> gamma;
   std::optional<core::Estimate> scale_px_per_m;
   std::optional<core::BodyKind> body_kind;     // nothing: whichever fits
   std::optional<core::Estimate> diameter_m;    // makes the kind sphere

@@ -44,6 +44,7 @@ std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
 
 void CheckOptions(const AnalyzeOptions& options, const vision::ClipInfo& clip) {
   RequirePositive("fps", options.fps);
+  RequirePositive("gamma", options.gamma);
   RequirePositive("limit_s", options.limit_s);
   RequirePositive("bounce height", options.bounce_height_m);
   RequirePositive("scale_px_per_m", options.scale_px_per_m);

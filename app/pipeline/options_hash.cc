@@ -34,6 +34,7 @@ std::string OptionsHash(const AnalyzeOptions& o) {
   if (o.contact_frame) text += fmt::format("contact={};", *o.contact_frame);
   if (o.calibration) text += calib::CalibrationText(*o.calibration);
   if (o.crop) text += fmt::format("crop={},{}", o.crop->x_px, o.crop->y_px);
+  if (o.gamma) text += fmt::format("gamma={:a};", *o.gamma);
   if (o.stop_early) text += "stop-early;";
   std::uint64_t hash = 14695981039346656037ull;
   for (const char c : text) {

@@ -98,6 +98,7 @@ calib::GroundLine GroundOf(const Json& json) {
 Json OptionsJson(const AnalyzeOptions& o) {
   Json json = Json::object();
   Put(json, "fps", o.fps);
+  Put(json, "gamma", o.gamma);
   Put(json, "scale_px_per_m", o.scale_px_per_m);
   if (o.body_kind) json["body_kind"] = core::Name(*o.body_kind);
   Put(json, "diameter_m", o.diameter_m);
@@ -120,6 +121,7 @@ Json OptionsJson(const AnalyzeOptions& o) {
 AnalyzeOptions OptionsOf(const Json& json) {
   AnalyzeOptions o;
   o.fps = Optional<double>(json, "fps");
+  o.gamma = Optional<double>(json, "gamma");
   o.scale_px_per_m = OptionalEstimate(json, "scale_px_per_m");
   if (json.contains("body_kind")) {
     o.body_kind = core::ParseBodyKind(json["body_kind"].get<std::string>());

@@ -104,6 +104,52 @@ TEST(Contact, RectangleCornerWithSpin) {
   }
 }
 
+// A nearly flush block strikes with one corner, and before the next frame with
+// the other: two impacts, of which no frame shows the flight between.
+TEST(Contact, BothCornersBetweenTwoFrames) {
+  Throw first = Block(1.0_deg);
+  first.before = {1.2, -0.9, 0.0};
+  Rebound(first, 0.5);
+  // Until the other corner comes down.
+  const core::Body body = core::Rectangle({0.06, 0}, {0.02, 0});
+  double second_s = first.contact_s + 2e-5;
+  while (Gap(body, first.At(second_s)) > 0.0) second_s += 1e-6;
+  const ScenePose there = first.At(second_s);
+  Throw second = Block(there.angle_rad);
+  second.contact_s = second_s;
+  second.x_m = there.centre.x_m;
+  const double fall = second_s - first.contact_s;
+  second.before = {first.after.vx, first.after.vy - first.gravity_mps2 * fall,
+                   first.after.omega};
+  Rebound(second, 0.5);
+  Filming filming;
+  filming.frames = 56;
+  filming.camera.fps = 0.4 / fall;
+  const double frame = 1.0 / filming.camera.fps;
+  filming.first_time_s = first.contact_s - 28.3 * frame;
+  std::vector<double> z_time;
+  std::vector<double> z_face;
+  constexpr std::uint64_t kClips = 40;
+  for (std::uint64_t seed = 1; seed <= kClips; ++seed) {
+    filming.seed = seed;
+    const PlaneTrack track = SeenFromGround(
+        synthetic::FilmTrack(
+            first,
+            [&](double t) { return t < second_s ? first.At(t) : second.At(t); },
+            filming),
+        synthetic::FilmGround(filming));
+    const core::Contact contact =
+        FindContacts(track, WithScale(filming)).first.contact;
+    ASSERT_TRUE(contact.found) << contact.reason;
+    z_time.push_back((contact.time_s->value - first.contact_s) /
+                     contact.time_s->u);
+    z_face.push_back((contact.face_angle_rad->value - first.face_rad) /
+                     contact.face_angle_rad->u);
+  }
+  EXPECT_LT(Rms(z_time), 1.5);
+  EXPECT_LT(Rms(z_face), 1.5);
+}
+
 TEST(Contact, CornerIsTheOneThatTouches) {
   for (const auto& [face, corner] :
        std::vector<std::pair<double, core::Corner>>{

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "touchdown/core/units.h"
 #include "touchdown/vision/state.h"
+#include "vision/src/track_shape.h"
 
 namespace touchdown::vision {
 namespace {
@@ -97,6 +99,54 @@ TEST(GreatestGap, OfTwoHopsIsTheHigher) {
                               {StretchKind::kFlight, 20, 44, 0.0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gap_px.value, 2.0, 0.05);
+}
+
+PlaneTrack Block(const std::vector<std::array<double, 2>>& height_and_face) {
+  PlaneTrack track = Gaps(std::vector<double>(height_and_face.size()), 0.02);
+  track.kind = core::BodyKind::kRectangle;
+  track.half_short_px = 10.0;
+  for (std::size_t i = 0; i < height_and_face.size(); ++i) {
+    PlaneSample& s = track.samples[i];
+    s.height_px = height_and_face[i][0];
+    s.face_rad = height_and_face[i][1];
+    s.u_face_rad = 1e-3;
+    s.gap_px = s.height_px - SupportHeight(track, s.face_rad);
+  }
+  return track;
+}
+
+// As it passes the upright a block's lowest corner changes: the gap has a cusp.
+TEST(GreatestGap, OfATurningBlockIsAtTheCusp) {
+  std::vector<std::array<double, 2>> poses;
+  constexpr double kTurn = 0.21;  // rad a frame
+  constexpr double kCusp = 7.37;  // frames
+  for (int i = 0; i < 15; ++i) {
+    const double t = 1e-3 * (i - kCusp);
+    poses.push_back({60.0 - 0.5 * kGravity * t * t, kTurn * (i - kCusp)});
+  }
+  const auto found =
+      Find(Block(poses), {{StretchKind::kFlight, 0, poses.size(), 0.0, 0}});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->gap_px.value, 50.0, 0.01);
+}
+
+// From one corner onto the other between two frames, both of which show it on
+// the ground.
+TEST(GreatestGap, BetweenTwoFramesABlockFallsFromCornerToCorner) {
+  constexpr double kTilt = 0.15;
+  PlaneTrack track = Block({});
+  track.kind = core::BodyKind::kRectangle;
+  track.half_long_px = kRadius_px;
+  track.half_short_px = 10.0;
+  const double down = SupportHeight(track, kTilt);
+  const auto found = Find(
+      Block({{down, kTilt}, {down, kTilt}, {down, -kTilt}, {down, -kTilt}}),
+      {{StretchKind::kSupported, 0, 4, 0.0, 0}});
+  ASSERT_TRUE(found);
+  // Half way it is upright and as high as at the ends.
+  const double lifted = down - 10.0;
+  EXPECT_NEAR(found->gap_px.value, lifted, 1e-6);
+  EXPECT_NEAR(found->gap_px.u, lifted / std::sqrt(3.0), 0.01);
 }
 
 TEST(GreatestGap, NothingFilmedIsAbsent) {

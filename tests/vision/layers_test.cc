@@ -308,6 +308,60 @@ TEST(FitLayers, ATexturedFace) {
   EXPECT_LT(errors.worst_px, 0.12);
 }
 
+// level = 255 (light / 255)^gamma
+LayeredScene LightScene() {
+  LayeredScene scene;
+  scene.still = [](double x, double y) {
+    return 150.0 + 0.3 * x + (y > 40.0 ? -90.0 : 0.0);
+  };
+  scene.body = [](double, double) { return 20.0; };
+  for (int t = 0; t < 24; ++t) {
+    scene.poses.push_back({18.0 + 2.3 * t, 24.0 + 0.4 * t, 0.05 * t});
+  }
+  return scene;
+}
+
+float Level(float light, double gamma) {
+  return static_cast<float>(
+      255.0 *
+      std::pow(std::max(static_cast<double>(light), 0.0) / 255.0, gamma));
+}
+
+TEST(FitLayers, CornersTellTheCamerasGamma) {
+  for (const double gamma : {1.0, 0.45}) {
+    LayeredScene scene = LightScene();
+    scene.noise_dn = 0.5;
+    PictureStack stack = Film(scene, 7);
+    for (float& level : stack.levels) level = Level(level, gamma);
+    std::vector<float> still = Paint(scene, nullptr);
+    for (float& level : still) level = Level(level, gamma);
+    FitLayersOptions options = OptionsOf(scene);
+    options.prior.u[kCurve] = 1.0;
+    const LayerFit fit = FitLayers(stack, scene.shape, Shaken(scene.poses, 0.3),
+                                   still, scene.noise_dn, options);
+    // Of first order: the next is a tenth of it.
+    EXPECT_NEAR(1.0 / (1.0 + fit.layers.curve), gamma, 0.06);
+  }
+}
+
+// An outline that settled on the ground's edge, a pixel below the body.
+TEST(LeaveLocalMinima, FindsABodyThatLiesBesideItsPose) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 5);
+  const LayerFit fit =
+      FitLayers(stack, scene.shape, scene.poses, Paint(scene, nullptr),
+                scene.noise_dn, OptionsOf(scene));
+  std::vector<LayerPose> poses = fit.poses;
+  poses[3].y += 4.0;
+  poses[8].x -= 4.0;
+  EXPECT_GE(LeaveLocalMinima(stack, fit.layers, true, 1, poses), 1U);
+  for (const std::size_t t : {std::size_t{3}, std::size_t{8}}) {
+    const PoseFit at = AlignPose(stack, t, fit.layers, poses[t], {}, true);
+    EXPECT_NEAR(at.pose.x, scene.poses[t].x, 0.3);
+    EXPECT_NEAR(at.pose.y, scene.poses[t].y, 0.3);
+  }
+}
+
 TEST(FitLayers, DoesNotDependOnThreads) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 23);

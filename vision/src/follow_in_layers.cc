@@ -79,6 +79,8 @@ FitLayersOptions OptionsFor(const Track& track, const Shape& shape,
   const double slope = shape.disc ? 0.0 : 20.0;  // DN
   u[layers::kSlopeX] = slope;
   u[layers::kSlopeY] = slope;
+  // A disc's shading and size look alike: only corners tell.
+  u[layers::kCurve] = shape.disc ? 0.0 : 1.0;
   constexpr double kAnyLevel_dn = 1e4;
   for (std::size_t k = 0; k < layers::kTerms; ++k) {
     u[layers::kQuadratic + k] = kAnyLevel_dn;
@@ -249,6 +251,7 @@ Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized) {
   out.near_ground_modelled = true;
   out.body.blur_px = fit.layers.blur;
   out.body.shutter_fraction = fit.layers.exposure;
+  if (!fit.layers.shape.disc) out.body.gamma = 1.0 / (1.0 + fit.layers.curve);
   const Shape& shape = fit.layers.shape;
   const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
   out.body.u_common_px =

@@ -113,6 +113,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   constexpr double kMostBlurStep = 0.3;
   constexpr double kMostExposureStep = 0.2;
   constexpr double kMostSizeStep_px = 0.5;
+  constexpr double kMostCurveStep = 0.5;
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
   for (int step = 0; step < options.steps; ++step) {
@@ -164,6 +165,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
         shape.disc ? layers.shape.half_long
                    : layers.shape.half_short +
                          Limited(joint.shared[kShort], kMostSizeStep_px);
+    layers.curve += Limited(joint.shared[kCurve], kMostCurveStep);
     layers.slope_x += joint.shared[kSlopeX];
     layers.slope_y += joint.shared[kSlopeY];
     for (std::size_t k = 0; k < kTerms && layers.flat; ++k) {

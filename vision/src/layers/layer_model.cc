@@ -126,6 +126,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
                        const LayerPose& motion) {
   // Below it a pixel shows nothing of the body.
   constexpr float kLeastCover = 2e-4F;
+  constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
 
   FrameSamples samples;
   const Window window = WindowOf(stack, layers, pose, motion);
@@ -173,6 +174,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
   const auto per_reach = static_cast<float>(1.0 / reach);
   const auto slope_x = static_cast<float>(layers.slope_x) * per_reach;
   const auto slope_y = static_cast<float>(layers.slope_y) * per_reach;
+  const auto curve = static_cast<float>(layers.curve);
   const auto v_x = static_cast<float>(motion.x);
   const auto v_y = static_cast<float>(motion.y);
   const auto v_turn = static_cast<float>(motion.angle_rad);
@@ -260,6 +262,14 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         by_shared[kSlopeY] += shares[k] * dy * per_reach;
       }
       if (covered < kLeastCover) continue;
+      const float step = (model - behind) / covered;
+      const float bent = 0.5F * step / std::max(model, kLeastLevel_dn);
+      by_shared[kCurve] = covered * (1.0F - covered) * step * bent;
+      if (curve != 0.0F) {
+        model += curve * by_shared[kCurve];
+        const float steeper = 1.0F + curve * (1.0F - 2.0F * covered) * bent;
+        for (float& slope : by_pose) slope *= steeper;
+      }
       const float residual = levels[pixel] - model;
       samples.pixel.push_back(pixel);
       samples.residual.push_back(residual);

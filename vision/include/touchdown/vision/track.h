@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ struct BodyImage {
   // direction of the body, and in angle: a texture hides it.
   double u_common_px = 0.0;
   double u_common_angle_rad = 0.0;
+  // Of the camera (linear_clip.h), as far as outlines show it.
+  std::optional<double> gamma;
   double contrast_dn = 0.0;  // body minus background, median over frames
 };
 
