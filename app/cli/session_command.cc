@@ -90,7 +90,9 @@ alignas(16) std::array<char, kFaultStack_bytes> fault_stack;
 
 void CatchSignals() {
   struct sigaction action = {};
-  action.sa_handler = OnSignal;  // without SA_RESTART: waiting ends
+  action.sa_handler = OnSignal;
+  // A write goes on, or a line would be lost; poll() ends all the same.
+  action.sa_flags = SA_RESTART;
   // SIGPIPE: a lost terminal is found out when it is written to.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
     sigaction(signal, &action, nullptr);
@@ -168,22 +170,27 @@ void Serve(const Flags& flags, session::Session& session,
   options.quiet = std::chrono::milliseconds(
       static_cast<std::int64_t>(flags.quiet_s * 1000.0));
   options.now = [] { return std::chrono::steady_clock::now(); };
+  // Of a signal: what was typed before it, and waits, is not done after it.
+  const auto tell_stop = [&] {
+    if (stopped == 0) return;
+    stopped = 0;
+    lines.Drop();
+    fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
+    std::fflush(stdout);
+  };
   options.wait = [&](bool growing) {
     // Of a network drive nothing is heard: look now and then.
     constexpr std::chrono::milliseconds kNowAndThen{2000};
     if (ended != 0) return false;
     changes.Wait(growing ? options.quiet : kNowAndThen, lines.descriptor());
-    while (const auto line = lines.Next()) {
+    tell_stop();
+    while (const auto line = stopped != 0 ? std::nullopt : lines.Next()) {
       if (!session.Obey(line->text, {line->began, line->is_alone})) {
         return false;
       }
       if (ended != 0) return false;
     }
-    if (stopped != 0) {
-      stopped = 0;
-      fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
-      std::fflush(stdout);
-    }
+    tell_stop();
     return ended == 0 && !lines.at_end();
   };
   pipeline::Watch(flags.watch, options,

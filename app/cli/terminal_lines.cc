@@ -108,6 +108,7 @@ void TerminalLines::Take(const char* bytes, std::size_t size) {
     }
     ++whole;
     const bool is_stop = IsStop(begun_);
+    if (is_stop) Forget();
     bytes_ += begun_.size() + 1;
     lines_.push_back({std::exchange(begun_, {}), begun_at_,
                       begun_alone_ && whole == 1 && i + 1 == size});
@@ -118,6 +119,18 @@ void TerminalLines::Take(const char* bytes, std::size_t size) {
     }
   }
   if (whole > 0) Signal(ready_);
+}
+
+void TerminalLines::Forget() {
+  lines_.clear();
+  bytes_ = 0;
+}
+
+void TerminalLines::Drop() {
+  const std::lock_guard lock(mutex_);
+  Forget();
+  if (!ended_) Clear(ready_);
+  taken_.notify_all();
 }
 
 std::optional<TypedLine> TerminalLines::Next() {

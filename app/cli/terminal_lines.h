@@ -28,7 +28,8 @@ struct TypedLine {
 class TerminalLines {
  public:
   // `on_stop`: called from the thread that reads, as soon as a line is `stop`;
-  // the line is handed on like all others.
+  // the line is handed on like all others, and those that wait before it are
+  // dropped.
   explicit TerminalLines(std::function<void()> on_stop);
   ~TerminalLines();
   TerminalLines(const TerminalLines&) = delete;
@@ -38,6 +39,9 @@ class TerminalLines {
   int descriptor() const { return ready_; }
   // The next whole line, if there is one.
   std::optional<TypedLine> Next();
+  // Drops the lines that wait: after a stop, nothing that was typed before it
+  // is done.
+  void Drop();
   // A question and its answer; nothing at the end of the input, or where a
   // signal came first.
   std::optional<std::string> Ask(const std::string& question);
@@ -48,6 +52,7 @@ class TerminalLines {
   void Read();
   void Take(const char* bytes, std::size_t size);
   bool IsFull() const;
+  void Forget();
 
   std::function<void()> on_stop_;
   int ready_ = -1;  // an eventfd

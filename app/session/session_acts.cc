@@ -93,6 +93,8 @@ bool Session::Obey(const std::string& line, const Arrival& arrival) {
     }
   } catch (const std::invalid_argument& mistake) {
     Say(mistake.what());
+  } catch (const core::OutputError&) {
+    throw;
   } catch (const core::InputError& trouble) {  // the rig's controller
     Say(trouble.what());
   }

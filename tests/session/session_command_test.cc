@@ -100,8 +100,8 @@ class SessionAtASerialPort : public SessionCommand {
   // A session with the springs latched.
   std::unique_ptr<RunningProgram> Armed() {
     auto session = std::make_unique<RunningProgram>(
-        Arguments({"--operator", "A. Lee", "--no-check", "--driver",
-                   controller_.port()}));
+        Arguments({"--operator", "A. Lee", "--no-check", "--limit-s", "5",
+                   "--driver", controller_.port()}));
     session->Type("");
     session->Until("predicted");
     session->Type("reset");  // whoever ended before has stopped it
@@ -274,6 +274,24 @@ TEST_F(SessionAtASerialPort, TypedStopActsWhileARecordingIsAnalysed) {
             std::chrono::milliseconds(100));
   EXPECT_EQ(ReadSession(bench_.db())->phase, Phase::kAnalysing);
   EXPECT_FALSE(controller_.armed());
+}
+
+// What was typed before a stop, and waits, is not done after it.
+TEST_F(SessionAtASerialPort, AStopDropsWhatWaits) {
+  const auto session = Armed();
+  testing::WriteBusyClip(bench_.films() / "busy.mraw", 400);
+  while (ReadSession(bench_.db())->phase != Phase::kAnalysing) sched_yield();
+  const auto resets = controller_.HowOften("reset");
+  session->Type("reset");
+  session->Type("set");
+  session->Type("stop");
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_EQ(ReadSession(bench_.db())->phase, Phase::kAnalysing);
+  session->Until("STOPPED; `reset`");
+  session->Type("rig");
+  EXPECT_THAT(session->Until("interlock"), HasSubstr("STOPPED"));
+  EXPECT_EQ(controller_.HowOften("reset"), resets);
+  EXPECT_TRUE(controller_.stopped());
 }
 
 TEST_F(SessionAtASerialPort, PastedLinesNeverFire) {

@@ -206,17 +206,16 @@ void Live(std::uint64_t seed, Count& count) {
     }
   }
   if (end == SIGINT) {
-    // The first stops the rig alone, if it is not stopped; two at once are one.
+    // One stops the rig alone, if it is not stopped; a person goes on.
     std::unique_lock lock(mutex);
-    const std::size_t from = said.size();
-    session.Signal(SIGINT);
-    heard.wait_for(lock, std::chrono::seconds(3), [&] {
-      return has_ended || said.find("STOPPED", from) != std::string::npos;
-    });
+    while (!has_ended) {
+      session.Signal(SIGINT);
+      heard.wait_for(lock, std::chrono::seconds(1), [&] { return has_ended; });
+    }
   }
   if (end == kQuit) type("quit");
   if (end == kEndOfInput) session.CloseInput();
-  session.End(end > 0 ? end : 0);
+  session.End(end > 0 && end != SIGINT ? end : 0);
   const Instant gone = Clock::now();
   reads.join();
   const bool was_latched = std::ranges::any_of(
