@@ -11,6 +11,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -75,6 +76,17 @@ struct Count {
   std::atomic<int> sessions = 0, latched_at_end = 0, shots = 0, failures = 0;
   std::atomic<std::int64_t> longest_wrong_ms = 0, longest_latched_ms = 0;
 };
+
+void Tell(const Count& count) {
+  std::printf(
+      "%d sessions: %d shots, latched at the end of the program %d, longest "
+      "'not armed' while latched %lld ms, longest latched after the end %lld "
+      "ms\n",
+      count.sessions.load(), count.shots.load(), count.latched_at_end.load(),
+      static_cast<long long>(count.longest_wrong_ms),
+      static_cast<long long>(count.longest_latched_ms));
+  std::fflush(stdout);
+}
 
 void Raise(std::atomic<std::int64_t>& greatest, std::int64_t value) {
   std::int64_t before = greatest;
@@ -244,6 +256,7 @@ void Live(std::uint64_t seed, Count& count) {
   count.shots += static_cast<int>(controller.shots());
   Raise(count.longest_wrong_ms, wrong.count());
   Raise(count.longest_latched_ms, after.count());
+  if (count.sessions % 100 == 0) Tell(count);
 }
 
 TEST(UnreliableLine, TheRigIsNeverCalledSafeAndNeverLeftLatched) {
@@ -273,14 +286,7 @@ TEST(UnreliableLine, TheRigIsNeverCalledSafeAndNeverLeftLatched) {
   EXPECT_GT(count.shots, 0);
   EXPECT_GT(count.latched_at_end, 0);
   EXPECT_GT(count.longest_wrong_ms, 0);
-  RecordProperty("shots", count.shots);
-  std::printf(
-      "%d sessions: %d shots, latched at the end of the program %d, longest "
-      "'not armed' while latched %lld ms, longest latched after the end %lld "
-      "ms\n",
-      count.sessions.load(), count.shots.load(), count.latched_at_end.load(),
-      static_cast<long long>(count.longest_wrong_ms),
-      static_cast<long long>(count.longest_latched_ms));
+  Tell(count);
 }
 
 }  // namespace
