@@ -153,11 +153,10 @@ int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
   }
   const std::size_t failed = pipeline::Count(entries).failed;
   if (failed == 0) return 0;
-  fmt::print(
-      stderr,
-      "touchdown: {} of {} recordings failed; the list says why, and the "
-      "same command tries them again\n",
-      failed, entries.size());
+  Tell(
+      fmt::format("{} of {} recordings failed; the list says why, and the "
+                  "same command tries them again",
+                  failed, entries.size()));
   return 5;
 }
 

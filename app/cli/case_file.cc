@@ -254,8 +254,8 @@ void WriteResult(std::string_view text, const std::string& path) {
   if (path.empty()) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
         std::fflush(stdout) != 0) {
-      throw InputError(fmt::format("standard output: cannot be written: {}",
-                                   std::strerror(errno)));
+      throw core::OutputError(
+          fmt::format("stdout: cannot be written: {}", std::strerror(errno)));
     }
     return;
   }

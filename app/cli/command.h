@@ -11,7 +11,8 @@ namespace touchdown::cli {
 
 // What main runs after the command line has been read; returns the exit status:
 // 0 done; 5 a batch finished with some clips failed. Trouble is thrown:
-// std::invalid_argument (exit 2), core::InputError (3), core::StoreError (4).
+// std::invalid_argument (exit 2), core::InputError (3), core::StoreError (4),
+// core::OutputError (6).
 using Action = std::function<int()>;
 
 // Each Add...() adds one command with its flags to `app`, and sets `action`

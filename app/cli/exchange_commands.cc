@@ -21,7 +21,7 @@
 #include "app/report/trial_csv.h"
 #include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/core/unfinished.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/register.h"
@@ -87,6 +87,26 @@ void WriteAll(std::ostream& out, const db::Store& store,
   });
 }
 
+// A stream into an output file.
+class FileBuffer : public std::streambuf {
+ public:
+  explicit FileBuffer(core::OutputFile& file) : file_(file) {}
+
+ private:
+  int overflow(int c) override {
+    if (c == EOF) return 0;
+    const char byte = static_cast<char>(c);
+    file_.Write(std::string_view(&byte, 1));
+    return c;
+  }
+  std::streamsize xsputn(const char* bytes, std::streamsize n) override {
+    file_.Write(std::string_view(bytes, static_cast<std::size_t>(n)));
+    return n;
+  }
+
+  core::OutputFile& file_;
+};
+
 int Export(const ExportFlags& flags) {
   const Format format = FormatOf(flags.format, flags.out);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
@@ -100,26 +120,17 @@ int Export(const ExportFlags& flags) {
     WriteAll(std::cout, store, flags, format);
     std::cout.flush();
     if (!std::cout) {
-      throw core::InputError("stdout: the export could not be written");
+      throw core::OutputError("stdout: the export could not be written");
     }
     return 0;
   }
-  // Whole or absent: written beside under another name, then renamed.
-  const fs::path part = fmt::format("{}.{}.part", flags.out, getpid());
-  const core::Unfinished unfinished(part);
-  {
-    std::ofstream out(part, std::ios::binary);
-    WriteAll(out, store, flags, format);
-    out.flush();
-    if (!out) {
-      std::error_code ignored;
-      fs::remove(part, ignored);
-      throw core::InputError(fmt::format(
-          "{}: the export could not be written; check the folder and the disk",
-          flags.out));
-    }
-  }
-  fs::rename(part, flags.out);
+  core::OutputFile file(flags.out);
+  FileBuffer buffer(file);
+  std::ostream out(&buffer);
+  // What the file throws is thrown on.
+  out.exceptions(std::ios::badbit);
+  WriteAll(out, store, flags, format);
+  file.Commit();
   return 0;
 }
 
@@ -159,7 +170,7 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
   auto& errors = read.errors;
   if (!flags.partial && !errors.empty()) {
     for (std::size_t i = 1; i < errors.size(); ++i) {
-      fmt::print(stderr, "touchdown: {}\n", Printable(errors[i]));
+      Tell(errors[i]);
     }
     throw core::InputError(fmt::format(
         "{} ({} error{} in all; nothing was imported, --partial takes the rows "
@@ -252,7 +263,7 @@ int Print(const Imported& done) {
     fmt::print("conflict: {}\n", Printable(conflict));
   }
   for (const auto& error : done.errors) {
-    fmt::print(stderr, "touchdown: {}\n", Printable(error));
+    Tell(error);
   }
   fmt::print("{}\n", done.summary);
   return done.errors.empty() ? 0 : 5;

@@ -1,27 +1,31 @@
 #include <dlfcn.h>
-#include <fmt/core.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iterator>
+#include <new>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "app/cli/command.h"
 #include "app/cli/interruption.h"
+#include "app/cli/messages.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 
 namespace {
 
 enum ExitStatus : int {
-  kUsage = 2,  // wrong usage or impossible argument
-  kInput = 3,  // input unreadable, damaged or unsupported
-  kStore = 4,  // trial store trouble
+  kUsage = 2,   // wrong usage or impossible argument
+  kInput = 3,   // input unreadable, damaged or unsupported
+  kStore = 4,   // trial store trouble
+  kOutput = 6,  // output could not be written
   kDefect = 70
 };
 
@@ -77,16 +81,27 @@ void StopIdleThreads() {
   }
 }
 
-int Complain(int status, const char* what) {
-  fmt::print(stderr, "touchdown: {}\n", what);
+int Complain(int status, const std::exception& error) {
+  touchdown::cli::Tell(error.what());
+  return status;
+}
+
+// Runs what the command line asks for; its results have arrived when it
+// returns.
+int Run(const touchdown::cli::Action& action) {
+  const int status = action ? action() : 0;
+  touchdown::cli::RequireStdoutWritten();
   return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  touchdown::cli::KeepStandardStreams();
   StopIdleThreads();
   touchdown::cli::CatchInterruptions();
+  // A file that may not grow is an error of the write, not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
   // stdout carries results only.
   spdlog::set_default_logger(spdlog::stderr_color_mt("touchdown"));
   spdlog::set_pattern("touchdown: %^%l%$: %v");
@@ -100,17 +115,35 @@ int main(int argc, char** argv) {
   AddCommands(app, action, argc > 1 ? argv[1] : "");
   try {
     app.parse(argc, argv);
-    return action ? action() : 0;
+    return Run(action);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    return Complain(kUsage, error.what());
+    if (error.get_exit_code() != 0) return Complain(kUsage, error);
+    app.exit(error);  // --help, --version
+    try {
+      return Run({});
+    } catch (const touchdown::core::OutputError& trouble) {
+      return Complain(kOutput, trouble);
+    }
   } catch (const std::invalid_argument& error) {
-    return Complain(kUsage, error.what());
+    return Complain(kUsage, error);
+  } catch (const touchdown::core::OutputError& error) {
+    return Complain(kOutput, error);
   } catch (const touchdown::core::InputError& error) {
-    return Complain(kInput, error.what());
+    return Complain(kInput, error);
   } catch (const touchdown::core::StoreError& error) {
-    return Complain(kStore, error.what());
+    return Complain(kStore, error);
+  } catch (const std::bad_alloc&) {
+    touchdown::cli::Tell(
+        "out of memory; a smaller clip, fewer --jobs or a higher limit");
+    return kInput;
   } catch (const std::exception& error) {
-    return Complain(kDefect, error.what());
+    // What fmt throws where stdout takes no more.
+    if (std::ferror(stdout) != 0) {
+      touchdown::cli::Tell(std::string("stdout: the results could not be "
+                                       "written: ") +
+                           error.what());
+      return kOutput;
+    }
+    return Complain(kDefect, error);
   }
 }

@@ -1,11 +1,13 @@
 #include "app/cli/progress.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+
+#include "app/cli/messages.h"
 
 namespace touchdown::cli {
 
@@ -38,16 +40,14 @@ void ProgressBar::Show(double share, std::optional<double> left_s,
   share = std::clamp(share, 0.0, 1.0);
   constexpr int kWidth = 30;
   const int full = static_cast<int>(share * kWidth);
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {}{}\033[K", what_, "",
-             full, "", kWidth - full, 100.0 * share, done,
-             left_s ? fmt::format("{:.0f} s left ", *left_s) : "");
-  std::fflush(stderr);
+  TellRaw(fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {}{}\033[K", what_, "",
+                      full, "", kWidth - full, 100.0 * share, done,
+                      left_s ? fmt::format("{:.0f} s left ", *left_s) : ""));
 }
 
 void ProgressBar::Finish() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  TellRaw("\r\033[K");
   drawn_ = false;
 }
 

@@ -1,5 +1,5 @@
 // touchdown review: the local page on which a person looks at trials.
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -19,6 +19,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/interruption.h"
+#include "app/cli/messages.h"
 #include "app/cli/store_flags.h"
 #include "app/pipeline/thrower.h"
 #include "app/review/server.h"
@@ -93,7 +94,7 @@ int Run(const ReviewFlags& flags) {
   review::Server server(options);
   fmt::print("{}\n", server.address());
   std::fflush(stdout);
-  fmt::print(stderr, "touchdown: the page of {}; Ctrl-C ends it\n", flags.db);
+  Tell(fmt::format("the page of {}; Ctrl-C ends it", flags.db));
   if (!flags.no_open && HasDesktop()) OpenBrowser(server.address());
   std::atomic<bool> ended = false;
   std::thread waiter([&] {

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -24,6 +26,7 @@
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/driver/manual_driver.h"
+#include "touchdown/rig/driver/monitor.h"
 #include "touchdown/rig/driver/serial_driver.h"
 
 namespace touchdown::cli {
@@ -71,36 +74,62 @@ void OnSignal(int signal) {
   if (analysing != 0) EndSoon(signal);
 }
 
-// While it lives, a signal stops the rig. However it ends, nobody is left with
-// latched springs that no program watches.
-class Driving {
- public:
-  explicit Driving(rig::Driver* stoppable) : stoppable_(stoppable) {
-    driven = stoppable;
-  }
-  Driving(const Driving&) = delete;
-  Driving& operator=(const Driving&) = delete;
-  ~Driving() {
-    driven = nullptr;
-    if (stoppable_ == nullptr || !stoppable_->is_armed()) return;
-    try {
-      stoppable_->Disarm();
-    } catch (const std::exception&) {  // it does not answer
-      stoppable_->Stop();
-    }
-  }
+// Of a defect, or from outside: the rig is stopped, then the signal does what
+// it does.
+void OnFault(int signal) {
+  if (rig::Driver* const driver = driven.load()) driver->Stop();
+  struct sigaction action = {};
+  action.sa_handler = SIG_DFL;
+  sigaction(signal, &action, nullptr);
+  raise(signal);
+}
 
- private:
-  rig::Driver* stoppable_;
-};
+// A fault may be a stack that is used up: its handler has a stack of its own.
+constexpr std::size_t kFaultStack_bytes = 64 << 10;
+alignas(16) std::array<char, kFaultStack_bytes> fault_stack;
 
 void CatchSignals() {
   struct sigaction action = {};
-  action.sa_handler = OnSignal;  // without SA_RESTART: waiting ends
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  action.sa_handler = OnSignal;
+  // A write goes on, or a line would be lost; poll() ends all the same.
+  action.sa_flags = SA_RESTART;
+  // SIGPIPE: a lost terminal is found out when it is written to.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
+    sigaction(signal, &action, nullptr);
+  }
+  stack_t stack = {};
+  stack.ss_sp = fault_stack.data();
+  stack.ss_size = fault_stack.size();
+  sigaltstack(&stack, nullptr);
+  action.sa_handler = OnFault;
+  action.sa_flags = SA_ONSTACK | SA_NODEFER;
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) {
     sigaction(signal, &action, nullptr);
   }
 }
+
+// While it lives, signals and the line `stop` stop the rig, its state is told
+// whenever it changes, and its controller hears that the program lives.
+class Driving {
+ public:
+  explicit Driving(rig::Driver& driver)
+      : monitor_(Announced(driver), [](const rig::RigState& state) {
+          fmt::print(
+              "rig: {}{}\n", rig::Name(state.armed),
+              state.stopped ? ", STOPPED: `reset` when all is well" : "");
+          std::fflush(stdout);
+        }) {}
+  ~Driving() { driven = nullptr; }
+  Driving(const Driving&) = delete;
+  Driving& operator=(const Driving&) = delete;
+
+ private:
+  static rig::Driver& Announced(rig::Driver& driver) {
+    driven = &driver;
+    return driver;
+  }
+  rig::DriverMonitor monitor_;
+};
 
 session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
                            const rig::Description& rig) {
@@ -121,15 +150,16 @@ session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
   return check;
 }
 
-std::unique_ptr<rig::Driver> DriverOf(const Flags& flags,
-                                      TerminalLines& lines) {
-  if (flags.driver == "manual") {
-    return std::make_unique<rig::ManualDriver>(
-        [&lines](const std::string& question) { return lines.Ask(question); });
-  }
+std::unique_ptr<rig::Driver> ControllerOf(const Flags& flags) {
   rig::SerialOptions options;
   options.baud = flags.baud;
-  return std::make_unique<rig::SerialDriver>(flags.driver, options);
+  auto driver = std::make_unique<rig::SerialDriver>(flags.driver, options);
+  if (driver->was_found_armed()) {
+    fmt::print(
+        "the controller was ARMED, or did not say, when it was connected: "
+        "disarmed now\n");
+  }
+  return driver;
 }
 
 // Hands over what comes, from the keyboard and from the folder, until the end.
@@ -140,23 +170,27 @@ void Serve(const Flags& flags, session::Session& session,
   options.quiet = std::chrono::milliseconds(
       static_cast<std::int64_t>(flags.quiet_s * 1000.0));
   options.now = [] { return std::chrono::steady_clock::now(); };
+  // Of a signal: what was typed before it, and waits, is not done after it.
+  const auto tell_stop = [&] {
+    if (stopped == 0) return;
+    stopped = 0;
+    lines.Drop();
+    fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
+    std::fflush(stdout);
+  };
   options.wait = [&](bool growing) {
     // Of a network drive nothing is heard: look now and then.
     constexpr std::chrono::milliseconds kNowAndThen{2000};
     if (ended != 0) return false;
-    if (changes.Wait(growing ? options.quiet : kNowAndThen,
-                     TerminalLines::kDescriptor)) {
-      lines.Read();
-    }
-    while (const auto line = lines.Next()) {
-      if (!session.Obey(*line)) return false;
+    changes.Wait(growing ? options.quiet : kNowAndThen, lines.descriptor());
+    tell_stop();
+    while (const auto line = stopped != 0 ? std::nullopt : lines.Next()) {
+      if (!session.Obey(line->text, {line->began, line->is_alone})) {
+        return false;
+      }
       if (ended != 0) return false;
     }
-    if (stopped != 0) {
-      stopped = 0;
-      fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
-      std::fflush(stdout);
-    }
+    tell_stop();
     return ended == 0 && !lines.at_end();
   };
   pipeline::Watch(flags.watch, options,
@@ -205,13 +239,18 @@ int Run(const Flags& flags) {
     throw std::invalid_argument(
         "--operator is missing, must name who is at the rig");
   }
-  TerminalLines lines;
-  const auto driver = DriverOf(flags, lines);
-  // Hands need no signal to stop.
-  rig::Driver* const stoppable =
-      flags.driver == "manual" ? nullptr : driver.get();
   CatchSignals();
-  const Driving driving(stoppable);
+  TerminalLines lines([] {
+    if (rig::Driver* const driver = driven.load()) driver->Stop();
+  });
+  rig::ManualDriver hands(
+      [&lines](const std::string& question) { return lines.Ask(question); });
+  // Goes before the lines do, and stops and disarms what it drives.
+  const auto controller =
+      flags.driver == "manual" ? nullptr : ControllerOf(flags);
+  std::optional<Driving> driving;
+  if (controller) driving.emplace(*controller);
+  rig::Driver& driver = controller ? *controller : hands;
   session::SessionEnds ends;
   ends.say = [](const std::string& line) {
     fmt::print("{}\n", Printable(line));
@@ -222,13 +261,16 @@ int Run(const Flags& flags) {
                std::chrono::system_clock::now().time_since_epoch())
         .count();
   };
-  ends.driver = driver.get();
+  ends.driver = &driver;
   fmt::print("{}", CampaignText(campaign));
   session::Session session(store, campaign, std::move(thrower), options, ends,
                            before);
   session.Start();
   Serve(flags, session, lines);
   session.End();
+  if (!controller && hands.Armed() != rig::ArmedState::kNo) {
+    fmt::print("the springs are latched, or may be: unlatch them\n");
+  }
   return 0;
 }
 

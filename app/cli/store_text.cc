@@ -19,19 +19,6 @@ std::size_t Width(std::string_view text) {
 
 }  // namespace
 
-std::string Printable(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      out += fmt::format("\\x{:02x}", byte);
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string WithU(const core::Measured& measured, double unit) {
   if (!measured) return "-";
   const double value = measured->value / unit;

@@ -5,14 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "app/cli/messages.h"  // IWYU pragma: export: Printable
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/estimate.h"
 
 namespace touchdown::cli {
-
-// Text of others on a terminal: control characters are shown as \xNN, so that
-// no note can move the cursor or break a line.
-std::string Printable(std::string_view text);
 
 // "20.013 +- 0.048": u with two significant digits, the value to the same
 // decimals, both divided by `unit`; "-" where absent.

@@ -96,8 +96,8 @@ int RunMap(const TheoryFlags& flags) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw core::InputError(fmt::format("{}: folder cannot be made: {}",
-                                       folder.string(), error.message()));
+    throw core::OutputError(fmt::format("{}: folder cannot be made: {}",
+                                        folder.string(), error.message()));
   }
   std::vector<std::string> written;
   const auto write = [&](const char* name, const std::string& text) {

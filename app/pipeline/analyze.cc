@@ -515,6 +515,8 @@ Analysis Analyze(const std::filesystem::path& path,
   clip_options.decoder_threads = options.decoder_threads;
   auto clip = vision::OpenClip(path, clip_options);
   const double open_s = Since(start);
+  // Of a file that is read in place: whether it was whole to the end.
+  const std::unique_ptr<vision::Clip> witness = clip->Another();
   // Beside the analysis, where more than one thread is allowed.
   double digest_s = 0.0;
   auto id = std::async(
@@ -554,6 +556,7 @@ Analysis Analyze(const std::filesystem::path& path,
     if (auto light = AnalyzeLight(path, clip_options, analysis, until)) {
       analysis = std::move(*light);
     }
+    if (witness) witness->RequireWhole();
     complete(analysis);
     return analysis;
   } catch (const Unfinished& unfinished) {

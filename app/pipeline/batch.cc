@@ -158,6 +158,8 @@ class Batch {
       answer.what = std::move(trial);
     } catch (const core::StoreError&) {
       throw;
+    } catch (const core::OutputError&) {
+      throw;
     } catch (const core::Cancelled&) {
       throw;
     } catch (const std::exception& error) {

@@ -98,8 +98,8 @@ void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
   std::error_code trouble;
   std::filesystem::create_directories(folder, trouble);
   if (trouble) {
-    throw core::InputError(fmt::format("{}: cannot make this folder: {}",
-                                       folder.string(), trouble.message()));
+    throw core::OutputError(fmt::format("{}: cannot make this folder: {}",
+                                        folder.string(), trouble.message()));
   }
   report::WriteTextFile(folder / "track.csv", track);
   report::WriteTextFile(folder / "analysis.json", document);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <system_error>
@@ -16,6 +17,7 @@
 #include "app/report/text_file.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/core/unfinished.h"
 #include "touchdown/vision/clip_writer.h"
 #include "touchdown/vision/render.h"
@@ -91,12 +93,6 @@ std::filesystem::path ClipPath(const Shot& shot,
       break;
   }
   return base;
-}
-
-std::optional<std::string> ReadText(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
 // A folder of images is never replaced: it may hold what somebody needs.
@@ -248,18 +244,19 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (error) {
-    throw core::InputError(fmt::format("{}: cannot be made a folder: {}",
-                                       options.folder.string(),
-                                       error.message()));
+    throw core::OutputError(fmt::format("{}: cannot be made a folder: {}",
+                                        options.folder.string(),
+                                        error.message()));
   }
   RefuseFolderInUse(out.clip, options.format);
-  const std::optional<std::string> old_truth = ReadText(out.truth_file);
+  const bool had_truth = std::filesystem::exists(out.truth_file, error);
   const std::string truth =
       TruthText(shot, out.truth, out.clip.filename().string(),
                 std::string(Word(options.format)), options.seed);
   // A clip without its truth would pass for a recording: the truth comes first,
   // when all of the clip is rendered, and neither without the other.
   std::optional<core::AllOrNothing> together;
+  std::optional<core::TemporaryName> aside;  // of the older truth
   std::mt19937_64 engine = NoiseEngine(options.seed, shot.name);
   std::int64_t index = 0;
   vision::SensorImage image;
@@ -267,6 +264,10 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
     if (index == shot.frames) {
       if (!together) {
         together.emplace();
+        if (had_truth) {
+          aside.emplace(out.truth_file);
+          std::filesystem::rename(out.truth_file, aside->path());
+        }
         report::WriteTextFile(out.truth_file, truth);
       }
       return std::nullopt;
@@ -281,10 +282,11 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   try {
     WriteClip(out.clip, options.format, shot.camera.fps, next);
   } catch (...) {
-    // An older clip of that name is still there: its truth goes back to it.
-    if (old_truth) {
-      report::WriteTextFile(out.truth_file, *old_truth);
-    } else {
+    // An older clip of that name is still there: its truth goes back to it,
+    // which takes no space.
+    if (aside) {
+      std::filesystem::rename(aside->path(), out.truth_file, error);
+    } else if (!had_truth) {
       std::filesystem::remove(out.truth_file, error);
     }
     throw;

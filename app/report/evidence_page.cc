@@ -259,7 +259,7 @@ void WriteEvidencePages(const ReportInput& input,
   std::error_code trouble;
   std::filesystem::create_directories(pages, trouble);
   if (trouble) {
-    throw core::InputError(
+    throw core::OutputError(
         fmt::format("{}: cannot be made: {}; give a folder that can",
                     pages.string(), trouble.message()));
   }

@@ -142,7 +142,7 @@ void WriteReport(const Report& report, const std::filesystem::path& folder) {
   std::error_code trouble;
   std::filesystem::create_directories(folder, trouble);
   if (trouble) {
-    throw core::InputError(
+    throw core::OutputError(
         fmt::format("{}: cannot be made: {}; give a folder that can",
                     folder.string(), trouble.message()));
   }

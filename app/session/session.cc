@@ -299,6 +299,8 @@ void Session::Take(const fs::path& recording) {
     Log(recording);
   } catch (const core::StoreError&) {
     throw;
+  } catch (const core::OutputError&) {
+    throw;
   } catch (const std::exception& error) {
     Say(fmt::format("not logged: {}", error.what()));
     file_.phase = waiting;

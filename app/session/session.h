@@ -9,6 +9,7 @@
 // goes on by starting anew over the same folder.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <set>
@@ -43,6 +44,14 @@ struct SessionEnds {
   rig::Driver* driver = nullptr;  // nothing: hands only
 };
 
+// How a typed line came: what was pasted in one go never fires.
+struct Arrival {
+  // When its first byte was read.
+  std::chrono::steady_clock::time_point began =
+      std::chrono::steady_clock::now();
+  bool is_alone = true;  // no other line came with it, or waits behind it
+};
+
 class Session {
  public:
   // `before`: what an earlier session of this store left. Throws
@@ -55,7 +64,8 @@ class Session {
   void Start();
   // A line that a person typed. False: the session is to end. What a person
   // gets wrong is answered with a line and changes nothing.
-  bool Obey(const std::string& line);
+  // `fire` wants a line of its own, begun after the answer to `arm` was said.
+  bool Obey(const std::string& line, const Arrival& arrival = {});
   // A complete recording. One that cannot be analysed is said and logged
   // nowhere. Throws core::StoreError.
   void Take(const std::filesystem::path& recording);
@@ -103,7 +113,10 @@ class Session {
   void Include(const std::string& why);
   void Undo();
   void Operator(const std::string& name);
-  void Drive(const std::string& word, const std::string& rest);
+  void Drive(const std::string& word, const std::string& rest,
+             const Arrival& arrival);
+  void Fire(rig::Driver& driver, const std::string& arming,
+            const Arrival& arrival);
   const core::Trial& RequireLast() const;
 
   db::Store& store_;
@@ -122,6 +135,8 @@ class Session {
   bool check_wanted_ = false;  // beyond the daily one
   std::optional<LastTaken> last_;
   std::vector<Act> acts_;
+  // When the last answer to `arm` was said.
+  std::chrono::steady_clock::time_point arming_said_;
   std::vector<std::filesystem::path> held_;  // until conventions are accepted
 };
 

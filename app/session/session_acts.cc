@@ -43,7 +43,7 @@ std::optional<double> Number(const std::string& text) {
 
 }  // namespace
 
-bool Session::Obey(const std::string& line) {
+bool Session::Obey(const std::string& line, const Arrival& arrival) {
   const auto [word, rest] = Split(line);
   if (word == "quit") return false;
   try {
@@ -87,12 +87,14 @@ bool Session::Obey(const std::string& line) {
       SayPlan();
     } else if (word == "set" || word == "arm" || word == "fire" ||
                word == "stop" || word == "reset" || word == "rig") {
-      Drive(word, rest);
+      Drive(word, rest, arrival);
     } else {
       Say(fmt::format("'{}' is no command; `help` lists them", word));
     }
   } catch (const std::invalid_argument& mistake) {
     Say(mistake.what());
+  } catch (const core::OutputError&) {
+    throw;
   } catch (const core::InputError& trouble) {  // the rig's controller
     Say(trouble.what());
   }
@@ -210,7 +212,8 @@ void Session::Operator(const std::string& name) {
   Say("operator: " + name);
 }
 
-void Session::Drive(const std::string& word, const std::string& rest) {
+void Session::Drive(const std::string& word, const std::string& rest,
+                    const Arrival& arrival) {
   if (ends_.driver == nullptr) {
     throw std::invalid_argument("no rig is driven: start with --driver");
   }
@@ -230,8 +233,8 @@ void Session::Drive(const std::string& word, const std::string& rest) {
     Say(fmt::format(
         "interlock {}, {}, {}, {} shots",
         status.interlock == rig::Interlock::kClosed ? "closed" : "OPEN",
-        status.armed ? "ARMED" : "not armed",
-        status.stopped ? "STOPPED" : "not stopped", status.shots));
+        rig::Name(status.armed), status.stopped ? "STOPPED" : "not stopped",
+        status.shots));
   } else if (word == "set") {
     if (!setting_) throw std::invalid_argument("there are no set-points now");
     const auto read = driver.Set(*setting_);
@@ -242,17 +245,36 @@ void Session::Drive(const std::string& word, const std::string& rest) {
   } else if (word == "arm") {
     const auto arming = driver.Arm();
     if (!arming) return refused(arming.error());
+    // Before, for whoever answers at once to what is shown.
+    arming_said_ = std::chrono::steady_clock::now();
     Say(fmt::format("ARMED. When all are clear: fire {}", arming->number));
   } else {
-    const auto number = Number(rest);
-    if (!number || *number < 1.0) {
-      throw std::invalid_argument("fire wants the number of the arming");
-    }
-    const auto shots = driver.Fire(
-        {options_.operator_name, static_cast<std::uint64_t>(*number)});
-    if (!shots) return refused(shots.error());
-    Say(fmt::format("fired ({} shots)", *shots));
+    Fire(driver, rest, arrival);
   }
+}
+
+void Session::Fire(rig::Driver& driver, const std::string& arming,
+                   const Arrival& arrival) {
+  std::uint64_t number = 0;
+  const char* const end = arming.data() + arming.size();
+  const auto [stop, error] = std::from_chars(arming.data(), end, number);
+  if (error != std::errc{} || stop != end || number == 0) {
+    throw std::invalid_argument(fmt::format(
+        "fire '{}': fire wants the number of the arming, a whole number as "
+        "`arm` has said it",
+        arming));
+  }
+  if (!arrival.is_alone || arrival.began <= arming_said_) {
+    Say("fire: refused: it came together with other lines, or before the "
+        "answer to `arm` was shown; type it on its own");
+    return;
+  }
+  const auto shots = driver.Fire({options_.operator_name, number});
+  if (!shots) {
+    Say("fire: refused: " + shots.error().reason);
+    return;
+  }
+  Say(fmt::format("fired ({} shots)", *shots));
 }
 
 }  // namespace touchdown::session

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "touchdown/core/errors.h"
-#include "touchdown/core/unfinished.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::calib {
@@ -352,29 +352,9 @@ std::string CalibrationText(const Calibration& c) {
 
 void WriteCalibration(const std::filesystem::path& path,
                       const Calibration& calibration) {
-  std::filesystem::path partial = path;
-  partial += ".part";
-  const core::Unfinished unfinished(partial);
-  {
-    std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-    out << CalibrationText(calibration);
-    out.close();
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(partial, ignored);
-      throw core::InputError(fmt::format(
-          "{}: cannot be written; is the folder there, and is there space?",
-          path.string()));
-    }
-  }
-  std::error_code trouble;
-  std::filesystem::rename(partial, path, trouble);
-  if (trouble) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw core::InputError(fmt::format("{}: cannot be written: {}",
-                                       path.string(), trouble.message()));
-  }
+  core::OutputFile file(path);
+  file.Write(CalibrationText(calibration));
+  file.Commit();
 }
 
 core::Expected<Calibration> FittedTo(const Calibration& calibration,

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "digests.h"
 #include "register_rows.h"
 #include "schema.h"
 #include "statement.h"
@@ -135,6 +136,7 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
     Transaction snapshot(connection, Transaction::Kind::kRead);
     CheckFile(connection, report.problems);
     CheckChains(connection, report.problems);
+    CheckDigests(connection, report.problems);
     report.campaigns = connection.Integer("SELECT count(*) FROM campaigns");
     for (const RegisterKind kind : kRegisterKinds) {
       report.register_versions += connection.Integer(

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "digests.h"
 #include "register_rows.h"
 #include "rows.h"
 #include "touchdown/core/errors.h"
@@ -106,6 +107,7 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
         .Add(clip.sha256)
         .Add(*known)
         .Run();
+    KeepClipDigest(connection, *known);
     return known;
   }
   Statement(connection,
@@ -117,7 +119,9 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
       .Add(clip.path)
       .Add(now_utc)
       .Run();
-  return sqlite3_last_insert_rowid(connection.handle());
+  const std::int64_t row = sqlite3_last_insert_rowid(connection.handle());
+  KeepClipDigest(connection, row);
+  return row;
 }
 
 std::optional<std::int64_t> CampaignOf(Connection& connection,
@@ -213,6 +217,7 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
       .Add(revision.recorded_at_utc)
       .Add(conditions)
       .Run();
+  KeepDigest(connection, trial_row, row, number);
   return number;
 }
 

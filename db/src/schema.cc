@@ -151,13 +151,23 @@ std::string Evidence() {
 
 }  // namespace
 
+std::string DigestsSql() {
+  return "CREATE TABLE digests (\n"
+         "  trial_id INTEGER PRIMARY KEY REFERENCES trials (id),\n"
+         "  revisions INTEGER NOT NULL CHECK (revisions >= 1),\n"
+         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n"
+         "CREATE TABLE clip_digests (\n"
+         "  clip_id INTEGER PRIMARY KEY REFERENCES clips (id),\n"
+         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n";
+}
+
 std::string SchemaSql() {
   return fmt::format(
              "CREATE TABLE store (\n"
              "  id INTEGER PRIMARY KEY CHECK (id = 1),\n"
              "  {},\n  {}\n) STRICT;\n",
              kUuid, Stamp("created_at_utc")) +
-         RegisterSql() + Evidence() + TriggersSql();
+         RegisterSql() + Evidence() + DigestsSql() + TriggersSql();
 }
 
 void CreateSchema(Connection& connection, std::string_view store_uuid,

@@ -17,7 +17,8 @@ inline constexpr std::int64_t kApplicationId = 0x54445354;
 //   2  no clip, campaign or contact can be replaced by another program either
 //   3  the register is kept in versions; a revision knows its conditions
 //   4  a contact has its extrapolated gap; a revision may be a proposal
-inline constexpr std::int64_t kSchemaVersion = 4;
+//   5  each trial has a digest of its evidence, each clip of its SHA-256
+inline constexpr std::int64_t kSchemaVersion = 5;
 
 // All tables, indexes and triggers of version kSchemaVersion.
 std::string SchemaSql();

@@ -8,6 +8,9 @@ namespace touchdown::db {
 // The lab's register, and the conditions that refer to it.
 std::string RegisterSql();
 
+// The digests of trials and clips (digests.h).
+std::string DigestsSql();
+
 // What keeps evidence from being changed or removed.
 std::string TriggersSql();
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "register_rows.h"
 #include "schema_parts.h"
 
@@ -119,6 +121,25 @@ std::string TriggersSql() {
       "conventions'); END;\n"
       "CREATE TRIGGER campaigns_refuse_DELETE BEFORE DELETE ON campaigns\n"
       "BEGIN SELECT raise(ABORT, 'campaigns are kept'); END;\n";
+  // A digest grows by one revision at a time.
+  sql +=
+      "CREATE TRIGGER digests_grow BEFORE UPDATE ON digests\n"
+      "WHEN NEW.trial_id <> OLD.trial_id OR NEW.revisions <> OLD.revisions + "
+      "1\n"
+      "BEGIN SELECT raise(ABORT, 'a digest grows with its trial'); END;\n"
+      "CREATE TRIGGER clip_digests_refuse_UPDATE BEFORE UPDATE ON "
+      "clip_digests\n"
+      "BEGIN SELECT raise(ABORT, 'a clip keeps its digest'); END;\n";
+  for (const auto& [table, key] : {std::pair{"digests", "trial_id"},
+                                   std::pair{"clip_digests", "clip_id"}}) {
+    sql += fmt::format(
+        "CREATE TRIGGER {0}_refuse_DELETE BEFORE DELETE ON {0}\n"
+        "BEGIN SELECT raise(ABORT, '{0} are kept'); END;\n"
+        "CREATE TRIGGER {0}_refuse_REPLACE BEFORE INSERT ON {0}\n"
+        "WHEN EXISTS (SELECT 1 FROM {0} WHERE {1} = NEW.{1})\n"
+        "BEGIN SELECT raise(ABORT, '{0} are kept'); END;\n",
+        table, key);
+  }
   return sql + RegisterTriggers() + InsertTriggers();
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <random>
 #include <stdexcept>
@@ -284,6 +286,28 @@ std::string Statement::TakeText() {
   const int size = sqlite3_column_bytes(statement_, column_++);
   if (text == nullptr) return {};
   return {reinterpret_cast<const char*>(text), static_cast<std::size_t>(size)};
+}
+
+void Statement::AppendRow(std::string& text) const {
+  const int columns = sqlite3_column_count(statement_);
+  for (int i = 0; i < columns; ++i) {
+    const int type = sqlite3_column_type(statement_, i);
+    if (type == SQLITE_NULL) continue;
+    text += sqlite3_column_name(statement_, i);
+    if (type == SQLITE_INTEGER) {
+      text += fmt::format("=i{}\n", sqlite3_column_int64(statement_, i));
+    } else if (type == SQLITE_FLOAT) {
+      const double value = sqlite3_column_double(statement_, i);
+      text += fmt::format("=r{:016x}\n", std::bit_cast<std::uint64_t>(value));
+    } else {
+      const void* const bytes = sqlite3_column_blob(statement_, i);
+      const auto size =
+          static_cast<std::size_t>(sqlite3_column_bytes(statement_, i));
+      text += fmt::format("={}{}:", type == SQLITE_TEXT ? 't' : 'b', size);
+      text.append(static_cast<const char*>(bytes), size);
+      text += '\n';
+    }
+  }
 }
 
 bool Statement::NextIsNull() const {

@@ -95,6 +95,9 @@ class Statement {
   std::optional<std::int64_t> TakeOptionalInteger();
   std::optional<std::string> TakeOptionalText();
   bool NextIsNull() const;
+  // Adds the row, as a text that no other row has: of each column that is not
+  // NULL its name, its type, its bytes.
+  void AppendRow(std::string& text) const;
   void Skip(int columns) { column_ += columns; }
 
  private:

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <memory>
 #include <random>
@@ -98,16 +100,41 @@ class SessionAtASerialPort : public SessionCommand {
   // A session with the springs latched.
   std::unique_ptr<RunningProgram> Armed() {
     auto session = std::make_unique<RunningProgram>(
-        Arguments({"--operator", "A. Lee", "--no-check", "--driver",
-                   controller_.port()}));
+        Arguments({"--operator", "A. Lee", "--no-check", "--limit-s", "5",
+                   "--driver", controller_.port()}));
     session->Type("");
     session->Until("predicted");
+    session->Type("reset");  // whoever ended before has stopped it
+    session->Until("ready");
     session->Type("set");
     EXPECT_THAT(session->Until("it reads"), HasSubstr("elevation"));
     session->Type("arm");
     EXPECT_THAT(session->Until("fire"), HasSubstr("ARMED"));
     EXPECT_TRUE(controller_.armed());
     return session;
+  }
+  // As far as `set`.
+  std::unique_ptr<RunningProgram> Ready() {
+    auto session = std::make_unique<RunningProgram>(
+        Arguments({"--operator", "A. Lee", "--no-check", "--driver",
+                   controller_.port()}));
+    session->Type("");
+    session->Until("predicted");
+    session->Type("set");
+    EXPECT_THAT(session->Until("it reads"), HasSubstr("elevation"));
+    return session;
+  }
+  // Its end sends stop, then disarm, whatever was known before.
+  void ExpectSafeEnd(RunningProgram& session) {
+    const auto disarms = controller_.HowOften("disarm");
+    const int stops = controller_.stop_bytes();
+    controller_.StickLatch(false);
+    session.Type("quit");
+    EXPECT_EQ(session.End(0), 0);
+    EXPECT_TRUE(controller_.Hears("disarm", disarms + 1));
+    EXPECT_TRUE(controller_.BecomesStopped());
+    EXPECT_TRUE(controller_.BecomesDisarmed());
+    EXPECT_GT(controller_.stop_bytes(), stops);
   }
 
   rig::SimulatedController controller_;
@@ -119,7 +146,7 @@ TEST_F(SessionAtASerialPort, ThrowsWhenAPersonSaysSo) {
   EXPECT_THAT(session->Until("fired"), HasSubstr("1 shots"));
   EXPECT_EQ(controller_.shots(), 1);
   session->Type("fire 1");
-  EXPECT_THAT(session->Until("refused"), HasSubstr("not armed"));
+  EXPECT_THAT(session->Until("refused"), HasSubstr("no arming"));
   session->Type("quit");
   EXPECT_EQ(session->End(0), 0);
   EXPECT_EQ(controller_.shots(), 1);
@@ -146,10 +173,7 @@ TEST_F(SessionAtASerialPort, ControlCStopsTheRigAndThenTheSession) {
 TEST_F(SessionAtASerialPort, IsNeverLeftArmed) {
   {
     const auto session = Armed();
-    session->Type("quit");
-    EXPECT_EQ(session->End(0), 0);
-    EXPECT_FALSE(controller_.armed());
-    EXPECT_FALSE(controller_.stopped());
+    ExpectSafeEnd(*session);
   }
   {
     const auto session = Armed();
@@ -157,6 +181,137 @@ TEST_F(SessionAtASerialPort, IsNeverLeftArmed) {
     EXPECT_TRUE(controller_.BecomesStopped());
     EXPECT_FALSE(controller_.armed());
   }
+}
+
+TEST_F(SessionAtASerialPort, NoSignalLeavesItArmed) {
+  for (const int signal : {SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGABRT, SIGSEGV,
+                           SIGBUS, SIGFPE, SIGILL}) {
+    SCOPED_TRACE(strsignal(signal));
+    const auto session = Armed();
+    const auto disarms = controller_.HowOften("disarm");
+    const bool is_fault = signal == SIGABRT || signal == SIGSEGV ||
+                          signal == SIGBUS || signal == SIGFPE ||
+                          signal == SIGILL;
+    EXPECT_EQ(session->End(signal), is_fault ? -1 : 0);
+    EXPECT_TRUE(controller_.BecomesStopped());
+    EXPECT_TRUE(controller_.Hears("disarm", disarms + 1));
+    EXPECT_FALSE(controller_.armed());
+  }
+}
+
+// What no handler survives: the controller's own watch.
+TEST_F(SessionAtASerialPort, AKilledProgramIsNoticedByItsSilence) {
+  controller_.Watch();
+  const auto session = Armed();
+  const auto killed = std::chrono::steady_clock::now();
+  EXPECT_EQ(session->End(SIGKILL), -1);
+  EXPECT_TRUE(controller_.BecomesDisarmed());
+  EXPECT_LE(std::chrono::steady_clock::now() - killed, rig::kLongestSilence);
+  EXPECT_EQ(controller_.silences(), 1);
+}
+
+// The four situations in which springs were latched and nobody was told.
+TEST_F(SessionAtASerialPort, SaysNotArmedOnlyWhereTheControllerDoes) {
+  {
+    SCOPED_TRACE("the answer to arm is lost");
+    const auto session = Ready();
+    controller_.Script("arm", std::deque<rig::Act>(3, rig::Act::kSilence));
+    controller_.StickLatch();
+    session->Type("arm");
+    session->Until("no answer to 'arm'");
+    session->Type("rig");
+    EXPECT_THAT(session->Until("interlock"), HasSubstr(", ARMED, STOPPED"));
+    ExpectSafeEnd(*session);
+  }
+  controller_.Unstop();
+  {
+    SCOPED_TRACE("an empty token");
+    const auto session = Ready();
+    controller_.Script("arm", {rig::Act::kEmpty});
+    controller_.StickLatch();
+    session->Type("arm");
+    session->Until("without a token");
+    session->Type("rig");
+    EXPECT_THAT(session->Until("interlock"), HasSubstr(", ARMED, STOPPED"));
+    ExpectSafeEnd(*session);
+  }
+  controller_.Unstop();
+  {
+    SCOPED_TRACE("fire is refused");
+    const auto session = Ready();
+    session->Type("arm");
+    session->Until("fire 1");
+    controller_.Script("fire", {rig::Act::kRefusal});
+    controller_.StickLatch();
+    session->Type("fire 1");
+    session->Until("refused");
+    session->Type("rig");
+    EXPECT_THAT(session->Until("interlock"), HasSubstr(", ARMED, STOPPED"));
+    ExpectSafeEnd(*session);
+  }
+  controller_.Unstop();
+  {
+    SCOPED_TRACE("armed already when connected");
+    controller_.LatchByHand();
+    controller_.StickLatch();
+    RunningProgram session(Arguments({"--operator", "A. Lee", "--no-check",
+                                      "--driver", controller_.port()}));
+    EXPECT_THAT(session.Until("rig: ARMED"), HasSubstr("was ARMED"));
+    ExpectSafeEnd(session);
+  }
+}
+
+// Whatever is being analysed. The limit is the issue's; what is waited for is
+// the controller.
+TEST_F(SessionAtASerialPort, TypedStopActsWhileARecordingIsAnalysed) {
+  const auto session = Armed();
+  testing::WriteBusyClip(bench_.films() / "busy.mraw", 400);
+  while (ReadSession(bench_.db())->phase != Phase::kAnalysing) sched_yield();
+  const auto typed = std::chrono::steady_clock::now();
+  session->Type("stop");
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_LE(std::chrono::steady_clock::now() - typed,
+            std::chrono::milliseconds(100));
+  EXPECT_EQ(ReadSession(bench_.db())->phase, Phase::kAnalysing);
+  EXPECT_FALSE(controller_.armed());
+}
+
+// What was typed before a stop, and waits, is not done after it.
+TEST_F(SessionAtASerialPort, AStopDropsWhatWaits) {
+  const auto session = Armed();
+  testing::WriteBusyClip(bench_.films() / "busy.mraw", 400);
+  while (ReadSession(bench_.db())->phase != Phase::kAnalysing) sched_yield();
+  const auto resets = controller_.HowOften("reset");
+  session->Type("reset");
+  session->Type("set");
+  session->Type("stop");
+  EXPECT_TRUE(controller_.BecomesStopped());
+  EXPECT_EQ(ReadSession(bench_.db())->phase, Phase::kAnalysing);
+  session->Until("STOPPED; `reset`");
+  session->Type("rig");
+  EXPECT_THAT(session->Until("interlock"), HasSubstr("STOPPED"));
+  EXPECT_EQ(controller_.HowOften("reset"), resets);
+  EXPECT_TRUE(controller_.stopped());
+}
+
+TEST_F(SessionAtASerialPort, PastedLinesNeverFire) {
+  const auto session = Ready();
+  session->Type("arm\nfire 1");
+  EXPECT_THAT(session->Until("refused"),
+              HasSubstr("together with other lines"));
+  session->Type("fire 1\nrig");
+  EXPECT_THAT(session->Until("refused"),
+              HasSubstr("together with other lines"));
+  session->Until("interlock");
+  EXPECT_EQ(controller_.HowOften("fire"), 0);
+  for (const char* mistake : {"fire 1.9", "fire 1 2", "fire -1", "fire 0",
+                              "fire 1e0", "fire +1", "fire 0x1", "fire"}) {
+    session->Type(mistake);
+    session->Until("fire wants the number");
+  }
+  EXPECT_EQ(controller_.HowOften("fire"), 0);
+  session->Type("fire 1");
+  EXPECT_THAT(session->Until("fired"), HasSubstr("1 shots"));
 }
 
 TEST_F(SessionAtASerialPort, AFaultOfTheStoreDisarmsIt) {

@@ -261,7 +261,7 @@ TEST_F(SessionTest, ConventionsThatChangeEndIt) {
 TEST_F(SessionTest, TheRigFiresOnAPersonsWordOnly) {
   Begin();
   EXPECT_THAT(Obey(""), HasSubstr("next shot"));
-  EXPECT_THAT(Obey("fire 1"), HasSubstr("refused: not armed"));
+  EXPECT_THAT(Obey("fire 1"), HasSubstr("refused: no arming"));
   EXPECT_THAT(Obey("set"), HasSubstr("it reads elevation"));
   EXPECT_THAT(Obey("arm"), HasSubstr("fire 1"));
   EXPECT_THAT(Obey("fire"), HasSubstr("wants the number"));

@@ -45,7 +45,7 @@ class RunningProgram {
   ~RunningProgram() {
     if (child_ > 0) End(SIGKILL);
     std::fclose(out_);
-    close(in_);
+    CloseInput();
   }
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
@@ -74,6 +74,10 @@ class RunningProgram {
     if (write(in_, bytes.data(), bytes.size()) < 0) {
       throw std::runtime_error("the program reads no more");
     }
+  }
+  void CloseInput() {
+    if (in_ >= 0) close(in_);
+    in_ = -1;
   }
   // Waits until the program has worked for so long on its processors; false if
   // it ended before.

@@ -61,7 +61,7 @@ class Input {
  public:
   explicit Input(std::filesystem::path path)
       : path_(std::move(path)),
-        file_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
+        file_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     struct stat status {};
     if (file_ < 0) Fail(errno);
     if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {

@@ -141,10 +141,12 @@ class MrawClip final : public Clip {
     copied_ = rows;
   }
   void HasRead() const override { file_->HasRead(); }
+  void RequireWhole() const override { file_->RequireWhole(); }
 
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
+    file_->RequireNothingLost();
     core::Frame frame;
     frame.bit_depth = info_.bit_depth;
     frame.time_s = static_cast<double>(index) / info_.time_base.fps;

@@ -98,10 +98,12 @@ class TiffStackClip final : public Clip {
                     begin + (window.y + window.height) * row_bytes());
   }
   void HasRead() const override { file_->HasRead(); }
+  void RequireWhole() const override { file_->RequireWhole(); }
 
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
+    file_->RequireNothingLost();
     core::Frame frame;
     if (plain_) {
       frame = InFile(index, window);

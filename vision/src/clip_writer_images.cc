@@ -3,8 +3,8 @@
 #include <system_error>
 
 #include "frame_feed.h"
-#include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/vision/clip_writer.h"
 #include "touchdown/vision/image_file.h"
 
@@ -20,15 +20,15 @@ std::int64_t WriteImageFolder(const std::filesystem::path& folder,
   if (std::filesystem::exists(target, trouble) &&
       !(std::filesystem::is_directory(target, trouble) &&
         std::filesystem::is_empty(target, trouble))) {
-    throw core::InputError(
+    throw core::OutputError(
         fmt::format("{}: exists already; name a new folder or empty this one",
                     target.string()));
   }
-  TemporaryName name(target);
+  core::TemporaryName name(target);
   std::filesystem::create_directory(name.path(), trouble);
   if (trouble) {
-    throw core::InputError(fmt::format("{}: cannot be written: {}",
-                                       target.string(), trouble.message()));
+    throw core::OutputError(fmt::format("{}: cannot be written: {}",
+                                        target.string(), trouble.message()));
   }
   FrameFeed feed(next);
   while (const auto frame = feed.Next()) {

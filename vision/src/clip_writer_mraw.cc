@@ -9,7 +9,7 @@
 
 #include "clip_formats.h"
 #include "frame_feed.h"
-#include "output_file.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/vision/clip_writer.h"
 
 namespace touchdown::vision {
@@ -137,7 +137,7 @@ std::int64_t WriteMraw(const std::filesystem::path& path,
   }
   FrameFeed feed(next);
   Facts facts;
-  OutputFile data(path);
+  core::OutputFile data(path);
   Packer packer;
   std::vector<std::byte> packed;
   while (const auto frame = feed.Next()) {
@@ -166,10 +166,12 @@ std::int64_t WriteMraw(const std::filesystem::path& path,
 
   std::filesystem::path header_path = path;
   header_path.replace_extension(options.xml_header ? ".cihx" : ".cih");
-  OutputFile header(header_path);
+  core::OutputFile header(header_path);
   const std::string text =
       options.xml_header ? Cihx(facts, options) : Cih(facts, options);
   header.Write(std::as_bytes(std::span(text)));
+  data.Finish();
+  header.Finish();
   // The data first: a header whose recording is missing says so when opened.
   data.Commit();
   header.Commit();

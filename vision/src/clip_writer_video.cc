@@ -12,8 +12,8 @@ extern "C" {
 #include "clip_formats.h"
 #include "frame_feed.h"
 #include "libav.h"
-#include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/vision/clip_writer.h"
 
 namespace touchdown::vision {
@@ -149,9 +149,9 @@ class VideoWriter {
  private:
   void Check(int code) const {
     if (code >= 0) return;
-    throw core::InputError(fmt::format("{}: cannot be written: {}",
-                                       name_.target().string(),
-                                       LibavError(code)));
+    throw core::OutputError(fmt::format("{}: cannot be written: {}",
+                                        name_.target().string(),
+                                        LibavError(code)));
   }
 
   void Start(const core::Frame& frame) {
@@ -222,6 +222,8 @@ class VideoWriter {
       if (matrix == nullptr) Check(AVERROR(ENOMEM));
       Libav().av_display_rotation_set(matrix, -90.0 * options_.turn_quarters);
     }
+    // Made by us, so that it is new and no link; libav then writes into it.
+    close(name_.MakeFile());
     Check(Libav().avio_open(&format_->pb,
                             ("file:" + name_.path().string()).c_str(),
                             AVIO_FLAG_WRITE));
@@ -257,7 +259,8 @@ class VideoWriter {
 
   const char* container_;
   VideoOptions options_;
-  TemporaryName name_;  // before format_: the file is closed, then removed
+  core::TemporaryName
+      name_;  // before format_: the file is closed, then removed
   std::unique_ptr<AVFormatContext, MuxerDelete> format_;
   LibavPtr<AVCodecContext> codec_;
   LibavPtr<AVPacket> packet_;

@@ -19,9 +19,15 @@ void DecodePng(FileBytes file, const std::string& name, Image& image);
 void DecodeTiff(FileBytes file, const std::string& name, Image& image);
 void DecodeJpeg(FileBytes file, const std::string& name, Image& image);
 
-// Sets the geometry and makes room, after checking that the size is sane.
+// How many pixels a file of that size may stand for: what a header says
+// beyond it is damage, and is found out before a byte is allocated.
+std::int64_t MostPixels(std::size_t file_bytes);
+
+// Sets the geometry and makes room, after checking that the size is sane for a
+// file of `file_bytes`.
 void Allocate(std::int64_t width_px, std::int64_t height_px,
-              std::int32_t bit_depth, const std::string& name, Image& image);
+              std::int32_t bit_depth, std::size_t file_bytes,
+              const std::string& name, Image& image);
 
 // Rec. ITU-R BT.601 luma of samples of up to 16 bits, rounded to the nearest;
 // the weights times 2^16, which sum to 2^16, so that gray stays what it is.

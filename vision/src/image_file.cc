@@ -17,6 +17,12 @@ namespace {
 // MiB.
 constexpr std::int64_t kMaxSidePx = 1 << 16;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
+// Pixels that a byte of a file can stand for: Deflate (PNG, TIFF) makes at most
+// 1032 bytes of one, a JPEG of one gray 4 bits for each 64 pixels and
+// component; LZW comes to 2700. More is a header that lies, found out before a
+// byte is allocated. What is added: pictures of the size of a thumbnail.
+constexpr std::int64_t kMaxPixelsPerByte = 4096;
+constexpr std::int64_t kAlwaysAllowedPixels = 1 << 16;
 
 bool StartsWith(FileBytes file, std::initializer_list<std::uint8_t> magic) {
   return file.size() >= magic.size() &&
@@ -41,13 +47,27 @@ bool IsImageName(const std::filesystem::path& path) {
          extension == ".jpg" || extension == ".jpeg";
 }
 
+std::int64_t MostPixels(std::size_t file_bytes) {
+  constexpr std::int64_t kMaxBytes = kMaxPixels / kMaxPixelsPerByte;
+  return kAlwaysAllowedPixels +
+         kMaxPixelsPerByte *
+             std::min(static_cast<std::int64_t>(file_bytes), kMaxBytes);
+}
+
 void Allocate(std::int64_t width_px, std::int64_t height_px,
-              std::int32_t bit_depth, const std::string& name, Image& image) {
+              std::int32_t bit_depth, std::size_t file_bytes,
+              const std::string& name, Image& image) {
   if (width_px < 1 || height_px < 1 || width_px > kMaxSidePx ||
       height_px > kMaxSidePx || width_px * height_px > kMaxPixels) {
     throw core::InputError(fmt::format(
         "{}: {}x{} pixels, expected 1 .. {} a side and at most {} in all", name,
         width_px, height_px, kMaxSidePx, kMaxPixels));
+  }
+  if (width_px * height_px > MostPixels(file_bytes)) {
+    throw core::InputError(fmt::format(
+        "{}: says that it is {}x{} pixels, more than its {} bytes can hold; it "
+        "is damaged, or cut off",
+        name, width_px, height_px, file_bytes));
   }
   image.width_px = static_cast<std::int32_t>(width_px);
   image.height_px = static_cast<std::int32_t>(height_px);
@@ -76,6 +96,7 @@ void ReadImage(const std::filesystem::path& path, Image& image) {
         file.empty() ? "is empty, expected PNG, TIFF or JPEG"
                      : "not a PNG, TIFF or JPEG picture, whatever its name"));
   }
+  map.RequireWhole();
 }
 
 Image ReadImage(const std::filesystem::path& path) {

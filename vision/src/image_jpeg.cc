@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "image_codecs.h"
-#include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/vision/encode_image.h"
 
 namespace touchdown::vision {
@@ -119,7 +119,7 @@ void DecodeJpeg(FileBytes file, const std::string& name, Image& image) {
         fmt::format("{}: damaged or unsupported JPEG: {}", name, trouble.text));
   };
   if (!ReadHeader(&jpeg, &trouble, file)) throw fail();
-  Allocate(jpeg.image_width, jpeg.image_height, 8, name, image);
+  Allocate(jpeg.image_width, jpeg.image_height, 8, file.size(), name, image);
   if (!ReadRows(&jpeg, &trouble,
                 reinterpret_cast<std::uint8_t*>(image.pixels.data()))) {
     throw fail();
@@ -156,7 +156,7 @@ std::string EncodeJpeg(const core::Frame& frame, int quality) {
 
 void WriteJpeg(const std::filesystem::path& path, const core::Frame& frame,
                int quality) {
-  OutputFile file(path);
+  core::OutputFile file(path);
   const std::string bytes = EncodeJpeg(frame, quality);
   file.Write(std::as_bytes(std::span(bytes)));
   file.Commit();

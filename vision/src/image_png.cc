@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "image_codecs.h"
-#include "output_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/output_file.h"
 #include "touchdown/vision/encode_image.h"
 
 namespace touchdown::vision {
@@ -175,7 +175,7 @@ void Encode(const Rows& rows, const std::string& name, const Sink& sink) {
   const bool done = png_info != nullptr && WriteRows(png, png_info, rows);
   png_destroy_write_struct(&png, &png_info);
   if (!done) {
-    throw core::InputError(
+    throw core::OutputError(
         trouble.empty()
             ? fmt::format("{}: cannot be written: {}", name, message.text)
             : trouble);
@@ -183,7 +183,7 @@ void Encode(const Rows& rows, const std::string& name, const Sink& sink) {
 }
 
 void Write(const std::filesystem::path& path, const Rows& rows) {
-  OutputFile file(path);
+  core::OutputFile file(path);
   Encode(rows, path.string(),
          [&](std::span<const std::byte> bytes) { file.Write(bytes); });
   file.Commit();
@@ -222,7 +222,8 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
   Layout layout;
   if (!ReadLayout(png, png_info, &layout)) throw fail();
   Allocate(layout.width, layout.height,
-           layout.bits == 16 ? layout.significant_bits : 8, name, image);
+           layout.bits == 16 ? layout.significant_bits : 8, file.size(), name,
+           image);
   if (layout.channels == 1) {
     const std::size_t stride =
         std::size_t{layout.width} * (layout.bits == 16 ? 2 : 1);

@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "image_codecs.h"
-#include "output_file.h"
 #include "tiff_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/output_file.h"
 
 namespace touchdown::vision {
 namespace {
@@ -96,7 +96,8 @@ Kind KindOf(TIFF* tiff, const std::string& name) {
 
 // Hands the rows over, from the top; false where libtiff finds them damaged.
 template <class Take>
-bool EachRow(TIFF* tiff, const Kind& kind, const Take& take) {
+bool EachRow(TIFF* tiff, const Kind& kind, std::size_t file_bytes,
+             const Take& take) {
   const std::size_t pixel = kind.pixel_bytes();
   const std::size_t row_bytes = kind.width * pixel;
   if (!kind.tiled) {
@@ -114,6 +115,7 @@ bool EachRow(TIFF* tiff, const Kind& kind, const Take& take) {
   constexpr std::uint32_t kMaxTilePx = 1 << 14;
   const std::size_t tile_row = wide * pixel;
   if (wide < 1 || high < 1 || wide > kMaxTilePx || high > kMaxTilePx ||
+      static_cast<std::int64_t>(wide) * high > MostPixels(file_bytes) ||
       TIFFTileSize64(tiff) != tile_row * high) {
     return false;
   }
@@ -142,18 +144,19 @@ void Decode(TIFF* tiff, const TiffMemory& memory, const std::string& name,
            kind.bits == 8 ? 8
            : kind.gray    ? DepthOf(tiff)
                           : 16,
-           name, image);
+           memory.input.size(), name, image);
   const RowLayout layout{image.width_px, kind.samples, !kind.gray,
                          kind.meaning == PHOTOMETRIC_MINISWHITE};
   auto* out = reinterpret_cast<std::uint8_t*>(image.pixels.data());
-  const bool whole = EachRow(tiff, kind, [&](const std::uint8_t* row) {
-    if (kind.bits == 8) {
-      TakeRow<std::uint8_t>(row, layout, out);
-    } else {
-      TakeRow<std::uint16_t>(row, layout, out);
-    }
-    out += std::size_t{kind.width} * (kind.bits / 8u);
-  });
+  const bool whole =
+      EachRow(tiff, kind, memory.input.size(), [&](const std::uint8_t* row) {
+        if (kind.bits == 8) {
+          TakeRow<std::uint8_t>(row, layout, out);
+        } else {
+          TakeRow<std::uint16_t>(row, layout, out);
+        }
+        out += std::size_t{kind.width} * (kind.bits / 8u);
+      });
   if (!whole) {
     throw core::InputError(
         fmt::format("{}: damaged TIFF: {}", name, memory.error));
@@ -186,7 +189,7 @@ void DecodeTiffPage(FileBytes file, std::uint64_t directory,
 }
 
 void WriteTiff(const std::filesystem::path& path, const core::Frame& frame) {
-  OutputFile file(path);
+  core::OutputFile file(path);
   std::vector<std::uint8_t> bytes;
   TiffMemory memory;
   memory.output = &bytes;

@@ -258,8 +258,11 @@ PhotronHeader ReadPhotronHeader(const std::filesystem::path& path) {
   }
   const std::string_view bytes(reinterpret_cast<const char*>(file.data()),
                                static_cast<std::size_t>(file.size_bytes()));
-  return LowerExtension(path) == ".cihx" ? ParseCihx(bytes, path.string())
-                                         : ParseCih(bytes, path.string());
+  PhotronHeader header = LowerExtension(path) == ".cihx"
+                             ? ParseCihx(bytes, path.string())
+                             : ParseCih(bytes, path.string());
+  file.RequireWhole();
+  return header;
 }
 
 }  // namespace touchdown::vision

@@ -64,7 +64,13 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
   Libav().avcodec_parameters_to_context(context.get(), &parameters);
   context->pkt_timebase = stream.time_base;
   context->thread_count = threads;
-  context->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
+  // libavcodec's MPEG-4 part 2 (ffmpeg 5.1) ends the process by an assertion
+  // where a damaged frame is given up (AV_EF_EXPLODE) while another thread
+  // waits for it: no frame threads for it, which costs its speed on several
+  // cores.
+  context->thread_type = parameters.codec_id == AV_CODEC_ID_MPEG4
+                             ? FF_THREAD_SLICE
+                             : FF_THREAD_FRAME | FF_THREAD_SLICE;
   // Beyond any camera; a damaged header cannot make the decoder ask for more.
   context->max_pixels = std::int64_t{1} << 28;
   // A frame with errors is an error, not something the decoder makes up.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "require.h"
+#include "touchdown/core/errors.h"
 
 namespace touchdown::rig {
 namespace {
@@ -15,10 +16,23 @@ constexpr const char* kStopped =
 
 }  // namespace
 
+std::string_view Name(ArmedState state) {
+  switch (state) {
+    case ArmedState::kNo:
+      return "not armed";
+    case ArmedState::kYes:
+      return "ARMED";
+    case ArmedState::kUnknown:
+      break;
+  }
+  return "UNKNOWN, take it as ARMED";
+}
+
 core::Expected<Setting> Driver::Set(const Setting& wanted) {
   RequireAtLeastZero("compression_m", wanted.compression_m);
   RequireFinite("elevation_rad", wanted.elevation_rad);
   RequireAtLeastZero("muzzle_height_m", wanted.muzzle_height_m);
+  const std::lock_guard lock(command_);
   if (is_stopped()) return core::AbsentBecause(kStopped);
   Disarm();
   setting_.reset();  // not known while it moves
@@ -29,25 +43,53 @@ core::Expected<Setting> Driver::Set(const Setting& wanted) {
 }
 
 core::Expected<Arming> Driver::Arm() {
+  const std::lock_guard lock(command_);
   if (is_stopped()) return core::AbsentBecause(kStopped);
   if (!setting_) return core::AbsentBecause("nothing is set yet: set it first");
-  armed_.reset();
+  arming_.reset();
   const auto interlock = ReadInterlock();
   if (!interlock) return tl::unexpected(interlock.error());
   if (*interlock != Interlock::kClosed) {
     return core::AbsentBecause("the interlock is open: close the guard first");
   }
-  const auto latched = Latch();
-  if (!latched) return tl::unexpected(latched.error());
+  try {
+    const auto latched = Latch();
+    if (latched) ReadState(false);
+    if (latched && Armed() == ArmedState::kYes && !is_stopped()) {
+      arming_ = Arming{++armings_, *setting_};
+      return *arming_;
+    }
+    MakeSafe();
+    if (!latched) return tl::unexpected(latched.error());
+  } catch (const core::InputError&) {
+    MakeSafe();
+    throw;
+  }
   if (is_stopped()) return core::AbsentBecause(kStopped);
-  armed_ = Arming{++armings_, *setting_};
-  return *armed_;
+  return core::AbsentBecause(
+      "it was latched, and does not say now that it is: disarmed");
 }
 
 void Driver::Disarm() {
-  if (!armed_) return;
-  armed_.reset();
-  Unlatch();
+  const std::lock_guard lock(command_);
+  arming_.reset();
+  if (Armed() == ArmedState::kNo) return;
+  try {
+    Unlatch();
+    ReadState(false);
+  } catch (const core::InputError&) {  // it does not answer
+  }
+  // What cannot be disarmed must not be fired.
+  if (Armed() != ArmedState::kNo && !is_stopped()) Stop();
+}
+
+void Driver::MakeSafe() {
+  arming_.reset();
+  try {
+    ReadState(false);
+  } catch (const core::InputError&) {  // unknown, then
+  }
+  Disarm();
 }
 
 core::Expected<std::int64_t> Driver::Fire(
@@ -56,36 +98,59 @@ core::Expected<std::int64_t> Driver::Fire(
     throw std::invalid_argument(
         "by is empty, must name the person who confirms the shot");
   }
+  const std::lock_guard lock(command_);
   if (is_stopped()) return core::AbsentBecause(kStopped);
-  if (!armed_) return core::AbsentBecause("not armed: arm it first");
-  if (confirmation.arming != armed_->number) {
+  if (!arming_) return core::AbsentBecause("no arming is in force: arm it");
+  if (confirmation.arming != arming_->number) {
     return core::AbsentBecause(
         fmt::format("arming {} is confirmed, but {} is in force",
-                    confirmation.arming, armed_->number));
+                    confirmation.arming, arming_->number));
   }
-  const auto interlock = ReadInterlock();
-  if (!interlock || *interlock != Interlock::kClosed) {
-    Disarm();
-    if (!interlock) return tl::unexpected(interlock.error());
-    return core::AbsentBecause("the interlock is open: disarmed");
+  arming_.reset();  // used up, whatever comes
+  try {
+    const auto interlock = ReadInterlock();
+    if (!interlock || *interlock != Interlock::kClosed) {
+      MakeSafe();
+      if (!interlock) return tl::unexpected(interlock.error());
+      return core::AbsentBecause("the interlock is open: disarmed");
+    }
+    // A Stop() from here on overtakes the shot in the hardware, which refuses
+    // until it is reset.
+    if (is_stopped()) return core::AbsentBecause(kStopped);
+    auto shots = Release();
+    if (shots) {
+      Refresh();
+    } else {
+      MakeSafe();
+    }
+    return shots;
+  } catch (const core::InputError&) {
+    MakeSafe();
+    throw;
   }
-  // A Stop() from here on overtakes the shot in the hardware, which refuses
-  // until it is reset.
-  if (is_stopped()) return core::AbsentBecause(kStopped);
-  armed_.reset();  // used up, whatever comes
-  return Release();
 }
 
 DriverStatus Driver::Status() {
+  const std::lock_guard lock(command_);
   DriverStatus status;
   status.setting = setting_;
-  status.armed = armed_.has_value();
-  status.stopped = is_stopped();
-  if (status.stopped) return status;
-  if (const auto interlock = ReadInterlock()) status.interlock = *interlock;
-  status.shots = CountShots();
+  if (!is_stopped()) {
+    if (const auto interlock = ReadInterlock()) status.interlock = *interlock;
+    status.shots = CountShots();
+  }
+  Refresh();
+  status.armed = Armed();
   status.stopped = is_stopped();
   return status;
+}
+
+void Driver::Refresh() {
+  const std::unique_lock lock(command_, std::try_to_lock);
+  if (!lock.owns_lock()) return;
+  try {
+    ReadState(true);
+  } catch (const core::InputError&) {  // Armed() becomes unknown
+  }
 }
 
 void Driver::Stop() noexcept {
@@ -93,16 +158,27 @@ void Driver::Stop() noexcept {
   Halt();
 }
 
+void Driver::HearStopped() noexcept {
+  if (!is_stopped()) ++stops_;
+}
+
 core::Expected<void> Driver::Reset(const std::string& by) {
   if (by.empty()) {
     throw std::invalid_argument("by is empty, must name the person who resets");
   }
-  armed_.reset();
+  const std::lock_guard lock(command_);
+  arming_.reset();
   setting_.reset();
   // Stopped until the hardware has said that it is ready.
   const std::uint32_t stops = stops_.load();
   auto resumed = Resume();
-  if (resumed) answered_.store(stops);
+  if (!resumed) return resumed;
+  answered_.store(stops);
+  MakeSafe();
+  if (is_stopped()) {
+    return core::AbsentBecause(
+        "it is still stopped; look at its button and at its springs");
+  }
   return resumed;
 }
 

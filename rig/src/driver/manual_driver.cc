@@ -87,17 +87,26 @@ core::Expected<Interlock> ManualDriver::ReadInterlock() {
 }
 
 core::Expected<void> ManualDriver::Latch() {
+  latched_ = ArmedState::kUnknown;
   const auto latched = Yes("latch the springs; are they latched?");
   if (!latched) return tl::unexpected(latched.error());
+  latched_ = *latched ? ArmedState::kYes : ArmedState::kNo;
   if (!*latched) return core::AbsentBecause("the springs are not latched");
   return {};
 }
 
-void ManualDriver::Unlatch() { ask_("unlatch the springs, then press Enter:"); }
+void ManualDriver::Unlatch() {
+  latched_ = ArmedState::kUnknown;
+  if (ask_("unlatch the springs, then press Enter:")) {
+    latched_ = ArmedState::kNo;
+  }
+}
 
 core::Expected<std::int64_t> ManualDriver::Release() {
+  latched_ = ArmedState::kUnknown;
   const auto fired = Yes("pull the trigger; did it fire?");
   if (!fired) return tl::unexpected(fired.error());
+  latched_ = *fired ? ArmedState::kNo : ArmedState::kYes;
   if (!*fired) return core::AbsentBecause("it did not fire: unlatch it");
   return ++shots_;
 }

@@ -11,7 +11,7 @@
 namespace touchdown::rig {
 namespace {
 
-constexpr const char* kVersion = "touchdown-rig/1";
+constexpr const char* kVersion = "touchdown-rig/2";
 
 // On the wire angles are in millidegrees and lengths in micrometres, whole
 // numbers: nothing to round differently on the two sides.
@@ -26,7 +26,11 @@ std::int64_t OnWire(double value, double unit) {
 
 SerialDriver::SerialDriver(const std::string& port, SerialOptions options,
                            SerialTime time)
-    : line_(port, options.baud, std::move(time)), options_(options) {
+    : line_(port, options.baud, std::move(time)),
+      options_(options),
+      // Each stop byte alone is enough.
+      farewell_(std::string(3, kStopByte) +
+                LineOf(Request{kAlwaysNew, "disarm", ""})) {
   const auto greeting = Ask("hello");
   const std::string text = greeting ? *greeting : greeting.error().reason;
   const std::string version = text.substr(0, text.find(' '));
@@ -36,6 +40,29 @@ SerialDriver::SerialDriver(const std::string& port, SerialOptions options,
         text, kVersion));
   }
   if (text.size() > version.size()) name_ = text.substr(version.size() + 1);
+  try {
+    ReadState(false);
+    was_found_armed_ = Armed() != ArmedState::kNo;
+    Disarm();
+  } catch (...) {
+    Stop();
+    throw;
+  }
+}
+
+SerialDriver::~SerialDriver() {
+  // As long as 100 bytes take at the slowest baud.
+  constexpr std::chrono::milliseconds kLastBytes{100};
+  try {
+    // Who stopped it does not wait for answers.
+    if (!is_stopped()) {
+      Forget();
+      Disarm();
+    }
+  } catch (const std::exception&) {  // then it is stopped, no more
+  }
+  Stop();
+  line_.Drain(kLastBytes);
 }
 
 core::Expected<std::string> SerialDriver::Ask(const std::string& verb,
@@ -93,8 +120,50 @@ std::int64_t SerialDriver::RequireField(const std::string& text,
                   line_.port(), text, field));
 }
 
+core::Expected<std::string> SerialDriver::AskStatus(Patience patience,
+                                                    bool even_stopped) {
+  const auto asked = line_.Now();
+  auto status = Ask("status", "", patience, even_stopped);
+  if (!status) return status;
+  // Only a plain 0 is "not armed", and only a plain 0 "not stopped".
+  const bool armed = RequireField(*status, "armed") != 0;
+  {
+    const std::lock_guard lock(heard_mutex_);
+    heard_ = Heard{armed, asked};
+  }
+  if (RequireField(*status, "stopped") != 0) HearStopped();
+  return status;
+}
+
+void SerialDriver::ReadState(bool once) {
+  const int tries = once ? 1 : options_.tries;
+  for (int i = 1;; ++i) {
+    try {
+      // A number of its own for each try: no old answer is told again.
+      if (AskStatus(Patience::kOnce, true)) return;
+    } catch (const core::InputError&) {
+      if (i == tries) throw;
+    }
+    if (i == tries) return;
+  }
+}
+
+ArmedState SerialDriver::KnownLatch() const {
+  const auto now = line_.Now();
+  const std::lock_guard lock(heard_mutex_);
+  if (!heard_ || now - heard_->asked > options_.known) {
+    return ArmedState::kUnknown;
+  }
+  return heard_->armed ? ArmedState::kYes : ArmedState::kNo;
+}
+
+void SerialDriver::Forget() {
+  const std::lock_guard lock(heard_mutex_);
+  heard_.reset();
+}
+
 core::Expected<std::int64_t> SerialDriver::AskField(const char* field) {
-  const auto status = Ask("status");
+  const auto status = AskStatus();
   if (!status) return tl::unexpected(status.error());
   return RequireField(*status, field);
 }
@@ -110,7 +179,7 @@ core::Expected<Setting> SerialDriver::Move(const Setting& wanted) {
   }
   const auto until = line_.Now() + options_.movement;
   while (true) {
-    const auto status = Ask("status");
+    const auto status = AskStatus();
     if (!status) return tl::unexpected(status.error());
     if (RequireField(*status, "moving") == 0) {
       const Setting read{
@@ -151,6 +220,7 @@ core::Expected<Interlock> SerialDriver::ReadInterlock() {
 core::Expected<void> SerialDriver::Latch() {
   const auto shots = AskField("shots");
   if (!shots) return tl::unexpected(shots.error());
+  Forget();
   const auto token = Ask("arm");
   if (!token) return tl::unexpected(token.error());
   if (token->empty()) {
@@ -163,10 +233,12 @@ core::Expected<void> SerialDriver::Latch() {
 }
 
 void SerialDriver::Unlatch() {
-  if (!Ask("disarm")) Stop();  // what cannot be disarmed must not be fired
+  Forget();
+  if (!Ask("disarm", "", Patience::kTries, true)) Stop();
 }
 
 core::Expected<std::int64_t> SerialDriver::Release() {
+  Forget();
   try {
     const auto fired = Ask("fire", token_, Patience::kOnce);
     if (!fired) return tl::unexpected(fired.error());
@@ -191,7 +263,7 @@ std::int64_t SerialDriver::CountShots() {
   return AskField("shots").value_or(shots_before_);
 }
 
-void SerialDriver::Halt() noexcept { line_.Shout(kStopByte); }
+void SerialDriver::Halt() noexcept { line_.Shout(farewell_); }
 
 core::Expected<void> SerialDriver::Resume() {
   const auto answer = Ask("reset", "", Patience::kTries, true);

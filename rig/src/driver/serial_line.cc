@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -166,14 +168,24 @@ void SerialLine::Pause(SerialTime::Instant until) {
   while (time_.now() < until && !TakeWake()) Wait(until, false);
 }
 
-void SerialLine::Shout(char byte) noexcept {
+void SerialLine::Shout(std::string_view bytes) noexcept {
   const int error = errno;  // of whom a signal interrupted
   tcflush(port_fd_, TCOFLUSH);
-  const std::array<char, 3> bytes{byte, byte, byte};
   [[maybe_unused]] ssize_t done = write(port_fd_, bytes.data(), bytes.size());
   const std::uint64_t one = 1;
   done = write(wake_fd_, &one, sizeof one);
   errno = error;
+}
+
+void SerialLine::Drain(std::chrono::milliseconds longest) noexcept {
+  // Two bytes at the slowest baud.
+  constexpr timespec kLook{0, 2'000'000};
+  const auto until = std::chrono::steady_clock::now() + longest;
+  int waiting = 0;
+  while (ioctl(port_fd_, TIOCOUTQ, &waiting) == 0 && waiting > 0 &&
+         std::chrono::steady_clock::now() < until) {
+    nanosleep(&kLook, nullptr);
+  }
 }
 
 }  // namespace touchdown::rig

@@ -61,18 +61,18 @@ TEST_F(SerialDriverTest, SetsArmsAndFires) {
   ASSERT_TRUE(shots) << shots.error().reason;
   EXPECT_EQ(*shots, 1);
   EXPECT_EQ(controller_.shots(), 1);
-  EXPECT_THAT(
-      controller_.heard(),
-      ElementsAre("hello", "angle", "compress", "status", "status", "status",
-                  "status", "interlock", "status", "arm", "interlock", "fire"));
+  EXPECT_THAT(controller_.heard(),
+              ElementsAre("hello", "status", "angle", "compress", "status",
+                          "status", "status", "status", "interlock", "status",
+                          "arm", "status", "interlock", "fire", "status"));
   const DriverStatus status = driver_.Status();
   EXPECT_EQ(status.interlock, Interlock::kClosed);
   EXPECT_EQ(status.shots, 1);
-  EXPECT_FALSE(status.armed);
+  EXPECT_EQ(status.armed, ArmedState::kNo);
 }
 
 TEST_F(SerialDriverTest, NeverFiresWithoutAPersonsWordForThisArming) {
-  EXPECT_THAT(WhyNot(1), HasSubstr("not armed"));
+  EXPECT_THAT(WhyNot(1), HasSubstr("no arming"));
   EXPECT_THAT(driver_.Arm().error().reason, HasSubstr("nothing is set"));
   const auto first = Armed();
   EXPECT_THROW(driver_.Fire({"", first}), std::invalid_argument);
@@ -80,15 +80,120 @@ TEST_F(SerialDriverTest, NeverFiresWithoutAPersonsWordForThisArming) {
   const auto second = Armed();
   EXPECT_THAT(WhyNot(first), HasSubstr("is confirmed, but"));
   EXPECT_EQ(WhyNot(second), "fired");
-  EXPECT_THAT(WhyNot(second), HasSubstr("not armed"));
+  EXPECT_THAT(WhyNot(second), HasSubstr("no arming"));
   EXPECT_EQ(controller_.HowOften("fire"), 1);
+}
+
+// The four ways to springs that are latched though nobody was told so.
+TEST_F(SerialDriverTest, ALostAnswerToArmLeavesNothingLatched) {
+  ASSERT_TRUE(driver_.Set(kWanted));
+  controller_.Script("arm", {Act::kSilence, Act::kSilence, Act::kSilence});
+  EXPECT_THROW(driver_.Arm(), InputError);
+  EXPECT_FALSE(controller_.armed());
+  EXPECT_EQ(controller_.HowOften("disarm"), 1);
+  EXPECT_EQ(driver_.Armed(), ArmedState::kNo);
+}
+
+TEST_F(SerialDriverTest, AnEmptyTokenLeavesNothingLatched) {
+  ASSERT_TRUE(driver_.Set(kWanted));
+  controller_.Script("arm", {Act::kEmpty});
+  EXPECT_THAT([&] { driver_.Arm(); },
+              ThrowsMessage<InputError>(HasSubstr("without a token")));
+  EXPECT_FALSE(controller_.armed());
+  EXPECT_EQ(controller_.HowOften("disarm"), 1);
+  EXPECT_EQ(driver_.Armed(), ArmedState::kNo);
+}
+
+TEST_F(SerialDriverTest, ARefusedShotLeavesNothingLatched) {
+  const auto arming = Armed();
+  EXPECT_EQ(driver_.Armed(), ArmedState::kYes);
+  controller_.Script("fire", {Act::kRefusal});
+  // It fires all the same, or not: what counts is what it says afterwards.
+  EXPECT_THAT(WhyNot(arming), HasSubstr("worn"));
+  EXPECT_EQ(driver_.Armed(), ArmedState::kNo);
+  EXPECT_FALSE(controller_.armed());
+}
+
+TEST(SerialDriver, OneThatIsFoundArmedIsDisarmed) {
+  SimulatedController controller;
+  controller.LatchByHand();
+  {
+    SerialDriver driver(controller.port(), {}, controller.Time());
+    EXPECT_TRUE(driver.was_found_armed());
+    EXPECT_EQ(driver.Armed(), ArmedState::kNo);
+    EXPECT_FALSE(controller.armed());
+  }
+  // Latched by hand at any time later it is shown, and disarmed at the end.
+  EXPECT_TRUE(controller.BecomesStopped());
+}
+
+TEST(SerialDriver, ALatchThatSticksIsShownAndStopped) {
+  SimulatedController controller;
+  SerialDriver driver(controller.port(), {}, controller.Time());
+  EXPECT_FALSE(driver.was_found_armed());
+  ASSERT_TRUE(driver.Set(kWanted));
+  ASSERT_TRUE(driver.Arm());
+  controller.StickLatch();
+  driver.Disarm();
+  EXPECT_EQ(driver.Armed(), ArmedState::kYes);
+  EXPECT_TRUE(driver.is_stopped());
+  EXPECT_FALSE(driver.Reset("A. Lee"));
+  EXPECT_TRUE(driver.is_stopped());
+}
+
+TEST_F(SerialDriverTest, WhatWasHeardTooLongAgoIsUnknown) {
+  Armed();
+  EXPECT_EQ(driver_.Armed(), ArmedState::kYes);
+  // Each silence is 500 ms of the driver's clock.
+  controller_.Script("status", {Act::kDeafness, Act::kDeafness});
+  driver_.Refresh();
+  EXPECT_EQ(driver_.Armed(), ArmedState::kYes);
+  driver_.Refresh();
+  EXPECT_EQ(driver_.Armed(), ArmedState::kUnknown);
+  EXPECT_EQ(Name(driver_.Armed()), "UNKNOWN, take it as ARMED");
+  driver_.Refresh();
+  EXPECT_EQ(driver_.Armed(), ArmedState::kYes);
+}
+
+// An old answer that comes again is none: each question has its number.
+TEST_F(SerialDriverTest, ALateAnswerIsNoNews) {
+  driver_.Refresh();
+  EXPECT_EQ(driver_.Armed(), ArmedState::kNo);
+  controller_.Script("status", {Act::kLate, Act::kDeafness});
+  driver_.Refresh();
+  controller_.LatchByHand();
+  driver_.Refresh();  // hears the late "armed=0" before the silence
+  EXPECT_EQ(driver_.Armed(), ArmedState::kUnknown);
+}
+
+TEST_F(SerialDriverTest, OneThatIsStoppedByItsButtonWantsAReset) {
+  controller_.PressButton();
+  driver_.Refresh();
+  EXPECT_TRUE(driver_.is_stopped());
+  EXPECT_THAT(driver_.Set(kWanted).error().reason, HasSubstr("was stopped"));
+  ASSERT_TRUE(driver_.Reset("A. Lee"));
+  EXPECT_EQ(WhyNot(Armed()), "fired");
+}
+
+TEST(SerialDriver, ItsEndStopsAndDisarms) {
+  SimulatedController controller;
+  {
+    SerialDriver driver(controller.port(), {}, controller.Time());
+    ASSERT_TRUE(driver.Set(kWanted));
+    ASSERT_TRUE(driver.Arm());
+    EXPECT_TRUE(controller.armed());
+  }
+  EXPECT_TRUE(controller.BecomesStopped());
+  EXPECT_FALSE(controller.armed());
+  EXPECT_GE(controller.HowOften("disarm"), 1);
+  EXPECT_GE(controller.stop_bytes(), 1);
 }
 
 TEST_F(SerialDriverTest, SettingDisarms) {
   const auto arming = Armed();
   ASSERT_TRUE(driver_.Set(kWanted));
   EXPECT_FALSE(controller_.armed());
-  EXPECT_THAT(WhyNot(arming), HasSubstr("not armed"));
+  EXPECT_THAT(WhyNot(arming), HasSubstr("no arming"));
   EXPECT_EQ(controller_.HowOften("fire"), 0);
 }
 
@@ -103,9 +208,11 @@ TEST_F(SerialDriverTest, AnOpenInterlockNeitherArmsNorFires) {
   controller_.OpenInterlock();  // between arming and firing
   EXPECT_THAT(WhyNot(arming), HasSubstr("interlock is open"));
   EXPECT_EQ(controller_.HowOften("fire"), 0);
-  EXPECT_EQ(controller_.HowOften("disarm"), 1);
+  // It had disarmed by itself, and said so.
+  EXPECT_EQ(driver_.Armed(), ArmedState::kNo);
+  EXPECT_FALSE(driver_.is_stopped());
   controller_.OpenInterlock(false);
-  EXPECT_THAT(WhyNot(arming), HasSubstr("not armed"));
+  EXPECT_THAT(WhyNot(arming), HasSubstr("no arming"));
 }
 
 TEST_F(SerialDriverTest, AnInterlockThatOpensAtTheLastMomentIsTheControllers) {

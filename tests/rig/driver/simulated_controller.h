@@ -1,5 +1,7 @@
 // The rig's controller on the other end of a pseudo-terminal, well behaved or
 // not, and a clock that runs only where it stays silent.
+//
+// Its heartbeat is a matter of real time and off unless Watch() asks for it.
 #pragma once
 
 #include <fcntl.h>
@@ -8,6 +10,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <condition_variable>
@@ -16,6 +19,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -36,7 +40,8 @@ enum class Act {
   kDamaged,    // an answer with one bit turned over
   kLate,       // the answer when the next request comes, before that one's
   kWrongEcho,  // "ok", with another value
-  kRefusal,    // "no"
+  kEmpty,      // "ok", with none
+  kRefusal,    // "no", and does nothing
   kHangUp
 };
 
@@ -95,11 +100,42 @@ class SimulatedController {
   bool armed() const { return Locked(armed_); }
   bool stopped() const { return Locked(stopped_); }
   int stop_bytes() const { return Locked(stop_bytes_); }
+  // Disarms after the longest silence, as a controller must.
+  void Watch() {
+    const std::lock_guard lock(mutex_);
+    watches_ = true;
+  }
+  // Somebody else latched it, before any program came.
+  void LatchByHand() {
+    const std::lock_guard lock(mutex_);
+    armed_ = true;
+  }
+  // The mushroom button.
+  void PressButton() {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    armed_ = false;
+  }
+  void Unstop() {
+    const std::lock_guard lock(mutex_);
+    stopped_ = false;
+  }
+  // Whatever it is told from now on, its springs stay latched; it says so.
+  void StickLatch(bool sticks = true) {
+    const std::lock_guard lock(mutex_);
+    stuck_latch_ = sticks;
+  }
+  bool BecomesDisarmed() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(20),
+                             [this] { return !armed_; });
+  }
+  int silences() const { return Locked(silences_); }
   // Bytes that a program of its own has sent may still be on their way.
   bool BecomesStopped() {
     std::unique_lock lock(mutex_);
-    return stop_heard_.wait_for(lock, std::chrono::seconds(20),
-                                [this] { return stopped_; });
+    return changed_.wait_for(lock, std::chrono::seconds(20),
+                             [this] { return stopped_; });
   }
   // Verbs in the order in which they came, repetitions too.
   std::vector<std::string> heard() const { return Locked(heard_); }
@@ -107,6 +143,14 @@ class SimulatedController {
     long n = 0;
     for (const auto& one : heard()) n += one == verb ? 1 : 0;
     return n;
+  }
+
+  // Waits until `verb` has come so often.
+  bool Hears(const std::string& verb, long times) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(20), [&] {
+      return std::count(heard_.begin(), heard_.end(), verb) >= times;
+    });
   }
 
   void StopListening() {
@@ -150,7 +194,15 @@ class SimulatedController {
     while (true) {
       std::array<pollfd, 2> ends{pollfd{master_, POLLIN, 0},
                                  pollfd{end_, POLLIN, 0}};
-      poll(ends.data(), ends.size(), -1);
+      if (poll(ends.data(), ends.size(), UntilSilent_ms()) == 0) {
+        const std::lock_guard lock(mutex_);
+        armed_ = false;
+        compress_ = 0;
+        silent_since_.reset();
+        ++silences_;
+        changed_.notify_all();
+        continue;
+      }
       if (ends[1].revents != 0) return;
       std::array<char, 256> bytes{};
       const ssize_t n = read(master_, bytes.data(), bytes.size());
@@ -161,18 +213,34 @@ class SimulatedController {
           line.clear();
           const std::lock_guard lock(mutex_);
           stopped_ = true;
-          armed_ = false;
+          armed_ = stuck_latch_;
           ++stop_bytes_;
-          stop_heard_.notify_all();
+          changed_.notify_all();
         } else if (c != '\n') {
           line += c;
         } else {
           const auto request = ParseRequest(line);
           line.clear();
-          if (request && !Handle(*request)) return;
+          if (!request) continue;
+          {
+            const std::lock_guard lock(mutex_);
+            if (watches_) silent_since_ = std::chrono::steady_clock::now();
+          }
+          if (!Handle(*request)) return;
         }
       }
     }
+  }
+
+  // Until the longest silence is over; -1: it is not watched, or was noticed.
+  int UntilSilent_ms() const {
+    const std::lock_guard lock(mutex_);
+    if (!watches_ || !silent_since_) return -1;
+    // What README says of a controller: a fifth of a second to spare.
+    constexpr std::chrono::milliseconds kWatch{1800};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+        *silent_since_ + kWatch - std::chrono::steady_clock::now());
+    return std::max(0, static_cast<int>(left.count()));
   }
 
   bool Handle(const Request& request) {
@@ -180,6 +248,7 @@ class SimulatedController {
     {
       const std::lock_guard lock(mutex_);
       heard_.push_back(request.verb);
+      changed_.notify_all();
       if (const auto it = when_.find(request.verb); it != when_.end()) {
         what = it->second;
       }
@@ -191,7 +260,8 @@ class SimulatedController {
       act = acts.front();
       acts.pop_front();
     }
-    const bool said = !late_.empty() && request.number == last_.number;
+    const bool said =
+        !late_.empty() && last_ && request.number == last_->number;
     Say(late_);
     late_.clear();
     if (act == Act::kDeafness) return Silence();
@@ -202,10 +272,11 @@ class SimulatedController {
       master_ = -1;
       return false;
     }
-    Answer answer = Done(request);
+    const Answer refusal{request.number, false, request.verb, "worn"};
+    Answer answer = act == Act::kRefusal ? refusal : Done(request);
+    last_ = answer;
     if (act == Act::kWrongEcho) answer.text = "99999";
-    if (act == Act::kRefusal)
-      answer = {request.number, false, request.verb, "worn"};
+    if (act == Act::kEmpty) answer.text.clear();
     std::string bytes = LineOf(answer);
     switch (act) {
       case Act::kSilence:
@@ -232,11 +303,14 @@ class SimulatedController {
 
   // A request that comes again is answered again, and not done again.
   Answer Done(const Request& request) {
-    if (request.number == last_.number) return last_;
-    last_ = {request.number, true, request.verb, ""};
+    if (last_ && request.number == last_->number &&
+        request.number != kAlwaysNew) {
+      return *last_;
+    }
+    Answer answer{request.number, true, request.verb, ""};
     const auto refuse = [&](const char* why) {
-      last_.ok = false;
-      last_.text = why;
+      answer.ok = false;
+      answer.text = why;
     };
     const std::string& verb = request.verb;
     const bool moves = verb == "angle" || verb == "compress" || verb == "arm" ||
@@ -244,47 +318,49 @@ class SimulatedController {
     if (moves && stopped_) {
       refuse("stopped");
     } else if (verb == "hello") {
-      last_.text = "touchdown-rig/1 simulated";
+      answer.text = "touchdown-rig/2 simulated";
     } else if (verb == "angle") {
       angle_ = stuck_angle_ >= 0 ? stuck_angle_ : std::stoll(request.argument);
       moving_ = looks_;
-      last_.text = request.argument;
+      answer.text = request.argument;
     } else if (verb == "compress") {
       compress_ = std::stoll(request.argument);
-      last_.text = request.argument;
+      answer.text = request.argument;
     } else if (verb == "interlock") {
-      last_.text = interlock_open_ ? "open" : "closed";
+      answer.text = interlock_open_ ? "open" : "closed";
     } else if (verb == "arm") {
       armed_ = !interlock_open_;
       if (armed_) {
-        last_.text = "T" + std::to_string(++tokens_);
+        answer.text = "T" + std::to_string(++tokens_);
       } else {
         refuse("interlock open");
       }
     } else if (verb == "disarm") {
-      armed_ = false;
+      armed_ = stuck_latch_;
+      changed_.notify_all();
     } else if (verb == "fire") {
       if (!armed_ || request.argument != "T" + std::to_string(tokens_)) {
         refuse(interlock_open_ ? "interlock open" : "not armed");
       } else {
         armed_ = false;
         ++shots_;
-        last_.text = "shots=" + std::to_string(shots_);
+        answer.text = "shots=" + std::to_string(shots_);
       }
     } else if (verb == "reset") {
       stopped_ = false;
     } else if (verb == "status") {
-      last_.text = "angle=" + std::to_string(angle_) +
-                   " compress=" + std::to_string(compress_) +
-                   " moving=" + std::to_string(moving_ > 0 ? 1 : 0) +
-                   " armed=" + std::to_string(armed_ ? 1 : 0) +
-                   " stopped=" + std::to_string(stopped_ ? 1 : 0) +
-                   " shots=" + std::to_string(shots_);
+      answer.text = "angle=" + std::to_string(angle_) +
+                    " compress=" + std::to_string(compress_) +
+                    " moving=" + std::to_string(moving_ > 0 ? 1 : 0) +
+                    " armed=" + std::to_string(armed_ ? 1 : 0) +
+                    " stopped=" + std::to_string(stopped_ ? 1 : 0) +
+                    " shots=" + std::to_string(shots_);
       if (moving_ > 0) --moving_;
     } else {
       refuse("unknown");
     }
-    return last_;
+    last_ = answer;
+    return answer;
   }
 
   void Say(const std::string& bytes) {
@@ -306,15 +382,18 @@ class SimulatedController {
   SerialTime::Instant now_{};  // of the driver's thread
 
   mutable std::mutex mutex_;
-  std::condition_variable stop_heard_;
+  std::condition_variable changed_;
   std::map<std::string, std::deque<Act>> script_;
   std::map<std::string, std::function<void()>> when_;
   std::string late_;
-  Answer last_;
+  std::optional<Answer> last_;
   std::int64_t angle_ = 0, compress_ = 0, shots_ = 0, tokens_ = 0;
   std::int64_t stuck_angle_ = -1;
   int looks_ = 0, moving_ = 0, stop_bytes_ = 0;
   bool interlock_open_ = false, armed_ = false, stopped_ = false;
+  bool watches_ = false, stuck_latch_ = false;
+  std::optional<std::chrono::steady_clock::time_point> silent_since_;
+  int silences_ = 0;
   std::vector<std::string> heard_;
   std::thread thread_;
 };

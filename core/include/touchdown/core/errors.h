@@ -11,12 +11,19 @@
 
 namespace touchdown::core {
 
-// A file that cannot be read, is damaged or is of an unsupported kind, or an
-// output that cannot be written. The message names file and frame, byte or row.
-// Exit status 3.
+// A file that cannot be read, is damaged or is of an unsupported kind. The
+// message names file and frame, byte or row. Exit status 3.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// An output that cannot be written: the disk is full, the name is a device. The
+// message names it. Exit status 6. Never caught as if one input of many had
+// failed.
+class OutputError : public InputError {
+ public:
+  using InputError::InputError;
 };
 
 // Trouble with the trial store. Exit status 4.

@@ -132,6 +132,11 @@ class Clip {
   // anything else.
   virtual void HasRead() const {}
 
+  // Throws core::InputError where the recording's file has become shorter since
+  // it was opened: what was read of it may be wrong, and so what was measured.
+  // To be asked when all is read.
+  virtual void RequireWhole() const {}
+
   // The last frame up to `index` from which reading can begin: itself where
   // each frame is stored alone, else a key frame.
   virtual std::int64_t EntryFrame(std::int64_t index) const { return index; }

@@ -10,14 +10,23 @@
 // uses an arming up. What is refused (interlock open, not armed, stopped) is a
 // value with its reason; a controller that does not answer is a
 // core::InputError naming its port; a setting that is no number, or a
-// confirmation by nobody, is a std::invalid_argument. All functions but Stop()
-// belong to one thread.
+// confirmation by nobody, is a std::invalid_argument.
+//
+// Whether the springs are latched is what the hardware says, never what was
+// last asked for. Whatever fails on the way to a shot (an answer to `arm` that
+// is lost, a shot that is refused) ends with springs that the hardware itself
+// calls released, or with Stop().
+//
+// Each function may be called from any thread; all but Stop(), Armed() and
+// is_stopped() wait for a command that another thread has begun.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "touchdown/core/expected.h"
 #include "touchdown/rig/predict.h"
@@ -27,11 +36,17 @@ namespace touchdown::rig {
 // The guard's switch: closed, nobody can be in the line of fire.
 enum class Interlock { kOpen, kClosed };
 
+// Whether the springs are latched, as far as is known now. Only kNo is safe:
+// kUnknown is to be shown, and treated, as kYes.
+enum class ArmedState { kNo, kYes, kUnknown };
+// "not armed", "ARMED", "UNKNOWN, take it as ARMED"
+std::string_view Name(ArmedState state);
+
 struct DriverStatus {
   std::optional<Setting> setting;  // as last read; nothing before
   Interlock interlock = Interlock::kOpen;
-  bool armed = false;
-  bool stopped = false;    // by Stop(); until Reset()
+  ArmedState armed = ArmedState::kUnknown;
+  bool stopped = false;    // by Stop(), or by the hardware; until Reset()
   std::int64_t shots = 0;  // that this hardware counts
 };
 
@@ -59,14 +74,20 @@ class Driver {
   core::Expected<Setting> Set(const Setting& wanted);
   // Latches the springs at the last Set(); only with the interlock closed.
   core::Expected<Arming> Arm();
+  // Stop() where the hardware does not say that it is done.
   void Disarm();
-  bool is_armed() const noexcept { return armed_.has_value(); }
+  // As the hardware last said it; kUnknown where that is too long ago.
+  ArmedState Armed() const { return KnownLatch(); }
   // Fires. Returns the count of shots. Refused where the confirmation means
   // another arming than the last, or the interlock is not closed at this
   // moment (then it is disarmed). Sent once: a lost answer is never made good
   // by firing again, but by Stop() and a reason.
   core::Expected<std::int64_t> Fire(const FireConfirmation& confirmation);
   DriverStatus Status();
+  // Asks the hardware once what it is, which also tells it that this program
+  // lives. Does nothing while another thread's command talks to it; an answer
+  // that is lost, or a port that is gone, leaves Armed() to become unknown.
+  void Refresh();
 
   // Emergency stop: whatever is going on ends with a reason, and nothing moves
   // until Reset(). Async-signal-safe; may be called from any thread.
@@ -75,6 +96,11 @@ class Driver {
   // A person's word that all is well again.
   core::Expected<void> Reset(const std::string& by);
 
+ protected:
+  // The hardware is in an emergency stop of its own (a button, the end of
+  // another program): nothing moves until Reset().
+  void HearStopped() noexcept;
+
  private:
   virtual core::Expected<Setting> Move(const Setting& wanted) = 0;
   virtual core::Expected<Interlock> ReadInterlock() = 0;
@@ -82,16 +108,24 @@ class Driver {
   virtual void Unlatch() = 0;
   virtual core::Expected<std::int64_t> Release() = 0;
   virtual std::int64_t CountShots() = 0;
-  virtual void Halt() noexcept = 0;  // async-signal-safe
+  // Asks the hardware for its state and remembers the answer for KnownLatch().
+  // `once`: without a second try. Throws core::InputError.
+  virtual void ReadState(bool once) = 0;
+  virtual ArmedState KnownLatch() const = 0;  // from any thread
+  virtual void Halt() noexcept = 0;           // async-signal-safe
   virtual core::Expected<void> Resume() = 0;
+
+  // After what may have left the springs latched with nobody to fire them.
+  void MakeSafe();
 
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free,
                 "Stop() is called from signals");
   // Counted, so that a stop during a Reset() is not lost.
   std::atomic<std::uint32_t> stops_ = 0;
   std::atomic<std::uint32_t> answered_ = 0;  // stops up to here were reset
+  std::recursive_mutex command_;             // one talks to the hardware
   std::optional<Setting> setting_;
-  std::optional<Arming> armed_;
+  std::optional<Arming> arming_;
   std::uint64_t armings_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // The lines that go between the program and the rig's controller: touchdown-rig
-// version 1, written out in rig/README.md.
+// version 2, written out in rig/README.md.
 //
 //   7 angle 12500*5C1E         the program asks: number, verb, argument
 //   7 ok angle 12500*A0B3      the controller did it, and says what
@@ -11,6 +11,7 @@
 // side, as if it had been lost.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,8 +31,16 @@ inline constexpr std::size_t kLongestLine = 200;
 // it comes, drops what it has read of a line, and stays stopped until `reset`.
 inline constexpr char kStopByte = 0x18;
 
+// The heartbeat: a controller that has heard no whole, undamaged line for so
+// long disarms and takes the load off its springs.
+inline constexpr std::chrono::milliseconds kLongestSilence{2000};
+
+// Of a request that is carried out each time it comes, never taken for a
+// repetition. All others are numbered from 1.
+inline constexpr std::uint32_t kAlwaysNew = 0;
+
 struct Request {
-  std::uint32_t number = 0;  // tells which answer belongs to it
+  std::uint32_t number = kAlwaysNew;  // tells which answer belongs to it
   std::string verb;
   std::string argument;  // may be empty
 };

@@ -2,6 +2,7 @@
 // trigger; the program asks what the protractor and the scale read.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <string>
 
@@ -36,6 +37,8 @@ class ManualDriver final : public Driver {
   void Unlatch() override;
   core::Expected<std::int64_t> Release() override;
   std::int64_t CountShots() override { return shots_; }
+  void ReadState(bool) override {}  // hands have told what they did
+  ArmedState KnownLatch() const override { return latched_; }
   void Halt() noexcept override {}  // hands stop by themselves
   core::Expected<void> Resume() override { return {}; }
 
@@ -46,6 +49,8 @@ class ManualDriver final : public Driver {
   Question ask_;
   ManualOptions options_;
   std::int64_t shots_ = 0;
+  // What the person said; unknown while a question about it is open.
+  std::atomic<ArmedState> latched_ = ArmedState::kNo;
 };
 
 }  // namespace touchdown::rig

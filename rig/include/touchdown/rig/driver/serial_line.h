@@ -45,9 +45,11 @@ class SerialLine {
   // Waits till `until`, or until woken.
   void Pause(SerialTime::Instant until);
 
-  // Async-signal-safe. Drops what waits to be sent, sends `byte` three times
-  // (each alone is enough), and ends what waits.
-  void Shout(char byte) noexcept;
+  // Async-signal-safe. Drops what waits to be sent, sends `bytes` as far as the
+  // port takes them, and ends what waits.
+  void Shout(std::string_view bytes) noexcept;
+  // Waits until what was sent is on the wire, at most for `longest`.
+  void Drain(std::chrono::milliseconds longest) noexcept;
 
  private:
   // Reads what is there into read_.

@@ -1,0 +1,204 @@
+#include "digests.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include "register_rows.h"
+#include "touchdown/db/quantities.h"
+
+namespace touchdown::db {
+namespace {
+
+std::string Sha256(std::string_view text) {
+  std::array<unsigned char, 32> digest{};
+  unsigned size = 0;
+  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(),
+                 nullptr) != 1 ||
+      size != digest.size()) {
+    throw std::logic_error("SHA-256 is not to be had");
+  }
+  std::string hex;
+  for (const unsigned char byte : digest) hex += fmt::format("{:02x}", byte);
+  return hex;
+}
+
+// What a revision's digest covers: the word for it, and the rows, of parameter
+// ?1, the revision's row.
+struct Part {
+  std::string word;
+  std::string sql;
+};
+
+const std::vector<Part>& Parts() {
+  static const std::vector<Part> parts = [] {
+    const std::string of_trial =
+        "FROM revisions r JOIN trials t ON t.id = r.trial_id ";
+    std::vector<Part> all = {
+        {"trial", "SELECT t.* " + of_trial + "WHERE r.id = ?1"},
+        {"campaign", "SELECT c.* " + of_trial +
+                         "JOIN campaigns c ON c.id = t.campaign_id "
+                         "WHERE r.id = ?1"},
+        {"surface", "SELECT s.* " + of_trial +
+                        "JOIN campaigns c ON c.id = t.campaign_id "
+                        "JOIN surfaces s ON s.id = c.surface_id "
+                        "WHERE r.id = ?1"},
+        {"clip", "SELECT k.clip_id, k.size_bytes " + of_trial +
+                     "JOIN clips k ON k.id = t.clip_id WHERE r.id = ?1"},
+        {"revision", "SELECT * FROM revisions WHERE id = ?1"},
+        {"statement", "SELECT * FROM statements WHERE revision_id = ?1"},
+        {"contact",
+         "SELECT * FROM contacts WHERE revision_id = ?1 ORDER BY ordinal"},
+        {"budget line",
+         "SELECT * FROM budget_lines WHERE revision_id = ?1 "
+         "ORDER BY ordinal, budget, line"},
+        {"exclusion", "SELECT * FROM exclusions WHERE revision_id = ?1"},
+        {"conditions", "SELECT * FROM conditions WHERE revision_id = ?1"},
+    };
+    for (const auto& entry : kConditionEntries) {
+      const std::string word(Name(entry.kind));
+      all.push_back({word, fmt::format("SELECT e.* FROM conditions c JOIN {} e "
+                                       "ON e.id = c.{}_id "
+                                       "WHERE c.revision_id = ?1",
+                                       TableOf(entry.kind).table, word)});
+    }
+    return all;
+  }();
+  return parts;
+}
+
+std::string DigestOf(Connection& connection, std::string_view before,
+                     std::int64_t revision_row) {
+  std::string text = fmt::format("touchdown.trial/1\n{}\n", before);
+  for (const Part& part : Parts()) {
+    Statement row(connection, part.sql);
+    row.Add(revision_row);
+    while (row.Step()) {
+      text += part.word + '\n';
+      row.AppendRow(text);
+    }
+  }
+  return Sha256(text);
+}
+
+std::string ClipDigestOf(Connection& connection, std::int64_t clip_row) {
+  std::string text = "touchdown.clip/1\n";
+  Statement row(connection,
+                "SELECT clip_id, size_bytes, sha256 FROM clips WHERE id = ?");
+  row.Add(clip_row);
+  if (row.Step()) row.AppendRow(text);
+  return Sha256(text);
+}
+
+}  // namespace
+
+void KeepDigest(Connection& connection, std::int64_t trial_row,
+                std::int64_t revision_row, std::int64_t number) {
+  std::string before;
+  {
+    Statement row(connection, "SELECT sha256 FROM digests WHERE trial_id = ?");
+    row.Add(trial_row);
+    if (row.Step()) before = row.TakeText();
+  }
+  const std::string digest = DigestOf(connection, before, revision_row);
+  if (number == 1) {
+    Statement(connection,
+              "INSERT INTO digests (trial_id, revisions, sha256) "
+              "VALUES (?, 1, ?)")
+        .Add(trial_row)
+        .Add(digest)
+        .Run();
+    return;
+  }
+  Statement(connection,
+            "UPDATE digests SET revisions = ?, sha256 = ? WHERE trial_id = ?")
+      .Add(number)
+      .Add(digest)
+      .Add(trial_row)
+      .Run();
+}
+
+void KeepClipDigest(Connection& connection, std::int64_t clip_row) {
+  {
+    Statement row(connection,
+                  "SELECT sha256 IS NOT NULL AND NOT EXISTS (SELECT 1 FROM "
+                  "clip_digests d WHERE d.clip_id = clips.id) FROM clips "
+                  "WHERE id = ?");
+    row.Add(clip_row);
+    if (!row.Step() || !row.TakeBool()) return;
+  }
+  Statement(connection,
+            "INSERT INTO clip_digests (clip_id, sha256) VALUES (?, ?)")
+      .Add(clip_row)
+      .Add(ClipDigestOf(connection, clip_row))
+      .Run();
+}
+
+void KeepAllDigests(Connection& connection) {
+  {
+    Statement row(connection,
+                  "SELECT trial_id, id, number FROM revisions "
+                  "ORDER BY trial_id, number");
+    while (row.Step()) {
+      const std::int64_t trial = row.TakeInteger();
+      const std::int64_t revision = row.TakeInteger();
+      KeepDigest(connection, trial, revision, row.TakeInteger());
+    }
+  }
+  Statement clip(connection, "SELECT id FROM clips ORDER BY id");
+  while (clip.Step()) KeepClipDigest(connection, clip.TakeInteger());
+}
+
+void CheckDigests(Connection& connection, std::vector<std::string>& problems) {
+  Statement trial(connection,
+                  "SELECT t.id, t.uuid, ifnull(d.revisions, 0), "
+                  "ifnull(d.sha256, '') FROM trials t "
+                  "LEFT JOIN digests d ON d.trial_id = t.id ORDER BY t.id");
+  while (trial.Step()) {
+    const std::int64_t id = trial.TakeInteger();
+    const std::string uuid = trial.TakeText();
+    const std::int64_t revisions = trial.TakeInteger();
+    const std::string kept = trial.TakeText();
+    std::string digest;
+    std::int64_t count = 0;
+    Statement revision(connection,
+                       "SELECT id FROM revisions WHERE trial_id = ? "
+                       "ORDER BY number");
+    revision.Add(id);
+    for (; revision.Step(); ++count) {
+      digest = DigestOf(connection, digest, revision.TakeInteger());
+    }
+    if (kept.empty()) {
+      problems.push_back(fmt::format("trial {} has no digest", uuid));
+    } else if (revisions != count) {
+      problems.push_back(fmt::format(
+          "trial {} has {} revisions, but its digest is of {}: one was added "
+          "or removed by another program",
+          uuid, count, revisions));
+    } else if (digest != kept) {
+      problems.push_back(fmt::format(
+          "trial {} is not what was recorded: its digest does not agree",
+          uuid));
+    }
+  }
+  Statement clip(connection,
+                 "SELECT k.id, k.clip_id, k.sha256 IS NOT NULL, "
+                 "ifnull(d.sha256, '') FROM clips k "
+                 "LEFT JOIN clip_digests d ON d.clip_id = k.id ORDER BY k.id");
+  while (clip.Step()) {
+    const std::int64_t id = clip.TakeInteger();
+    const std::string name = clip.TakeText();
+    const bool is_known = clip.TakeBool();
+    const std::string kept = clip.TakeText();
+    if (is_known ? kept != ClipDigestOf(connection, id) : !kept.empty()) {
+      problems.push_back(fmt::format(
+          "clip {} is not what was recorded: its digest does not agree", name));
+    }
+  }
+}
+
+}  // namespace touchdown::db
