@@ -79,7 +79,7 @@ Table MakeTheories(const Group& group) {
                {fmt::format("P(within {} {} deg)", kPlusMinus,
                             Plain(group.study.margin_rad / kDegree)),
                 true},
-               {"smallest margin that passes (deg)", true},
+               {"margin that the 90 % interval fits (deg)", true},
                {"verdict"},
                {"where it comes from"}},
               {}};
