@@ -176,6 +176,15 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   out.next.target_half_width_rad = flags.target_deg * kDegree;
   out.next.set_u_rad = flags.set_u_deg * kDegree;
   out.next.max_trials = flags.max_trials;
+  if (!flags.support.empty()) {
+    const core::Interval support = ParseRange("--support-deg", flags.support);
+    if (support.low < 0.0 || support.high > 90.0 * kDegree) {
+      throw std::invalid_argument(fmt::format(
+          "--support-deg: '{}'; expected LOW:HIGH within 0:90", flags.support));
+    }
+    out.fit.low_rad = support.low;
+    out.fit.high_rad = support.high;
+  }
   return out;
 }
 
@@ -245,6 +254,9 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
                      "equivalence margin, of --trials (default 1)");
   command.add_option("--feasible-deg", flags.feasible,
                      "angles the rig can throw, LOW:HIGH");
+  command.add_option("--support-deg", flags.support,
+                     "angles at which the boundary can be, LOW:HIGH: the "
+                     "support of the prior (default 0:90)");
   command
       .add_option("--set-u-deg", flags.set_u_deg,
                   "repeatability of the ejector")

@@ -38,6 +38,7 @@ struct BoundaryFlags {
   double target_deg = 0.5;
   double set_u_deg = 0.5;
   std::string feasible;
+  std::string support;
   int max_trials = 60;
   std::string rule = "expected-variance";
   std::string guess;

@@ -43,6 +43,11 @@ std::vector<Block> MakeEvidence(const Group& group,
 Figure MakeFigure(const Group& group, std::size_t index);
 
 // The group's verdict in a box, for page 1 (group_section.cc).
+// The score tests of what else the boundary may depend on; empty where nothing
+// varies that could be tested.
+std::vector<Block> MakeDependence(const Group& group,
+                                  std::span<const core::Trial> trials);
+
 Callout MakeVerdict(const Group& group, std::span<const Group> groups);
 
 // The control charts of one campaign's check shots (check_shots.cc).

@@ -130,6 +130,44 @@ TEST_F(BoundaryCommands, TheTheorysUncertaintyCounts) {
       "expected 0 to 90");
 }
 
+// What a boundary can be is the user's to say.
+TEST_F(BoundaryCommands, TheSupportOfThePriorIsStated) {
+  const auto csv = folder_.path() / "slides.csv";
+  std::ofstream(csv) << "angle_deg,u_deg,p_bounce\n12,0.1,0\n14,0.1,0\n";
+  const std::string trials = " --trials " + csv.string();
+  const auto high = [&](const std::string& flags) {
+    const Ran ran = RunProgram("boundary --json" + flags + trials);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return json::parse(ran.out).at("posterior").at("high95_deg").get<double>();
+  };
+  EXPECT_GT(high(""), 80.0);
+  EXPECT_LT(high(" --support-deg 0:40"), 40.0);
+  ExpectOneLine(RunProgram("boundary --support-deg 0:100" + trials), 2,
+                "within 0:90");
+  ExpectOneLine(RunProgram("boundary --support-deg 40:0" + trials), 2,
+                "low below high");
+}
+
+// A drift over the sequence is looked for, and told.
+TEST_F(BoundaryCommands, TheReportTellsOfADrift) {
+  const auto csv = folder_.path() / "drift.csv";
+  std::ofstream file(csv);
+  file << "angle_deg,u_deg,p_bounce\n";
+  // The boundary rises from 10 to 14 deg over the sequence.
+  for (int i = 0; i < 80; ++i) {
+    const double x = 9.0 + (i * 7 % 20) * 0.3;
+    file << x << ",0.2," << (x > 10.0 + 0.05 * i ? 1 : 0) << "\n";
+  }
+  file.close();
+  const auto out = folder_.path() / "drift";
+  const Ran ran = RunProgram("report --body sphere --trials " + csv.string() +
+                             " --out " + out.string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const std::string page = ReadAll(out / "table1.md");
+  EXPECT_THAT(page, HasSubstr("order of the trials"));
+  EXPECT_THAT(page, HasSubstr("drifted: order of the trials."));
+}
+
 // One error that all trials share: it stays in the interval, and two set-ups
 // halve its square.
 TEST_F(BoundaryCommands, ErrorsThatTrialsShareStay) {
