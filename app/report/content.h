@@ -1,6 +1,7 @@
 // The parts of the report. Internal to app/report.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,12 @@ Figure MakeFigure(const Group& group, std::size_t index);
 // varies that could be tested.
 std::vector<Block> MakeDependence(const Group& group,
                                   std::span<const core::Trial> trials);
+
+// For page 1: that the trials do not have one boundary; nothing where no test
+// says so.
+std::optional<Callout> MakeDependenceCallout(
+    const Group& group, std::span<const Group> groups,
+    std::span<const core::Trial> trials);
 
 Callout MakeVerdict(const Group& group, std::span<const Group> groups);
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "app/report/content.h"
@@ -80,10 +81,13 @@ std::optional<double> Value(const core::Measured& measured) {
   return measured->value;
 }
 
-}  // namespace
+// The table, and what in it stands out.
+struct Dependence {
+  Table table;
+  std::string telling;
+};
 
-std::vector<Block> MakeDependence(const Group& group,
-                                  std::span<const core::Trial> trials) {
+Dependence Test(const Group& group, std::span<const core::Trial> trials) {
   Table table{"What the boundary might depend on besides the angle",
               {{"what"},
                {"trials", true},
@@ -142,19 +146,40 @@ std::vector<Block> MakeDependence(const Group& group,
   name("operator", OfEach(group, trials, [](const core::Trial& t) {
          return t.conditions ? t.conditions->person.name : std::string();
        }));
+  return {std::move(table), std::move(telling)};
+}
+
+std::string Sentence(const std::string& telling) {
+  return fmt::format(
+      "The boundary depends on more than the angle, or drifted: {}. One "
+      "boundary for all these trials is then an average over what was thrown.",
+      telling);
+}
+
+}  // namespace
+
+std::vector<Block> MakeDependence(const Group& group,
+                                  std::span<const core::Trial> trials) {
+  Dependence found = Test(group, trials);
   std::vector<Block> out;
-  if (table.rows.empty()) return out;
-  out.push_back(table);
+  if (found.table.rows.empty()) return out;
+  out.push_back(std::move(found.table));
   out.push_back(Paragraph{
-      telling.empty()
+      found.telling.empty()
           ? "Score tests: none of these moves the boundary beyond chance (p "
             "below 0.01)."
-          : fmt::format("The boundary depends on more than the angle, or "
-                        "drifted: {}. One boundary for all these trials is "
-                        "then an average over what was thrown.",
-                        telling),
-      telling.empty()});
+          : Sentence(found.telling),
+      found.telling.empty()});
   return out;
+}
+
+std::optional<Callout> MakeDependenceCallout(
+    const Group& group, std::span<const Group> groups,
+    std::span<const core::Trial> trials) {
+  const Dependence found = Test(group, trials);
+  if (found.telling.empty()) return std::nullopt;
+  return Callout{ShortName(group, groups) + ": not one boundary.",
+                 Sentence(found.telling), Tone::kBad};
 }
 
 }  // namespace touchdown::report

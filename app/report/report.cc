@@ -41,7 +41,12 @@ Section MakeFront(std::span<const Group> groups,
                   std::size_t& figures) {
   Section section{groups.front().simulated(), {}};
   auto& out = section.blocks;
-  for (const Group& group : groups) out.push_back(MakeVerdict(group, groups));
+  for (const Group& group : groups) {
+    out.push_back(MakeVerdict(group, groups));
+    if (auto callout = MakeDependenceCallout(group, groups, trials)) {
+      out.push_back(std::move(*callout));
+    }
+  }
   for (Table& table : MakeTable1(groups, trials, input)) {
     out.push_back(std::move(table));
   }

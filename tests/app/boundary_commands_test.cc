@@ -166,6 +166,8 @@ TEST_F(BoundaryCommands, TheReportTellsOfADrift) {
   const std::string page = ReadAll(out / "table1.md");
   EXPECT_THAT(page, HasSubstr("order of the trials"));
   EXPECT_THAT(page, HasSubstr("drifted: order of the trials."));
+  EXPECT_LT(page.find("sphere: not one boundary."),
+            page.find("Table 1: motion"));
 }
 
 // One error that all trials share: it stays in the interval, and two set-ups
