@@ -12,9 +12,6 @@
 namespace touchdown::analysis {
 namespace {
 
-// U = k u: the coverage factor of a theory's expanded uncertainty.
-constexpr double kTheoryCoverage = 2.0;
-
 bool PredictsBounce(double angle_rad, double boundary_rad, TieRule rule) {
   if (std::abs(angle_rad - boundary_rad) <= kSameAngle_rad) {
     return rule == TieRule::kBouncesAtBoundary;
@@ -81,10 +78,6 @@ void FindSameAgreement(std::span<const Observation> observations, TieRule rule,
   if (high < angles.size()) out.same_high_rad = angles[high];
 }
 
-bool Inside(const core::Interval& inner, double low, double high) {
-  return inner.low >= low && inner.high <= high;
-}
-
 }  // namespace
 
 Counts Count(std::span<const Observation> observations) {
@@ -118,10 +111,11 @@ Bracket FindBracket(std::span<const Observation> observations) {
   return out;
 }
 
-bool DecidesNothing(const Observation& observation, double boundary_rad,
-                    double coverage_factor) {
-  return std::abs(observation.angle_rad - boundary_rad) <=
-         coverage_factor * observation.u_rad + kSameAngle_rad;
+bool DecidesNothing(const Observation& observation,
+                    const TheoryBoundary& theory, double coverage_factor) {
+  return std::abs(observation.angle_rad - theory.boundary_rad) <=
+         coverage_factor * std::hypot(TotalU(observation), theory.u_rad) +
+             kSameAngle_rad;
 }
 
 Agreement CompareWithTheory(std::span<const Observation> observations,
@@ -150,65 +144,13 @@ Agreement CompareWithTheory(std::span<const Observation> observations,
     const bool predicted =
         PredictsBounce(o.angle_rad, theory.boundary_rad, options.tie_rule);
     Tally(out.all, predicted, bounced);
-    if (DecidesNothing(o, theory.boundary_rad, options.coverage_factor)) {
+    if (DecidesNothing(o, theory, options.coverage_factor)) {
       ++out.decides_nothing;
     } else {
       Tally(out.deciding, predicted, bounced);
     }
   }
   FindSameAgreement(observations, options.tie_rule, out);
-  return out;
-}
-
-Judgement Judge(const BoundaryIntervals& boundary, const TheoryBoundary& theory,
-                double margin_rad, core::Origin origin) {
-  if (!(margin_rad > 0.0) || !std::isfinite(margin_rad)) {
-    throw std::invalid_argument(fmt::format(
-        "margin_rad is {}; it must be positive and finite", margin_rad));
-  }
-  Judgement out;
-  if (origin == core::Origin::kSimulated) {
-    out.verdict = core::AbsentBecause(
-        "simulated trials yield no verdict on a theory: they test the "
-        "software");
-    out.reason = out.verdict.error().reason;
-    return out;
-  }
-  const double deg = core::kDegree;
-  const double value = theory.boundary_rad;
-  if (boundary.interval90_rad &&
-      Inside(*boundary.interval90_rad, value - margin_rad,
-             value + margin_rad)) {
-    out.verdict = core::Verdict::kConfirmed;
-    out.reason = fmt::format(
-        "the 90 % interval, {:.2f} to {:.2f} deg, lies within {:.2f} +- {:.2f} "
-        "deg",
-        boundary.interval90_rad->low / deg, boundary.interval90_rad->high / deg,
-        value / deg, margin_rad / deg);
-    return out;
-  }
-  const double far = margin_rad + kTheoryCoverage * theory.u_rad;
-  if (boundary.interval95_rad &&
-      (boundary.interval95_rad->low > value + far ||
-       boundary.interval95_rad->high < value - far)) {
-    out.verdict = core::Verdict::kContradicted;
-    out.reason = fmt::format(
-        "the 95 % interval, {:.2f} to {:.2f} deg, lies wholly outside {:.2f} "
-        "+- {:.2f} deg",
-        boundary.interval95_rad->low / deg, boundary.interval95_rad->high / deg,
-        value / deg, far / deg);
-    return out;
-  }
-  out.verdict = core::Verdict::kInconclusive;
-  if (boundary.interval90_rad) {
-    out.reason = fmt::format(
-        "the 90 % interval, {:.2f} to {:.2f} deg, does not lie within {:.2f} "
-        "+- {:.2f} deg",
-        boundary.interval90_rad->low / deg, boundary.interval90_rad->high / deg,
-        value / deg, margin_rad / deg);
-  } else {
-    out.reason = "the trials do not bound the boundary angle on both sides";
-  }
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -74,12 +75,13 @@ std::vector<double> Levels(double low, double high, int n) {
 }
 
 // The table l[angle][scatter], additive over trials, with what is made of it.
+// `Likelihood` fills a row: At(angle, row).
+template <class Likelihood>
 class Table {
  public:
-  Table(std::span<const Cell> cells, std::vector<double> scatter_rad,
-        double lapse)
+  Table(Likelihood likelihood, std::vector<double> scatter_rad)
       : scatter_rad_(std::move(scatter_rad)),
-        likelihood_(cells, scatter_rad_, lapse) {}
+        likelihood_(std::move(likelihood)) {}
 
   void Fill(std::vector<double> angles) {
     angles_ = std::move(angles);
@@ -140,6 +142,7 @@ class Table {
 
   const std::vector<double>& angles() const { return angles_; }
   const std::vector<double>& scatter_rad() const { return scatter_rad_; }
+  const std::vector<std::vector<double>>& rows() const { return rows_; }
 
  private:
   // True where a step was halved.
@@ -177,10 +180,161 @@ class Table {
   }
 
   std::vector<double> scatter_rad_;
-  GridLikelihood likelihood_;
+  Likelihood likelihood_;
   std::vector<double> angles_;
   std::vector<std::vector<double>> rows_;
 };
+
+// Trials that share one error, of standard uncertainty common_u_rad.
+struct SetUpCells {
+  double common_u_rad = 0.0;
+  std::vector<Cell> cells;
+};
+
+// A common error reaches no further than this many of its u: 6e-5 is left out.
+constexpr double kCommonReach = 4.0;
+// No more steps than this over the angles before a common error is integrated.
+constexpr int kMostCommonSteps = 2000;
+
+// The likelihood of one set-up with its common error integrated:
+//   M(theta, s) = Int L(theta + b, s) N(b; 0, u^2) db,
+// from a table of L whose steps are no wider than u where L has any mass.
+class SmearedLikelihood {
+ public:
+  SmearedLikelihood(const SetUpCells& setup,
+                    const std::vector<double>& scatter_rad, double lapse,
+                    const BoundaryFitOptions& options)
+      : u_rad_(setup.common_u_rad), levels_(scatter_rad.size()) {
+    Table<GridLikelihood> table(GridLikelihood(setup.cells, scatter_rad, lapse),
+                                scatter_rad);
+    const double low = options.low_rad - kCommonReach * u_rad_;
+    const double high = options.high_rad + kCommonReach * u_rad_;
+    const int steps =
+        std::clamp(static_cast<int>(std::ceil((high - low) / u_rad_)),
+                   options.start_steps, kMostCommonSteps);
+    std::vector<double> angles;
+    for (int i = 0; i <= steps; ++i) {
+      angles.push_back(low + (high - low) * i / steps);
+    }
+    table.Fill(std::move(angles));
+    table.Refine(options.scatter, options.max_cell_mass);
+    top_ = table.Max();
+    const auto& a = table.angles();
+    edge_.push_back(a.front());
+    for (std::size_t i = 1; i < a.size(); ++i) {
+      edge_.push_back((a[i - 1] + a[i]) / 2);
+    }
+    edge_.push_back(a.back());
+    for (const auto& row : table.rows()) {
+      for (const double l : row) likelihood_.push_back(std::exp(l - top_));
+    }
+  }
+
+  // Adds to `out`.
+  void At(double angle_rad, std::span<double> out) const {
+    std::vector<double> sum(levels_, 0.0);
+    double total = 0.0;
+    const auto z = [&](std::size_t k) {
+      return (edge_[k] - angle_rad) / u_rad_;
+    };
+    auto k = static_cast<std::size_t>(
+        std::upper_bound(edge_.begin(), edge_.end(),
+                         angle_rad - kCommonReach * u_rad_) -
+        edge_.begin());
+    k = std::min(k > 0 ? k - 1 : k, edge_.size() - 2);
+    double before = FastNormalCdf(z(k));
+    for (; k + 1 < edge_.size(); ++k) {
+      const double after = FastNormalCdf(z(k + 1));
+      const double weight = after - before;
+      total += weight;
+      before = after;
+      for (std::size_t j = 0; j < levels_; ++j) {
+        sum[j] += weight * likelihood_[k * levels_ + j];
+      }
+      if (z(k + 1) > kCommonReach) break;
+    }
+    for (std::size_t j = 0; j < levels_; ++j) {
+      // Where nothing is left of it the posterior has long been 0.
+      constexpr double kLeast = 1e-300;
+      out[j] +=
+          std::log(std::max(sum[j] / std::max(total, kLeast), kLeast)) + top_;
+    }
+  }
+
+ private:
+  double u_rad_;
+  std::size_t levels_;
+  double top_ = 0.0;
+  std::vector<double> edge_;        // of the steps that stand for each angle
+  std::vector<double> likelihood_;  // [angle * levels + scatter], top 1
+};
+
+// All trials: those that share no error, and each set-up that does.
+class JointLikelihood {
+ public:
+  JointLikelihood(std::span<const SetUpCells> setups,
+                  const std::vector<double>& scatter_rad, double lapse,
+                  const BoundaryFitOptions& options) {
+    for (const SetUpCells& setup : setups) {
+      if (setup.common_u_rad > 0.0) {
+        smeared_.emplace_back(setup, scatter_rad, lapse, options);
+      } else {
+        plain_.emplace_back(setup.cells, scatter_rad, lapse);
+      }
+    }
+  }
+
+  void At(double angle_rad, std::span<double> out) const {
+    if (plain_.empty()) {
+      std::fill(out.begin(), out.end(), 0.0);
+    } else {
+      plain_.front().At(angle_rad, out);
+    }
+    for (const SmearedLikelihood& setup : smeared_) setup.At(angle_rad, out);
+  }
+
+ private:
+  std::vector<GridLikelihood> plain_;  // at most one
+  std::vector<SmearedLikelihood> smeared_;
+};
+
+using JointTable = Table<JointLikelihood>;
+
+// The set-ups; trials without a common error are one, the first.
+std::vector<SetUpCells> MakeSetUps(std::span<const Observation> observations,
+                                   double bin_width_rad) {
+  std::map<int, std::vector<Observation>> shared;
+  std::vector<Observation> alone;
+  for (const Observation& o : observations) {
+    if (o.common_u_rad > 0.0) {
+      shared[o.setup].push_back(o);
+    } else {
+      alone.push_back(o);
+    }
+  }
+  std::vector<SetUpCells> out;
+  if (!alone.empty() || shared.empty()) {
+    out.push_back({0.0, MakeCells(alone, bin_width_rad)});
+  }
+  for (const auto& [number, members] : shared) {
+    double squares = 0.0;
+    for (const Observation& o : members) {
+      squares += o.common_u_rad * o.common_u_rad;
+    }
+    out.push_back({std::sqrt(squares / static_cast<double>(members.size())),
+                   MakeCells(members, bin_width_rad)});
+  }
+  return out;
+}
+
+double CommonFloor(std::span<const SetUpCells> setups) {
+  double weights = 0.0;
+  for (const SetUpCells& setup : setups) {
+    if (!(setup.common_u_rad > 0.0)) return 0.0;
+    weights += 1.0 / (setup.common_u_rad * setup.common_u_rad);
+  }
+  return weights > 0.0 ? 1.0 / std::sqrt(weights) : 0.0;
+}
 
 // Where the search begins: equal steps, and the angles at which the outcome
 // changes, so that a narrow posterior is not stepped over.
@@ -208,7 +362,7 @@ std::vector<double> StartAngles(std::span<const Observation> observations,
 
 // A finer scatter grid over the levels that hold the posterior, where they are
 // few: with many trials s is known better than the first grid's step.
-std::vector<double> FinerScatter(const Table& table,
+std::vector<double> FinerScatter(const JointTable& table,
                                  const BoundaryFitOptions& options) {
   const std::vector<double>& s = table.scatter_rad();
   const std::vector<double> joint = table.Joint(options.scatter);
@@ -261,7 +415,7 @@ double Invert(const std::vector<double>& angles,
   return angles[i - 1] + std::clamp(t, 0.0, step);
 }
 
-void FillGrid(const Table& table, const ScatterPrior& prior,
+void FillGrid(const JointTable& table, const ScatterPrior& prior,
               BoundaryGrid& grid) {
   grid.angle_rad = table.angles();
   grid.scatter_rad = table.scatter_rad();
@@ -296,7 +450,7 @@ void FillScatter(BoundaryPosterior& out) {
   out.scatter95_rad = {at(0.025), at(0.975)};
 }
 
-void FillMarginal(const Table& table, const ScatterPrior& prior,
+void FillMarginal(const JointTable& table, const ScatterPrior& prior,
                   BoundaryPosterior& out) {
   out.angle_rad = table.angles();
   out.density_per_rad = table.Density(prior);
@@ -329,13 +483,14 @@ std::optional<double> TypicalU(std::span<const Observation> observations) {
   return std::sqrt(squares / static_cast<double>(observations.size()));
 }
 
-Table MakeTable(std::span<const Cell> cells, const std::vector<double>& start,
-                const BoundaryFitOptions& options, double lapse,
-                double max_mass) {
-  Table table(cells,
-              Levels(options.scatter_low_rad, options.scatter_high_rad,
-                     options.scatter_levels),
-              lapse);
+JointTable MakeTable(std::span<const SetUpCells> setups,
+                     const std::vector<double>& start,
+                     const BoundaryFitOptions& options, double lapse,
+                     double max_mass) {
+  const std::vector<double> scatter =
+      Levels(options.scatter_low_rad, options.scatter_high_rad,
+             options.scatter_levels);
+  JointTable table(JointLikelihood(setups, scatter, lapse, options), scatter);
   table.Fill(start);
   table.Refine(options.scatter, max_mass);
   return table;
@@ -357,27 +512,57 @@ std::string_view Name(DataStatus status) {
       return "touching";
     case DataStatus::kOverlap:
       return "overlap";
+    case DataStatus::kNoTrend:
+      return "no-trend";
     case DataStatus::kReversed:
       return "reversed";
   }
   return "";
 }
 
+namespace {
+
+// 0.95 quantile of the normal distribution.
+constexpr double kReversedScore = 1.6448536269514722;
+
+// Score of a trend of the outcome with the angle, standard normal without one
+// (Cochran and Armitage): sum (x - x_mean)(y - y_mean) over its deviation when
+// outcomes are dealt at random. 0 where all angles are the same.
+double TrendScore(std::span<const Observation> observations,
+                  const Counts& counts) {
+  const double n = counts.decided();
+  double mean = 0.0;
+  for (const Observation& o : observations) {
+    if (o.outcome != Outcome::kUndecided) mean += o.angle_rad / n;
+  }
+  const double share = counts.bounce / n;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const Observation& o : observations) {
+    if (o.outcome == Outcome::kUndecided) continue;
+    const double d = o.angle_rad - mean;
+    sum += d * ((o.outcome == Outcome::kBounce ? 1.0 : 0.0) - share);
+    squares += d * d;
+  }
+  const double variance = share * (1.0 - share) * squares * n / (n - 1.0);
+  // Rounding alone makes angles differ that are the same.
+  if (!(squares > n * kSameAngle_rad * kSameAngle_rad)) return 0.0;
+  return sum / std::sqrt(variance);
+}
+
+}  // namespace
+
 DataStatus Classify(std::span<const Observation> observations) {
   const Counts counts = Count(observations);
   if (counts.decided() == 0) return DataStatus::kNoTrials;
   if (counts.bounce == 0) return DataStatus::kOnlySlides;
   if (counts.not_bounce == 0) return DataStatus::kOnlyBounces;
-  double bounce_sum = 0.0;
-  double slide_sum = 0.0;
-  for (const Observation& o : observations) {
-    if (o.outcome == Outcome::kBounce) bounce_sum += o.angle_rad;
-    if (o.outcome == Outcome::kNotBounce) slide_sum += o.angle_rad;
-  }
   const Bracket bracket = FindBracket(observations);
   if (*bracket.low_rad < *bracket.high_rad) return DataStatus::kSeparated;
-  if (bounce_sum / counts.bounce <= slide_sum / counts.not_bounce) {
-    return DataStatus::kReversed;
+  const double trend = TrendScore(observations, counts);
+  if (trend <= 0.0) {
+    return trend < -kReversedScore ? DataStatus::kReversed
+                                   : DataStatus::kNoTrend;
   }
   return *bracket.low_rad == *bracket.high_rad ? DataStatus::kTouching
                                                : DataStatus::kOverlap;
@@ -392,20 +577,22 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   out.binned = observations.size() > options.bin_above;
   out.prior = options.scatter;
   out.typical_u_rad = TypicalU(observations);
-  const std::vector<Cell> cells =
-      MakeCells(observations, out.binned ? options.bin_width_rad : 0.0);
+  const std::vector<SetUpCells> setups =
+      MakeSetUps(observations, out.binned ? options.bin_width_rad : 0.0);
+  out.common_u_rad = CommonFloor(setups);
   const std::vector<double> start = StartAngles(observations, options);
 
   const bool always = options.lapse_rule == LapseRule::kAlways;
-  Table table = MakeTable(cells, start, options, always ? options.lapse : 0.0,
-                          options.max_cell_mass);
+  JointTable table =
+      MakeTable(setups, start, options, always ? options.lapse : 0.0,
+                options.max_cell_mass);
   out.lapse = always ? options.lapse : 0.0;
   // Without lapses the data cannot gain more than -Max(): most never ask. A
   // coarse table tells the gain.
   if (options.lapse_rule == LapseRule::kWhenTheDataAsk &&
       -table.Max() > options.lapse_gain) {
-    Table with =
-        MakeTable(cells, start, options, options.lapse, kCoarseCellMass);
+    JointTable with =
+        MakeTable(setups, start, options, options.lapse, kCoarseCellMass);
     out.lapse_gain = with.Max() - table.Max();
     if (out.lapse_gain > options.lapse_gain) {
       with.Refine(options.scatter, options.max_cell_mass);
@@ -415,7 +602,7 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   }
   if (std::vector<double> finer = FinerScatter(table, options);
       !finer.empty()) {
-    Table again(cells, std::move(finer), out.lapse);
+    JointTable again(JointLikelihood(setups, finer, out.lapse, options), finer);
     again.Fill(table.angles());
     again.Refine(options.scatter, options.max_cell_mass);
     table = std::move(again);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -172,6 +174,67 @@ double FindTop(const Profile& pl, std::span<const Observation> observations,
 
 }  // namespace
 
+LikelihoodProfile ProfileOfPosterior(const BoundaryPosterior& posterior) {
+  const BoundaryGrid& grid = posterior.grid;
+  const std::vector<double>& angles = grid.angle_rad;
+  const std::size_t n = angles.size();
+  const std::size_t m = grid.scatter_rad.size();
+  LikelihoodProfile out;
+  out.status = posterior.status;
+  out.interval95_rad = {angles.front(), angles.back()};
+  out.estimate_rad = (angles.front() + angles.back()) / 2;
+  if (out.status == DataStatus::kNoTrials) return out;
+
+  // Weight over prior and step is the likelihood, but for a factor.
+  std::vector<double> pl(n);
+  std::vector<std::size_t> best_level(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double below = i > 0 ? angles[i] - angles[i - 1] : 0.0;
+    const double above = i + 1 < n ? angles[i + 1] - angles[i] : 0.0;
+    double best = -std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < m; ++j) {
+      const double z =
+          std::log(grid.scatter_rad[j] / posterior.prior.median_rad) /
+          posterior.prior.log_sd;
+      const double end = j == 0 || j + 1 == m ? std::log(2.0) : 0.0;
+      const double l = std::log(grid.weight[i * m + j]) + z * z / 2 + end;
+      if (l > best) {
+        best = l;
+        best_level[i] = j;
+      }
+    }
+    pl[i] = best - std::log((below + above) / 2);
+  }
+  const auto top = static_cast<std::size_t>(
+      std::max_element(pl.begin(), pl.end()) - pl.begin());
+  out.max_log_likelihood = posterior.max_log_likelihood;
+  const double level = pl[top] - kChiSquare95 / 2;
+  // Where pl crosses `at` outwards from the top; between points it is linear.
+  const auto cross = [&](double at, int way) -> std::optional<double> {
+    for (std::size_t i = top;; i += static_cast<std::size_t>(way)) {
+      if (way < 0 ? i == 0 : i + 1 == n) return std::nullopt;
+      const std::size_t next = i + static_cast<std::size_t>(way);
+      if (pl[next] >= at) continue;
+      const double fall = pl[i] - pl[next];
+      const double t = std::isfinite(fall) ? (pl[i] - at) / fall : 1.0;
+      return angles[i] + t * (angles[next] - angles[i]);
+    }
+  };
+  const auto low = cross(level, -1);
+  const auto high = cross(level, 1);
+  out.open_low = !low;
+  out.open_high = !high;
+  out.interval95_rad = {low.value_or(angles.front()),
+                        high.value_or(angles.back())};
+  out.estimate_rad = angles[top];
+  out.has_estimate = out.status == DataStatus::kSeparated ||
+                     out.status == DataStatus::kTouching ||
+                     out.status == DataStatus::kOverlap;
+  const bool bottom = best_level[top] == 0;
+  out.scatter_rad = bottom ? 0.0 : grid.scatter_rad[best_level[top]];
+  return out;
+}
+
 LikelihoodProfile ProfileLikelihood(std::span<const Observation> observations,
                                     const ProfileOptions& options) {
   Check(options);
@@ -218,6 +281,7 @@ LikelihoodProfile ProfileLikelihood(std::span<const Observation> observations,
       out.has_estimate = !best.at_high_end;
       out.scatter_rad = best.scatter_rad;
       break;
+    case DataStatus::kNoTrend:
     case DataStatus::kReversed:
       out.scatter_rad = best.scatter_rad;
       break;

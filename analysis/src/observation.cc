@@ -106,6 +106,10 @@ std::optional<Observation> ObserveTrial(const core::Trial& trial,
 
 }  // namespace
 
+double TotalU(const Observation& observation) {
+  return std::hypot(observation.u_rad, observation.common_u_rad);
+}
+
 Observation Observe(double angle_rad, double u_rad, double p_bounce) {
   Require(angle_rad >= 0.0 && angle_rad <= std::numbers::pi / 2, "angle_rad",
           angle_rad, "from 0 to pi/2");

@@ -90,8 +90,9 @@ void PrintGroup(const report::Group& group) {
   for (const auto& t : study.theories) {
     fmt::print(
         "  theory      {} {} deg{}: E_n {:+.2f}, P(boundary below it) "
-        "{:.3f}, smallest margin that passes {:.1f} deg\n",
-        t.theory.name, report::Plain(t.theory.boundary_rad / kDegree),
+        "{:.3f}, the 90 % interval fits a margin of {:.1f} deg\n",
+        t.theory.name,
+        report::WithU({t.theory.boundary_rad, t.theory.u_rad, {}}, kDegree),
         t.declared ? " (declared)" : "", t.e_n, t.p_below,
         t.smallest_margin_rad / kDegree);
     fmt::print("              {}\n", report::AgreementSentence(t));

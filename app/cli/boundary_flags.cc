@@ -65,6 +65,23 @@ core::Estimate ParseTheory(const std::string& text) {
   return {value * kDegree, u * kDegree, {}};
 }
 
+core::Estimate TheoryOf(const BoundaryFlags& flags) {
+  core::Estimate theory = ParseTheory(flags.theory);
+  if (!flags.theory_u_deg) return theory;
+  const double u_deg = *flags.theory_u_deg;
+  if (!(u_deg >= 0.0 && u_deg <= 90.0)) {
+    throw std::invalid_argument(
+        fmt::format("--theory-u-deg: {}; expected 0 to 90", u_deg));
+  }
+  if (theory.u > 0.0) {
+    throw std::invalid_argument(fmt::format(
+        "--theory-u-deg: {} beside --theory-deg {}; give the theory's u once",
+        u_deg, flags.theory));
+  }
+  theory.u = u_deg * kDegree;
+  return theory;
+}
+
 core::Interval ParseRange(const char* flag, const std::string& text) {
   constexpr const char* kForm = "LOW:HIGH in degrees, e.g. 5:40";
   const std::size_t colon = text.find(':');
@@ -115,6 +132,11 @@ void PrintLeftOut(const report::Group& group, std::string_view heading) {
 }
 
 pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
+  if (flags.theory_u_deg && flags.theory.empty()) {
+    throw std::invalid_argument(
+        "--theory-u-deg: there is no --theory-deg that it could be of; a "
+        "campaign's own theory has its u from `campaign --theory-u-deg`");
+  }
   pipeline::SelectionOptions out;
   out.store = flags.store;
   out.csv = flags.csv;
@@ -140,7 +162,7 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
         "--margin-deg: {}; expected more than 0", flags.margin_deg));
   }
   if (!flags.csv.empty() && !flags.theory.empty()) {
-    const core::Estimate theory = ParseTheory(flags.theory);
+    const core::Estimate theory = TheoryOf(flags);
     out.theory_name = flags.theory_name;
     out.theory_rad = theory.value;
     out.theory_u_rad = theory.u;
@@ -154,6 +176,15 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   out.next.target_half_width_rad = flags.target_deg * kDegree;
   out.next.set_u_rad = flags.set_u_deg * kDegree;
   out.next.max_trials = flags.max_trials;
+  if (!flags.support.empty()) {
+    const core::Interval support = ParseRange("--support-deg", flags.support);
+    if (support.low < 0.0 || support.high > 90.0 * kDegree) {
+      throw std::invalid_argument(fmt::format(
+          "--support-deg: '{}'; expected LOW:HIGH within 0:90", flags.support));
+    }
+    out.fit.low_rad = support.low;
+    out.fit.high_rad = support.high;
+  }
   return out;
 }
 
@@ -176,7 +207,7 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   // that it is said to be of.
   if (!flags.csv.empty() && flags.body.empty()) input.theories.clear();
   if (flags.csv.empty() && !flags.theory.empty()) {
-    const core::Estimate theory = ParseTheory(flags.theory);
+    const core::Estimate theory = TheoryOf(flags);
     for (const auto body :
          {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
       input.theories.push_back(
@@ -193,7 +224,9 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
   command.add_option("--db", flags.store, "trial store");
   command.add_option("--trials", flags.csv,
                      "CSV file with angle_deg, u_deg, p_bounce and, where "
-                     "there were set-points, set_angle_deg");
+                     "there were set-points, set_angle_deg; where trials share "
+                     "an error, its common_u_deg, and the calibration that "
+                     "tells one set-up from another");
   command.add_flag("--paper-table1", flags.paper_table1,
                    "the paper's own Table 1");
   command
@@ -213,11 +246,17 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
   command.add_option("--theory-deg", flags.theory,
                      "a theory's boundary, D or D+-u: of --trials the declared "
                      "one, else for information");
+  command.add_option("--theory-u-deg", flags.theory_u_deg,
+                     "its standard uncertainty: enters E_n and the verdict, "
+                     "with U = 2 u (default 0, the value is exact)");
   command.add_option("--theory-name", flags.theory_name, "its name");
   command.add_option("--margin-deg", flags.margin_deg,
                      "equivalence margin, of --trials (default 1)");
   command.add_option("--feasible-deg", flags.feasible,
                      "angles the rig can throw, LOW:HIGH");
+  command.add_option("--support-deg", flags.support,
+                     "angles at which the boundary can be, LOW:HIGH: the "
+                     "support of the prior (default 0:90)");
   command
       .add_option("--set-u-deg", flags.set_u_deg,
                   "repeatability of the ejector")

@@ -32,11 +32,13 @@ struct BoundaryFlags {
   std::string until;
   bool reviewed = false;
   std::string theory;
+  std::optional<double> theory_u_deg;
   std::string theory_name;
   double margin_deg = 0.0;
   double target_deg = 0.5;
   double set_u_deg = 0.5;
   std::string feasible;
+  std::string support;
   int max_trials = 60;
   std::string rule = "expected-variance";
   std::string guess;
@@ -80,6 +82,10 @@ report::ReportInput MakeInput(const BoundaryFlags& flags,
 
 // "11.8" or "11.8+-0.5", in degrees.
 core::Estimate ParseTheory(const std::string& text);
+
+// --theory-deg with the u of --theory-u-deg. Throws std::invalid_argument where
+// both give one.
+core::Estimate TheoryOf(const BoundaryFlags& flags);
 
 // "5:40", in degrees.
 core::Interval ParseRange(const char* flag, const std::string& text);

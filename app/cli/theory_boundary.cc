@@ -151,7 +151,7 @@ std::string Text(const BoundaryAnswer& a) {
                        s.slope / kDegree, s.u_rad / kDegree);
   }
   if (u.n_draws > 0) {
-    out += fmt::format("  Monte Carlo  P(no boundary) = {:.4g} of {} draws",
+    out += fmt::format("  Monte Carlo  P(no boundary) = {:.4g}, from {} draws",
                        u.p_none, u.n_draws);
     if (u.mean_rad) {
       out += fmt::format(

@@ -63,8 +63,9 @@ double Number(const Place& place, std::string_view column,
   return value;
 }
 
+// `u_deg` is the trial's own, `common_u_deg` what its set-up shares.
 core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
-                      double p_bounce) {
+                      double common_u_deg, double p_bounce) {
   core::Trial trial;
   trial.campaign = what.campaign;
   trial.body.kind = what.body;
@@ -72,8 +73,14 @@ core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
   trial.origin = what.origin;
   core::Contact& contact = trial.first.contact;
   contact.found = true;
-  core::Angle(contact, what.angle_kind) =
-      core::Estimate{angle_deg * kDegree, u_deg * kDegree};
+  core::Angle(contact, what.angle_kind) = core::Estimate{
+      angle_deg * kDegree, std::hypot(u_deg, common_u_deg) * kDegree};
+  if (common_u_deg > 0.0) {
+    core::Budget& budget = what.angle_kind == core::AngleKind::kApproach
+                               ? contact.approach_budget
+                               : contact.attitude_budget;
+    budget = {{"own", u_deg * kDegree}, {"common", common_u_deg * kDegree}};
+  }
   core::StateDecision& state = trial.first.state;
   state.p_bounce = p_bounce;
   state.max_gap_m = core::AbsentBecause("not in the file");
@@ -138,9 +145,18 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
                             std::string_view range) {
       return Number(place, column, cells[*find(column)], 0.0, high, range);
     };
-    trials.push_back(MakeTrial(what, number("angle_deg", 90.0, "from 0 to 90"),
-                               number("u_deg", 90.0, "from 0 to 90"),
-                               number("p_bounce", 1.0, "from 0 to 1")));
+    const auto common = find("common_u_deg");
+    trials.push_back(
+        MakeTrial(what, number("angle_deg", 90.0, "from 0 to 90"),
+                  number("u_deg", 90.0, "from 0 to 90"),
+                  common && !cells[*common].empty()
+                      ? number("common_u_deg", 90.0, "from 0 to 90, or nothing")
+                      : 0.0,
+                  number("p_bounce", 1.0, "from 0 to 1")));
+    if (const auto setup = find("calibration");
+        setup && !cells[*setup].empty()) {
+      trials.back().conditions.emplace().calibration.name = cells[*setup];
+    }
     trials.back().id = fmt::format("line {}", place.line);
     const auto set = find("set_angle_deg");
     if (set && !cells[*set].empty()) {

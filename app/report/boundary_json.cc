@@ -1,5 +1,7 @@
 #include "app/report/boundary_json.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -40,6 +42,26 @@ Json Quantity(const core::Measured& m, double unit) {
   return {{"value", m->value / unit}, {"u", m->u / unit}};
 }
 
+// What the verdict rests on: log likelihood ratios with the scatter free, and
+// the posterior's tails beyond the margin, and beyond margin and U.
+Json EvidenceJson(const analysis::TheoryComparison& t) {
+  if (!t.declared || t.basis.counts.decided() == 0) return nullptr;
+  const analysis::VerdictBasis& b = t.basis;
+  const analysis::Evidence& e = b.evidence;
+  const auto finite = [](double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+  };
+  return {{"log_ratio_for",
+           finite(e.log_within - std::max(e.log_below, e.log_above))},
+          {"log_ratio_against",
+           finite(std::max(e.log_far_below, e.log_far_above) - e.log_near)},
+          {"p_below_margin", b.p_below},
+          {"p_above_margin", b.p_above},
+          {"p_far_below", b.p_far_below},
+          {"p_far_above", b.p_far_above},
+          {"angles_span_deg", b.span_rad / kDegree}};
+}
+
 Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
   const auto& a = t.agreement;
   const auto& verdict = t.judgement.verdict;
@@ -60,6 +82,9 @@ Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
           {"verdict_reason", t.judgement.reason},
           {"trials_to_decide",
            t.trials_to_decide ? Json(*t.trials_to_decide) : Json(nullptr)},
+          {"deciding_angle_deg",
+           t.deciding ? Json(t.deciding->angle_rad / kDegree) : Json(nullptr)},
+          {"evidence", EvidenceJson(t)},
           {"agreement_sentence", AgreementSentence(t)},
           {"agreement",
            {{"right", a.all.right()},

@@ -1,6 +1,7 @@
 // The parts of the report. Internal to app/report.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +44,17 @@ std::vector<Block> MakeEvidence(const Group& group,
 Figure MakeFigure(const Group& group, std::size_t index);
 
 // The group's verdict in a box, for page 1 (group_section.cc).
+// The score tests of what else the boundary may depend on; empty where nothing
+// varies that could be tested.
+std::vector<Block> MakeDependence(const Group& group,
+                                  std::span<const core::Trial> trials);
+
+// For page 1: that the trials do not have one boundary; nothing where no test
+// says so.
+std::optional<Callout> MakeDependenceCallout(
+    const Group& group, std::span<const Group> groups,
+    std::span<const core::Trial> trials);
+
 Callout MakeVerdict(const Group& group, std::span<const Group> groups);
 
 // The control charts of one campaign's check shots (check_shots.cc).

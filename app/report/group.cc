@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "app/report/set_points.h"
+#include "app/report/shared_errors.h"
 
 namespace touchdown::report {
 namespace {
@@ -108,6 +109,7 @@ std::vector<Group> MakeGroups(const ReportInput& input,
       continue;
     }
     Group group;
+    ShareErrors(trials, trial_group.observations);
     for (const auto& o : trial_group.observations) {
       group.members.push_back(o.trial);
     }

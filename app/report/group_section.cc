@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "app/report/content.h"
 #include "app/report/format.h"
@@ -48,6 +49,24 @@ std::string BounceHeightText(const Group& group,
       Plain(low / kMillimetre, 3), Plain(high / kMillimetre, 3));
 }
 
+// The part of u that does not become less with more trials.
+std::string SharedErrorText(const Group& group) {
+  double most = 0.0;
+  std::set<int> setups;
+  for (const analysis::Observation& o : group.trials.observations) {
+    if (o.common_u_rad <= 0.0) continue;
+    most = std::max(most, o.common_u_rad);
+    setups.insert(o.setup);
+  }
+  if (setups.empty()) {
+    return "nothing is known: the trials count as independent";
+  }
+  return fmt::format(
+      "up to {} deg (level, lens, yaw, scale) in {} set-up{}: one error moves "
+      "all trials of a set-up, and stays however many there are",
+      Plain(most / kDegree, 3), setups.size(), setups.size() == 1 ? "" : "s");
+}
+
 Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
   const core::Campaign& c = group.campaign;
   const analysis::BoundaryStudy& study = group.study;
@@ -82,6 +101,14 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
   row("u of the angles",
       fmt::format("{} to {} deg", Plain(study.least_u_rad / kDegree, 3),
                   Plain(study.greatest_u_rad / kDegree, 3)));
+  row("of which a set-up's trials share", SharedErrorText(group));
+  if (study.repeated_set_angles > 0) {
+    row("set angles that repeat",
+        fmt::format("{} trials; the ejector repeats to {} deg, which enters "
+                    "the fits beside the measured angles",
+                    study.repeated_set_angles,
+                    Plain(study.set_u_rad.value_or(0.0) / kDegree, 2)));
+  }
   row("what the trials alone say", BracketSentence(study.bracket));
   row("next angle", NextSentence(group));
   return table;
@@ -140,6 +167,9 @@ Section MakeGroupSection(const Group& group, std::span<const Group> groups,
   }
   out.push_back(MakeVerdict(group, groups));
   for (Block& block : MakeStatistics(group)) out.push_back(std::move(block));
+  for (Block& block : MakeDependence(group, trials)) {
+    out.push_back(std::move(block));
+  }
   for (Block& block : MakeTrialTables(group, trials, input)) {
     out.push_back(std::move(block));
   }

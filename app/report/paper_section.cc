@@ -42,8 +42,8 @@ Section MakePaperSection() {
                {"boundaries that agree as well (deg)"},
                {"posterior median, 95 % (deg)", true},
                {"likelihood 95 % (deg)", true},
-               {"smallest margin that passes (deg)", true},
-               {"verdict at 1 deg"}},
+               {"margin that the 90 % interval fits (deg)", true},
+               {"verdict at 1 deg, and why"}},
               {}};
   for (const auto body :
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
@@ -67,7 +67,8 @@ Section MakePaperSection() {
                       p.interval95_rad.high / kDegree)},
          {fmt::format("{:.1f} to {:.1f}", l.low / kDegree, l.high / kDegree)},
          {fmt::format("{:.1f}", theory.smallest_margin_rad / kDegree)},
-         {std::string(core::Name(*theory.judgement.verdict))}});
+         {fmt::format("{}: {}", core::Name(*theory.judgement.verdict),
+                      theory.judgement.reason)}});
   }
   out.push_back(table);
   out.push_back(Paragraph{

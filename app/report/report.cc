@@ -41,7 +41,12 @@ Section MakeFront(std::span<const Group> groups,
                   std::size_t& figures) {
   Section section{groups.front().simulated(), {}};
   auto& out = section.blocks;
-  for (const Group& group : groups) out.push_back(MakeVerdict(group, groups));
+  for (const Group& group : groups) {
+    out.push_back(MakeVerdict(group, groups));
+    if (auto callout = MakeDependenceCallout(group, groups, trials)) {
+      out.push_back(std::move(*callout));
+    }
+  }
   for (Table& table : MakeTable1(groups, trials, input)) {
     out.push_back(std::move(table));
   }
@@ -62,15 +67,23 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
   auto& out = section.blocks;
   out.push_back(Heading{2, "How this report was made"});
   out.push_back(List{
-      {"Boundary angle: posterior on a grid. A trial at the measured angle x, "
-       "known to u, bounces with probability Phi((x - boundary) / sqrt(scatter"
-       "\u00b2 + u\u00b2)); the boundary is as likely anywhere from 0 to 90 "
-       "deg "
-       "beforehand, the scatter has the prior named beside the estimate. "
-       "Undecided trials count by their P(bounce); those without one, because "
-       "the film ends before the top of the rebound, are left out and listed.",
+      {fmt::format(
+           "Boundary angle: posterior on a grid; this is the estimate. A trial "
+           "at the measured angle x, known to u, bounces with probability "
+           "Phi((x - boundary) / sqrt(scatter\u00b2 + u\u00b2)); the boundary "
+           "is as likely anywhere from {} to {} deg beforehand, the scatter "
+           "has the prior named beside the estimate. What the trials of a "
+           "set-up share of u moves them together: one unknown offset a "
+           "set-up, integrated.",
+           Plain(input.study.fit.low_rad / core::kDegree),
+           Plain(input.study.fit.high_rad / core::kDegree)) +
+           " Undecided trials count by their P(bounce); those without one, "
+           "because "
+           "the film ends before the top of the rebound, are left out and "
+           "listed.",
        "Likelihood profile: the same model without a prior; 95 % where twice "
-       "the fall from the maximum is below 3.84.",
+       "the fall from the maximum is below 3.84. It guards the verdict: no "
+       "scatter that the prior thinks unlikely may decide.",
        "Bracket: from the greatest angle at which a body stayed down to the "
        "least at which one bounced. It is exact only for exact angles and a "
        "boundary that does not scatter.",
@@ -81,7 +94,13 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
        "trial: confirmed where the 90 % interval of the boundary lies within "
        "the theory's value \u00b1 margin; contradicted where the 95 % interval "
        "lies wholly outside value \u00b1 (margin + U of the theory); else "
-       "inconclusive. Simulated trials yield no verdict."}});
+       "inconclusive. Either also needs that the best boundary which it denies "
+       "fits 33 times worse than the best that it allows, each with whatever "
+       "scatter suits it, and ten decided trials; confirmed needs both "
+       "outcomes, angles that span two margins, and U below half the margin. "
+       "By simulation at most 5 of 100 campaigns see a false verdict, in "
+       "whatever of the designs tried, though they look after each of 60 "
+       "trials. Simulated trials yield no verdict."}});
   Table table{"", {{"made with"}, {""}}, {}};
   const auto row = [&](const char* name, const std::string& value) {
     if (!value.empty()) table.rows.push_back({{name}, {value}});

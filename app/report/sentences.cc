@@ -86,7 +86,8 @@ std::string VerdictSentence(const Group& group) {
   if (theory->judgement.verdict == core::Verdict::kInconclusive) {
     return fmt::format(
         "These trials neither confirm nor contradict {} with a margin of {} "
-        "deg: {}. The smallest margin that would pass is {:.1f} deg.",
+        "deg: {}. The posterior's 90 % interval would fit a margin of {:.1f} "
+        "deg.",
         boundary, margin, theory->judgement.reason,
         theory->smallest_margin_rad / kDegree);
   }
@@ -103,16 +104,22 @@ std::string OutlookSentence(const Group& group) {
   // A forecast beyond this means: not by more of the same trials.
   constexpr int kHopeless = 1000;
   if (*theory->trials_to_decide > kHopeless) {
-    return "More trials of this kind would hardly decide: the scatter of the "
-           "boundary is too large for the margin.";
+    return group.study.posterior.common_u_rad > 0.0
+               ? "More trials of this kind would hardly decide: the scatter of "
+                 "the boundary, or the error that all trials of a set-up "
+                 "share, is too large for the margin."
+               : "More trials of this kind would hardly decide: the scatter of "
+                 "the boundary is too large for the margin.";
   }
   return fmt::format(
-      "About {} near {:.0f} deg would decide, if boundary and scatter are what "
-      "they now seem.",
+      "About {} would decide, if boundary and scatter are what they now seem; "
+      "the next would tell most near {:.1f} deg.",
       *theory->trials_to_decide == 1
           ? std::string("one more trial")
           : fmt::format("{} more trials", *theory->trials_to_decide),
-      group.study.posterior.median_rad / kDegree);
+      (theory->deciding ? theory->deciding->angle_rad
+                        : group.study.posterior.median_rad) /
+          kDegree);
 }
 
 namespace {
@@ -188,6 +195,12 @@ std::string StatusSentence(const analysis::BoundaryStudy& study) {
       break;
     case DataStatus::kOverlap:
       text = "Slides and bounces overlap, so the scatter is seen in the data.";
+      break;
+    case DataStatus::kNoTrend:
+      text =
+          "Bounces lie no higher than slides, and no lower than chance would "
+          "put them: the scatter is seen, and no trend with the angle, so that "
+          "the trials tell no boundary.";
       break;
     case DataStatus::kReversed:
       text =

@@ -41,7 +41,7 @@ Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
     return {"undecided", Tone::kUndecided};
   }
   const double boundary = theory.theory.boundary_rad;
-  if (analysis::DecidesNothing(*o, boundary)) {
+  if (analysis::DecidesNothing(*o, theory.theory)) {
     return {"decides nothing", Tone::kMuted};
   }
   const bool bounced = trial.first.state.label == core::MotionState::kBounce;

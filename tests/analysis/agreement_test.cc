@@ -1,6 +1,5 @@
 #include "touchdown/analysis/agreement.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -16,9 +15,6 @@ namespace {
 
 using core::BodyKind;
 using core::kDegree;
-using core::Origin;
-using core::Verdict;
-using ::testing::HasSubstr;
 
 Observation At(double angle_deg, double u_deg, double p) {
   return Observe(angle_deg * kDegree, u_deg * kDegree, p);
@@ -129,45 +125,6 @@ TEST(CompareWithTheory, RefusesAnImpossibleTheory) {
       CompareWithTheory({}, {"t", std::numeric_limits<double>::quiet_NaN()}),
       std::invalid_argument);
   EXPECT_THROW(CompareWithTheory({}, {"t", 0.1, -1.0}), std::invalid_argument);
-}
-
-BoundaryIntervals Intervals(double low_deg, double high_deg) {
-  const core::Interval i{low_deg * kDegree, high_deg * kDegree};
-  return {i, i};
-}
-
-TEST(Judge, OneRuleThreeVerdicts) {
-  const TheoryBoundary theory{"t", 11.8 * kDegree, 0.25 * kDegree};
-  const auto judge = [&](double low, double high) {
-    return *Judge(Intervals(low, high), theory, 1.0 * kDegree,
-                  Origin::kRecorded)
-                .verdict;
-  };
-  EXPECT_EQ(judge(11.0, 12.7), Verdict::kConfirmed);
-  EXPECT_EQ(judge(11.0, 12.9), Verdict::kInconclusive);
-  // Wholly outside 11.8 +- (1 + 2 * 0.25): above 13.3 or below 10.3.
-  EXPECT_EQ(judge(13.2, 15.0), Verdict::kInconclusive);
-  EXPECT_EQ(judge(13.4, 15.0), Verdict::kContradicted);
-  EXPECT_EQ(judge(5.0, 10.2), Verdict::kContradicted);
-}
-
-TEST(Judge, WithoutIntervalsItIsInconclusive) {
-  const Judgement judgement = Judge({}, {"t", 0.2, 0.0}, 0.01, Origin::kManual);
-  EXPECT_EQ(*judgement.verdict, Verdict::kInconclusive);
-  EXPECT_THAT(judgement.reason, HasSubstr("both sides"));
-}
-
-TEST(Judge, SimulatedTrialsYieldNoVerdict) {
-  const Judgement judgement =
-      Judge(Intervals(11.7, 11.9), {"t", 11.8 * kDegree}, kDegree,
-            Origin::kSimulated);
-  ASSERT_FALSE(judgement.verdict.has_value());
-  EXPECT_THAT(judgement.verdict.error().reason, HasSubstr("simulated"));
-}
-
-TEST(Judge, RefusesAMarginThatIsNone) {
-  EXPECT_THROW(Judge({}, {"t", 0.2}, 0.0, Origin::kManual),
-               std::invalid_argument);
 }
 
 }  // namespace

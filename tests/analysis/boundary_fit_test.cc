@@ -235,8 +235,15 @@ TEST(Classify, KnowsEveryKindOfData) {
   EXPECT_EQ(status({5, 10, 15}, {1, 1, 1}), DataStatus::kOnlyBounces);
   EXPECT_EQ(status({10, 12}, {0, 1}), DataStatus::kSeparated);
   EXPECT_EQ(status({14, 16, 16}, {0, 0, 1}), DataStatus::kTouching);
-  EXPECT_EQ(status({10, 12}, {1, 0}), DataStatus::kReversed);
-  EXPECT_EQ(status({10, 10}, {1, 0}), DataStatus::kReversed);
+  // Two trials in the wrong order are chance, and so are repeats at one angle
+  // that scatter; eight in the wrong order are not.
+  EXPECT_EQ(status({10, 12}, {1, 0}), DataStatus::kNoTrend);
+  EXPECT_EQ(status({10, 10}, {1, 0}), DataStatus::kNoTrend);
+  EXPECT_EQ(status({10, 10, 10, 10, 10, 10, 10, 10, 10, 10},
+                   {0, 1, 0, 1, 0, 1, 0, 1, 0, 1}),
+            DataStatus::kNoTrend);
+  EXPECT_EQ(status({5, 6, 7, 8, 12, 13, 14, 15}, {1, 1, 1, 1, 0, 0, 0, 0}),
+            DataStatus::kReversed);
   // gonogo06: means 10 and 10.33.
   EXPECT_EQ(status({10, 12, 11, 8}, {0, 1, 1, 1}), DataStatus::kOverlap);
 }
@@ -376,6 +383,51 @@ TEST(FitBoundary, RefusesImpossibleOptionsByName) {
   options = {};
   options.lapse = 0.5;
   EXPECT_THROW(FitBoundary({}, options), std::invalid_argument);
+}
+
+// One set-up: its common error is added to what the trials leave.
+TEST(FitBoundary, ACommonErrorStaysHoweverManyTrials) {
+  std::mt19937_64 engine(17);
+  std::normal_distribution<double> normal;
+  std::vector<Observation> trials;
+  for (int i = 0; i < 400; ++i) {
+    const double x = 8.0 + 0.02 * i;
+    const bool bounced = x > 12.0 + 0.4 * normal(engine);
+    trials.push_back(Observe(x * kDegree, 0.1 * kDegree, bounced));
+  }
+  const BoundaryPosterior alone = FitBoundary(trials);
+  for (const double common_deg : {0.05, 0.3, 1.0}) {
+    auto shared = trials;
+    for (Observation& o : shared) o.common_u_rad = common_deg * kDegree;
+    const BoundaryPosterior fit = FitBoundary(shared);
+    const double expected = std::hypot(alone.sd_rad, common_deg * kDegree);
+    EXPECT_NEAR(fit.sd_rad, expected, 0.02 * expected) << common_deg;
+    EXPECT_NEAR(fit.median_rad, alone.median_rad, 0.02 * expected);
+    EXPECT_NEAR(fit.scatter_median_rad, alone.scatter_median_rad,
+                0.05 * alone.scatter_median_rad);
+    EXPECT_NEAR(fit.common_u_rad, common_deg * kDegree, 1e-12);
+  }
+}
+
+// The mean of two set-ups, weighted by what each leaves: three times the common
+// u of the first is a tenth of its weight.
+TEST(FitBoundary, SetUpsAreWeighedByTheirOwnErrors) {
+  std::vector<Observation> trials;
+  for (int i = 0; i < 400; ++i) {
+    const double x = 8.0 + 0.02 * i;
+    Observation first = Observe(x * kDegree, 0.05 * kDegree, x > 11.0);
+    first.common_u_rad = 0.3 * kDegree;
+    first.setup = 1;
+    Observation second = Observe(x * kDegree, 0.05 * kDegree, x > 12.0);
+    second.common_u_rad = 0.9 * kDegree;
+    second.setup = 2;
+    trials.push_back(first);
+    trials.push_back(second);
+  }
+  const BoundaryPosterior fit = FitBoundary(trials);
+  EXPECT_NEAR(fit.mean_rad / kDegree, 11.1, 0.02);
+  EXPECT_NEAR(fit.sd_rad / kDegree, 0.9 / std::sqrt(10.0), 0.01);
+  EXPECT_NEAR(fit.common_u_rad / kDegree, 0.9 / std::sqrt(10.0), 1e-6);
 }
 
 }  // namespace

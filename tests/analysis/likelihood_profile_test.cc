@@ -192,12 +192,18 @@ TEST(ProfileLikelihood, OneOutcomeHasNoEstimate) {
 }
 
 TEST(ProfileLikelihood, ReversedOrderHasNoEstimate) {
-  const std::vector<Observation> trials{
-      Observe(10 * kDegree, 0.3 * kDegree, 1),
-      Observe(12 * kDegree, 0.3 * kDegree, 0)};
-  const auto p = ProfileLikelihood(trials);
-  EXPECT_EQ(p.status, DataStatus::kReversed);
-  EXPECT_FALSE(p.has_estimate);
+  std::vector<Observation> trials{Observe(10 * kDegree, 0.3 * kDegree, 1),
+                                  Observe(12 * kDegree, 0.3 * kDegree, 0)};
+  const auto two = ProfileLikelihood(trials);
+  EXPECT_EQ(two.status, DataStatus::kNoTrend);
+  EXPECT_FALSE(two.has_estimate);
+  for (int i = 0; i < 4; ++i) {
+    trials.push_back(Observe((6 + i) * kDegree, 0.3 * kDegree, 1));
+    trials.push_back(Observe((13 + i) * kDegree, 0.3 * kDegree, 0));
+  }
+  const auto ten = ProfileLikelihood(trials);
+  EXPECT_EQ(ten.status, DataStatus::kReversed);
+  EXPECT_FALSE(ten.has_estimate);
 }
 
 TEST(ProfileLikelihood, AnswersFollowShiftAndScale) {
@@ -238,6 +244,25 @@ TEST(ProfileLikelihood, RefusesImpossibleRanges) {
                std::invalid_argument);
   EXPECT_THROW(ProfileLikelihood({}, Wide(0, 1, 0.0, 1)),
                std::invalid_argument);
+}
+
+// Without common errors the posterior's grid holds the same profile.
+TEST(ProfileOfPosterior, IsTheProfile) {
+  for (const auto body : {BodyKind::kSphere, BodyKind::kRectangle}) {
+    const auto trials = PaperTable1(body, 0.5 * kDegree);
+    const BoundaryPosterior posterior = FitBoundary(trials);
+    const LikelihoodProfile grid = ProfileOfPosterior(posterior);
+    const LikelihoodProfile exact = ProfileLikelihood(trials);
+    const double close = 0.02 * posterior.sd_rad;
+    EXPECT_NEAR(grid.interval95_rad.low, exact.interval95_rad.low, close);
+    EXPECT_NEAR(grid.interval95_rad.high, exact.interval95_rad.high, close);
+    EXPECT_EQ(grid.open_low, exact.open_low);
+    EXPECT_EQ(grid.open_high, exact.open_high);
+  }
+  const std::vector<Observation> slides(5, Observe(0.2, 0.01, 0.0));
+  const auto one_sided = ProfileOfPosterior(FitBoundary(slides));
+  EXPECT_FALSE(one_sided.has_estimate);
+  EXPECT_TRUE(one_sided.open_high);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,106 @@ TEST_F(BoundaryCommands, JsonBearsTheNamesThatScriptsDependOn) {
   }
 }
 
+// One slide near the theory: the prior alone said "contradicted".
+TEST_F(BoundaryCommands, OneTrialContradictsNoTheory) {
+  const auto csv = folder_.path() / "one.csv";
+  std::ofstream(csv) << "angle_deg,u_deg,p_bounce\n12,0.1,0\n";
+  const Ran ran = RunProgram(
+      "boundary --theory-deg 11.8 --margin-deg 1 --trials " + csv.string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("verdict     inconclusive"));
+  EXPECT_THAT(ran.out, HasSubstr("a verdict needs at least 10"));
+}
+
+// The theory's u by a flag of its own: in E_n, and in the verdict.
+TEST_F(BoundaryCommands, TheTheorysUncertaintyCounts) {
+  const std::string trials = " --trials " + Sharp();
+  const auto theory = [&](const std::string& flags) {
+    const Ran ran = RunProgram("boundary --json " + flags + trials);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return json::parse(ran.out).at("theory").at(0);
+  };
+  const json exact = theory("--theory-deg 11.8");
+  const json vague = theory("--theory-deg 11.8 --theory-u-deg 10");
+  EXPECT_EQ(vague.at("u_deg"), 10.0);
+  EXPECT_EQ(exact.at("verdict"), "confirmed");
+  EXPECT_EQ(vague.at("verdict"), "inconclusive");
+  EXPECT_THAT(vague.at("verdict_reason").get<std::string>(),
+              HasSubstr("too vague"));
+  EXPECT_LT(std::abs(vague.at("e_n").get<double>()),
+            std::abs(exact.at("e_n").get<double>()));
+  ExpectOneLine(RunProgram("boundary --theory-u-deg 1" + trials), 2,
+                "--theory-u-deg");
+  ExpectOneLine(
+      RunProgram("boundary --theory-deg 11.8+-1 --theory-u-deg 1" + trials), 2,
+      "once");
+  ExpectOneLine(
+      RunProgram("boundary --theory-deg 11.8 --theory-u-deg -1" + trials), 2,
+      "expected 0 to 90");
+}
+
+// What a boundary can be is the user's to say.
+TEST_F(BoundaryCommands, TheSupportOfThePriorIsStated) {
+  const auto csv = folder_.path() / "slides.csv";
+  std::ofstream(csv) << "angle_deg,u_deg,p_bounce\n12,0.1,0\n14,0.1,0\n";
+  const std::string trials = " --trials " + csv.string();
+  const auto high = [&](const std::string& flags) {
+    const Ran ran = RunProgram("boundary --json" + flags + trials);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return json::parse(ran.out).at("posterior").at("high95_deg").get<double>();
+  };
+  EXPECT_GT(high(""), 80.0);
+  EXPECT_LT(high(" --support-deg 0:40"), 40.0);
+  ExpectOneLine(RunProgram("boundary --support-deg 0:100" + trials), 2,
+                "within 0:90");
+  ExpectOneLine(RunProgram("boundary --support-deg 40:0" + trials), 2,
+                "low below high");
+}
+
+// A drift over the sequence is looked for, and told.
+TEST_F(BoundaryCommands, TheReportTellsOfADrift) {
+  const auto csv = folder_.path() / "drift.csv";
+  std::ofstream file(csv);
+  file << "angle_deg,u_deg,p_bounce\n";
+  // The boundary rises from 10 to 14 deg over the sequence.
+  for (int i = 0; i < 80; ++i) {
+    const double x = 9.0 + (i * 7 % 20) * 0.3;
+    file << x << ",0.2," << (x > 10.0 + 0.05 * i ? 1 : 0) << "\n";
+  }
+  file.close();
+  const auto out = folder_.path() / "drift";
+  const Ran ran = RunProgram("report --body sphere --trials " + csv.string() +
+                             " --out " + out.string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const std::string page = ReadAll(out / "table1.md");
+  EXPECT_THAT(page, HasSubstr("order of the trials"));
+  EXPECT_THAT(page, HasSubstr("drifted: order of the trials."));
+  EXPECT_LT(page.find("sphere: not one boundary."),
+            page.find("Table 1: motion"));
+}
+
+// One error that all trials share: it stays in the interval, and two set-ups
+// halve its square.
+TEST_F(BoundaryCommands, ErrorsThatTrialsShareStay) {
+  const auto interval = [&](const std::string& name, auto calibration) {
+    const auto csv = folder_.path() / name;
+    std::ofstream file(csv);
+    file << "angle_deg,u_deg,p_bounce,common_u_deg,calibration\n";
+    for (int i = 0; i < 200; ++i) {
+      const double x = 10.0 + 0.02 * i;
+      file << x << ",0.05," << (x > 12.0 ? 1 : 0) << ",0.5," << calibration(i)
+           << "\n";
+    }
+    file.close();
+    const Ran ran = RunProgram("boundary --json --trials " + csv.string());
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return json::parse(ran.out).at("posterior").at("sd_deg").get<double>();
+  };
+  EXPECT_NEAR(interval("one.csv", [](int) { return "a"; }), 0.5, 0.01);
+  EXPECT_NEAR(interval("two.csv", [](int i) { return i % 2 == 0 ? "a" : "b"; }),
+              0.5 / std::sqrt(2.0), 0.01);
+}
+
 TEST_F(BoundaryCommands, ThePapersTable1IsInconclusive) {
   const Ran ran = RunProgram("boundary --paper-table1 --json");
   ASSERT_EQ(ran.status, 0) << ran.err;
@@ -129,8 +230,8 @@ TEST_F(BoundaryCommands, ImportOfThePapersTable1MakesItsReport) {
   const std::string page = ReadAll(out / "table1.md");
   EXPECT_THAT(page, HasSubstr("sphere: inconclusive."));
   EXPECT_THAT(page, HasSubstr("rectangle: inconclusive."));
-  EXPECT_THAT(page, HasSubstr("The smallest margin that would pass is 17.2"));
-  EXPECT_THAT(page, HasSubstr("The smallest margin that would pass is 10.7"));
+  EXPECT_THAT(page, HasSubstr("90 % interval would fit a margin of 17.2"));
+  EXPECT_THAT(page, HasSubstr("90 % interval would fit a margin of 10.7"));
   // Once more it is refused, and nothing is doubled.
   ExpectOneLine(RunProgram("import --paper-table1 --db " + store), 4,
                 "there is a campaign 'paper-table1-sphere' already");

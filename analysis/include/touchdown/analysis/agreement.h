@@ -1,5 +1,4 @@
-// Trials against a theory's boundary angle: counts, bracket, agreement,
-// verdict.
+// Trials against a theory's boundary angle: counts, bracket, agreement.
 #pragma once
 
 #include <optional>
@@ -8,8 +7,6 @@
 
 #include "touchdown/analysis/observation.h"
 #include "touchdown/core/estimate.h"
-#include "touchdown/core/expected.h"
-#include "touchdown/core/words.h"
 
 namespace touchdown::analysis {
 
@@ -96,31 +93,9 @@ Agreement CompareWithTheory(std::span<const Observation> observations,
                             const TheoryBoundary& theory,
                             const AgreementOptions& options = {});
 
-// True where `angle` lies within coverage_factor * u of the boundary.
-bool DecidesNothing(const Observation& observation, double boundary_rad,
-                    double coverage_factor = 2.0);
-
-// What a verdict rests on: intervals of the boundary angle.
-struct BoundaryIntervals {
-  std::optional<core::Interval> interval90_rad;
-  std::optional<core::Interval> interval95_rad;
-};
-
-// A verdict, or why there is none, and the comparison it rests on in words.
-struct Judgement {
-  core::Expected<core::Verdict> verdict =
-      core::AbsentBecause("nothing was compared");
-  std::string reason;
-};
-
-// The one rule:
-//   confirmed     the 90 % interval lies within value +- margin
-//   contradicted  the 95 % interval lies wholly outside value +- (margin + U),
-//                 U = 2 u of the theory
-//   inconclusive  otherwise, also where an interval is absent
-// Simulated trials yield no verdict: they test the software, not the theory.
-// Throws std::invalid_argument unless margin > 0 and finite.
-Judgement Judge(const BoundaryIntervals& boundary, const TheoryBoundary& theory,
-                double margin_rad, core::Origin origin);
+// True where `angle` lies within coverage_factor * u of the boundary, u that of
+// the angle (own and common part) and that of the theory together.
+bool DecidesNothing(const Observation& observation,
+                    const TheoryBoundary& theory, double coverage_factor = 2.0);
 
 }  // namespace touchdown::analysis

@@ -6,6 +6,10 @@
 // Gaussian error of x_i goes into Phi exactly: that is why the link is probit.
 // With p_i = P(bounce | what was filmed),
 //   l(theta, s) = sum_i log(p_i P_i + (1 - p_i)(1 - P_i)).
+// Trials of a set-up share an error b ~ N(0, common u^2) that moves all their
+// angles; it is integrated, set-up by set-up (the root mean square where their
+// common u differ):
+//   L(theta, s) = prod_setups Int exp(l_setup(theta + b, s)) N(b; 0, u^2) db.
 // Prior: theta uniform, ln s normal. The posterior exists whatever the outcomes
 // are, separated or one-sided; that is why it comes first.
 #pragma once
@@ -77,10 +81,14 @@ enum class DataStatus {
   kSeparated,    // a bracket; the scatter cannot be told from 0
   kTouching,     // separated but for a shared angle
   kOverlap,      // slides above bounces: scatter is seen
-  kReversed      // bounces on the whole no higher than slides: inconsistent
+  kNoTrend,      // bounces lie no higher than slides, by no more than chance
+  kReversed      // bounces lie lower than slides, beyond chance: inconsistent
 };
 std::string_view Name(DataStatus status);
 
+// "Reversed" is a claim: the score test of a falling trend, one-sided at 5 %.
+// Bounces that lie no higher than slides without that, such as five of each at
+// one angle, show scatter and no trend.
 DataStatus Classify(std::span<const Observation> observations);
 
 // So few decided trials cannot be expected to find a boundary.
@@ -115,8 +123,12 @@ struct BoundaryPosterior {
   double max_log_likelihood = 0.0;  // on the grid, with the lapse used
   bool binned = false;
   ScatterPrior prior;  // that it was made with
-  // Root mean square of the trials' u; absent without trials.
+  // Root mean square of the trials' own u; absent without trials.
   std::optional<double> typical_u_rad;
+  // What the errors that trials share leave uncertain of the boundary however
+  // many trials there are: (sum of 1/u^2 over set-ups)^-1/2; 0 where some
+  // trials share none.
+  double common_u_rad = 0.0;
   std::vector<SensitivityLine> sensitivity;
   // Marginal of theta: density and distribution function at increasing angles.
   std::vector<double> angle_rad;

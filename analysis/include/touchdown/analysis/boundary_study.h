@@ -13,10 +13,14 @@
 #include "touchdown/analysis/likelihood_profile.h"
 #include "touchdown/analysis/next_angle.h"
 #include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/verdict.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/words.h"
 
 namespace touchdown::analysis {
+
+// A forecast of so many trials means: not by more trials of this kind.
+inline constexpr int kNeverDecided = 1'000'000;
 
 struct StudyOptions {
   BoundaryFitOptions fit;
@@ -25,6 +29,7 @@ struct StudyOptions {
   // The theory declared before the first trial: the only one with a verdict.
   std::optional<TheoryBoundary> declared;
   double margin_rad = 1.0 * core::kDegree;
+  VerdictOptions verdict;
   // Boundaries shown beside it, for information.
   std::vector<TheoryBoundary> others;
   core::Origin origin = core::Origin::kRecorded;
@@ -47,12 +52,17 @@ struct TheoryComparison {
   double p_too_high = 0.0;
   double smallest_margin_rad = 0.0;
   Agreement agreement;
-  // Absent with the reason where there is no verdict to give.
+  // What the verdict rests on, and the verdict; absent with the reason where
+  // there is none to give.
+  VerdictBasis basis;
   Judgement judgement;
   // Forecast: further trials until the verdict would no longer be inconclusive,
   // if the boundary is where it is believed to be now; nothing where it is not
   // inconclusive.
   std::optional<int> trials_to_decide;
+  // The shot that would most likely decide, within the angles that can be
+  // thrown; where there is a forecast.
+  std::optional<DecidingShot> deciding;
   // Of the confusion matrix, without trials that decide nothing; absent where
   // none is left.
   std::optional<core::Interval> wilson95;
@@ -64,8 +74,12 @@ struct TheoryComparison {
 struct BoundaryStudy {
   Counts counts;
   Bracket bracket;
-  double least_u_rad = 0.0;  // of the angles
+  double least_u_rad = 0.0;  // of the angles, own and common part together
   double greatest_u_rad = 0.0;
+  // Trials whose set angle repeats, and the ejector's repeatability that they
+  // show: both enter the fits (set_angles.h).
+  int repeated_set_angles = 0;
+  std::optional<double> set_u_rad;
   BoundaryPosterior posterior;
   LikelihoodProfile likelihood;
   double margin_rad = 0.0;

@@ -44,4 +44,9 @@ struct LikelihoodProfile {
 LikelihoodProfile ProfileLikelihood(std::span<const Observation> observations,
                                     const ProfileOptions& options = {});
 
+// The same from the grid of a posterior: for trials that share errors, which
+// ProfileLikelihood() does not look at. The maximum over s is taken on the
+// grid's levels; limits are right to a hundredth of the posterior's sd.
+LikelihoodProfile ProfileOfPosterior(const BoundaryPosterior& posterior);
+
 }  // namespace touchdown::analysis

@@ -19,13 +19,22 @@ enum class Outcome { kNotBounce, kBounce, kUndecided };
 // group has; a face angle enters by its magnitude).
 struct Observation {
   double angle_rad = 0.0;
-  double u_rad = 0.0;  // standard uncertainty of angle_rad, >= 0
+  // Standard uncertainty of angle_rad, >= 0: the trial's own part of it, which
+  // differs from trial to trial.
+  double u_rad = 0.0;
+  // The part that all trials of a set-up have in common (level, yaw, lens,
+  // scale): one error, of this standard uncertainty, moves them together.
+  double common_u_rad = 0.0;
+  int setup = 0;  // which trials these are: equal numbers, one set-up
   // P(the body bounced | what was filmed): near 1 or 0 for decided trials.
   double p_bounce = 0.5;
   Outcome outcome = Outcome::kUndecided;
   std::optional<double> set_angle_rad;  // set-point, where there was one
   std::size_t trial = 0;                // index in the span it was made from
 };
+
+// Own and common part together.
+double TotalU(const Observation& observation);
 
 // A state is decided where the 95 % interval of the greatest gap lies on one
 // side of the bounce height, so a bare probability decides from 0.975 on.

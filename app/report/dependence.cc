@@ -1,0 +1,185 @@
+// What a group's boundary might depend on besides the angle: the order of the
+// trials, speed, spin, surface, operator. One table of score tests.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "app/report/content.h"
+#include "app/report/format.h"
+#include "touchdown/analysis/score_tests.h"
+#include "touchdown/analysis/set_angles.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+using Covariate = std::vector<std::optional<double>>;
+
+// Of five tests one below this is chance in one report of twenty.
+constexpr double kTelling = 0.01;
+
+// The number in "line 12", the name of a trial from a CSV file.
+std::optional<int> LineOf(std::string_view id) {
+  constexpr std::string_view kLine = "line ";
+  if (!id.starts_with(kLine)) return std::nullopt;
+  int line = 0;
+  const char* end = id.data() + id.size();
+  const auto [stop, error] =
+      std::from_chars(id.data() + kLine.size(), end, line);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return line;
+}
+
+// 0 for the first trial to 1 for the last, in the order in which a store took
+// them or a file lists them; all absent where neither is known.
+Covariate Order(const Group& group, std::span<const core::Trial> trials) {
+  const auto& observations = group.trials.observations;
+  std::vector<std::tuple<std::string, int, std::size_t>> order;
+  bool dated = true;
+  bool listed = true;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const core::Trial& trial = trials[observations[i].trial];
+    const auto line = LineOf(trial.id);
+    dated = dated && !trial.recorded_at_utc.empty();
+    listed = listed && line.has_value();
+    order.emplace_back(trial.recorded_at_utc, line.value_or(0), i);
+  }
+  Covariate out(observations.size());
+  if (order.size() < 2 || !(dated || listed)) return out;
+  std::sort(order.begin(), order.end());
+  // Trials that a store took in at one time have no order.
+  if (dated && std::get<0>(order.front()) == std::get<0>(order.back())) {
+    return out;
+  }
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    out[std::get<2>(order[k])] =
+        static_cast<double>(k) / static_cast<double>(order.size() - 1);
+  }
+  return out;
+}
+
+template <class Value>
+auto OfEach(const Group& group, std::span<const core::Trial> trials,
+            Value value) {
+  std::vector<decltype(value(trials.front()))> out;
+  for (const auto& o : group.trials.observations) {
+    out.push_back(value(trials[o.trial]));
+  }
+  return out;
+}
+
+std::optional<double> Value(const core::Measured& measured) {
+  if (!measured) return std::nullopt;
+  return measured->value;
+}
+
+// The table, and what in it stands out.
+struct Dependence {
+  Table table;
+  std::string telling;
+};
+
+Dependence Test(const Group& group, std::span<const core::Trial> trials) {
+  Table table{"What the boundary might depend on besides the angle",
+              {{"what"},
+               {"trials", true},
+               {"Z", true},
+               {"p, two-sided", true},
+               {"how the boundary moves"}},
+              {}};
+  const auto& posterior = group.study.posterior;
+  const auto observations =
+      analysis::UseSetAngles(group.trials.observations).observations;
+  std::string telling;
+  const auto row = [&](const std::string& what, const analysis::ScoreTest& test,
+                       const std::string& moves) {
+    const bool clear = test.p < kTelling;
+    if (clear) telling += (telling.empty() ? "" : ", ") + what;
+    table.rows.push_back(
+        {{what},
+         {fmt::format("{}", test.trials)},
+         {fmt::format("{:+.2f}", test.z)},
+         {fmt::format("{:.3f}", test.p), clear ? Tone::kBad : Tone::kPlain},
+         {moves}});
+  };
+  const auto number = [&](const std::string& what, const char* per,
+                          const Covariate& covariate) {
+    const auto test =
+        analysis::TestCovariate(observations, covariate, posterior);
+    if (!test) return;
+    row(what, *test,
+        fmt::format("{} deg {}",
+                    WithU({test->slope_rad, test->u_slope_rad, {}}, kDegree),
+                    per));
+  };
+  const auto name = [&](const std::string& what,
+                        const std::vector<std::string>& names) {
+    const auto test = analysis::TestNames(observations, names, posterior);
+    if (!test) return;
+    row(what, test->test,
+        fmt::format(
+            "{} deg for {} against the others",
+            WithU({test->test.slope_rad, test->test.u_slope_rad, {}}, kDegree),
+            test->name));
+  };
+  number("order of the trials", "from the first to the last",
+         Order(group, trials));
+  number("speed at touchdown", "for 1 m/s more",
+         OfEach(group, trials, [](const core::Trial& t) {
+           return Value(t.first.motion.before_speed_mps);
+         }));
+  number("spin at touchdown", "for 1 rad/s more",
+         OfEach(group, trials, [](const core::Trial& t) {
+           return Value(t.first.motion.before_omega_rad_per_s);
+         }));
+  name("surface", OfEach(group, trials, [](const core::Trial& t) {
+         return t.conditions ? t.conditions->surface.name : std::string();
+       }));
+  name("operator", OfEach(group, trials, [](const core::Trial& t) {
+         return t.conditions ? t.conditions->person.name : std::string();
+       }));
+  return {std::move(table), std::move(telling)};
+}
+
+std::string Sentence(const std::string& telling) {
+  return fmt::format(
+      "The boundary depends on more than the angle, or drifted: {}. One "
+      "boundary for all these trials is then an average over what was thrown.",
+      telling);
+}
+
+}  // namespace
+
+std::vector<Block> MakeDependence(const Group& group,
+                                  std::span<const core::Trial> trials) {
+  Dependence found = Test(group, trials);
+  std::vector<Block> out;
+  if (found.table.rows.empty()) return out;
+  out.push_back(std::move(found.table));
+  out.push_back(Paragraph{
+      found.telling.empty()
+          ? "Score tests: none of these moves the boundary beyond chance (p "
+            "below 0.01)."
+          : Sentence(found.telling),
+      found.telling.empty()});
+  return out;
+}
+
+std::optional<Callout> MakeDependenceCallout(
+    const Group& group, std::span<const Group> groups,
+    std::span<const core::Trial> trials) {
+  const Dependence found = Test(group, trials);
+  if (found.telling.empty()) return std::nullopt;
+  return Callout{ShortName(group, groups) + ": not one boundary.",
+                 Sentence(found.telling), Tone::kBad};
+}
+
+}  // namespace touchdown::report
