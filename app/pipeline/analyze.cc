@@ -528,7 +528,9 @@ Analysis Analyze(const std::filesystem::path& path,
         digest_s = Since(begun);
         return digest;
       });
-  const auto complete = [&](Analysis& analysis) {
+  const std::int32_t bit_depth = clip->info().bit_depth;  // of the file
+  const auto complete = [&, bit_depth](Analysis& analysis) {
+    analysis.clip.bit_depth = bit_depth;
     analysis.clip_id = id.get();
     analysis.timing.digest_s = digest_s;
     analysis.simulated = HasTruthFile(path);
