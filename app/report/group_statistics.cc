@@ -165,7 +165,8 @@ std::vector<Block> MakeStatistics(const Group& group) {
         fmt::format(
             "Equivalence (two one-sided tests) at the margin of {} deg: "
             "P(boundary below {} deg) = {:.3f}, P(above {} deg) = {:.3f}; both "
-            "under 0.05 is one of the things that confirmed needs. |E_n| up to 1 is called "
+            "under 0.05 is one of the things that confirmed needs. |E_n| up to "
+            "1 is called "
             "compatible, which is not the same as confirmed.",
             Plain(group.study.margin_rad / kDegree),
             Plain((first.theory.boundary_rad - group.study.margin_rad) /
