@@ -253,7 +253,7 @@ TEST_F(TheoryCommand, AnUnwritableOutputLeavesNothing) {
   const ProgramResult r =
       Theory({"flat", "--length-m", "0.1", "--height-m", "0.02", "--mu", "0.5",
               "--out", (folder_ / "nowhere" / "x.txt").string()});
-  ExpectOneLine(r, 3);
+  ExpectOneLine(r, 6);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "nowhere"));
 }
 

@@ -155,6 +155,12 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   if (!soft) return;
   const core::Estimate lasts =
       soft->Of([](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
+  // No frame of either flight is in contact.
+  if (instant && !input.after.empty() &&
+      (lasts.value - lasts.u) * soft->interval_s >
+          input.after.front().time_s - input.before.back().time_s) {
+    return;
+  }
   const double more = static_cast<double>(
       soft->active.count() - (instant ? instant->active.count() : 0));
   const double n = static_cast<double>(soft->degrees);
@@ -215,7 +221,8 @@ bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
     const bool disagree = std::abs(event.disagreement) > kDisagree;
     // A flight of two frames, with gravity known, is told by nothing but them:
     // the line says that they are not of one flight.
-    if (disagree && event.after_frames.size() <= LeastFrames(options)) {
+    if (disagree && options.flight.gravity_px_per_s2 &&
+        event.after_frames.size() <= LeastFrames(options)) {
       return false;
     }
     if (disagree && !in_contact) {
