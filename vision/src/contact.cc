@@ -8,7 +8,7 @@
 #include "contact_event.h"
 #include "contact_record.h"
 #include "motion_segments.h"
-#include "path_trend.h"
+#include "touchdown/vision/supported_path.h"
 #include "track_noise.h"
 #include "track_shape.h"
 
