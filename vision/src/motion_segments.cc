@@ -70,30 +70,20 @@ struct Polynomial {
   }
 };
 
-// Gaps of a supported stretch on a line with the ground's own uncertainty.
-struct LineMoments {
-  double w = 0, x = 0, xx = 0, g = 0, gx = 0, gg = 0;
-
-  void Add(double along, double gap, double weight) {
-    w += weight;
-    x += weight * along;
-    xx += weight * along * along;
-    g += weight * gap;
-    gx += weight * gap * along;
-    gg += weight * gap * gap;
+// Squares that the best line of a supported stretch's gaps by place leaves,
+// with what is known of its level and slope as precisions.
+double RssOfLine(const Moments& gaps, double prior_level, double prior_slope) {
+  const double a = gaps.w + prior_level;
+  const double c = gaps.tt + prior_slope;
+  const double determinant = a * c - gaps.t * gaps.t;
+  constexpr double kLeast = 1e-12;
+  if (!(determinant > kLeast * a * c)) {
+    return std::max(0.0, gaps.yy - gaps.y * gaps.y / a);
   }
-  // Squares left after the best line; priors are precisions.
-  double Rss(double prior_level, double prior_slope) const {
-    const double a = w + prior_level;
-    const double c = xx + prior_slope;
-    const double determinant = a * c - x * x;
-    constexpr double kLeast = 1e-12;
-    if (!(determinant > kLeast * a * c)) return std::max(0.0, gg - g * g / a);
-    const double level = (c * g - x * gx) / determinant;
-    const double slope = (a * gx - x * g) / determinant;
-    return std::max(0.0, gg - level * g - slope * gx);
-  }
-};
+  const double level = (c * gaps.y - gaps.t * gaps.ty) / determinant;
+  const double slope = (a * gaps.ty - gaps.t * gaps.y) / determinant;
+  return std::max(0.0, gaps.yy - level * gaps.y - slope * gaps.ty);
+}
 
 // A forecast's variance over that of one frame, one frame beyond `n` frames of
 // a straight line.
@@ -162,8 +152,8 @@ struct Segmenter::Fits {
   std::size_t begin = 0;
   std::size_t frames = 0;
   Moments along, height, face;
-  LineMoments gaps;
-  double lowest_px = kInfinity;  // of the gaps
+  Moments gaps;  // by place
+  double lowest_px = kInfinity;
   double highest_px = -kInfinity;
   std::optional<Polynomial> x, y, f;  // of the frames so far
 
@@ -192,7 +182,7 @@ double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
   }
   const double turned = f ? f->rss2 : 0.0;
   if (kind == StretchKind::kSupported) {
-    return x->rss2 + gaps.Rss(0.0, of.slope_precision_) + turned;
+    return x->rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + turned;
   }
   return frames < kTold ? 0.0 : x->rss2 + y->rss2 + turned;
 }
@@ -333,10 +323,10 @@ void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
   constexpr std::size_t kLeastSupported = 3;
   const bool last = begin > 0 && end == samples_.size();
   if ((n >= kLeastSupported || last) && MayTouch(begin)) {
-    const double off =
-        std::min(options_.off_line_cost,
-                 0.5 * (fits.gaps.Rss(level_precision_, slope_precision_) -
-                        fits.gaps.Rss(0.0, slope_precision_)));
+    const double off = std::min(
+        options_.off_line_cost,
+        0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
+               RssOfLine(fits.gaps, 0.0, slope_precision_)));
     const double rss = fits.RssOf(StretchKind::kSupported, *this);
     const int along = static_cast<int>(std::min<std::size_t>(n, 3));
     const int k = turns_ ? 1 + 2 * along : 1 + along;
@@ -369,7 +359,7 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
     s.cost += ends;
     Take(end, to, s);
   };
-  const double above = fits.gaps.g / fits.gaps.w;
+  const double above = fits.gaps.y / fits.gaps.w;
   // Twice as for a rebound: where the line is not known, or is not quite where
   // the flights meet, it could stand for one.
   // What is pressed down gives way by less than half of its size.
