@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "moments.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::vision {
@@ -12,63 +13,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTold = 4;  // frames that tell of a motion of any kind
-
-// Weighted sums of one coordinate over the frames of a stretch, with the time
-// in frames and the value relative to its first frame: no digits cancel.
-struct Moments {
-  double w = 0, t = 0, tt = 0, ttt = 0, tttt = 0;
-  double y = 0, ty = 0, tty = 0, yy = 0;
-
-  void Add(double time, double value, double weight) {
-    const double wt = weight * time;
-    const double wtt = wt * time;
-    w += weight;
-    t += wt;
-    tt += wtt;
-    ttt += wtt * time;
-    tttt += wtt * time * time;
-    y += weight * value;
-    ty += wt * value;
-    tty += wtt * value;
-    yy += weight * value * value;
-  }
-};
-
-// Least squares in orthogonal polynomials: level, slope, bend, and the sums of
-// squares left by polynomials of degree 1 and 2.
-struct Polynomial {
-  double middle = 0, level = 0, slope = 0, bend = 0;
-  double offset = 0, tilt = 0;  // of the quadratic term's orthogonal polynomial
-  double rss1 = 0, rss2 = 0;
-
-  explicit Polynomial(const Moments& m) {
-    middle = m.t / m.w;
-    level = m.y / m.w;
-    const double spread = m.tt - m.t * middle;
-    const double lean = m.ty - middle * m.y;
-    rss1 = m.yy - level * m.y;
-    constexpr double kLeast = 1e-9;  // of the sum: one instant
-    if (spread > kLeast * (m.tt + m.w)) {
-      slope = lean / spread;
-      rss1 -= slope * lean;
-      offset = m.tt / m.w;
-      tilt = (m.ttt - middle * m.tt) / spread;
-      const double third =
-          m.tttt - offset * m.tt - tilt * (m.ttt - middle * m.tt);
-      const double bow = m.tty - offset * m.y - tilt * lean;
-      if (third > kLeast * m.tttt) {
-        bend = bow / third;
-        rss2 = bend * bow;
-      }
-    }
-    rss1 = std::max(0.0, rss1);
-    rss2 = std::max(0.0, rss1 - rss2);
-  }
-  double Line(double t) const { return level + slope * (t - middle); }
-  double Parabola(double t) const {
-    return Line(t) + bend * (t * t - offset - tilt * (t - middle));
-  }
-};
 
 // Squares that the best line of a supported stretch's gaps by place leaves,
 // with what is known of its level and slope as precisions.
