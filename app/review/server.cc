@@ -1,8 +1,12 @@
 #include "app/review/server.h"
 
+#include <fmt/format.h>
+
+#include <chrono>
 #include <optional>
 #include <string>
 
+#include "app/pipeline/journal.h"
 #include "app/review/desk.h"
 #include "app/review/guard.h"
 #include "app/review/http_server.h"
@@ -16,12 +20,27 @@ struct Server::Impl {
       : desk(options.store, options.reports, options.reach_of),
         http(options.http,
              {[this](const Request& request) { return Admit(request); },
-              [this](const Request& request) { return Route(desk, request); }}),
+              [this](const Request& request) { return Answer(request); }}),
         guard(db::SystemSources().new_uuid(), http.port()) {}
 
   std::optional<Reply> Admit(const Request& request) const {
     if (auto welcome = guard.Welcome(request)) return welcome;
     return guard.Refuse(request);
+  }
+
+  Reply Answer(const Request& request) {
+    const auto begun = std::chrono::steady_clock::now();
+    Reply reply = Route(desk, request);
+    if (pipeline::JournalIsKept()) {
+      // Without the query: it may hold the key.
+      pipeline::Journal(fmt::format(
+          "{} {}: {}, {} bytes, {:.3f} s", request.method, request.path,
+          reply.status, reply.body.size(),
+          std::chrono::duration<double>(std::chrono::steady_clock::now() -
+                                        begun)
+              .count()));
+    }
+    return reply;
   }
 
   Desk desk;
