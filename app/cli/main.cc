@@ -124,6 +124,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version",
                        std::string(touchdown::pipeline::Version()) + " (" +
                            std::string(touchdown::pipeline::Commit()) + ")");
+  // Until it is known who listens nobody does.
+  touchdown::cli::SetUpLog({});
   touchdown::cli::LogFlags log;
   touchdown::cli::AddLogFlags(app, log);
   app.require_subcommand(1);
