@@ -27,6 +27,7 @@
 #include "touchdown/vision/explained_change.h"
 #include "touchdown/vision/frame_store.h"
 #include "touchdown/vision/linear_clip.h"
+#include "touchdown/vision/supported_path.h"
 #include "touchdown/vision/tracker.h"
 
 namespace touchdown::pipeline {
