@@ -1,9 +1,15 @@
 # Archives of what reads pictures, in IMAGE_ARCHIVES, and of SQLite, in
 # STORE_ARCHIVES; where some are not there, or do not link, both are empty. Ten
 # shared libraries are then loaded whenever the program starts.
+#
+# Not by default: a security update of the distribution does not reach an
+# archive, and libtiff's draws in libjbig (GPL-2+). docs/hardening.md has what
+# it costs.
+option(TOUCHDOWN_STATIC_READERS
+       "Link libtiff, libjpeg, libpng and SQLite as archives" OFF)
 set(IMAGE_ARCHIVES)
 set(STORE_ARCHIVES)
-set(found ON)
+set(found ${TOUCHDOWN_STATIC_READERS})
 set(archives)
 # What libtiff needs in turn comes after it.
 foreach(part tiff webp zstd lzma Lerc jbig deflate jpeg png16 sqlite3)
@@ -26,7 +32,7 @@ if(found)
     list(REMOVE_ITEM IMAGE_ARCHIVES "${SYSTEM_sqlite3_ARCHIVE}")
   endif()
 endif()
-if(NOT IMAGE_ARCHIVES)
+if(TOUCHDOWN_STATIC_READERS AND NOT IMAGE_ARCHIVES)
   message(STATUS "libtiff, SQLite and others are linked as shared libraries: "
                  "no archives that link")
 endif()

@@ -155,7 +155,7 @@ int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
   if (failed == 0) return 0;
   Tell(
       fmt::format("{} of {} recordings failed; the list says why, and the "
-                  "same command tries them again",
+                  "same command tries them once more (--again: always)",
                   failed, entries.size()));
   return 5;
 }
@@ -299,7 +299,8 @@ void AddBatch(CLI::App& app, Action& action) {
                       "only part k of n, as 2/8; use one --db a part, then "
                       "`db merge`");
   command->add_flag("--again", flags->again,
-                    "analyse also what is known: a further revision of each");
+                    "analyse also what is known (a further revision of each) "
+                    "and what failed twice");
   command->add_flag("--watch", flags->watch,
                     "go on with new recordings of the folder, each when it has "
                     "stopped growing; ends with Ctrl-C");

@@ -10,7 +10,7 @@
 #include "app/cli/dates.h"
 #include "app/cli/values.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/clip_apart.h"
 
 namespace touchdown::cli {
 
@@ -41,12 +41,12 @@ StillPicture ReadPicture(const std::string& path, std::int64_t frame) {
   StillPicture picture;
   if (!std::filesystem::is_directory(path) && vision::IsImageName(path) &&
       !vision::IsTiffStack(path)) {
-    picture.image = vision::ReadImage(path);
+    picture.image = vision::ReadImageApart(path);
     return picture;
   }
   vision::ClipOptions options;
   options.fps = 1.0;  // time is not looked at
-  const auto clip = vision::OpenClip(path, options);
+  const auto clip = vision::OpenClipApart(path, options);
   if (frame < 0 || frame >= clip->info().frames) {
     throw std::invalid_argument(
         fmt::format("--frame is {}, must be within 0 .. {} of {}", frame,

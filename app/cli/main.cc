@@ -1,6 +1,4 @@
 #include <dlfcn.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,9 +13,12 @@
 
 #include "app/cli/command.h"
 #include "app/cli/interruption.h"
+#include "app/cli/log_setup.h"
 #include "app/cli/messages.h"
+#include "app/pipeline/journal.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/vision/clip_apart.h"
 
 namespace {
 
@@ -81,7 +82,19 @@ void StopIdleThreads() {
   }
 }
 
+// What was asked of which program.
+void JournalStart(int argc, char** argv) {
+  namespace pipeline = touchdown::pipeline;
+  if (!pipeline::JournalIsKept()) return;
+  std::string line = "touchdown " + std::string(pipeline::Version()) + " (" +
+                     std::string(pipeline::Commit()) + "):";
+  for (int i = 1; i < argc; ++i) line += " " + std::string(argv[i]);
+  pipeline::Journal(line);
+}
+
 int Complain(int status, const std::exception& error) {
+  touchdown::pipeline::Journal("ended with status " + std::to_string(status) +
+                               ": " + error.what());
   touchdown::cli::Tell(error.what());
   return status;
 }
@@ -97,24 +110,31 @@ int Run(const touchdown::cli::Action& action) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (const auto status = touchdown::vision::ServeAsReader(argc, argv)) {
+    return *status;
+  }
   touchdown::cli::KeepStandardStreams();
   StopIdleThreads();
   touchdown::cli::CatchInterruptions();
   // A file that may not grow is an error of the write, not the end.
   std::signal(SIGXFSZ, SIG_IGN);
-  // stdout carries results only.
-  spdlog::set_default_logger(spdlog::stderr_color_mt("touchdown"));
-  spdlog::set_pattern("touchdown: %^%l%$: %v");
 
   CLI::App app{"At what angle did it touch down, and did it slide or bounce?",
                "touchdown"};
   app.set_version_flag("--version",
-                       std::string(touchdown::pipeline::Version()));
+                       std::string(touchdown::pipeline::Version()) + " (" +
+                           std::string(touchdown::pipeline::Commit()) + ")");
+  // Until it is known who listens nobody does.
+  touchdown::cli::SetUpLog({});
+  touchdown::cli::LogFlags log;
+  touchdown::cli::AddLogFlags(app, log);
   app.require_subcommand(1);
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");
   try {
     app.parse(argc, argv);
+    touchdown::cli::SetUpLog(log);
+    JournalStart(argc, argv);
     return Run(action);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return Complain(kUsage, error);

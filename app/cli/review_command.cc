@@ -2,14 +2,10 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "app/cli/browser.h"
 #include "app/cli/command.h"
 #include "app/cli/interruption.h"
 #include "app/cli/messages.h"
@@ -26,9 +23,6 @@
 
 namespace touchdown::cli {
 namespace {
-
-// How often a server that is only just beginning is told to end.
-constexpr std::chrono::milliseconds kStopEvery{20};
 
 struct ReviewFlags {
   std::string db;
@@ -40,30 +34,6 @@ struct ReviewFlags {
   std::string corner;
 };
 
-// Shows the page in the user's browser where there is a desktop. Whether that
-// works is the desktop's business: the address has been printed.
-void OpenBrowser(const std::string& address) {
-  const pid_t child = fork();
-  if (child != 0) {
-    if (child > 0) waitpid(child, nullptr, 0);
-    return;
-  }
-  // A grandchild, so that nobody waits for the browser.
-  if (fork() != 0) _exit(0);
-  // Its words are not ours.
-  if (std::freopen("/dev/null", "w", stdout) == nullptr ||
-      std::freopen("/dev/null", "w", stderr) == nullptr) {
-    _exit(127);
-  }
-  execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
-  _exit(127);
-}
-
-bool HasDesktop() {
-  return std::getenv("DISPLAY") != nullptr ||
-         std::getenv("WAYLAND_DISPLAY") != nullptr;
-}
-
 int Run(const ReviewFlags& flags) {
   if (flags.port < 0 || flags.port > 65535) {
     throw std::invalid_argument(
@@ -71,7 +41,7 @@ int Run(const ReviewFlags& flags) {
   }
   review::ServerOptions options;
   options.store = flags.db;
-  options.port = flags.port;
+  options.http.port = flags.port;
   options.reports =
       flags.reports.empty()
           ? std::filesystem::absolute(flags.db).parent_path() / "report"
@@ -95,15 +65,18 @@ int Run(const ReviewFlags& flags) {
   fmt::print("{}\n", server.address());
   std::fflush(stdout);
   Tell(fmt::format("the page of {}; Ctrl-C ends it", flags.db));
-  if (!flags.no_open && HasDesktop()) OpenBrowser(server.address());
+  std::optional<BrowserPage> page;
+  if (!flags.no_open && HasDesktop()) {
+    page.emplace(server.address());
+    if (!page->path().empty()) page->Show();
+  }
   std::atomic<bool> ended = false;
   std::thread waiter([&] {
     int signal = 0;
     sigwait(&signals, &signal);
     // Requests that are answered may take long: an analysis does.
     if (!ended) EndSoon(signal);
-    // A server that has not begun yet forgets that it is to end.
-    for (; !ended; std::this_thread::sleep_for(kStopEvery)) server.Stop();
+    server.Stop();
   });
   server.Run();
   ended = true;

@@ -20,6 +20,7 @@
 #include "app/cli/store_text.h"
 #include "app/cli/terminal_lines.h"
 #include "app/cli/values.h"
+#include "app/pipeline/journal.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/recordings.h"
 #include "app/session/session.h"
@@ -45,6 +46,7 @@ struct Flags {
   std::string check_height = "300+-1";
   std::string check_diameter;
   bool no_check = false;
+  bool again = false;
   std::string driver = "manual";
   int baud = 115200;
   double quiet_s = 1.0;
@@ -153,6 +155,13 @@ session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
 std::unique_ptr<rig::Driver> ControllerOf(const Flags& flags) {
   rig::SerialOptions options;
   options.baud = flags.baud;
+  if (pipeline::JournalIsKept()) {
+    options.overhear = [](rig::LineWay way, std::string_view line) {
+      while (line.ends_with('\n')) line.remove_suffix(1);
+      pipeline::Journal(fmt::format(
+          "controller {} {}", way == rig::LineWay::kSent ? "<-" : "->", line));
+    };
+  }
   auto driver = std::make_unique<rig::SerialDriver>(flags.driver, options);
   if (driver->was_found_armed()) {
     fmt::print(
@@ -185,6 +194,7 @@ void Serve(const Flags& flags, session::Session& session,
     changes.Wait(growing ? options.quiet : kNowAndThen, lines.descriptor());
     tell_stop();
     while (const auto line = stopped != 0 ? std::nullopt : lines.Next()) {
+      pipeline::Journal("typed: " + line->text);
       if (!session.Obey(line->text, {line->began, line->is_alone})) {
         return false;
       }
@@ -223,6 +233,7 @@ int Run(const Flags& flags) {
   }
   session::SessionOptions options;
   options.analyze = ToOptions(flags.analyze);
+  options.again = flags.again;
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   const core::Campaign campaign =
       pipeline::RequireCampaign(store, flags.campaign);
@@ -253,6 +264,7 @@ int Run(const Flags& flags) {
   rig::Driver& driver = controller ? *controller : hands;
   session::SessionEnds ends;
   ends.say = [](const std::string& line) {
+    pipeline::Journal("said: " + line);
     fmt::print("{}\n", Printable(line));
     std::fflush(stdout);
   };
@@ -318,6 +330,8 @@ void AddSession(CLI::App& app, Action& action) {
                    "a recording is complete when it has not grown for so long; "
                    "one taken too early is taken again")
       ->capture_default_str();
+  command->add_flag("--again", flags->again,
+                    "take also recordings that failed twice");
   AddAnalyzeFlags(*command, flags->analyze);
   command->callback(
       [flags, &action] { action = [flags] { return Run(*flags); }; });

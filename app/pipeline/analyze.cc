@@ -13,7 +13,9 @@
 #include "app/pipeline/check_options.h"
 #include "app/pipeline/clip_calibration.h"
 #include "app/pipeline/footage.h"
+#include "app/pipeline/journal.h"
 #include "app/pipeline/judge.h"
+#include "app/pipeline/open_recording.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/stop_early.h"
 #include "app/pipeline/truth_file.h"
@@ -487,7 +489,7 @@ std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
        ++round) {
     *options.gamma *= more;
     Analysis light =
-        AnalyzeUntil(vision::OpenClip(path, clip_options), options, until);
+        AnalyzeUntil(OpenRecording(path, clip_options), options, until);
     if (!light.track || !light.track->layered || !light.explained ||
         light.explained->near <= explained) {
       break;
@@ -520,7 +522,7 @@ Analysis Analyze(const std::filesystem::path& path,
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
   clip_options.decoder_threads = options.decoder_threads;
-  auto clip = vision::OpenClip(path, clip_options);
+  auto clip = OpenRecording(path, clip_options);
   const double open_s = Since(start);
   // Of a file that is read in place: whether it was whole to the end.
   const std::unique_ptr<vision::Clip> witness = clip->Another();
@@ -543,6 +545,7 @@ Analysis Analyze(const std::filesystem::path& path,
     analysis.simulated = HasTruthFile(path);
     analysis.timing.open_s = open_s;
     analysis.timing.total_s = Since(start);
+    JournalAnalysis(analysis);
   };
   try {
     Analysis analysis = AnalyzeUntil(std::move(clip), options, until);
@@ -551,7 +554,7 @@ Analysis Analyze(const std::filesystem::path& path,
                                             vision::Channel::kBlueDifference}) {
         clip_options.channel = channel;
         Analysis other =
-            AnalyzeUntil(vision::OpenClip(path, clip_options), options, until);
+            AnalyzeUntil(OpenRecording(path, clip_options), options, until);
         if (!OneBody(other)) continue;
         other.channel = channel;
         other.scene_model.used.push_back(std::string(vision::Name(channel)));

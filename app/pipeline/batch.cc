@@ -14,8 +14,10 @@
 #include <variant>
 
 #include "app/pipeline/evidence.h"
+#include "app/pipeline/journal.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/options_hash.h"
+#include "app/pipeline/set_aside.h"
 #include "touchdown/core/cancellation.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/clip_digest.h"
@@ -55,7 +57,10 @@ class Batch {
  public:
   Batch(db::Store& store, std::span<const BatchClip> clips,
         const BatchOptions& options)
-      : store_(store), clips_(clips), options_(options) {
+      : store_(store),
+        clips_(clips),
+        options_(options),
+        set_aside_(store.path()) {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     jobs_ = options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : cores;
     jobs_ = std::max<std::size_t>(1, std::min(jobs_, clips.size()));
@@ -117,6 +122,7 @@ class Batch {
 
   Answer AnswerOf(const BatchClip& clip, std::size_t index) {
     Answer answer;
+    SetAside::Key key;
     try {
       AnalyzeOptions analyze = clip.options;
       const core::Campaign* campaign = nullptr;
@@ -138,7 +144,13 @@ class Batch {
           answer.what = Known{last->trial_id};
           return answer;
         }
+        if (const auto reason =
+                set_aside_.ReasonOf({answer.clip_id, OptionsHash(analyze)})) {
+          answer.what = Failed{*reason};
+          return answer;
+        }
       }
+      key = {answer.clip_id, OptionsHash(analyze)};
       analyze.decoder_threads = decoder_threads_;
       analyze.progress = [this, index](double share) {
         const std::lock_guard lock(mutex_);
@@ -146,6 +158,7 @@ class Batch {
         Report();
       };
       answer.analysed = true;
+      Journal("batch: " + clip.name + " begins");
       const Analysis analysis = Analyze(clip.clip, analyze);
       if (!options_.evidence.empty()) {
         WriteEvidence(analysis, analyze,
@@ -163,7 +176,10 @@ class Batch {
     } catch (const core::Cancelled&) {
       throw;
     } catch (const std::exception& error) {
+      Journal("batch: " + clip.name + " failed: " + error.what());
       answer.what = Failed{error.what()};
+      const std::lock_guard lock(mutex_);
+      set_aside_.Failed(key, clip.name, error.what());
     }
     return answer;
   }
@@ -255,6 +271,7 @@ class Batch {
   db::Store& store_;  // used under the lock only
   std::span<const BatchClip> clips_;
   const BatchOptions& options_;
+  SetAside set_aside_;  // used under the lock only
   std::map<std::string, core::Campaign> campaigns_;
   std::size_t jobs_ = 1;
   std::int32_t decoder_threads_ = 1;

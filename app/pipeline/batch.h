@@ -59,7 +59,7 @@ struct BatchOptions {
   // Analyses at a time, each in a thread with at most one recording in memory;
   // 0: one for each core. Decides speed only.
   int jobs = 0;
-  // Analyse also what is known.
+  // Analyse also what is known, and what is set aside (set_aside.h).
   bool again = false;
   // Where the evidence of each recording goes, in a folder of its name; empty:
   // none is written.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/pipeline/open_recording.h"
 #include "app/pipeline/undistorted_clip.h"
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
@@ -71,7 +72,7 @@ std::optional<vision::ColourImage> ContactSheetOf(
   }
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
-  auto clip = vision::OpenClip(analysis.clip.path, clip_options);
+  auto clip = OpenRecording(analysis.clip.path, clip_options);
   vision::Track track = *analysis.track;
   if (analysis.calibration && analysis.calibration->lens) {
     const calib::Lens& lens = analysis.calibration->lens->lens;

@@ -1,7 +1,11 @@
 #include "app/pipeline/version.h"
 
+#include "commit.h"
+
 namespace touchdown::pipeline {
 
 std::string_view Version() { return TOUCHDOWN_VERSION; }
+
+std::string_view Commit() { return TOUCHDOWN_COMMIT; }
 
 }  // namespace touchdown::pipeline

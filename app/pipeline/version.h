@@ -1,4 +1,5 @@
-// The program's version, as printed by --version and kept with every result.
+// The program's version: what is kept with every result. --version prints the
+// commit beside it.
 #pragma once
 
 #include <string_view>
@@ -6,5 +7,9 @@
 namespace touchdown::pipeline {
 
 std::string_view Version();
+
+// "2e27c84b1234", "-dirty" behind it where files differed from it, or "unknown
+// commit".
+std::string_view Commit();
 
 }  // namespace touchdown::pipeline

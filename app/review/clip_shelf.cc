@@ -4,6 +4,7 @@
 #include <exception>
 #include <vector>
 
+#include "app/pipeline/open_recording.h"
 #include "touchdown/vision/encode_image.h"
 #include "touchdown/vision/image_file.h"
 
@@ -24,7 +25,7 @@ std::unique_ptr<vision::Clip> OpenFor(const std::filesystem::path& path) {
   options.fps = kAnyRate_hz;
   // One frame after another: threads would hold more frames each.
   options.decoder_threads = 1;
-  return vision::OpenClip(path, options);
+  return pipeline::OpenRecording(path, options);
 }
 
 // The level of which one sample in a thousand lies above.

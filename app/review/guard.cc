@@ -117,11 +117,16 @@ std::optional<Reply> Guard::Welcome(const Request& request) const {
                    "this address is of another session; open the one that "
                    "`touchdown review` printed last");
   }
+  // A page and no redirection: where another page or a file led here, as the
+  // one that opens the browser does, a redirection would go without the cookie
+  // (SameSite=Strict); what this page leads to is asked for by our own.
   Reply reply;
-  reply.status = 303;
-  reply.type = "text/plain";
+  reply.type = "text/html; charset=utf-8";
+  reply.body =
+      "<!DOCTYPE html>\n<html lang=\"en\"><title>touchdown review</title>\n"
+      "<meta http-equiv=\"refresh\" content=\"0; url=/\">\n"
+      "<p><a href=\"/\">touchdown review</a></html>\n";
   reply.headers = {
-      {"Location", "/"},
       {"Cache-Control", "no-store"},
       {"Set-Cookie", fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict",
                                  CookieName(), token_)}};

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "app/report/report.h"
+#include "app/review/http_server.h"
 
 namespace touchdown::review {
 
 struct ServerOptions {
   std::filesystem::path store;
-  int port = 0;  // 0: any that is free
+  HttpOptions http = {};  // the port, and what clients may do
   // Where reports go that the page builds.
   std::filesystem::path reports;
   // What the next angle stays within; empty: no rig was given, any angle.
@@ -31,7 +32,7 @@ class Server {
   // What a person opens; holds the key of this session.
   std::string address() const;
 
-  // Answers until Stop(), which may be called from any thread.
+  // Answers until Stop(), which may be called at any time from any thread.
   void Run();
   void Stop();
 

@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "app/pipeline/log_analysis.h"
+#include "app/pipeline/options_hash.h"
 #include "app/pipeline/recordings.h"
+#include "app/pipeline/set_aside.h"
 #include "app/pipeline/triage.h"
 #include "app/report/format.h"
 #include "app/report/sentences.h"
@@ -296,7 +298,7 @@ void Session::Take(const fs::path& recording) {
     file_.phase = Phase::kAnalysing;
     file_.recording = recording.string();
     Save();
-    Log(recording);
+    Log(recording, id);
   } catch (const core::StoreError&) {
     throw;
   } catch (const core::OutputError&) {
@@ -309,7 +311,7 @@ void Session::Take(const fs::path& recording) {
   }
 }
 
-void Session::Log(const fs::path& recording) {
+void Session::Log(const fs::path& recording, const std::string& clip_id) {
   RequireSameConventions();
   const bool belongs = Belongs(recording);
   const bool is_check = belongs && file_.is_check;
@@ -326,12 +328,24 @@ void Session::Log(const fs::path& recording) {
     analyze.bounce_height_m.reset();
   }
   pipeline::FillFromCampaign(campaign, analyze);
+  pipeline::SetAside set_aside(store_.path());
+  const pipeline::SetAside::Key key{clip_id, pipeline::OptionsHash(analyze)};
+  const auto why = set_aside.ReasonOf(key);
+  if (why && !options_.again) {
+    throw core::InputError(
+        fmt::format("{}: {}", recording.filename().string(), *why));
+  }
   // Both read the whole recording: at the same time is nearly twice as fast.
   auto digest =
       std::async(std::launch::async, [&] { return vision::Sha256(recording); });
-  const pipeline::Analysis analysis = pipeline::Analyze(recording, analyze);
-  core::Trial trial =
-      pipeline::LoggableTrial(analysis, &campaign, digest.get());
+  core::Trial trial;
+  try {
+    const pipeline::Analysis analysis = pipeline::Analyze(recording, analyze);
+    trial = pipeline::LoggableTrial(analysis, &campaign, digest.get());
+  } catch (const core::InputError& error) {
+    set_aside.Failed(key, recording.string(), error.what());
+    throw;
+  }
   trial.author = options_.operator_name;
   const std::string pictures = SomePictures(recording);
   const bool grown = last_ && last_->path == trial.clip.path &&

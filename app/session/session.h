@@ -34,6 +34,8 @@ struct SessionOptions {
   analysis::StudyOptions study;
   // Nothing: none is asked for.
   std::optional<CheckShot> check;
+  // Take also what is set aside (pipeline/set_aside.h).
+  bool again = false;
 };
 
 // The ends of a session that are not its own.
@@ -99,7 +101,7 @@ class Session {
   double LaunchSpeedOfPlan() const;
   bool Belongs(const std::filesystem::path& recording) const;
   std::optional<std::string> KnownAs(const std::string& clip_id) const;
-  void Log(const std::filesystem::path& recording);
+  void Log(const std::filesystem::path& recording, const std::string& clip_id);
   void Answer(const core::Trial& trial, double seconds_since_written,
               bool is_check);
   void RequireSameConventions() const;

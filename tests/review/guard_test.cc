@@ -95,7 +95,8 @@ TEST(Guard, HandsTheKeyOverOnce) {
   request.query["token"] = kToken;
   const auto welcome = guard.Welcome(request);
   ASSERT_TRUE(welcome);
-  EXPECT_EQ(welcome->status, 303);
+  EXPECT_EQ(welcome->status, 200);
+  EXPECT_EQ(welcome->body.find(kToken), std::string::npos);
   std::string cookie;
   for (const auto& [name, value] : welcome->headers) {
     if (name == "Set-Cookie") cookie = value;

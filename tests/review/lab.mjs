@@ -122,6 +122,8 @@ export async function sitDown(browser, review, name, size = {width: 1280,
   page.on('pageerror', error => page.complaints.push(String(error)));
   page.on('request', request => page.requested.push(request.url()));
   await page.goto(review.address);
+  // The page that takes the key leads on to the one that is worked on.
+  await page.waitForURL(review.origin + '/', {waitUntil: 'load'});
   if (name) {
     await page.fill('#who', name);
     await page.locator('#who').blur();

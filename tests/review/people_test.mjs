@@ -128,6 +128,19 @@ test('a browser with a wrong key is told what to do, and another page cannot ' +
   await new Promise(resolve => other.close(resolve));
 });
 
+test('a file on the disk leads the browser in', async () => {
+  // As the program starts it: a navigation that another page began.
+  const file = join(lab.folder, 'enter.html');
+  writeFileSync(file, `<meta http-equiv="refresh" content="0; url=${
+      review.address}">`);
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  await page.goto('file://' + file);
+  await page.waitForSelector('.trials');
+  assert.equal(page.url(), review.origin + '/');
+  await context.close();
+});
+
 test('every answer forbids scripts in the page and loads from elsewhere',
      async () => {
   const host = new URL(review.origin).host;

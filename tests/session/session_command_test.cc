@@ -152,6 +152,22 @@ TEST_F(SessionAtASerialPort, ThrowsWhenAPersonSaysSo) {
   EXPECT_EQ(controller_.shots(), 1);
 }
 
+TEST_F(SessionAtASerialPort, KeepsEachLineToAndFromTheController) {
+  const testing::TemporaryFolder folder;
+  const auto log = folder / "session.log";
+  RunningProgram session(
+      Arguments({"--operator", "A. Lee", "--no-check", "--driver",
+                 controller_.port(), "--log", log.string()}));
+  session.Type("");
+  session.Until("predicted");
+  session.Type("quit");
+  EXPECT_EQ(session.End(0), 0);
+  EXPECT_THAT(testing::ReadAll(log),
+              ::testing::AllOf(HasSubstr("controller <- "),
+                               HasSubstr("controller -> "), HasSubstr("hello"),
+                               HasSubstr("typed: quit"), HasSubstr("said: ")));
+}
+
 TEST_F(SessionAtASerialPort, ControlCStopsTheRigAndThenTheSession) {
   const auto session = Armed();
   session->Signal(SIGINT);

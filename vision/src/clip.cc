@@ -84,8 +84,21 @@ std::unique_ptr<Clip> Clip::OpenAnother() const {
   return another;
 }
 
+bool IsForeign(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return std::filesystem::is_directory(status) ||
+         (std::filesystem::is_regular_file(status) && !IsMrawOrHeader(path));
+}
+
 std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
                                const ClipOptions& options) {
+  return OpenClipWith(path, options, nullptr);
+}
+
+std::unique_ptr<Clip> OpenClipWith(const std::filesystem::path& path,
+                                   const ClipOptions& options,
+                                   FrameMemory* memory) {
   if (options.fps && !(std::isfinite(*options.fps) && *options.fps > 0.0)) {
     throw std::invalid_argument(fmt::format(
         "fps is {}, must be positive and finite (frames per second)",
@@ -125,7 +138,7 @@ std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
                     "that holds its pictures",
                     path.string()));
   }
-  return OpenVideo(path, options);
+  return OpenVideo(path, options, memory);
 }
 
 }  // namespace touchdown::vision

@@ -11,6 +11,8 @@
 
 namespace touchdown::vision {
 
+class FrameMemory;
+
 // A Photron recording, given its .mraw or its header.
 std::unique_ptr<Clip> OpenMraw(const std::filesystem::path& path,
                                const ClipOptions& options);
@@ -23,9 +25,25 @@ std::unique_ptr<Clip> OpenImageFolder(const std::filesystem::path& folder,
 std::unique_ptr<Clip> OpenTiffStack(const std::filesystem::path& path,
                                     const ClipOptions& options);
 
-// Any container that libav knows.
+// The same where `path` is one whose samples lie in it plainly, so that no
+// decoder is needed; else null.
+std::unique_ptr<Clip> OpenPlainTiffStack(const std::filesystem::path& path,
+                                         const ClipOptions& options);
+
+// Any container that libav knows. Frames are decoded into `memory` where there
+// is one, which must outlive all clips.
 std::unique_ptr<Clip> OpenVideo(const std::filesystem::path& path,
-                                const ClipOptions& options);
+                                const ClipOptions& options,
+                                FrameMemory* memory = nullptr);
+
+// OpenClip, with memory for frames.
+std::unique_ptr<Clip> OpenClipWith(const std::filesystem::path& path,
+                                   const ClipOptions& options,
+                                   FrameMemory* memory);
+
+// Whether a library of others would read it: a folder or a plain file that is
+// no Photron recording.
+bool IsForeign(const std::filesystem::path& path);
 
 // The extension in lower case, with its dot: ".mraw".
 std::string LowerExtension(const std::filesystem::path& path);

@@ -36,13 +36,15 @@ std::vector<std::uint8_t> GrayRamp() {
 
 class VideoClip final : public Clip {
  public:
-  VideoClip(const std::filesystem::path& path, const ClipOptions& options)
+  VideoClip(const std::filesystem::path& path, const ClipOptions& options,
+            FrameMemory* memory)
       : path_(path),
+        memory_(memory),
         threads_(options.decoder_threads > 0
                      ? options.decoder_threads
                      : static_cast<std::int32_t>(
                            std::max(1u, std::thread::hardware_concurrency()))),
-        source_(OpenVideoSource(path, threads_)),
+        source_(OpenVideoSource(path, threads_, memory_)),
         packet_(Libav().av_packet_alloc()),
         frame_(Libav().av_frame_alloc()) {
     info_.path = path;
@@ -86,8 +88,9 @@ class VideoClip final : public Clip {
   // Reads what `like` reads, with one thread.
   explicit VideoClip(const VideoClip& like)
       : path_(like.path_),
+        memory_(like.memory_),
         threads_(1),
-        source_(OpenVideoSource(path_, threads_)),
+        source_(OpenVideoSource(path_, threads_, memory_)),
         packet_(Libav().av_packet_alloc()),
         frame_(Libav().av_frame_alloc()),
         index_(like.index_),
@@ -151,7 +154,7 @@ class VideoClip final : public Clip {
     const std::size_t key = index_.pts.empty() ? 0 : index_.KeyPacketFor(index);
     if (can_seek_ && SeekTo(key)) return;
     can_seek_ = false;
-    source_ = OpenVideoSource(path_, threads_);
+    source_ = OpenVideoSource(path_, threads_, memory_);
     Rewind();
   }
 
@@ -387,6 +390,7 @@ class VideoClip final : public Clip {
   }
 
   std::filesystem::path path_;
+  FrameMemory* memory_;  // for frames; null: libav's own
   std::int32_t threads_;
   VideoSource source_;
   LibavPtr<AVPacket> packet_;
@@ -416,10 +420,11 @@ class VideoClip final : public Clip {
 }  // namespace
 
 std::unique_ptr<Clip> OpenVideo(const std::filesystem::path& path,
-                                const ClipOptions& options) {
+                                const ClipOptions& options,
+                                FrameMemory* memory) {
   // libav's log is of the whole program; its complaints come to us as codes.
   Libav().av_log_set_level(AV_LOG_QUIET);
-  return std::make_unique<VideoClip>(path, options);
+  return std::make_unique<VideoClip>(path, options, memory);
 }
 
 }  // namespace touchdown::vision

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <system_error>
 
 #include "clip_formats.h"
 #include "mapped_file.h"
@@ -72,6 +73,10 @@ class TiffStackClip final : public Clip {
           fmt::format("{} pages of reduced size are left out (thumbnails)",
                       list_->thumbnails));
     }
+  }
+
+  // Decodes the first page where that takes a decoder.
+  void LoadFirst() {
     if (!plain_) Load(0);
   }
 
@@ -219,7 +224,21 @@ bool IsTiffStack(const std::filesystem::path& path) {
 
 std::unique_ptr<Clip> OpenTiffStack(const std::filesystem::path& path,
                                     const ClipOptions& options) {
-  return std::make_unique<TiffStackClip>(path, options);
+  auto clip = std::make_unique<TiffStackClip>(path, options);
+  clip->LoadFirst();
+  return clip;
+}
+
+std::unique_ptr<Clip> OpenPlainTiffStack(const std::filesystem::path& path,
+                                         const ClipOptions& options) {
+  std::error_code ignored;
+  if (options.channel != Channel::kLuma ||
+      !std::filesystem::is_regular_file(path, ignored) || !IsTiffStack(path)) {
+    return nullptr;
+  }
+  auto clip = std::make_unique<TiffStackClip>(path, options);
+  if (!clip->windows_are_cheap()) return nullptr;
+  return clip;
 }
 
 }  // namespace touchdown::vision

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "apart/frame_memory.h"
+#include "frame_buffers.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::vision {
@@ -25,12 +27,22 @@ constexpr char kContainers[] =
   throw core::InputError(fmt::format("{}: {}", path.string(), what));
 }
 
-LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
+// libav asks before each read whether to go on.
+int OnRead(void* memory) {
+  static_cast<FrameMemory*>(memory)->Beat();
+  return 0;
+}
+
+LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path,
+                                        FrameMemory* memory) {
   const LibavFunctions& libav = Libav();  // before there is what may leak
   AVDictionary* options = nullptr;
   Libav().av_dict_set(&options, "format_whitelist", kContainers, 0);
   Libav().av_dict_set(&options, "protocol_whitelist", "file", 0);
-  AVFormatContext* format = nullptr;
+  AVFormatContext* format = libav.avformat_alloc_context();
+  if (memory != nullptr && format != nullptr) {
+    format->interrupt_callback = {OnRead, memory};
+  }
   // The prefix keeps a name like "http:a.avi" a name.
   const int opened = libav.avformat_open_input(
       &format, ("file:" + path.string()).c_str(), nullptr, &options);
@@ -45,7 +57,8 @@ LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
 }
 
 LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
-                                     AVStream& stream, std::int32_t threads) {
+                                     AVStream& stream, std::int32_t threads,
+                                     FrameMemory* memory) {
   AVCodecParameters& parameters = *stream.codecpar;
   if (parameters.codec_id == AV_CODEC_ID_NONE &&
       parameters.codec_tag == MKTAG('Y', '1', '6', ' ')) {
@@ -64,6 +77,7 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
   Libav().avcodec_parameters_to_context(context.get(), &parameters);
   context->pkt_timebase = stream.time_base;
   context->thread_count = threads;
+  if (memory != nullptr) DecodeInto(*memory, *context);
   // libavcodec's MPEG-4 part 2 (ffmpeg 5.1) ends the process by an assertion
   // where a damaged frame is given up (AV_EF_EXPLODE) while another thread
   // waits for it: no frame threads for it, which costs its speed on several
@@ -87,9 +101,9 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
 }  // namespace
 
 VideoSource OpenVideoSource(const std::filesystem::path& path,
-                            std::int32_t threads) {
+                            std::int32_t threads, FrameMemory* memory) {
   VideoSource source;
-  source.format = OpenContainer(path);
+  source.format = OpenContainer(path, memory);
   AVFormatContext& format = *source.format;
   // What the container itself says, before it is overridden by guesses.
   std::vector<AVRational> declared;
@@ -114,7 +128,7 @@ VideoSource OpenVideoSource(const std::filesystem::path& path,
     }
   }
   if (source.stream == nullptr) Fail(path, "there is no video in it");
-  source.codec = OpenDecoder(path, *source.stream, threads);
+  source.codec = OpenDecoder(path, *source.stream, threads, memory);
   return source;
 }
 

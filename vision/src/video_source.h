@@ -9,6 +9,8 @@
 
 namespace touchdown::vision {
 
+class FrameMemory;
+
 struct VideoSource {
   LibavPtr<AVFormatContext> format;
   LibavPtr<AVCodecContext> codec;
@@ -17,9 +19,11 @@ struct VideoSource {
 };
 
 // Opens the file at its beginning; sound, subtitles and cover pictures are left
-// out. Throws core::InputError naming the file.
+// out. Frames are decoded into `memory` where there is one and it has room, and
+// reading and decoding are told to it. Throws core::InputError naming the file.
 VideoSource OpenVideoSource(const std::filesystem::path& path,
-                            std::int32_t threads);
+                            std::int32_t threads,
+                            FrameMemory* memory = nullptr);
 
 // "avi", "mp4", "mov", "mkv", "cine" or libav's word for the container.
 std::string FormatName(const AVFormatContext& format);

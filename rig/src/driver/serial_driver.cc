@@ -75,9 +75,11 @@ core::Expected<std::string> SerialDriver::Ask(const std::string& verb,
   const std::string bytes = LineOf(request);
   for (int i = 0; i < tries; ++i) {
     if (is_stopped() && !even_stopped) return core::AbsentBecause("stopped");
+    if (options_.overhear) options_.overhear(LineWay::kSent, bytes);
     line_.Send(bytes);
     const auto until = line_.Now() + options_.answer;
     while (const auto line = line_.Receive(until)) {
+      if (options_.overhear) options_.overhear(LineWay::kHeard, *line);
       const auto answer = ParseAnswer(*line);
       // Damaged, or late: of what was asked before.
       if (!answer || answer->number != number_ || answer->verb != verb) {

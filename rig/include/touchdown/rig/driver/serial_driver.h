@@ -3,15 +3,23 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "touchdown/core/units.h"
 #include "touchdown/rig/driver/driver.h"
 #include "touchdown/rig/driver/serial_line.h"
 
 namespace touchdown::rig {
+
+// Called with each line to (kSent) and from (kHeard) the controller, from any
+// thread; must not throw, and must not take long: answers
+// are waited for meanwhile. What a signal's handler sends is not told.
+enum class LineWay { kSent, kHeard };
+using Overhear = std::function<void(LineWay way, std::string_view line)>;
 
 struct SerialOptions {
   int baud = 115200;
@@ -32,6 +40,7 @@ struct SerialOptions {
   // step of 0.1 deg and 0.1 mm.
   double elevation_tolerance_rad = 0.15 * core::kDegree;
   double compression_tolerance_m = 0.15 * core::kMillimetre;
+  Overhear overhear = {};  // empty: nobody does
 };
 
 // The muzzle's height is set by hand: Set() returns it as it was wanted.

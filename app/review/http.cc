@@ -1,0 +1,225 @@
+#include "app/review/http.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <string>
+
+#include "app/review/guard.h"
+
+namespace touchdown::review {
+namespace {
+
+// Fields of one head; a browser sends about 15. More are refused: each costs
+// memory beyond its bytes.
+constexpr std::size_t kMostFields = 64;
+constexpr std::string_view kLineEnd = "\r\n";
+
+bool Same(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) ==
+           std::tolower(static_cast<unsigned char>(y));
+  });
+}
+
+std::string_view Trimmed(std::string_view text) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+// What stands before `end`, which is taken away with it; all where `end` is
+// not there.
+std::string_view TakeUntil(std::string_view& rest, std::string_view end) {
+  const std::size_t at = rest.find(end);
+  const std::string_view taken = rest.substr(0, at);
+  rest = at == std::string_view::npos ? "" : rest.substr(at + end.size());
+  return taken;
+}
+
+bool IsName(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return c > ' ' && c < 0x7f && c != ':';
+  });
+}
+
+tl::unexpected<Reply> NotUnderstood(const std::string& what) {
+  return tl::unexpected(Refusal(400, "the request is not understood: " + what));
+}
+
+int HexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+void ReadTarget(std::string_view target, Request& request) {
+  std::string_view rest = target;
+  request.path = Decoded(TakeUntil(rest, "?"), false);
+  while (!rest.empty()) {
+    std::string_view pair = TakeUntil(rest, "&");
+    const std::string name = Decoded(TakeUntil(pair, "="), true);
+    if (!name.empty()) request.query[name] = Decoded(pair, true);
+  }
+}
+
+// Where a field of the head goes that the answer depends on.
+std::string* PlaceOf(std::string_view name, Request& request) {
+  const struct {
+    std::string_view name;
+    std::string* place;
+  } places[] = {{"Host", &request.host},
+                {"Origin", &request.origin},
+                {"Sec-Fetch-Site", &request.fetch_site},
+                {"Cookie", &request.cookie},
+                {"X-Touchdown-Token", &request.token},
+                {"Content-Type", &request.content_type},
+                {"If-None-Match", &request.if_none_match}};
+  for (const auto& entry : places) {
+    if (Same(entry.name, name)) return entry.place;
+  }
+  return nullptr;
+}
+
+// What a field says of the connection or of the body.
+std::optional<Reply> ReadTransfer(std::string_view name, std::string_view value,
+                                  std::optional<std::size_t>& length,
+                                  Head& head) {
+  if (Same(name, "Content-Length")) {
+    std::size_t n = 0;
+    const char* const end = value.data() + value.size();
+    const auto [stop, error] = std::from_chars(value.data(), end, n);
+    if (error != std::errc{} || stop != end || length) {
+      return Refusal(400, "the request is not understood: Content-Length");
+    }
+    length = n;
+  } else if (Same(name, "Transfer-Encoding")) {
+    return Refusal(411, "a body must say its length (Content-Length)");
+  } else if (Same(name, "Content-Encoding") && !Same(value, "identity")) {
+    return Refusal(415, "a body must not be compressed");
+  } else if (Same(name, "Connection")) {
+    if (Same(value, "close")) head.keeps_alive = false;
+  } else if (Same(name, "Expect")) {
+    head.awaits_continue = Same(value, "100-continue");
+  }
+  return std::nullopt;
+}
+
+std::string_view ReasonOf(int status) {
+  switch (status) {
+    case 200:
+      return "OK";
+    case 303:
+      return "See Other";
+    case 400:
+      return "Bad Request";
+    case 403:
+      return "Forbidden";
+    case 404:
+      return "Not Found";
+    case 409:
+      return "Conflict";
+    case 413:
+      return "Content Too Large";
+    default:
+      return "Answer";  // HTTP asks for the number alone
+  }
+}
+
+bool Says(const Reply& reply, std::string_view name) {
+  return std::any_of(
+      reply.headers.begin(), reply.headers.end(),
+      [name](const auto& header) { return Same(header.first, name); });
+}
+
+}  // namespace
+
+std::optional<std::size_t> HeadLength(std::string_view bytes) {
+  constexpr std::string_view kEnd = "\r\n\r\n";
+  const std::size_t end = bytes.find(kEnd);
+  if (end == std::string_view::npos) return std::nullopt;
+  return end + kEnd.size();
+}
+
+std::string Decoded(std::string_view text, bool plus_is_space) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && HexDigit(text[i + 1]) >= 0 &&
+        HexDigit(text[i + 2]) >= 0) {
+      decoded +=
+          static_cast<char>(HexDigit(text[i + 1]) * 16 + HexDigit(text[i + 2]));
+      i += 2;
+    } else {
+      decoded += plus_is_space && text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return decoded;
+}
+
+tl::expected<Head, Reply> ReadHead(std::string_view bytes) {
+  Head head;
+  std::string_view rest = bytes;
+  std::string_view line = TakeUntil(rest, kLineEnd);
+  head.request.method = TakeUntil(line, " ");
+  const std::string_view target = TakeUntil(line, " ");
+  if (line != "HTTP/1.1" && line != "HTTP/1.0") {
+    return NotUnderstood("its first line");
+  }
+  if (head.request.method != "GET" && head.request.method != "HEAD" &&
+      head.request.method != "POST") {
+    return tl::unexpected(Refusal(501, "only GET, HEAD and POST are answered"));
+  }
+  if (!target.starts_with('/')) return NotUnderstood("its path");
+  head.keeps_alive = line == "HTTP/1.1";
+  ReadTarget(target, head.request);
+  std::optional<std::size_t> length;
+  std::size_t fields = 0;
+  for (line = TakeUntil(rest, kLineEnd); !line.empty();
+       line = TakeUntil(rest, kLineEnd)) {
+    if (++fields > kMostFields) {
+      return tl::unexpected(Refusal(431, "the request has too many fields"));
+    }
+    if (line.find(':') == std::string_view::npos) {
+      return NotUnderstood("a field without a colon");
+    }
+    const std::string_view name = TakeUntil(line, ":");
+    const std::string_view value = Trimmed(line);
+    if (!IsName(name)) return NotUnderstood("the name of a field");
+    if (auto refused = ReadTransfer(name, value, length, head)) {
+      return tl::unexpected(*std::move(refused));
+    }
+    if (std::string* const place = PlaceOf(name, head.request)) {
+      // Of two, one could be for the guard and one for the rest.
+      if (!place->empty()) return NotUnderstood("a field that stands twice");
+      *place = value;
+    }
+  }
+  head.body_bytes = length.value_or(0);
+  return head;
+}
+
+std::string WriteReply(const Reply& reply, const ReplyForm& form) {
+  std::string bytes = fmt::format(
+      "HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n"
+      "Connection: {}\r\n",
+      reply.status, ReasonOf(reply.status), reply.type, reply.body.size(),
+      form.keeps_alive ? "keep-alive" : "close");
+  const auto add = [&bytes](std::string_view name, std::string_view value) {
+    bytes += fmt::format("{}: {}\r\n", name, value);
+  };
+  for (const auto& [name, value] : reply.headers) add(name, value);
+  for (const auto& [name, value] : SafeHeaders()) {
+    if (!Says(reply, name)) add(name, value);
+  }
+  if (!Says(reply, "Cache-Control")) add("Cache-Control", "no-store");
+  bytes += kLineEnd;
+  if (form.has_body) bytes += reply.body;
+  return bytes;
+}
+
+}  // namespace touchdown::review

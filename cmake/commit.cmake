@@ -1,0 +1,18 @@
+# Writes the commit that is being built into a header, where it has changed.
+# Usage: cmake -D ROOT=<source tree> -D OUT=<commit.h> -P commit.cmake
+execute_process(
+  COMMAND git -C "${ROOT}" describe --always --dirty --abbrev=12 --exclude=*
+  OUTPUT_VARIABLE commit
+  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
+  RESULT_VARIABLE status)
+if(status OR NOT commit)
+  set(commit "unknown commit")
+endif()
+set(text "#define TOUCHDOWN_COMMIT \"${commit}\"\n")
+set(before "")
+if(EXISTS "${OUT}")
+  file(READ "${OUT}" before)
+endif()
+if(NOT before STREQUAL text)
+  file(WRITE "${OUT}" "${text}")
+endif()
