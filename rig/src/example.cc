@@ -7,7 +7,8 @@ std::string_view ExampleDescription() {
 # A measured number is plain, or has its standard uncertainty beside it:
 #   wire_diameter_mm = 2.0
 #   wire_diameter_mm = { value = 2.0, u = 0.01 }
-# A plain number is taken as exact. Unknown keys are refused.
+# A plain number is taken as exact, a plain size of the body as good to 0.1 %.
+# Unknown keys are refused.
 schema = "touchdown.rig/1"
 name = "bench ejector"
 
