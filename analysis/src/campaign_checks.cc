@@ -41,7 +41,11 @@ core::Expected<PooledCheck> PoolChecks(std::span<const core::Estimate> ratios,
   out.ratio.u = std::sqrt(birge / weights + common_u * common_u);
   out.z = (out.ratio.value - 1.0) / out.ratio.u;
   out.failed = std::abs(out.z) > options.most_z;
-  out.shows = (options.most_z + kOneSided95) * out.ratio.u;
+  // Another campaign's scatter may widen its u: by one standard deviation of
+  // sqrt(chi^2 / (n - 1)).
+  const double wider = 1.0 + 1.0 / std::sqrt(2.0 * (n - 1));
+  out.shows = (options.most_z + kOneSided95) *
+              std::hypot(wider * std::sqrt(birge / weights), common_u);
   return out;
 }
 

@@ -38,16 +38,11 @@ std::string BoundarySentence(const analysis::BoundaryStudy& study) {
   // Of one outcome the trials bound one side; the rest of the interval, and the
   // median with it, is the prior's.
   const analysis::Counts& counts = study.counts;
-  if (counts.bounce == 0 && counts.not_bounce > 0) {
+  if ((counts.bounce == 0) != (counts.not_bounce == 0)) {
     return fmt::format(
-        "above {:.1f} deg (97.5 %); how far above these trials do not say, "
-        "since none bounced",
-        p.interval95_rad.low / kDegree);
-  }
-  if (counts.not_bounce == 0 && counts.bounce > 0) {
-    return fmt::format(
-        "below {:.1f} deg (97.5 %); how far below these trials do not say, "
-        "since all bounced",
+        "not bounded {} by these trials (the posterior's {:.1f} to {:.1f} deg "
+        "is the prior's beyond them)",
+        counts.bounce == 0 ? "above" : "below", p.interval95_rad.low / kDegree,
         p.interval95_rad.high / kDegree);
   }
   return fmt::format("{:.1f} deg, 95 % interval {:.1f} to {:.1f} deg",

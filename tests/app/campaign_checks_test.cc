@@ -81,7 +81,7 @@ TEST(CampaignChecks, AFrameRateLeavesTheSizeAlone) {
 
 TEST(CampaignChecks, ABodyIsSmallerThanStated) {
   const auto checks = Checked(Trials({.size = 0.95}));
-  EXPECT_THAT(checks.explanation, HasSubstr("a body of 0.95 times"));
+  EXPECT_THAT(checks.explanation, HasSubstr("a body of 0.95"));
   EXPECT_THAT(checks.explanation, HasSubstr("gravity agrees with the scale"));
 }
 

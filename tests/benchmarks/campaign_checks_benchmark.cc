@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "app/pipeline/analyze.h"
 #include "app/report/campaign_checks.h"
 #include "tests/accuracy/design.h"
 #include "touchdown/vision/render.h"

@@ -1,5 +1,5 @@
-// A check of single trials, pooled over the trials of one set-up: what nature or
-// a statement fixes (gravity, the body's size) over what was measured of it.
+// A check of single trials, pooled over the trials of one set-up: what nature
+// or a statement fixes (gravity, the body's size) over what was measured of it.
 // Twenty trials that are 3 % off in one direction are sure where one is not.
 //
 //   r = sum w_i r_i / sum w_i,  w_i = 1 / u_i^2,  u_own^2 = b / sum w_i
@@ -30,8 +30,9 @@ struct PooledCheck {
   core::Estimate ratio;  // measured over expected; u with what is common
   double z = 0.0;
   bool failed = false;
-  // The relative error that 95 of 100 such campaigns would fail for:
-  // (most_z + 1.645) u. What is smaller these trials cannot show.
+  // The relative error that 95 of 100 such campaigns would fail for: (most_z +
+  // 1.645) u, with u_own a little wider, as its scatter may make it. What is
+  // smaller these trials cannot show.
   double shows = 0.0;
 };
 
