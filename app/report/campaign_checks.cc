@@ -199,13 +199,13 @@ CampaignChecks CheckCampaign(std::span<const std::size_t> members,
     if (r.fps) fps = *r.fps;
     if (r.gravity && r.gravity->u > 0.0) {
       gravity.push_back(*r.gravity);
-      gravity_u = std::max(gravity_u, r.common_gravity_u);
+      gravity_u += r.common_gravity_u;
     } else if (!r.gravity) {
       no_gravity = r.gravity.error().reason;
     }
     if (r.size && r.size->u > 0.0) {
       size.push_back(*r.size);
-      size_u = std::max(size_u, r.common_size_u);
+      size_u += r.common_size_u;
     } else if (!r.size) {
       no_size = r.size.error().reason;
     }
@@ -222,8 +222,13 @@ CampaignChecks CheckCampaign(std::span<const std::size_t> members,
     }
     return check;
   };
-  out.gravity = pooled(gravity, gravity_u, no_gravity);
-  out.size = pooled(size, size_u, no_size);
+  // One error in common moves each trial by its own share, and their mean by
+  // the mean share.
+  const auto mean = [](double sum, std::size_t n) {
+    return n > 0 ? sum / static_cast<double>(n) : 0.0;
+  };
+  out.gravity = pooled(gravity, mean(gravity_u, gravity.size()), no_gravity);
+  out.size = pooled(size, mean(size_u, size.size()), no_size);
   out.restitution = pooled(restitution, 0.0, "");
   if (out.restitution) {
     out.restitution->failed =
