@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace touchdown::vision {
@@ -49,6 +50,38 @@ TEST(ChainBuilder, KeepsTheStrongestOfTooMany) {
   EXPECT_EQ(builder.left_out(), 2u);
   EXPECT_EQ(chains[0].links.front().blob.centre.y_px, 800.0);
   EXPECT_EQ(chains[2].links.front().blob.centre.y_px, 400.0);
+}
+
+// A hand that moves about is larger than the ball that it lets fall.
+TEST(ChainBuilder, WhatFallsComesBeforeWhatIsLarger) {
+  ChainBuilder builder;
+  for (std::int64_t frame = 0; frame < 40; ++frame) {
+    const auto t = static_cast<double>(frame);
+    builder.Add(frame, 0.04 * t,
+                {At(300.0 + 20.0 * std::sin(0.3 * t), 60.0, 1000.0),
+                 At(100.0 + 2.0 * t, 50.0 + 0.25 * t * t, 200.0)});
+  }
+  const std::vector<Chain> chains = builder.Finish();
+  ASSERT_EQ(chains.size(), 2u);
+  EXPECT_EQ(chains[0].links.front().blob.area_px2, 200.0);
+  EXPECT_TRUE(chains[0].Falls());
+  EXPECT_FALSE(chains[1].Falls());
+}
+
+// At thousands of frames per second no body falls by its own size: the stronger
+// comes first.
+TEST(ChainBuilder, NothingIsSaidToFallThatFallsByLessThanItsSize) {
+  ChainBuilder builder;
+  for (std::int64_t frame = 0; frame < 40; ++frame) {
+    const auto t = static_cast<double>(frame);
+    builder.Add(frame, 0.001 * t,
+                {At(300.0 + 5.0 * t, 60.0, 1000.0),
+                 At(100.0 + 5.0 * t, 150.0 + 3.0 * t + 0.01 * t * t, 800.0)});
+  }
+  const std::vector<Chain> chains = builder.Finish();
+  ASSERT_EQ(chains.size(), 2u);
+  EXPECT_FALSE(chains[1].Falls());
+  EXPECT_EQ(chains[0].links.front().blob.area_px2, 1000.0);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "tests/vision/synthetic_track.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/contact.h"
+#include "touchdown/vision/supported_path.h"
 
 namespace touchdown::vision {
 namespace {

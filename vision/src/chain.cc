@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "moments.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
@@ -122,6 +123,36 @@ double Chain::Extent() const {
   return extent;
 }
 
+bool Chain::Falls() const {
+  constexpr double kStraight = 0.05;  // of the size: rms off the parabola
+  constexpr double kStraight_px = 1.0;
+  constexpr double kHigh = 0.5;  // of the size
+  constexpr std::size_t kLeast = 6;
+  const double size = std::sqrt(Area());
+  const double most_off = std::max(kStraight_px, kStraight * size);
+  std::size_t in_flight = 0;
+  for (std::size_t begin = 0; begin + kLeast <= links.size();) {
+    Moments x, y;
+    std::size_t end = begin;  // of the flight
+    std::size_t at = begin;
+    for (; at < links.size(); ++at) {
+      const Link& first = links[begin];
+      const auto t = static_cast<double>(links[at].frame - first.frame);
+      x.Add(t, links[at].blob.centre.x_px - first.blob.centre.x_px, 1.0);
+      y.Add(t, links[at].blob.centre.y_px - first.blob.centre.y_px, 1.0);
+      if (at + 1 - begin < kLeast) continue;
+      const Polynomial across(x);
+      const Polynomial down(y);
+      if (std::max(across.rss1, down.rss2) > x.w * most_off * most_off) break;
+      if (0.25 * down.bend * t * t > kHigh * size) end = at + 1;
+    }
+    in_flight += end - begin;
+    begin =
+        end > begin ? end : begin + std::max<std::size_t>(1, (at - begin) / 2);
+  }
+  return 2 * in_flight > links.size();
+}
+
 void ChainBuilder::Add(std::int64_t frame, double time_s,
                        const std::vector<Blob>& blobs) {
   struct Pair {
@@ -184,11 +215,24 @@ std::vector<Chain> ChainBuilder::Finish() {
     return c.Extent() <
            std::max(kLeastMotion_px, kLeastShareOfSize * std::sqrt(c.Area()));
   });
-  std::stable_sort(chains.begin(), chains.end(),
-                   [](const Chain& a, const Chain& b) {
-                     return a.Strength() > b.Strength();
-                   });
-  return chains;
+  // A hand, a person or a shadow may be the larger: what falls counts tenfold,
+  // which is a body of a third of the other's diameter.
+  constexpr double kFalls = 10.0;
+  struct Ranked {
+    double weight;
+    std::size_t chain;
+  };
+  std::vector<Ranked> order;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    order.push_back(
+        {chains[i].Strength() * (chains[i].Falls() ? kFalls : 1.0), i});
+  }
+  std::stable_sort(
+      order.begin(), order.end(),
+      [](const Ranked& a, const Ranked& b) { return a.weight > b.weight; });
+  std::vector<Chain> ranked;
+  for (const Ranked& r : order) ranked.push_back(std::move(chains[r.chain]));
+  return ranked;
 }
 
 bool MoveAsOne(const Chain& a, const Chain& b) {

@@ -22,6 +22,10 @@ struct Chain {
   double Contrast() const;  // median, DN, signed
   double Extent() const;    // largest distance from the first position, px
   double Strength() const;  // sum of area times squared contrast
+
+  // Whether most of its links lie on flights: parabolas that open downward,
+  // higher than half the body's size.
+  bool Falls() const;
 };
 
 struct LinkOptions {
@@ -44,8 +48,8 @@ class ChainBuilder {
   void Add(std::int64_t frame, double time_s, const std::vector<Blob>& blobs);
 
   // All chains, those of one body that were interrupted joined, ordered by how
-  // likely each is the body (size, contrast, length of stay, motion): best
-  // first. Things that do not move are left out.
+  // likely each is the body (size, contrast, length of stay, fall): best first.
+  // Things that do not move are left out.
   std::vector<Chain> Finish();
 
   // How many of them most_chains left out.

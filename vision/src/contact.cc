@@ -8,7 +8,7 @@
 #include "contact_event.h"
 #include "contact_record.h"
 #include "motion_segments.h"
-#include "path_trend.h"
+#include "touchdown/vision/supported_path.h"
 #include "track_noise.h"
 #include "track_shape.h"
 
@@ -109,13 +109,16 @@ std::vector<Touch> FindTouches(const PlaneTrack& track,
   return touches;
 }
 
-// How far from the line a contact may lie.
-double NearLine(const PlaneTrack& track, const PlaneSample& s) {
+// How far from the line what touches the ground may lie: what yields, and a
+// line that is not quite that of contact, by a share of half the body's size.
+double NearLine(const PlaneTrack& track, const PlaneSample& s, double share) {
   constexpr double kNear_px = 2.0;
-  constexpr double kYield = 0.05;  // of half the body's size
   return std::max({kNear_px, 4.0 * UncertaintyOfLine(track, s),
-                   kYield * track.half_short_px});
+                   share * track.half_short_px});
 }
+constexpr double kAtContact = 0.05;
+constexpr double kSunk = 0.1;     // no body sinks into the ground by more
+constexpr double kCarried = 0.3;  // an edge that is seen may be off the contact
 
 // Why the line is not the ground: the body passes through it, or is thrown back
 // well above or below it. Empty where line and track agree.
@@ -126,19 +129,15 @@ std::string RefuteGround(const PlaneTrack& track,
                        [](const PlaneSample& a, const PlaneSample& b) {
                          return a.gap_px < b.gap_px;
                        });
-  // No body sinks into the ground by more than what it yields and what the line
-  // may be off.
-  constexpr double kYield = 0.1;  // of half the body's size
   const double sunk = -lowest->gap_px;
-  if (sunk > std::max({2.0, 4.0 * UncertaintyOfLine(track, *lowest),
-                       kYield * track.half_short_px})) {
+  if (sunk > NearLine(track, *lowest, kSunk)) {
     return fmt::format(
         "the body passes {:.1f} px below the ground line at frame {}", sunk,
         lowest->frame);
   }
   for (const Touch& touch : touches) {
     const PlaneSample& s = track.samples[touch.event.before_frames.end - 1];
-    if (std::abs(touch.gap_px) > NearLine(track, s)) {
+    if (std::abs(touch.gap_px) > NearLine(track, s, kAtContact)) {
       return fmt::format(
           "the body rebounds {:.1f} px {} the ground line at frame {}",
           std::abs(touch.gap_px), touch.gap_px > 0 ? "above" : "below",
@@ -215,7 +214,8 @@ std::optional<Event> MeasureAtEnd(const PlaneTrack& track,
 
 // A body that is down from the first frame, and the warnings that its path
 // gives about the line.
-core::ContactRecord MeasureFromStart(RecordContext& context, PlaneTrack& track,
+core::ContactRecord MeasureFromStart(RecordContext& context,
+                                     const Stretch& down, PlaneTrack& track,
                                      std::vector<std::string>& warnings) {
   const PathTrend trend = TakeOutTrend(track);
   if (trend.bend_px != 0.0) {
@@ -236,15 +236,13 @@ core::ContactRecord MeasureFromStart(RecordContext& context, PlaneTrack& track,
   for (const PlaneSample& s : track.samples) gaps.push_back(s.gap_px);
   const double level = Median(gaps);
   const double sunk = level - *std::min_element(gaps.begin(), gaps.end());
-  constexpr double kShare = 0.3;  // of half the body's size
-  if (sunk > std::max(NearLine(track, track.samples.front()),
-                      kShare * track.half_short_px)) {
+  if (sunk > NearLine(track, track.samples.front(), kCarried)) {
     return NoContact(
         fmt::format("its path is neither a flight nor along the ground line: "
                     "it sinks {:.1f} px below where it is half of the time",
                     sunk));
   }
-  return RecordFromStart(context, trend.slope_rad);
+  return RecordFromStart(context, down, trend.slope_rad);
 }
 
 // The first flight that is seen rises from the ground: it touched down before,
@@ -291,10 +289,7 @@ double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
     sum += track.samples[i].gap_px;
   }
   const double gap = sum / static_cast<double>(stretch.end - stretch.begin);
-  // An edge that is seen need not be the line of contact.
-  constexpr double kShare = 0.3;  // of half the body's size
-  const double near = std::max(NearLine(track, track.samples[stretch.begin]),
-                               kShare * track.half_short_px);
+  const double near = NearLine(track, track.samples[stretch.begin], kCarried);
   return std::abs(gap) > near ? gap : 0.0;
 }
 
@@ -343,7 +338,7 @@ ContactResult FindContacts(const PlaneTrack& given,
   const Stretch* down = DownFromStart(stretches);
   const double above = down ? HeightAboveGround(track, *down) : 0.0;
   if (down && above == 0.0) {
-    result.first = MeasureFromStart(context, track, result.warnings);
+    result.first = MeasureFromStart(context, *down, track, result.warnings);
     return result;
   }
   result.ground_refuted = RefuteGround(track, touches);
@@ -357,7 +352,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   for (const Touch& touch : touches) {
     const std::size_t last = touch.event.before_frames.end - 1;
     if (!options.contact_frame &&
-        std::abs(touch.gap_px) > NearLine(track, track.samples[last])) {
+        std::abs(touch.gap_px) >
+            NearLine(track, track.samples[last], kAtContact)) {
       continue;
     }
     Event event = touch.event;

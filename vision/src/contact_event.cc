@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "track_noise.h"
 
 namespace touchdown::vision {
 namespace {
@@ -56,27 +59,6 @@ double CrossingTime(const PlaneTrack& track, const Flight& flight,
     previous = here;
   }
   return crossing.value_or(nearest);
-}
-
-// Weighted mean gap of samples in contact; nothing of fewer than two.
-std::optional<core::Estimate> LevelOf(std::span<const PlaneSample> samples) {
-  if (samples.size() < 2) return std::nullopt;
-  double sw = 0.0;
-  double swx = 0.0;
-  for (const PlaneSample& s : samples) {
-    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
-    sw += w;
-    swx += w * s.gap_px;
-  }
-  const double mean = swx / sw;
-  double chi2 = 0.0;
-  for (const PlaneSample& s : samples) {
-    const double r = (s.gap_px - mean) / s.u_gap_px;
-    chi2 += r * r;
-  }
-  const double widen =
-      std::max(1.0, chi2 / static_cast<double>(samples.size() - 1));
-  return core::Estimate{mean, std::sqrt(widen / sw), std::nullopt};
 }
 
 // Frames after touchdown and before release that the flights explain within
@@ -253,16 +235,15 @@ bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
   down.end = std::min(down.end, down.begin + kNear);
   // A few frames may still belong to a rebound.
   constexpr std::size_t kEnough = 6;
-  const auto level =
-      down.size() >= kEnough ? LevelOf(SamplesIn(track, down)) : std::nullopt;
-  if (level) {
-    event.disagreement = level->value / std::hypot(ground.u, level->u);
+  if (down.size() >= kEnough) {
+    const core::Estimate level = LevelOf(SamplesIn(track, down));
+    event.disagreement = level.value / std::hypot(ground.u, level.u);
     if (std::abs(event.disagreement) > kDisagree) {
-      ground = core::Combined(ground, *level);
+      ground = core::Combined(ground, level);
     } else {
       const double w0 = 1.0 / (ground.u * ground.u);
-      const double w1 = 1.0 / (level->u * level->u);
-      ground = {level->value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
+      const double w1 = 1.0 / (level.u * level.u);
+      ground = {level.value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
                 std::nullopt};
     }
     input.ground_px = ground;
@@ -280,6 +261,23 @@ bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
 }
 
 }  // namespace
+
+core::Estimate LevelOf(std::span<const PlaneSample> samples) {
+  double sw = 0.0;
+  double swx = 0.0;
+  for (const PlaneSample& s : samples) {
+    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
+    sw += w;
+    swx += w * s.gap_px;
+  }
+  const double mean = swx / sw;
+  std::vector<double> off;
+  for (const PlaneSample& s : samples) {
+    off.push_back((s.gap_px - mean) / s.u_gap_px);
+  }
+  const int degrees = static_cast<int>(samples.size()) - 1;
+  return {mean, InflationOf({off}, degrees) / std::sqrt(sw), std::nullopt};
+}
 
 FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
                       double time_s) {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "joint_fit.h"
@@ -57,5 +58,9 @@ struct FlightGap {
 };
 FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
                       double time_s);
+
+// Weighted mean gap of a body that is down, with the u that its scatter and the
+// correlation of its poses ask for.
+core::Estimate LevelOf(std::span<const PlaneSample> samples);
 
 }  // namespace touchdown::vision

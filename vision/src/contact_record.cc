@@ -32,6 +32,10 @@ double DriftOf(double u_common, const SampleRange& flight) {
   return kShare * u_common / static_cast<double>(flight.size());
 }
 
+void MakeAbsent(std::initializer_list<Measured*> values, const char* reason) {
+  for (Measured* value : values) *value = AbsentBecause(reason);
+}
+
 // px (or px/s) to metres (or m/s), with the scale's uncertainty.
 Measured InMetres(const RecordContext& context, const Estimate& px) {
   if (!context.options.scale) return AbsentBecause(kNoScale);
@@ -83,6 +87,21 @@ core::Budget BudgetOf(const JointFit& fit, const JointFit::Function& f,
           {"scale", rest(with_scale, with_size)}};
 }
 
+// Flush where the second lowest corner is as low as the lowest within what the
+// attitude is known to (2 u), or within the resolution.
+void FillAttitude(const PlaneTrack& track, const Estimate& measured,
+                  double resolution_rad, core::Contact& contact) {
+  const double pi = std::numbers::pi;
+  double face = std::remainder(measured.value, pi);
+  if (face <= -0.5 * pi) face += pi;
+  contact.face_angle_rad = Estimate{face, measured.u, std::nullopt};
+  const double tilt = std::abs(std::remainder(face, 0.5 * pi));
+  contact.corner =
+      tilt < std::max(2.0 * measured.u, resolution_rad) ? core::Corner::kFlush
+      : LowestPointAlong(track, face) > 0.0             ? core::Corner::kLeading
+                                            : core::Corner::kTrailing;
+}
+
 void FillAngles(const RecordContext& context, const Event& event,
                 core::Contact& contact) {
   const PlaneTrack& track = context.track;
@@ -128,25 +147,11 @@ void FillAngles(const RecordContext& context, const Event& event,
   Estimate measured = fit.Of(to_ground);
   const double localised = measured.u;
   measured.u = std::hypot(measured.u, context.u_common_face_rad);
-  const double pi = std::numbers::pi;
-  double face = std::remainder(measured.value, pi);
-  if (face <= -0.5 * pi) face += pi;
-  contact.face_angle_rad = Estimate{face, measured.u, std::nullopt};
+  constexpr double kResolution_px = 0.05;
+  FillAttitude(track, measured, kResolution_px / (2.0 * track.half_long_px),
+               contact);
   contact.attitude_budget = BudgetOf(fit, to_ground, localised);
   contact.attitude_budget.push_back({"picture", context.u_common_face_rad});
-  // Flush where the second lowest corner is as low as the lowest within what
-  // the attitude is known to (2 u), or within the outline's own resolution.
-  const double tilt = std::abs(std::remainder(face, 0.5 * pi));
-  constexpr double kResolution_px = 0.05;
-  const double flush_within =
-      std::max(2.0 * measured.u, kResolution_px / (2.0 * track.half_long_px));
-  const double arm = LowestPointAlong(track, face);
-  if (tilt < flush_within) {
-    contact.corner = core::Corner::kFlush;
-  } else {
-    contact.corner =
-        arm > 0.0 ? core::Corner::kLeading : core::Corner::kTrailing;
-  }
   contact.radius_angle_rad = fit.Of([&](const JointVector& p) {
     const double at = p[kFace] - p[kSlope];
     const double reach = p[kHalfLong] * std::abs(std::sin(at)) +
@@ -180,13 +185,10 @@ void FillMotion(const RecordContext& context, const Event& event,
   };
   m.before_omega_rad_per_s = omega(kOmega, event.before_frames);
   if (!event.after) {
-    const char reason[] = "no release from the ground was seen";
-    m.after_normal_mps = AbsentBecause(reason);
-    m.after_tangential_mps = AbsentBecause(reason);
-    m.after_omega_rad_per_s = AbsentBecause(reason);
-    m.restitution = AbsentBecause(reason);
-    m.centre_rebound_ratio = AbsentBecause(reason);
-    m.impulse_ratio = AbsentBecause(reason);
+    MakeAbsent(
+        {&m.after_normal_mps, &m.after_tangential_mps, &m.after_omega_rad_per_s,
+         &m.restitution, &m.centre_rebound_ratio, &m.impulse_ratio},
+        "no release from the ground was seen");
   } else {
     m.after_normal_mps = speed(NormalAfter);
     m.after_tangential_mps = speed(TangentialAfter);
@@ -431,44 +433,16 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   return record;
 }
 
-namespace {
-
-// Of the samples' median gap, whose robust scatter is known. That of a median
-// is sqrt(pi/2) that of a mean, and neighbours that err alike count for fewer:
-// n over 1 + 2 sum of their correlations, as far as they are positive.
-double UncertaintyOfMedian(std::span<const PlaneSample> samples, double median,
-                           double scatter) {
-  double square = 0.0;
-  for (const PlaneSample& s : samples) {
-    square += (s.gap_px - median) * (s.gap_px - median);
-  }
-  constexpr std::size_t kShare = 4;  // lags beyond a quarter of all are noise
-  double alike = 1.0;
-  for (std::size_t lag = 1; lag <= samples.size() / kShare; ++lag) {
-    double sum = 0.0;
-    for (std::size_t i = lag; i < samples.size(); ++i) {
-      sum += (samples[i].gap_px - median) * (samples[i - lag].gap_px - median);
-    }
-    if (sum <= 0.0) break;
-    alike += 2.0 * sum / square;
-  }
-  const auto n = static_cast<double>(samples.size());
-  return scatter * std::sqrt(0.5 * std::numbers::pi * std::min(1.0, alike / n));
-}
-
-}  // namespace
-
 core::ContactRecord RecordFromStart(const RecordContext& context,
-                                    double slope_rad) {
+                                    const Stretch& down, double slope_rad) {
   const PlaneTrack& track = context.track;
   const std::span<const PlaneSample> samples(track.samples);
   core::ContactRecord record;
   core::Contact& contact = record.contact;
   contact.found = true;
   contact.from_start = true;
-  contact.time_s = AbsentBecause("on the ground from the start");
-  contact.frame = AbsentBecause("on the ground from the start");
-  contact.duration_s = AbsentBecause("on the ground from the start");
+  const char reason[] = "on the ground from the start";
+  MakeAbsent({&contact.time_s, &contact.frame, &contact.duration_s}, reason);
   // It does not approach; that its path and the visible line are inclined to
   // each other is all that could be taken for it.
   const double u_angle = std::hypot(track.ground.u_angle_rad, slope_rad);
@@ -476,36 +450,13 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   contact.approach_budget = {{"ground", track.ground.u_angle_rad},
                              {"path", std::abs(slope_rad)}};
 
-  // The ground's height is that of the body's lowest point, half of the time.
-  std::vector<double> gaps;
-  gaps.reserve(samples.size());
-  for (const PlaneSample& s : samples) gaps.push_back(s.gap_px);
-  const double level = Median(std::move(gaps));
-  // It is down for most of the time: how much its gaps scatter then is how well
-  // one is known, whatever the poses claim. Outlines that a bad model fits err
-  // alike in neighbouring frames, which no difference of them shows.
-  std::vector<double> off;
-  off.reserve(samples.size());
-  for (const PlaneSample& s : samples)
-    off.push_back(std::abs(s.gap_px - level));
-  constexpr double kOfMedian = 1.4826;  // of |normal|
-  const double scatter = kOfMedian * Median(std::move(off));
-  const double claimed = samples[samples.size() / 2].u_gap_px;
-  constexpr double kMore = 2.0;  // an excess within its own uncertainty is none
-  const double u_level =
-      scatter > kMore * claimed
-          ? UncertaintyOfMedian(samples, level, scatter)
-          : claimed / std::sqrt(static_cast<double>(samples.size()));
-
-  const char reason[] = "on the ground from the start";
   core::Motion& m = record.motion;
   m = core::Motion{};
-  for (Measured* absent :
-       {&m.before_normal_mps, &m.before_omega_rad_per_s, &m.after_normal_mps,
-        &m.after_tangential_mps, &m.after_omega_rad_per_s, &m.restitution,
-        &m.centre_rebound_ratio, &m.impulse_ratio, &m.gravity_check_mps2}) {
-    *absent = AbsentBecause(reason);
-  }
+  MakeAbsent(
+      {&m.before_normal_mps, &m.before_omega_rad_per_s, &m.after_normal_mps,
+       &m.after_tangential_mps, &m.after_omega_rad_per_s, &m.restitution,
+       &m.centre_rebound_ratio, &m.impulse_ratio, &m.gravity_check_mps2},
+      reason);
   const std::size_t n = std::min<std::size_t>(samples.size(), 12);
   const Flight start = FitFlight(samples.first(n), context.flight);
   const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1)),
@@ -517,35 +468,24 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
     contact.face_angle_rad = AbsentBecause("sphere");
   } else {
     const PlaneSample& s = samples.front();
-    double face = std::remainder(s.face_rad, std::numbers::pi);
-    const double u =
-        std::hypot(start.At(s.time_s).u_face_rad, track.ground.u_angle_rad);
-    contact.face_angle_rad = Estimate{face, u, std::nullopt};
-    contact.attitude_budget = {{"localisation", start.At(s.time_s).u_face_rad},
-                               {"ground", track.ground.u_angle_rad}};
-    const double arm = LowestPointAlong(track, face);
+    const double u_face = start.At(s.time_s).u_face_rad;
+    const Estimate face{
+        s.face_rad, std::hypot(u_face, track.ground.u_angle_rad), std::nullopt};
     constexpr double kResolution_rad = 0.05;  // lying on a face
-    const double tilt = std::abs(std::remainder(face, 0.5 * std::numbers::pi));
-    contact.corner = tilt < std::max(2.0 * u, kResolution_rad)
-                         ? core::Corner::kFlush
-                     : arm > 0.0 ? core::Corner::kLeading
-                                 : core::Corner::kTrailing;
-    contact.radius_angle_rad = Estimate{
-        std::atan2(SupportHeight(track, face), std::abs(arm)), u, std::nullopt};
+    FillAttitude(track, face, kResolution_rad, contact);
+    contact.attitude_budget = {{"localisation", u_face},
+                               {"ground", track.ground.u_angle_rad}};
+    contact.radius_angle_rad =
+        Estimate{std::atan2(SupportHeight(track, face.value),
+                            std::abs(LowestPointAlong(track, face.value))),
+                 face.u, std::nullopt};
   }
   // Its own path is the line: its direction has no u of its own here.
-  FillState(
-      context, 0,
-      {samples.front().along_px, Estimate{level, u_level, std::nullopt}, 0.0},
-      nullptr, record.state);
+  FillState(context, 0,
+            {samples.front().along_px,
+             LevelOf(samples.subspan(down.begin, down.end - down.begin)), 0.0},
+            nullptr, record.state);
   record.state.reason = "on the ground from the start; " + record.state.reason;
-  if (scatter > kMore * claimed) {
-    record.state.reason += fmt::format(
-        "; its outlines wander by {:.2f} px about the ground, {:.0f} times "
-        "what "
-        "each claims",
-        scatter, scatter / claimed);
-  }
   NameWhatStaysDown(context, 0, record.state);
   return record;
 }

@@ -24,9 +24,9 @@ struct RecordContext {
 core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
                              std::vector<std::string>& warnings);
 
-// A body that is on the ground from the first frame: approach angle 0. `slope`
-// is the inclination of its path to the ground line that was taken out.
+// A body that is on the ground from the first frame, `down`: approach angle 0.
+// `slope` is the inclination of its path to the ground line that was taken out.
 core::ContactRecord RecordFromStart(const RecordContext& context,
-                                    double slope_rad);
+                                    const Stretch& down, double slope_rad);
 
 }  // namespace touchdown::vision

@@ -369,6 +369,16 @@ bool IsWithin(const Look& look, const Look& other) {
 }  // namespace
 
 bool IsBetter(const Look& look, const Look& other) {
+  // What falls before what fits: a person in the picture may fit better.
+  const auto falls = [](const Look& l) {
+    return !l.found.chains.empty() && l.found.chains.front().Falls();
+  };
+  constexpr std::size_t kFew = 2;  // times fewer outlines are another matter
+  if (falls(look) != falls(other)) {
+    const Look& falling = falls(look) ? look : other;
+    const Look& resting = falls(look) ? other : look;
+    if (kFew * falling.fits.size() >= resting.fits.size()) return falls(look);
+  }
   return MuchSmoother(look, other) ||
          (CostOf(look) < CostOf(other) && !MuchSmoother(other, look));
 }

@@ -1,44 +1,11 @@
 #include "greatest_gap.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace touchdown::vision {
 namespace {
-
-// Parabola through `samples`, read at one of them.
-core::Estimate LocalGap(std::span<const PlaneSample> samples,
-                        const PlaneSample& at) {
-  if (samples.size() < 4) return {at.gap_px, at.u_gap_px, std::nullopt};
-  const double unit =
-      std::max(samples.back().time_s - samples.front().time_s, 1e-300);
-  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  const auto row_of = [&](const PlaneSample& s) {
-    const double t = (s.time_s - at.time_s) / unit;
-    return Eigen::Vector3d(1.0, t, t * t);
-  };
-  for (const PlaneSample& s : samples) {
-    const double w = 1.0 / (s.u_gap_px * s.u_gap_px);
-    const Eigen::Vector3d row = row_of(s);
-    a.noalias() += w * row * row.transpose();
-    b.noalias() += w * (s.gap_px - at.gap_px) * row;
-  }
-  const Eigen::LDLT<Eigen::Matrix3d> factor(a);
-  const Eigen::Vector3d x = factor.solve(b);
-  double chi2 = 0.0;
-  for (const PlaneSample& s : samples) {
-    chi2 += std::pow((s.gap_px - at.gap_px - row_of(s).dot(x)) / s.u_gap_px, 2);
-  }
-  const double widen =
-      std::max(1.0, chi2 / static_cast<double>(samples.size() - 3));
-  const double variance = factor.solve(Eigen::Vector3d::UnitX())[0];
-  return {at.gap_px + x[0], std::sqrt(std::max(0.0, widen * variance)),
-          std::nullopt};
-}
 
 class Finder {
  public:
@@ -166,17 +133,23 @@ void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
   // 7: the noise of the middle falls to 0.58, and a hop of as many frames is
   // followed exactly.
   constexpr std::size_t kWindow = 7;
+  constexpr std::size_t kLeastFrames = 4;
   const std::size_t window = std::min(kWindow, end - begin);
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t half = window / 2;
     const std::size_t from =
         std::min(i > begin + half ? i - half : begin, end - window);
-    const core::Estimate local = LocalGap(
-        std::span(track_.samples).subspan(from, window), track_.samples[i]);
-    Offer({local.value - ground_.height_px.value,
-           std::hypot(local.u, UncertaintyOfGround(track_.samples[i].along_px)),
-           std::nullopt},
-          track_.samples[i].frame);
+    const PlaneSample& s = track_.samples[i];
+    FlightGap local{s.gap_px, 0.0, s.u_gap_px};
+    if (window >= kLeastFrames) {
+      const Flight flight =
+          FitFlight(std::span(track_.samples).subspan(from, window));
+      local = GapOfFlight(track_, flight, s.time_s);
+    }
+    Offer(
+        {local.gap_px - ground_.height_px.value,
+         std::hypot(local.u_px, UncertaintyOfGround(s.along_px)), std::nullopt},
+        s.frame);
     if (i > from_) LookBetween(track_.samples[i - 1], track_.samples[i]);
   }
 }

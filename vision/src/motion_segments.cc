@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "moments.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::vision {
@@ -13,87 +14,20 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTold = 4;  // frames that tell of a motion of any kind
 
-// Weighted sums of one coordinate over the frames of a stretch, with the time
-// in frames and the value relative to its first frame: no digits cancel.
-struct Moments {
-  double w = 0, t = 0, tt = 0, ttt = 0, tttt = 0;
-  double y = 0, ty = 0, tty = 0, yy = 0;
-
-  void Add(double time, double value, double weight) {
-    const double wt = weight * time;
-    const double wtt = wt * time;
-    w += weight;
-    t += wt;
-    tt += wtt;
-    ttt += wtt * time;
-    tttt += wtt * time * time;
-    y += weight * value;
-    ty += wt * value;
-    tty += wtt * value;
-    yy += weight * value * value;
+// Squares that the best line of a supported stretch's gaps by place leaves,
+// with what is known of its level and slope as precisions.
+double RssOfLine(const Moments& gaps, double prior_level, double prior_slope) {
+  const double a = gaps.w + prior_level;
+  const double c = gaps.tt + prior_slope;
+  const double determinant = a * c - gaps.t * gaps.t;
+  constexpr double kLeast = 1e-12;
+  if (!(determinant > kLeast * a * c)) {
+    return std::max(0.0, gaps.yy - gaps.y * gaps.y / a);
   }
-};
-
-// Least squares in orthogonal polynomials: level, slope, bend, and the sums of
-// squares left by polynomials of degree 1 and 2.
-struct Polynomial {
-  double middle = 0, level = 0, slope = 0, bend = 0;
-  double offset = 0, tilt = 0;  // of the quadratic term's orthogonal polynomial
-  double rss1 = 0, rss2 = 0;
-
-  explicit Polynomial(const Moments& m) {
-    middle = m.t / m.w;
-    level = m.y / m.w;
-    const double spread = m.tt - m.t * middle;
-    const double lean = m.ty - middle * m.y;
-    rss1 = m.yy - level * m.y;
-    constexpr double kLeast = 1e-9;  // of the sum: one instant
-    if (spread > kLeast * (m.tt + m.w)) {
-      slope = lean / spread;
-      rss1 -= slope * lean;
-      offset = m.tt / m.w;
-      tilt = (m.ttt - middle * m.tt) / spread;
-      const double third =
-          m.tttt - offset * m.tt - tilt * (m.ttt - middle * m.tt);
-      const double bow = m.tty - offset * m.y - tilt * lean;
-      if (third > kLeast * m.tttt) {
-        bend = bow / third;
-        rss2 = bend * bow;
-      }
-    }
-    rss1 = std::max(0.0, rss1);
-    rss2 = std::max(0.0, rss1 - rss2);
-  }
-  double Line(double t) const { return level + slope * (t - middle); }
-  double Parabola(double t) const {
-    return Line(t) + bend * (t * t - offset - tilt * (t - middle));
-  }
-};
-
-// Gaps of a supported stretch on a line with the ground's own uncertainty.
-struct LineMoments {
-  double w = 0, x = 0, xx = 0, g = 0, gx = 0, gg = 0;
-
-  void Add(double along, double gap, double weight) {
-    w += weight;
-    x += weight * along;
-    xx += weight * along * along;
-    g += weight * gap;
-    gx += weight * gap * along;
-    gg += weight * gap * gap;
-  }
-  // Squares left after the best line; priors are precisions.
-  double Rss(double prior_level, double prior_slope) const {
-    const double a = w + prior_level;
-    const double c = xx + prior_slope;
-    const double determinant = a * c - x * x;
-    constexpr double kLeast = 1e-12;
-    if (!(determinant > kLeast * a * c)) return std::max(0.0, gg - g * g / a);
-    const double level = (c * g - x * gx) / determinant;
-    const double slope = (a * gx - x * g) / determinant;
-    return std::max(0.0, gg - level * g - slope * gx);
-  }
-};
+  const double level = (c * gaps.y - gaps.t * gaps.ty) / determinant;
+  const double slope = (a * gaps.ty - gaps.t * gaps.y) / determinant;
+  return std::max(0.0, gaps.yy - level * gaps.y - slope * gaps.ty);
+}
 
 // A forecast's variance over that of one frame, one frame beyond `n` frames of
 // a straight line.
@@ -162,8 +96,8 @@ struct Segmenter::Fits {
   std::size_t begin = 0;
   std::size_t frames = 0;
   Moments along, height, face;
-  LineMoments gaps;
-  double lowest_px = kInfinity;  // of the gaps
+  Moments gaps;  // by place
+  double lowest_px = kInfinity;
   double highest_px = -kInfinity;
   std::optional<Polynomial> x, y, f;  // of the frames so far
 
@@ -192,7 +126,7 @@ double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
   }
   const double turned = f ? f->rss2 : 0.0;
   if (kind == StretchKind::kSupported) {
-    return x->rss2 + gaps.Rss(0.0, of.slope_precision_) + turned;
+    return x->rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + turned;
   }
   return frames < kTold ? 0.0 : x->rss2 + y->rss2 + turned;
 }
@@ -333,10 +267,10 @@ void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
   constexpr std::size_t kLeastSupported = 3;
   const bool last = begin > 0 && end == samples_.size();
   if ((n >= kLeastSupported || last) && MayTouch(begin)) {
-    const double off =
-        std::min(options_.off_line_cost,
-                 0.5 * (fits.gaps.Rss(level_precision_, slope_precision_) -
-                        fits.gaps.Rss(0.0, slope_precision_)));
+    const double off = std::min(
+        options_.off_line_cost,
+        0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
+               RssOfLine(fits.gaps, 0.0, slope_precision_)));
     const double rss = fits.RssOf(StretchKind::kSupported, *this);
     const int along = static_cast<int>(std::min<std::size_t>(n, 3));
     const int k = turns_ ? 1 + 2 * along : 1 + along;
@@ -369,7 +303,7 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
     s.cost += ends;
     Take(end, to, s);
   };
-  const double above = fits.gaps.g / fits.gaps.w;
+  const double above = fits.gaps.y / fits.gaps.w;
   // Twice as for a rebound: where the line is not known, or is not quite where
   // the flights meet, it could stand for one.
   // What is pressed down gives way by less than half of its size.

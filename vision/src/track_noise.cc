@@ -80,20 +80,14 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
   return claim * std::sqrt(excess);
 }
 
-// Sums over the flights of one coordinate's residuals, in units of its u.
-struct Residuals {
-  std::vector<std::vector<double>> of_flight;
-  int degrees = 0;
+}  // namespace
 
-  double Inflation() const;
-};
-
-double Residuals::Inflation() const {
+double InflationOf(const std::vector<std::vector<double>>& runs, int degrees) {
   double square = 0.0;
   std::size_t n = 0;
-  for (const auto& flight : of_flight) {
-    for (const double r : flight) square += r * r;
-    n += flight.size();
+  for (const auto& run : runs) {
+    for (const double r : run) square += r * r;
+    n += run.size();
   }
   if (degrees < 1 || !(square > 0.0)) return 1.0;
   // A correlation within its own uncertainty is none; 4: as for the scatter,
@@ -101,15 +95,15 @@ double Residuals::Inflation() const {
   // together.
   const double noise = 4.0 / std::sqrt(static_cast<double>(n));
   double alike = 1.0;
-  constexpr std::size_t kShare = 3;  // lags beyond a third of a flight: noise
+  constexpr std::size_t kShare = 3;  // lags beyond a third of a run: noise
   for (std::size_t lag = 1;; ++lag) {
     double product = 0.0;
     bool any = false;
-    for (const auto& flight : of_flight) {
-      if (kShare * lag > flight.size()) continue;
+    for (const auto& run : runs) {
+      if (kShare * lag > run.size()) continue;
       any = true;
-      for (std::size_t i = lag; i < flight.size(); ++i) {
-        product += flight[i] * flight[i - lag];
+      for (std::size_t i = lag; i < run.size(); ++i) {
+        product += run[i] * run[i - lag];
       }
     }
     const double rho = product / square;
@@ -119,11 +113,11 @@ double Residuals::Inflation() const {
   return std::sqrt(std::max(1.0, square / degrees * alike));
 }
 
-}  // namespace
-
 bool WidenToCorrelation(const std::vector<Stretch>& stretches,
                         const FlightOptions& options, PlaneTrack& track) {
-  Residuals along, height, face;
+  std::vector<std::vector<double>> along, height, face;
+  int flat_degrees = 0;  // of a straight line
+  int bent_degrees = 0;  // of a parabola
   const bool turns = track.kind == core::BodyKind::kRectangle;
   constexpr std::size_t kLeast = 8;  // frames
   for (const Stretch& stretch : stretches) {
@@ -139,16 +133,15 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
       if (turns) f.push_back((s.face_rad - at.face_rad) / s.u_face_rad);
     }
     const int degrees = static_cast<int>(n) - 2;
-    along.of_flight.push_back(std::move(x));
-    height.of_flight.push_back(std::move(y));
-    face.of_flight.push_back(std::move(f));
-    along.degrees += degrees;
-    height.degrees += degrees - (options.gravity_px_per_s2 ? 0 : 1);
-    face.degrees += degrees;
+    along.push_back(std::move(x));
+    height.push_back(std::move(y));
+    face.push_back(std::move(f));
+    flat_degrees += degrees;
+    bent_degrees += degrees - (options.gravity_px_per_s2 ? 0 : 1);
   }
-  const double by_along = along.Inflation();
-  const double by_height = height.Inflation();
-  const double by_face = turns ? face.Inflation() : 1.0;
+  const double by_along = InflationOf(along, flat_degrees);
+  const double by_height = InflationOf(height, bent_degrees);
+  const double by_face = turns ? InflationOf(face, flat_degrees) : 1.0;
   for (PlaneSample& s : track.samples) {
     const double arm = s.u_face_rad * LowestPointAlong(track, s.face_rad);
     s.u_along_px *= by_along;

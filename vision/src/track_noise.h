@@ -26,12 +26,16 @@ ExcessNoise WidenToScatter(PlaneTrack& track);
 // (117 clips in H.264 and MJPEG with known truth), as if 5 of them counted.
 inline constexpr double kExcessVariance = 2.2;
 
-// Widens the claims of poses whose errors go together, so that fits of many
-// frames do not gain by their number: by the square root of
+// By how much the u of a fit must grow whose residuals, in units of their own
+// u, exceed it or go together: the square root of
 //   max(1, chi^2 / (degrees of freedom) (1 + 2 sum_k rho_k))
-// for each coordinate, from the residuals of all flights; rho_k: their
-// correlation k frames apart, summed as long as it is positive (Geyer,
-// Statist. Sci. 7, 1992, 473). Whether any was widened.
+// rho_k: the correlation k frames apart within a run of frames, summed as long
+// as it is positive (Geyer, Statist. Sci. 7, 1992, 473).
+double InflationOf(const std::vector<std::vector<double>>& runs, int degrees);
+
+// Widens the claims of poses whose errors go together, so that fits of many
+// frames do not gain by their number: of each coordinate by the InflationOf the
+// residuals of all flights. Whether any was widened.
 bool WidenToCorrelation(const std::vector<Stretch>& stretches,
                         const FlightOptions& options, PlaneTrack& track);
 

@@ -187,7 +187,9 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
   } else {
     whole.body.half_long_px = {outline.half_long_px, kOfPlaces, std::nullopt};
     whole.body.half_short_px = {outline.half_short_px, kOfPlaces, std::nullopt};
+    whole.body.u_common_angle_rad = kOfPlaces / outline.half_long_px;
   }
+  whole.body.u_common_px = kOfPlaces;
   for (Pose& pose : whole.poses) {
     const double cosine = best_turns ? std::cos(pose.angle_rad) : 1.0;
     const double sine = best_turns ? std::sin(pose.angle_rad) : 0.0;

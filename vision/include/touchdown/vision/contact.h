@@ -79,14 +79,4 @@ ContactResult FindContacts(const PlaneTrack& track,
 std::optional<calib::GroundLine> GroundFromContacts(
     const Track& track, double u_level_rad = 0.5 * core::kDegree);
 
-// Where no edge is known to be the ground, but the body is on one all the time:
-// the straight line along which its lowest point moves. That it is carried, and
-// does not fly, its acceleration tells: free flight accelerates down the
-// picture (within 15 degrees: a rolled camera), this along the path, and across
-// it by less than a tenth of that or three times its uncertainty. u from the
-// scatter across the path, of which a quarter of the frames counts
-// (neighbouring outlines err alike), and from the body's size. Nothing where
-// the track does not say so, or is shorter than the body.
-std::optional<calib::GroundLine> GroundFromPath(const Track& track);
-
 }  // namespace touchdown::vision

@@ -1,19 +1,23 @@
-// A body that is down from the start draws the contact line itself: what of its
-// gaps is the line's error and not the body's.
+// A body that is down from the start draws the contact line itself: the line
+// where none is known, and what of its gaps is a known line's error.
 #pragma once
 
-#include "touchdown/core/units.h"
+#include <optional>
+
+#include "touchdown/calib/plane.h"
 #include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
 
-// An edge of the ground seen in perspective differs from the contact line by so
-// much; more is another line, or none.
-inline constexpr double kMostInclined_rad = 1.0 * core::kDegree;
-
-// What carries a body leaves of its fall so much beside the acceleration along
-// the ground, at most.
-inline constexpr double kCarried = 0.1;
+// Where no edge is known to be the ground, but the body is on one all the time:
+// the straight line along which its lowest point moves. That it is carried, and
+// does not fly, its acceleration tells: free flight accelerates down the
+// picture (within 15 degrees: a rolled camera), this along the path, and across
+// it by less than a tenth of that or three times its uncertainty. u from the
+// scatter across the path, of which a quarter of the frames counts
+// (neighbouring outlines err alike), and from the body's size. Nothing where
+// the track does not say so, or is shorter than the body.
+std::optional<calib::GroundLine> GroundFromPath(const Track& track);
 
 struct PathTrend {
   // Of the gaps along the ground: the visible edge's error where it is small.

@@ -1,4 +1,4 @@
-#include "vision/src/path_trend.h"
+#include "touchdown/vision/supported_path.h"
 
 #include <gtest/gtest.h>
 
