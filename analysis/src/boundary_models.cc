@@ -16,6 +16,7 @@ namespace touchdown::analysis {
 namespace {
 
 using core::AbsentBecause;
+using core::AngleKind;
 using core::BodyKind;
 using core::kDegree;
 
@@ -56,6 +57,7 @@ core::Expected<double> Replication(const BoundaryInputs& in) {
 // Where a function of alpha in (0, 90 deg] reaches 1: scanned, then bisected.
 // The scan finds stretches wider than its step.
 constexpr int kScanSteps = 360;  // of a quarter degree
+constexpr double kFlattest_rad = 1e-6;
 
 double Bisect(const BoundaryInputs& in, double low, double high, bool rises) {
   for (int i = 0; i < 60; ++i) {
@@ -68,8 +70,9 @@ double Bisect(const BoundaryInputs& in, double low, double high, bool rises) {
 
 std::vector<AngleRange> BounceRanges(const BoundaryInputs& in,
                                      bool only_first) {
-  std::vector<AngleRange> out{{0.0, 0.0, "stays down"}};
-  bool bounces = false;
+  // A held angle may bounce at the flattest of the other.
+  bool bounces = BounceRatio(in, kFlattest_rad) >= 1.0;
+  std::vector<AngleRange> out{{0.0, 0.0, bounces ? "bounce" : "stays down"}};
   for (int i = 1; i <= kScanSteps; ++i) {
     const double alpha = kRightAngle * i / kScanSteps;
     if ((BounceRatio(in, alpha) >= 1.0) == bounces) continue;
@@ -78,7 +81,7 @@ std::vector<AngleRange> BounceRanges(const BoundaryInputs& in,
         Bisect(in, kRightAngle * (i - 1) / kScanSteps, alpha, bounces);
     out.back().to_rad = edge;
     out.push_back({edge, edge, bounces ? "bounce" : "stays down"});
-    if (only_first) break;
+    if (only_first && bounces) break;
   }
   out.back().to_rad = kRightAngle;
   return out;
@@ -93,7 +96,14 @@ core::Expected<double> DetectableBounce(const BoundaryInputs& in) {
     if (sine <= 1.0) return std::asin(sine);
   } else {
     const auto ranges = BounceRanges(in, true);
-    if (ranges.size() > 1) return ranges[1].from_rad;
+    if (ranges.size() > 1 && ranges.back().state == "bounce") {
+      return ranges.back().from_rad;
+    }
+    if (ranges.front().state == "bounce") {
+      return AbsentBecause(fmt::format(
+          "it bounces from the flattest {} angle on, and never begins to",
+          core::Name(AngleKindOf(BoundaryModel::kDetectableBounce, in))));
+    }
   }
   return AbsentBecause(
       "it does not rise above the bounce height at any angle: too slow, or "
@@ -112,6 +122,14 @@ void Check(const BoundaryInputs& in) {
   if (!IsSphere(in) && in.slip == Slip::kNone) {
     throw std::invalid_argument(
         "corner is flush, must be leading or trailing for a boundary angle");
+  }
+  if (in.held_kind == AngleKind::kFace) {
+    throw std::invalid_argument(
+        "held angle is a face angle, must be an approach or a radius angle");
+  }
+  if (in.held_kind) {
+    RequireBetween("held angle in rad", in.held_angle_rad.value, 0.0,
+                   kRightAngle);
   }
 }
 
@@ -235,6 +253,11 @@ std::vector<std::string> NotesOf(BoundaryModel model,
       if (spins) {
         out.push_back("spin before the impact is left out of this model");
       }
+      if (!IsSphere(in) && !in.held_kind) {
+        out.push_back(
+            "approach and radius angle are taken as equal, as in the paper; a "
+            "throw has both: hold the one that the campaign does not vary");
+      }
       break;
   }
   return out;
@@ -254,11 +277,16 @@ core::Expected<double> SpinAngle(const BoundaryInputs& in) {
       in.radius_m.value * in.omega_rad_per_s.value * in.omega_rad_per_s.value));
 }
 
-double BounceRatio(const BoundaryInputs& in, double alpha_rad) {
-  const SinCos alpha = RoundedSinCosOfRadians(alpha_rad);
+double BounceRatio(const BoundaryInputs& in, double angle_rad) {
+  const auto angle = [&](AngleKind kind) {
+    const bool held = !IsSphere(in) && in.held_kind == kind;
+    return RoundedSinCosOfRadians(held ? in.held_angle_rad.value : angle_rad);
+  };
+  const SinCos alpha = angle(AngleKind::kRadius);
+  const SinCos approach = angle(AngleKind::kApproach);
   const double g = in.gravity_mps2.value;
   const double v = in.speed_mps.value;
-  double rise_mps = in.restitution.value * v * alpha.sin;
+  double rise_mps = in.restitution.value * v * approach.sin;
   double lift_mps2 = 0.0;
   if (!IsSphere(in)) {
     ImpactProblem p;
@@ -267,8 +295,8 @@ double BounceRatio(const BoundaryInputs& in, double alpha_rad) {
     p.kappa = in.kappa.value;
     p.mu = in.mu.value;
     p.restitution = in.restitution.value;
-    p.tangential_mps = Sign(in.slip) * v * alpha.cos;
-    p.normal_mps = -v * alpha.sin;
+    p.tangential_mps = Sign(in.slip) * v * approach.cos;
+    p.normal_mps = -v * approach.sin;
     const ImpactResult after = Impact(p);
     rise_mps = after.normal_mps;
     lift_mps2 = p.radius_m * after.alpha_rate_rad_per_s *
@@ -307,7 +335,7 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
   }
   BoundaryAnswer out;
   out.model = model;
-  out.angle_kind = AngleKindOf(model, inputs.body);
+  out.angle_kind = AngleKindOf(model, inputs);
   out.boundary_rad = BoundaryAngle(model, inputs);
   out.ranges = RangesOf(model, inputs, out.boundary_rad);
   out.notes = NotesOf(model, inputs);
@@ -338,10 +366,15 @@ core::Measured BoundaryAnswer::Value() const {
   return out;
 }
 
-core::AngleKind AngleKindOf(BoundaryModel model, core::BodyKind body) {
+core::AngleKind AngleKindOf(BoundaryModel model, const BoundaryInputs& inputs) {
   // The contact problem speaks of the radius; for a sphere only the path's
   // angle can vary (errata E5).
-  if (body == BodyKind::kSphere && model != BoundaryModel::kPrintedEquations) {
+  const bool sphere = IsSphere(inputs);
+  if (sphere && model != BoundaryModel::kPrintedEquations) {
+    return core::AngleKind::kApproach;
+  }
+  if (!sphere && model == BoundaryModel::kDetectableBounce &&
+      inputs.held_kind == AngleKind::kRadius) {
     return core::AngleKind::kApproach;
   }
   return core::AngleKind::kRadius;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct Uncertain {
 constexpr double kTiny = std::numeric_limits<double>::min();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
-constexpr std::array<Uncertain, 8> kUncertain = {{
+constexpr std::array<Uncertain, 9> kUncertain = {{
     {"kappa", &BoundaryInputs::kappa, 0.0, kHuge},
     {"radius_m", &BoundaryInputs::radius_m, kTiny, kHuge},
     {"mu", &BoundaryInputs::mu, 0.0, kHuge},
@@ -32,6 +33,8 @@ constexpr std::array<Uncertain, 8> kUncertain = {{
     {"restitution", &BoundaryInputs::restitution, 0.0, 1.0},
     {"speed_mps", &BoundaryInputs::speed_mps, kTiny, kHuge},
     {"bounce_height_m", &BoundaryInputs::bounce_height_m, kTiny, kHuge},
+    {"held_angle_rad", &BoundaryInputs::held_angle_rad, 0.0,
+     std::numbers::pi / 2.0},
 }};
 
 // Whether the model's boundary depends on the input at all.
@@ -56,7 +59,9 @@ bool Uses(BoundaryModel model, const BoundaryInputs& in,
     case BoundaryModel::kDetectableBounce:
       break;
   }
-  const bool of_rectangle = of_corner || f == &BoundaryInputs::radius_m;
+  const bool of_rectangle = of_corner || f == &BoundaryInputs::radius_m ||
+                            f == &BoundaryInputs::held_angle_rad;
+  if (f == &BoundaryInputs::held_angle_rad && !in.held_kind) return false;
   return f != &BoundaryInputs::omega_rad_per_s &&
          !(IsSphere(in) && of_rectangle);
 }

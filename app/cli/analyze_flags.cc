@@ -12,12 +12,6 @@
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
-namespace {
-
-// What a ruler or a caliper is good for, where nobody says otherwise.
-constexpr DefaultU kReading = {.relative = 1e-3};
-
-}  // namespace
 
 double ToLimit(double limit_s) {
   if (!(limit_s > 0.0)) {
@@ -38,7 +32,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   if (!flags.crop.empty()) options.crop = ParseCorner("--crop", flags.crop);
   if (!flags.scale.empty()) {
     options.scale_px_per_m =
-        ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kReading);
+        ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kPlainSize);
   }
   if (flags.body != "auto") {
     options.body_kind = core::ParseBodyKind(flags.body);
@@ -49,11 +43,11 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   }
   if (!flags.diameter.empty()) {
     options.diameter_m = ParseEstimate("--diameter-mm", flags.diameter,
-                                       core::kMillimetre, kReading);
+                                       core::kMillimetre, kPlainSize);
   }
   if (!flags.sides.empty()) {
     std::tie(options.long_m, options.short_m) =
-        ParseSides("--sides-mm", flags.sides, core::kMillimetre, kReading);
+        ParseSides("--sides-mm", flags.sides, core::kMillimetre, kPlainSize);
   }
   if (!flags.ground.empty()) {
     const auto n = ParseNumbers("--ground", flags.ground, 4,

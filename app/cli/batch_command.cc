@@ -146,10 +146,20 @@ int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
     report::WriteTextFile(fs::path(flags.out) / "triage.csv",
                           pipeline::TriageCsv(entries));
   }
+  std::vector<pipeline::CampaignWord> campaigns;
+  if (fs::exists(flags.db)) {
+    campaigns = pipeline::CampaignWords(
+        db::Store::Open(flags.db, db::OpenMode::kRead), entries);
+  }
   if (flags.json) {
-    fmt::print("{}\n", pipeline::TriageJson(entries));
+    fmt::print("{}\n", pipeline::TriageJson(entries, campaigns));
   } else {
     PrintTriage(entries);
+    for (const pipeline::CampaignWord& word : campaigns) {
+      if (!word.failed) continue;
+      fmt::print("campaign {}: {}\n", Printable(word.campaign),
+                 Printable(word.sentence));
+    }
   }
   const std::size_t failed = pipeline::Count(entries).failed;
   if (failed == 0) return 0;

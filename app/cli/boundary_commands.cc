@@ -36,6 +36,7 @@ struct Answer {
 Answer MakeAnswer(const BoundaryFlags& flags) {
   Answer out;
   out.input = MakeInput(flags);
+  KeepLook(flags, "boundary", out.input);
   out.trials = std::move(out.input.trials);
   out.input.trials.clear();
   report::SortTrials(out.trials);
@@ -129,6 +130,7 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         "does not say");
   }
   report::ReportInput input = MakeInput(flags, true);
+  KeepLook(flags, "report", input);
   input.options = options;
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();

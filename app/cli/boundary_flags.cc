@@ -6,18 +6,26 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 
+#include "app/cli/messages.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/report_input.h"
 #include "app/pipeline/thrower.h"
+#include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/plan.h"
+#include "touchdown/db/store.h"
 
 namespace touchdown::cli {
 namespace {
 
 using core::kDegree;
+
+// The word of --support-deg for the angles that can be thrown.
+constexpr std::string_view kOfTheRig = "rig";
 
 double Number(const char* flag, std::string_view text, const char* form) {
   double value = 0.0;
@@ -176,16 +184,35 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   out.next.target_half_width_rad = flags.target_deg * kDegree;
   out.next.set_u_rad = flags.set_u_deg * kDegree;
   out.next.max_trials = flags.max_trials;
-  if (!flags.support.empty()) {
+  if (!flags.support.empty() && flags.support != kOfTheRig) {
     const core::Interval support = ParseRange("--support-deg", flags.support);
     if (support.low < 0.0 || support.high > 90.0 * kDegree) {
       throw std::invalid_argument(fmt::format(
-          "--support-deg: '{}'; expected LOW:HIGH within 0:90", flags.support));
+          "--support-deg: '{}'; expected LOW:HIGH within 0:90, or rig",
+          flags.support));
     }
     out.fit.low_rad = support.low;
     out.fit.high_rad = support.high;
   }
   return out;
+}
+
+void KeepLook(const BoundaryFlags& flags, std::string_view command,
+              report::ReportInput& input) {
+  if (flags.store.empty() || input.trials.empty()) return;
+  // A look waits for nobody: another process may be logging.
+  constexpr double kPatience_s = 1.0;
+  try {
+    db::OpenOptions options;
+    options.patience_s = kPatience_s;
+    auto store = db::Store::Open(flags.store, db::OpenMode::kWrite, options);
+    std::set<std::string> names;
+    for (const core::Trial& trial : input.trials) names.insert(trial.campaign);
+    for (const std::string& name : names) db::RecordLook(store, name, command);
+    input.plan = db::PlanEvents(store);
+  } catch (const core::StoreError& error) {
+    Tell(fmt::format("this look is not on record: {}", error.what()));
+  }
 }
 
 report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
@@ -202,6 +229,14 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   } else if (!flags.rig.empty()) {
     input.reach_of =
         pipeline::ReachOfRig(flags.rig, flags.speed_mps, CornerOf(flags));
+  }
+  if (flags.support == kOfTheRig) {
+    if (!input.reach_of) {
+      throw std::invalid_argument(
+          "--support-deg is rig, and no rig says what can be thrown: give "
+          "--rig or --feasible-deg");
+    }
+    input.support_is_reach = true;
   }
   // A file of bare angles is compared with the published boundary of the body
   // that it is said to be of.
@@ -255,8 +290,9 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
   command.add_option("--feasible-deg", flags.feasible,
                      "angles the rig can throw, LOW:HIGH");
   command.add_option("--support-deg", flags.support,
-                     "angles at which the boundary can be, LOW:HIGH: the "
-                     "support of the prior (default 0:90)");
+                     "angles at which the boundary can be, LOW:HIGH, or rig: "
+                     "those it can throw; the support of the prior (default "
+                     "0:90)");
   command
       .add_option("--set-u-deg", flags.set_u_deg,
                   "repeatability of the ejector")

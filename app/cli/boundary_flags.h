@@ -77,6 +77,12 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags);
 analysis::StudyOptions MakeStudy(const BoundaryFlags& flags);
 
 // The selected trials with what they are to be compared with.
+// Records that the answer of the campaigns is looked at (db/plan.h), each once
+// for the same trials, and puts it into `input`. A store that cannot be written
+// is told of, and the look goes on.
+void KeepLook(const BoundaryFlags& flags, std::string_view command,
+              report::ReportInput& input);
+
 report::ReportInput MakeInput(const BoundaryFlags& flags,
                               bool with_evidence = false);
 

@@ -22,9 +22,6 @@
 namespace touchdown::cli {
 namespace {
 
-// What a rule is good for, where nobody says otherwise.
-constexpr DefaultU kDefaultU = {.relative = 1e-3};
-
 struct ReferenceFlags {
   CalibrationFileFlags file;
   std::string picture;
@@ -66,7 +63,7 @@ int RunScale(const ReferenceFlags& flags) {
   Begun begun = Begin(flags);
   const auto pair = ParsePair("--points", flags.points, flags.u_point_px);
   const auto length =
-      ParseEstimate("--length-mm", flags.length, core::kMillimetre, kDefaultU);
+      ParseEstimate("--length-mm", flags.length, core::kMillimetre, kPlainSize);
   calib::ScaleRecord scale = calib::ScaleFrom(pair, length, begun.lens);
   std::vector<std::string> lines = {
       fmt::format("scale      {} px/m{}", Rounded(scale.px_per_m),
@@ -76,7 +73,7 @@ int RunScale(const ReferenceFlags& flags) {
         scale,
         ParsePair("--check-points", flags.check_points, flags.u_point_px),
         ParseEstimate("--check-length-mm", flags.check_length,
-                      core::kMillimetre, kDefaultU),
+                      core::kMillimetre, kPlainSize),
         begun.lens);
     const core::Estimate& error = *scale.check_error_m;
     lines.push_back(fmt::format("check      error {} mm",

@@ -14,6 +14,7 @@
 #include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::cli {
@@ -36,7 +37,30 @@ struct CampaignFlags {
   double margin_deg = 1.0;
   bool change = false;
   bool json = false;
+  db::Plan plan;
+  std::string by;
+  std::string why;
 };
+
+// What is not given stays as it is.
+db::Plan PlanOf(const CampaignFlags& flags, db::Plan plan) {
+  for (const auto field :
+       {&db::Plan::design, &db::Plan::stopping_rule, &db::Plan::error_rates}) {
+    if (!(flags.plan.*field).empty()) plan.*field = flags.plan.*field;
+  }
+  return plan;
+}
+
+void AddPlanFlags(CLI::App& command, CampaignFlags& flags) {
+  command.add_option(
+      "--design", flags.plan.design,
+      "how angles are chosen, in words: '2 deg steps, ascending'");
+  command.add_option("--stopping-rule", flags.plan.stopping_rule,
+                     "when to stop, in words: 'after 40 trials'");
+  command.add_option("--error-rates", flags.plan.error_rates,
+                     "in words: 'false verdicts below 5 %, at every look'");
+  command.add_option("--by", flags.by, "who declares it");
+}
 
 core::Campaign CampaignOf(const CampaignFlags& flags) {
   core::Campaign campaign;
@@ -107,7 +131,32 @@ int NewCampaign(const CampaignFlags& flags) {
   } else {
     store.AddCampaign(campaign);
   }
+  const db::Plan plan = PlanOf(flags, {});
+  if (plan != db::Plan{}) {
+    db::SetPlan(store, campaign.name, plan,
+                flags.by.empty() ? "touchdown" : flags.by,
+                flags.change ? "conventions changed" : "");
+  }
   fmt::print("{}", CampaignText(campaign));
+  return 0;
+}
+
+int ChangePlan(const CampaignFlags& flags) {
+  if (flags.by.empty()) {
+    throw std::invalid_argument("--by is missing, must be who declares it");
+  }
+  auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  db::Plan plan;
+  for (const db::PlanEvent& event : db::PlanEvents(store, flags.name)) {
+    if (event.kind == db::PlanEventKind::kPlan) plan = event.plan;
+  }
+  const db::Plan next = PlanOf(flags, plan);
+  if (next == plan) {
+    throw std::invalid_argument(
+        "--design, --stopping-rule and --error-rates say nothing new, must "
+        "change or declare one of them");
+  }
+  db::SetPlan(store, flags.name, next, flags.by, flags.why);
   return 0;
 }
 
@@ -184,10 +233,20 @@ void AddCampaign(CLI::App& app, Action& action) {
   make->add_option("--margin-deg", flags->margin_deg,
                    "equivalence margin of the verdict")
       ->capture_default_str();
+  AddPlanFlags(*make, *flags);
   make->add_flag("--change", flags->change,
                  "change a campaign that has no trials yet");
   make->callback(
       [flags, &action] { action = [flags] { return NewCampaign(*flags); }; });
+  CLI::App* plan = command->add_subcommand(
+      "plan", "declare or change design, stopping rule and error rates");
+  plan->add_option("NAME", flags->name, "of the campaign")->required();
+  AddDbFlag(*plan, flags->db);
+  AddPlanFlags(*plan, *flags);
+  plan->add_option("--why", flags->why,
+                   "reason of the change; needed after the first trial");
+  plan->callback(
+      [flags, &action] { action = [flags] { return ChangePlan(*flags); }; });
   CLI::App* list = command->add_subcommand("list", "all campaigns of a store");
   AddDbFlag(*list, flags->db);
   list->add_flag("--json", flags->json, "one JSON line for each");

@@ -140,7 +140,7 @@ session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
                    ? campaign.body
                    : core::Sphere(ParseEstimate("--check-diameter-mm",
                                                 flags.check_diameter,
-                                                core::kMillimetre));
+                                                core::kMillimetre, kPlainSize));
   if (!core::Size(check.body)) {
     throw std::invalid_argument(
         "--check-diameter-mm is missing: the campaign's body has no size");

@@ -10,13 +10,6 @@
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
-namespace {
-
-// A caliper of the shop, in mm (ISO 13385-1 calipers resolve that). What a size
-// is given without stands for it.
-constexpr DefaultU kCaliper = {.absolute = 0.02};
-
-}  // namespace
 
 void AddDbFlag(CLI::App& command, std::string& db) {
   command.add_option("--db", db, "the trial store, e.g. lab.db")
@@ -59,7 +52,7 @@ std::optional<core::Body> ParseBody(const BodyFlags& flags) {
       return body;
     }
     return core::Sphere(ParseEstimate("--diameter-mm", flags.diameter_mm,
-                                      core::kMillimetre, kCaliper));
+                                      core::kMillimetre, kPlainSize));
   }
   if (!flags.diameter_mm.empty()) {
     throw std::invalid_argument(
@@ -74,7 +67,7 @@ std::optional<core::Body> ParseBody(const BodyFlags& flags) {
     return body;
   }
   const auto [a, b] =
-      ParseSides("--sides-mm", flags.sides_mm, core::kMillimetre, kCaliper);
+      ParseSides("--sides-mm", flags.sides_mm, core::kMillimetre, kPlainSize);
   return core::Rectangle(a, b);
 }
 

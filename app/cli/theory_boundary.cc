@@ -83,6 +83,14 @@ BoundaryInputs InputsOf(const TheoryFlags& flags, bool sphere) {
                   std::nullopt};
   in.bounce_height_m = {b.bounce_height_m.value_or(in.bounce_height_m.value),
                         b.u_bounce_height_m, std::nullopt};
+  const std::optional<double> held_deg =
+      b.approach_deg ? b.approach_deg : b.radius_angle_deg;
+  if (held_deg) {
+    in.held_kind =
+        b.approach_deg ? core::AngleKind::kApproach : core::AngleKind::kRadius;
+    in.held_angle_rad = {*held_deg * kDegree, b.u_held_angle_deg * kDegree,
+                         std::nullopt};
+  }
   return in;
 }
 

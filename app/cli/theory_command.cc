@@ -130,6 +130,16 @@ void AddBoundaryCommand(CLI::App& theory, const Flags& flags, Action& action) {
                       "speed of the centre at touchdown");
   command->add_option("--bounce-height-m", b.bounce_height_m,
                       "h_c: rising above it is a bounce");
+  auto* approach = command->add_option(
+      "--approach-deg", b.approach_deg,
+      "rectangles: the approach angle, held while the radius angle varies");
+  command
+      ->add_option(
+          "--radius-angle-deg", b.radius_angle_deg,
+          "rectangles: the radius angle, held while the approach angle varies")
+      ->excludes(approach);
+  command->add_option("--u-held-angle-deg", b.u_held_angle_deg,
+                      "of the angle that is held");
   command->add_option("--u-kappa", b.u_kappa, "standard uncertainty of kappa");
   command->add_option("--u-radius-m", b.u_radius_m, "of the radius");
   command->add_option("--u-mu", b.u_mu, "of the friction coefficient");

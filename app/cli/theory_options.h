@@ -50,6 +50,9 @@ struct TheoryBoundaryFlags {
   std::optional<double> restitution;
   std::optional<double> speed_mps;
   std::optional<double> bounce_height_m;
+  std::optional<double> approach_deg;      // held; the radius angle varies
+  std::optional<double> radius_angle_deg;  // held; the approach angle varies
+  double u_held_angle_deg = 0.0;
   double u_kappa = 0.0;
   double u_radius_m = 0.0;
   double u_mu = 0.0;

@@ -20,6 +20,11 @@ struct DefaultU {
   double absolute = 0.0;
 };
 
+// Of a plain scale or size, everywhere (rig.toml too): 0.1 %, a caliper's 0.02
+// mm on 20 mm. Smaller claims more than a bare number tells; larger hides what
+// the picture says of a wrong one.
+inline constexpr DefaultU kPlainSize = {.relative = 1e-3};
+
 // "40" or "40+-0.02", in SI by `unit`.
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
                              double unit, DefaultU u = {});

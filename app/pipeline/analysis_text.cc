@@ -33,13 +33,29 @@ void Line(std::string& out, const char* name, const std::string& text) {
   out += fmt::format("{:<10} {}\n", name, text);
 }
 
-void AddGaps(std::string& out, const core::StateDecision& state) {
+// Where a bounce height comes from that nobody stated.
+std::string SourceOfHeight(const Analysis& a) {
+  if (a.options.bounce_height_m || !a.contacts.first.state.bounce_height_m) {
+    return "";
+  }
+  const bool stated = a.options.diameter_m || a.options.long_m;
+  return fmt::format(
+      "taken from the body's {} size (the larger of 0.5 mm and 2 % of it): a "
+      "campaign, or --bounce-height-mm, fixes it before the first trial",
+      stated ? "stated" : "measured");
+}
+
+void AddGaps(std::string& out, const Analysis& a) {
+  const core::StateDecision& state = a.contacts.first.state;
   constexpr double kMm = 1.0 / core::kMillimetre;
   Line(out, "gap",
        fmt::format("greatest {}, bounce height {}, detectable from {}",
                    Number(state.max_gap_m, kMm, "mm"),
                    Convention(state.bounce_height_m, kMm, "mm"),
                    Convention(state.detectable_gap_m, kMm, "mm")));
+  if (const std::string source = SourceOfHeight(a); !source.empty()) {
+    Line(out, "", "bounce height " + source);
+  }
   if (state.extrapolated_gap_m) {
     Line(out, "flight",
          fmt::format("would reach {} after the end of the film",
@@ -147,7 +163,7 @@ std::string ToText(const Analysis& a) {
   if (first.state.micro_bounce) state += ", micro-bounce";
   Line(out, "state", state);
   Line(out, "", first.state.reason);
-  AddGaps(out, first.state);
+  AddGaps(out, a);
   if (contact.found && !contact.from_start) {
     AddMotion(out, first.motion);
   }
@@ -179,6 +195,9 @@ std::string ToText(const Analysis& a) {
                      *a.stopped_at, a.clip.frames));
   }
   for (const std::string& warning : a.warnings) Line(out, "warning", warning);
+  for (const auto& [what, why] : a.scene_model.left_out) {
+    Line(out, "left out", what + ": " + why);
+  }
   Line(out, "time",
        fmt::format("{:.3f} s, {:.0f} frames/s", a.timing.total_s,
                    a.timing.frames_per_s));

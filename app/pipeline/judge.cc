@@ -8,6 +8,7 @@
 
 #include "app/pipeline/answer_check.h"
 #include "app/pipeline/body_size.h"
+#include "app/pipeline/left_out.h"
 #include "app/pipeline/lens_uncertainty.h"
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/shared_uncertainty.h"
@@ -194,6 +195,7 @@ void DescribeBudget(Analysis& analysis,
     }
   }
   left_out["uncertainty of the frame rate"] = reason;
+  DescribeLeftOut(analysis);
 }
 
 Analysis Rejudge(Analysis analysis, const Correction& correction) {

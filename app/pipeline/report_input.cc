@@ -14,6 +14,7 @@ report::ReportInput InputOf(Selection selection) {
   for (const TwoLabels& pair : selection.labels) {
     input.labels.push_back({pair.trial, pair.by_program, pair.by_person});
   }
+  input.plan = std::move(selection.plan);
   input.source = std::move(selection.source);
   input.software_version = std::string(Version());
   return input;

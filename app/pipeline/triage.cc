@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
 
+#include "app/report/campaign_checks.h"
 #include "app/report/format.h"
 #include "app/report/text.h"
 #include "touchdown/core/units.h"
@@ -160,7 +163,30 @@ TriageCounts Count(std::span<const TriageEntry> entries) {
   return counts;
 }
 
-std::string TriageJson(std::span<const TriageEntry> entries) {
+std::vector<CampaignWord> CampaignWords(const db::Store& store,
+                                        std::span<const TriageEntry> entries) {
+  std::set<std::string> names;
+  for (const TriageEntry& entry : entries) {
+    if (entry.trial_id.empty()) continue;
+    const auto trial = store.Find(entry.trial_id);
+    if (trial && !trial->campaign.empty()) names.insert(trial->campaign);
+  }
+  std::vector<CampaignWord> out;
+  for (const std::string& name : names) {
+    const auto trials = store.Trials({.campaign = name});
+    std::vector<std::size_t> members(trials.size());
+    std::iota(members.begin(), members.end(), std::size_t{0});
+    const report::CampaignChecks checks =
+        report::CheckCampaign(members, trials);
+    out.push_back({name, checks.Failed(),
+                   checks.Failed() ? checks.explanation
+                                   : report::WhatChecksShow(checks) + "."});
+  }
+  return out;
+}
+
+std::string TriageJson(std::span<const TriageEntry> entries,
+                       std::span<const CampaignWord> campaigns) {
   const TriageCounts counts = Count(entries);
   ordered_json document;
   document["schema"] = "touchdown.batch/1";
@@ -197,6 +223,12 @@ std::string TriageJson(std::span<const TriageEntry> entries) {
       one["absent"] = {{"angle_deg", entry.angle_rad.error().reason}};
     }
     document["clips"].push_back(std::move(one));
+  }
+  document["campaigns"] = ordered_json::array();
+  for (const CampaignWord& word : campaigns) {
+    document["campaigns"].push_back({{"campaign", word.campaign},
+                                     {"checks_failed", word.failed},
+                                     {"checks", word.sentence}});
   }
   // A file's name need not be UTF-8.
   return document.dump(2, ' ', false, ordered_json::error_handler_t::replace);

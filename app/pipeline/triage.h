@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "touchdown/core/trial.h"
+#include "touchdown/db/store.h"
 
 namespace touchdown::pipeline {
 
@@ -75,8 +76,20 @@ struct TriageCounts {
 };
 TriageCounts Count(std::span<const TriageEntry> entries);
 
+// What the trials of one campaign say together of scale, frame rate and size
+// (report/campaign_checks.h).
+struct CampaignWord {
+  std::string campaign;
+  bool failed = false;
+  std::string sentence;  // what would explain it, or what the checks can show
+};
+// Of each campaign that has a trial among `entries`, by name.
+std::vector<CampaignWord> CampaignWords(const db::Store& store,
+                                        std::span<const TriageEntry> entries);
+
 // touchdown.batch/1, and the same as CSV (RFC 4180).
-std::string TriageJson(std::span<const TriageEntry> entries);
+std::string TriageJson(std::span<const TriageEntry> entries,
+                       std::span<const CampaignWord> campaigns = {});
 std::string TriageCsv(std::span<const TriageEntry> entries);
 
 }  // namespace touchdown::pipeline

@@ -66,6 +66,7 @@ Selection FromStore(const SelectionOptions& options) {
         fmt::format("--campaign: there is no campaign '{}' in {}",
                     *options.campaign, options.store.string()));
   }
+  out.plan = db::PlanEvents(store);
   out.trials = store.Trials(filter);
   if (options.reviewed_only) {
     std::erase_if(out.trials, [&](const core::Trial& trial) {

@@ -9,6 +9,7 @@
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/core/words.h"
+#include "touchdown/db/plan.h"
 
 namespace touchdown::pipeline {
 
@@ -52,6 +53,7 @@ struct Selection {
   std::vector<core::Campaign> campaigns;
   std::vector<TwoLabels> labels;  // with_evidence: of those that bear both
   std::string source;             // in words: file and filters
+  std::vector<db::PlanEvent> plan = {};  // of a store's campaigns
 };
 
 // Throws std::invalid_argument unless there is exactly one source,

@@ -43,7 +43,11 @@ std::vector<Block> MakeEvidence(const Group& group,
 // unique.
 Figure MakeFigure(const Group& group, std::size_t index);
 
-// The group's verdict in a box, for page 1 (group_section.cc).
+// What the boundary depends on besides the angle, or drifted with, at p < 0.01:
+// "order of the trials, speed at touchdown"; empty where no test says so.
+std::string TellingDependence(const Group& group,
+                              std::span<const core::Trial> trials);
+
 // The score tests of what else the boundary may depend on; empty where nothing
 // varies that could be tested.
 std::vector<Block> MakeDependence(const Group& group,
@@ -55,7 +59,25 @@ std::optional<Callout> MakeDependenceCallout(
     const Group& group, std::span<const Group> groups,
     std::span<const core::Trial> trials);
 
+// The group's verdict in a box, for page 1 (group_section.cc).
 Callout MakeVerdict(const Group& group, std::span<const Group> groups);
+
+// What was declared before the first trial, what was changed, who looked when,
+// and what was excluded (plan_section.cc).
+std::vector<Block> MakePlan(const Group& group,
+                            std::span<const core::Trial> trials,
+                            const ReportInput& input);
+
+// Gravity, size and restitution pooled over the group, and what they can show
+// (checks_section.cc).
+std::vector<Block> MakeChecks(const Group& group,
+                              std::span<const core::Trial> trials);
+
+// For page 1: that scale, frame rate or size are wrong in all trials alike, or
+// that nothing could show it; nothing where they agree.
+std::optional<Callout> MakeChecksCallout(const Group& group,
+                                         std::span<const Group> groups,
+                                         std::span<const core::Trial> trials);
 
 // The control charts of one campaign's check shots (check_shots.cc).
 Section MakeCheckSection(const CheckShots& checks,

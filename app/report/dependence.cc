@@ -158,6 +158,11 @@ std::string Sentence(const std::string& telling) {
 
 }  // namespace
 
+std::string TellingDependence(const Group& group,
+                              std::span<const core::Trial> trials) {
+  return Test(group, trials).telling;
+}
+
 std::vector<Block> MakeDependence(const Group& group,
                                   std::span<const core::Trial> trials) {
   Dependence found = Test(group, trials);

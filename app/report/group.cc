@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "app/report/content.h"
 #include "app/report/set_points.h"
 #include "app/report/shared_errors.h"
 
@@ -40,7 +41,14 @@ std::map<std::string, const core::Campaign*> ByName(
 analysis::StudyOptions BoundedStudy(const ReportInput& input, Group& group) {
   analysis::StudyOptions options = input.study;
   if (input.reach_of) group.reach = input.reach_of(group.campaign);
-  if (group.reach) options.next.feasible_rad = group.reach->angle_rad;
+  if (group.reach) {
+    options.next.feasible_rad = group.reach->angle_rad;
+    if (input.support_is_reach &&
+        group.reach->angle_rad.high > group.reach->angle_rad.low) {
+      options.fit.low_rad = group.reach->angle_rad.low;
+      options.fit.high_rad = group.reach->angle_rad.high;
+    }
+  }
   return options;
 }
 
@@ -74,6 +82,25 @@ void Study(const ReportInput& input, Group& group) {
   }
   group.prior = options.fit.scatter;
   group.study = analysis::StudyBoundary(group.trials.observations, options);
+}
+
+// Confirmed says that the boundary lies within the margin in all trials. Where
+// it drifts, or depends on more than the angle, only its average may: no
+// confirmation then. A contradiction stands: no one boundary within the margin
+// explains the trials, drifting or not.
+void WithholdWhereItDrifts(Group& group, std::span<const core::Trial> trials) {
+  if (group.declared() == nullptr) return;
+  analysis::Judgement& judgement = group.study.theories.front().judgement;
+  if (!judgement.verdict || *judgement.verdict != core::Verdict::kConfirmed) {
+    return;
+  }
+  const std::string telling = TellingDependence(group, trials);
+  if (telling.empty()) return;
+  judgement.verdict = core::Verdict::kInconclusive;
+  judgement.reason = fmt::format(
+      "the boundary drifts or depends on more than the angle ({}), so that "
+      "only its average lies within the margin",
+      telling);
 }
 
 }  // namespace
@@ -133,6 +160,7 @@ std::vector<Group> MakeGroups(const ReportInput& input,
     }
     group.trials = std::move(trial_group);
     Study(input, group);
+    WithholdWhereItDrifts(group, trials);
     out.push_back(std::move(group));
   }
   // As in the paper: the sphere first.

@@ -166,8 +166,14 @@ Section MakeGroupSection(const Group& group, std::span<const Group> groups,
     out.push_back(Callout{"Which angle.", FaceAngleText(group)});
   }
   out.push_back(MakeVerdict(group, groups));
+  for (Block& block : MakePlan(group, trials, input)) {
+    out.push_back(std::move(block));
+  }
   for (Block& block : MakeStatistics(group)) out.push_back(std::move(block));
   for (Block& block : MakeDependence(group, trials)) {
+    out.push_back(std::move(block));
+  }
+  for (Block& block : MakeChecks(group, trials)) {
     out.push_back(std::move(block));
   }
   for (Block& block : MakeTrialTables(group, trials, input)) {

@@ -43,6 +43,9 @@ Section MakeFront(std::span<const Group> groups,
   auto& out = section.blocks;
   for (const Group& group : groups) {
     out.push_back(MakeVerdict(group, groups));
+    if (auto callout = MakeChecksCallout(group, groups, trials)) {
+      out.push_back(std::move(*callout));
+    }
     if (auto callout = MakeDependenceCallout(group, groups, trials)) {
       out.push_back(std::move(*callout));
     }

@@ -13,6 +13,7 @@
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/expected.h"
 #include "touchdown/core/trial.h"
+#include "touchdown/db/plan.h"
 
 namespace touchdown::report {
 
@@ -45,12 +46,16 @@ using ReachOf = std::function<core::Expected<Reach>(const core::Campaign&)>;
 struct ReportInput {
   std::vector<core::Trial> trials;  // in any order; last revisions only
   std::vector<core::Campaign> campaigns;
-  std::vector<LabelPair> labels;  // of the trials that bear both
+  std::vector<LabelPair> labels;    // of the trials that bear both
+  std::vector<db::PlanEvent> plan;  // of the campaigns, where a store has them
   std::vector<ReportTheory> theories = PublishedTheories();
   // How boundaries are estimated; what depends on the campaign (theory, margin,
   // origin) is filled in.
   analysis::StudyOptions study;
   ReachOf reach_of;  // empty: no rig was given, any angle can be thrown
+  // The boundary is taken to be among the angles that can be thrown: they are
+  // the support of its prior, where there are any.
+  bool support_is_reach = false;
   // The rig that threw them; without facts none was given.
   RigUsed rig;
   // Whether every trial has a page of evidence (evidence_page.h) to link to,

@@ -4,9 +4,11 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "campaigns.h"
 #include "evidence.h"
+#include "plan_rows.h"
 #include "register_rows.h"
 #include "rows.h"
 #include "statement.h"
@@ -72,6 +74,13 @@ class Restorer {
         (!HasOthers(row.row, history) && *theirs == &RevisionInForce(history));
     for (const Revision* revision : unknown) Append(row, *revision);
     if (!goes_on) Settle(row, *before, **theirs);
+  }
+
+  // Looks at a campaign there were looks at its trials, which are here now.
+  void AddPlan(PlanEvent event) {
+    const auto name = renamed_.find(event.campaign);
+    if (name != renamed_.end()) event.campaign = name->second;
+    InsertPlanEvent(connection_, event);
   }
 
   // All of the other side's, in the order of AllVersions.
@@ -293,6 +302,9 @@ MergeReport Merge(Store& into, const Store& from) {
   VisitHistories(from.connection(), [&](const std::vector<Revision>& history) {
     restorer.Add(history);
   });
+  for (PlanEvent& event : PlanEventsIn(from.connection(), "")) {
+    restorer.AddPlan(std::move(event));
+  }
   transaction.Commit();
   return restorer.Done();
 }

@@ -161,13 +161,30 @@ std::string DigestsSql() {
          "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n";
 }
 
+std::string PlanSql() {
+  return fmt::format(
+      "CREATE TABLE plan_events (\n"
+      "  id INTEGER PRIMARY KEY,\n"
+      "  {},\n"
+      "  campaign_id INTEGER NOT NULL REFERENCES campaigns (id),\n"
+      "  {},\n"
+      "  design TEXT NOT NULL,\n"
+      "  stopping_rule TEXT NOT NULL,\n"
+      "  error_rates TEXT NOT NULL,\n"
+      "  trials INTEGER NOT NULL CHECK (trials >= 0),\n"
+      "  author TEXT NOT NULL CHECK (author <> ''),\n"
+      "  reason TEXT NOT NULL,\n"
+      "  {}\n) STRICT;\n",
+      kUuid, Word("kind", "'plan', 'look'"), Stamp("at_utc"));
+}
+
 std::string SchemaSql() {
   return fmt::format(
              "CREATE TABLE store (\n"
              "  id INTEGER PRIMARY KEY CHECK (id = 1),\n"
              "  {},\n  {}\n) STRICT;\n",
              kUuid, Stamp("created_at_utc")) +
-         RegisterSql() + Evidence() + DigestsSql() + TriggersSql();
+         RegisterSql() + Evidence() + DigestsSql() + PlanSql() + TriggersSql();
 }
 
 void CreateSchema(Connection& connection, std::string_view store_uuid,

@@ -11,6 +11,9 @@ std::string RegisterSql();
 // The digests of trials and clips (digests.h).
 std::string DigestsSql();
 
+// Plans and looks (plan.h).
+std::string PlanSql();
+
 // What keeps evidence from being changed or removed.
 std::string TriggersSql();
 

@@ -121,6 +121,18 @@ std::string TriggersSql() {
       "conventions'); END;\n"
       "CREATE TRIGGER campaigns_refuse_DELETE BEFORE DELETE ON campaigns\n"
       "BEGIN SELECT raise(ABORT, 'campaigns are kept'); END;\n";
+  for (const char* act : {"UPDATE", "DELETE"}) {
+    sql += fmt::format(
+        "CREATE TRIGGER plan_events_refuse_{0} BEFORE {0} ON plan_events\n"
+        "BEGIN SELECT raise(ABORT, 'plan_events are kept'); END;\n",
+        act);
+  }
+  sql +=
+      "CREATE TRIGGER plan_events_refuse_REPLACE BEFORE INSERT ON "
+      "plan_events\n"
+      "WHEN EXISTS (SELECT 1 FROM plan_events WHERE id = NEW.id)\n"
+      "  OR EXISTS (SELECT 1 FROM plan_events WHERE uuid = NEW.uuid)\n"
+      "BEGIN SELECT raise(ABORT, 'plan_events are kept'); END;\n";
   // A digest grows by one revision at a time.
   sql +=
       "CREATE TRIGGER digests_grow BEFORE UPDATE ON digests\n"

@@ -153,6 +153,9 @@ void Upgrade(Connection& connection, std::int64_t from_version) {
       case 4:
         connection.Execute(DigestsSql());
         break;
+      case 5:
+        connection.Execute(PlanSql());
+        break;
       default:
         throw std::logic_error(fmt::format(
             "there is no step from version {} of the store", version));

@@ -7,7 +7,8 @@ std::string_view ExampleDescription() {
 # A measured number is plain, or has its standard uncertainty beside it:
 #   wire_diameter_mm = 2.0
 #   wire_diameter_mm = { value = 2.0, u = 0.01 }
-# A plain number is taken as exact. Unknown keys are refused.
+# A plain number is taken as exact, a plain size of the body as good to 0.1 %.
+# Unknown keys are refused.
 schema = "touchdown.rig/1"
 name = "bench ejector"
 
@@ -22,7 +23,7 @@ coil_diameter_kind = "outer"     # mean, outer or inner: no default
 active_coils = { value = 10.0, u = 0.1 }        # n
 total_coils = 12.0               # with the closed ends; default active + 2
 density_kg_per_m3 = 7850.0       # of the wire; default: spring steel
-free_length_mm = 100.0           # L0; without it no coil clearance is checked
+free_length_mm = 84.0            # L0; without it no coil clearance is checked
 allowable_shear_mpa = 900.0      # about 0.45 of the wire's tensile strength
 # Measured with `touchdown rig calibrate --force`: all springs together, used in
 # the place of Eq. (11).
@@ -32,7 +33,7 @@ allowable_shear_mpa = 900.0      # about 0.45 of the wire's tensile strength
 
 [ejector]
 preload_mm = 0.0                 # compression that stays when the body leaves
-compression_max_mm = 40.0        # travel of the trigger; optional
+compression_max_mm = 36.0        # travel of the trigger; optional
 u_compression_mm = 0.3           # how well a compression is set
 # The next two come from `touchdown rig calibrate --speeds`.
 efficiency = { value = 0.95, u = 0.02 }   # share of the springs' energy, (0, 2]

@@ -9,6 +9,7 @@
 
 #include "require.h"
 #include "touchdown/rig/flight.h"
+#include "touchdown/rig/turning_flight.h"
 
 namespace touchdown::rig {
 namespace {
@@ -135,6 +136,29 @@ Release ReleaseOf(const State& s) {
           -spin};
 }
 
+core::Expected<TurningFlight> FlyFrom(const Description& rig,
+                                      const Release& release, double speed_mps,
+                                      double height_m) {
+  const double g = rig.gravity_mps2.value;
+  if (IsRectangle(rig)) {
+    return FlyTurning({.long_m = rig.body->long_m->value,
+                       .short_m = rig.body->short_m->value,
+                       .speed_mps = speed_mps,
+                       .elevation_rad = release.elevation_rad,
+                       .height_m = height_m,
+                       .face_rad = release.elevation_rad + release.seat_rad,
+                       .spin_rad_per_s = release.spin_rad_per_s,
+                       .gravity_mps2 = g});
+  }
+  const double drop = height_m - CentreHeightAtTouchdown(rig, 0.0);
+  if (drop < 0.0) {
+    return core::AbsentBecause(fmt::format(
+        "the body would start {:.3g} mm deep in the ground: raise the muzzle",
+        -drop * 1e3));
+  }
+  return TurningFlight{Fly(speed_mps, release.elevation_rad, drop, g), 0.0};
+}
+
 core::Expected<Outcome> Simulate(const State& s) {
   const Description& rig = s.rig;
   const Release release = ReleaseOf(s);
@@ -144,27 +168,11 @@ core::Expected<Outcome> Simulate(const State& s) {
   launch.barrel_friction = std::fmax(0.0, launch.barrel_friction);
   const auto muzzle = LaunchSpeed(launch, s.setting.compression_m);
   if (!muzzle) return core::AbsentBecause(muzzle.error().reason);
-  // Spin turns the body in flight, which changes the height at which it touches
-  // and with it the time of flight: fixed-point iteration, which contracts
-  // since d(height)/d(face) * spin is small against the speed of fall.
   Outcome out;
-  Flight flight;
-  double face = elevation + release.seat_rad;
-  constexpr int kIterations = 50;
-  for (int i = 0; i < kIterations; ++i) {
-    const double drop =
-        s.setting.muzzle_height_m - CentreHeightAtTouchdown(rig, face);
-    if (drop < 0.0) {
-      return core::AbsentBecause(fmt::format(
-          "the body would start {:.3g} mm deep in the ground: raise the muzzle",
-          -drop * 1e3));
-    }
-    flight = Fly(muzzle->speed_mps, elevation, drop, launch.gravity_mps2);
-    const double next =
-        elevation + release.seat_rad + release.spin_rad_per_s * flight.time_s;
-    if (!IsRectangle(rig) || std::abs(next - face) < 1e-13) break;
-    face = next;
-  }
+  const auto flown =
+      FlyFrom(rig, release, muzzle->speed_mps, s.setting.muzzle_height_m);
+  if (!flown) return core::AbsentBecause(flown.error().reason);
+  const Flight& flight = flown->flight;
   out.values[kStiffness] = launch.stiffness_n_per_m;
   out.values[kLaunchSpeed] = muzzle->speed_mps;
   out.values[kImpactSpeed] = flight.impact_speed_mps;
@@ -173,7 +181,7 @@ core::Expected<Outcome> Simulate(const State& s) {
   out.values[kRange] = flight.range_m;
   if (IsRectangle(rig)) {
     // A long side has no direction: half turns are the same face.
-    face = std::remainder(face, 2.0 * kQuarterTurn);
+    const double face = std::remainder(flown->face_rad, 2.0 * kQuarterTurn);
     const Landing landing =
         Land(rig.body->long_m->value, rig.body->short_m->value, face);
     out.values[kFace] = face;

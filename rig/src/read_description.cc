@@ -93,12 +93,16 @@ class Section {
     return Has(key) ? Plain(key, range, unit) : otherwise;
   }
 
-  // Plain, or { value, u }; into SI by `unit`.
-  Estimate Measured(std::string_view key, const Range& range,
-                    double unit) const {
+  // Plain, or { value, u }; into SI by `unit`. A plain one has `plain_u` of its
+  // value as u.
+  Estimate Measured(std::string_view key, const Range& range, double unit,
+                    double plain_u = 0.0) const {
     const toml::node& node = Need(key);
     const toml::table* table = node.as_table();
-    if (table == nullptr) return {Number(key, node, range) * unit, 0.0, {}};
+    if (table == nullptr) {
+      const double value = Number(key, node, range) * unit;
+      return {value, plain_u * std::abs(value), {}};
+    }
     const Section inner(file_, Full(key), *table);
     inner.Allow({"value", "u"});
     return {inner.Plain("value", range, unit),
@@ -262,17 +266,23 @@ void ReadMuzzle(const Section& in, Description& out) {
       in.PlainOr("u_height_mm", kAtLeastZero, core::kMillimetre, 0.0);
 }
 
+// Relative u of a body's size that is given plain, as of every plain size and
+// scale of the program: a caliper's 0.02 mm on 20 mm.
+constexpr double kPlainSizeU = 1e-3;
+
 void ReadBody(const Section& in, Description& out) {
   const std::string kind = in.Text("kind");
   if (kind == "sphere") {
     in.Allow({"kind", "mass_g", "diameter_mm"});
-    out.body =
-        core::Sphere(in.Measured("diameter_mm", kPositive, core::kMillimetre));
+    out.body = core::Sphere(
+        in.Measured("diameter_mm", kPositive, core::kMillimetre, kPlainSizeU));
   } else if (kind == "rectangle") {
     in.Allow({"kind", "mass_g", "long_mm", "short_mm", "seat_angle_deg",
               "spin_deg_per_s"});
-    const Estimate a = in.Measured("long_mm", kPositive, core::kMillimetre);
-    const Estimate b = in.Measured("short_mm", kPositive, core::kMillimetre);
+    const Estimate a =
+        in.Measured("long_mm", kPositive, core::kMillimetre, kPlainSizeU);
+    const Estimate b =
+        in.Measured("short_mm", kPositive, core::kMillimetre, kPlainSizeU);
     // core::Rectangle would swap them silently; the seat angle belongs to the
     // long side, so the names must be right.
     if (a.value < b.value) {

@@ -10,6 +10,7 @@
 
 #include "tests/support/csv.h"
 #include "tests/support/shared_data.h"
+#include "touchdown/analysis/rigid_motion.h"
 #include "touchdown/analysis/spin_boundary.h"
 
 namespace touchdown::analysis {
@@ -127,6 +128,120 @@ TEST(BounceRatio, ReproducesTableOne) {
     EXPECT_EQ(BounceRatio(sphere, deg * kDegree) > kEdge, deg > 11.8) << deg;
     EXPECT_EQ(BounceRatio(plate, deg * kDegree) > kEdge, deg > 7.8) << deg;
   }
+}
+
+// Without friction the corner rises with e V sin(approach), whatever its slip:
+// held attitude, closed form.
+TEST(BoundaryAngle, HeldAttitudeGivesTheApproach) {
+  BoundaryInputs in;
+  in.mu = {0.0, 0.0};
+  in.kappa = {2.4, 0.0};
+  in.restitution = {0.4, 0.0};
+  in.speed_mps = {3.0, 0.0};
+  in.bounce_height_m = {2e-3, 0.0};
+  in.held_kind = core::AngleKind::kRadius;
+  in.held_angle_rad = {40.0 * kDegree, 0.0};
+  // v_N+ = e v; P = (1 + e) v / G_NN, G_NN = 1 + kappa cos^2; the spin is
+  // kappa cos P / R and its lift R w^2 sin.
+  const double c = std::cos(40.0 * kDegree);
+  const double s = std::sin(40.0 * kDegree);
+  const double w_per_v = 2.4 * c * 1.4 / (1.0 + 2.4 * c * c) / 0.05;
+  const double g = in.gravity_mps2.value;
+  const double v = std::sqrt(
+      2.0 * g * 2e-3 / (0.16 + 2.0 * 2e-3 * 0.05 * w_per_v * w_per_v * s));
+  const auto a = BoundaryAngle(BoundaryModel::kDetectableBounce, in);
+  ASSERT_TRUE(a);
+  EXPECT_NEAR(std::sin(*a), v / 3.0, 1e-9);
+  std::mt19937_64 engine(5);
+  const auto all =
+      EvaluateBoundary(BoundaryModel::kDetectableBounce, in, engine);
+  EXPECT_EQ(all.angle_kind, core::AngleKind::kApproach);
+  EXPECT_TRUE(all.notes.empty());
+  // The uncertainty of the held angle counts.
+  in.held_angle_rad.u = 1.0 * kDegree;
+  const auto wide =
+      EvaluateBoundary(BoundaryModel::kDetectableBounce, in, engine);
+  EXPECT_GT(wide.uncertainty.first_order_u_rad, 0.0);
+}
+
+TEST(BoundaryAngle, HeldApproachGivesTheRadiusAngleOrSaysThatThereIsNone) {
+  BoundaryInputs in;
+  in.mu = {0.0, 0.0};
+  in.restitution = {0.4, 0.0};
+  in.speed_mps = {3.0, 0.0};
+  in.bounce_height_m = {2e-3, 0.0};
+  in.held_kind = core::AngleKind::kApproach;
+  in.held_angle_rad = {60.0 * kDegree, 0.0};
+  const auto fast = BoundaryAngle(BoundaryModel::kDetectableBounce, in);
+  ASSERT_FALSE(fast);
+  EXPECT_NE(fast.error().reason.find("from the flattest radius angle"),
+            std::string::npos);
+  in.held_kind = core::AngleKind::kFace;
+  EXPECT_THROW((void)BoundaryAngle(BoundaryModel::kDetectableBounce, in),
+               std::invalid_argument);
+}
+
+// Blocks thrown at random, judged by the exact motion until the second contact:
+// approach and radius angle as they are tell what bounces; forced to be equal
+// they do not.
+TEST(BounceRatio, TellsWhatBouncesWhereBothAnglesAreKept) {
+  std::mt19937_64 engine(160);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
+  int wrong = 0;
+  int wrong_equal = 0;
+  int judged = 0;
+  for (int i = 0; i < 160; ++i) {
+    const double a = between(0.03, 0.12);
+    const double b = a * between(0.2, 1.0);
+    const double face = between(2.0, 60.0) * kDegree;
+    RigidMotionProblem p;
+    p.body = core::Rectangle({a, 0.0, {}}, {b, 0.0, {}});
+    p.mu = between(0.0, 0.8);
+    p.restitution = between(0.1, 0.8);
+    const double speed = between(1.0, 6.0);
+    const double down = between(2.0, 80.0) * kDegree;
+    p.start = {0.0,
+               {0.0, 0.5 * (a * std::sin(face) + b * std::cos(face)) + 1e-6},
+               face,
+               speed * std::cos(down),
+               -speed * std::sin(down),
+               0.0};
+    p.end_s = 0.5;
+    const RigidMotion motion = SimulateRigidMotion(p);
+    const auto truth = FirstTouchdown(motion);
+    ASSERT_TRUE(truth && truth->radius_angle_rad) << i;
+    if (motion.events.empty() || !truth->corner) {
+      continue;
+    }
+    const double next =
+        motion.events.size() > 1 ? motion.events[1].before.time_s : p.end_s;
+    const double gap = GreatestGapWithin(motion, truth->time_s, next).gap_m;
+    BoundaryInputs in;
+    in.slip = truth->corner == core::Corner::kLeading ? Slip::kLeading
+                                                      : Slip::kTrailing;
+    in.radius_m = {0.5 * std::hypot(a, b), 0.0};
+    in.kappa = {3.0, 0.0};
+    in.mu = {p.mu, 0.0};
+    in.restitution = {p.restitution, 0.0};
+    in.speed_mps = {std::hypot(truth->before.vx_mps, truth->before.vy_mps),
+                    0.0};
+    in.bounce_height_m = {0.02 * a, 0.0};
+    in.held_kind = core::AngleKind::kRadius;
+    in.held_angle_rad = {*truth->radius_angle_rad, 0.0};
+    ++judged;
+    const bool bounced = gap > in.bounce_height_m.value;
+    wrong += (BounceRatio(in, truth->approach_angle_rad) >= 1.0) != bounced;
+    in.held_kind.reset();
+    wrong_equal +=
+        (BounceRatio(in, *truth->radius_angle_rad) >= 1.0) != bounced;
+  }
+  // What is left wrong is the second corner, which strikes before the first has
+  // risen: the model is one impact.
+  EXPECT_LE(wrong, 16);
+  EXPECT_GT(wrong_equal, wrong);
+  EXPECT_GT(judged, 150);
 }
 
 TEST(BoundaryAngle, TooSlowToBounce) {

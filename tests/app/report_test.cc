@@ -1,5 +1,6 @@
 #include "app/report/report.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,6 +122,82 @@ TEST(MakeReport, RecordedTrialsGetAVerdictAndNoWatermark) {
   const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
   EXPECT_FALSE(Has(report.html, "class=\"simulated\""));
   EXPECT_TRUE(Has(report.markdown, "sphere: inconclusive."));
+}
+
+// Sixty shots about a boundary that rises by 2.4 deg from the first to the last
+// of them; `in_order` false: the same shots, logged in a random order.
+ReportInput Drifting(bool in_order) {
+  ReportInput input;
+  std::mt19937_64 engine(24);
+  std::uniform_real_distribution<double> around(-3.0, 3.0);
+  std::vector<int> order(60);
+  for (int i = 0; i < 60; ++i) order[static_cast<std::size_t>(i)] = i;
+  std::vector<Shot> shots;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 11.8 + around(engine);
+    shots.push_back({angle, angle, angle > 11.8 + 2.4 * (i / 59.0 - 0.5)});
+  }
+  if (!in_order) std::shuffle(order.begin(), order.end(), engine);
+  for (int i = 0; i < 60; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    auto trial =
+        MakeTrial(shots[k], core::BodyKind::kSphere, core::Origin::kRecorded);
+    trial.set_angle_rad.reset();
+    trial.id = trial.clip.path = fmt::format("clips/{:02d}.avi", i);
+    trial.recorded_at_utc =
+        fmt::format("2026-08-01T10:{:02d}:00.000Z", order[k]);
+    input.trials.push_back(trial);
+  }
+  core::Campaign campaign;
+  campaign.name = input.trials.back().campaign;
+  campaign.body = input.trials.back().body;
+  campaign.theory_name = "published";
+  campaign.theory_boundary_rad = 11.8 * kDegree;
+  campaign.margin_rad = 2.0 * kDegree;
+  input.campaigns.push_back(campaign);
+  return input;
+}
+
+TEST(MakeReport, ABoundaryThatDriftsIsNotConfirmed) {
+  const Report steady = MakeReport(Drifting(false));
+  EXPECT_TRUE(Has(steady.markdown, "sphere: confirmed.")) << steady.markdown;
+  const Report drifting = MakeReport(Drifting(true));
+  EXPECT_TRUE(Has(drifting.markdown, "sphere: inconclusive."));
+  EXPECT_TRUE(Has(drifting.markdown, "only its average lies within"));
+  EXPECT_TRUE(Has(drifting.markdown, "not one boundary"));
+}
+
+TEST(MakeReport, ThePlanOnRecordIsTold) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  const std::string sphere = input.campaigns[0].name;
+  Report report = MakeReport(input);
+  EXPECT_TRUE(Has(report.markdown, "The plan on record"));
+  EXPECT_TRUE(Has(report.markdown, "declared before the first trial"));
+  EXPECT_TRUE(Has(report.markdown, "not declared"));
+  const db::Plan plan{"the paper's grid", "after 9 trials", "5 %"};
+  db::Plan changed = plan;
+  changed.stopping_rule = "after 40 trials";
+  input.plan = {{"a", sphere, db::PlanEventKind::kPlan, plan, 0, "A. Tester",
+                 "", "2026-08-01T09:00:00.000Z"},
+                {"b",
+                 sphere,
+                 db::PlanEventKind::kLook,
+                 {},
+                 5,
+                 "report",
+                 "",
+                 "2026-08-02T09:00:00.000Z"},
+                {"c", sphere, db::PlanEventKind::kPlan, changed, 5, "A. Tester",
+                 "too few to tell", "2026-08-03T09:00:00.000Z"}};
+  input.trials[0].excluded = true;
+  input.trials[0].exclusion_reason = "the spring stuck";
+  input.trials[0].recorded_at_utc = "2026-08-04T09:00:00.000Z";
+  report = MakeReport(input);
+  EXPECT_TRUE(Has(report.markdown, "the paper's grid"));
+  EXPECT_TRUE(Has(report.markdown, "changed after trial 5"));
+  EXPECT_TRUE(Has(report.markdown, "because too few to tell"));
+  EXPECT_TRUE(Has(report.markdown, "after trial 5 (2026-08-02T09:00:00.000Z"));
+  EXPECT_TRUE(Has(report.markdown, "the spring stuck"));
 }
 
 TEST(MakeReport, SaysWhatTable1AloneSupports) {

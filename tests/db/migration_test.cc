@@ -14,6 +14,7 @@
 #include "tests/db/fixture.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::db {
@@ -111,6 +112,13 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
     ASSERT_EQ(proposals.size(), 1u);
     EXPECT_EQ(proposals[0].id, trials[1].id);
     EXPECT_EQ(proposals[0].first.state.extrapolated_gap_m->value, 2.1e-3);
+  }
+  if (GetParam() >= 6) {
+    const auto plan = PlanEvents(store, "asphalt");
+    ASSERT_EQ(plan.size(), 2u);
+    EXPECT_EQ(plan[0].plan.stopping_rule, "after 40 trials");
+    EXPECT_EQ(plan[0].trials, 2);
+    EXPECT_EQ(plan[1].kind, PlanEventKind::kLook);
   }
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);

@@ -8,6 +8,7 @@
 
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/rig/setpoints.h"
 
 namespace touchdown::rig {
 namespace {
@@ -49,6 +50,24 @@ std::string ErrorOf(const std::string& text) {
     return error.what();
   }
   return "nothing thrown";
+}
+
+// What the program prints for people to start from is a rig that may be built:
+// nothing to warn of at its full travel, and the plan of the README is
+// possible.
+TEST(Description, ExampleIsSafeAndFeasible) {
+  const Description rig = ParseDescription(ExampleDescription(), "example");
+  ASSERT_TRUE(rig.compression_max_m);
+  for (const Finding& f : CheckCompression(rig, *rig.compression_max_m)) {
+    ADD_FAILURE() << f.what;
+  }
+  for (const double deg : {20.0, 25.0, 30.0}) {
+    ContactWish wish;
+    wish.kind = core::AngleKind::kRadius;
+    wish.angle_rad = deg * core::kDegree;
+    wish.speed_mps = 4.0;
+    EXPECT_TRUE(SettingFor(rig, wish)) << deg;
+  }
 }
 
 TEST(Description, ExampleIsComplete) {
@@ -186,12 +205,12 @@ TEST(Description, MissingFileIsNamed) {
 
 TEST(Description, TravelIsChecked) {
   const Description rig =
-      ParseDescription(ExampleDescription(), "example");  // up to 40 mm
-  EXPECT_TRUE(Allowed(CheckCompression(rig, 0.038)));
+      ParseDescription(ExampleDescription(), "example");  // up to 36 mm
+  EXPECT_TRUE(Allowed(CheckCompression(rig, 0.035)));
   const auto findings = CheckCompression(rig, 0.041);
   ASSERT_FALSE(Allowed(findings));
   EXPECT_THAT(findings[0].what,
-              HasSubstr("the trigger's travel ends at 40 mm"));
+              HasSubstr("the trigger's travel ends at 36 mm"));
 }
 
 TEST(Description, WithoutAnySpringThereIsNoLaunch) {

@@ -184,14 +184,14 @@ TEST(SetPoints, RefusesWithTheReason) {
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kApproach, 5.0_deg, 4.0)),
               HasSubstr("lower the muzzle to"));
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kApproach, 5.0_deg, 1.0)),
-              HasSubstr("more than the wanted"));
+              HasSubstr("the wanted speed is 1"));
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kRadius, 25.0_deg, 1.0)),
               HasSubstr("the wanted speed is 1"));
   // Elevation, compression, height.
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kRadius, 85.0_deg, 4.0)),
               HasSubstr("needs an elevation of 66.57 deg, the rig's is -60"));
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kRadius, 25.0_deg, 15.0)),
-              HasSubstr("the trigger's travel ends at 40 mm"));
+              HasSubstr("the trigger's travel ends at 36 mm"));
   wish = Wish(AngleKind::kRadius, 25.0_deg, 4.0);
   wish.muzzle_height_m = 1.5;
   EXPECT_THAT(ReasonOf(blocks, wish), HasSubstr("fall of 1486.6 mm alone"));
@@ -202,11 +202,42 @@ TEST(SetPoints, RefusesWithTheReason) {
   EXPECT_THAT(ReasonOf(blocks, wish), HasSubstr("below the body's centre"));
   // Springs.
   blocks.compression_max_m.reset();
+  blocks.springs.free_length_m.value() = 0.1;
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kRadius, 25.0_deg, 15.0)),
               HasSubstr("exceeds the allowable 900 MPa"));
   blocks.springs.allowable_shear_pa.reset();
   EXPECT_THAT(ReasonOf(blocks, Wish(AngleKind::kRadius, 25.0_deg, 25.0)),
               HasSubstr("coil bind"));
+}
+
+// A muzzle that may stand lower than the body needs is raised, not refused.
+TEST(SetPoints, DownwardFromLowMuzzlesIsPossible) {
+  Description rig = Blocks();
+  rig.muzzle_height_min_m = 0.0;
+  const auto setting = SettingFor(rig, Wish(AngleKind::kFace, -20.0_deg, 4.0));
+  ASSERT_TRUE(setting) << setting.error().reason;
+  // Off the ground by three u of the height, and no higher than that needs.
+  const double lowest = CentreHeightAtTouchdown(rig, setting->elevation_rad);
+  EXPECT_NEAR(setting->muzzle_height_m - lowest, 3.0 * rig.u_muzzle_height_m,
+              1e-9);
+}
+
+// Spins above sqrt(g / R), at which a corner falls faster than the centre.
+TEST(SetPoints, FastSpinsArePlanned) {
+  Description rig = Blocks();
+  rig.body = core::Rectangle({120.0_mm, 0.0, {}}, {58.0_mm, 0.0, {}});
+  rig.spin_rad_per_s.value = 3058.0_deg;
+  std::mt19937_64 engine(1);
+  int possible = 0;
+  for (double deg = 26.0; deg <= 88.0; deg += 2.0) {
+    const auto point = PlanContact(
+        rig, Wish(AngleKind::kRadius, deg * core::kDegree, 4.0), kFew, engine);
+    if (!point) continue;
+    ++possible;
+    EXPECT_NEAR(point->contact.radius_angle_rad.first_order->value,
+                deg * core::kDegree, 1e-7);
+  }
+  EXPECT_GT(possible, 25);
 }
 
 TEST(SetPoints, ImpossibleWishThrows) {

@@ -68,6 +68,12 @@ struct BoundaryInputs {
   core::Estimate restitution{0.5, 0.0};
   core::Estimate speed_mps{5.0, 0.0};         // of the centre at touchdown
   core::Estimate bounce_height_m{1e-3, 0.0};  // the campaign's h_c
+  // Of a rectangle: the angle that the campaign does not vary. With the radius
+  // angle held the boundary is one of the approach angle, and the other way
+  // round. With none held the two are taken as equal, as the paper has them,
+  // which no throw makes them.
+  std::optional<core::AngleKind> held_kind;  // approach or radius
+  core::Estimate held_angle_rad;
 };
 
 // The boundary itself, or why there is none. Throws std::invalid_argument for
@@ -131,14 +137,15 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
                                 const BoundaryOptions& options = {});
 
 // The kind of contact angle that a model speaks of for a body.
-core::AngleKind AngleKindOf(BoundaryModel model, core::BodyKind body);
+core::AngleKind AngleKindOf(BoundaryModel model, const BoundaryInputs& inputs);
 
-// Rise of the contact point after an impact at `alpha_rad`, over the bounce
-// height: >= 1 is a bounce; infinite where spin keeps it off the ground. The
-// rule of detectable-bounce:
-//   sphere:     (e V sin a)^2 / (2 g h_c)
+// Rise of the contact point after an impact at the campaign's angle, over the
+// bounce height: >= 1 is a bounce; infinite where spin keeps it off the ground.
+// With b the approach and a the radius angle (one of them held, or both the
+// given one), the rule of detectable-bounce:
+//   sphere:     (e V sin b)^2 / (2 g h_c)
 //   rectangle:  v_N+^2 / (2 (g - R omega+^2 sin a) h_c), v_N+ and omega+ from
-//               Impact() at V (cos a, -sin a) without spin before
-double BounceRatio(const BoundaryInputs& inputs, double alpha_rad);
+//               Impact() at V (cos b, -sin b) without spin before
+double BounceRatio(const BoundaryInputs& inputs, double angle_rad);
 
 }  // namespace touchdown::analysis

@@ -89,7 +89,8 @@ std::vector<Finding> CheckCompression(const Description& rig,
                                       double compression_m);
 
 // Reads rig.toml. `name` is what errors call the text. A number may be given
-// plain or as { value = 2.0, u = 0.01 }. Throws core::InputError "name:line:
+// plain or as { value = 2.0, u = 0.01 }; a plain size of the body has u = 0.1
+// %. Throws core::InputError "name:line:
 // ..." where TOML does not parse, a key is unknown (listing the known ones),
 // missing, of the wrong type or outside its range.
 Description ParseDescription(std::string_view text, std::string_view name);

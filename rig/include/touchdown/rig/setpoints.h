@@ -4,14 +4,14 @@
 // wishes (an angle and a speed). What is left free is chosen so that the
 // contact depends least on what is hard to set:
 //   approach  the height from which a level shot arrives at the wanted angle,
-//             where the elevation drops out to first order; if the rig cannot
-//             stand there, the nearest height it can, and the elevation that
-//             makes up for it (downward where both signs are possible: a
-//             shorter flight)
-//   radius,   the elevation that gives the attitude, which omega = 0 keeps to
-//   face      the ground; the lowest muzzle that the rig and the body allow,
-//   for
-//             the shortest time in which a residual spin acts
+//             where the elevation drops out to first order; else the throw
+//             nearest to level (downward where both signs are possible)
+//   radius,   the elevation that gives the attitude at touchdown, and the
+//   face      shortest flight, in which a residual spin acts least
+// A muzzle keeps the body off the ground by three u of its height where it can.
+//
+// All throws that end in one contact are searched (throw_family.h in src/), so
+// that what the rig can reach is not refused, whatever the spin.
 #pragma once
 
 #include <optional>

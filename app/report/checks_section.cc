@@ -1,0 +1,72 @@
+// Gravity, size and restitution pooled over a group's trials, for a reader.
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "app/report/campaign_checks.h"
+#include "app/report/content.h"
+#include "app/report/format.h"
+
+namespace touchdown::report {
+namespace {
+
+// Trials that were typed have no clip to check.
+bool HasClips(const Group& group, std::span<const core::Trial> trials) {
+  return std::any_of(
+      group.members.begin(), group.members.end(),
+      [&](std::size_t i) { return !trials[i].document_json.empty(); });
+}
+
+std::vector<Cell> Row(const char* what,
+                      const core::Expected<analysis::PooledCheck>& check) {
+  if (!check) {
+    return {{what}, {""}, {""}, {""}, {check.error().reason, Tone::kMuted}};
+  }
+  return {{what},
+          {fmt::format("{}", check->trials)},
+          {WithU(check->ratio, 0.01)},
+          {fmt::format("{:+.1f}", check->z)},
+          {check->failed ? "failed" : "agrees",
+           check->failed ? Tone::kBad : Tone::kPlain}};
+}
+
+}  // namespace
+
+std::vector<Block> MakeChecks(const Group& group,
+                              std::span<const core::Trial> trials) {
+  if (!HasClips(group, trials)) return {};
+  const CampaignChecks checks = CheckCampaign(group.members, trials);
+  Table table{"Checks over all trials: measured over what it should be",
+              {{"what"},
+               {"trials", true},
+               {"ratio, %", true},
+               {"off by, u", true},
+               {"result"}},
+              {Row("gravity from the flights", checks.gravity),
+               Row("size in the picture", checks.size)}};
+  std::vector<Block> out;
+  out.push_back(std::move(table));
+  out.push_back(Paragraph{
+      checks.Failed() ? checks.explanation : WhatChecksShow(checks) + ".",
+      !checks.Failed()});
+  return out;
+}
+
+std::optional<Callout> MakeChecksCallout(const Group& group,
+                                         std::span<const Group> groups,
+                                         std::span<const core::Trial> trials) {
+  if (!HasClips(group, trials)) return std::nullopt;
+  const CampaignChecks checks = CheckCampaign(group.members, trials);
+  const std::string name = ShortName(group, groups);
+  if (checks.Failed()) {
+    return Callout{name + ": scale, frame rate or size is wrong.",
+                   checks.explanation, Tone::kBad};
+  }
+  if (!checks.gravity && !checks.size) {
+    return Callout{name + ": scale and frame rate are not checked.",
+                   WhatChecksShow(checks) + "."};
+  }
+  return std::nullopt;
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,92 @@
+// The plan on record: declared, changed or not, looks and exclusions.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "app/report/content.h"
+#include "app/report/format.h"
+#include "app/report/set_points.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::kDegree;
+
+std::string After(std::int64_t trials) {
+  return trials == 0 ? "before the first trial"
+                     : fmt::format("after trial {}", trials);
+}
+
+// One entry of the plan through its history: "declared ... before the first
+// trial: X", "changed after trial n: Y, because Z".
+std::string History(const std::vector<const db::PlanEvent*>& plans,
+                    std::string db::Plan::*field) {
+  std::string out;
+  std::string said;
+  for (const db::PlanEvent* event : plans) {
+    const std::string& now = event->plan.*field;
+    if (now == said) continue;
+    out += fmt::format("{}{} {} ({}, {}): {}", out.empty() ? "" : "; ",
+                       said.empty() ? "declared" : "changed",
+                       After(event->trials), event->at_utc, event->author,
+                       now.empty() ? "withdrawn" : now);
+    if (!event->reason.empty()) out += ", because " + event->reason;
+    said = now;
+  }
+  return out.empty() ? "not declared" : out;
+}
+
+}  // namespace
+
+std::vector<Block> MakePlan(const Group& group,
+                            std::span<const core::Trial> trials,
+                            const ReportInput& input) {
+  if (!group.registered) return {};
+  std::vector<const db::PlanEvent*> plans;
+  std::vector<const db::PlanEvent*> looks;
+  for (const db::PlanEvent& event : input.plan) {
+    if (event.campaign != group.campaign.name) continue;
+    (event.kind == db::PlanEventKind::kLook ? looks : plans).push_back(&event);
+  }
+  Table table{"The plan on record", {{"what"}, {"when, and by whom"}}, {}};
+  const auto row = [&](const char* name, std::string value) {
+    table.rows.push_back({{name}, {std::move(value)}});
+  };
+  const core::Campaign& c = group.campaign;
+  row("theory and margin",
+      c.theory_boundary_rad
+          ? fmt::format(
+                "declared before the first trial, and fixed since: {} "
+                "deg, margin {} deg",
+                WithU({*c.theory_boundary_rad, c.theory_u_rad, {}}, kDegree),
+                Plain(c.margin_rad / kDegree))
+          : "not declared");
+  row("error rates", History(plans, &db::Plan::error_rates));
+  row("design", History(plans, &db::Plan::design));
+  row("stopping rule", History(plans, &db::Plan::stopping_rule));
+  if (looks.empty()) {
+    row("looks at the answer", "none on record");
+  } else {
+    std::string when;
+    for (const db::PlanEvent* look : looks) {
+      when += fmt::format("{}{} ({}, {})", when.empty() ? "" : "; ",
+                          After(look->trials), look->at_utc, look->author);
+    }
+    row("looks at the answer", when);
+  }
+  std::string excluded;
+  for (const std::size_t i : group.members) {
+    const core::Trial& trial = trials[i];
+    if (!trial.excluded) continue;
+    excluded += fmt::format("{}{}: {} ({}, {})", excluded.empty() ? "" : "; ",
+                            TrialName(trial), trial.exclusion_reason,
+                            trial.recorded_at_utc, trial.author);
+  }
+  row("exclusions", excluded.empty() ? "none" : excluded);
+  return {std::move(table)};
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,146 @@
+#include "touchdown/db/plan.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "plan_rows.h"
+#include "statement.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::db {
+namespace {
+
+constexpr std::string_view kColumns =
+    "e.uuid, c.name, e.kind, e.design, e.stopping_rule, e.error_rates, "
+    "e.trials, e.author, e.reason, e.at_utc";
+
+PlanEvent Take(Statement& row) {
+  PlanEvent event;
+  event.id = row.TakeText();
+  event.campaign = row.TakeText();
+  event.kind = row.TakeText() == Name(PlanEventKind::kLook)
+                   ? PlanEventKind::kLook
+                   : PlanEventKind::kPlan;
+  event.plan.design = row.TakeText();
+  event.plan.stopping_rule = row.TakeText();
+  event.plan.error_rates = row.TakeText();
+  event.trials = row.TakeInteger();
+  event.author = row.TakeText();
+  event.reason = row.TakeText();
+  event.at_utc = row.TakeText();
+  return event;
+}
+
+std::int64_t TrialsOf(Connection& connection, std::string_view campaign) {
+  Statement row(connection,
+                "SELECT count(*) FROM trials t JOIN campaigns c ON c.id = "
+                "t.campaign_id WHERE c.name = ?");
+  row.Add(campaign);
+  return row.Step() ? row.TakeInteger() : 0;
+}
+
+}  // namespace
+
+std::string_view Name(PlanEventKind kind) {
+  return kind == PlanEventKind::kLook ? "look" : "plan";
+}
+
+std::vector<PlanEvent> PlanEventsIn(Connection& connection,
+                                    std::string_view campaign) {
+  Statement row(connection,
+                fmt::format("SELECT {} FROM plan_events e JOIN campaigns c ON "
+                            "c.id = e.campaign_id WHERE ?1 = '' OR c.name = ?1 "
+                            "ORDER BY e.at_utc, e.id",
+                            kColumns));
+  row.Add(campaign);
+  std::vector<PlanEvent> out;
+  while (row.Step()) out.push_back(Take(row));
+  return out;
+}
+
+bool InsertPlanEvent(Connection& connection, const PlanEvent& event) {
+  {
+    Statement known(connection, "SELECT 1 FROM plan_events WHERE uuid = ?");
+    known.Add(event.id);
+    if (known.Step()) return false;
+  }
+  Statement(connection,
+            "INSERT INTO plan_events (uuid, campaign_id, kind, design, "
+            "stopping_rule, error_rates, trials, author, reason, at_utc) "
+            "SELECT ?, id, ?, ?, ?, ?, ?, ?, ?, ? FROM campaigns WHERE name = "
+            "?")
+      .Add(event.id)
+      .Add(Name(event.kind))
+      .Add(event.plan.design)
+      .Add(event.plan.stopping_rule)
+      .Add(event.plan.error_rates)
+      .Add(event.trials)
+      .Add(event.author)
+      .Add(event.reason)
+      .Add(event.at_utc)
+      .Add(event.campaign)
+      .Run();
+  return true;
+}
+
+void SetPlan(Store& store, std::string_view campaign, const Plan& plan,
+             std::string_view author, std::string_view reason) {
+  Connection& c = store.connection();
+  Transaction transaction(c, Transaction::Kind::kWrite);
+  if (!store.FindCampaign(campaign)) {
+    throw core::StoreError(
+        fmt::format("{}: there is no campaign '{}'; see `touchdown campaign "
+                    "list`",
+                    store.path().string(), campaign));
+  }
+  const std::int64_t trials = TrialsOf(c, campaign);
+  bool first = true;
+  for (const PlanEvent& event : PlanEventsIn(c, campaign)) {
+    first = first && event.kind != PlanEventKind::kPlan;
+  }
+  if (author.empty()) {
+    throw std::invalid_argument("author is empty, must be who declares it");
+  }
+  if (trials > 0 && reason.empty()) {
+    throw std::invalid_argument(
+        fmt::format("reason is empty, must say why the plan of '{}' is {} "
+                    "after trial {}",
+                    campaign, first ? "declared" : "changed", trials));
+  }
+  InsertPlanEvent(c, {store.sources().new_uuid(), std::string(campaign),
+                      PlanEventKind::kPlan, plan, trials, std::string(author),
+                      std::string(reason), store.sources().now_utc()});
+  transaction.Commit();
+}
+
+bool RecordLook(Store& store, std::string_view campaign,
+                std::string_view author) {
+  Connection& c = store.connection();
+  Transaction transaction(c, Transaction::Kind::kWrite);
+  if (!store.FindCampaign(campaign)) return false;
+  const std::int64_t trials = TrialsOf(c, campaign);
+  for (const PlanEvent& event : PlanEventsIn(c, campaign)) {
+    if (event.kind == PlanEventKind::kLook && event.trials == trials) {
+      return false;
+    }
+  }
+  InsertPlanEvent(c, {store.sources().new_uuid(),
+                      std::string(campaign),
+                      PlanEventKind::kLook,
+                      {},
+                      trials,
+                      std::string(author),
+                      "",
+                      store.sources().now_utc()});
+  transaction.Commit();
+  return true;
+}
+
+std::vector<PlanEvent> PlanEvents(const Store& store,
+                                  std::string_view campaign) {
+  return PlanEventsIn(store.connection(), campaign);
+}
+
+}  // namespace touchdown::db

@@ -1,0 +1,107 @@
+#include "app/pipeline/left_out.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/pipeline/filmed.h"
+#include "touchdown/vision/render.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using core::kDegree;
+
+// A contact at 20 deg and 4 m/s, seen 60 px right of the middle of 240 by 120.
+Analysis AtTwenty() {
+  Analysis a;
+  a.clip.format = "mp4";
+  a.clip.width_px = 240;
+  a.clip.height_px = 120;
+  a.clip.frames = 100;
+  a.clip.time_base.fps = 1000.0;
+  a.scale = calib::Scale{{1000.0, 1.0, {}}, calib::ScaleSource::kUser};
+  auto& first = a.contacts.first;
+  first.contact.found = true;
+  first.contact.frame = core::Estimate{50.0, 0.01, {}};
+  first.contact.approach_angle_rad =
+      core::Estimate{20.0 * kDegree, 0.05 * kDegree, {}};
+  first.motion.before_speed_mps = core::Estimate{4.0, 0.01, {}};
+  first.motion.before_normal_mps =
+      core::Estimate{-4.0 * std::sin(20.0 * kDegree), 0.01, {}};
+  a.track.emplace();
+  for (const std::int64_t frame : {10, 50}) {
+    vision::Pose pose;
+    pose.frame = frame;
+    pose.centre = {180.0, 60.0};
+    a.track->poses.push_back(pose);
+  }
+  return a;
+}
+
+const LeftOutEffect& Named(const std::vector<LeftOutEffect>& effects,
+                           const std::string& name) {
+  const auto at =
+      std::find_if(effects.begin(), effects.end(),
+                   [&](const LeftOutEffect& e) { return e.name == name; });
+  EXPECT_NE(at, effects.end()) << name;
+  return *at;
+}
+
+TEST(LeftOut, ByHand) {
+  const auto effects = LeftOutEffects(AtTwenty());
+  const double sc = std::sin(20.0 * kDegree) * std::cos(20.0 * kDegree);
+  // r / f = 60 / 240.
+  EXPECT_NEAR(Named(effects, "path out of the plane").error_rad,
+              0.25 * std::sin(2.0 * kDegree) +
+                  (1.0 / std::cos(2.0 * kDegree) - 1.0) * sc,
+              1e-12);
+  // 1.368 px a frame of 120 rows.
+  EXPECT_NEAR(Named(effects, "rolling shutter").error_rad,
+              4.0 * std::sin(20.0 * kDegree) / 120.0 * sc, 1e-12);
+  // 40 ms of flight.
+  EXPECT_NEAR(Named(effects, "gravity along the ground").error_rad,
+              core::kStandardGravity_mps2 * std::sin(1.0 * kDegree) * 0.04 /
+                  8.0 * std::sin(20.0 * kDegree),
+              1e-12);
+}
+
+TEST(LeftOut, RawCamerasDoNotRoll) {
+  Analysis a = AtTwenty();
+  a.clip.format = "mraw";
+  for (const auto& effect : LeftOutEffects(a)) {
+    EXPECT_NE(effect.name, "rolling shutter");
+  }
+}
+
+TEST(LeftOut, WarnsWhereARollingShutterWouldDecide) {
+  Analysis a = AtTwenty();
+  DescribeLeftOut(a);
+  EXPECT_TRUE(a.warnings.empty());
+  a.clip.time_base.fps = 250.0;  // 5.5 px a frame: 0.84 deg
+  for (int i = 0; i < 2; ++i) DescribeLeftOut(a);
+  ASSERT_EQ(a.warnings.size(), 1U);
+  EXPECT_EQ(a.warnings[0].rfind("rolling shutter", 0), 0U);
+}
+
+TEST(LeftOut, NothingWithoutAnAngle) {
+  Analysis a = AtTwenty();
+  a.contacts.first.contact.approach_angle_rad = core::AbsentBecause("hidden");
+  EXPECT_TRUE(LeftOutEffects(a).empty());
+}
+
+TEST(LeftOut, StandsInTheDocumentAndTheText) {
+  const auto film = filmed::Default(core::BodyKind::kSphere);
+  AnalyzeOptions options;
+  options.scale_px_per_m = core::Estimate{1000.0, 1.0, {}};
+  const Analysis a =
+      AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 1), options);
+  for (const char* name : {"path out of the plane", "rolling shutter",
+                           "gravity along the ground", "light and gamma"}) {
+    EXPECT_EQ(a.scene_model.left_out.count(name), 1U) << name;
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::pipeline
