@@ -281,21 +281,19 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
       layers::MotionsOf(path.poses, path.frames);
   const double noise_ratio = fit.layers.noise_dn / evidence.noise_dn;
   std::vector<double> drifts;
-  for (std::size_t from = 0; from < path.frames.size();
-       from += evidence.most_frames) {
-    const std::size_t to =
-        std::min(path.frames.size(), from + evidence.most_frames);
+  // As many at a time as stay near the processor.
+  constexpr std::size_t kAtATime = 8;
+  const bool is_read = path.frames == evidence.path.frames;
+  const std::size_t step = is_read ? path.frames.size() : kAtATime;
+  PictureReader reader(clip, evidence.still, fit.layers.shape, evidence.box);
+  for (std::size_t from = 0; from < path.frames.size(); from += step) {
+    const std::size_t to = std::min(path.frames.size(), from + step);
     LayerPath part;
     for (std::size_t t = from; t < to; ++t) {
       part.frames.push_back(path.frames[t]);
       part.poses.push_back(path.poses[t]);
     }
-    const bool is_read = part.frames == evidence.path.frames;
-    const PictureStack read = is_read
-                                  ? PictureStack{}
-                                  : ReadAlong(clip, evidence.still, part,
-                                              fit.layers.shape, evidence.box);
-    const PictureStack& pictures = is_read ? evidence.stack : read;
+    const PictureStack& pictures = is_read ? evidence.stack : reader.Read(part);
     std::vector<PoseFit> aligned(part.frames.size());
     core::InParallel(static_cast<std::int64_t>(aligned.size()), options.threads,
                      [&](std::int64_t begin, std::int64_t end) {

@@ -2,23 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "body_cover.h"
 
 namespace touchdown::vision {
 
+using layers::LayerPose;
 using layers::PictureStack;
 using layers::Shape;
 
 namespace {
 
 template <class Sample>
-void Copy(const core::Frame& frame, const core::PixelRect& box, float* out) {
-  for (std::int32_t y = 0; y < box.height; ++y) {
+void CopyRows(const core::Frame& frame, const core::PixelRect& box, float* out,
+              std::int32_t stride) {
+  for (std::int32_t y = 0; y < box.height; ++y, out += stride) {
     const Sample* const row = frame.row<Sample>(box.y + y) + box.x;
-    for (std::int32_t x = 0; x < box.width; ++x) {
-      *out++ = static_cast<float>(row[x]);
-    }
+    std::copy_n(row, box.width, out);
+  }
+}
+
+// The pixels of `box`, in rows that begin `stride` apart.
+void Copy(const core::Frame& frame, const core::PixelRect& box, float* out,
+          std::int32_t stride) {
+  if (frame.is_16_bit()) {
+    CopyRows<std::uint16_t>(frame, box, out, stride);
+  } else {
+    CopyRows<std::uint8_t>(frame, box, out, stride);
   }
 }
 
@@ -131,57 +142,77 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
   for (std::size_t t = 0; t < frames.size(); ++t) {
     const core::Frame frame = clip.Read(frames[t]);
     stack.times_s.push_back(frame.time_s);
-    float* const out = stack.levels.data() + t * stack.pixels();
-    if (frame.is_16_bit()) {
-      Copy<std::uint16_t>(frame, box, out);
-    } else {
-      Copy<std::uint8_t>(frame, box, out);
-    }
+    Copy(frame, box, stack.levels.data() + t * stack.pixels(), stack.width);
   }
   return stack;
+}
+
+PictureReader::PictureReader(Clip& clip, const std::vector<float>& still,
+                             const Shape& shape, const core::PixelRect& box)
+    : clip_(clip), still_(still), box_(box) {
+  constexpr double kRoom = 12.0;  // px
+  reach_ = shape.Reach() + kRoom;
+  stack_.width = box.width;
+  stack_.height = box.height;
+}
+
+core::PixelRect PictureReader::WindowAround(const LayerPose& pose) const {
+  const auto from = [this](double at, std::int32_t end) {
+    return std::clamp(static_cast<std::int32_t>(std::floor(at - reach_)), 0,
+                      end - 1);
+  };
+  const auto to = [this](double at, std::int32_t begin, std::int32_t end) {
+    return std::clamp(static_cast<std::int32_t>(std::ceil(at + reach_)),
+                      begin + 1, end);
+  };
+  core::PixelRect window;
+  window.x = from(pose.x, box_.width);
+  window.y = from(pose.y, box_.height);
+  window.width = to(pose.x, window.x, box_.width) - window.x;
+  window.height = to(pose.y, window.y, box_.height) - window.y;
+  return window;
+}
+
+const PictureStack& PictureReader::Read(const LayerPath& path) {
+  const bool whole =
+      path.frames.empty() || clip_.ChangesIn(path.frames.front()) == nullptr;
+  const std::size_t pixels = stack_.pixels();
+  stack_.frames = path.frames;
+  stack_.times_s.clear();
+  stack_.levels.resize(pixels * path.frames.size());
+  float* levels = stack_.levels.data();
+  for (std::size_t t = 0; t < path.frames.size(); ++t, levels += pixels) {
+    if (t == read_.size()) {
+      if (!whole) std::copy(still_.begin(), still_.end(), levels);
+    } else {
+      const core::PixelRect& old = read_[t];
+      for (std::int32_t y = old.y; y < old.y + old.height; ++y) {
+        const std::ptrdiff_t row = std::ptrdiff_t{y} * box_.width + old.x;
+        std::copy_n(still_.data() + row, old.width, levels + row);
+      }
+      read_[t] = {};
+    }
+    const core::PixelRect window =
+        whole ? core::PixelRect{0, 0, box_.width, box_.height}
+              : WindowAround(path.poses[t]);
+    const core::Frame frame = clip_.Read(path.frames[t]);
+    stack_.times_s.push_back(frame.time_s);
+    Copy(frame,
+         {box_.x + window.x, box_.y + window.y, window.width, window.height},
+         levels + std::ptrdiff_t{window.y} * box_.width + window.x, box_.width);
+    // A whole picture is written over by the next.
+    if (t == read_.size()) read_.emplace_back();
+    if (!whole) read_[t] = window;
+  }
+  return stack_;
 }
 
 PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
                        const LayerPath& path, const Shape& shape,
                        const core::PixelRect& box) {
-  if (clip.ChangesIn(path.frames.front()) == nullptr) {
-    return ReadPictures(clip, path.frames, box);
-  }
-  PictureStack stack;
-  stack.width = box.width;
-  stack.height = box.height;
-  stack.frames = path.frames;
-  constexpr double kRoom = 12.0;  // px
-  const double reach = shape.Reach() + kRoom;
-  for (std::size_t t = 0; t < path.frames.size(); ++t) {
-    const auto from = [reach](double at) {
-      return std::max(0, static_cast<std::int32_t>(std::floor(at - reach)));
-    };
-    const auto to = [reach](double at, std::int32_t end) {
-      return std::min(end, static_cast<std::int32_t>(std::ceil(at + reach)));
-    };
-    core::PixelRect window;
-    window.x = std::min(from(path.poses[t].x), box.width - 1);
-    window.y = std::min(from(path.poses[t].y), box.height - 1);
-    window.width = to(path.poses[t].x, box.width) - window.x;
-    window.height = to(path.poses[t].y, box.height) - window.y;
-    stack.levels.insert(stack.levels.end(), still.begin(), still.end());
-    window.width = std::max(window.width, 1);
-    window.height = std::max(window.height, 1);
-    const PictureStack part = ReadPictures(
-        clip, std::span(&path.frames[t], 1),
-        {box.x + window.x, box.y + window.y, window.width, window.height});
-    stack.times_s.push_back(part.times_s.front());
-    float* const levels = stack.levels.data() + t * stack.pixels();
-    for (std::int32_t y = 0; y < window.height; ++y) {
-      std::copy_n(
-          part.levels.data() + static_cast<std::ptrdiff_t>(y) * window.width,
-          window.width,
-          levels + static_cast<std::ptrdiff_t>(window.y + y) * box.width +
-              window.x);
-    }
-  }
-  return stack;
+  PictureReader reader(clip, still, shape, box);
+  reader.Read(path);
+  return std::move(reader).Take();
 }
 
 }  // namespace touchdown::vision

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "layers/layer_model.h"
@@ -48,8 +49,31 @@ layers::PictureStack ReadPictures(Clip& clip,
                                   std::span<const std::int64_t> frames,
                                   const core::PixelRect& box);
 
-// Those of a path's frames. Of a clip that keeps only what changes
-// (Clip::ChangesIn) the surroundings of the body, before `still`.
+// Those of a path's frames, again and again in the same memory. Of a clip that
+// keeps only what changes (Clip::ChangesIn) the surroundings of the body,
+// before `still`. `clip` and `still` must outlive it.
+class PictureReader {
+ public:
+  PictureReader(Clip& clip, const std::vector<float>& still,
+                const layers::Shape& shape, const core::PixelRect& box);
+
+  // Valid until the next call. Throws what Clip::Read throws.
+  const layers::PictureStack& Read(const LayerPath& path);
+  // What was read last.
+  layers::PictureStack Take() && { return std::move(stack_); }
+
+ private:
+  core::PixelRect WindowAround(const layers::LayerPose& pose) const;
+
+  Clip& clip_;
+  const std::vector<float>& still_;
+  core::PixelRect box_;
+  double reach_ = 0.0;  // px
+  layers::PictureStack stack_;
+  std::vector<core::PixelRect> read_;  // what is not `still` in each picture
+};
+
+// Those of one path.
 layers::PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
                                const LayerPath& path,
                                const layers::Shape& shape,
