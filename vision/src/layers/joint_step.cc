@@ -362,25 +362,30 @@ StillEvidence WeighStill(const PictureStack& stack, const Layers& layers,
   StillEvidence evidence;
   evidence.weight.assign(stack.pixels(), 0.0F);
   evidence.residual.assign(stack.pixels(), 0.0F);
-  const auto add = [&](std::size_t t, std::size_t x, float sign) {
-    const float off = stack.of(t)[x] - layers.still[x];
-    const float weight = sign * RobustWeight(off, layers.noise_dn);
-    evidence.weight[x] += weight;
-    evidence.residual[x] += weight * off;
-  };
+  const float* const still = layers.still.data();
+  float* const weights = evidence.weight.data();
+  float* const residuals = evidence.residual.data();
+  const double noise_dn = layers.noise_dn;
+  // Of each frame in turn, so that the compiler can take pixels together.
   core::InParallel(static_cast<std::int64_t>(stack.pixels()), threads,
                    [&](std::int64_t begin, std::int64_t end) {
                      for (std::size_t t = 0; t < frames.size(); ++t) {
                        if (frames[t].size() == 0) continue;
-                       for (auto x = static_cast<std::size_t>(begin);
-                            x < static_cast<std::size_t>(end); ++x) {
-                         add(t, x, 1.0F);
+                       const float* const levels = stack.of(t);
+                       for (std::int64_t x = begin; x < end; ++x) {
+                         const float off = levels[x] - still[x];
+                         const float weight = RobustWeight(off, noise_dn);
+                         weights[x] += weight;
+                         residuals[x] += weight * off;
                        }
                      }
                    });
   for (std::size_t t = 0; t < frames.size(); ++t) {
-    for (const std::int32_t pixel : frames[t].pixel) {
-      add(t, static_cast<std::size_t>(pixel), -1.0F);
+    for (const std::int32_t x : frames[t].pixel) {
+      const float off = stack.of(t)[x] - still[x];
+      const float weight = RobustWeight(off, noise_dn);
+      weights[x] -= weight;
+      residuals[x] -= weight * off;
     }
   }
   for (float& weight : evidence.weight) weight = std::max(weight, 0.0F);

@@ -115,12 +115,6 @@ double Apart(const LayerPose& a, const LayerPose& b) {
 
 }  // namespace
 
-float RobustWeight(float residual, double noise_dn) {
-  constexpr float kCut = 4.0F;
-  const float off = residual / (kCut * static_cast<float>(noise_dn));
-  return 1.0F / (1.0F + off * off);
-}
-
 FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
                        const Layers& layers, const LayerPose& pose,
                        const LayerPose& motion) {

@@ -111,7 +111,11 @@ struct FrameSamples {
 void LearnTexture(Layers& layers);
 
 // Cauchy's, at four standard deviations of noise.
-float RobustWeight(float residual, double noise_dn);
+inline float RobustWeight(float residual, double noise_dn) {
+  constexpr float kCut = 4.0F;
+  const float off = residual / (kCut * static_cast<float>(noise_dn));
+  return 1.0F / (1.0F + off * off);
+}
 
 // `motion`: v. Pixels that the body does not reach are left out.
 FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
