@@ -20,6 +20,13 @@ double UncertaintyOfLine(const PlaneTrack& track, const PlaneSample& s) {
                     track.ground.u_angle_rad * s.along_px);
 }
 
+const PlaneSample& LowestOf(const PlaneTrack& track) {
+  return *std::min_element(track.samples.begin(), track.samples.end(),
+                           [](const PlaneSample& a, const PlaneSample& b) {
+                             return a.gap_px < b.gap_px;
+                           });
+}
+
 FlightOptions FlightFor(const ContactOptions& options) {
   FlightOptions flight;
   if (options.scale) {
@@ -41,8 +48,6 @@ SegmentationOptions SegmentationFor(const PlaneTrack& track,
   if (flight.gravity_px_per_s2) {
     out.gravity_px_per_s2 = flight.gravity_px_per_s2->value;
   }
-  out.u_line_px = track.ground.u_offset_px;
-  out.u_slope_rad = track.ground.u_angle_rad;
   if (options.contact_frame) {
     const auto next = std::find_if(
         track.samples.begin(), track.samples.end(),
@@ -124,16 +129,11 @@ constexpr double kCarried = 0.3;  // an edge that is seen may be off the contact
 // well above or below it. Empty where line and track agree.
 std::string RefuteGround(const PlaneTrack& track,
                          const std::vector<Touch>& touches) {
-  const auto lowest =
-      std::min_element(track.samples.begin(), track.samples.end(),
-                       [](const PlaneSample& a, const PlaneSample& b) {
-                         return a.gap_px < b.gap_px;
-                       });
-  const double sunk = -lowest->gap_px;
-  if (sunk > NearLine(track, *lowest, kSunk)) {
+  const PlaneSample& lowest = LowestOf(track);
+  if (-lowest.gap_px > NearLine(track, lowest, kSunk)) {
     return fmt::format(
-        "the body passes {:.1f} px below the ground line at frame {}", sunk,
-        lowest->frame);
+        "the body passes {:.1f} px below the ground line at frame {}",
+        -lowest.gap_px, lowest.frame);
   }
   for (const Touch& touch : touches) {
     const PlaneSample& s = track.samples[touch.event.before_frames.end - 1];
@@ -173,7 +173,7 @@ ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
 // frame and a half of the last: the flight is known well enough to say so.
 std::optional<Event> MeasureAtEnd(const PlaneTrack& track,
                                   const std::vector<Stretch>& stretches,
-                                  const EventOptions& options,
+                                  const FlightOptions& options,
                                   std::string& reason) {
   const std::span<const PlaneSample> samples(track.samples);
   const auto [lowest, highest] =
@@ -330,10 +330,6 @@ ContactResult FindContacts(const PlaneTrack& given,
   }
   const std::vector<Touch> touches = FindTouches(track, stretches, flight);
 
-  EventOptions event_options;
-  event_options.flight = flight;
-  event_options.u_line_px = track.ground.u_offset_px;
-  event_options.u_slope_rad = track.ground.u_angle_rad;
   // What carries it far from the line is not the ground: a rail, a hand.
   const Stretch* down = DownFromStart(stretches);
   const double above = down ? HeightAboveGround(track, *down) : 0.0;
@@ -342,49 +338,50 @@ ContactResult FindContacts(const PlaneTrack& given,
     return result;
   }
   result.ground_refuted = RefuteGround(track, touches);
-  bool first_done = BeginsAtImpact(track, stretches, flight);
-  std::string reason;
-  if (first_done) {
-    result.first = NoContact(fmt::format(
+  std::optional<core::ContactRecord> first;
+  if (BeginsAtImpact(track, stretches, flight)) {
+    first = NoContact(fmt::format(
         "too few frames show the body before its impact at frame {}",
         track.samples[stretches.front().end - 1].frame));
   }
+  std::string reason;
+  const auto add = [&](const Event& event) {
+    core::ContactRecord record = RecordOf(context, event, result.warnings);
+    result.evidence.push_back(EvidenceOf(track, event));
+    if (first) {
+      result.later.push_back(std::move(record));
+    } else {
+      first = std::move(record);
+    }
+  };
   for (const Touch& touch : touches) {
-    const std::size_t last = touch.event.before_frames.end - 1;
+    const PlaneSample& last = track.samples[touch.event.before_frames.end - 1];
     if (!options.contact_frame &&
-        std::abs(touch.gap_px) >
-            NearLine(track, track.samples[last], kAtContact)) {
+        std::abs(touch.gap_px) > NearLine(track, last, kAtContact)) {
       continue;
     }
     Event event = touch.event;
-    if (!MeasureEvent(track, event_options, event, reason)) {
+    if (MeasureEvent(track, flight, event, reason)) {
+      add(event);
+    } else if (!first) {
       // What comes later is not the first contact.
-      if (!first_done) result.first = NoContact(reason);
-      first_done = true;
-      continue;
-    }
-    if (!first_done) {
-      result.first = RecordOf(context, event, result.warnings);
-      first_done = true;
-    } else {
-      result.later.push_back(RecordOf(context, event, result.warnings));
-    }
-    result.evidence.push_back(EvidenceOf(track, event));
-  }
-  if (!first_done) {
-    if (const auto event =
-            MeasureAtEnd(track, stretches, event_options, reason)) {
-      result.first = RecordOf(context, *event, result.warnings);
-      result.evidence.push_back(EvidenceOf(track, *event));
-    } else if (down && stretches.size() == 1) {
-      result.ground_refuted = fmt::format(
-          "the body moves along a line {:.1f} px {} the ground line",
-          std::abs(above), above > 0.0 ? "above" : "below");
-      result.first = NoContact(result.ground_refuted);
-    } else {
-      result.first = NoContact(reason);
+      first = NoContact(reason);
     }
   }
+  if (first) {
+    // Told.
+  } else if (const auto event =
+                 MeasureAtEnd(track, stretches, flight, reason)) {
+    add(*event);
+  } else if (down && stretches.size() == 1) {
+    result.ground_refuted =
+        fmt::format("the body moves along a line {:.1f} px {} the ground line",
+                    std::abs(above), above > 0.0 ? "above" : "below");
+    first = NoContact(result.ground_refuted);
+  } else {
+    first = NoContact(reason);
+  }
+  result.first = std::move(*first);
   return result;
 }
 
@@ -409,27 +406,18 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     return SeenFromGround(track, level);
   };
   PlaneTrack plane = seen_from(lowest);
-  double least = plane.samples.front().gap_px;
-  for (const PlaneSample& s : plane.samples) {
-    least = std::min(least, s.gap_px);
-  }
+  const double least = LowestOf(plane).gap_px;
   plane = seen_from(lowest - least);
   WidenToScatter(plane);
   constexpr double kUnknown_px = 1e3;  // nothing is known of the line yet
-  SegmentationOptions segmentation;
-  segmentation.u_line_px = kUnknown_px;
-  segmentation.u_slope_rad = u_level_rad;
-  EventOptions options;
-  options.u_line_px = kUnknown_px;
-  options.u_slope_rad = u_level_rad;
+  plane.ground.u_offset_px = kUnknown_px;
   // The first contact below which the body does not sink by its own size: what
   // is met later lies elsewhere in perspective, and a body does not pass below
   // its ground.
   const double deepest = lowest - least;
-  for (Touch& touch :
-       FindTouches(plane, SegmentMotion(plane, segmentation), {})) {
+  for (Touch& touch : FindTouches(plane, SegmentMotion(plane), {})) {
     std::string reason;
-    if (!MeasureEvent(plane, options, touch.event, reason)) continue;
+    if (!MeasureEvent(plane, {}, touch.event, reason)) continue;
     const ContactEvidence at = EvidenceOf(plane, touch.event);
     if (deepest - at.touching.y_px > plane.size_px) continue;
     calib::GroundLine ground;

@@ -16,11 +16,6 @@ std::span<const PlaneSample> SamplesIn(const PlaneTrack& track,
   return std::span(track.samples).subspan(range.begin, range.size());
 }
 
-// Frames that determine a flight.
-std::size_t LeastFrames(const EventOptions& options) {
-  return options.flight.gravity_px_per_s2 ? 2 : 4;
-}
-
 // The instant at which the gap of a flight crosses zero in [from_s, to_s], in
 // the direction of `falling`; where it only grazes the ground, the instant
 // nearest to it. A body that turns may cross more than once: touchdown is the
@@ -63,7 +58,7 @@ double CrossingTime(const PlaneTrack& track, const Flight& flight,
 
 // Frames after touchdown and before release that the flights explain within
 // their noise: they were in contact all the same.
-void LeaveOutContact(const PlaneTrack& track, const EventOptions& options,
+void LeaveOutContact(const PlaneTrack& track, const FlightOptions& options,
                      double touchdown_s, double release_s, Event& event) {
   const auto& samples = track.samples;
   SampleRange before = event.before_frames;
@@ -78,13 +73,13 @@ void LeaveOutContact(const PlaneTrack& track, const EventOptions& options,
   }
   event.before_frames = before;
   event.after_frames = after;
-  event.before = FitFlight(SamplesIn(track, before), options.flight);
-  event.after = FitFlight(SamplesIn(track, after), options.flight);
+  event.before = FitFlight(SamplesIn(track, before), options);
+  event.after = FitFlight(SamplesIn(track, after), options);
 }
 
 // A frame within half an interval of touchdown may have been exposed across
 // it: left out where the others suffice.
-void LeaveOutStraddling(const PlaneTrack& track, const EventOptions& options,
+void LeaveOutStraddling(const PlaneTrack& track, const FlightOptions& options,
                         double time_s, Event& event) {
   constexpr double kHalfAFrame = 0.5;
   const double reach = kHalfAFrame * track.frame_interval_s;
@@ -112,13 +107,13 @@ bool LeavesFlight(const PlaneSample& s, const Flight& flight) {
 }
 
 JointInput InputFor(const PlaneTrack& track, const Event& event,
-                    const EventOptions& options) {
+                    const FlightOptions& options) {
   JointInput input;
   input.before = SamplesIn(track, event.before_frames);
   if (event.after) input.after = SamplesIn(track, event.after_frames);
-  input.u_slope_rad = options.u_slope_rad;
-  input.gravity_px_per_s2 = options.flight.gravity_px_per_s2;
-  input.ground_px = {0.0, std::max(options.u_line_px, 1e-6), std::nullopt};
+  input.u_slope_rad = track.ground.u_angle_rad;
+  input.gravity_px_per_s2 = options.gravity_px_per_s2;
+  input.ground_px = {0.0, std::max(track.ground.u_offset_px, 1e-6)};
   return input;
 }
 
@@ -162,7 +157,7 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
 constexpr double kDisagree = 3.0;  // sigmas between flights and line
 
 // It rebounds: one fit of both flights.
-bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
+bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
                     Event& event) {
   const auto& samples = track.samples;
   const double dt = track.frame_interval_s;
@@ -194,7 +189,7 @@ bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
   JointInput without = input;
   const core::Estimate on_line = input.ground_px;
   without.ground_px.u = kUnknown_px;
-  const double half_px = std::hypot(options.u_line_px, track.u_half_px);
+  const double half_px = std::hypot(track.ground.u_offset_px, track.u_half_px);
   event.disagreement = 0.0;
   if (const auto free = FitJointly(track, without)) {
     const core::Estimate d = free->Of(
@@ -203,7 +198,7 @@ bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
     const bool disagree = std::abs(event.disagreement) > kDisagree;
     // A flight of two frames, with gravity known, is told by nothing but them:
     // the line says that they are not of one flight.
-    if (disagree && options.flight.gravity_px_per_s2 &&
+    if (disagree && options.gravity_px_per_s2 &&
         event.after_frames.size() <= LeastFrames(options)) {
       return false;
     }
@@ -221,14 +216,14 @@ bool MeasureRebound(const PlaneTrack& track, const EventOptions& options,
 }
 
 // It stays down: the frames in contact tell the ground's height.
-bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
+bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
                  Event& event) {
   const auto& samples = track.samples;
   JointInput input = InputFor(track, event, options);
   // What is known of the ground's height: the line, and the body's size.
   core::Estimate ground{
-      0.0, std::max(std::hypot(options.u_line_px, track.u_half_px), 1e-6),
-      std::nullopt};
+      0.0,
+      std::max(std::hypot(track.ground.u_offset_px, track.u_half_px), 1e-6)};
   // Near the contact: what is far along it speaks of the line's direction.
   constexpr std::size_t kNear = 40;  // frames
   SampleRange down = event.down_frames;
@@ -243,8 +238,7 @@ bool MeasureStay(const PlaneTrack& track, const EventOptions& options,
     } else {
       const double w0 = 1.0 / (ground.u * ground.u);
       const double w1 = 1.0 / (level.u * level.u);
-      ground = {level.value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1),
-                std::nullopt};
+      ground = {level.value * w1 / (w0 + w1), 1.0 / std::sqrt(w0 + w1)};
     }
     input.ground_px = ground;
     input.reference_along_px = samples[down.begin].along_px;
@@ -276,7 +270,7 @@ core::Estimate LevelOf(std::span<const PlaneSample> samples) {
     off.push_back((s.gap_px - mean) / s.u_gap_px);
   }
   const int degrees = static_cast<int>(samples.size()) - 1;
-  return {mean, InflationOf({off}, degrees) / std::sqrt(sw), std::nullopt};
+  return {mean, InflationOf({off}, degrees) / std::sqrt(sw)};
 }
 
 FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
@@ -290,29 +284,22 @@ FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
   return g;
 }
 
-bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
+bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
                   Event& event, std::string& reason) {
-  const std::int64_t frame = track.samples[event.before_frames.end - 1].frame;
-  if (event.before_frames.size() < LeastFrames(options)) {
-    reason = fmt::format(
-        "too few frames show the body before its impact at frame {}", frame);
-    return false;
-  }
-  event.before =
-      FitFlight(SamplesIn(track, event.before_frames), options.flight);
+  const PlaneSample& last = track.samples[event.before_frames.end - 1];
+  reason = fmt::format(
+      "too few frames show the body before its impact at frame {}", last.frame);
+  if (event.before_frames.size() < LeastFrames(options)) return false;
+  event.before = FitFlight(SamplesIn(track, event.before_frames), options);
   bool flies = event.after_frames.size() >= LeastFrames(options);
   if (flies) {
-    event.after =
-        FitFlight(SamplesIn(track, event.after_frames), options.flight);
+    event.after = FitFlight(SamplesIn(track, event.after_frames), options);
   }
   // With none to spare only a rebound tells where and when the flight ended,
   // and an impact one frame earlier looks alike unless the last frame is
   // clearly not of the flight after it.
   if (event.before_frames.size() <= LeastFrames(options) &&
-      !(flies && LeavesFlight(track.samples[event.before_frames.end - 1],
-                              *event.after))) {
-    reason = fmt::format(
-        "too few frames show the body before its impact at frame {}", frame);
+      !(flies && LeavesFlight(last, *event.after))) {
     return false;
   }
   if (flies && !MeasureRebound(track, options, event)) {
@@ -323,14 +310,14 @@ bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
   }
   if (!flies && !MeasureStay(track, options, event)) {
     reason = fmt::format(
-        "the frames beside the impact at frame {} do not determine it", frame);
+        "the frames beside the impact at frame {} do not determine it",
+        last.frame);
     return false;
   }
   const JointFit& fit = *event.fit;
   const auto time_of = [&](JointParameter k) {
     const core::Estimate t = fit.Of([k](const JointVector& p) { return p[k]; });
-    return core::Estimate{fit.TimeAt(t.value), t.u * fit.interval_s,
-                          std::nullopt};
+    return core::Estimate{fit.TimeAt(t.value), t.u * fit.interval_s};
   };
   event.time_s = time_of(kT);
   event.time_s.u = std::hypot(event.time_s.u, event.unresolved_s);

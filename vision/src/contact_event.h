@@ -38,17 +38,16 @@ struct Event {
   double disagreement = 0.0;    // sigmas between the flights and the line
 };
 
-struct EventOptions {
-  FlightOptions flight;
-  double u_line_px = 0.0;    // of the ground line's height at its reference
-  double u_slope_rad = 0.0;  // of its direction
-};
-
 // Measures the contact between the flight of `before_frames` and what follows;
 // narrows the ranges where frames were exposed across the impact, or lie in a
 // soft contact. False, with the reason, where the frames do not determine it.
-bool MeasureEvent(const PlaneTrack& track, const EventOptions& options,
+bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
                   Event& event, std::string& reason);
+
+// Frames that determine a flight.
+inline std::size_t LeastFrames(const FlightOptions& options) {
+  return options.gravity_px_per_s2 ? 2 : 4;
+}
 
 // Gap of a flight at an instant, with its rate and uncertainty.
 struct FlightGap {

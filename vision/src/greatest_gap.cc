@@ -7,72 +7,59 @@
 namespace touchdown::vision {
 namespace {
 
-class Finder {
- public:
-  Finder(const PlaneTrack& track, std::size_t from, const GroundLevel& ground,
-         const FlightOptions& options, const Event* event)
-      : track_(track),
-        from_(from),
-        ground_(ground),
-        options_(options),
-        event_(event) {}
+struct Finder {
+  const PlaneTrack& track;
+  std::size_t since;  // samples before say nothing
+  const GroundLevel& ground;
+  const FlightOptions& options;
+  const Event* event;
+  std::optional<GreatestGap> greatest = std::nullopt;
 
   void LookAt(const Stretch& stretch);
-  std::optional<GreatestGap> Found() const { return greatest_; }
-
- private:
-  double UncertaintyOfGround(double along_px) const {
-    return std::hypot(ground_.height_px.u,
-                      ground_.u_slope_rad * (along_px - ground_.along_px));
-  }
-  void Offer(const core::Estimate& gap, std::int64_t frame);
   void LookAtFlight(std::size_t begin, std::size_t end);
   void LookAtFrames(std::size_t begin, std::size_t end);
   void LookBetween(const PlaneSample& a, const PlaneSample& b);
-
-  const PlaneTrack& track_;
-  std::size_t from_;
-  const GroundLevel& ground_;
-  const FlightOptions& options_;
-  const Event* event_;
-  std::optional<GreatestGap> greatest_;
+  void Offer(const core::Estimate& gap, std::int64_t frame);
+  double UncertaintyOfGround(double along_px) const {
+    return std::hypot(ground.height_px.u,
+                      ground.u_slope_rad * (along_px - ground.along_px));
+  }
 };
 
 // Among noisy heights the highest is no bounce: a value counts by what it
 // surely reaches.
 void Finder::Offer(const core::Estimate& gap, std::int64_t frame) {
-  if (greatest_ &&
-      gap.value - gap.u <= greatest_->gap_px.value - greatest_->gap_px.u) {
+  if (greatest &&
+      gap.value - gap.u <= greatest->gap_px.value - greatest->gap_px.u) {
     return;
   }
-  greatest_ = GreatestGap{gap, frame, std::nullopt};
+  greatest = GreatestGap{gap, frame, std::nullopt};
 }
 
 void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
-  const auto& samples = track_.samples;
-  const bool first = event_ && event_->after &&
-                     event_->after_frames.begin >= begin &&
-                     event_->after_frames.end == end;
+  const auto& samples = track.samples;
+  const bool first = event && event->after &&
+                     event->after_frames.begin >= begin &&
+                     event->after_frames.end == end;
   const Flight flight =
       first
-          ? *event_->after
-          : FitFlight(std::span(samples).subspan(begin, end - begin), options_);
+          ? *event->after
+          : FitFlight(std::span(samples).subspan(begin, end - begin), options);
   // With its u: of the joint fit where ground and flight are one.
   const auto gap_at = [&](double t) {
     if (first) {
-      const JointFit& fit = *event_->fit;
+      const JointFit& fit = *event->fit;
       const double frames = (t - fit.origin_s) / fit.interval_s;
       return fit.Of(
           [&](const JointVector& p) { return fit.GapAfter(p, frames); });
     }
-    const FlightGap g = GapOfFlight(track_, flight, t);
+    const FlightGap g = GapOfFlight(track, flight, t);
     return core::Estimate{
-        g.gap_px - ground_.height_px.value,
-        std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px)),
-        std::nullopt};
+        g.gap_px - ground.height_px.value,
+        std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px))};
   };
   const auto height_at = [&](double t) {
-    return GapOfFlight(track_, flight, t).gap_px;
+    return GapOfFlight(track, flight, t).gap_px;
   };
   // From where it may have left the ground to where it may have met it again.
   const double last = samples[end - 1].time_s;
@@ -102,7 +89,7 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
     return 0.5 * (low + high);
   };
   const double at =
-      highest(std::max(start, first ? event_->release_s.value : start), stop);
+      highest(std::max(start, first ? event->release_s.value : start), stop);
   const auto near = std::min_element(
       samples.begin() + static_cast<std::ptrdiff_t>(begin),
       samples.begin() + static_cast<std::ptrdiff_t>(end),
@@ -110,21 +97,21 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
         return std::abs(a.time_s - at) < std::abs(b.time_s - at);
       });
   const core::Estimate gap = gap_at(at);
-  const bool was = greatest_.has_value();
-  const double before = was ? greatest_->gap_px.value : 0.0;
+  const bool was = greatest.has_value();
+  const double before = was ? greatest->gap_px.value : 0.0;
   Offer(gap, near->frame);
   // Does the film end while it rises?
-  if (end < samples.size() || (was && greatest_->gap_px.value == before)) {
+  if (end < samples.size() || (was && greatest->gap_px.value == before)) {
     return;
   }
   const FlightState state = flight.At(last);
-  const FlightGap g = GapOfFlight(track_, flight, last);
+  const FlightGap g = GapOfFlight(track, flight, last);
   if (!(g.rate > 0.0) || !(flight.height[2] > 0.0)) return;
   const double apex =
       last + 2.0 * std::max(state.v_n, g.rate) / flight.height[2];
   const core::Estimate reaches = gap_at(highest(last, apex));
   // By less than the gap's own u it is at its top.
-  if (reaches.value - gap.value > gap.u) greatest_->reaches_px = reaches;
+  if (reaches.value - gap.value > gap.u) greatest->reaches_px = reaches;
 }
 
 // Frames of no flight: of parabolas through a few neighbours, so that a hop too
@@ -139,18 +126,17 @@ void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
     const std::size_t half = window / 2;
     const std::size_t from =
         std::min(i > begin + half ? i - half : begin, end - window);
-    const PlaneSample& s = track_.samples[i];
+    const PlaneSample& s = track.samples[i];
     FlightGap local{s.gap_px, 0.0, s.u_gap_px};
     if (window >= kLeastFrames) {
       const Flight flight =
-          FitFlight(std::span(track_.samples).subspan(from, window));
-      local = GapOfFlight(track_, flight, s.time_s);
+          FitFlight(std::span(track.samples).subspan(from, window));
+      local = GapOfFlight(track, flight, s.time_s);
     }
-    Offer(
-        {local.gap_px - ground_.height_px.value,
-         std::hypot(local.u_px, UncertaintyOfGround(s.along_px)), std::nullopt},
-        s.frame);
-    if (i > from_) LookBetween(track_.samples[i - 1], track_.samples[i]);
+    Offer({local.gap_px - ground.height_px.value,
+           std::hypot(local.u_px, UncertaintyOfGround(s.along_px))},
+          s.frame);
+    if (i > since) LookBetween(track.samples[i - 1], track.samples[i]);
   }
 }
 
@@ -159,7 +145,7 @@ void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
 // motion; how much more they show than both frames is known to nothing better
 // than that: a rectangular distribution of that half-width.
 void Finder::LookBetween(const PlaneSample& a, const PlaneSample& b) {
-  if (track_.kind != core::BodyKind::kRectangle) return;
+  if (track.kind != core::BodyKind::kRectangle) return;
   constexpr int kSteps = 16;  // misses a 32nd of what the motion shows
   double most = 0.0;
   const double seen = std::max(a.gap_px, b.gap_px);
@@ -167,24 +153,23 @@ void Finder::LookBetween(const PlaneSample& a, const PlaneSample& b) {
     const double part = static_cast<double>(i) / kSteps;
     const double face = std::lerp(a.face_rad, b.face_rad, part);
     const double height = std::lerp(a.height_px, b.height_px, part);
-    most = std::max(most, height - SupportHeight(track_, face) - seen);
+    most = std::max(most, height - SupportHeight(track, face) - seen);
   }
   const double u_seen = std::max(a.u_gap_px, b.u_gap_px);
   constexpr double kClear = 2.0;  // less is noise of the attitude
   if (most < kClear * u_seen) return;
-  Offer({seen + most - ground_.height_px.value,
+  Offer({seen + most - ground.height_px.value,
          std::hypot(most / std::numbers::sqrt3, u_seen,
-                    UncertaintyOfGround(a.along_px)),
-         std::nullopt},
+                    UncertaintyOfGround(a.along_px))},
         b.frame);
 }
 
 void Finder::LookAt(const Stretch& stretch) {
-  const std::size_t begin = std::max(stretch.begin, from_);
+  const std::size_t begin = std::max(stretch.begin, since);
   const std::size_t end = stretch.end;
   if (begin >= end) return;
-  const std::size_t least = options_.gravity_px_per_s2 ? 2 : 4;
-  if (stretch.kind == StretchKind::kFlight && end - begin >= least) {
+  if (stretch.kind == StretchKind::kFlight &&
+      end - begin >= LeastFrames(options)) {
     LookAtFlight(begin, end);
   } else {
     LookAtFrames(begin, end);
@@ -199,9 +184,9 @@ std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
                                            const GroundLevel& ground,
                                            const FlightOptions& options,
                                            const Event* event) {
-  Finder finder(track, from, ground, options, event);
+  Finder finder{track, from, ground, options, event};
   for (const Stretch& stretch : stretches) finder.LookAt(stretch);
-  return finder.Found();
+  return finder.greatest;
 }
 
 }  // namespace touchdown::vision

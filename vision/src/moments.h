@@ -31,24 +31,29 @@ struct Moments {
 struct Polynomial {
   double middle = 0, level = 0, slope = 0, bend = 0;
   double offset = 0, tilt = 0;  // of the quadratic term's orthogonal polynomial
+  double spread = 0, third = 0;  // precisions of slope and bend; 0: not told
   double rss1 = 0, rss2 = 0;
 
+  Polynomial() = default;
   explicit Polynomial(const Moments& m) {
+    if (!(m.w > 0.0)) return;
     middle = m.t / m.w;
     level = m.y / m.w;
-    const double spread = m.tt - m.t * middle;
+    const double seen = m.tt - m.t * middle;
     const double lean = m.ty - middle * m.y;
     rss1 = m.yy - level * m.y;
     constexpr double kLeast = 1e-9;  // of the sum: one instant
-    if (spread > kLeast * (m.tt + m.w)) {
+    if (seen > kLeast * (m.tt + m.w)) {
+      spread = seen;
       slope = lean / spread;
       rss1 -= slope * lean;
       offset = m.tt / m.w;
       tilt = (m.ttt - middle * m.tt) / spread;
-      const double third =
+      const double bowed =
           m.tttt - offset * m.tt - tilt * (m.ttt - middle * m.tt);
       const double bow = m.tty - offset * m.y - tilt * lean;
-      if (third > kLeast * m.tttt) {
+      if (bowed > kLeast * m.tttt) {
+        third = bowed;
         bend = bow / third;
         rss2 = bend * bow;
       }

@@ -48,6 +48,12 @@ struct Step {
   int degrees = 0;
 };
 
+struct Motion {
+  StretchKind kind = StretchKind::kOther;
+  int parameters = 0;
+  double rss = 0.0;
+};
+
 class Segmenter {
  public:
   // `floor_px`: added to the poses' own u.
@@ -63,14 +69,14 @@ class Segmenter {
   void Fit(Fits& fits) const;
   double CostOf(const Stretch& stretch, bool touches_at_end) const;
   void GrowFrom(std::size_t begin);
-  void Offer(std::size_t begin, std::size_t end, const Fits& fits);
-  void OfferAnyMotion(std::size_t begin, std::size_t end, const Fits& fits);
-  Step StepOf(std::size_t begin, State from, StretchKind kind, double rss,
-              int parameters, int values) const;
-  void Take(std::size_t end, State to, const Step& step);
+  void OfferFlight(const Fits& fits);
+  void OfferSupport(const Fits& fits);
+  void OfferAnyMotion(const Fits& fits);
+  void Offer(const Fits& fits, const Motion& motion, State from, State to,
+             double ends);
   double FlightGap(const Fits& fits, std::size_t at) const;
-  double StartCost(const Fits& fits, std::size_t begin, std::size_t end) const;
-  double EndCost(const Fits& fits, std::size_t begin, std::size_t end) const;
+  double StartCost(const Fits& fits) const;
+  double EndCost(const Fits& fits) const;
   double OffGround(double above, std::size_t at, std::size_t frames,
                    double most) const;
   bool MayTouch(std::size_t end) const;
@@ -79,8 +85,9 @@ class Segmenter {
   const SegmentationOptions& options_;
   const std::vector<PlaneSample>& samples_;
   bool turns_;
-  int per_frame_;   // numbers measured in a frame
-  double gravity_;  // px per frame^2
+  std::size_t least_flight_;  // frames
+  int per_frame_;             // numbers measured in a frame
+  double gravity_;            // px per frame^2
   double per_parameter_;
   double per_cut_;
   double level_precision_;  // of a supported stretch's level and slope
@@ -101,8 +108,12 @@ struct Segmenter::Fits {
   double highest_px = -kInfinity;
   std::optional<Polynomial> x, y, f;  // of the frames so far
 
+  std::size_t end() const { return begin + frames; }
   void Add(const Segmenter& of);
   double RssOf(StretchKind kind, const Segmenter& of) const;
+  Motion As(StretchKind kind, int parameters, const Segmenter& of) const {
+    return {kind, parameters, RssOf(kind, of)};
+  }
 };
 
 void Segmenter::Fits::Add(const Segmenter& of) {
@@ -137,6 +148,7 @@ Segmenter::Segmenter(const PlaneTrack& track,
       options_(options),
       samples_(track.samples),
       turns_(track.kind == core::BodyKind::kRectangle),
+      least_flight_(options.gravity_px_per_s2 ? 2 : kTold),
       per_frame_(turns_ ? 3 : 2),
       gravity_(options.gravity_px_per_s2.value_or(0.0) *
                track.frame_interval_s * track.frame_interval_s),
@@ -146,11 +158,12 @@ Segmenter::Segmenter(const PlaneTrack& track,
       best_(samples_.size() + 1) {
   const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
   level_precision_ = precision(std::hypot(
-      options.u_line_px, std::hypot(track.u_half_px, options.edge_bias_px)));
+      track.ground.u_offset_px, track.u_half_px, options.edge_bias_px));
   // An edge of the ground seen in perspective differs so much from the line of
   // contact, at most.
   constexpr double kInclined_rad = 0.5 * core::kDegree;
-  slope_precision_ = precision(std::hypot(options.u_slope_rad, kInclined_rad));
+  slope_precision_ =
+      precision(std::hypot(track.ground.u_angle_rad, kInclined_rad));
   const double floor_rad = floor_px / std::max(track.half_long_px, 1.0);
   for (const PlaneSample& s : samples_) {
     const auto weight = [](double u, double floor) {
@@ -184,45 +197,42 @@ double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
 double Segmenter::OffGround(double above, std::size_t at, std::size_t frames,
                             double most) const {
   if (!(above > 0.0)) return 0.0;
-  const double tilt = options_.u_slope_rad * samples_[at].along_px;
+  const double tilt = track_.ground.u_angle_rad * samples_[at].along_px;
   const double forecast = u_gap_[at] * u_gap_[at] * ForecastVariance(frames);
   const double variance = 1.0 / level_precision_ + tilt * tilt + forecast;
   return std::min(most, 0.5 * above * above / variance);
 }
 
-double Segmenter::StartCost(const Fits& fits, std::size_t begin,
-                            std::size_t end) const {
+double Segmenter::StartCost(const Fits& fits) const {
+  const std::size_t begin = fits.begin;
   if (begin == 0) return 0.0;
   const double most = options_.off_line_cost;
-  return OffGround(FlightGap(fits, begin - 1), begin, end - begin, most) +
-         OffGround(-FlightGap(fits, begin), begin, end - begin, most);
+  return OffGround(FlightGap(fits, begin - 1), begin, fits.frames, most) +
+         OffGround(-FlightGap(fits, begin), begin, fits.frames, most);
 }
 
-double Segmenter::EndCost(const Fits& fits, std::size_t begin,
-                          std::size_t end) const {
+double Segmenter::EndCost(const Fits& fits) const {
+  const std::size_t end = fits.end();
   const double most = options_.off_line_cost;
   const double last =
-      OffGround(-FlightGap(fits, end - 1), end - 1, end - begin, most);
+      OffGround(-FlightGap(fits, end - 1), end - 1, fits.frames, most);
   if (end == samples_.size() || end == options_.touchdown) return last;
-  return last + OffGround(FlightGap(fits, end), end, end - begin, most);
+  return last + OffGround(FlightGap(fits, end), end, fits.frames, most);
 }
 
-Step Segmenter::StepOf(std::size_t begin, State from, StretchKind kind,
-                       double rss, int parameters, int values) const {
-  Step s;
-  s.begin = begin;
-  s.from = from;
-  s.kind = kind;
-  s.chi2 = rss;
-  s.degrees = std::max(0, values - parameters);
-  s.cost = best_[begin][from].cost + 0.5 * rss + per_parameter_ * parameters +
-           (begin > 0 ? per_cut_ : 0.0);
-  return s;
-}
-
-void Segmenter::Take(std::size_t end, State to, const Step& step) {
-  Step& best = best_[end][to];
-  if (step.cost < best.cost) best = step;
+// The frames of `fits` as one stretch after `from`, before `to`. `ends`: what
+// its start and its end cost.
+void Segmenter::Offer(const Fits& fits, const Motion& motion, State from,
+                      State to, double ends) {
+  const Step& before = best_[fits.begin][from];
+  if (!(before.cost < kInfinity)) return;
+  const auto [kind, parameters, rss] = motion;
+  const double cost = before.cost + 0.5 * rss + per_parameter_ * parameters +
+                      (fits.begin > 0 ? per_cut_ : 0.0) + ends;
+  Step& best = best_[fits.end()][to];
+  if (!(cost < best.cost)) return;
+  const int values = static_cast<int>(fits.frames) * per_frame_;
+  best = {cost, fits.begin, from, kind, rss, std::max(0, values - parameters)};
 }
 
 // Where a person says when it touches down, nothing touches before it, and the
@@ -231,65 +241,50 @@ bool Segmenter::MayTouch(std::size_t end) const {
   return !options_.touchdown || end >= *options_.touchdown;
 }
 
-void Segmenter::Offer(std::size_t begin, std::size_t end, const Fits& fits) {
-  const std::size_t n = end - begin;
-  const int values = static_cast<int>(n) * per_frame_;
-  const auto step = [&](State from, StretchKind kind, double rss,
-                        int parameters, double ends) {
-    Step s = StepOf(begin, from, kind, rss, parameters, values);
-    s.cost += ends;
-    return s;
-  };
-  const auto reached = [&](State state) {
-    return best_[begin][state].cost < kInfinity;
-  };
+// The last frame alone may have left the ground.
+void Segmenter::OfferFlight(const Fits& fits) {
+  const bool tail =
+      fits.frames == 1 && fits.begin > 0 && fits.end() == samples_.size();
+  if (fits.frames < least_flight_ && !tail) return;
+  const int values = static_cast<int>(fits.frames) * per_frame_;
+  const int free = 2 * per_frame_ + (options_.gravity_px_per_s2 ? 0 : 1);
+  const Motion flight =
+      fits.As(StretchKind::kFlight, std::min(values, free), *this);
+  const double ending = tail ? 0.0 : EndCost(fits);
+  for (const State from : {kStart, kCarried, kTouched}) {
+    double starting = from == kStart ? 0.0 : options_.rebound_cost;
+    if (from == kTouched && !tail) starting += StartCost(fits);
+    if (MayTouch(fits.end())) {
+      Offer(fits, flight, from, kTouched, starting + ending);
+    }
+    Offer(fits, flight, from, kLeft, starting);
+  }
+}
 
-  // Flight. The last frame alone may have left the ground.
-  const bool known = options_.gravity_px_per_s2.has_value();
-  const bool tail = n == 1 && begin > 0 && end == samples_.size();
-  if (n >= (known ? 2U : 4U) || tail) {
-    const double rss = fits.RssOf(StretchKind::kFlight, *this);
-    const int k = std::min(values, 2 * per_frame_ + (known ? 0 : 1));
-    const double ending = tail ? 0.0 : EndCost(fits, begin, end);
-    for (const State from : {kStart, kCarried, kTouched}) {
-      if (!reached(from)) continue;
-      double starting = from == kStart ? 0.0 : options_.rebound_cost;
-      if (from == kTouched && !tail) starting += StartCost(fits, begin, end);
-      if (MayTouch(end)) {
-        Take(end, kTouched,
-             step(from, StretchKind::kFlight, rss, k, starting + ending));
-      }
-      Take(end, kLeft, step(from, StretchKind::kFlight, rss, k, starting));
-    }
-  }
-  // On the ground: one line of gaps, whose level and slope the ground line
-  // foretells. Another level costs no more than a flight that ends off it.
+// On the ground: one line of gaps, whose level and slope the ground line
+// foretells. Another level costs no more than a flight that ends off it.
+void Segmenter::OfferSupport(const Fits& fits) {
   constexpr std::size_t kLeastSupported = 3;
-  const bool last = begin > 0 && end == samples_.size();
-  if ((n >= kLeastSupported || last) && MayTouch(begin)) {
-    const double off = std::min(
-        options_.off_line_cost,
-        0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
-               RssOfLine(fits.gaps, 0.0, slope_precision_)));
-    const double rss = fits.RssOf(StretchKind::kSupported, *this);
-    const int along = static_cast<int>(std::min<std::size_t>(n, 3));
-    const int k = turns_ ? 1 + 2 * along : 1 + along;
-    for (const State from : {kStart, kCarried, kTouched}) {
-      if (!reached(from)) continue;
-      Take(end, kTouched, step(from, StretchKind::kSupported, rss, k, off));
-    }
+  const bool last = fits.begin > 0 && fits.end() == samples_.size();
+  if ((fits.frames < kLeastSupported && !last) || !MayTouch(fits.begin)) return;
+  const double off =
+      std::min(options_.off_line_cost,
+               0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
+                      RssOfLine(fits.gaps, 0.0, slope_precision_)));
+  const int along = static_cast<int>(std::min<std::size_t>(fits.frames, 3));
+  const Motion down = fits.As(StretchKind::kSupported,
+                              turns_ ? 1 + 2 * along : 1 + along, *this);
+  for (const State from : {kStart, kCarried, kTouched}) {
+    Offer(fits, down, from, kTouched, off);
   }
-  OfferAnyMotion(begin, end, fits);
 }
 
 // Of any kind: pressed to the ground, or in something's hand. Up to three
 // frames have a number of their own for each of theirs.
-void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
-                               const Fits& fits) {
-  const std::size_t n = end - begin;
-  const int values = static_cast<int>(n) * per_frame_;
-  const int parameters = std::min(values, 3 * per_frame_);
-  const double rss = fits.RssOf(StretchKind::kOther, *this);
+void Segmenter::OfferAnyMotion(const Fits& fits) {
+  const std::size_t n = fits.frames;
+  const int k = static_cast<int>(std::min<std::size_t>(n, 3)) * per_frame_;
+  const Motion any = fits.As(StretchKind::kOther, k, *this);
   // No motion that is known: mostly it is one, badly seen. A few frames tell of
   // none, but those after an impact would be a rebound.
   const double few = 2.0 * per_cut_;
@@ -297,27 +292,25 @@ void Segmenter::OfferAnyMotion(std::size_t begin, std::size_t end,
   const double before = told ? options_.unknown_cost : few;
   const double after =
       told ? options_.unknown_cost : few + options_.rebound_cost;
-  const auto offer = [&](State from, State to, StretchKind kind, double ends) {
-    if (!(best_[begin][from].cost < kInfinity)) return;
-    Step s = StepOf(begin, from, kind, rss, parameters, values);
-    s.cost += ends;
-    Take(end, to, s);
+  const auto offer_other = [&](State from, State to, double ends) {
+    Offer(fits, any, from, to, ends);
   };
-  const double above = fits.gaps.y / fits.gaps.w;
   // Twice as for a rebound: where the line is not known, or is not quite where
   // the flights meet, it could stand for one.
   // What is pressed down gives way by less than half of its size.
   if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
-    offer(kTouched, kTouched, StretchKind::kContact,
-          2.0 * options_.rebound_cost +
-              OffGround(above, begin, std::max<std::size_t>(n, 2), kInfinity));
+    const double above = fits.gaps.y / fits.gaps.w;
+    Offer(fits, {StretchKind::kContact, k, any.rss}, kTouched, kTouched,
+          2.0 * options_.rebound_cost + OffGround(above, fits.begin,
+                                                  std::max<std::size_t>(n, 2),
+                                                  kInfinity));
   }
-  offer(kStart, kCarried, StretchKind::kOther, before);
-  if (told) offer(kCarried, kCarried, StretchKind::kOther, before);
-  if (!MayTouch(begin)) return;
-  offer(kTouched, kEnded, StretchKind::kOther, after);
-  offer(kLeft, kEnded, StretchKind::kOther, after);
-  if (told) offer(kEnded, kEnded, StretchKind::kOther, after);
+  offer_other(kStart, kCarried, before);
+  if (told) offer_other(kCarried, kCarried, before);
+  if (!MayTouch(fits.begin)) return;
+  offer_other(kTouched, kEnded, after);
+  offer_other(kLeft, kEnded, after);
+  if (told) offer_other(kEnded, kEnded, after);
 }
 
 void Segmenter::Fit(Fits& fits) const {
@@ -338,7 +331,9 @@ void Segmenter::GrowFrom(std::size_t begin) {
     fits.Add(*this);
     if (!allowed_[end]) continue;
     Fit(fits);
-    Offer(begin, end, fits);
+    OfferFlight(fits);
+    OfferSupport(fits);
+    OfferAnyMotion(fits);
     if (fits.frames < 2) continue;
     // No stretch from here can become the best once even the loosest one, which
     // later frames only make worse, has lost to what leads there already.
@@ -361,8 +356,8 @@ double Segmenter::CostOf(const Stretch& stretch, bool touches_at_end) const {
   Fit(fits);
   double cost = 0.5 * fits.RssOf(stretch.kind, *this);
   if (stretch.kind != StretchKind::kFlight) return cost;
-  cost += StartCost(fits, stretch.begin, stretch.end);
-  if (touches_at_end) cost += EndCost(fits, stretch.begin, stretch.end);
+  cost += StartCost(fits);
+  if (touches_at_end) cost += EndCost(fits);
   return cost;
 }
 
@@ -377,14 +372,13 @@ void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
         b.begin == options_.touchdown) {
       continue;
     }
-    const std::size_t least = options_.gravity_px_per_s2 ? 2 : kTold;
     std::size_t best = b.begin;
     double best_cost = kInfinity;
     for (int shift = -kReach; shift <= kReach; ++shift) {
       const std::size_t cut =
           b.begin + static_cast<std::size_t>(shift);  // wraps: beyond an end
-      if (cut < a.begin + least || cut > a.end + kReach ||
-          cut + least > b.end) {
+      if (cut < a.begin + least_flight_ || cut > a.end + kReach ||
+          cut + least_flight_ > b.end) {
         continue;
       }
       Stretch left = a;
@@ -454,20 +448,6 @@ std::vector<Stretch> Segmenter::BestPath() {
 }
 
 }  // namespace
-
-std::string_view Name(StretchKind kind) {
-  switch (kind) {
-    case StretchKind::kFlight:
-      return "flight";
-    case StretchKind::kSupported:
-      return "supported";
-    case StretchKind::kContact:
-      return "contact";
-    case StretchKind::kOther:
-      break;
-  }
-  return "other";
-}
 
 std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
                                    const SegmentationOptions& options) {

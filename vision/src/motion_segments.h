@@ -34,10 +34,6 @@ struct SegmentationOptions {
   // Along the ground's normal, px/s^2; nothing: one more parameter a flight.
   std::optional<double> gravity_px_per_s2;
 
-  // Of the ground line, at its reference, and of its direction.
-  double u_line_px = 0.0;
-  double u_slope_rad = 0.0;
-
   // A person says so: the first sample after touchdown. Nothing touches before
   // it, and a flight ends there.
   std::optional<std::size_t> touchdown;

@@ -1,13 +1,12 @@
 #include "touchdown/vision/supported_path.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "moments.h"
 #include "touchdown/core/units.h"
 #include "track_shape.h"
 
@@ -20,22 +19,24 @@ constexpr double kOfMedian = 1.4826;  // of |normal|
 // much; more is another line, or none.
 constexpr double kMostInclined_rad = 1.0 * core::kDegree;
 
-// Robust polynomial (Tukey's weights) of v on x, which lies within -1 .. 1.
-struct Polynomial {
-  Eigen::Vector3d terms = Eigen::Vector3d::Zero();
+// Robust line or parabola (Tukey's weights) of v on x, which lies within -1..1.
+struct RobustFit {
+  Polynomial terms;
+  bool bent = false;
   double square = 0.0;   // sum of the weighted squares
   double scatter = 0.0;  // robust, of v about it
-  double u_bend = 0.0;   // of terms[2], from the scatter
-  bool good = false;
-  double At(double x) const { return terms[0] + x * (terms[1] + x * terms[2]); }
+
+  double At(double x) const { return bent ? terms.Parabola(x) : terms.Line(x); }
+  double u_bend() const { return scatter / std::sqrt(terms.third); }
+  bool good() const { return (bent ? terms.third : terms.spread) > 0.0; }
 };
 
-Polynomial Fit(const std::vector<double>& x, const std::vector<double>& v,
-               int degree) {
+RobustFit Fit(const std::vector<double>& x, const std::vector<double>& v,
+              bool bent) {
   constexpr int kRounds = 15;
   constexpr double kTukey = 4.685;
-  Polynomial fit;
-  fit.terms[0] = Median(v);
+  RobustFit fit;
+  fit.terms.level = Median(v);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<double> off;
     off.reserve(v.size());
@@ -44,27 +45,16 @@ Polynomial Fit(const std::vector<double>& x, const std::vector<double>& v,
     }
     fit.scatter = kOfMedian * Median(off);
     const double cut = kTukey * std::max(fit.scatter, 1e-6);
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    Moments sums;
     fit.square = 0.0;
     for (std::size_t i = 0; i < v.size(); ++i) {
-      const double t = off[i] / cut;
-      const double w = t < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
-      Eigen::Vector3d row(1.0, x[i], x[i] * x[i]);
-      if (degree < 2) row[2] = 0.0;
-      normal += w * row * row.transpose();
-      right += w * v[i] * row;
-      fit.square += std::min(1.0, t * t) * cut * cut;
+      const double t = std::min(1.0, off[i] / cut);
+      sums.Add(x[i], v[i], (1.0 - t * t) * (1.0 - t * t));
+      fit.square += t * t * cut * cut;
     }
-    if (degree < 2) normal(2, 2) = 1.0;
-    const Eigen::LDLT<Eigen::Matrix3d> factor(normal);
-    constexpr double kLeastPivot = 1e-9;
-    fit.good =
-        factor.vectorD().minCoeff() > kLeastPivot * factor.vectorD().maxCoeff();
-    if (!fit.good) return fit;
-    fit.terms = factor.solve(right);
-    fit.u_bend =
-        fit.scatter * std::sqrt(factor.solve(Eigen::Vector3d::UnitZ())[2]);
+    fit.terms = Polynomial(sums);
+    fit.bent = bent;
+    if (!fit.good()) return fit;
   }
   return fit;
 }
@@ -88,13 +78,13 @@ struct Path {
       time.push_back((s.time_s - begin) / half_s - 1.0);
       gap.push_back(s.gap_px);
     }
-    line = Fit(place, gap, 1);
+    line = Fit(place, gap, false);
     std::vector<double> off;
     for (std::size_t i = 0; i < gap.size(); ++i) {
       off.push_back((gap[i] - line.At(place[i])) / half_px);
     }
-    along = Fit(time, place, 2);
-    across = Fit(time, off, 2);
+    along = Fit(time, place, true);
+    across = Fit(time, off, true);
   }
 
   // What carries a body leaves so much of its fall beside the acceleration
@@ -102,28 +92,29 @@ struct Path {
   bool IsCarried() const {
     constexpr double kCarried = 0.1;
     constexpr double kNoise = 3.0;  // standard deviations
-    return along.good && across.good &&
-           std::abs(across.terms[2]) <
-               std::max(kCarried * std::abs(along.terms[2]),
-                        kNoise * across.u_bend);
+    return along.good() && across.good() &&
+           std::abs(across.terms.bend) <
+               std::max(kCarried * std::abs(along.terms.bend),
+                        kNoise * across.u_bend());
   }
 
   double middle_px = 0.0;
   double half_px = 0.0;
   std::vector<double> place, time, gap;
-  Polynomial line;           // gap by place
-  Polynomial along, across;  // of the line by time, in half paths
+  RobustFit line;           // gap by place
+  RobustFit along, across;  // of the line by time, in half paths
 };
 
 bool AsksForBend(const PlaneTrack& track, const Path& path,
-                 const Polynomial& bent) {
+                 const RobustFit& bent) {
   if (track.ground.source != calib::GroundSource::kContactPoints &&
       track.ground.source != calib::GroundSource::kDetected) {
     return false;
   }
   // Barrel and pincushion of ordinary lenses bend a line by up to 1 %.
   constexpr double kMostBend = 0.01;
-  if (!bent.good || std::abs(bent.terms[2]) > kMostBend * 2.0 * path.half_px) {
+  if (!bent.good() ||
+      std::abs(bent.terms.bend) > kMostBend * 2.0 * path.half_px) {
     return false;
   }
   // Positive evidence begins at 2, strong at 6 (Kass and Raftery 1995).
@@ -169,15 +160,15 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
   const PlaneTrack plane =
       SeenFromGround(track, calib::GroundThrough(from, to));
   const Path path(plane);
-  if (!path.line.good || !path.IsCarried()) return std::nullopt;
+  if (!path.line.good() || !path.IsCarried()) return std::nullopt;
   // As flight, an acceleration along the path would show as much across it as
   // the vertical lies across it; that must be clear of its own uncertainty.
   constexpr double kClear = 5.0;
-  const double along = std::abs(path.along.terms[2]);
+  const double along = std::abs(path.along.terms.bend);
   const double as_flight =
       along * std::abs(std::tan(to_vertical - kRolled_rad));
-  if (along < kClear * path.along.u_bend ||
-      as_flight < kClear * path.across.u_bend) {
+  if (along < kClear * path.along.u_bend() ||
+      as_flight < kClear * path.across.u_bend()) {
     return std::nullopt;
   }
   const auto at = [&](double place) {
@@ -201,18 +192,18 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
 PathTrend TakeOutTrend(PlaneTrack& track) {
   const Path path(track);
   PathTrend trend;
-  if (!path.line.good) return trend;
-  Polynomial fit = path.line;
-  if (const Polynomial bent = Fit(path.place, path.gap, 2);
+  if (!path.line.good()) return trend;
+  RobustFit fit = path.line;
+  if (const RobustFit bent = Fit(path.place, path.gap, true);
       AsksForBend(track, path, bent)) {
     fit = bent;
     // The straight line and the bend apart: x^2 - 1 vanishes at both ends.
-    trend.bend_px = -bent.terms[2];
+    trend.bend_px = -bent.terms.bend;
   }
-  trend.slope_rad = fit.terms[1] / path.half_px;
+  trend.slope_rad = 0.5 * (fit.At(1.0) - fit.At(-1.0)) / path.half_px;
   if (std::abs(trend.slope_rad) > kMostInclined_rad) return {};
   for (std::size_t i = 0; i < track.samples.size(); ++i) {
-    const double off = fit.At(path.place[i]) - fit.terms[0];
+    const double off = fit.At(path.place[i]) - fit.At(0.0);
     track.samples[i].gap_px -= off;
     track.samples[i].height_px -= off;
   }
