@@ -25,24 +25,61 @@ double SmoothedSigma(const Background& background,
   return options.noise * std::sqrt(background.UsualVariance()) / 3.0;
 }
 
-// A blob from one outer contour; holes (specular spots) count as body.
-Blob FromContour(const std::vector<cv::Point>& contour,
-                 const cv::Mat& difference, const cv::Rect& region,
-                 const core::Frame& frame) {
+// By area times contrast.
+template <class Part>
+void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.area_px2 * std::abs(a.contrast_dn) >
+           b.area_px2 * std::abs(b.contrast_dn);
+  });
+  if (parts.size() > static_cast<std::size_t>(options.most_blobs)) {
+    parts.resize(static_cast<std::size_t>(options.most_blobs));
+  }
+}
+
+// A region that may be a blob, by its outer contour; holes (specular spots)
+// count as body.
+struct Region {
+  std::vector<cv::Point> contour;
+  double area_px2 = 0.0;
+  double contrast_dn = 0.0;
+};
+
+// A contour runs through pixel centres: the region reaches half a pixel
+// further.
+double AreaWithin(const std::vector<cv::Point>& contour) {
+  return cv::contourArea(contour) + 0.5 * cv::arcLength(contour, true) + 1.0;
+}
+
+// The regions within some contours that are large enough.
+void AddRegions(std::vector<std::vector<cv::Point>> contours,
+                const cv::Mat& difference, const DetectOptions& options,
+                std::vector<Region>& regions) {
+  for (std::vector<cv::Point>& contour : contours) {
+    const double area = AreaWithin(contour);
+    if (area < options.least_area_px2) continue;
+    // Mean difference over the filled contour.
+    const cv::Rect box = cv::boundingRect(contour);
+    cv::Mat mask = cv::Mat::zeros(box.size(), CV_8UC1);
+    cv::drawContours(mask, std::vector<std::vector<cv::Point>>{contour}, 0, 255,
+                     cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
+    regions.push_back(
+        {std::move(contour), area, cv::mean(difference(box), mask)[0]});
+  }
+}
+
+Blob BlobOf(const Region& part, const cv::Size& searched,
+            const core::PixelPoint& origin) {
   Blob blob;
-  const cv::Moments m = cv::moments(contour);
-  // A contour runs through pixel centres: the region reaches half a pixel
-  // further.
-  const double perimeter = cv::arcLength(contour, true);
-  blob.area_px2 = m.m00 + 0.5 * perimeter + 1.0;
-  const cv::Rect box = cv::boundingRect(contour);
+  blob.area_px2 = part.area_px2;
+  blob.contrast_dn = part.contrast_dn;
+  const cv::Moments m = cv::moments(part.contour);
+  const cv::Rect box = cv::boundingRect(part.contour);
   const double cx = m.m00 > 0.0 ? m.m10 / m.m00 : box.x + 0.5 * (box.width - 1);
   const double cy =
       m.m00 > 0.0 ? m.m01 / m.m00 : box.y + 0.5 * (box.height - 1);
-  const double to_x = region.x + frame.origin_x_px;
-  const double to_y = region.y + frame.origin_y_px;
-  blob.centre = {cx + to_x, cy + to_y};
-  const cv::RotatedRect tight = cv::minAreaRect(contour);
+  blob.centre = {cx + origin.x_px, cy + origin.y_px};
+  const cv::RotatedRect tight = cv::minAreaRect(part.contour);
   double angle = tight.angle * std::numbers::pi / 180.0;
   double width = static_cast<double>(tight.size.width) + 1.0;
   double height = static_cast<double>(tight.size.height) + 1.0;
@@ -55,22 +92,32 @@ Blob FromContour(const std::vector<cv::Point>& contour,
   blob.angle_rad = std::remainder(angle, std::numbers::pi);
   blob.fill = blob.area_px2 / (width * height);
   blob.at_border = box.x <= 0 || box.y <= 0 ||
-                   box.x + box.width >= difference.cols ||
-                   box.y + box.height >= difference.rows;
-  // Mean difference over the filled contour.
-  cv::Mat mask = cv::Mat::zeros(box.size(), CV_8UC1);
-  cv::drawContours(mask, std::vector<std::vector<cv::Point>>{contour}, 0, 255,
-                   cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
-  blob.contrast_dn = cv::mean(difference(box), mask)[0];
+                   box.x + box.width >= searched.width ||
+                   box.y + box.height >= searched.height;
   return blob;
+}
+
+// Those of the strongest regions, which alone are worth a closer look.
+std::vector<Blob> BlobsOf(std::vector<Region> regions, const cv::Rect& searched,
+                          const core::Frame& frame,
+                          const DetectOptions& options) {
+  KeepStrongest(regions, options);
+  const core::PixelPoint origin{
+      static_cast<double>(searched.x + frame.origin_x_px),
+      static_cast<double>(searched.y + frame.origin_y_px)};
+  std::vector<Blob> blobs;
+  for (const Region& part : regions) {
+    blobs.push_back(BlobOf(part, searched.size(), origin));
+  }
+  return blobs;
 }
 
 std::vector<Blob> FromDifference(const core::Frame& frame,
                                  const Background& background,
                                  const DetectOptions& options) {
   const cv::Rect region = SearchRegion(frame, options.region);
-  std::vector<Blob> blobs;
-  if (region.empty()) return blobs;
+  if (region.empty()) return {};
+  std::vector<Region> found;
   cv::Mat value;
   AsMat(frame)(region).convertTo(value, CV_32F);
   const cv::Mat whole(background.height_px, background.width_px, CV_32FC1,
@@ -97,19 +144,15 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
     cv::drawContours(mask, changed, -1, 255, cv::FILLED);
     cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc);
     cv::findContours(mask, changed, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    for (const auto& part : changed) {
-      Blob blob = FromContour(part, magnitude, region, frame);
-      if (blob.area_px2 >= options.least_area_px2) blobs.push_back(blob);
-    }
-    KeepLargest(blobs, options);
-    return blobs;
+    AddRegions(std::move(changed), magnitude, options, found);
+    return BlobsOf(std::move(found), region, frame, options);
   }
   std::vector<std::vector<cv::Point>> regions;
   cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
                    cv::CHAIN_APPROX_NONE);
   for (const auto& outer : regions) {
+    if (AreaWithin(outer) < options.least_area_px2) continue;
     const cv::Rect box = cv::boundingRect(outer);
-    if (box.area() < options.least_area_px2) continue;
     cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
     cv::drawContours(own, std::vector<std::vector<cv::Point>>{outer}, 0, 255,
                      cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
@@ -132,27 +175,23 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
     std::vector<std::vector<cv::Point>> parts;
     cv::findContours(strong, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
                      box.tl());
-    for (const auto& part : parts) {
-      Blob blob = FromContour(part, difference, region, frame);
-      if (blob.area_px2 >= options.least_area_px2) blobs.push_back(blob);
-    }
+    AddRegions(std::move(parts), difference, options, found);
   }
-  KeepLargest(blobs, options);
-  return blobs;
+  return BlobsOf(std::move(found), region, frame, options);
 }
 
 std::vector<Blob> FromLevels(const core::Frame& frame,
                              const DetectOptions& options) {
   const cv::Rect region = SearchRegion(frame, options.region);
-  std::vector<Blob> blobs;
-  if (region.empty()) return blobs;
+  if (region.empty()) return {};
+  std::vector<Region> found;
   cv::Mat value;
   AsMat(frame)(region).convertTo(value, CV_32F);
   cv::blur(value, value, {3, 3});
   double low = 0.0;
   double high = 0.0;
   cv::minMaxLoc(value, &low, &high);
-  if (!(high > low)) return blobs;
+  if (!(high > low)) return {};
   // Otsu's threshold between the two levels.
   cv::Mat eight;
   value.convertTo(eight, CV_8U, 255.0 / (high - low),
@@ -165,30 +204,21 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
     std::vector<std::vector<cv::Point>> regions;
     cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
                      cv::CHAIN_APPROX_NONE);
-    for (const auto& outer : regions) {
-      Blob blob = FromContour(outer, difference, region, frame);
-      // What spans most of the picture is background.
-      const double share = blob.area_px2 / static_cast<double>(region.area());
-      constexpr double kMostOfPicture = 0.5;
-      if (blob.area_px2 >= options.least_area_px2 && share < kMostOfPicture) {
-        blobs.push_back(blob);
-      }
-    }
+    // What spans most of the picture is background.
+    constexpr double kMostOfPicture = 0.5;
+    std::erase_if(regions, [&](const auto& outer) {
+      return AreaWithin(outer) >=
+             kMostOfPicture * static_cast<double>(region.area());
+    });
+    AddRegions(std::move(regions), difference, options, found);
   }
-  KeepLargest(blobs, options);
-  return blobs;
+  return BlobsOf(std::move(found), region, frame, options);
 }
 
 }  // namespace
 
 void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
-  std::sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
-    return a.area_px2 * std::abs(a.contrast_dn) >
-           b.area_px2 * std::abs(b.contrast_dn);
-  });
-  if (blobs.size() > static_cast<std::size_t>(options.most_blobs)) {
-    blobs.resize(static_cast<std::size_t>(options.most_blobs));
-  }
+  KeepStrongest(blobs, options);
 }
 
 std::vector<Blob> DetectBlobs(const core::Frame& frame,
