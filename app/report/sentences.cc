@@ -23,12 +23,12 @@ std::string BracketSentence(const analysis::Bracket& bracket) {
                        Plain((*bracket.high_rad - *bracket.low_rad) / kDegree));
   }
   if (bracket.low_rad) {
-    return fmt::format("boundary {} deg (no bounce was seen)",
-                       HalfOpen(bracket.low_rad, {}, kDegree));
+    return fmt::format("no bounce up to {} deg",
+                       Plain(*bracket.low_rad / kDegree));
   }
   if (bracket.high_rad) {
-    return fmt::format("boundary {} deg (every body bounced)",
-                       HalfOpen({}, bracket.high_rad, kDegree));
+    return fmt::format("every body bounced, down to {} deg",
+                       Plain(*bracket.high_rad / kDegree));
   }
   return "no decided trial";
 }

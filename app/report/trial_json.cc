@@ -274,10 +274,11 @@ ExportReader::ExportReader(std::istream& in, std::string name)
     }
     for (; more && SchemaOf(line_) == kPlanSchema; more = NextLine()) {
       plan_.push_back(PlanEventFromJson(line_));
-      const std::string& name = plan_.back().campaign;
+      const std::string& campaign = plan_.back().campaign;
       if (std::none_of(campaigns_.begin(), campaigns_.end(),
-                       [&](const auto& c) { return c.name == name; })) {
-        Fail(fmt::format("campaign is '{}', must be one of this file", name));
+                       [&](const auto& c) { return c.name == campaign; })) {
+        Fail(fmt::format("campaign is '{}', must be one of this file",
+                         campaign));
       }
     }
   } catch (const std::invalid_argument& error) {

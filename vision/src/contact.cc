@@ -7,6 +7,7 @@
 
 #include "contact_event.h"
 #include "contact_record.h"
+#include "impacts.h"
 #include "motion_segments.h"
 #include "touchdown/vision/supported_path.h"
 #include "track_noise.h"
@@ -385,6 +386,7 @@ ContactResult FindContacts(const PlaneTrack& given,
       result.first = NoContact(reason);
     }
   }
+  result.restitution = PoolRestitution(result);
   return result;
 }
 
