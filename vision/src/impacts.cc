@@ -84,9 +84,12 @@ RestitutionOfImpacts PoolRestitution(const ContactResult& contacts) {
   double weights = 0.0;
   double sum = 0.0;
   double squares = 0.0;
-  const auto add = [&](const core::Motion& motion) {
-    out.unresolved += motion.unresolved_impacts;
+  // What strikes again has left the ground, seen or not.
+  const auto add = [&](const core::Motion& motion, bool strikes_again) {
     const core::Measured& e = motion.restitution;
+    out.unresolved += !e && strikes_again
+                          ? std::max(1, motion.unresolved_impacts)
+                          : motion.unresolved_impacts;
     if (!e || !(e->u > 0.0)) return;
     const double w = 1.0 / (e->u * e->u);
     weights += w;
@@ -94,8 +97,10 @@ RestitutionOfImpacts PoolRestitution(const ContactResult& contacts) {
     squares += w * e->value * e->value;
     ++out.resolved;
   };
-  add(contacts.first.motion);
-  for (const core::ContactRecord& later : contacts.later) add(later.motion);
+  add(contacts.first.motion, !contacts.later.empty());
+  for (const core::ContactRecord& later : contacts.later) {
+    add(later.motion, &later != &contacts.later.back());
+  }
   if (out.resolved == 0) {
     out.value = core::AbsentBecause("no impact was resolved");
     return out;
