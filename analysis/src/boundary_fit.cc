@@ -23,6 +23,10 @@ constexpr int kEnoughLevels = 14;
 constexpr double kTailMass = 1.0 / 64;
 // Enough to find the greatest likelihood.
 constexpr double kCoarseCellMass = 1.0 / 16;
+// Twice the fall of the log likelihood at the ends of an interval: 0.90 and
+// 0.95 quantiles of chi^2 with one degree of freedom.
+constexpr double kFall90 = 2.7055434540954;
+constexpr double kFall95 = 3.8414588206941;
 // Splitting stops at this many angles: far beyond what any posterior needed.
 constexpr std::size_t kMaxAngles = 20000;
 
@@ -450,14 +454,59 @@ void FillScatter(BoundaryPosterior& out) {
   out.scatter95_rad = {at(0.025), at(0.975)};
 }
 
+// The greatest log likelihood at each angle, over every scatter.
+std::vector<double> Profile(const JointTable& table) {
+  std::vector<double> out;
+  for (const auto& row : table.rows()) {
+    out.push_back(*std::max_element(row.begin(), row.end()));
+  }
+  return out;
+}
+
+// Outcomes of one kind bound the boundary on one side. The posterior is proper
+// only because its support ends, and the more of it is open, the nearer to that
+// end its equal tails lie: of 47 boundaries near the last of 20 ascending or
+// staircase angles they held 3. There the interval goes to the end of the
+// support, and as far on the other side as the likelihood, whatever the
+// scatter, has not fallen by half of `fall`.
+core::Interval OpenTo(DataStatus status, const std::vector<double>& angles,
+                      const std::vector<double>& profile, double fall,
+                      core::Interval tails) {
+  const double level =
+      *std::max_element(profile.begin(), profile.end()) - fall / 2;
+  const auto crossing = [&](std::size_t out, std::size_t in) {
+    const double share = (level - profile[out]) / (profile[in] - profile[out]);
+    return angles[out] + share * (angles[in] - angles[out]);
+  };
+  const auto above = [&](double l) { return l >= level; };
+  if (status == DataStatus::kOnlySlides) {
+    const auto i = static_cast<std::size_t>(
+        std::find_if(profile.begin(), profile.end(), above) - profile.begin());
+    return {std::min(tails.low, i > 0 ? crossing(i - 1, i) : angles.front()),
+            angles.back()};
+  }
+  if (status == DataStatus::kOnlyBounces) {
+    const auto i = static_cast<std::size_t>(
+        std::find_if(profile.rbegin(), profile.rend(), above).base() -
+        profile.begin() - 1);
+    return {angles.front(),
+            std::max(tails.high, i + 1 < angles.size() ? crossing(i + 1, i)
+                                                       : angles.back())};
+  }
+  return tails;
+}
+
 void FillMarginal(const JointTable& table, const ScatterPrior& prior,
-                  BoundaryPosterior& out) {
+                  DataStatus status, BoundaryPosterior& out) {
   out.angle_rad = table.angles();
   out.density_per_rad = table.Density(prior);
   out.cumulative = Cumulate(out.angle_rad, out.density_per_rad);
   out.median_rad = Quantile(out, 0.5);
-  out.interval90_rad = {Quantile(out, 0.05), Quantile(out, 0.95)};
-  out.interval95_rad = {Quantile(out, 0.025), Quantile(out, 0.975)};
+  const std::vector<double> profile = Profile(table);
+  out.interval90_rad = OpenTo(status, out.angle_rad, profile, kFall90,
+                              {Quantile(out, 0.05), Quantile(out, 0.95)});
+  out.interval95_rad = OpenTo(status, out.angle_rad, profile, kFall95,
+                              {Quantile(out, 0.025), Quantile(out, 0.975)});
 }
 
 void FillMoments(BoundaryPosterior& out) {
@@ -608,13 +657,13 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
     table = std::move(again);
   }
   out.max_log_likelihood = table.Max();
-  FillMarginal(table, options.scatter, out);
+  FillMarginal(table, options.scatter, out.status, out);
   FillGrid(table, options.scatter, out.grid);
   FillMoments(out);
   FillScatter(out);
   for (const ScatterPrior& prior : options.sensitivity) {
     BoundaryPosterior other;
-    FillMarginal(table, prior, other);
+    FillMarginal(table, prior, out.status, other);
     out.sensitivity.push_back({prior, other.median_rad, other.interval95_rad});
   }
   return out;

@@ -100,7 +100,7 @@ db::Store OpenStore(const Flags& flags) {
   std::vector<core::Campaign> missing;
   if (!store.FindCampaign(campaign.name)) missing.push_back(campaign);
   db::Restore(store, from.uuid(), db::AllVersions(from), missing,
-              [] { return std::nullopt; });
+              db::PlanEvents(from, campaign.name), [] { return std::nullopt; });
   return store;
 }
 

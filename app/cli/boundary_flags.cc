@@ -8,10 +8,12 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "app/cli/messages.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/looks.h"
 #include "app/pipeline/report_input.h"
 #include "app/pipeline/thrower.h"
 #include "touchdown/core/errors.h"
@@ -200,19 +202,15 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
 void KeepLook(const BoundaryFlags& flags, std::string_view command,
               report::ReportInput& input) {
   if (flags.store.empty() || input.trials.empty()) return;
-  // A look waits for nobody: another process may be logging.
-  constexpr double kPatience_s = 1.0;
-  try {
-    db::OpenOptions options;
-    options.patience_s = kPatience_s;
-    auto store = db::Store::Open(flags.store, db::OpenMode::kWrite, options);
-    std::set<std::string> names;
-    for (const core::Trial& trial : input.trials) names.insert(trial.campaign);
-    for (const std::string& name : names) db::RecordLook(store, name, command);
-    input.plan = db::PlanEvents(store);
-  } catch (const core::StoreError& error) {
-    Tell(fmt::format("this look is not on record: {}", error.what()));
+  std::set<std::string> names;
+  for (const core::Trial& trial : input.trials) names.insert(trial.campaign);
+  const std::string trouble = pipeline::KeepLooks(flags.store, names, command);
+  if (!trouble.empty()) {
+    Tell(fmt::format("this look is not on record: {}", trouble));
+    return;
   }
+  input.plan =
+      db::PlanEvents(db::Store::Open(flags.store, db::OpenMode::kRead));
 }
 
 report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {

@@ -99,10 +99,12 @@ int Merge(const DbFlags& flags) {
     }
     fmt::print(
         "{}: {} trials, {} revisions, {} campaigns, {} versions of the "
-        "register added; {} revisions were here already; {} conflicts\n",
+        "register, {} plans and looks added; {} revisions were here already; "
+        "{} conflicts\n",
         Printable(file), report.trials_added, report.revisions_added,
         report.campaigns_added, report.register_versions_added,
-        report.revisions_known, report.conflicts.size());
+        report.plan_events_added, report.revisions_known,
+        report.conflicts.size());
   }
   return 0;
 }

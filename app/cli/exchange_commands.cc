@@ -17,6 +17,7 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/paper_trials.h"
+#include "app/report/plan_json.h"
 #include "app/report/register_json.h"
 #include "app/report/trial_csv.h"
 #include "app/report/trial_json.h"
@@ -24,6 +25,7 @@
 #include "touchdown/core/output_file.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
@@ -75,6 +77,9 @@ void WriteAll(std::ostream& out, const db::Store& store,
     if (flags.campaign.empty() || campaign.name == flags.campaign) {
       out << report::CampaignJson(campaign) << '\n';
     }
+  }
+  for (const auto& event : db::PlanEvents(store, flags.campaign)) {
+    out << report::PlanEventJson(event) << '\n';
   }
   store.ForEachHistory([&](const std::vector<db::Revision>& history) {
     if (!flags.campaign.empty() &&
@@ -243,18 +248,18 @@ Imported ImportJsonLines(const ImportFlags& flags, const fs::path& db,
   auto store = db::Store::Open(db, db::OpenMode::kCreate);
   const db::MergeReport report = db::Restore(
       store, reader.store_uuid(), reader.entries(), reader.campaigns(),
-      [&reader] { return reader.NextHistory(); });
+      reader.plan(), [&reader] { return reader.NextHistory(); });
   Imported done;
   done.count = static_cast<std::size_t>(
       report.trials_added + report.revisions_added + report.campaigns_added +
-      report.register_versions_added);
+      report.register_versions_added + report.plan_events_added);
   done.conflicts = report.conflicts;
   done.summary = fmt::format(
-      "{} trials, {} revisions, {} campaigns, {} versions of the register "
-      "imported; {} revisions were here already; {} conflicts",
+      "{} trials, {} revisions, {} campaigns, {} versions of the register, {} "
+      "plans and looks imported; {} revisions were here already; {} conflicts",
       report.trials_added, report.revisions_added, report.campaigns_added,
-      report.register_versions_added, report.revisions_known,
-      report.conflicts.size());
+      report.register_versions_added, report.plan_events_added,
+      report.revisions_known, report.conflicts.size());
   return done;
 }
 

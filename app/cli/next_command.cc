@@ -126,6 +126,7 @@ core::Campaign EmptyCampaign(const BoundaryFlags& flags,
 int RunNext(const BoundaryFlags& flags) {
   report::ReportInput input = MakeInput(flags);
   RefuseCheckShots(flags, input);
+  KeepLook(flags, "next", input);
   const std::vector<core::Trial> as_given = std::move(input.trials);
   std::vector<core::Trial> sorted = as_given;
   report::SortTrials(sorted);

@@ -139,6 +139,7 @@ Json MotionOf(Writer& writer, const std::string& at, const core::Motion& m) {
       {"omega_rad_per_s",
        number("after.omega_rad_per_s", m.after_omega_rad_per_s)}};
   json["restitution"] = number("restitution", m.restitution);
+  json["unresolved_impacts"] = m.unresolved_impacts;
   json["centre_rebound_ratio"] =
       number("centre_rebound_ratio", m.centre_rebound_ratio);
   json["impulse_ratio"] = number("impulse_ratio", m.impulse_ratio);
@@ -320,6 +321,11 @@ std::string ToJson(const Analysis& analysis) {
          {"motion", MotionOf(writer, at + "motion.", later.motion)}});
   }
   json["motion"] = MotionOf(writer, "motion.", first.motion);
+  const vision::RestitutionOfImpacts& e = analysis.contacts.restitution;
+  json["restitution_of_impacts"] = {
+      {"value", writer.Number("restitution_of_impacts.value", e.value)},
+      {"resolved", e.resolved},
+      {"unresolved", e.unresolved}};
   json["explained"] = ExplainedOf(writer, analysis);
   json["checks"] = ChecksJson(analysis);
   json["scene_model"] = {{"used", analysis.scene_model.used},

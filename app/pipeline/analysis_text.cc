@@ -166,6 +166,16 @@ std::string ToText(const Analysis& a) {
   AddGaps(out, a);
   if (contact.found && !contact.from_start) {
     AddMotion(out, first.motion);
+    const vision::RestitutionOfImpacts& e = a.contacts.restitution;
+    if (e.resolved > 1 || e.unresolved > 0) {
+      Line(out, "impacts",
+           fmt::format(
+               "{} resolved, restitution {}; {}", e.resolved,
+               Number(e.value, 1.0, ""),
+               e.unresolved > 0
+                   ? fmt::format("at least {} not resolved", e.unresolved)
+                   : "all that were seen"));
+    }
   }
   if (a.explained) {
     Line(

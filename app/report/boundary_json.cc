@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/report/campaign_checks.h"
 #include "app/report/check_shots.h"
 #include "app/report/document.h"
 #include "app/report/sentences.h"
@@ -276,6 +277,30 @@ Json BoundaryDocument(std::span<const Group> groups) {
   return out;
 }
 
+namespace {
+
+Json CheckJson(const core::Expected<analysis::PooledCheck>& check) {
+  if (!check) return {{"absent", check.error().reason}};
+  return {{"trials", check->trials},
+          {"ratio", {{"value", check->ratio.value}, {"u", check->ratio.u}}},
+          {"z", check->z},
+          {"failed", check->failed},
+          {"shows", check->shows}};
+}
+
+// Gravity, size and restitution over all trials of the group.
+Json ChecksJson(const Group& group, std::span<const core::Trial> trials) {
+  const CampaignChecks checks = CheckCampaign(group.members, trials);
+  return {{"gravity", CheckJson(checks.gravity)},
+          {"size", CheckJson(checks.size)},
+          {"restitution", CheckJson(checks.restitution)},
+          {"failed", checks.Failed()},
+          {"explanation",
+           checks.Failed() ? checks.explanation : WhatChecksShow(checks)}};
+}
+
+}  // namespace
+
 Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
                     std::span<const core::Trial> trials) {
   Json out = {{"schema", "touchdown.report/1"},
@@ -290,6 +315,7 @@ Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
     for (const auto& left : group.trials.left_out) {
       left_out[left.trial] = &left.reason;
     }
+    entry["campaign_checks"] = ChecksJson(group, trials);
     entry["trials"] = Json::array();
     for (const std::size_t t : group.members) {
       const auto why = left_out.find(t);

@@ -19,8 +19,8 @@ struct TrialRatios {
   core::Measured size;  // seen over stated, where the scale is not the body's
   double common_gravity_u = 0.0;  // relative: scale, local gravity
   double common_size_u = 0.0;     // relative: scale, statement, outline
-  std::optional<double> px_per_m;
-  std::optional<double> fps;
+  std::optional<double> px_per_m = {};
+  std::optional<double> fps = {};
   bool scale_of_body = false;
 };
 TrialRatios RatiosOf(const core::Trial& trial);

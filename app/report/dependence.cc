@@ -102,7 +102,10 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
   const auto row = [&](const std::string& what, const analysis::ScoreTest& test,
                        const std::string& moves) {
     const bool clear = test.p < kTelling;
-    if (clear) telling += (telling.empty() ? "" : ", ") + what;
+    if (clear) {
+      telling +=
+          fmt::format("{}{} ({})", telling.empty() ? "" : ", ", what, moves);
+    }
     table.rows.push_back(
         {{what},
          {fmt::format("{}", test.trials)},
@@ -152,7 +155,8 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
 std::string Sentence(const std::string& telling) {
   return fmt::format(
       "The boundary depends on more than the angle, or drifted: {}. One "
-      "boundary for all these trials is then an average over what was thrown.",
+      "boundary for all these trials is then an average over what was thrown: "
+      "find the cause before more are thrown.",
       telling);
 }
 

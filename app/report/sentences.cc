@@ -23,27 +23,28 @@ std::string BracketSentence(const analysis::Bracket& bracket) {
                        Plain((*bracket.high_rad - *bracket.low_rad) / kDegree));
   }
   if (bracket.low_rad) {
-    return fmt::format("boundary {} deg (no bounce was seen)",
-                       HalfOpen(bracket.low_rad, {}, kDegree));
+    return fmt::format("no bounce up to {} deg",
+                       Plain(*bracket.low_rad / kDegree));
   }
   if (bracket.high_rad) {
-    return fmt::format("boundary {} deg (every body bounced)",
-                       HalfOpen({}, bracket.high_rad, kDegree));
+    return fmt::format("every body bounced, down to {} deg",
+                       Plain(*bracket.high_rad / kDegree));
   }
   return "no decided trial";
 }
 
 std::string BoundarySentence(const analysis::BoundaryStudy& study) {
   const auto& p = study.posterior;
-  // Of one outcome the trials bound one side; the rest of the interval, and the
-  // median with it, is the prior's.
+  // Outcomes of one kind bound one side; the other end, and the median, are
+  // the prior's.
   const analysis::Counts& counts = study.counts;
   if ((counts.bounce == 0) != (counts.not_bounce == 0)) {
+    const bool is_below = counts.not_bounce == 0;
     return fmt::format(
-        "not bounded {} by these trials (the posterior's {:.1f} to {:.1f} deg "
-        "is the prior's beyond them)",
-        counts.bounce == 0 ? "above" : "below", p.interval95_rad.low / kDegree,
-        p.interval95_rad.high / kDegree);
+        "{} {:.1f} deg (95 %), not bounded {} by these trials",
+        is_below ? "below" : "above",
+        (is_below ? p.interval95_rad.high : p.interval95_rad.low) / kDegree,
+        is_below ? "below" : "above");
   }
   return fmt::format("{:.1f} deg, 95 % interval {:.1f} to {:.1f} deg",
                      p.median_rad / kDegree, p.interval95_rad.low / kDegree,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/report/json_fields.h"
+#include "app/report/plan_json.h"
 #include "app/report/register_json.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/quantities.h"
@@ -270,6 +271,15 @@ ExportReader::ExportReader(std::istream& in, std::string name)
     }
     for (; more && SchemaOf(line_) == kCampaignSchema; more = NextLine()) {
       campaigns_.push_back(CampaignFromJson(line_));
+    }
+    for (; more && SchemaOf(line_) == kPlanSchema; more = NextLine()) {
+      plan_.push_back(PlanEventFromJson(line_));
+      const std::string& campaign = plan_.back().campaign;
+      if (std::none_of(campaigns_.begin(), campaigns_.end(),
+                       [&](const auto& c) { return c.name == campaign; })) {
+        Fail(fmt::format("campaign is '{}', must be one of this file",
+                         campaign));
+      }
     }
   } catch (const std::invalid_argument& error) {
     Fail(error.what());

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "touchdown/core/campaign.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/records.h"
 #include "touchdown/db/register.h"
 
@@ -33,21 +34,23 @@ db::Revision RevisionFromJson(std::string_view line);
 
 // An export: a header line {"schema": "touchdown.export/1", "store": UUID},
 // then a line for each version of the register's entries (register_json.h), a
-// line for each campaign, then a line for each revision, those of one
-// trial together and in order.
+// line for each campaign, a line for each plan of these and each look at them
+// (plan_json.h), then a line for each revision, those of one trial together and
+// in order.
 void WriteExportHeader(std::ostream& out, const std::string& store_uuid);
 
 // Reads an export piece by piece. Every function throws core::InputError naming
 // file and line.
 class ExportReader {
  public:
-  // Reads the header, the register and the campaigns. `name` is the file's, for
-  // errors.
+  // Reads the header, the register, the campaigns and their plans. `name` is
+  // the file's, for errors.
   ExportReader(std::istream& in, std::string name);
 
   const std::string& store_uuid() const { return store_uuid_; }
   const std::vector<db::Entry>& entries() const { return entries_; }
   const std::vector<core::Campaign>& campaigns() const { return campaigns_; }
+  const std::vector<db::PlanEvent>& plan() const { return plan_; }
 
   // The revisions of the next trial; nothing at the end.
   std::optional<std::vector<db::Revision>> NextHistory();
@@ -63,6 +66,7 @@ class ExportReader {
   std::string store_uuid_;
   std::vector<db::Entry> entries_;
   std::vector<core::Campaign> campaigns_;
+  std::vector<db::PlanEvent> plan_;
   std::optional<db::Revision> ahead_;
 };
 

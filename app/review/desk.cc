@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "app/pipeline/journal.h"
+#include "app/pipeline/looks.h"
+
 namespace touchdown::review {
 
 Desk::Desk(std::filesystem::path store, std::filesystem::path reports,
@@ -32,9 +35,15 @@ std::string Desk::Stamp() const {
 
 std::shared_ptr<const Statistics> Desk::StatisticsNow() {
   const std::lock_guard lock(statistics_guard_);
-  // Taken before reading: what changes meanwhile makes them stale.
-  const std::string stamp = Stamp();
-  if (!statistics_ || stamp != statistics_stamp_) {
+  if (!statistics_ || Stamp() != statistics_stamp_) {
+    const std::string trouble = pipeline::KeepLooks(
+        store_, pipeline::CampaignsWithAnswer(store_), "review");
+    if (!trouble.empty()) {
+      pipeline::Journal("this look is not on record: " + trouble);
+    }
+    // Taken before reading: what changes meanwhile makes them stale; the look
+    // does not.
+    const std::string stamp = Stamp();
     statistics_ =
         std::make_shared<const Statistics>(MakeStatistics(store_, reach_of_));
     statistics_stamp_ = stamp;

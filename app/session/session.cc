@@ -20,6 +20,7 @@
 #include "app/report/trial_json.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/vision/clip_digest.h"
 
 namespace touchdown::session {
@@ -377,7 +378,10 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     Say("  (recorded before these set-points were shown: logged without them)");
   }
   Plan();
-  if (!is_check) Say("  boundary   " + file_.boundary);
+  if (!is_check) {
+    Say("  boundary   " + file_.boundary);
+    db::RecordLook(store_, campaign_.name, "session");
+  }
   SayPlan();
 }
 

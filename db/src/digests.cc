@@ -94,6 +94,15 @@ std::string ClipDigestOf(Connection& connection, std::int64_t clip_row) {
   return Sha256(text);
 }
 
+std::string PlanDigestOf(Connection& connection, std::string_view before,
+                         std::int64_t event_row) {
+  std::string text = fmt::format("touchdown.plan/1\n{}\n", before);
+  Statement row(connection, "SELECT * FROM plan_events WHERE id = ?");
+  row.Add(event_row);
+  if (row.Step()) row.AppendRow(text);
+  return Sha256(text);
+}
+
 }  // namespace
 
 void KeepDigest(Connection& connection, std::int64_t trial_row,
@@ -138,6 +147,37 @@ void KeepClipDigest(Connection& connection, std::int64_t clip_row) {
       .Run();
 }
 
+void KeepPlanDigest(Connection& connection, std::int64_t campaign_row,
+                    std::int64_t event_row) {
+  std::string before;
+  {
+    Statement row(connection,
+                  "SELECT sha256 FROM plan_digests WHERE campaign_id = ?");
+    row.Add(campaign_row);
+    if (row.Step()) before = row.TakeText();
+  }
+  const std::string digest = PlanDigestOf(connection, before, event_row);
+  Statement(connection,
+            before.empty()
+                ? "INSERT INTO plan_digests (sha256, campaign_id, events) "
+                  "VALUES (?, ?, 1)"
+                : "UPDATE plan_digests SET sha256 = ?, events = events + 1 "
+                  "WHERE campaign_id = ?")
+      .Add(digest)
+      .Add(campaign_row)
+      .Run();
+}
+
+void KeepAllPlanDigests(Connection& connection) {
+  Statement row(connection,
+                "SELECT campaign_id, id FROM plan_events "
+                "ORDER BY id");
+  while (row.Step()) {
+    const std::int64_t campaign = row.TakeInteger();
+    KeepPlanDigest(connection, campaign, row.TakeInteger());
+  }
+}
+
 void KeepAllDigests(Connection& connection) {
   {
     Statement row(connection,
@@ -153,7 +193,47 @@ void KeepAllDigests(Connection& connection) {
   while (clip.Step()) KeepClipDigest(connection, clip.TakeInteger());
 }
 
+namespace {
+
+void CheckPlanDigests(Connection& connection,
+                      std::vector<std::string>& problems) {
+  Statement campaign(connection,
+                     "SELECT c.id, c.name, ifnull(d.events, 0), "
+                     "ifnull(d.sha256, '') FROM campaigns c "
+                     "LEFT JOIN plan_digests d ON d.campaign_id = c.id "
+                     "ORDER BY c.id");
+  while (campaign.Step()) {
+    const std::int64_t id = campaign.TakeInteger();
+    const std::string name = campaign.TakeText();
+    const std::int64_t events = campaign.TakeInteger();
+    const std::string kept = campaign.TakeText();
+    std::string digest;
+    std::int64_t count = 0;
+    Statement event(connection,
+                    "SELECT id FROM plan_events WHERE campaign_id = ? "
+                    "ORDER BY id");
+    event.Add(id);
+    for (; event.Step(); ++count) {
+      digest = PlanDigestOf(connection, digest, event.TakeInteger());
+    }
+    if (events != count) {
+      problems.push_back(fmt::format(
+          "the plan of campaign '{}' has {} entries, but its digest is of {}: "
+          "one was added or removed by another program",
+          name, count, events));
+    } else if (digest != kept) {
+      problems.push_back(
+          fmt::format("the plan of campaign '{}' is not what was recorded: its "
+                      "digest does not agree",
+                      name));
+    }
+  }
+}
+
+}  // namespace
+
 void CheckDigests(Connection& connection, std::vector<std::string>& problems) {
+  CheckPlanDigests(connection, problems);
   Statement trial(connection,
                   "SELECT t.id, t.uuid, ifnull(d.revisions, 0), "
                   "ifnull(d.sha256, '') FROM trials t "

@@ -80,7 +80,7 @@ class Restorer {
   void AddPlan(PlanEvent event) {
     const auto name = renamed_.find(event.campaign);
     if (name != renamed_.end()) event.campaign = name->second;
-    InsertPlanEvent(connection_, event);
+    if (InsertPlanEvent(connection_, event)) ++report_.plan_events_added;
   }
 
   // All of the other side's, in the order of AllVersions.
@@ -277,12 +277,13 @@ class Restorer {
 MergeReport Restore(Store& into, std::string_view source,
                     std::span<const Entry> entries,
                     std::span<const core::Campaign> campaigns,
-                    const NextHistory& next) {
+                    std::span<const PlanEvent> plan, const NextHistory& next) {
   Transaction transaction(into.connection(), Transaction::Kind::kWrite);
   Restorer restorer(into, source);
   restorer.AddRegister(entries);
   for (const auto& campaign : campaigns) restorer.AddCampaign(campaign);
   while (const auto history = next()) restorer.Add(*history);
+  for (const PlanEvent& event : plan) restorer.AddPlan(event);
   transaction.Commit();
   return restorer.Done();
 }

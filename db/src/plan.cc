@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "digests.h"
 #include "plan_rows.h"
 #include "statement.h"
 #include "touchdown/core/errors.h"
@@ -20,9 +21,8 @@ PlanEvent Take(Statement& row) {
   PlanEvent event;
   event.id = row.TakeText();
   event.campaign = row.TakeText();
-  event.kind = row.TakeText() == Name(PlanEventKind::kLook)
-                   ? PlanEventKind::kLook
-                   : PlanEventKind::kPlan;
+  event.kind =
+      ParsePlanEventKind(row.TakeText()).value_or(PlanEventKind::kPlan);
   event.plan.design = row.TakeText();
   event.plan.stopping_rule = row.TakeText();
   event.plan.error_rates = row.TakeText();
@@ -45,6 +45,14 @@ std::int64_t TrialsOf(Connection& connection, std::string_view campaign) {
 
 std::string_view Name(PlanEventKind kind) {
   return kind == PlanEventKind::kLook ? "look" : "plan";
+}
+
+std::optional<PlanEventKind> ParsePlanEventKind(std::string_view word) {
+  for (const PlanEventKind kind :
+       {PlanEventKind::kPlan, PlanEventKind::kLook}) {
+    if (word == Name(kind)) return kind;
+  }
+  return std::nullopt;
 }
 
 std::vector<PlanEvent> PlanEventsIn(Connection& connection,
@@ -82,6 +90,12 @@ bool InsertPlanEvent(Connection& connection, const PlanEvent& event) {
       .Add(event.at_utc)
       .Add(event.campaign)
       .Run();
+  Statement added(connection,
+                  "SELECT campaign_id, id FROM plan_events WHERE uuid = ?");
+  added.Add(event.id);
+  if (!added.Step()) return false;  // there is no such campaign
+  const std::int64_t campaign = added.TakeInteger();
+  KeepPlanDigest(connection, campaign, added.TakeInteger());
   return true;
 }
 
@@ -121,6 +135,7 @@ bool RecordLook(Store& store, std::string_view campaign,
   Transaction transaction(c, Transaction::Kind::kWrite);
   if (!store.FindCampaign(campaign)) return false;
   const std::int64_t trials = TrialsOf(c, campaign);
+  if (trials == 0) return false;
   for (const PlanEvent& event : PlanEventsIn(c, campaign)) {
     if (event.kind == PlanEventKind::kLook && event.trials == trials) {
       return false;

@@ -178,13 +178,21 @@ std::string PlanSql() {
       kUuid, Word("kind", "'plan', 'look'"), Stamp("at_utc"));
 }
 
+std::string PlanDigestsSql() {
+  return "CREATE TABLE plan_digests (\n"
+         "  campaign_id INTEGER PRIMARY KEY REFERENCES campaigns (id),\n"
+         "  events INTEGER NOT NULL CHECK (events >= 1),\n"
+         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n";
+}
+
 std::string SchemaSql() {
   return fmt::format(
              "CREATE TABLE store (\n"
              "  id INTEGER PRIMARY KEY CHECK (id = 1),\n"
              "  {},\n  {}\n) STRICT;\n",
              kUuid, Stamp("created_at_utc")) +
-         RegisterSql() + Evidence() + DigestsSql() + PlanSql() + TriggersSql();
+         RegisterSql() + Evidence() + DigestsSql() + PlanSql() +
+         PlanDigestsSql() + TriggersSql();
 }
 
 void CreateSchema(Connection& connection, std::string_view store_uuid,

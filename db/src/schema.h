@@ -19,7 +19,8 @@ inline constexpr std::int64_t kApplicationId = 0x54445354;
 //   4  a contact has its extrapolated gap; a revision may be a proposal
 //   5  each trial has a digest of its evidence, each clip of its SHA-256
 //   6  a campaign has its plan and the looks at its answer on record
-inline constexpr std::int64_t kSchemaVersion = 6;
+//   7  the plan and looks of a campaign have a digest
+inline constexpr std::int64_t kSchemaVersion = 7;
 
 // All tables, indexes and triggers of version kSchemaVersion.
 std::string SchemaSql();

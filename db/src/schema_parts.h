@@ -13,6 +13,7 @@ std::string DigestsSql();
 
 // Plans and looks (plan.h).
 std::string PlanSql();
+std::string PlanDigestsSql();
 
 // What keeps evidence from being changed or removed.
 std::string TriggersSql();

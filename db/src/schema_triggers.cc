@@ -139,11 +139,16 @@ std::string TriggersSql() {
       "WHEN NEW.trial_id <> OLD.trial_id OR NEW.revisions <> OLD.revisions + "
       "1\n"
       "BEGIN SELECT raise(ABORT, 'a digest grows with its trial'); END;\n"
+      "CREATE TRIGGER plan_digests_grow BEFORE UPDATE ON plan_digests\n"
+      "WHEN NEW.campaign_id <> OLD.campaign_id OR NEW.events <> OLD.events + "
+      "1\n"
+      "BEGIN SELECT raise(ABORT, 'a digest grows with its plan'); END;\n"
       "CREATE TRIGGER clip_digests_refuse_UPDATE BEFORE UPDATE ON "
       "clip_digests\n"
       "BEGIN SELECT raise(ABORT, 'a clip keeps its digest'); END;\n";
-  for (const auto& [table, key] : {std::pair{"digests", "trial_id"},
-                                   std::pair{"clip_digests", "clip_id"}}) {
+  for (const auto& [table, key] :
+       {std::pair{"digests", "trial_id"}, std::pair{"clip_digests", "clip_id"},
+        std::pair{"plan_digests", "campaign_id"}}) {
     sql += fmt::format(
         "CREATE TRIGGER {0}_refuse_DELETE BEFORE DELETE ON {0}\n"
         "BEGIN SELECT raise(ABORT, '{0} are kept'); END;\n"

@@ -156,6 +156,9 @@ void Upgrade(Connection& connection, std::int64_t from_version) {
       case 5:
         connection.Execute(PlanSql());
         break;
+      case 6:
+        connection.Execute(PlanDigestsSql());
+        break;
       default:
         throw std::logic_error(fmt::format(
             "there is no step from version {} of the store", version));
@@ -163,6 +166,7 @@ void Upgrade(Connection& connection, std::int64_t from_version) {
   }
   // Of what stands there now: whether it was altered before, nobody can tell.
   if (from_version < 5) KeepAllDigests(connection);
+  if (from_version < 7) KeepAllPlanDigests(connection);
   connection.Execute(TriggersSql());
 }
 

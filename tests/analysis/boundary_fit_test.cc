@@ -218,12 +218,41 @@ TEST(FitBoundary, HardCases) {
       options.lapse_rule = LapseRule::kAlways;
       options.lapse = lapse;
     }
-    const auto p = FitBoundary(
-        Trials(List(rows[i][1]), y, std::stod(rows[i][3])), options);
+    auto p = FitBoundary(Trials(List(rows[i][1]), y, std::stod(rows[i][3])),
+                         options);
+    // The reference has equal tails for outcomes of one kind, too.
+    p.interval95_rad = {Quantile(p, 0.025), Quantile(p, 0.975)};
     ExpectPosterior(p, std::stod(rows[i][5]), std::stod(rows[i][6]),
                     std::stod(rows[i][7]),
                     std::max(0.02, 0.01 * p.sd_rad / kDegree));
   }
+}
+
+// Twenty slides on the way up to 38 deg leave a boundary there possible with a
+// scatter of 3 deg (probability 0.2); the prior's 52 degrees beyond them shall
+// not exclude it. Mirrored, as much holds below.
+TEST(FitBoundary, OutcomesOfOneKindLeaveTheIntervalOpen) {
+  std::vector<double> x;
+  for (int i = 0; i < 20; ++i) x.push_back(2.0 * i);
+  const auto slides =
+      FitBoundary(Trials(x, std::vector<int>(x.size(), 0), 0.3), NoLapse());
+  EXPECT_GT(Quantile(slides, 0.025), 38.5 * kDegree);
+  EXPECT_LT(slides.interval95_rad.low, 38.0 * kDegree);
+  EXPECT_GT(slides.interval95_rad.low, 34.0 * kDegree);
+  EXPECT_DOUBLE_EQ(slides.interval95_rad.high, 90.0 * kDegree);
+  EXPECT_LE(slides.interval95_rad.low, slides.interval90_rad.low);
+  EXPECT_NEAR(slides.interval95_rad.low,
+              ProfileOfPosterior(slides).interval95_rad.low, 0.1 * kDegree);
+  for (double& angle : x) angle = 90.0 - angle;
+  const auto bounces =
+      FitBoundary(Trials(x, std::vector<int>(x.size(), 1), 0.3), NoLapse());
+  EXPECT_NEAR(bounces.interval95_rad.high / kDegree,
+              90.0 - slides.interval95_rad.low / kDegree, 0.01);
+  EXPECT_DOUBLE_EQ(bounces.interval95_rad.low, 0.0);
+  // Both outcomes: the posterior's equal tails, as ever.
+  const auto both = FitBoundary(Trials({10, 20}, {0, 1}, 0.3), NoLapse());
+  EXPECT_DOUBLE_EQ(both.interval95_rad.low, Quantile(both, 0.025));
+  EXPECT_DOUBLE_EQ(both.interval95_rad.high, Quantile(both, 0.975));
 }
 
 TEST(Classify, KnowsEveryKindOfData) {

@@ -165,7 +165,7 @@ TEST_F(BoundaryCommands, TheReportTellsOfADrift) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   const std::string page = ReadAll(out / "table1.md");
   EXPECT_THAT(page, HasSubstr("order of the trials"));
-  EXPECT_THAT(page, HasSubstr("drifted: order of the trials."));
+  EXPECT_THAT(page, HasSubstr("drifted: order of the trials ("));
   EXPECT_LT(page.find("sphere: not one boundary."),
             page.find("Table 1: motion"));
 }
@@ -236,6 +236,12 @@ TEST_F(BoundaryCommands, ImportOfThePapersTable1MakesItsReport) {
   ExpectOneLine(RunProgram("import --paper-table1 --db " + store), 4,
                 "there is a campaign 'paper-table1-sphere' already");
   const json document = json::parse(ReadAll(out / "table1.json"));
+  // Typed trials have no clip to check.
+  const json& checks = document["groups"][0]["campaign_checks"];
+  EXPECT_EQ(checks["failed"], false);
+  for (const char* what : {"gravity", "size", "restitution"}) {
+    EXPECT_TRUE(checks[what].contains("absent")) << what;
+  }
   EXPECT_EQ(document.at("groups").at(0).at("trials").size(), 9u);
   ExpectOneLine(RunProgram("import --paper-table1"), 2, "--db");
   ExpectOneLine(RunProgram("import x.csv --paper-table1 --db " + store), 2,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/report/plan_json.h"
 #include "app/report/register_json.h"
 #include "app/report/trial_csv.h"
 #include "app/report/trial_json.h"
@@ -12,6 +13,7 @@
 #include "tests/support/random_trials.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/plan.h"
 
 namespace touchdown::report {
 namespace {
@@ -115,6 +117,8 @@ TEST(ExportReader, BringsAStoreOverWhole) {
   db::Folder folder;
   db::Store a = db::OpenFixed(folder / "a.db", 1);
   a.AddCampaign(db::SphereCampaign());
+  db::SetPlan(a, db::SphereCampaign().name,
+              {"up \xff", "after 40", ""}, "Ada", "");
   testing::RandomTrials random(6);
   std::string id;
   for (int i = 0; i < 30; ++i) id = a.LogTrial(random.Trial()).id;
@@ -131,11 +135,13 @@ TEST(ExportReader, BringsAStoreOverWhole) {
   db::ChangeEntry(a, spring);
   a.LogTrial(db::SphereTrial(1));
   a.Exclude(asphalt.id, "Ada", "lamp");
+  db::RecordLook(a, db::SphereCampaign().name, "report");
   const auto exported = [](const db::Store& store) {
     std::ostringstream out;
     WriteExportHeader(out, "the store");
     for (const auto& e : db::AllVersions(store)) out << EntryJson(e) << '\n';
     for (const auto& c : store.Campaigns()) out << CampaignJson(c) << '\n';
+    for (const auto& e : db::PlanEvents(store)) out << PlanEventJson(e) << '\n';
     store.ForEachHistory([&](const auto& history) {
       for (const auto& r : history) out << RevisionJson(r) << '\n';
     });
@@ -147,12 +153,28 @@ TEST(ExportReader, BringsAStoreOverWhole) {
   db::Store b = db::OpenFixed(folder / "b.db", 2);
   const auto report =
       db::Restore(b, reader.store_uuid(), reader.entries(), reader.campaigns(),
-                  [&reader] { return reader.NextHistory(); });
+                  reader.plan(), [&reader] { return reader.NextHistory(); });
+  EXPECT_EQ(report.plan_events_added, 2);
+  EXPECT_THAT(db::Check(b).problems, ::testing::IsEmpty());
   EXPECT_EQ(report.trials_added, 31);
   EXPECT_EQ(report.revisions_added, 33);
   EXPECT_EQ(report.register_versions_added, 3);  // with the campaign's surface
   EXPECT_EQ(exported(b), exported(a));
   EXPECT_EQ(b.Find(asphalt.id)->conditions->spring.name, "S \xff 3");
+}
+
+TEST(ExportReader, APlanIsOfACampaignOfTheFile) {
+  db::PlanEvent of_gravel;
+  of_gravel.campaign = "gravel";
+  std::istringstream in(
+      "{\"schema\":\"touchdown.export/1\",\"store\":\"x\"}\n" +
+      PlanEventJson(of_gravel) + "\n");
+  try {
+    ExportReader reader(in, "a.jsonl");
+    ADD_FAILURE();
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.jsonl:2: campaign is 'gravel'"));
+  }
 }
 
 TEST(ExportReader, NamesFileAndLine) {

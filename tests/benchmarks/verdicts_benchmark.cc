@@ -1,7 +1,7 @@
 // What a verdict is worth, as CSV on stdout:
 //
 //   touchdown_verdicts_benchmark errors   [CAMPAIGNS] [SEED] [DESIGN]
-//   touchdown_verdicts_benchmark coverage [CAMPAIGNS] [SEED] [DESIGN]
+//   touchdown_verdicts_benchmark coverage [CAMPAIGNS] [SEED] [DESIGN] [SCATTER]
 //
 // errors    false verdicts at any of 60 looks, and the trial at which the right
 //           one first stands, beside those of the rule before this one (90 % or
@@ -326,7 +326,9 @@ void Errors(int campaigns, std::uint64_t seed, const std::string& only) {
 // overlap, after so many trials.
 constexpr int kCoverageAt[] = {20, 40, 100};
 
-void Coverage(int campaigns, std::uint64_t seed, const std::string& only) {
+// `only_scatter_deg`: of one scatter alone; negative for all.
+void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
+              double only_scatter_deg) {
   fmt::print(
       "design,common_deg,scatter_deg,trials,campaigns,coverage,low99,high99,"
       "overlapping,coverage_overlapping,median_width_deg\n");
@@ -337,6 +339,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only) {
     if (!only.empty() && only != design) continue;
     for (const double common : kCommon_deg) {
       for (const double scatter : kScatters_deg) {
+        if (only_scatter_deg >= 0.0 && only_scatter_deg != scatter) continue;
         const Cell cell{design, scatter, 0.0, common};
         std::seed_seq sequence{
             static_cast<std::uint32_t>(seed), 0xC0u,
@@ -416,7 +419,7 @@ int main(int argc, char** argv) {
            argc > 4 ? argv[4] : "");
   } else if (what == "coverage") {
     Coverage(number(2, 400), static_cast<std::uint64_t>(number(3, 1)),
-             argc > 4 ? argv[4] : "");
+             argc > 4 ? argv[4] : "", argc > 5 ? std::atof(argv[5]) : -1.0);
   } else {
     fmt::print(stderr, "expected errors or coverage\n");
     return 2;

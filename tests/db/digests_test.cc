@@ -21,12 +21,15 @@
 #include "tests/db/fixture.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::db {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 int Rounds(int brief) {
@@ -218,6 +221,48 @@ TEST(Digests, EachFlippedBitOfEvidenceIsFound) {
   }
   std::printf("%d flipped bits changed evidence, %d did not\n", flipped,
               silent);
+}
+
+// The plan before the first trial is what a verdict is judged by.
+TEST(Digests, AnAlteredPlanIsFound) {
+  Folder folder;
+  {
+    Store store = OpenFixed(folder / "lab.db");
+    store.AddCampaign(SphereCampaign());
+    const std::string name = SphereCampaign().name;
+    SetPlan(store, name, {"", "after 40 trials", ""}, "Ada", "");
+    store.LogTrial(SphereTrial(1));
+    RecordLook(store, name, "report");
+    EXPECT_THAT(Check(store).problems, IsEmpty());
+  }
+  Settle(folder / "lab.db");
+  const std::string whole = Bytes(folder / "lab.db");
+  for (const char* act :
+       {"UPDATE plan_events SET stopping_rule = 'after 20 trials'",
+        "UPDATE plan_events SET trials = 0 WHERE kind = 'look'",
+        "UPDATE plan_events SET at_utc = '2020-01-01T00:00:00.000Z'",
+        "DELETE FROM plan_events WHERE kind = 'look'",
+        "DELETE FROM plan_events",
+        "INSERT INTO plan_events SELECT 9, replace(uuid, '-', '+'), "
+        "campaign_id, kind, design, stopping_rule, error_rates, trials, "
+        "author, reason, at_utc FROM plan_events WHERE id = 1"}) {
+    SCOPED_TRACE(act);
+    const fs::path path = folder / "forged.db";
+    Write(path, whole);
+    {
+      Sqlite file(path);
+      ASSERT_TRUE(
+          file.Run("DROP TRIGGER plan_events_refuse_UPDATE; DROP "
+                   "TRIGGER plan_events_refuse_DELETE;"));
+      ASSERT_TRUE(file.Run(act));
+      ASSERT_GT(file.changes(), 0);
+    }
+    EXPECT_THAT(Check(Store::Open(path, OpenMode::kRead)).problems,
+                Contains(HasSubstr("the plan of campaign")));
+    for (const char* beside : {"", "-wal", "-shm"}) {
+      fs::remove(path.string() + beside);
+    }
+  }
 }
 
 TEST(Digests, EachForgedRowIsFound) {

@@ -119,6 +119,7 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
     EXPECT_EQ(plan[0].plan.stopping_rule, "after 40 trials");
     EXPECT_EQ(plan[0].trials, 2);
     EXPECT_EQ(plan[1].kind, PlanEventKind::kLook);
+    EXPECT_THAT(Check(store).problems, ::testing::IsEmpty());
   }
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);

@@ -138,9 +138,16 @@ TEST(Contact, BothCornersBetweenTwoFrames) {
             [&](double t) { return t < second_s ? first.At(t) : second.At(t); },
             filming),
         synthetic::FilmGround(filming));
-    const core::Contact contact =
-        FindContacts(track, WithScale(filming)).first.contact;
+    const ContactResult found = FindContacts(track, WithScale(filming));
+    const core::Contact& contact = found.first.contact;
     ASSERT_TRUE(contact.found) << contact.reason;
+    // Two flights tell no restitution of two impacts between them.
+    const core::Motion& motion = found.first.motion;
+    ASSERT_FALSE(motion.restitution) << motion.restitution->value;
+    EXPECT_THAT(motion.restitution.error().reason,
+                ::testing::HasSubstr("more than one impact"));
+    EXPECT_EQ(motion.unresolved_impacts, 2);
+    EXPECT_GE(found.restitution.unresolved, 2);
     z_time.push_back((contact.time_s->value - first.contact_s) /
                      contact.time_s->u);
     z_face.push_back((contact.face_angle_rad->value - first.face_rad) /

@@ -7,6 +7,7 @@
 
 #include "contact_event.h"
 #include "contact_record.h"
+#include "impacts.h"
 #include "motion_segments.h"
 #include "touchdown/vision/supported_path.h"
 #include "track_noise.h"
@@ -382,6 +383,7 @@ ContactResult FindContacts(const PlaneTrack& given,
     first = NoContact(reason);
   }
   result.first = std::move(*first);
+  result.restitution = PoolRestitution(result);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "greatest_gap.h"
+#include "impacts.h"
 #include "touchdown/vision/state.h"
 #include "track_shape.h"
 
@@ -214,6 +215,10 @@ void FillMotion(const RecordContext& context, const Event& event,
     m.restitution =
         quotient([&](const JointVector& p) { return -point_after(p); },
                  point_before, "normal velocity before");
+    if (std::string several = WhySeveralImpacts(track, fit); !several.empty()) {
+      m.restitution = AbsentBecause(std::move(several));
+      m.unresolved_impacts = 2;
+    }
     m.centre_rebound_ratio =
         quotient([](const JointVector& p) { return -NormalAfter(p); },
                  NormalBefore, "normal velocity before");

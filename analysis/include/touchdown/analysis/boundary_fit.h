@@ -114,7 +114,11 @@ struct BoundaryPosterior {
   double median_rad = 0.0;
   double mean_rad = 0.0;
   double sd_rad = 0.0;
-  core::Interval interval90_rad;  // equal tails
+  // Equal tails. Where all outcomes are of one kind: to the end of the support
+  // on the side that they leave open, and on the other at least to where the
+  // profile of the likelihood has fallen by 1.35 (90 %) or 1.92 (95 %), so that
+  // no prior on the angle excludes what the trials do not.
+  core::Interval interval90_rad;
   core::Interval interval95_rad;
   double scatter_median_rad = 0.0;
   core::Interval scatter95_rad;

@@ -84,7 +84,10 @@ struct Motion {
   Measured after_tangential_mps = AbsentBecause("no contact");
   Measured after_omega_rad_per_s = AbsentBecause("no contact");
   // -(normal velocity of the contact point at release) / (at touchdown).
+  // Of a rectangle that struck with one corner and then the other before the
+  // next frame, absent: the impacts were not resolved, at least so many.
   Measured restitution = AbsentBecause("no contact");
+  int unresolved_impacts = 0;  // not a column of the store; in its document
   // The same quotient of the centre's velocities: another number.
   Measured centre_rebound_ratio = AbsentBecause("no contact");
   // |change of tangential| / |change of normal velocity| of the centre.

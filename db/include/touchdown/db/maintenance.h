@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "touchdown/core/campaign.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/records.h"
 #include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
@@ -61,6 +62,7 @@ struct MergeReport {
   std::int64_t revisions_known = 0;  // already here: a merge can be repeated
   std::int64_t campaigns_added = 0;
   std::int64_t register_versions_added = 0;
+  std::int64_t plan_events_added = 0;  // plans and looks
   // One line each: what the two stores say differently, and what was done.
   // Nothing of either store is dropped.
   std::vector<std::string> conflicts;
@@ -80,13 +82,14 @@ MergeReport Merge(Store& into, const Store& from);
 
 // The same from anywhere: `next` gives the history of one trial after the
 // other, oldest revision first, and nothing at the end; `entries` are versions
-// of the register in the order of AllVersions. `source` names the other side in
+// of the register in the order of AllVersions, `plan` events of `campaigns`.
+// `source` names the other side in
 // new campaign names.
 using NextHistory = std::function<std::optional<std::vector<Revision>>()>;
 MergeReport Restore(Store& into, std::string_view source,
                     std::span<const Entry> entries,
                     std::span<const core::Campaign> campaigns,
-                    const NextHistory& next);
+                    std::span<const PlanEvent> plan, const NextHistory& next);
 
 // --- upgrade -----------------------------------------------------------------
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@ enum class PlanEventKind {
   kLook   // somebody looked at the answer of the trials so far
 };
 std::string_view Name(PlanEventKind kind);
+std::optional<PlanEventKind> ParsePlanEventKind(std::string_view word);
 
 struct Plan {
   std::string design;         // how angles are chosen: "ascending 2 deg steps"
@@ -44,7 +46,8 @@ void SetPlan(Store& store, std::string_view campaign, const Plan& plan,
              std::string_view author, std::string_view reason);
 
 // Records that the answer was looked at. The same trials looked at again are no
-// new look: true where this one was. A campaign that is not there has none.
+// new look: true where this one was. A campaign without trials, or that is not
+// there, has none.
 bool RecordLook(Store& store, std::string_view campaign,
                 std::string_view author);
 

@@ -57,9 +57,18 @@ struct ContactEvidence {
   core::PixelPoint touching;  // the lowest point then, in the image
 };
 
+// Of the impacts of a clip that were resolved (a block that chatters strikes
+// many times).
+struct RestitutionOfImpacts {
+  core::Measured value = core::AbsentBecause("no impact was resolved");
+  int resolved = 0;
+  int unresolved = 0;  // at least so many
+};
+
 struct ContactResult {
   core::ContactRecord first;
   std::vector<core::ContactRecord> later;
+  RestitutionOfImpacts restitution;
   std::vector<ContactEvidence> evidence;  // of first, then of later
   std::vector<PathStretch> path;          // all of it, by time
 

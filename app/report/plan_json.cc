@@ -1,0 +1,38 @@
+#include "app/report/plan_json.h"
+
+#include "app/report/json_fields.h"
+
+namespace touchdown::report {
+
+std::string PlanEventJson(const db::PlanEvent& event) {
+  const Json json = {{"schema", kPlanSchema},
+                     {"id", TextJson(event.id)},
+                     {"campaign", TextJson(event.campaign)},
+                     {"kind", Name(event.kind)},
+                     {"design", TextJson(event.plan.design)},
+                     {"stopping_rule", TextJson(event.plan.stopping_rule)},
+                     {"error_rates", TextJson(event.plan.error_rates)},
+                     {"trials", event.trials},
+                     {"author", TextJson(event.author)},
+                     {"reason", TextJson(event.reason)},
+                     {"at_utc", TextJson(event.at_utc)}};
+  return json.dump();
+}
+
+db::PlanEvent PlanEventFromJson(std::string_view line) {
+  const Json json = ParsedLine(line, kPlanSchema);
+  db::PlanEvent event;
+  event.id = TextOf(json, "id");
+  event.campaign = TextOf(json, "campaign");
+  event.kind = WordOf(json, "kind", db::ParsePlanEventKind);
+  event.plan.design = TextOf(json, "design");
+  event.plan.stopping_rule = TextOf(json, "stopping_rule");
+  event.plan.error_rates = TextOf(json, "error_rates");
+  event.trials = IntegerOf(json, "trials");
+  event.author = TextOf(json, "author");
+  event.reason = TextOf(json, "reason");
+  event.at_utc = TextOf(json, "at_utc");
+  return event;
+}
+
+}  // namespace touchdown::report
