@@ -281,6 +281,7 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
       layers::MotionsOf(path.poses, path.frames);
   const double noise_ratio = fit.layers.noise_dn / evidence.noise_dn;
   std::vector<double> drifts;
+  PathPictures read(evidence.still, evidence.box);
   for (std::size_t from = 0; from < path.frames.size();
        from += evidence.most_frames) {
     const std::size_t to =
@@ -291,11 +292,8 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
       part.poses.push_back(path.poses[t]);
     }
     const bool is_read = part.frames == evidence.path.frames;
-    const PictureStack read = is_read
-                                  ? PictureStack{}
-                                  : ReadAlong(clip, evidence.still, part,
-                                              fit.layers.shape, evidence.box);
-    const PictureStack& pictures = is_read ? evidence.stack : read;
+    const PictureStack& pictures =
+        is_read ? evidence.stack : read.Read(clip, part, fit.layers.shape);
     std::vector<PoseFit> aligned(part.frames.size());
     core::InParallel(static_cast<std::int64_t>(aligned.size()), options.threads,
                      [&](std::int64_t begin, std::int64_t end) {

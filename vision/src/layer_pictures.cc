@@ -141,19 +141,34 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
   return stack;
 }
 
-PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
-                       const LayerPath& path, const Shape& shape,
-                       const core::PixelRect& box) {
-  if (clip.ChangesIn(path.frames.front()) == nullptr) {
-    return ReadPictures(clip, path.frames, box);
+void PathPictures::Put(std::size_t picture, const core::PixelRect& window,
+                       const float* levels, std::int32_t row) {
+  float* const out = stack_.levels.data() + picture * stack_.pixels();
+  for (std::int32_t y = 0; y < window.height; ++y) {
+    std::copy_n(levels + static_cast<std::ptrdiff_t>(y) * row, window.width,
+                out + static_cast<std::ptrdiff_t>(window.y + y) * box_.width +
+                    window.x);
   }
-  PictureStack stack;
-  stack.width = box.width;
-  stack.height = box.height;
-  stack.frames = path.frames;
+}
+
+const PictureStack& PathPictures::Read(Clip& clip, const LayerPath& path,
+                                       const Shape& shape) {
+  if (clip.ChangesIn(path.frames.front()) == nullptr) {
+    stack_ = ReadPictures(clip, path.frames, box_);
+    written_.clear();
+    return stack_;
+  }
+  stack_.width = box_.width;
+  stack_.height = box_.height;
+  stack_.frames = path.frames;
+  stack_.times_s.clear();
+  const std::size_t count = path.frames.size();
+  if (written_.size() > count) written_.resize(count);
+  stack_.levels.resize(written_.size() * stack_.pixels());
+  stack_.levels.reserve(count * stack_.pixels());
   constexpr double kRoom = 12.0;  // px
   const double reach = shape.Reach() + kRoom;
-  for (std::size_t t = 0; t < path.frames.size(); ++t) {
+  for (std::size_t t = 0; t < count; ++t) {
     const auto from = [reach](double at) {
       return std::max(0, static_cast<std::int32_t>(std::floor(at - reach)));
     };
@@ -161,27 +176,36 @@ PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
       return std::min(end, static_cast<std::int32_t>(std::ceil(at + reach)));
     };
     core::PixelRect window;
-    window.x = std::min(from(path.poses[t].x), box.width - 1);
-    window.y = std::min(from(path.poses[t].y), box.height - 1);
-    window.width = to(path.poses[t].x, box.width) - window.x;
-    window.height = to(path.poses[t].y, box.height) - window.y;
-    stack.levels.insert(stack.levels.end(), still.begin(), still.end());
-    window.width = std::max(window.width, 1);
-    window.height = std::max(window.height, 1);
+    window.x = std::min(from(path.poses[t].x), box_.width - 1);
+    window.y = std::min(from(path.poses[t].y), box_.height - 1);
+    window.width = std::max(to(path.poses[t].x, box_.width) - window.x, 1);
+    window.height = std::max(to(path.poses[t].y, box_.height) - window.y, 1);
+    if (t < written_.size()) {
+      const core::PixelRect& old = written_[t];
+      Put(t, old,
+          still_.data() + static_cast<std::ptrdiff_t>(old.y) * box_.width +
+              old.x,
+          box_.width);
+      written_[t] = window;
+    } else {
+      stack_.levels.insert(stack_.levels.end(), still_.begin(), still_.end());
+      written_.push_back(window);
+    }
     const PictureStack part = ReadPictures(
         clip, std::span(&path.frames[t], 1),
-        {box.x + window.x, box.y + window.y, window.width, window.height});
-    stack.times_s.push_back(part.times_s.front());
-    float* const levels = stack.levels.data() + t * stack.pixels();
-    for (std::int32_t y = 0; y < window.height; ++y) {
-      std::copy_n(
-          part.levels.data() + static_cast<std::ptrdiff_t>(y) * window.width,
-          window.width,
-          levels + static_cast<std::ptrdiff_t>(window.y + y) * box.width +
-              window.x);
-    }
+        {box_.x + window.x, box_.y + window.y, window.width, window.height});
+    stack_.times_s.push_back(part.times_s.front());
+    Put(t, window, part.levels.data(), window.width);
   }
-  return stack;
+  return stack_;
+}
+
+PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
+                       const LayerPath& path, const Shape& shape,
+                       const core::PixelRect& box) {
+  PathPictures pictures(still, box);
+  pictures.Read(clip, path, shape);
+  return std::move(pictures).Take();
 }
 
 }  // namespace touchdown::vision

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "layers/layer_model.h"
@@ -48,8 +49,31 @@ layers::PictureStack ReadPictures(Clip& clip,
                                   std::span<const std::int64_t> frames,
                                   const core::PixelRect& box);
 
-// Those of a path's frames. Of a clip that keeps only what changes
-// (Clip::ChangesIn) the surroundings of the body, before `still`.
+// Those of a path's frames, again and again. Of a clip that keeps only what
+// changes (Clip::ChangesIn) the surroundings of the body, before `still`: these
+// alone are written anew, into memory that is kept.
+class PathPictures {
+ public:
+  // `still`, all of `box`, outlives this.
+  PathPictures(const std::vector<float>& still, const core::PixelRect& box)
+      : still_(still), box_(box) {}
+
+  // Valid until the next call. Throws what Clip::Read throws.
+  const layers::PictureStack& Read(Clip& clip, const LayerPath& path,
+                                   const layers::Shape& shape);
+  layers::PictureStack Take() && { return std::move(stack_); }
+
+ private:
+  void Put(std::size_t picture, const core::PixelRect& window,
+           const float* levels, std::int32_t row);
+
+  const std::vector<float>& still_;
+  core::PixelRect box_;
+  layers::PictureStack stack_;
+  std::vector<core::PixelRect> written_;  // of each picture, in the box
+};
+
+// Those of a path's frames, once.
 layers::PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
                                const LayerPath& path,
                                const layers::Shape& shape,
