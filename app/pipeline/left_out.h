@@ -30,7 +30,7 @@ struct LeftOutSizes {
 struct LeftOutEffect {
   std::string name;      // "path out of the plane"
   double error_rad = 0;  // of the approach angle, for the assumed size
-  std::string text;
+  std::string text = {};
   bool warns = false;
 };
 
