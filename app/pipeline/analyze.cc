@@ -275,6 +275,7 @@ void Analyzer::MeasureExplained() {
   if (contact.found && contact.frame) {
     options.frame_of_interest = contact.frame->value;
   }
+  clip_->cancellation().Enter("the answer is checked");
   const auto begun = Clock::now();
   result_.explained =
       vision::MeasureExplainedChange(*clip_, *result_.track, options);
@@ -456,11 +457,15 @@ Analysis AnalyzeUntil(std::unique_ptr<vision::Clip> clip,
   }
 }
 
-core::Cancellation UntilOf(const AnalyzeOptions& options) {
-  if (!options.limit_s && options.interrupted == nullptr) return {};
+core::Cancellation UntilOf(const std::filesystem::path& path,
+                           const AnalyzeOptions& options) {
+  auto on_stage = StageJournal(path);
+  if (!options.limit_s && options.interrupted == nullptr && !on_stage) {
+    return {};
+  }
   return core::Cancellation::After(
       options.limit_s.value_or(std::numeric_limits<double>::infinity()),
-      options.interrupted);
+      options.interrupted, std::move(on_stage));
 }
 
 // A camera that made pictures to look at, as a block's outlines show it: the
@@ -518,7 +523,7 @@ Unfinished::Unfinished(const std::string& what, Analysis so_far)
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
   const auto start = Clock::now();
-  const core::Cancellation until = UntilOf(options);
+  const core::Cancellation until = UntilOf(path, options);
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
   clip_options.decoder_threads = options.decoder_threads;
@@ -585,7 +590,8 @@ Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,
 
 Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
                      const AnalyzeOptions& options) {
-  return AnalyzeUntil(std::move(clip), options, UntilOf(options));
+  const core::Cancellation until = UntilOf(clip->info().path, options);
+  return AnalyzeUntil(std::move(clip), options, until);
 }
 
 }  // namespace touchdown::pipeline

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <string>
 #include <utility>
 
@@ -50,6 +51,18 @@ bool JournalIsKept() { return spdlog::should_log(spdlog::level::info); }
 
 void Journal(std::string_view line) {
   if (JournalIsKept()) spdlog::info("{}", OnOneLine(line));
+}
+
+std::function<void(const char* stage)> StageJournal(
+    const std::filesystem::path& recording) {
+  if (!JournalIsKept()) return {};
+  using Clock = std::chrono::steady_clock;
+  return [name = recording.filename().string(),
+          begun = Clock::now()](const char* stage) {
+    const std::chrono::duration<double> passed = Clock::now() - begun;
+    Journal(
+        fmt::format("{}: {}, from {:.3f} s on", name, stage, passed.count()));
+  };
 }
 
 void JournalAnalysis(const Analysis& analysis) {

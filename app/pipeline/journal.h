@@ -2,6 +2,8 @@
 // unless --verbose or --log was given (cli/log_setup.h).
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace touchdown::pipeline {
@@ -15,7 +17,12 @@ bool JournalIsKept();
 // lines of devices are shown as they are and cannot forge a line.
 void Journal(std::string_view line);
 
-// Each stage of an analysis with its time, what was chosen, and why.
+// Says each stage of the analysis of a recording as it begins, and how long
+// after this call; null where nobody listens. For core::Cancellation::After.
+std::function<void(const char* stage)> StageJournal(
+    const std::filesystem::path& recording);
+
+// What an analysis chose, why, and how long its parts took, when it is done.
 void JournalAnalysis(const Analysis& analysis);
 
 }  // namespace touchdown::pipeline

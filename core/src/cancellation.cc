@@ -1,13 +1,15 @@
 #include "touchdown/core/cancellation.h"
 
 #include <cmath>
+#include <utility>
 
 namespace touchdown::core {
 
 using Clock = std::chrono::steady_clock;
 
-Cancellation Cancellation::After(double limit_s,
-                                 const std::atomic<bool>* interrupted) {
+Cancellation Cancellation::After(
+    double limit_s, const std::atomic<bool>* interrupted,
+    std::function<void(const char* stage)> on_stage) {
   if (!(limit_s > 0.0)) {
     throw std::invalid_argument("limit_s is " + std::to_string(limit_s) +
                                 ", must be above 0 (seconds)");
@@ -22,11 +24,15 @@ Cancellation Cancellation::After(double limit_s,
                                std::chrono::duration<double>(limit_s))
           : Clock::time_point::max();
   cancellation.state_->interrupted = interrupted;
+  cancellation.state_->on_stage = std::move(on_stage);
   return cancellation;
 }
 
 void Cancellation::Enter(const char* stage) const {
-  if (state_) state_->stage.store(stage, std::memory_order_relaxed);
+  if (!state_) return;
+  const char* const before =
+      state_->stage.exchange(stage, std::memory_order_relaxed);
+  if (state_->on_stage && before != stage) state_->on_stage(stage);
 }
 
 void Cancellation::Check(std::int64_t frame) const {

@@ -56,9 +56,10 @@ TemporaryName::TemporaryName(std::filesystem::path target)
   RequirePlain(target_);
   // File systems take 255 bytes; what is added has 23.
   constexpr std::size_t kMostOfName = 200;
-  path_ = target_.parent_path() /
-          ("." + target_.filename().string().substr(0, kMostOfName) + "." +
-           Unforeseeable() + ".part");
+  std::string name = ".";
+  name += target_.filename().string().substr(0, kMostOfName);
+  name += "." + Unforeseeable() + ".part";
+  path_ = target_.parent_path() / name;
   unfinished_ = std::make_unique<Unfinished>(path_);
 }
 

@@ -47,6 +47,29 @@ TEST_F(Journal, SaysStagesTimesAndReasonsOnStderr) {
   EXPECT_THAT(ran.out, Not(HasSubstr("left out: lens distortion, because")));
 }
 
+TEST_F(Journal, SaysAStageWhenItBegins) {
+  const auto ran =
+      testing::RunProgram("--verbose " + (kAnalyze + clip_.string()));
+  std::size_t last = 0;
+  for (const char* line :
+       {"shot.mraw: read in this process", "shot.mraw: the clip is decoded, ",
+        "shot.mraw: the body is looked for, ",
+        "shot.mraw: outlines are fitted, ",
+        "shot.mraw: the ground is looked for, ",
+        "shot.mraw: the answer is checked, ", "opened in "}) {
+    const std::size_t here = ran.err.find(line, last);
+    ASSERT_NE(here, std::string::npos) << line << "\n" << ran.err;
+    last = here;
+  }
+}
+
+TEST_F(Journal, SaysAStageOfWhatIsNeverDone) {
+  const auto ran = testing::RunProgram("--verbose --limit-s 0.000001 " +
+                                       (kAnalyze + clip_.string()));
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_THAT(ran.err, HasSubstr("shot.mraw: the light is measured, from "));
+}
+
 TEST_F(Journal, GoesIntoAFileWithInstants) {
   const auto log = folder_ / "touchdown.log";
   const auto ran =

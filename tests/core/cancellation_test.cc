@@ -6,12 +6,14 @@
 #include <atomic>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::core {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
@@ -40,6 +42,19 @@ TEST(Cancellation, SaysHowFarTheWorkGot) {
   EXPECT_EQ(WhatIsSaid(until, 31), "while outlines are fitted, at frame 31");
   // A look at no frame leaves the last one.
   EXPECT_EQ(WhatIsSaid(until), "while outlines are fitted, at frame 31");
+}
+
+TEST(Cancellation, TellsOfEachStageOnce) {
+  std::vector<std::string> told;
+  const Cancellation until = Cancellation::After(
+      kNever_s, nullptr, [&](const char* stage) { told.push_back(stage); });
+  constexpr const char* kFirst = "outlines are fitted";
+  until.Enter(kFirst);
+  until.Enter(kFirst);
+  const Cancellation copy = until;
+  copy.Enter("the ground is looked for");
+  EXPECT_THAT(told,
+              ElementsAre("outlines are fitted", "the ground is looked for"));
 }
 
 TEST(Cancellation, EndsWhenItIsInterrupted) {

@@ -42,8 +42,7 @@ Measured InMetres(const RecordContext& context, const Estimate& px) {
   if (!context.options.scale) return AbsentBecause(kNoScale);
   const Estimate& s = context.options.scale->px_per_m;
   const double value = px.value / s.value;
-  return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value),
-                  std::nullopt};
+  return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value)};
 }
 
 // Velocities along and normal to the true ground, px per frame.
@@ -95,7 +94,7 @@ void FillAttitude(const PlaneTrack& track, const Estimate& measured,
   const double pi = std::numbers::pi;
   double face = std::remainder(measured.value, pi);
   if (face <= -0.5 * pi) face += pi;
-  contact.face_angle_rad = Estimate{face, measured.u, std::nullopt};
+  contact.face_angle_rad = Estimate{face, measured.u};
   const double tilt = std::abs(std::remainder(face, 0.5 * pi));
   contact.corner =
       tilt < std::max(2.0 * measured.u, resolution_rad) ? core::Corner::kFlush
@@ -127,8 +126,7 @@ void FillAngles(const RecordContext& context, const Event& event,
       paces;
   angle.u = std::hypot(angle.u, picture);
   contact.approach_angle_rad =
-      Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u,
-               std::nullopt};
+      Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u};
   // No angle is negative: near 0 the normal interval promises what cannot be.
   if (angle.value < core::kNormal975 * angle.u) {
     Estimate& flat = *contact.approach_angle_rad;
@@ -248,8 +246,7 @@ void FillMotion(const RecordContext& context, const Event& event,
     add(event.before_frames);
     if (event.after) add(event.after_frames);
     if (sw > 0.0) {
-      const Measured g_si =
-          InMetres(context, {swx / sw, 1.0 / std::sqrt(sw), std::nullopt});
+      const Measured g_si = InMetres(context, {swx / sw, 1.0 / std::sqrt(sw)});
       constexpr double kInformative = 0.03;
       if (g_si->u < kInformative * std::abs(g_si->value)) {
         m.gravity_check_mps2 = g_si;
@@ -271,7 +268,7 @@ double BounceHeight(const RecordContext& context, core::StateDecision& state) {
   const double height_m = context.options.bounce_height_m
                               ? *context.options.bounce_height_m
                               : core::DefaultBounceHeight(size_px / px_per_m);
-  state.bounce_height_m = Estimate{height_m, 0.0, std::nullopt};
+  state.bounce_height_m = Estimate{height_m, 0.0};
   return height_m * px_per_m;
 }
 
@@ -298,7 +295,7 @@ void FillState(const RecordContext& context, std::size_t from,
         Estimate{DetectableGap(noise_px / s, 1.0 / track.frame_interval_s,
                                ground.height_px.u / s,
                                context.options.gravity_mps2.value),
-                 0.0, std::nullopt};
+                 0.0};
   } else {
     state.detectable_gap_m = AbsentBecause(kNoScale);
   }
@@ -402,12 +399,12 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
                                                    track.samples.size() - 1)];
   contact.frame = Estimate{
       static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
-      contact.time_s->u / dt, std::nullopt};
+      contact.time_s->u / dt};
   FillAngles(context, event, contact);
   if (event.after) {
     contact.duration_s =
         Estimate{std::max(0.0, event.release_s.value - event.time_s.value),
-                 std::hypot(event.time_s.u, event.release_s.u), std::nullopt};
+                 std::hypot(event.time_s.u, event.release_s.u)};
   } else {
     contact.duration_s = AbsentBecause("no release from the ground was seen");
   }
@@ -451,7 +448,7 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   // It does not approach; that its path and the visible line are inclined to
   // each other is all that could be taken for it.
   const double u_angle = std::hypot(track.ground.u_angle_rad, slope_rad);
-  contact.approach_angle_rad = Estimate{0.0, u_angle, std::nullopt};
+  contact.approach_angle_rad = Estimate{0.0, u_angle};
   contact.approach_budget = {{"ground", track.ground.u_angle_rad},
                              {"path", std::abs(slope_rad)}};
 
@@ -464,8 +461,7 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
       reason);
   const std::size_t n = std::min<std::size_t>(samples.size(), 12);
   const Flight start = FitFlight(samples.first(n), context.flight);
-  const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1)),
-                    std::nullopt};
+  const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1))};
   m.before_tangential_mps = InMetres(context, vt);
   m.before_speed_mps = InMetres(context, vt);
   if (track.kind == core::BodyKind::kSphere) {
@@ -474,8 +470,8 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   } else {
     const PlaneSample& s = samples.front();
     const double u_face = start.At(s.time_s).u_face_rad;
-    const Estimate face{
-        s.face_rad, std::hypot(u_face, track.ground.u_angle_rad), std::nullopt};
+    const Estimate face{s.face_rad,
+                        std::hypot(u_face, track.ground.u_angle_rad)};
     constexpr double kResolution_rad = 0.05;  // lying on a face
     FillAttitude(track, face, kResolution_rad, contact);
     contact.attitude_budget = {{"localisation", u_face},
@@ -483,7 +479,7 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
     contact.radius_angle_rad =
         Estimate{std::atan2(SupportHeight(track, face.value),
                             std::abs(LowestPointAlong(track, face.value))),
-                 face.u, std::nullopt};
+                 face.u};
   }
   // Its own path is the line: its direction has no u of its own here.
   FillState(context, 0,

@@ -179,7 +179,10 @@ const PictureStack& PictureReader::Read(const LayerPath& path) {
   const std::size_t pixels = stack_.pixels();
   stack_.frames = path.frames;
   stack_.times_s.clear();
-  stack_.levels.resize(pixels * path.frames.size());
+  // It only grows: what `read_` says of a picture stays true.
+  if (stack_.levels.size() < pixels * path.frames.size()) {
+    stack_.levels.resize(pixels * path.frames.size());
+  }
   float* levels = stack_.levels.data();
   for (std::size_t t = 0; t < path.frames.size(); ++t, levels += pixels) {
     if (t == read_.size()) {

@@ -140,6 +140,13 @@ constexpr int kAllowed[] = {
     SYS_poll,
     SYS_time,
 #endif
+#ifdef __SANITIZE_ADDRESS__
+    // How the sanitizers look whether there is memory at an address.
+    SYS_pipe2,
+#ifdef SYS_pipe
+    SYS_pipe,
+#endif
+#endif
 };
 
 // A filter, call by call: `load` what is compared, `allow` where it fits.

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -31,9 +32,12 @@ class Cancellation {
 
   // Ends work `limit_s` of wall time from now, in seconds, above 0 (+infinity:
   // only when interrupted), or as soon as `*interrupted` is true, which must
-  // outlive all copies; null: by the time alone. Throws std::invalid_argument.
-  static Cancellation After(double limit_s,
-                            const std::atomic<bool>* interrupted = nullptr);
+  // outlive all copies; null: by the time alone. `on_stage` is told of each
+  // stage as it is entered, by the thread that enters it. Throws
+  // std::invalid_argument.
+  static Cancellation After(
+      double limit_s, const std::atomic<bool>* interrupted = nullptr,
+      std::function<void(const char* stage)> on_stage = {});
 
   // What is done from now on, for the message: a string literal that reads well
   // after "while". Does nothing where nothing ends the work.
@@ -49,6 +53,7 @@ class Cancellation {
     const std::atomic<bool>* interrupted = nullptr;
     std::atomic<const char*> stage = "the clip is opened";
     std::atomic<std::int64_t> frame = -1;
+    std::function<void(const char*)> on_stage;
   };
 
   [[noreturn]] static void Throw(const State& state);
