@@ -323,7 +323,8 @@ std::string ToJson(const Analysis& analysis) {
   json["motion"] = MotionOf(writer, "motion.", first.motion);
   const vision::RestitutionOfImpacts& e = analysis.contacts.restitution;
   json["restitution_of_impacts"] = {
-      {"value", writer.Number("restitution_of_impacts.value", e.value)},
+      {"restitution",
+       writer.Number("restitution_of_impacts.restitution", e.value)},
       {"resolved", e.resolved},
       {"unresolved", e.unresolved}};
   json["explained"] = ExplainedOf(writer, analysis);

@@ -141,7 +141,7 @@ TEST_F(BoundaryCommands, TheSupportOfThePriorIsStated) {
     return json::parse(ran.out).at("posterior").at("high95_deg").get<double>();
   };
   EXPECT_GT(high(""), 80.0);
-  EXPECT_LT(high(" --support-deg 0:40"), 40.0);
+  EXPECT_DOUBLE_EQ(high(" --support-deg 0:40"), 40.0);
   ExpectOneLine(RunProgram("boundary --support-deg 0:100" + trials), 2,
                 "within 0:90");
   ExpectOneLine(RunProgram("boundary --support-deg 40:0" + trials), 2,
