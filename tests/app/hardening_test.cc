@@ -7,6 +7,7 @@
 #include <cstring>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/support/temporary_folder.h"
@@ -15,6 +16,8 @@ namespace touchdown {
 namespace {
 
 using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 // The program's headers and what its dynamic section says.
 class Program : public ::testing::Test {
@@ -76,6 +79,39 @@ class Program : public ::testing::Test {
     return nullptr;
   }
 
+  // A function of ours that others can call.
+  struct Function {
+    std::string name;
+    std::string_view code;
+  };
+  // From the table of symbols, which a program has until it is stripped.
+  std::vector<Function> OurFunctions() const {
+    std::vector<Elf64_Shdr> sections;
+    for (std::size_t i = 0; i < header_.e_shnum; ++i) {
+      sections.push_back(
+          At<Elf64_Shdr>(header_.e_shoff + i * header_.e_shentsize));
+    }
+    std::vector<Function> functions;
+    for (const Elf64_Shdr& section : sections) {
+      if (section.sh_type != SHT_SYMTAB) continue;
+      const std::size_t names = sections.at(section.sh_link).sh_offset;
+      for (std::size_t i = 0; i < section.sh_size / sizeof(Elf64_Sym); ++i) {
+        const auto symbol =
+            At<Elf64_Sym>(section.sh_offset + i * sizeof(Elf64_Sym));
+        const std::string name = file_.c_str() + names + symbol.st_name;
+        // Mangled: a name in our namespace.
+        if (ELF64_ST_TYPE(symbol.st_info) == STT_FUNC &&
+            ELF64_ST_BIND(symbol.st_info) == STB_GLOBAL && symbol.st_size > 0 &&
+            name.starts_with("_ZN9touchdown")) {
+          functions.push_back(
+              {name, std::string_view(file_).substr(OffsetOf(symbol.st_value),
+                                                    symbol.st_size)});
+        }
+      }
+    }
+    return functions;
+  }
+
   const std::string file_ = testing::ReadAll(TOUCHDOWN_BINARY);
   Elf64_Ehdr header_{};
   std::vector<Elf64_Phdr> segments_;
@@ -117,11 +153,37 @@ TEST_F(Program, TakesReadersFromTheSystem) {
   EXPECT_EQ(file_.find("JBIGCopyEncodedData"), std::string::npos);
 }
 
-TEST(Hardened, StacksAndBuffersAreChecked) {
-#ifndef TOUCHDOWN_HARDENED
-  GTEST_SKIP() << "not built with TOUCHDOWN_HARDENED";
-#else
-  // The same flags are the program's: they are those of the whole build.
+#ifdef TOUCHDOWN_HARDENED
+
+#ifdef __x86_64__
+TEST_F(Program, IsJumpedToWhereItsFunctionsBegin) {
+  using namespace std::string_view_literals;
+  std::vector<std::string> unmarked;
+  const auto functions = OurFunctions();
+  ASSERT_THAT(functions, SizeIs(::testing::Gt(100u)));
+  for (const Function& function : functions) {
+    if (!function.code.starts_with("\xf3\x0f\x1e\xfa"sv)) {  // endbr64
+      unmarked.push_back(function.name);
+    }
+  }
+  EXPECT_THAT(unmarked, IsEmpty());
+}
+
+TEST_F(Program, ChecksItsStack) {
+  using namespace std::string_view_literals;
+  // %fs:0x28, where the number is that a frame on the stack must keep.
+  constexpr auto kGuard = "\x25\x28\x00\x00\x00"sv;
+  std::size_t checked = 0;
+  for (const Function& function : OurFunctions()) {
+    checked += function.code.find(kGuard) != std::string_view::npos ? 1 : 0;
+  }
+  EXPECT_GT(checked, 100u);
+}
+#endif
+
+// What the binary cannot tell apart from its archives, which Debian builds with
+// it: the flags are those of the whole build.
+TEST(Build, ChecksBuffers) {
 #ifndef __SSP_STRONG__
   ADD_FAILURE() << "no -fstack-protector-strong";
 #endif
@@ -131,8 +193,9 @@ TEST(Hardened, StacksAndBuffersAreChecked) {
 #if defined(__x86_64__) && !defined(__CET__)
   ADD_FAILURE() << "no -fcf-protection";
 #endif
-#endif
 }
+
+#endif  // TOUCHDOWN_HARDENED
 
 }  // namespace
 }  // namespace touchdown

@@ -175,10 +175,17 @@ TEST_F(Interruption, ALimitFailsAClipOfABatchAndNoOther) {
   fs::create_directory(In("films"));
   Busy("films/a.mraw");
   Film("films/b.mraw");
-  const ProgramResult ran = Run({"batch", In("films"), "--db", store,
-                                 "--campaign", "asphalt", "--limit-s", "4"});
-  EXPECT_EQ(ran.status, 5) << ran.err;
-  EXPECT_THAT(ran.out, HasSubstr("not done within 4 s"));
+  // A limit is wall time: where the machine has much else to do the film, too,
+  // may take longer than the first of them. The busy clip takes many
+  // times as long.
+  for (const std::string limit : {"4", "12", "36"}) {
+    const ProgramResult ran =
+        Run({"batch", In("films"), "--db", store, "--campaign", "asphalt",
+             "--again", "--limit-s", limit});
+    ASSERT_EQ(ran.status, 5) << ran.err;
+    ASSERT_THAT(ran.out, HasSubstr("not done within " + limit + " s"));
+    if (!Trials().empty()) break;
+  }
   EXPECT_EQ(Trials().size(), 1u);
 }
 

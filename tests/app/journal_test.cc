@@ -64,8 +64,8 @@ TEST_F(Journal, SaysAStageWhenItBegins) {
 }
 
 TEST_F(Journal, SaysAStageOfWhatIsNeverDone) {
-  const auto ran = testing::RunProgram("--verbose --limit-s 0.000001 " +
-                                       (kAnalyze + clip_.string()));
+  const auto ran = testing::RunProgram(kAnalyze + clip_.string() +
+                                       " --verbose --limit-s 0.000001");
   EXPECT_EQ(ran.status, 3);
   EXPECT_THAT(ran.err, HasSubstr("shot.mraw: the light is measured, from "));
 }

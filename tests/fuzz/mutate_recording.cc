@@ -43,9 +43,11 @@ std::size_t Below(Random& random, std::size_t n) {
 
 // --- seeds -------------------------------------------------------------------
 
-constexpr std::int32_t kWidth_px = 96;
-constexpr std::int32_t kHeight_px = 72;
-constexpr std::int64_t kFrames = 40;
+// Small and few, so that many damaged copies are read in little time; two and a
+// half groups of predicted frames.
+constexpr std::int32_t kWidth_px = 64;
+constexpr std::int32_t kHeight_px = 48;
+constexpr std::int64_t kFrames = 20;
 
 // A bright disc that falls and rises again before a dark ground.
 struct Film {
@@ -57,13 +59,13 @@ struct Film {
     if (index == kFrames) return std::nullopt;
     const std::size_t sample = bit_depth > 8 ? 2 : 1;
     bytes.assign(std::size_t{kWidth_px} * kHeight_px * sample, 0);
-    const auto t = static_cast<double>(index) - 20.0;
-    const double x0 = 12.0 + 1.7 * static_cast<double>(index);
-    const double y0 = 50.0 - std::abs(t) * 1.6;
+    const auto t = static_cast<double>(index) - 10.0;
+    const double x0 = 10.0 + 2.0 * static_cast<double>(index);
+    const double y0 = 33.0 - std::abs(t) * 1.6;
     for (std::int32_t y = 0; y < kHeight_px; ++y) {
       for (std::int32_t x = 0; x < kWidth_px; ++x) {
         const double r = std::hypot(x - x0, y - y0);
-        const std::uint32_t level = r < 8.0 ? 200u : y > 58 ? 40u : 90u;
+        const std::uint32_t level = r < 6.0 ? 200u : y > 39 ? 40u : 90u;
         const std::uint32_t value = level << (bit_depth - 8);
         std::uint8_t* const at =
             &bytes[(static_cast<std::size_t>(y) * kWidth_px +
