@@ -56,9 +56,12 @@ struct Flags {
 // For the handlers of signals.
 volatile std::sig_atomic_t ended = 0;
 volatile std::sig_atomic_t stopped = 0;  // the rig, and nobody was told
+// When it was, for the lines that were typed before.
+std::atomic<std::chrono::steady_clock::time_point> stopped_at;
 volatile std::sig_atomic_t analysing = 0;
 std::atomic<rig::Driver*> driven = nullptr;
-static_assert(std::atomic<rig::Driver*>::is_always_lock_free);
+static_assert(std::atomic<rig::Driver*>::is_always_lock_free &&
+              decltype(stopped_at)::is_always_lock_free);
 
 // Whatever the signal, a rig that moves is stopped first. Ctrl-C does no more
 // than that while there is something to stop; the next one ends the session,
@@ -68,6 +71,7 @@ void OnSignal(int signal) {
   rig::Driver* const driver = driven.load();
   const bool moves = driver != nullptr && !driver->is_stopped();
   if (moves) {
+    stopped_at = std::chrono::steady_clock::now();
     driver->Stop();
     stopped = 1;
   }
@@ -183,7 +187,7 @@ void Serve(const Flags& flags, session::Session& session,
   const auto tell_stop = [&] {
     if (stopped == 0) return;
     stopped = 0;
-    lines.Drop();
+    lines.DropUntil(stopped_at);
     fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
     std::fflush(stdout);
   };

@@ -126,10 +126,13 @@ void TerminalLines::Forget() {
   bytes_ = 0;
 }
 
-void TerminalLines::Drop() {
+void TerminalLines::DropUntil(Clock::time_point last) {
   const std::lock_guard lock(mutex_);
-  Forget();
-  if (!ended_) Clear(ready_);
+  while (!lines_.empty() && lines_.front().began <= last) {
+    bytes_ -= lines_.front().text.size() + 1;
+    lines_.pop_front();
+  }
+  if (lines_.empty() && !ended_) Clear(ready_);
   taken_.notify_all();
 }
 

@@ -39,9 +39,9 @@ class TerminalLines {
   int descriptor() const { return ready_; }
   // The next whole line, if there is one.
   std::optional<TypedLine> Next();
-  // Drops the lines that wait: after a stop, nothing that was typed before it
-  // is done.
-  void Drop();
+  // Drops the lines that wait and were begun until then: after a stop, nothing
+  // that was typed before it is done.
+  void DropUntil(std::chrono::steady_clock::time_point last);
   // A question and its answer; nothing at the end of the input, or where a
   // signal came first.
   std::optional<std::string> Ask(const std::string& question);

@@ -16,7 +16,7 @@ struct ServerOptions {
   // Where reports go that the page builds.
   std::filesystem::path reports;
   // What the next angle stays within; empty: no rig was given, any angle.
-  report::ReachOf reach_of;
+  report::ReachOf reach_of = {};
 };
 
 class Server {

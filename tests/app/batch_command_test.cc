@@ -158,8 +158,10 @@ TEST_F(BatchCommand, ShardsOfTheirOwnStoresMerge) {
   const ProgramResult merged =
       Run({"db", "merge", "--db", Db(), Db("shard-1.db"), Db("shard-2.db")});
   EXPECT_EQ(merged.status, 0) << merged.err;
-  EXPECT_THAT(merged.out,
-              HasSubstr("0 campaigns, 0 versions of the register added"));
+  EXPECT_THAT(
+      merged.out,
+      HasSubstr(
+          "0 campaigns, 0 versions of the register, 0 plans and looks added"));
   EXPECT_EQ(db::Store::Open(Db(), db::OpenMode::kRead).Trials().size(), 3u);
 }
 
