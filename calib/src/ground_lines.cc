@@ -271,7 +271,9 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
       edge.strength = 0.0;
       return edge;
     }
-    if (std::abs(step) < 1e-5) break;
+    // What is left after it is the square of a step, far below a column's u.
+    constexpr double kLast_px = 1e-3;
+    if (std::abs(step) < kLast_px) break;
   }
   return edge;
 }

@@ -7,24 +7,31 @@ namespace touchdown::vision {
 
 // Weighted sums of one coordinate over some frames, with the time in frames and
 // the value relative to the first of them: no digits cancel.
-struct Moments {
-  double w = 0, t = 0, tt = 0, ttt = 0, tttt = 0;
-  double y = 0, ty = 0, tty = 0, yy = 0;
+// T: a number, or an array of them, one for each of several coordinates.
+template <class T>
+struct MomentsOf {
+  T w = {}, t = {}, tt = {}, ttt = {}, tttt = {};
+  T y = {}, ty = {}, tty = {}, yy = {};
 
-  void Add(double time, double value, double weight) {
-    const double wt = weight * time;
-    const double wtt = wt * time;
+  void Add(const T& time, const T& value, const T& weight) {
+    const T wt = weight * time;
+    const T wtt = wt * time;
+    const T wy = weight * value;
     w += weight;
     t += wt;
     tt += wtt;
     ttt += wtt * time;
     tttt += wtt * time * time;
-    y += weight * value;
+    y += wy;
     ty += wt * value;
     tty += wtt * value;
-    yy += weight * value * value;
+    yy += wy * value;
+  }
+  MomentsOf<double> Of(int k) const {
+    return {w[k], t[k], tt[k], ttt[k], tttt[k], y[k], ty[k], tty[k], yy[k]};
   }
 };
+using Moments = MomentsOf<double>;
 
 // Least squares in orthogonal polynomials: level, slope, bend, and the sums of
 // squares left by polynomials of degree 1 and 2.

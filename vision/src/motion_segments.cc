@@ -54,6 +54,13 @@ struct Motion {
   double rss = 0.0;
 };
 
+// The coordinates of a frame: of the path by time, in frames; the gap by place.
+enum Coordinate : int { kAlong, kHeight, kFace, kGap, kCoordinates };
+using Each = double __attribute__((vector_size(kCoordinates * sizeof(double))));
+struct Seen {
+  Each at, value, weight;
+};
+
 class Segmenter {
  public:
   // `floor_px`: added to the poses' own u.
@@ -66,7 +73,6 @@ class Segmenter {
  private:
   struct Fits;
   std::vector<Stretch> BestPath();
-  void Fit(Fits& fits) const;
   double CostOf(const Stretch& stretch, bool touches_at_end) const;
   void GrowFrom(std::size_t begin);
   void OfferFlight(const Fits& fits);
@@ -87,29 +93,35 @@ class Segmenter {
   bool turns_;
   std::size_t least_flight_;  // frames
   int per_frame_;             // numbers measured in a frame
-  double gravity_;            // px per frame^2
+  Each falls_;                // half of gravity, px per frame^2
   double per_parameter_;
   double per_cut_;
   double level_precision_;  // of a supported stretch's level and slope
   double slope_precision_;
   std::vector<bool> allowed_;                    // cuts before these samples
   std::vector<std::array<Step, kStates>> best_;  // by boundary
-  std::vector<double> u_gap_;
-  std::array<std::vector<double>, 4> weights_;  // along, height, face, gap
+  std::vector<Seen> seen_;
 };
 
 // Of the frames from `begin` on, one after the other.
 struct Segmenter::Fits {
   std::size_t begin = 0;
   std::size_t frames = 0;
-  Moments along, height, face;
-  Moments gaps;  // by place
+  Seen first;  // but the gap, which is not relative to it
+  MomentsOf<Each> sums;
   double lowest_px = kInfinity;
   double highest_px = -kInfinity;
-  std::optional<Polynomial> x, y, f;  // of the frames so far
+  // Of the frames so far, once they were fitted.
+  Moments gaps;
+  Polynomial x, y, f;
 
+  Fits(const Segmenter& of, std::size_t from)
+      : begin(from), first(of.seen_[from]) {
+    first.at[kGap] = first.value[kGap] = 0.0;
+  }
   std::size_t end() const { return begin + frames; }
   void Add(const Segmenter& of);
+  void Fit();
   double RssOf(StretchKind kind, const Segmenter& of) const;
   Motion As(StretchKind kind, int parameters, const Segmenter& of) const {
     return {kind, parameters, RssOf(kind, of)};
@@ -117,29 +129,29 @@ struct Segmenter::Fits {
 };
 
 void Segmenter::Fits::Add(const Segmenter& of) {
-  const std::size_t i = begin + frames++;
-  const PlaneSample& first = of.samples_[begin];
-  const PlaneSample& s = of.samples_[i];
-  const double t = (s.time_s - first.time_s) / of.track_.frame_interval_s;
-  along.Add(t, s.along_px - first.along_px, of.weights_[0][i]);
-  height.Add(t, s.height_px - first.height_px + 0.5 * of.gravity_ * t * t,
-             of.weights_[1][i]);
-  if (of.turns_) face.Add(t, s.face_rad - first.face_rad, of.weights_[2][i]);
-  gaps.Add(s.along_px, s.gap_px, of.weights_[3][i]);
-  lowest_px = std::min(lowest_px, s.gap_px);
-  highest_px = std::max(highest_px, s.gap_px);
+  const Seen& s = of.seen_[begin + frames++];
+  const Each at = s.at - first.at;
+  sums.Add(at, s.value - first.value + of.falls_ * at * at, s.weight);
+  lowest_px = std::min(lowest_px, s.value[kGap]);
+  highest_px = std::max(highest_px, s.value[kGap]);
+}
+
+void Segmenter::Fits::Fit() {
+  x = Polynomial(sums.Of(kAlong));
+  y = Polynomial(sums.Of(kHeight));
+  f = Polynomial(sums.Of(kFace));
+  gaps = sums.Of(kGap);
 }
 
 double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
   if (kind == StretchKind::kFlight) {
     const bool known = of.options_.gravity_px_per_s2.has_value();
-    return x->rss1 + (known ? y->rss1 : y->rss2) + (f ? f->rss1 : 0.0);
+    return x.rss1 + (known ? y.rss1 : y.rss2) + f.rss1;
   }
-  const double turned = f ? f->rss2 : 0.0;
   if (kind == StretchKind::kSupported) {
-    return x->rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + turned;
+    return x.rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + f.rss2;
   }
-  return frames < kTold ? 0.0 : x->rss2 + y->rss2 + turned;
+  return frames < kTold ? 0.0 : x.rss2 + y.rss2 + f.rss2;
 }
 
 Segmenter::Segmenter(const PlaneTrack& track,
@@ -150,8 +162,8 @@ Segmenter::Segmenter(const PlaneTrack& track,
       turns_(track.kind == core::BodyKind::kRectangle),
       least_flight_(options.gravity_px_per_s2 ? 2 : kTold),
       per_frame_(turns_ ? 3 : 2),
-      gravity_(options.gravity_px_per_s2.value_or(0.0) *
-               track.frame_interval_s * track.frame_interval_s),
+      falls_{0.0, 0.5 * options.gravity_px_per_s2.value_or(0.0) *
+                      track.frame_interval_s * track.frame_interval_s},
       per_parameter_(
           0.5 * std::log(per_frame_ * static_cast<double>(samples_.size()))),
       per_cut_(std::log(static_cast<double>(samples_.size()))),
@@ -159,8 +171,8 @@ Segmenter::Segmenter(const PlaneTrack& track,
   const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
   level_precision_ = precision(std::hypot(
       track.ground.u_offset_px, track.u_half_px, options.edge_bias_px));
-  // An edge of the ground seen in perspective differs so much from the line of
-  // contact, at most.
+  // An edge of the ground seen in perspective differs so much from the line
+  // of contact, at most.
   constexpr double kInclined_rad = 0.5 * core::kDegree;
   slope_precision_ =
       precision(std::hypot(track.ground.u_angle_rad, kInclined_rad));
@@ -169,26 +181,26 @@ Segmenter::Segmenter(const PlaneTrack& track,
     const auto weight = [](double u, double floor) {
       return 1.0 / (u * u + floor * floor);
     };
-    weights_[0].push_back(weight(s.u_along_px, floor_px));
-    weights_[1].push_back(weight(s.u_height_px, floor_px));
-    weights_[2].push_back(turns_ ? weight(s.u_face_rad, floor_rad) : 0.0);
-    weights_[3].push_back(weight(s.u_gap_px, floor_px));
-    u_gap_.push_back(std::hypot(s.u_gap_px, floor_px));
+    const double t = s.time_s / track.frame_interval_s;
+    const double face = turns_ ? weight(s.u_face_rad, floor_rad) : 0.0;
+    seen_.push_back(
+        Seen{{t, t, t, s.along_px},
+             {s.along_px, s.height_px, s.face_rad, s.gap_px},
+             {weight(s.u_along_px, floor_px), weight(s.u_height_px, floor_px),
+              face, weight(s.u_gap_px, floor_px)}});
   }
 }
 
 // Of the flight fitted to the frames so far, at a sample.
 double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
-  const PlaneSample& first = samples_[fits.begin];
-  const double t =
-      (samples_[at].time_s - first.time_s) / track_.frame_interval_s;
-  double height = first.height_px;
+  const double t = seen_[at].at[kHeight] - fits.first.at[kHeight];
+  double height = fits.first.value[kHeight];
   if (options_.gravity_px_per_s2) {
-    height += fits.y->Line(t) - 0.5 * gravity_ * t * t;
+    height += fits.y.Line(t) - falls_[kHeight] * t * t;
   } else {
-    height += fits.y->Parabola(t);
+    height += fits.y.Parabola(t);
   }
-  const double face = turns_ ? first.face_rad + fits.f->Line(t) : 0.0;
+  const double face = turns_ ? fits.first.value[kFace] + fits.f.Line(t) : 0.0;
   return height - SupportHeight(track_, face);
 }
 
@@ -198,7 +210,7 @@ double Segmenter::OffGround(double above, std::size_t at, std::size_t frames,
                             double most) const {
   if (!(above > 0.0)) return 0.0;
   const double tilt = track_.ground.u_angle_rad * samples_[at].along_px;
-  const double forecast = u_gap_[at] * u_gap_[at] * ForecastVariance(frames);
+  const double forecast = ForecastVariance(frames) / seen_[at].weight[kGap];
   const double variance = 1.0 / level_precision_ + tilt * tilt + forecast;
   return std::min(most, 0.5 * above * above / variance);
 }
@@ -235,8 +247,8 @@ void Segmenter::Offer(const Fits& fits, const Motion& motion, State from,
   best = {cost, fits.begin, from, kind, rss, std::max(0, values - parameters)};
 }
 
-// Where a person says when it touches down, nothing touches before it, and the
-// flight up to it ends there wherever the line is.
+// Where a person says when it touches down, nothing touches before it, and
+// the flight up to it ends there wherever the line is.
 bool Segmenter::MayTouch(std::size_t end) const {
   return !options_.touchdown || end >= *options_.touchdown;
 }
@@ -285,8 +297,8 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   const std::size_t n = fits.frames;
   const int k = static_cast<int>(std::min<std::size_t>(n, 3)) * per_frame_;
   const Motion any = fits.As(StretchKind::kOther, k, *this);
-  // No motion that is known: mostly it is one, badly seen. A few frames tell of
-  // none, but those after an impact would be a rebound.
+  // No motion that is known: mostly it is one, badly seen. A few frames tell
+  // of none, but those after an impact would be a rebound.
   const double few = 2.0 * per_cut_;
   const bool told = n >= kTold;
   const double before = told ? options_.unknown_cost : few;
@@ -295,9 +307,9 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   const auto offer_other = [&](State from, State to, double ends) {
     Offer(fits, any, from, to, ends);
   };
-  // Twice as for a rebound: where the line is not known, or is not quite where
-  // the flights meet, it could stand for one.
-  // What is pressed down gives way by less than half of its size.
+  // Twice as for a rebound: where the line is not known, or is not quite
+  // where the flights meet, it could stand for one. What is pressed down
+  // gives way by less than half of its size.
   if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
     const double above = fits.gaps.y / fits.gaps.w;
     Offer(fits, {StretchKind::kContact, k, any.rss}, kTouched, kTouched,
@@ -313,32 +325,25 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   if (told) offer_other(kEnded, kEnded, after);
 }
 
-void Segmenter::Fit(Fits& fits) const {
-  fits.x.emplace(fits.along);
-  fits.y.emplace(fits.height);
-  if (turns_) fits.f.emplace(fits.face);
-}
-
 void Segmenter::GrowFrom(std::size_t begin) {
   double least = kInfinity;
   for (const Step& step : best_[begin]) least = std::min(least, step.cost);
   if (!(least < kInfinity)) return;
   const bool early = options_.touchdown && begin < *options_.touchdown;
   const std::size_t limit = early ? *options_.touchdown : samples_.size();
-  Fits fits;
-  fits.begin = begin;
+  Fits fits(*this, begin);
   for (std::size_t end = begin + 1; end <= limit; ++end) {
     fits.Add(*this);
     if (!allowed_[end]) continue;
-    Fit(fits);
+    fits.Fit();
     OfferFlight(fits);
     OfferSupport(fits);
     OfferAnyMotion(fits);
     if (fits.frames < 2) continue;
-    // No stretch from here can become the best once even the loosest one, which
-    // later frames only make worse, has lost to what leads there already.
-    const double loosest =
-        0.5 * (fits.x->rss2 + fits.y->rss2 + (turns_ ? fits.f->rss2 : 0.0));
+    // No stretch from here can become the best once even the loosest one,
+    // which later frames only make worse, has lost to what leads there
+    // already.
+    const double loosest = 0.5 * (fits.x.rss2 + fits.y.rss2 + fits.f.rss2);
     double leads = kInfinity;
     for (const State state : {kCarried, kTouched, kEnded}) {
       leads = std::min(leads, best_[end][state].cost);
@@ -350,10 +355,9 @@ void Segmenter::GrowFrom(std::size_t begin) {
 
 // Of one stretch, for the choice of its ends.
 double Segmenter::CostOf(const Stretch& stretch, bool touches_at_end) const {
-  Fits fits;
-  fits.begin = stretch.begin;
+  Fits fits(*this, stretch.begin);
   while (fits.frames < stretch.end - stretch.begin) fits.Add(*this);
-  Fit(fits);
+  fits.Fit();
   double cost = 0.5 * fits.RssOf(stretch.kind, *this);
   if (stretch.kind != StretchKind::kFlight) return cost;
   cost += StartCost(fits);
@@ -399,7 +403,8 @@ std::vector<Stretch> Segmenter::Run() {
   const std::size_t n = samples_.size();
   if (n < 2) return {};
   // Cuts at every few frames first; then at every frame beside those found,
-  // until they stay. What a coarse cut cannot explain asks for cuts beside it.
+  // until they stay. What a coarse cut cannot explain asks for cuts beside
+  // it.
   constexpr std::size_t kExact = 120;  // boundaries: about a millisecond
   const std::size_t step = (n + kExact - 1) / kExact;
   std::vector<bool> grid(n + 1, false);
