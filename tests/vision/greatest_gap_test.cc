@@ -50,14 +50,14 @@ TEST(GreatestGap, OfAFlightIsItsTopBetweenFrames) {
   for (int i = 0; i < 60; ++i) gaps.push_back(Fall(300.0, i * 1e-3));
   const PlaneTrack track = Gaps(gaps, 0.02);
   const auto found =
-      Find(track, {{StretchKind::kFlight, 0, gaps.size(), 0.0, 0}});
+      Find(track, {{{0, gaps.size()}, StretchKind::kFlight, 0.0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gap_px.value, 300.0 * 300.0 / (2.0 * kGravity), 1e-3);
   EXPECT_NEAR(static_cast<double>(found->frame), 30.6, 1.0);
   EXPECT_FALSE(found->reaches_px);
   // Above a ground elsewhere, whose u it takes over.
   const auto shifted =
-      Find(track, {{StretchKind::kFlight, 0, gaps.size(), 0.0, 0}},
+      Find(track, {{{0, gaps.size()}, StretchKind::kFlight, 0.0, 0}},
            {0.0, {1.5, 0.3}, 0.0});
   EXPECT_NEAR(shifted->gap_px.value, found->gap_px.value - 1.5, 1e-9);
   EXPECT_NEAR(shifted->gap_px.u, std::hypot(found->gap_px.u, 0.3), 1e-9);
@@ -70,9 +70,9 @@ TEST(GreatestGap, OfAHopOfTwoFrames) {
   const std::vector<double> gaps = {0.0, Fall(v, dt), Fall(v, 2.0 * dt), 0.0,
                                     0.0};
   const auto found =
-      Find(Gaps(gaps, 1e-3, dt), {{StretchKind::kSupported, 0, 1, 0.0, 0},
-                                  {StretchKind::kFlight, 1, 3, 0.0, 0},
-                                  {StretchKind::kSupported, 3, 5, 0.0, 0}});
+      Find(Gaps(gaps, 1e-3, dt), {{{0, 1}, StretchKind::kSupported, 0.0, 0},
+                                  {{1, 3}, StretchKind::kFlight, 0.0, 0},
+                                  {{3, 5}, StretchKind::kSupported, 0.0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gap_px.value, v * v / (2.0 * kGravity), 1e-3);
 }
@@ -80,8 +80,8 @@ TEST(GreatestGap, OfAHopOfTwoFrames) {
 TEST(GreatestGap, FilmThatEndsWhileTheBodyRisesTellsWhereItWouldReach) {
   std::vector<double> gaps;
   for (int i = 0; i < 12; ++i) gaps.push_back(Fall(300.0, i * 1e-3));
-  const auto found =
-      Find(Gaps(gaps, 0.02), {{StretchKind::kFlight, 0, gaps.size(), 0.0, 0}});
+  const auto found = Find(Gaps(gaps, 0.02),
+                          {{{0, gaps.size()}, StretchKind::kFlight, 0.0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gap_px.value, gaps.back(), 0.05);
   ASSERT_TRUE(found->reaches_px);
@@ -95,8 +95,8 @@ TEST(GreatestGap, OfTwoHopsIsTheHigher) {
   for (int i = 0; i < 20; ++i) gaps.push_back(0.1 * (20 - i));
   for (int i = 0; i < 24; ++i) gaps.push_back(Fall(110.0, i * 1e-3));
   const auto found =
-      Find(Gaps(gaps, 0.02), {{StretchKind::kOther, 0, 20, 0.0, 0},
-                              {StretchKind::kFlight, 20, 44, 0.0, 0}});
+      Find(Gaps(gaps, 0.02), {{{0, 20}, StretchKind::kOther, 0.0, 0},
+                              {{20, 44}, StretchKind::kFlight, 0.0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gap_px.value, 2.0, 0.05);
 }
@@ -125,7 +125,7 @@ TEST(GreatestGap, OfATurningBlockIsAtTheCusp) {
     poses.push_back({60.0 - 0.5 * kGravity * t * t, kTurn * (i - kCusp)});
   }
   const auto found =
-      Find(Block(poses), {{StretchKind::kFlight, 0, poses.size(), 0.0, 0}});
+      Find(Block(poses), {{{0, poses.size()}, StretchKind::kFlight, 0.0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gap_px.value, 50.0, 0.01);
 }
@@ -141,7 +141,7 @@ TEST(GreatestGap, BetweenTwoFramesABlockFallsFromCornerToCorner) {
   const double down = SupportHeight(track, kTilt);
   const auto found = Find(
       Block({{down, kTilt}, {down, kTilt}, {down, -kTilt}, {down, -kTilt}}),
-      {{StretchKind::kSupported, 0, 4, 0.0, 0}});
+      {{{0, 4}, StretchKind::kSupported, 0.0, 0}});
   ASSERT_TRUE(found);
   // Half way it is upright and as high as at the ends.
   const double lifted = down - 10.0;
@@ -152,7 +152,7 @@ TEST(GreatestGap, BetweenTwoFramesABlockFallsFromCornerToCorner) {
 TEST(GreatestGap, NothingFilmedIsAbsent) {
   EXPECT_FALSE(Find(PlaneTrack{}, {}));
   const auto one =
-      Find(Gaps({1.25}, 0.1), {{StretchKind::kSupported, 0, 1, 0.0, 0}});
+      Find(Gaps({1.25}, 0.1), {{{0, 1}, StretchKind::kSupported, 0.0, 0}});
   ASSERT_TRUE(one);
   EXPECT_EQ(one->gap_px.value, 1.25);
   EXPECT_EQ(one->gap_px.u, 0.1);
@@ -169,7 +169,7 @@ TEST(GreatestGap, NoiseOfABodyAtRestIsNoBounce) {
     std::vector<double> gaps;
     for (int i = 0; i < 200; ++i) gaps.push_back(0.1 * normal(engine));
     const auto found =
-        Find(Gaps(gaps, 0.1), {{StretchKind::kSupported, 0, 200, 0.0, 0}});
+        Find(Gaps(gaps, 0.1), {{{0, 200}, StretchKind::kSupported, 0.0, 0}});
     bounces +=
         DecideBounce(found->gap_px, 0.2).label == core::MotionState::kBounce;
   }

@@ -394,13 +394,15 @@ TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
   layers.noise_dn = 1.0;
   const LayerPose pose = scene.poses[10];
   const LayerPose motion{1.37, 0.9, 0.01};
-  const FrameSamples at = Linearize(stack, 10, layers, pose, motion);
+  FrameSamples at;
+  Linearize(stack, 10, layers, pose, motion, Derivatives::kAll, at);
   constexpr double kStep = 0.02;
   const auto residual_at = [&](double dx, double dy, double turn) {
     std::vector<double> residual(stack.pixels());
-    const FrameSamples moved =
-        Linearize(stack, 10, layers,
-                  {pose.x + dx, pose.y + dy, pose.angle_rad + turn}, motion);
+    FrameSamples moved;
+    Linearize(stack, 10, layers,
+              {pose.x + dx, pose.y + dy, pose.angle_rad + turn}, motion,
+              Derivatives::kByPose, moved);
     for (std::size_t i = 0; i < moved.size(); ++i) {
       residual[static_cast<std::size_t>(moved.pixel[i])] =
           static_cast<double>(moved.residual[i]);

@@ -86,23 +86,19 @@ std::vector<Touch> FindTouches(const PlaneTrack& track,
       continue;
     }
     Touch touch;
-    touch.event.before_frames = {stretches[k].begin, stretches[k].end};
+    touch.event.before_frames = stretches[k];
     std::size_t next = k + 1;
     while (next + 1 < stretches.size() &&
            stretches[next].kind == StretchKind::kContact) {
       ++next;
     }
-    const SampleRange frames{stretches[next].begin, stretches[next].end};
     if (stretches[next].kind == StretchKind::kFlight) {
-      touch.event.after_frames = frames;
+      touch.event.after_frames = stretches[next];
     } else if (stretches[next].kind == StretchKind::kSupported) {
-      touch.event.down_frames = frames;
+      touch.event.down_frames = stretches[next];
     }
     const std::size_t last = stretches[k].end - 1;
-    const Flight before = FitFlight(
-        std::span(samples).subspan(stretches[k].begin,
-                                   stretches[k].end - stretches[k].begin),
-        flight);
+    const Flight before = FitFlight(SamplesIn(track, stretches[k]), flight);
     const double at = samples[last].gap_px;
     const double then =
         GapOfFlight(track, before, samples[last + 1].time_s).gap_px;
@@ -192,7 +188,7 @@ std::optional<Event> MeasureAtEnd(const PlaneTrack& track,
                         lowest->gap_px);
   if (stretches.back().kind != StretchKind::kFlight) return std::nullopt;
   Event event;
-  event.before_frames = {stretches.back().begin, stretches.back().end};
+  event.before_frames = stretches.back();
   std::string too_few;
   if (!MeasureEvent(track, options, event, too_few)) return std::nullopt;
   const double dt = track.frame_interval_s;
@@ -254,12 +250,10 @@ bool BeginsAtImpact(const PlaneTrack& track,
   const bool unclear = stretches[0].kind == StretchKind::kOther;
   if (unclear && stretches.size() < 2) return false;
   const Stretch& first = stretches[unclear ? 1 : 0];
-  if (first.kind != StretchKind::kFlight || first.end - first.begin < 2) {
+  if (first.kind != StretchKind::kFlight || first.size() < 2) {
     return false;
   }
-  const Flight flight = FitFlight(
-      std::span(track.samples).subspan(first.begin, first.end - first.begin),
-      options);
+  const Flight flight = FitFlight(SamplesIn(track, first), options);
   const PlaneSample& s = track.samples[first.begin];
   const FlightGap before =
       GapOfFlight(track, flight, s.time_s - track.frame_interval_s);
@@ -286,10 +280,8 @@ const Stretch* DownFromStart(const std::vector<Stretch>& stretches) {
 // something else carries the body; else 0.
 double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
   double sum = 0.0;
-  for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
-    sum += track.samples[i].gap_px;
-  }
-  const double gap = sum / static_cast<double>(stretch.end - stretch.begin);
+  for (const PlaneSample& s : SamplesIn(track, stretch)) sum += s.gap_px;
+  const double gap = sum / static_cast<double>(stretch.size());
   const double near = NearLine(track, track.samples[stretch.begin], kCarried);
   return std::abs(gap) > near ? gap : 0.0;
 }
@@ -401,33 +393,30 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     left = std::min(left, pose.centre.x_px);
     right = std::max(right, pose.centre.x_px);
   }
-  const auto seen_from = [&](double y_px) {
+  const auto level_at = [&](double y_px) {
     calib::GroundLine level =
         calib::GroundThrough({left, y_px}, {std::max(right, left + 1.0), y_px});
     level.u_angle_rad = u_level_rad;
-    return SeenFromGround(track, level);
+    return level;
   };
-  PlaneTrack plane = seen_from(lowest);
-  const double least = LowestOf(plane).gap_px;
-  plane = seen_from(lowest - least);
+  PlaneTrack plane = SeenFromGround(track, level_at(lowest));
+  // Below it the body does not sink.
+  const double deepest = lowest - LowestOf(plane).gap_px;
+  plane = SeenFromGround(track, level_at(deepest));
   WidenToScatter(plane);
   constexpr double kUnknown_px = 1e3;  // nothing is known of the line yet
   plane.ground.u_offset_px = kUnknown_px;
   // The first contact below which the body does not sink by its own size: what
   // is met later lies elsewhere in perspective, and a body does not pass below
   // its ground.
-  const double deepest = lowest - least;
   for (Touch& touch : FindTouches(plane, SegmentMotion(plane), {})) {
     std::string reason;
     if (!MeasureEvent(plane, {}, touch.event, reason)) continue;
     const ContactEvidence at = EvidenceOf(plane, touch.event);
     if (deepest - at.touching.y_px > plane.size_px) continue;
-    calib::GroundLine ground;
-    ground.p1 = {left, at.touching.y_px};
-    ground.p2 = {std::max(right, left + 1.0), at.touching.y_px};
+    calib::GroundLine ground = level_at(at.touching.y_px);
     ground.reference = at.touching;
     ground.u_offset_px = std::min(touch.event.ground_px.u, 5.0);
-    ground.u_angle_rad = u_level_rad;
     ground.source = calib::GroundSource::kContactPoints;
     return ground;
   }

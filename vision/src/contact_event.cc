@@ -11,11 +11,6 @@
 namespace touchdown::vision {
 namespace {
 
-std::span<const PlaneSample> SamplesIn(const PlaneTrack& track,
-                                       const SampleRange& range) {
-  return std::span(track.samples).subspan(range.begin, range.size());
-}
-
 // The instant at which the gap of a flight crosses zero in [from_s, to_s], in
 // the direction of `falling`; where it only grazes the ground, the instant
 // nearest to it. A body that turns may cross more than once: touchdown is the

@@ -3,9 +3,7 @@
 // record.
 #pragma once
 
-#include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "joint_fit.h"
@@ -13,12 +11,6 @@
 #include "touchdown/vision/plane_track.h"
 
 namespace touchdown::vision {
-
-struct SampleRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;  // one past the last
-  std::size_t size() const { return end - begin; }
-};
 
 struct Event {
   // Frames of the flight before touchdown, of the flight after release (none

@@ -235,10 +235,9 @@ void FillMotion(const RecordContext& context, const Event& event,
         AbsentBecause("uninformative: its uncertainty exceeds 3 %");
     double sw = 0.0;
     double swx = 0.0;
-    const std::span<const PlaneSample> samples(track.samples);
     const auto add = [&](const SampleRange& range) {
       if (range.size() < 6) return;
-      const Flight free = FitFlight(samples.subspan(range.begin, range.size()));
+      const Flight free = FitFlight(SamplesIn(track, range));
       const double w = 1.0 / free.height_cov(2, 2);
       sw += w;
       swx += w * free.height[2];
@@ -483,8 +482,7 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   }
   // Its own path is the line: its direction has no u of its own here.
   FillState(context, 0,
-            {samples.front().along_px,
-             LevelOf(samples.subspan(down.begin, down.end - down.begin)), 0.0},
+            {samples.front().along_px, LevelOf(SamplesIn(track, down)), 0.0},
             nullptr, record.state);
   record.state.reason = "on the ground from the start; " + record.state.reason;
   NameWhatStaysDown(context, 0, record.state);

@@ -16,8 +16,8 @@ struct Finder {
   std::optional<GreatestGap> greatest = std::nullopt;
 
   void LookAt(const Stretch& stretch);
-  void LookAtFlight(std::size_t begin, std::size_t end);
-  void LookAtFrames(std::size_t begin, std::size_t end);
+  void LookAtFlight(const SampleRange& range);
+  void LookAtFrames(const SampleRange& range);
   void LookBetween(const PlaneSample& a, const PlaneSample& b);
   void Offer(const core::Estimate& gap, std::int64_t frame);
   double UncertaintyOfGround(double along_px) const {
@@ -36,15 +36,14 @@ void Finder::Offer(const core::Estimate& gap, std::int64_t frame) {
   greatest = GreatestGap{gap, frame, std::nullopt};
 }
 
-void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
+void Finder::LookAtFlight(const SampleRange& range) {
   const auto& samples = track.samples;
+  const auto [begin, end] = range;
   const bool first = event && event->after &&
                      event->after_frames.begin >= begin &&
                      event->after_frames.end == end;
   const Flight flight =
-      first
-          ? *event->after
-          : FitFlight(std::span(samples).subspan(begin, end - begin), options);
+      first ? *event->after : FitFlight(SamplesIn(track, range), options);
   // With its u: of the joint fit where ground and flight are one.
   const auto gap_at = [&](double t) {
     if (first) {
@@ -90,9 +89,9 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
   };
   const double at =
       highest(std::max(start, first ? event->release_s.value : start), stop);
+  const auto seen = SamplesIn(track, range);
   const auto near = std::min_element(
-      samples.begin() + static_cast<std::ptrdiff_t>(begin),
-      samples.begin() + static_cast<std::ptrdiff_t>(end),
+      seen.begin(), seen.end(),
       [&](const PlaneSample& a, const PlaneSample& b) {
         return std::abs(a.time_s - at) < std::abs(b.time_s - at);
       });
@@ -116,7 +115,8 @@ void Finder::LookAtFlight(std::size_t begin, std::size_t end) {
 
 // Frames of no flight: of parabolas through a few neighbours, so that a hop too
 // small to be told from rest counts with what it shows.
-void Finder::LookAtFrames(std::size_t begin, std::size_t end) {
+void Finder::LookAtFrames(const SampleRange& range) {
+  const auto [begin, end] = range;
   // 7: the noise of the middle falls to 0.58, and a hop of as many frames is
   // followed exactly.
   constexpr std::size_t kWindow = 7;
@@ -165,14 +165,13 @@ void Finder::LookBetween(const PlaneSample& a, const PlaneSample& b) {
 }
 
 void Finder::LookAt(const Stretch& stretch) {
-  const std::size_t begin = std::max(stretch.begin, since);
-  const std::size_t end = stretch.end;
-  if (begin >= end) return;
+  const SampleRange range{std::max(stretch.begin, since), stretch.end};
+  if (range.begin >= range.end) return;
   if (stretch.kind == StretchKind::kFlight &&
-      end - begin >= LeastFrames(options)) {
-    LookAtFlight(begin, end);
+      range.size() >= LeastFrames(options)) {
+    LookAtFlight(range);
   } else {
-    LookAtFrames(begin, end);
+    LookAtFrames(range);
   }
 }
 

@@ -15,22 +15,24 @@ using layers::Shape;
 namespace {
 
 template <class Sample>
-void CopyRows(const core::Frame& frame, const core::PixelRect& box, float* out,
-              std::int32_t stride) {
-  for (std::int32_t y = 0; y < box.height; ++y, out += stride) {
-    const Sample* const row = frame.row<Sample>(box.y + y) + box.x;
-    std::copy_n(row, box.width, out);
+void CopyRows(const core::Frame& window, const core::PixelRect& size,
+              float* out, std::int32_t stride) {
+  for (std::int32_t y = 0; y < size.height; ++y, out += stride) {
+    std::copy_n(window.row<Sample>(y), size.width, out);
   }
 }
 
-// The pixels of `box`, in rows that begin `stride` apart.
-void Copy(const core::Frame& frame, const core::PixelRect& box, float* out,
-          std::int32_t stride) {
-  if (frame.is_16_bit()) {
-    CopyRows<std::uint16_t>(frame, box, out, stride);
+// Reads `window` of a frame into rows that begin `stride` apart. The frame's
+// time.
+double ReadInto(Clip& clip, std::int64_t frame, const core::PixelRect& window,
+                float* out, std::int32_t stride) {
+  const core::Frame seen = clip.Read(frame, window);
+  if (seen.is_16_bit()) {
+    CopyRows<std::uint16_t>(seen, window, out, stride);
   } else {
-    CopyRows<std::uint8_t>(frame, box, out, stride);
+    CopyRows<std::uint8_t>(seen, window, out, stride);
   }
+  return seen.time_s;
 }
 
 }  // namespace
@@ -140,9 +142,9 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
   stack.frames.assign(frames.begin(), frames.end());
   stack.levels.resize(stack.pixels() * frames.size());
   for (std::size_t t = 0; t < frames.size(); ++t) {
-    const core::Frame frame = clip.Read(frames[t]);
-    stack.times_s.push_back(frame.time_s);
-    Copy(frame, box, stack.levels.data() + t * stack.pixels(), stack.width);
+    stack.times_s.push_back(ReadInto(clip, frames[t], box,
+                                     stack.levels.data() + t * stack.pixels(),
+                                     stack.width));
   }
   return stack;
 }
@@ -180,13 +182,12 @@ const PictureStack& PictureReader::Read(const LayerPath& path) {
   stack_.frames = path.frames;
   stack_.times_s.clear();
   // It only grows: what `read_` says of a picture stays true.
-  if (stack_.levels.size() < pixels * path.frames.size()) {
-    stack_.levels.resize(pixels * path.frames.size());
-  }
-  float* levels = stack_.levels.data();
-  for (std::size_t t = 0; t < path.frames.size(); ++t, levels += pixels) {
+  stack_.levels.reserve(pixels * path.frames.size());
+  for (std::size_t t = 0; t < path.frames.size(); ++t) {
+    float* const levels = stack_.levels.data() + t * pixels;
     if (t == read_.size()) {
-      if (!whole) std::copy(still_.begin(), still_.end(), levels);
+      stack_.levels.insert(stack_.levels.end(), still_.begin(), still_.end());
+      read_.emplace_back();
     } else {
       const core::PixelRect& old = read_[t];
       for (std::int32_t y = old.y; y < old.y + old.height; ++y) {
@@ -198,13 +199,11 @@ const PictureStack& PictureReader::Read(const LayerPath& path) {
     const core::PixelRect window =
         whole ? core::PixelRect{0, 0, box_.width, box_.height}
               : WindowAround(path.poses[t]);
-    const core::Frame frame = clip_.Read(path.frames[t]);
-    stack_.times_s.push_back(frame.time_s);
-    Copy(frame,
-         {box_.x + window.x, box_.y + window.y, window.width, window.height},
-         levels + std::ptrdiff_t{window.y} * box_.width + window.x, box_.width);
+    stack_.times_s.push_back(ReadInto(
+        clip_, path.frames[t],
+        {box_.x + window.x, box_.y + window.y, window.width, window.height},
+        levels + std::ptrdiff_t{window.y} * box_.width + window.x, box_.width));
     // A whole picture is written over by the next.
-    if (t == read_.size()) read_.emplace_back();
     if (!whole) read_[t] = window;
   }
   return stack_;

@@ -356,7 +356,7 @@ void Segmenter::GrowFrom(std::size_t begin) {
 // Of one stretch, for the choice of its ends.
 double Segmenter::CostOf(const Stretch& stretch, bool touches_at_end) const {
   Fits fits(*this, stretch.begin);
-  while (fits.frames < stretch.end - stretch.begin) fits.Add(*this);
+  while (fits.frames < stretch.size()) fits.Add(*this);
   fits.Fit();
   double cost = 0.5 * fits.RssOf(stretch.kind, *this);
   if (stretch.kind != StretchKind::kFlight) return cost;
@@ -444,7 +444,8 @@ std::vector<Stretch> Segmenter::BestPath() {
   for (std::size_t end = n; end > 0;) {
     const Step& step = best_[end][state];
     if (!(step.cost < kInfinity)) return {};
-    stretches.push_back({step.kind, step.begin, end, step.chi2, step.degrees});
+    stretches.push_back(
+        {{step.begin, end}, step.kind, step.chi2, step.degrees});
     end = step.begin;
     state = step.from;
   }

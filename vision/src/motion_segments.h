@@ -22,10 +22,8 @@
 
 namespace touchdown::vision {
 
-struct Stretch {
+struct Stretch : SampleRange {
   StretchKind kind = StretchKind::kOther;
-  std::size_t begin = 0;  // samples [begin, end)
-  std::size_t end = 0;
   double chi2 = 0.0;  // of its poses about it
   int degrees = 0;    // of freedom
 };

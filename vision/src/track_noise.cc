@@ -121,9 +121,9 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
   const bool turns = track.kind == core::BodyKind::kRectangle;
   constexpr std::size_t kLeast = 8;  // frames
   for (const Stretch& stretch : stretches) {
-    const std::size_t n = stretch.end - stretch.begin;
+    const std::size_t n = stretch.size();
     if (stretch.kind != StretchKind::kFlight || n < kLeast) continue;
-    const auto samples = std::span(track.samples).subspan(stretch.begin, n);
+    const auto samples = SamplesIn(track, stretch);
     const Flight flight = FitFlight(samples, options);
     std::vector<double> x, y, f;
     for (const PlaneSample& s : samples) {

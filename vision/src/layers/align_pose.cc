@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "lanes.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision::layers {
@@ -52,32 +54,52 @@ void WeighByLayers(const Layers& layers, const LayerPose& motion,
 
 using Matrix = Eigen::Matrix3d;
 
-// Sum over pairs of pixels: c(lag) g(x) g(x + lag)', g = w J.
+constexpr std::size_t kLanes = 8;
+
+// Sum of a(i) b(i) over `count` numbers, a multiple of eight.
+TOUCHDOWN_WIDEST
+double SumOfProducts(const float* a, const float* b, std::size_t count) {
+  Eight sums{};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    Eight of_a, of_b;
+    std::memcpy(&of_a, a + i, sizeof of_a);
+    std::memcpy(&of_b, b + i, sizeof of_b);
+    sums += of_a * of_b;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kLanes; ++k) sum += static_cast<double>(sums[k]);
+  return sum;
+}
+
+// Sum over pairs of pixels: c(lag) g(x) g(x + lag)', g = w J, of the first
+// `free` coordinates of a pose.
 Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
-                  double variance) {
+                  double variance, int free) {
   constexpr std::int32_t kLags = 4;  // px
-  // The samples on a grid of their own.
+  // The samples on a grid of their own, with so many zeros beside and below it
+  // that a shifted grid ends in them.
   std::int32_t left = width;
   std::int32_t right = 0;
-  std::int32_t top = samples.pixel.front() / width;
-  std::int32_t bottom = samples.pixel.back() / width;
+  const std::int32_t top = samples.pixel.front() / width;
+  const std::int32_t bottom = samples.pixel.back() / width;
   for (const std::int32_t pixel : samples.pixel) {
     left = std::min(left, pixel % width);
     right = std::max(right, pixel % width);
   }
-  const std::int32_t columns = right - left + 1;
-  const std::int32_t rows = bottom - top + 1;
-  const auto cells =
-      static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  const auto stride =
+      (static_cast<std::size_t>(right - left + 1 + kLags) / kLanes + 1) *
+      kLanes;
+  const std::size_t cells = stride * static_cast<std::size_t>(bottom - top + 1);
+  const std::vector<float> zeros(cells + (kLags + 1) * stride, 0.0F);
   std::array<std::vector<float>, kPose> g;
-  for (auto& column : g) column.assign(cells, 0.0F);
-  std::vector<float> residual(cells, 0.0F);
-  std::vector<float> known(cells, 0.0F);
+  for (auto& column : g) column = zeros;
+  std::vector<float> residual = zeros;
+  std::vector<float> known = zeros;
   const auto cut = static_cast<float>(5.0 * std::sqrt(variance));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto at =
-        static_cast<std::size_t>((samples.pixel[i] / width - top) * columns +
-                                 samples.pixel[i] % width - left);
+        static_cast<std::size_t>(samples.pixel[i] / width - top) * stride +
+        static_cast<std::size_t>(samples.pixel[i] % width - left);
     for (std::size_t a = 0; a < kPose; ++a) {
       g[a][at] = samples.weight[i] * samples.by_pose[a][i];
     }
@@ -90,44 +112,26 @@ Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
   for (std::int32_t down = 0; down <= kLags; ++down) {
     for (std::int32_t across = down == 0 ? 0 : -kLags; across <= kLags;
          ++across) {
-      double products = 0.0;
-      double pairs = 0.0;
+      const std::ptrdiff_t lag =
+          down * static_cast<std::ptrdiff_t>(stride) + across;
+      const auto overlap = [&](const std::vector<float>& a,
+                               const std::vector<float>& b) {
+        return SumOfProducts(a.data(), b.data() + lag, cells);
+      };
+      const double pairs = overlap(known, known);
+      if (pairs < 1.0) continue;
       Matrix own = Matrix::Zero();
-      for (std::int32_t y = 0; y + down < rows; ++y) {
-        const std::int32_t from = std::max(0, -across);
-        const std::int32_t to = std::min(columns, columns - across);
-        if (to <= from) continue;
-        const auto row = static_cast<std::size_t>(y * columns);
-        const auto other =
-            static_cast<std::size_t>((y + down) * columns + across);
-        float product = 0.0F;
-        float pair = 0.0F;
-        std::array<float, 9> g_g{};
-        for (auto x = static_cast<std::size_t>(from);
-             x < static_cast<std::size_t>(to); ++x) {
-          product += residual[row + x] * residual[other + x];
-          pair += known[row + x] * known[other + x];
-          for (std::size_t a = 0; a < kPose; ++a) {
-            for (std::size_t b = 0; b < kPose; ++b) {
-              g_g[kPose * a + b] += g[a][row + x] * g[b][other + x];
-            }
-          }
-        }
-        products += static_cast<double>(product);
-        pairs += static_cast<double>(pair);
-        for (std::size_t a = 0; a < kPose; ++a) {
-          for (std::size_t b = 0; b < kPose; ++b) {
-            own(static_cast<int>(a), static_cast<int>(b)) +=
-                static_cast<double>(g_g[kPose * a + b]);
-          }
+      for (int a = 0; a < free; ++a) {
+        for (int b = 0; b < free; ++b) {
+          own(a, b) = overlap(g[static_cast<std::size_t>(a)],
+                              g[static_cast<std::size_t>(b)]);
         }
       }
-      if (pairs < 1.0) continue;
       const double away =
           std::hypot(static_cast<double>(across), static_cast<double>(down));
       const double taper = std::max(0.0, 1.0 - away / (kLags + 1));  // Bartlett
-      double correlation = taper * products / pairs;
-      if (down == 0 && across == 0) {
+      const double correlation = taper * overlap(residual, residual) / pairs;
+      if (lag == 0) {
         sum += std::max(correlation, variance) * own;
       } else {
         sum += correlation * (own + own.transpose());
@@ -152,7 +156,8 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   Matrix normal = Matrix::Identity();
   FrameSamples samples;
   for (int step = 0; step < kSteps; ++step) {
-    samples = Linearize(stack, picture, layers, out.pose, motion);
+    Linearize(stack, picture, layers, out.pose, motion, Derivatives::kByPose,
+              samples);
     if (samples.size() < kLeastPixels) return out;
     WeighByLayers(layers, motion, samples);
     normal.setZero();
@@ -183,11 +188,8 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
     }
   }
   const double variance = layers.noise_dn * layers.noise_dn;
-  Matrix sandwich = SandwichOf(samples, stack.width, variance);
-  if (!turns) {
-    sandwich.row(2).setZero();
-    sandwich.col(2).setZero();
-  }
+  const Matrix sandwich =
+      SandwichOf(samples, stack.width, variance, turns ? 3 : 2);
   const Matrix inverse = normal.inverse();
   const Matrix covariance = inverse * sandwich * inverse;
   constexpr double kMostSquare = 16.0;  // of the noise: four deviations

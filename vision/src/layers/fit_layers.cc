@@ -13,21 +13,20 @@ namespace {
 // Blurs of the rim of T's grid: coverage beyond is nothing.
 constexpr double kRimBlurs = 3.5;
 
-std::vector<FrameSamples> LinearizeAll(const PictureStack& stack,
-                                       const Layers& layers,
-                                       const std::vector<LayerPose>& poses,
-                                       int threads) {
+// All derivatives of all frames; takes the place of what `frames` held.
+void LinearizeAll(const PictureStack& stack, const Layers& layers,
+                  const std::vector<LayerPose>& poses, int threads,
+                  std::vector<FrameSamples>& frames) {
   const std::vector<LayerPose> motions = MotionsOf(poses, stack.frames);
-  std::vector<FrameSamples> frames(poses.size());
+  frames.resize(poses.size());
   core::InParallel(static_cast<std::int64_t>(poses.size()), threads,
                    [&](std::int64_t begin, std::int64_t end) {
                      for (auto t = static_cast<std::size_t>(begin);
                           t < static_cast<std::size_t>(end); ++t) {
-                       frames[t] =
-                           Linearize(stack, t, layers, poses[t], motions[t]);
+                       Linearize(stack, t, layers, poses[t], motions[t],
+                                 Derivatives::kAll, frames[t]);
                      }
                    });
-  return frames;
 }
 
 // Root mean square of the residuals, those beyond four standard deviations
@@ -98,8 +97,8 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   layers.grid = PictureGrid(shape, kRimBlurs * layers.blur * kMostBlur);
   layers.picture.assign(layers.grid.size(), 0.0F);
   const FreePart free(layers.grid);
-  std::vector<FrameSamples> frames =
-      LinearizeAll(stack, layers, fit.poses, options.threads);
+  std::vector<FrameSamples> frames;
+  LinearizeAll(stack, layers, fit.poses, options.threads, frames);
   layers.quadratic = {static_cast<double>(MeanLevel(stack, frames))};
   if (options.textured) LearnTexture(layers);
 
@@ -117,7 +116,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
   for (int step = 0; step < options.steps; ++step) {
-    frames = LinearizeAll(stack, layers, fit.poses, options.threads);
+    LinearizeAll(stack, layers, fit.poses, options.threads, frames);
     // At first residuals are those of rough poses: as if all were noise.
     layers.noise_dn = NoiseOf(frames, step == 0 ? kAnything : layers.noise_dn);
     if (step == 0) {
@@ -130,7 +129,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
       if (step >= kFlatSteps && texture > kMatters * layers.noise_dn) {
         LearnTexture(layers);
         layers.texture_dn = texture;
-        frames = LinearizeAll(stack, layers, fit.poses, options.threads);
+        LinearizeAll(stack, layers, fit.poses, options.threads, frames);
       }
     } else {
       layers.picture_weight = WeighPicture(layers, frames);
@@ -182,7 +181,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
       break;
     }
   }
-  frames = LinearizeAll(stack, layers, fit.poses, options.threads);
+  LinearizeAll(stack, layers, fit.poses, options.threads, frames);
   layers.noise_dn = NoiseOf(frames, layers.noise_dn);
   if (!layers.flat) {
     layers.picture_weight = WeighPicture(layers, frames);

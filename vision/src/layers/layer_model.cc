@@ -113,19 +113,19 @@ double Apart(const LayerPose& a, const LayerPose& b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-}  // namespace
-
-FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
-                       const Layers& layers, const LayerPose& pose,
-                       const LayerPose& motion) {
+template <Derivatives kDerivatives>
+void LinearizeBy(const PictureStack& stack, std::size_t picture,
+                 const Layers& layers, const LayerPose& pose,
+                 const LayerPose& motion, FrameSamples& samples) {
+  constexpr bool kAll = kDerivatives == Derivatives::kAll;
   // Below it a pixel shows nothing of the body.
   constexpr float kLeastCover = 2e-4F;
   constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
 
-  FrameSamples samples;
+  samples.Resize(0, kDerivatives);
   const Window window = WindowOf(stack, layers, pose, motion);
   if (window.right <= window.left || window.bottom <= window.top) {
-    return samples;
+    return;
   }
   const double reach = layers.shape.Reach();
   const double way = layers.exposure * (std::hypot(motion.x, motion.y) +
@@ -145,15 +145,8 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
   const std::size_t most =
       static_cast<std::size_t>(window.right - window.left) *
       static_cast<std::size_t>(window.bottom - window.top);
-  samples.pixel.reserve(most);
-  samples.residual.reserve(most);
-  samples.weight.reserve(most);
-  samples.open.reserve(most);
-  samples.cover.reserve(most);
-  for (auto& column : samples.by_pose) column.reserve(most);
-  for (auto& column : samples.by_shared) column.reserve(most);
-  samples.place.reserve(most * samples.nodes);
-  samples.share.reserve(most * samples.nodes);
+  samples.Resize(most, kDerivatives);
+  std::size_t count = 0;
 
   const ShapeCover cover(layers.shape, layers.blur);
   const float* const levels = stack.of(picture);
@@ -204,7 +197,7 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         if (layers.flat) {
           const Terms terms = TermsAt(x * per_reach, y * per_reach);
           tilt = TiltOf(quadratic, terms, per_reach);
-          for (std::size_t j = 0; j < kTerms; ++j) {
+          for (std::size_t j = 0; kAll && j < kTerms; ++j) {
             by_shared[kQuadratic + j] += shares[k] * terms[j];
           }
         } else {
@@ -229,12 +222,6 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
           t_y -= step_y;
         }
         const float own = m_x * t_x + m_y * t_y;
-        if (layers.flat) {
-          AddOwnSlopes(node.weight * blur2, m, x * per_reach, y * per_reach,
-                       per_reach, by_shared);
-        }
-        by_shared[kSlopeX] += node.weight * blur2 * per_reach * m_x;
-        by_shared[kSlopeY] += node.weight * blur2 * per_reach * m_y;
         covered += shares[k];
         model += shares[k] * over + node.weight * (blur2 * own - product.value);
         const float g_x = m.by_x * over + m.value * tilt.by_x - product.by_x;
@@ -247,41 +234,80 @@ FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
         by_pose[0] += d_x;
         by_pose[1] += d_y;
         by_pose[2] += d_turn;
-        by_shared[kBlur] += node.weight * (m.by_blur * over + twice_blur * own);
-        by_shared[kExposure] +=
-            node.tau * (d_x * v_x + d_y * v_y + d_turn * v_turn);
-        by_shared[kLong] += node.weight * m.by_long * over;
-        by_shared[kShort] += node.weight * m.by_short * over;
-        by_shared[kSlopeX] += shares[k] * dx * per_reach;
-        by_shared[kSlopeY] += shares[k] * dy * per_reach;
+        if constexpr (kAll) {
+          if (layers.flat) {
+            AddOwnSlopes(node.weight * blur2, m, x * per_reach, y * per_reach,
+                         per_reach, by_shared);
+          }
+          by_shared[kBlur] +=
+              node.weight * (m.by_blur * over + twice_blur * own);
+          by_shared[kExposure] +=
+              node.tau * (d_x * v_x + d_y * v_y + d_turn * v_turn);
+          by_shared[kLong] += node.weight * m.by_long * over;
+          by_shared[kShort] += node.weight * m.by_short * over;
+          by_shared[kSlopeX] +=
+              per_reach * (shares[k] * dx + node.weight * blur2 * m_x);
+          by_shared[kSlopeY] +=
+              per_reach * (shares[k] * dy + node.weight * blur2 * m_y);
+        }
       }
       if (covered < kLeastCover) continue;
       const float step = (model - behind) / covered;
       const float bent = 0.5F * step / std::max(model, kLeastLevel_dn);
-      by_shared[kCurve] = covered * (1.0F - covered) * step * bent;
+      const float by_curve = covered * (1.0F - covered) * step * bent;
+      by_shared[kCurve] = by_curve;
       if (curve != 0.0F) {
-        model += curve * by_shared[kCurve];
+        model += curve * by_curve;
         const float steeper = 1.0F + curve * (1.0F - 2.0F * covered) * bent;
         for (float& slope : by_pose) slope *= steeper;
       }
       const float residual = levels[pixel] - model;
-      samples.pixel.push_back(pixel);
-      samples.residual.push_back(residual);
-      samples.weight.push_back(RobustWeight(residual, layers.noise_dn));
-      samples.open.push_back(1.0F - covered);
-      samples.cover.push_back(covered);
+      const std::size_t at = count++;
+      samples.pixel[at] = pixel;
+      samples.residual[at] = residual;
+      samples.weight[at] = RobustWeight(residual, layers.noise_dn);
+      samples.open[at] = 1.0F - covered;
+      samples.cover[at] = covered;
       for (std::size_t i = 0; i < kPose; ++i) {
-        samples.by_pose[i].push_back(by_pose[i]);
+        samples.by_pose[i][at] = by_pose[i];
       }
-      for (std::size_t i = 0; i < kShared; ++i) {
-        samples.by_shared[i].push_back(by_shared[i]);
+      for (std::size_t i = 0; kAll && i < kShared; ++i) {
+        samples.by_shared[i][at] = by_shared[i];
       }
-      if (layers.flat) continue;
-      samples.place.insert(samples.place.end(), places.begin(), places.end());
-      samples.share.insert(samples.share.end(), shares.begin(), shares.end());
+      for (std::size_t k = 0; k < samples.nodes; ++k) {
+        samples.place[at * samples.nodes + k] = places[k];
+        if (kAll) samples.share[at * samples.nodes + k] = shares[k];
+      }
     }
   }
-  return samples;
+  samples.Resize(count, kDerivatives);
+}
+
+}  // namespace
+
+void FrameSamples::Resize(std::size_t count, Derivatives derivatives) {
+  const bool all = derivatives == Derivatives::kAll;
+  pixel.resize(count);
+  for (auto* column : {&residual, &weight, &open, &cover}) {
+    column->resize(count);
+  }
+  for (auto& column : by_pose) column.resize(count);
+  for (auto& column : by_shared) column.resize(all ? count : 0);
+  place.resize(count * nodes);
+  share.resize(all ? count * nodes : 0);
+}
+
+void Linearize(const PictureStack& stack, std::size_t picture,
+               const Layers& layers, const LayerPose& pose,
+               const LayerPose& motion, Derivatives derivatives,
+               FrameSamples& samples) {
+  if (derivatives == Derivatives::kAll) {
+    LinearizeBy<Derivatives::kAll>(stack, picture, layers, pose, motion,
+                                   samples);
+  } else {
+    LinearizeBy<Derivatives::kByPose>(stack, picture, layers, pose, motion,
+                                      samples);
+  }
 }
 
 void LearnTexture(Layers& layers) {

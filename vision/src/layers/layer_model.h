@@ -88,7 +88,11 @@ enum SharedParameter : std::size_t {
   kQuadratic  // the first of kTerms
 };
 
-// One frame's pixels that show something of the body: residuals and all first
+// Derivatives by all parameters, or by those of the pose alone: then
+// `by_shared` and `share` stay empty.
+enum class Derivatives { kAll, kByPose };
+
+// One frame's pixels that show something of the body: residuals and first
 // derivatives.
 struct FrameSamples {
   std::vector<std::int32_t> pixel;
@@ -105,6 +109,7 @@ struct FrameSamples {
   std::vector<float> share;
 
   std::size_t size() const { return pixel.size(); }
+  void Resize(std::size_t count, Derivatives derivatives);
 };
 
 // A flat T as a spline.
@@ -117,10 +122,12 @@ inline float RobustWeight(float residual, double noise_dn) {
   return 1.0F / (1.0F + off * off);
 }
 
-// `motion`: v. Pixels that the body does not reach are left out.
-FrameSamples Linearize(const PictureStack& stack, std::size_t picture,
-                       const Layers& layers, const LayerPose& pose,
-                       const LayerPose& motion);
+// `motion`: v. Pixels that the body does not reach are left out. Takes the
+// place of what `samples` held; its memory is used again.
+void Linearize(const PictureStack& stack, std::size_t picture,
+               const Layers& layers, const LayerPose& pose,
+               const LayerPose& motion, Derivatives derivatives,
+               FrameSamples& samples);
 
 // The pose's change in one frame interval, from the poses beside it: of both
 // sides, or of the steadier one where a blow lies between.

@@ -2,8 +2,10 @@
 // so that no scale is needed yet; x' runs in the direction of travel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "touchdown/calib/plane.h"
@@ -61,6 +63,17 @@ struct PlaneTrack {
 // none. Throws as ViewOf does.
 PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
                           const std::optional<PlaneYaw>& yaw = std::nullopt);
+
+// Samples that follow each other.
+struct SampleRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;  // one past the last
+  std::size_t size() const { return end - begin; }
+};
+inline std::span<const PlaneSample> SamplesIn(const PlaneTrack& track,
+                                              const SampleRange& range) {
+  return std::span(track.samples).subspan(range.begin, range.size());
+}
 
 // A point of the plane, in the image.
 core::PixelPoint ToImage(const PlaneTrack& track, double along_px,
