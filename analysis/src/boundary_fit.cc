@@ -58,15 +58,12 @@ void Check(const BoundaryFitOptions& o) {
   const auto check = [](const ScatterPrior& prior) {
     Require(prior.median_rad > 0.0, "scatter median_rad", prior.median_rad,
             "positive");
-    Require(prior.log_sd > 0.0, "scatter log_sd", prior.log_sd, "positive");
+    if (!prior.log_sd) return;
+    Require(*prior.log_sd > 0.0, "scatter log_sd", *prior.log_sd, "positive");
   };
   check(o.scatter);
+  if (o.cautious_scatter) check(*o.cautious_scatter);
   for (const ScatterPrior& prior : o.sensitivity) check(prior);
-}
-
-double LogPrior(const ScatterPrior& prior, double scatter_rad) {
-  const double z = std::log(scatter_rad / prior.median_rad) / prior.log_sd;
-  return -0.5 * z * z;
 }
 
 std::vector<double> Levels(double low, double high, int n) {
@@ -114,7 +111,9 @@ class Table {
   // Joint posterior per angle and scatter level, not normalised: greatest 1.
   std::vector<double> Joint(const ScatterPrior& prior) const {
     std::vector<double> log_prior;
-    for (const double s : scatter_rad_) log_prior.push_back(LogPrior(prior, s));
+    for (const double s : scatter_rad_) {
+      log_prior.push_back(LogDensity(prior, s));
+    }
     // Trapezoid in ln s: the prior does not vanish at the ends of the grid.
     log_prior.front() -= std::log(2.0);
     log_prior.back() -= std::log(2.0);
@@ -509,6 +508,29 @@ void FillMarginal(const JointTable& table, const ScatterPrior& prior,
                               {Quantile(out, 0.025), Quantile(out, 0.975)});
 }
 
+// The 95 % interval together with that under the second prior, where outcomes
+// say nothing of the scatter, and with the bracket of separated ones. Where a
+// few angles repeat, a bracket's ends are likely boundaries only if the scatter
+// is small; any prior that allows for more has its tails inside.
+void WidenUnlessScatterIsSeen(const JointTable& table, const Bracket& bracket,
+                              const std::optional<ScatterPrior>& prior,
+                              BoundaryPosterior& out) {
+  const bool separated = out.status == DataStatus::kSeparated;
+  if (!prior || (!separated && out.status != DataStatus::kTouching)) return;
+  BoundaryPosterior other;
+  FillMarginal(table, *prior, out.status, other);
+  core::Interval& interval = out.interval95_rad;
+  interval.low = std::min(interval.low, other.interval95_rad.low);
+  interval.high = std::max(interval.high, other.interval95_rad.high);
+  if (separated) {
+    interval.low =
+        std::clamp(*bracket.low_rad, out.angle_rad.front(), interval.low);
+    interval.high =
+        std::clamp(*bracket.high_rad, interval.high, out.angle_rad.back());
+  }
+  out.cautious_prior = prior;
+}
+
 void FillMoments(BoundaryPosterior& out) {
   const BoundaryGrid& grid = out.grid;
   const std::size_t m = grid.scatter_rad.size();
@@ -546,6 +568,13 @@ JointTable MakeTable(std::span<const SetUpCells> setups,
 }
 
 }  // namespace
+
+double LogDensity(const ScatterPrior& prior, double scatter_rad) {
+  const double ratio = scatter_rad / prior.median_rad;
+  if (!prior.log_sd) return std::log(ratio) - std::log1p(ratio * ratio);
+  const double z = std::log(ratio) / *prior.log_sd;
+  return -0.5 * z * z;
+}
 
 std::string_view Name(DataStatus status) {
   switch (status) {
@@ -658,6 +687,8 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   }
   out.max_log_likelihood = table.Max();
   FillMarginal(table, options.scatter, out.status, out);
+  WidenUnlessScatterIsSeen(table, FindBracket(observations),
+                           options.cautious_scatter, out);
   FillGrid(table, options.scatter, out.grid);
   FillMoments(out);
   FillScatter(out);

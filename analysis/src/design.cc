@@ -5,21 +5,13 @@
 #include <vector>
 
 namespace touchdown::analysis {
-namespace {
-
-double LogPrior(const ScatterPrior& prior, double scatter_rad) {
-  const double z = std::log(scatter_rad / prior.median_rad) / prior.log_sd;
-  return -0.5 * z * z;
-}
-
-}  // namespace
 
 Design Reweigh(const BoundaryPosterior& posterior, const ScatterPrior& prior) {
   Design out{posterior.grid, 0.0, 0.0};
   const std::size_t m = out.grid.scatter_rad.size();
   std::vector<double> log_ratio;
   for (const double s : out.grid.scatter_rad) {
-    log_ratio.push_back(LogPrior(prior, s) - LogPrior(posterior.prior, s));
+    log_ratio.push_back(LogDensity(prior, s) - LogDensity(posterior.prior, s));
   }
   const double most = *std::max_element(log_ratio.begin(), log_ratio.end());
   double total = 0.0;

@@ -248,10 +248,9 @@ BoundaryGrid EvidenceTable::Posterior(const ScatterPrior& prior) const {
   const std::size_t m = scatter_rad_.size();
   std::vector<double> log_prior(m);
   for (std::size_t j = 0; j < m; ++j) {
-    const double z =
-        std::log(scatter_rad_[j] / prior.median_rad) / prior.log_sd;
     // Trapezoid in ln s.
-    log_prior[j] = -0.5 * z * z - (j == 0 || j + 1 == m ? std::log(2.0) : 0.0);
+    log_prior[j] = LogDensity(prior, scatter_rad_[j]) -
+                   (j == 0 || j + 1 == m ? std::log(2.0) : 0.0);
   }
   double top = kNone;
   for (std::size_t k = 0; k < out.weight.size(); ++k) {

@@ -193,11 +193,9 @@ LikelihoodProfile ProfileOfPosterior(const BoundaryPosterior& posterior) {
     const double above = i + 1 < n ? angles[i + 1] - angles[i] : 0.0;
     double best = -std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < m; ++j) {
-      const double z =
-          std::log(grid.scatter_rad[j] / posterior.prior.median_rad) /
-          posterior.prior.log_sd;
       const double end = j == 0 || j + 1 == m ? std::log(2.0) : 0.0;
-      const double l = std::log(grid.weight[i * m + j]) + z * z / 2 + end;
+      const double l = std::log(grid.weight[i * m + j]) + end -
+                       LogDensity(posterior.prior, grid.scatter_rad[j]);
       if (l > best) {
         best = l;
         best_level[i] = j;

@@ -85,8 +85,9 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
 
   Require(options.design_scatter.median_rad > 0.0, "design_scatter median_rad",
           options.design_scatter.median_rad, "positive");
-  Require(options.design_scatter.log_sd > 0.0, "design_scatter log_sd",
-          options.design_scatter.log_sd, "positive");
+  if (const auto& log_sd = options.design_scatter.log_sd) {
+    Require(*log_sd > 0.0, "design_scatter log_sd", *log_sd, "positive");
+  }
 
   const Design design = Reweigh(posterior, options.design_scatter);
   std::vector<double> inverse_scatter;

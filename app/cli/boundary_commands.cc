@@ -69,6 +69,13 @@ void PrintGroup(const report::Group& group) {
              Degrees(p.median_rad), Degrees(p.interval95_rad.low),
              Degrees(p.interval95_rad.high), Degrees(p.interval90_rad.low),
              Degrees(p.interval90_rad.high));
+  if (p.cautious_prior) {
+    fmt::print(
+        "              {} to {} deg under the first of its two priors on the "
+        "scatter\n",
+        Degrees(analysis::Quantile(p, 0.025)),
+        Degrees(analysis::Quantile(p, 0.975)));
+  }
   fmt::print(
       "  scatter     {} deg, 95 % {} to {} deg (sd of the estimate {} "
       "deg)\n",

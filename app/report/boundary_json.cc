@@ -107,6 +107,12 @@ Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
             {"mcc", Optional(t.matthews)}}}};
 }
 
+Json PriorJson(const analysis::ScatterPrior& prior) {
+  return {{"scatter_family", prior.log_sd ? "log-normal" : "half-Cauchy"},
+          {"scatter_median_deg", prior.median_rad / kDegree},
+          {"scatter_log_sd", Optional(prior.log_sd)}};
+}
+
 Json PosteriorJson(const Group& group) {
   const auto& p = group.study.posterior;
   Json out = {{"median_deg", p.median_rad / kDegree},
@@ -124,17 +130,18 @@ Json PosteriorJson(const Group& group) {
               {"lapse", p.lapse},
               {"binned", p.binned},
               {"method", "grid posterior, probit link, errors in the angle"},
-              {"prior",
-               {{"scatter_median_deg", group.prior.median_rad / kDegree},
-                {"scatter_log_sd", group.prior.log_sd}}}};
+              {"prior", PriorJson(group.prior)},
+              {"cautious_prior",
+               p.cautious_prior ? PriorJson(*p.cautious_prior) : Json(nullptr)},
+              {"low95_one_prior_deg", analysis::Quantile(p, 0.025) / kDegree},
+              {"high95_one_prior_deg", analysis::Quantile(p, 0.975) / kDegree}};
   Json sensitivity = Json::array();
   for (const auto& line : p.sensitivity) {
-    sensitivity.push_back(
-        {{"scatter_median_deg", line.prior.median_rad / kDegree},
-         {"scatter_log_sd", line.prior.log_sd},
-         {"median_deg", line.median_rad / kDegree},
-         {"low95_deg", line.interval95_rad.low / kDegree},
-         {"high95_deg", line.interval95_rad.high / kDegree}});
+    Json row = PriorJson(line.prior);
+    row["median_deg"] = line.median_rad / kDegree;
+    row["low95_deg"] = line.interval95_rad.low / kDegree;
+    row["high95_deg"] = line.interval95_rad.high / kDegree;
+    sensitivity.push_back(std::move(row));
   }
   out["sensitivity"] = std::move(sensitivity);
   return out;

@@ -87,20 +87,27 @@ void Study(const ReportInput& input, Group& group) {
 // Confirmed says that the boundary lies within the margin in all trials. Where
 // it drifts, or depends on more than the angle, only its average may: no
 // confirmation then. A contradiction stands: no one boundary within the margin
-// explains the trials, drifting or not.
+// explains the trials, drifting or not. What was inconclusive anyway says so,
+// too: more of the same trials would not mend it.
 void WithholdWhereItDrifts(Group& group, std::span<const core::Trial> trials) {
   if (group.declared() == nullptr) return;
-  analysis::Judgement& judgement = group.study.theories.front().judgement;
-  if (!judgement.verdict || *judgement.verdict != core::Verdict::kConfirmed) {
+  analysis::TheoryComparison& theory = group.study.theories.front();
+  analysis::Judgement& judgement = theory.judgement;
+  if (!judgement.verdict ||
+      *judgement.verdict == core::Verdict::kContradicted) {
     return;
   }
-  const std::string telling = TellingDependence(group, trials);
-  if (telling.empty()) return;
-  judgement.verdict = core::Verdict::kInconclusive;
+  group.dependence = TellingDependence(group, trials);
+  if (group.dependence.empty()) return;
   judgement.reason = fmt::format(
-      "the boundary drifts or depends on more than the angle ({}), so that "
-      "only its average lies within the margin",
-      telling);
+      "the boundary drifts or depends on more than the angle ({}), so that {}",
+      group.dependence,
+      *judgement.verdict == core::Verdict::kConfirmed
+          ? "only its average lies within the margin"
+          : "these trials have no one boundary; besides, " + judgement.reason);
+  judgement.verdict = core::Verdict::kInconclusive;
+  // A forecast plays on with one boundary.
+  theory.trials_to_decide.reset();
 }
 
 }  // namespace

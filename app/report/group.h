@@ -29,6 +29,9 @@ struct Group {
   analysis::ScatterPrior prior;      // that the posterior was made with
   analysis::BoundaryStudy study;
   core::Expected<Reach> reach = core::AbsentBecause("no rig was given");
+  // What the boundary was found to depend on beside the angle, where that
+  // leaves the declared theory undecided; else empty.
+  std::string dependence;
   std::vector<NamedLeftOut> left_out;
   std::vector<LabelPair> labels;   // of those members that bear both
   std::vector<std::string> notes;  // where each of study.theories comes from

@@ -24,9 +24,13 @@ std::string Share(const core::Interval& interval) {
 }
 
 std::string PriorName(const analysis::ScatterPrior& prior) {
+  if (!prior.log_sd) {
+    return fmt::format("scatter half-Cauchy, half of it below {} deg",
+                       Plain(prior.median_rad / kDegree));
+  }
   return fmt::format("scatter about {} deg, a factor {} either way",
                      Plain(prior.median_rad / kDegree),
-                     Plain(std::exp(prior.log_sd), 1));
+                     Plain(std::exp(*prior.log_sd), 1));
 }
 
 Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
@@ -38,11 +42,20 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
                {"95 % interval (deg)", true},
                {"remark"}},
               {}};
+  std::string remark = PriorName(prior);
+  if (p.cautious_prior) {
+    remark += fmt::format(
+        ", alone {}; the 95 % interval holds under {}, too, as outcomes that "
+        "do not "
+        "overlap tell nothing of the scatter",
+        Range({analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)}),
+        PriorName(*p.cautious_prior));
+  }
   table.rows.push_back(
       {{"posterior median"},
        {fmt::format("{:.2f}", p.median_rad / kDegree)},
        {Range(p.interval95_rad)},
-       {fmt::format("{}; 90 %: {} deg; sd {:.2f} deg", PriorName(prior),
+       {fmt::format("{}; 90 %: {} deg; sd {:.2f} deg", remark,
                     Range(p.interval90_rad), p.sd_rad / kDegree)}});
   for (const auto& line : p.sensitivity) {
     table.rows.push_back({{"the same, other prior"},
@@ -50,7 +63,7 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
                           {Range(line.interval95_rad)},
                           {PriorName(line.prior)}});
   }
-  std::string remark = l.has_estimate ? "no prior" : "no estimate, no prior";
+  remark = l.has_estimate ? "no prior" : "no estimate, no prior";
   if (l.open_low) remark += "; open below";
   if (l.open_high) remark += "; open above";
   if (l.has_estimate && l.scatter_rad == 0.0) {

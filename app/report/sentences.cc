@@ -111,6 +111,10 @@ std::string VerdictSentence(const Group& group) {
 
 std::string OutlookSentence(const Group& group) {
   const analysis::TheoryComparison* theory = group.declared();
+  if (!group.dependence.empty()) {
+    return "More trials of the same kind cannot confirm it: first what moves "
+           "the boundary must be found and removed.";
+  }
   if (theory == nullptr || !theory->trials_to_decide) return "";
   // A forecast beyond this means: not by more of the same trials.
   constexpr int kHopeless = 1000;
@@ -197,12 +201,13 @@ std::string StatusSentence(const analysis::BoundaryStudy& study) {
       text =
           "Slides and bounces do not overlap, so the trials alone do not tell "
           "how much the boundary scatters: the width beyond the bracket comes "
-          "from the prior on that scatter.";
+          "from two priors on that scatter, and the interval holds under both.";
       break;
     case DataStatus::kTouching:
       text =
           "Slides and bounces share one angle and overlap no further: the "
-          "scatter is hardly known.";
+          "scatter is hardly known, and the interval holds under two priors on "
+          "it.";
       break;
     case DataStatus::kOverlap:
       text = "Slides and bounces overlap, so the scatter is seen in the data.";

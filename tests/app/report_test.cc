@@ -165,6 +165,19 @@ TEST(MakeReport, ABoundaryThatDriftsIsNotConfirmed) {
   EXPECT_TRUE(Has(drifting.markdown, "sphere: inconclusive."));
   EXPECT_TRUE(Has(drifting.markdown, "only its average lies within"));
   EXPECT_TRUE(Has(drifting.markdown, "not one boundary"));
+  // What would decide is another campaign, not more of this one.
+  EXPECT_FALSE(Has(drifting.markdown, "would decide,"));
+  EXPECT_TRUE(
+      Has(drifting.markdown, "More trials of the same kind cannot confirm it"));
+}
+
+TEST(MakeReport, ADriftIsTheReasonOfWhatIsInconclusiveAnyway) {
+  ReportInput input = Drifting(true);
+  input.campaigns.back().margin_rad = 0.2 * kDegree;
+  const Report report = MakeReport(input);
+  EXPECT_TRUE(Has(report.markdown, "sphere: inconclusive."));
+  EXPECT_TRUE(Has(report.markdown, "these trials have no one boundary; "));
+  EXPECT_FALSE(Has(report.markdown, "would decide,"));
 }
 
 TEST(MakeReport, ThePlanOnRecordIsTold) {

@@ -6,7 +6,9 @@
 // errors    false verdicts at any of 60 looks, and the trial at which the right
 //           one first stands, beside those of the rule before this one (90 % or
 //           95 % interval of the posterior alone)
-// coverage  of the boundary's 95 % interval after 20, 40 and 100 trials
+// coverage  of the boundary's 95 % interval after 20, 40 and 100 trials: of all
+//           campaigns, of those whose outcomes overlap, and of the equal tails
+//           under the one prior, without the second one
 //
 // Every campaign: boundary U(2, 40) deg, margin 1 deg, ejector's sd 0.5 deg,
 // own u 0.3 deg. CAMPAIGNS (400) is for each cell without common error; cells
@@ -325,13 +327,15 @@ void Errors(int campaigns, std::uint64_t seed, const std::string& only) {
 // Coverage of the 95 % interval, of all campaigns and of those whose outcomes
 // overlap, after so many trials.
 constexpr int kCoverageAt[] = {20, 40, 100};
+constexpr double kTail95 = 0.025;
 
 // `only_scatter_deg`: of one scatter alone; negative for all.
 void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
               double only_scatter_deg) {
   fmt::print(
       "design,common_deg,scatter_deg,trials,campaigns,coverage,low99,high99,"
-      "overlapping,coverage_overlapping,median_width_deg\n");
+      "overlapping,coverage_overlapping,low99_overlapping,median_width_deg,"
+      "coverage_one_prior\n");
   for (const char* design : kDesigns) {
     // The angles of one-sided campaigns follow the theory, which is no matter
     // of the interval.
@@ -354,6 +358,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
           int hits = 0;
           int overlapping = 0;
           int hits_overlapping = 0;
+          int hits_one_prior = 0;
           std::vector<int> width_millideg;
         };
         At at[std::size(kCoverageAt)];
@@ -380,26 +385,36 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
             const auto& interval = posterior.interval95_rad;
             const double truth = campaign.boundary_deg * kDegree;
             const bool hit = interval.low <= truth && truth <= interval.high;
+            const double below = ProbabilityBelow(posterior, truth);
+            const bool hit_one_prior =
+                posterior.cautious_prior
+                    ? kTail95 <= below && below <= 1.0 - kTail95
+                    : hit;
             const bool overlap = Classify(trials) == DataStatus::kOverlap;
             at[k].hits += hit ? 1 : 0;
             at[k].overlapping += overlap ? 1 : 0;
             at[k].hits_overlapping += hit && overlap ? 1 : 0;
+            at[k].hits_one_prior += hit_one_prior ? 1 : 0;
             at[k].width_millideg.push_back(static_cast<int>(
                 std::lround(1e3 * (interval.high - interval.low) / kDegree)));
           }
         }
         for (std::size_t k = 0; k < std::size(kCoverageAt); ++k) {
-          const auto band = Band99(at[k].hits, n);
-          fmt::print("{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f}\n",
-                     design, common, scatter, kCoverageAt[k], n,
-                     static_cast<double>(at[k].hits) / n, band.low, band.high,
-                     at[k].overlapping,
-                     at[k].overlapping > 0
-                         ? fmt::format("{:.4f}", static_cast<double>(
-                                                     at[k].hits_overlapping) /
-                                                     at[k].overlapping)
-                         : "-",
-                     Median(at[k].width_millideg) / 1e3);
+          const At& a = at[k];
+          const auto band = Band99(a.hits, n);
+          const std::string overlapping =
+              a.overlapping > 0
+                  ? fmt::format(
+                        "{:.4f},{:.4f}",
+                        static_cast<double>(a.hits_overlapping) / a.overlapping,
+                        Band99(a.hits_overlapping, a.overlapping).low)
+                  : "-,-";
+          fmt::print(
+              "{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.4f}\n",
+              design, common, scatter, kCoverageAt[k], n,
+              static_cast<double>(a.hits) / n, band.low, band.high,
+              a.overlapping, overlapping, Median(a.width_millideg) / 1e3,
+              static_cast<double>(a.hits_one_prior) / n);
         }
         std::fflush(stdout);
       }

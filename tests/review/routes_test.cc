@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/review/lab.h"
+#include "touchdown/db/plan.h"
 
 namespace touchdown::review {
 namespace {
@@ -62,6 +63,13 @@ TEST_F(Routes, SaysWhatTheTrialsSayTogether) {
   EXPECT_THAT(plot.body, HasSubstr("<svg"));
   EXPECT_EQ(Get("/api/plots/1").status, 404);
   EXPECT_EQ(Get("/api/plots/x").status, 404);
+  // That was one look at the answer, on record.
+  const auto store = db::Store::Open(lab.store, db::OpenMode::kRead);
+  const auto plan = db::PlanEvents(store, "board");
+  ASSERT_EQ(plan.size(), 1u);
+  EXPECT_EQ(plan[0].kind, db::PlanEventKind::kLook);
+  EXPECT_EQ(plan[0].author, "review");
+  EXPECT_EQ(plan[0].trials, 1);
 }
 
 TEST_F(Routes, ShowsATrialWithWhatIsDrawnOfIt) {

@@ -13,6 +13,7 @@
 #include "tests/session/bench.h"
 #include "tests/support/run_program.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/plan.h"
 
 namespace touchdown::session {
 namespace {
@@ -111,6 +112,23 @@ class NextAngleTest : public ::testing::Test {
 TEST_F(NextAngleTest, IsTheSameEverywhere) {
   Log({{18.0, false}, {22.0, false}, {27.0, true}, {40.0, true}});
   ExpectOneAnswer("(within ");
+}
+
+// Whoever asks for the next angle is told the boundary: a look, once for the
+// same trials.
+TEST_F(NextAngleTest, IsALookOnRecord) {
+  Log({{18.0, false}, {27.0, true}});
+  for (int i = 0; i < 2; ++i) {
+    const auto next =
+        RunProgram("next --campaign asphalt --db " + bench_.db().string());
+    ASSERT_EQ(next.status, 0) << next.err;
+  }
+  const auto store = db::Store::Open(bench_.db(), db::OpenMode::kRead);
+  const auto plan = db::PlanEvents(store, "asphalt");
+  ASSERT_EQ(plan.size(), 1u);
+  EXPECT_EQ(plan[0].kind, db::PlanEventKind::kLook);
+  EXPECT_EQ(plan[0].author, "next");
+  EXPECT_EQ(plan[0].trials, 2);
 }
 
 TEST_F(NextAngleTest, SaysThatEveryBodyBounced) {

@@ -10,6 +10,7 @@
 
 #include "tests/session/bench.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/rig/driver/manual_driver.h"
 
 namespace touchdown::session {
@@ -97,6 +98,12 @@ TEST_F(SessionTest, FromConventionsToTheSecondShot) {
   EXPECT_THAT(answer, HasSubstr("  set        elevation"));
   EXPECT_THAT(answer, HasSubstr("  predicted  approach angle"));
   ASSERT_EQ(Trials().size(), 2u);
+  // Who was told the boundary has looked at it.
+  const auto plan = db::PlanEvents(*store_, "asphalt");
+  ASSERT_FALSE(plan.empty());
+  EXPECT_EQ(plan.back().kind, db::PlanEventKind::kLook);
+  EXPECT_EQ(plan.back().author, "session");
+  EXPECT_EQ(plan.back().trials, 2);
   const core::Trial trial = Trials()[1];
   EXPECT_EQ(trial.author, "A. Lee");
   EXPECT_DOUBLE_EQ(*trial.set_angle_rad, planned_deg * kDegree);
