@@ -82,8 +82,8 @@ Section MakePaperSection() {
   out.push_back(table);
   out.push_back(Paragraph{fmt::format(
       "Nine outcomes that do not overlap tell nothing of the scatter, so that "
-      "the intervals hold under two priors on it. Under the first alone, as "
-      "this table had them before, they are {}.",
+      "the intervals hold under two priors on it. Under the first alone "
+      "they are {}.",
       fmt::join(one_prior, " and "))});
   out.push_back(Paragraph{
       "Every boundary inside these brackets agrees with Table 1 as well as the "
