@@ -32,6 +32,12 @@ class RunningProgram {
     std::fflush(nullptr);
     child_ = fork();
     if (child_ == 0) {
+      // As a shell starts it, whatever this process ignores: what is ignored
+      // until the program has its own handlers is lost.
+      for (const int signal :
+           {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGABRT}) {
+        std::signal(signal, SIG_DFL);
+      }
       dup2(in[0], STDIN_FILENO);
       dup2(out[1], STDOUT_FILENO);
       execv(argv[0], argv.data());
@@ -103,6 +109,7 @@ class RunningProgram {
     }
   }
   void Signal(int signal) { kill(child_, signal); }
+  pid_t pid() const { return child_; }
   // Sends a signal (0: none) and waits for the end; -1 where a signal ended it.
   int End(int signal) {
     if (signal != 0) kill(child_, signal);
