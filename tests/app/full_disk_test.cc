@@ -13,7 +13,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <sqlite3.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
@@ -36,6 +35,7 @@
 #include <vector>
 
 #include "app/report/text_file.h"
+#include "tests/db/old_store.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/board_files.h"
 #include "tests/support/local_socket.h"
@@ -263,7 +263,10 @@ std::optional<int> RunIn(const fs::path& prepared, const fs::path& work,
       for (auto& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);
       if (limits.file_bytes) {
-        const rlimit limit{*limits.file_bytes, *limits.file_bytes};
+        // Shared memory is no disk: the reader's process may lift the limit.
+        rlimit limit = {};
+        getrlimit(RLIMIT_FSIZE, &limit);
+        limit.rlim_cur = *limits.file_bytes;
         setrlimit(RLIMIT_FSIZE, &limit);
       }
       dup2(open("/dev/null", O_RDONLY), 0);
@@ -299,17 +302,6 @@ std::optional<int> RunIn(const fs::path& prepared, const fs::path& work,
   const int exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 98;
   if (exit_status == kNoDisk) return std::nullopt;
   return exit_status;
-}
-
-// As d7ea65b made it.
-void MakeOldStore(const fs::path& path) {
-  const std::string sql =
-      ReadText(std::string(TOUCHDOWN_SOURCE_DIR) + "/tests/db/data/v3.sql");
-  sqlite3* store = nullptr;
-  sqlite3_open(path.c_str(), &store);
-  EXPECT_EQ(sqlite3_exec(store, sql.c_str(), nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(store);
 }
 
 // What a command adds where there is room.
@@ -416,7 +408,7 @@ class FullDisk : public ::testing::Test {
                  "--diameter-mm 24+-0.02",
                  "/dev/null"),
               0);
-    MakeOldStore(prepared() / "old.db");
+    db::MakeOldStore(prepared() / "old.db", 3);  // as of d7ea65b
     report::WriteTextFile(prepared() / "force.csv",
                           "compression_mm,force_n\n5,40.7\n10,79.4\n15,118.2\n"
                           "20,156.9\n");
