@@ -245,7 +245,7 @@ std::string ConfineToFile(const std::filesystem::path& path) {
   const bool confined = allowed &&
                         prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
                         syscall(SYS_landlock_restrict_self, rules, 0u) == 0;
-  const std::string trouble = confined ? "" : ErrorWords();
+  std::string trouble = confined ? "" : ErrorWords();
   close(rules);
   return trouble;
 }
