@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -63,7 +62,8 @@ int Run(const ReviewFlags& flags) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   review::Server server(options);
   fmt::print("{}\n", server.address());
-  std::fflush(stdout);
+  // Whoever does not learn the address has no page.
+  RequireStdoutWritten();
   Tell(fmt::format("the page of {}; Ctrl-C ends it", flags.db));
   std::optional<BrowserPage> page;
   if (!flags.no_open && HasDesktop()) {

@@ -277,6 +277,8 @@ Reply Route(Desk& desk, const Request& request) {
         400, fmt::format("the request is not understood: {}", error.what()));
   } catch (const std::invalid_argument& error) {
     return Refusal(400, error.what());
+  } catch (const core::OutputError& error) {
+    return Refusal(507, error.what());
   } catch (const core::InputError& error) {
     return Refusal(422, error.what());
   } catch (const core::StoreError& error) {

@@ -22,7 +22,7 @@ namespace touchdown::review {
 // Never throws: trouble becomes an answer with a status and {"error": ...} in
 // one line. 400 wrong argument (with "field" where it is one's), 404 nothing
 // there, 409 revised by somebody else, 422 a file that cannot be read, 503
-// trouble with the store.
+// trouble with the store, 507 a file that cannot be written.
 Reply Route(Desk& desk, const Request& request);
 
 }  // namespace touchdown::review

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <string>
 
-#include "tests/calib/board_picture.h"
+#include "tests/support/board_files.h"
 #include "tests/support/run_program.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/vision/image_file.h"
@@ -16,42 +15,14 @@
 namespace touchdown {
 namespace {
 
-using calib::board_picture::ManyPoses;
-using calib::board_picture::Picture;
-using calib::board_picture::TestLens;
 using nlohmann::json;
 using ::testing::HasSubstr;
 using testing::ReadAll;
 using testing::RunProgram;
+using testing::SmallLens;
 using ::testing::StartsWith;
 using testing::TemporaryFolder;
-
-// The lens for pictures of half the size: casting rays takes time.
-calib::Lens SmallLens() {
-  calib::Lens lens = TestLens();
-  lens.fx_px *= 0.5;
-  lens.fy_px *= 0.5;
-  lens.cx_px *= 0.5;
-  lens.cy_px *= 0.5;
-  return lens;
-}
-
-const calib::Board kBoard{calib::BoardKind::kChessboard, 7, 5, 0.02};
-
-void WritePictures(const std::filesystem::path& folder, int count) {
-  std::mt19937_64 engine(1);
-  std::uniform_real_distribution<double> tilt(-0.6, 0.6);
-  for (int i = 0; i < count; ++i) {
-    const auto pose = calib::board_picture::PoseAt(
-        kBoard, SmallLens(), 0.5 + 0.18 * (i % 3 - 1),
-        0.5 + 0.18 * (i / 3 % 3 - 1), tilt(engine), tilt(engine), 0.42, 320.0,
-        240.0);
-    vision::WritePng(folder / ("board_" + std::to_string(i) + ".png"),
-                     Picture(kBoard, pose, SmallLens(), 320, 240, 1.0,
-                             static_cast<std::uint64_t>(i))
-                         .View());
-  }
-}
+using testing::WriteBoardPictures;
 
 // One line on stderr, the status, and no file.
 void ExpectRefused(const std::string& arguments, int status,
@@ -69,7 +40,7 @@ TEST(CalibrateLensCommand, MakesAFileThatAnalyzeTakes) {
   const TemporaryFolder folder;
   const auto pictures = folder.path() / "pictures";
   std::filesystem::create_directory(pictures);
-  WritePictures(pictures, 9);
+  WriteBoardPictures(pictures, 9);
   const auto out = folder.path() / "camera.json";
   const auto ran = RunProgram(
       "calibrate lens " + pictures.string() +
@@ -119,7 +90,7 @@ TEST(CalibrateLensCommand, MakesAFileThatAnalyzeTakes) {
 
 TEST(CalibrateLensCommand, RefusesInOneLine) {
   const TemporaryFolder folder;
-  WritePictures(folder.path(), 2);
+  WriteBoardPictures(folder.path(), 2);
   const auto out = folder.path() / "camera.json";
   const std::string pictures = (folder.path() / "board_0.png").string() + " " +
                                (folder.path() / "board_1.png").string();
@@ -140,7 +111,7 @@ TEST(CalibrateLensCommand, RefusesInOneLine) {
 
 TEST(CalibrateGroundCommand, FromPointsPlumbLineAndPicture) {
   const TemporaryFolder folder;
-  WritePictures(folder.path(), 1);
+  WriteBoardPictures(folder.path(), 1);
   const std::string picture = (folder.path() / "board_0.png").string();
   const auto out = folder.path() / "camera.json";
   const std::string to = " --out " + out.string();

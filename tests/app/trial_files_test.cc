@@ -117,8 +117,8 @@ TEST(ExportReader, BringsAStoreOverWhole) {
   db::Folder folder;
   db::Store a = db::OpenFixed(folder / "a.db", 1);
   a.AddCampaign(db::SphereCampaign());
-  db::SetPlan(a, db::SphereCampaign().name,
-              {"up \xff", "after 40", ""}, "Ada", "");
+  db::SetPlan(a, db::SphereCampaign().name, {"up \xff", "after 40", ""}, "Ada",
+              "");
   testing::RandomTrials random(6);
   std::string id;
   for (int i = 0; i < 30; ++i) id = a.LogTrial(random.Trial()).id;

@@ -1,13 +1,9 @@
 // What clients may do to a server that they have no key for.
 #include "app/review/http_server.h"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
@@ -20,10 +16,13 @@
 
 #include "app/review/guard.h"
 #include "tests/review/client.h"
+#include "tests/support/local_socket.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {
 namespace {
+
+using Socket = testing::LocalSocket;
 
 constexpr const char* kKey = "key";
 
@@ -48,43 +47,6 @@ struct Running {
 
   HttpServer server;
   std::thread thread;
-};
-
-class Socket {
- public:
-  explicit Socket(int port)
-      : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address = {};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<in_port_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address),
-                sizeof address) != 0) {
-      ADD_FAILURE() << "no connection to port " << port;
-    }
-  }
-  ~Socket() { close(socket_); }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-
-  // Whether all of it was taken.
-  bool Send(const std::string& bytes) const {
-    return send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
-           static_cast<ssize_t>(bytes.size());
-  }
-  // All that comes until the other side closes.
-  std::string All() const {
-    std::string all;
-    std::array<char, 4096> piece{};
-    for (;;) {
-      const ssize_t n = recv(socket_, piece.data(), piece.size(), 0);
-      if (n <= 0) return all;
-      all.append(piece.data(), static_cast<std::size_t>(n));
-    }
-  }
-
- private:
-  int socket_;
 };
 
 // Memory of this process now, MB.

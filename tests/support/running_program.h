@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -23,7 +24,9 @@ class RunningProgram {
   explicit RunningProgram(std::vector<std::string> arguments) {
     std::array<int, 2> out{};
     std::array<int, 2> in{};
-    if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(in.data(), O_CLOEXEC) != 0) {
+    std::array<int, 2> begins{};
+    if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(in.data(), O_CLOEXEC) != 0 ||
+        pipe2(begins.data(), O_CLOEXEC) != 0) {
       throw std::runtime_error("no pipe");
     }
     std::vector<char*> argv;
@@ -32,6 +35,12 @@ class RunningProgram {
     std::fflush(nullptr);
     child_ = fork();
     if (child_ == 0) {
+      // As a shell starts it, whatever this process ignores: what is ignored
+      // until the program has its own handlers is lost.
+      for (const int signal :
+           {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGABRT}) {
+        std::signal(signal, SIG_DFL);
+      }
       dup2(in[0], STDIN_FILENO);
       dup2(out[1], STDOUT_FILENO);
       execv(argv[0], argv.data());
@@ -39,6 +48,12 @@ class RunningProgram {
     }
     close(out[1]);
     close(in[0]);
+    // Until it is the program that runs: before, signals are this process's.
+    close(begins[1]);
+    char none = 0;
+    while (read(begins[0], &none, 1) < 0 && errno == EINTR) {
+    }
+    close(begins[0]);
     out_ = fdopen(out[0], "r");
     in_ = in[1];
   }
@@ -103,6 +118,7 @@ class RunningProgram {
     }
   }
   void Signal(int signal) { kill(child_, signal); }
+  pid_t pid() const { return child_; }
   // Sends a signal (0: none) and waits for the end; -1 where a signal ended it.
   int End(int signal) {
     if (signal != 0) kill(child_, signal);

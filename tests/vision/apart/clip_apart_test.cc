@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -269,6 +270,26 @@ TEST(OpenClipApart, RefusesWhatNeedsMoreMemoryThanAReaderHas) {
   limits.memory_bytes = std::size_t{16} << 20;
   EXPECT_THROW(OpenClipApart(folder / "shot.avi", {}, limits),
                core::InputError);
+}
+
+// `ulimit -f` is for disks, and the memory of frames is no disk.
+TEST(OpenClipApart, ReadsWhereNoFileMayGrow) {
+  const testing::TemporaryFolder folder;
+  Film(folder / "film.avi", VideoCodec::kFfv1);
+  rlimit before = {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit none = before;
+  none.rlim_cur = 0;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+  std::int64_t frames = 0;
+  try {
+    const auto clip = OpenClipApart(folder / "film.avi");
+    for (; frames < clip->info().frames; ++frames) clip->Read(frames);
+  } catch (const core::InputError& error) {
+    ADD_FAILURE() << error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(frames, kFrames);
 }
 
 TEST(ReadImageApart, GivesThePictureOfReadImage) {

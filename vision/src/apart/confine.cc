@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <system_error>
@@ -211,6 +212,15 @@ void Limit(const ReaderLimits& limits) {
 #endif
   Lower(RLIMIT_NOFILE, limits.open_files);
   Lower(RLIMIT_CORE, 0);
+  // The memory that frames lie in is a file to the kernel, but on no disk: the
+  // limit of files is lifted as far as it may be. Beyond it growing fails, and
+  // no signal ends the reader.
+  rlimit files = {};
+  if (getrlimit(RLIMIT_FSIZE, &files) == 0) {
+    files.rlim_cur = files.rlim_max;
+    setrlimit(RLIMIT_FSIZE, &files);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
   // Each arena of malloc takes 64 MiB of address space, and there would be
   // eight for each core.
   mallopt(M_ARENA_MAX, 4);
@@ -235,7 +245,7 @@ std::string ConfineToFile(const std::filesystem::path& path) {
   const bool confined = allowed &&
                         prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
                         syscall(SYS_landlock_restrict_self, rules, 0u) == 0;
-  const std::string trouble = confined ? "" : ErrorWords();
+  std::string trouble = confined ? "" : ErrorWords();
   close(rules);
   return trouble;
 }

@@ -41,7 +41,8 @@ FrameMemory::FrameMemory(std::size_t most_bytes)
   data_ = static_cast<std::byte*>(mapped);
   fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK);
   if (!GrowTo(kPage)) {
-    throw core::InputError("no memory for frames; raise `ulimit -v`");
+    throw core::InputError(
+        "no memory for frames; raise `ulimit -v` and `ulimit -f`");
   }
   used_bytes_ = kPage;
 }

@@ -1,0 +1,27 @@
+// Stores as older programs made them.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace touchdown::db {
+
+// Of the schema's version `version`, from tests/db/data.
+inline void MakeOldStore(const std::filesystem::path& path, int version) {
+  std::ifstream in(std::filesystem::path(TOUCHDOWN_SOURCE_DIR) /
+                   "tests/db/data" / ("v" + std::to_string(version) + ".sql"));
+  const std::string sql{std::istreambuf_iterator<char>(in), {}};
+  ASSERT_FALSE(sql.empty());
+  sqlite3* store = nullptr;
+  sqlite3_open(path.c_str(), &store);
+  EXPECT_EQ(sqlite3_exec(store, sql.c_str(), nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(store);
+}
+
+}  // namespace touchdown::db
