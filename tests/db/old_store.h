@@ -1,6 +1,7 @@
 // Stores as older programs made them.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -14,7 +15,7 @@ namespace touchdown::db {
 // Of the schema's version `version`, from tests/db/data.
 inline void MakeOldStore(const std::filesystem::path& path, int version) {
   std::ifstream in(std::filesystem::path(TOUCHDOWN_SOURCE_DIR) /
-                   "tests/db/data" / ("v" + std::to_string(version) + ".sql"));
+                   "tests/db/data" / fmt::format("v{}.sql", version));
   const std::string sql{std::istreambuf_iterator<char>(in), {}};
   ASSERT_FALSE(sql.empty());
   sqlite3* store = nullptr;
