@@ -68,8 +68,8 @@ void SetUpLog(const LogFlags& flags) {
   }
   auto logger =
       std::make_shared<spdlog::logger>("touchdown", sinks.begin(), sinks.end());
-  logger->set_level(sinks.empty() ? spdlog::level::off : spdlog::level::info);
-  logger->flush_on(spdlog::level::info);
+  logger->set_level(sinks.empty() ? spdlog::level::off : spdlog::level::debug);
+  logger->flush_on(spdlog::level::debug);
   // Nothing fails because nobody could be told.
   logger->set_error_handler([](const std::string&) {});
   spdlog::set_default_logger(std::move(logger));

@@ -47,10 +47,10 @@ void JournalTimes(const Timing& timing) {
 
 }  // namespace
 
-bool JournalIsKept() { return spdlog::should_log(spdlog::level::info); }
+bool JournalIsKept() { return spdlog::should_log(spdlog::level::debug); }
 
 void Journal(std::string_view line) {
-  if (JournalIsKept()) spdlog::info("{}", OnOneLine(line));
+  if (JournalIsKept()) spdlog::debug("{}", OnOneLine(line));
 }
 
 std::function<void(const char* stage)> StageJournal(
