@@ -139,6 +139,29 @@ test('the ground line is moved, judged anew, stored with a reason, and the ' +
   await page.context().close();
 });
 
+test('what is said of a correction stays when an earlier question is answered',
+     async () => {
+  const page = await sitDown(browser, review, 'Grace');
+  await openTrial(page);
+  await frameShown(page, 89);
+  let answer;
+  const held = new Promise(resolve => { answer = resolve; });
+  await page.route('**/preview', async route => {
+    await held;
+    await route.continue();
+  });
+  await page.locator('.handle').first().focus();
+  await page.keyboard.press('Shift+ArrowUp');
+  await page.click('text=Store this correction');
+  await says(page, '.correct .bad', 'reason');
+  const answered = page.waitForResponse('**/preview');
+  answer();
+  await answered;
+  await page.waitForSelector('.changes tbody tr');
+  await says(page, '.correct .bad', 'reason');
+  await page.context().close();
+});
+
 test('the contact is moved, an outline is nudged and left out, the state is ' +
      'set, a trial is excluded and taken back', async () => {
   const page = await sitDown(browser, review, 'Grace');

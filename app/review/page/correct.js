@@ -109,6 +109,7 @@ export class Correcting {
 
   // One request at a time; the last change is always asked for.
   async changed() {
+    this.trouble.textContent = '';
     if (this.busy) {
       this.again = true;
       return;
@@ -119,13 +120,12 @@ export class Correcting {
       try {
         const said = await post(`/api/trials/${this.page.id}/preview`,
                                 this.body());
-        this.trouble.textContent = '';
         if (!this.again) {
           this.showChanges(said.changes);
           this.page.preview(said);
         }
       } catch (error) {
-        this.trouble.textContent = error.message;
+        if (!this.again) this.trouble.textContent = error.message;
       }
     } while (this.again);
     this.busy = false;
