@@ -46,8 +46,7 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
   if (p.cautious_prior) {
     remark += fmt::format(
         ", alone {}; the 95 % interval holds under {}, too, as outcomes that "
-        "do not "
-        "overlap tell nothing of the scatter",
+        "do not overlap tell nothing of the scatter",
         Range({analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)}),
         PriorName(*p.cautious_prior));
   }

@@ -26,6 +26,7 @@
 
 #include "tests/pipeline/film_file.h"
 #include "tests/support/local_socket.h"
+#include "tests/support/process_memory.h"
 #include "tests/support/run_program.h"
 #include "tests/support/running_program.h"
 #include "tests/support/temporary_folder.h"
@@ -295,17 +296,6 @@ TEST(ReviewStrangers, AnotherUserOfTheMachineGetsNothing) {
 
 // --- a crowd -----------------------------------------------------------------
 
-// A line of /proc/PID/status, in MB.
-double Memory_MB(pid_t process, const std::string& name) {
-  std::ifstream in("/proc/" + std::to_string(process) + "/status");
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with(name + ":")) {
-      return std::atof(line.c_str() + name.size() + 1) * 1024.0 / 1e6;
-    }
-  }
-  return 0.0;
-}
-
 TEST(ReviewStrangers, ACrowdKeepsNobodyWaitingAndTakesNoMemory) {
   // The sanitizer keeps memory that was given back, to see who uses it still,
   // and a map of all memory.
@@ -382,7 +372,7 @@ TEST(ReviewStrangers, ACrowdKeepsNobodyWaitingAndTakesNoMemory) {
   }
   is_done = true;
   for (auto& thread : large) thread.join();
-  const double memory_MB = Memory_MB(program.pid(), "VmHWM");
+  const double memory_MB = testing::Memory_MB(program.pid(), "VmHWM");
   std::printf(
       "%d answers, the longest after %.3f s, beside %d slow connections and "
       "%lld bodies of 1 GB (%lld MiB of them taken); memory at most %.0f MB\n",

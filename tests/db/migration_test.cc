@@ -3,15 +3,14 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include <fstream>
 #include <functional>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "db/src/schema.h"
 #include "tests/db/fixture.h"
+#include "tests/db/old_store.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/plan.h"
@@ -33,15 +32,6 @@ void Tamper(const std::filesystem::path& path, const std::string& sql) {
             SQLITE_OK)
       << error;
   sqlite3_close(handle);
-}
-
-void Load(const std::filesystem::path& path, const std::string& fixture) {
-  std::ifstream in(std::filesystem::path(TOUCHDOWN_SOURCE_DIR) /
-                   "tests/db/data" / fixture);
-  ASSERT_TRUE(in) << fixture;
-  std::stringstream sql;
-  sql << in.rdbuf();
-  Tamper(path, sql.str());
 }
 
 // Every table, index and trigger with its text.
@@ -66,7 +56,7 @@ class MigrateFrom : public ::testing::TestWithParam<std::int64_t> {};
 TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   Folder folder;
   const auto path = folder / "lab.db";
-  Load(path, "v" + std::to_string(GetParam()) + ".sql");
+  MakeOldStore(path, GetParam());
   if (GetParam() < kSchemaVersion) {
     // Nobody writes into an old store by accident, and it says what to do.
     for (const OpenMode mode : {OpenMode::kRead, OpenMode::kCreate}) {
@@ -131,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(EveryVersion, MigrateFrom,
 // An upgraded store is like a new one in every table, index and trigger.
 TEST_P(MigrateFrom, EndsWithTodaysSchema) {
   Folder folder;
-  Load(folder / "old.db", "v" + std::to_string(GetParam()) + ".sql");
+  MakeOldStore(folder / "old.db", GetParam());
   Migrate(folder / "old.db");
   OpenFixed(folder / "new.db");
   EXPECT_EQ(SchemaOf(folder / "old.db"), SchemaOf(folder / "new.db"));
@@ -141,7 +131,7 @@ TEST_P(MigrateFrom, EndsWithTodaysSchema) {
 TEST(Migrate, KeepsTheRegisterOfVersion2) {
   Folder folder;
   const auto path = folder / "lab.db";
-  Load(path, "v2.sql");
+  MakeOldStore(path, 2);
   Tamper(path,
          "PRAGMA foreign_keys = ON;"
          "INSERT INTO rigs (id, uuid, name, note) VALUES "
@@ -183,7 +173,7 @@ TEST(Migrate, KeepsTheRegisterOfVersion2) {
 TEST(Migrate, ADamagedStoreStaysAsItIs) {
   Folder folder;
   const auto path = folder / "lab.db";
-  Load(path, "v1.sql");
+  MakeOldStore(path, 1);
   Tamper(path,
          "PRAGMA foreign_keys = OFF; DROP TRIGGER trials_refuse_UPDATE; UPDATE "
          "trials SET campaign_id = 99");
@@ -212,7 +202,7 @@ TEST(Migrate, ANewerFileIsRefusedWithWhatToDo) {
 // raise kSchemaVersion, write the step, and freeze a new fixture.
 TEST(Migrate, TheSchemaIsThatOfTheLastFixture) {
   Folder folder;
-  Load(folder / "frozen.db", "v" + std::to_string(kSchemaVersion) + ".sql");
+  MakeOldStore(folder / "frozen.db", kSchemaVersion);
   OpenFixed(folder / "new.db");
   EXPECT_EQ(SchemaOf(folder / "new.db"), SchemaOf(folder / "frozen.db"));
 }

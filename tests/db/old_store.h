@@ -1,28 +1,12 @@
 // Stores as older programs made them.
 #pragma once
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <sqlite3.h>
-
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
 
 namespace touchdown::db {
 
 // Of the schema's version `version`, from tests/db/data.
-inline void MakeOldStore(const std::filesystem::path& path, int version) {
-  std::ifstream in(std::filesystem::path(TOUCHDOWN_SOURCE_DIR) /
-                   "tests/db/data" / fmt::format("v{}.sql", version));
-  const std::string sql{std::istreambuf_iterator<char>(in), {}};
-  ASSERT_FALSE(sql.empty());
-  sqlite3* store = nullptr;
-  sqlite3_open(path.c_str(), &store);
-  EXPECT_EQ(sqlite3_exec(store, sql.c_str(), nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(store);
-}
+void MakeOldStore(const std::filesystem::path& path, std::int64_t version);
 
 }  // namespace touchdown::db

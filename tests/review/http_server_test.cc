@@ -17,6 +17,7 @@
 #include "app/review/guard.h"
 #include "tests/review/client.h"
 #include "tests/support/local_socket.h"
+#include "tests/support/process_memory.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {
@@ -48,15 +49,6 @@ struct Running {
   HttpServer server;
   std::thread thread;
 };
-
-// Memory of this process now, MB.
-double Resident_MB() {
-  std::ifstream in("/proc/self/statm");
-  double size = 0.0;
-  double resident = 0.0;
-  in >> size >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
 
 // How long a client with the key waits for its answer, s; nothing where none
 // came.
@@ -168,7 +160,7 @@ TEST(HttpServer, KeepsNothingOfLargeBodies) {
   const int port = running.server.port();
   const std::string piece(std::size_t{1} << 20, 'x');
   ASSERT_TRUE(Wait_s(port));
-  const double before_MB = Resident_MB();
+  const double before_MB = testing::Memory_MB(getpid(), "VmRSS");
   const struct {
     const char* fields;
     const char* status;
@@ -185,7 +177,9 @@ TEST(HttpServer, KeepsNothingOfLargeBodies) {
     int sent_MB = 0;
     // A client that reads nothing goes on until the server closes.
     while (sent_MB < 1024 && socket.Send(piece)) ++sent_MB;
-    EXPECT_LT(Resident_MB() - before_MB, 100.0 + kQuarantine_MB) << fields;
+    EXPECT_LT(testing::Memory_MB(getpid(), "VmRSS") - before_MB,
+              100.0 + kQuarantine_MB)
+        << fields;
     EXPECT_TRUE(Wait_s(port)) << fields;
     // The answer itself, of a client that sends nothing more.
     const Socket polite(port);

@@ -171,8 +171,8 @@ Segmenter::Segmenter(const PlaneTrack& track,
   const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
   level_precision_ = precision(std::hypot(
       track.ground.u_offset_px, track.u_half_px, options.edge_bias_px));
-  // An edge of the ground seen in perspective differs so much from the line
-  // of contact, at most.
+  // An edge of the ground seen in perspective differs so much from the line of
+  // contact, at most.
   constexpr double kInclined_rad = 0.5 * core::kDegree;
   slope_precision_ =
       precision(std::hypot(track.ground.u_angle_rad, kInclined_rad));
@@ -247,8 +247,8 @@ void Segmenter::Offer(const Fits& fits, const Motion& motion, State from,
   best = {cost, fits.begin, from, kind, rss, std::max(0, values - parameters)};
 }
 
-// Where a person says when it touches down, nothing touches before it, and
-// the flight up to it ends there wherever the line is.
+// Where a person says when it touches down, nothing touches before it, and the
+// flight up to it ends there wherever the line is.
 bool Segmenter::MayTouch(std::size_t end) const {
   return !options_.touchdown || end >= *options_.touchdown;
 }
@@ -297,8 +297,8 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   const std::size_t n = fits.frames;
   const int k = static_cast<int>(std::min<std::size_t>(n, 3)) * per_frame_;
   const Motion any = fits.As(StretchKind::kOther, k, *this);
-  // No motion that is known: mostly it is one, badly seen. A few frames tell
-  // of none, but those after an impact would be a rebound.
+  // No motion that is known: mostly it is one, badly seen. A few frames tell of
+  // none, but those after an impact would be a rebound.
   const double few = 2.0 * per_cut_;
   const bool told = n >= kTold;
   const double before = told ? options_.unknown_cost : few;
@@ -307,9 +307,9 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   const auto offer_other = [&](State from, State to, double ends) {
     Offer(fits, any, from, to, ends);
   };
-  // Twice as for a rebound: where the line is not known, or is not quite
-  // where the flights meet, it could stand for one. What is pressed down
-  // gives way by less than half of its size.
+  // Twice as for a rebound: where the line is not known, or is not quite where
+  // the flights meet, it could stand for one.
+  // What is pressed down gives way by less than half of its size.
   if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
     const double above = fits.gaps.y / fits.gaps.w;
     Offer(fits, {StretchKind::kContact, k, any.rss}, kTouched, kTouched,
@@ -340,9 +340,8 @@ void Segmenter::GrowFrom(std::size_t begin) {
     OfferSupport(fits);
     OfferAnyMotion(fits);
     if (fits.frames < 2) continue;
-    // No stretch from here can become the best once even the loosest one,
-    // which later frames only make worse, has lost to what leads there
-    // already.
+    // No stretch from here can become the best once even the loosest one, which
+    // later frames only make worse, has lost to what leads there already.
     const double loosest = 0.5 * (fits.x.rss2 + fits.y.rss2 + fits.f.rss2);
     double leads = kInfinity;
     for (const State state : {kCarried, kTouched, kEnded}) {
@@ -403,8 +402,7 @@ std::vector<Stretch> Segmenter::Run() {
   const std::size_t n = samples_.size();
   if (n < 2) return {};
   // Cuts at every few frames first; then at every frame beside those found,
-  // until they stay. What a coarse cut cannot explain asks for cuts beside
-  // it.
+  // until they stay. What a coarse cut cannot explain asks for cuts beside it.
   constexpr std::size_t kExact = 120;  // boundaries: about a millisecond
   const std::size_t step = (n + kExact - 1) / kExact;
   std::vector<bool> grid(n + 1, false);

@@ -54,10 +54,10 @@ struct BoundaryFitOptions {
   ScatterPrior scatter;
   // Where outcomes do not overlap, 95 % intervals hold the equal tails under
   // this prior. By chance that happens to boundaries that scatter: then
-  // `scatter` alone takes them for sharp, and of those with a scatter of 3 deg
-  // and steps of 2 deg its interval covers 86 of 100. With this median of 4 deg
-  // at least 93 of 100 are covered after 20 and 40 trials, overlapping or not
-  // (STATISTICS.md). Absent: equal tails under `scatter` alone.
+  // `scatter` alone takes them for sharp, and covers too few. With this median
+  // of 4 deg at least 93 of 100 are covered after 20 and 40 trials at a scatter
+  // of 3 deg and steps of 2 deg, overlapping or not (STATISTICS.md). Absent:
+  // equal tails under `scatter` alone.
   std::optional<ScatterPrior> cautious_scatter =
       ScatterPrior{4.0 * core::kDegree, std::nullopt};
   // The same posterior under other priors: how much of it is prior.
