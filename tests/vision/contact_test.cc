@@ -157,6 +157,88 @@ TEST(Contact, BothCornersBetweenTwoFrames) {
   EXPECT_LT(Rms(z_face), 1.5);
 }
 
+// Lands on one corner, leaves the ground, and 1.74 frames later lands for good:
+// no frame shows the greatest gap between, and one shows that there is any.
+TEST(Contact, HopThatEndsBetweenFramesIsItsFlights) {
+  Throw first = Block(7.0_deg);
+  first.before = {2.5, -1.2, 0.0};
+  Rebound(first, 0.1);
+  const core::Body body = core::Rectangle({0.06, 0}, {0.02, 0});
+  double greatest_m = 0.0;
+  double second_s = first.contact_s + 2e-5;
+  for (double gap = 1.0; gap > 0.0; second_s += 1e-6) {
+    gap = Gap(body, first.At(second_s));
+    greatest_m = std::max(greatest_m, gap);
+  }
+  const ScenePose there = first.At(second_s);
+  Throw second = Block(there.angle_rad);
+  second.contact_s = second_s;
+  second.x_m = there.centre.x_m;
+  second.after = {2.0, 0.0, 0.0};
+  second.stays = true;
+  Filming filming;
+  filming.camera.fps = 1.74 / (second_s - first.contact_s);
+  const double frame = 1.0 / filming.camera.fps;
+  filming.first_time_s = first.contact_s - 28.04 * frame;
+  std::vector<double> z;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    filming.seed = seed;
+    const PlaneTrack track = SeenFromGround(
+        synthetic::FilmTrack(
+            first,
+            [&](double t) { return t < second_s ? first.At(t) : second.At(t); },
+            filming),
+        synthetic::FilmGround(filming));
+    const core::ContactRecord record =
+        FindContacts(track, WithScale(filming)).first;
+    ASSERT_TRUE(record.state.max_gap_m);
+    const core::Estimate& gap = *record.state.max_gap_m;
+    z.push_back((gap.value - greatest_m) / gap.u);
+    EXPECT_LT(gap.u, 0.3 * greatest_m);
+  }
+  EXPECT_LT(Rms(z), 1.5);
+}
+
+// A hop of four frames and seven times the noise is part of what stays down: it
+// must not lift the ground, nor be smoothed away.
+TEST(Contact, HopTooSmallForAFlightOfItsOwn) {
+  Throw thrown;
+  thrown.before = {1.2, -0.14, 0.0};
+  thrown.after = {1.1, 0.043, 0.0};
+  const double lands_s = thrown.contact_s + 2.0 * 0.043 / thrown.gravity_mps2;
+  Throw down = thrown;
+  down.contact_s = lands_s;
+  down.x_m = thrown.At(lands_s).centre.x_m;
+  down.stays = true;
+  Filming filming;
+  filming.frames = 30;
+  filming.camera.fps = 500.0;
+  filming.u_px = 0.0125;
+  std::vector<double> z_gap;
+  std::vector<double> z_time;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    filming.seed = seed;
+    filming.first_time_s = thrown.contact_s - 10.155 / filming.camera.fps;
+    const PlaneTrack track = SeenFromGround(
+        synthetic::FilmTrack(
+            thrown,
+            [&](double t) { return t < lands_s ? thrown.At(t) : down.At(t); },
+            filming),
+        synthetic::FilmGround(filming));
+    const core::ContactRecord record =
+        FindContacts(track, WithScale(filming)).first;
+    ASSERT_TRUE(record.contact.found);
+    ASSERT_TRUE(record.state.max_gap_m);
+    const double greatest_m = 0.043 * 0.043 / 2.0 / thrown.gravity_mps2;
+    z_gap.push_back((record.state.max_gap_m->value - greatest_m) /
+                    record.state.max_gap_m->u);
+    z_time.push_back((record.contact.time_s->value - thrown.contact_s) /
+                     record.contact.time_s->u);
+  }
+  EXPECT_LT(Rms(z_gap), 1.7);
+  EXPECT_LT(Rms(z_time), 1.5);
+}
+
 TEST(Contact, CornerIsTheOneThatTouches) {
   for (const auto& [face, corner] :
        std::vector<std::pair<double, core::Corner>>{

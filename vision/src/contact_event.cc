@@ -210,6 +210,22 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   return fit.has_value();
 }
 
+// What stays down may have left the ground by less than makes a flight of its
+// own. No frame in contact is above those that follow: frames up to the last
+// that clearly is are left out.
+void LeaveOutHops(const PlaneTrack& track, std::size_t least,
+                  SampleRange& down) {
+  constexpr double kClear = 3.0;  // sigmas
+  const std::size_t begin = down.begin;
+  for (std::size_t i = begin; i + least < down.end; ++i) {
+    const core::Estimate rest = LevelOf(SamplesIn(track, {i + 1, down.end}));
+    const PlaneSample& s = track.samples[i];
+    if (s.gap_px - rest.value > kClear * std::hypot(s.u_gap_px, rest.u)) {
+      down.begin = i + 1;
+    }
+  }
+}
+
 // It stays down: the frames in contact tell the ground's height.
 bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
                  Event& event) {
@@ -225,6 +241,7 @@ bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
   down.end = std::min(down.end, down.begin + kNear);
   // A few frames may still belong to a rebound.
   constexpr std::size_t kEnough = 6;
+  LeaveOutHops(track, kEnough, down);
   if (down.size() >= kEnough) {
     const core::Estimate level = LevelOf(SamplesIn(track, down));
     event.disagreement = level.value / std::hypot(ground.u, level.u);

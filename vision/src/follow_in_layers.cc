@@ -38,6 +38,11 @@ constexpr double kMostGrowth = 0.02;
 // faces were off by 0.3 and 0.5.
 constexpr double kCommonShare = 0.4;
 
+// What edges that are not blurred quite as Gauss's do to all poses of a clip
+// together. Without it the median |error| / u of 69 face angles of known truth
+// is 0.95 in raw clips, for 0.67.
+constexpr double kModel_px = 0.002;
+
 Shape ShapeOf(const BodyImage& body, const std::optional<BodySize>& size) {
   Shape shape;
   shape.disc = body.kind == core::BodyKind::kSphere;
@@ -100,6 +105,7 @@ LayerPose Doubled(const LayerPose& pose) {
 FitLayersOptions HalvedOptions(const FitLayersOptions& options) {
   FitLayersOptions half = options;
   constexpr double kHalvingsBlur = 0.3;  // of two pixels taken as one
+  half.prior.u[layers::kCurve] = 0.0;    // of no use yet
   half.prior.value[layers::kBlur] =
       std::hypot(0.5 * options.prior.value[layers::kBlur], kHalvingsBlur);
   for (const std::size_t side : {layers::kLong, layers::kShort}) {
@@ -249,13 +255,14 @@ Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized) {
   out.near_ground_modelled = true;
   out.body.blur_px = fit.layers.blur;
   out.body.shutter_fraction = fit.layers.exposure;
-  if (!fit.layers.shape.disc) out.body.gamma = 1.0 / (1.0 + fit.layers.curve);
+  // No camera has more than 1.
+  if (fit.curve) out.body.gamma = 1.0 / (1.0 + std::max(*fit.curve, 0.0));
   const Shape& shape = fit.layers.shape;
   const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
-  out.body.u_common_px =
-      fit.layers.flat ? 0.0
-                      : kCommonShare * fit.layers.blur *
-                            std::min(1.0, fit.layers.texture_dn / contrast);
+  const double share = std::min(1.0, fit.layers.texture_dn / contrast);
+  out.body.u_common_px = std::hypot(
+      kModel_px,
+      fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share);
   // Sizes of raw clips of known truth were off by a few thousandths.
   constexpr double kSizeU_px = 0.004;
   const double u_size = std::hypot(kSizeU_px, out.body.u_common_px);

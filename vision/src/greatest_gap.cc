@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace touchdown::vision {
 namespace {
@@ -19,6 +20,7 @@ struct Finder {
   void LookAtFlight(const SampleRange& range);
   void LookAtFrames(const SampleRange& range);
   void LookBetween(const PlaneSample& a, const PlaneSample& b);
+  void LookAfterTouchdown();
   void Offer(const core::Estimate& gap, std::int64_t frame);
   double UncertaintyOfGround(double along_px) const {
     return std::hypot(ground.height_px.u,
@@ -164,6 +166,75 @@ void Finder::LookBetween(const PlaneSample& a, const PlaneSample& b) {
         b.frame);
 }
 
+// A body that left the ground flies until it meets it again, be that between
+// two frames: from touchdown, where its pose is known best, through the frames
+// of one flight, and on to where that flight ends.
+void Finder::LookAfterTouchdown() {
+  constexpr double kHalfAFrame = 0.5;  // nearer, the exposure spans the impact
+  const double dt = track.frame_interval_s;
+  const FlightState at = event->before->At(event->time_s.value);
+  PlaneSample touchdown;
+  touchdown.time_s = event->time_s.value;
+  touchdown.along_px = at.along_px;
+  touchdown.face_rad = at.face_rad;
+  touchdown.height_px =
+      ground.height_px.value + SupportHeight(track, at.face_rad);
+  constexpr double kLeastU_px = 1e-3;
+  const double arm = LowestPointAlong(track, at.face_rad);
+  touchdown.u_along_px = std::max(at.u_along_px, kLeastU_px);
+  touchdown.u_face_rad = at.u_face_rad;
+  touchdown.u_height_px = std::hypot(arm * at.u_face_rad, kLeastU_px);
+  const std::vector<PlaneSample>& samples = track.samples;
+  const auto first = static_cast<std::size_t>(
+      std::find_if(samples.begin(), samples.end(),
+                   [&](const PlaneSample& s) {
+                     return s.time_s > touchdown.time_s + kHalfAFrame * dt;
+                   }) -
+      samples.begin());
+  // It still stands on the corner that it landed on, so that no other impact
+  // lies between.
+  if (first == samples.size() ||
+      arm * LowestPointAlong(track, samples[first].face_rad) < 0.0) {
+    return;
+  }
+  struct Hop {
+    core::Estimate most;
+    std::int64_t frame = 0;
+    double end_s = 0.0;  // it meets the ground there
+  };
+  std::optional<Hop> hop;
+  std::size_t i = first;
+  for (std::vector<PlaneSample> flown{touchdown}; i < samples.size(); ++i) {
+    flown.push_back(samples[i]);
+    if (flown.size() < LeastFrames(options)) continue;
+    const Flight flight = FitFlight(flown, options);
+    constexpr double kMostChi2 = 4.0;  // a degree: frames of two motions
+    if (flight.reduced_chi2 > kMostChi2) break;
+    const auto gap_at = [&](double t) {
+      const FlightGap g = GapOfFlight(track, flight, t);
+      return core::Estimate{
+          g.gap_px - ground.height_px.value,
+          std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px))};
+    };
+    constexpr double kStepsAFrame = 128.0;
+    Hop seen{gap_at(samples[i].time_s), samples[i].frame};
+    double t = touchdown.time_s;
+    for (; t < samples.back().time_s; t += dt / kStepsAFrame) {
+      const core::Estimate gap = gap_at(t);
+      if (t > samples[i].time_s && gap.value <= 0.0) break;
+      if (gap.value > seen.most.value) seen.most = gap;
+    }
+    seen.end_s = t;
+    // A frame that was exposed across the next impact says less.
+    if (t - samples[i].time_s > kHalfAFrame * dt) hop = seen;
+  }
+  // Frames before its end that are not of it refute it.
+  if (hop && hop->end_s < samples.back().time_s && i < samples.size() &&
+      samples[i].time_s > hop->end_s - kHalfAFrame * dt) {
+    Offer(hop->most, hop->frame);
+  }
+}
+
 void Finder::LookAt(const Stretch& stretch) {
   const SampleRange range{std::max(stretch.begin, since), stretch.end};
   if (range.begin >= range.end) return;
@@ -185,6 +256,7 @@ std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
                                            const Event* event) {
   Finder finder{track, from, ground, options, event};
   for (const Stretch& stretch : stretches) finder.LookAt(stretch);
+  if (event && !event->after) finder.LookAfterTouchdown();
   return finder.greatest;
 }
 

@@ -73,6 +73,121 @@ float MeanLevel(const PictureStack& stack,
   return count > 0.0 ? static_cast<float>(sum / count) : 0.0F;
 }
 
+// A body is flat until its pictures say that it is not.
+constexpr double kFirstTexture = 0.3;
+constexpr int kFlatSteps = 2;  // by then a flat body is told
+constexpr double kRough = 0.05;
+constexpr double kFine = 5e-3;
+constexpr double kMostBlur = 2.0;  // times the first
+
+// What of a picture's noise and texture the residuals show at step `step`.
+void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
+           LayerFit& fit, std::vector<FrameSamples>& frames) {
+  Layers& layers = fit.layers;
+  // At first residuals are those of rough poses: as if all were noise.
+  constexpr double kAnything = 1e4;  // DN
+  layers.noise_dn = NoiseOf(frames, step == 0 ? kAnything : layers.noise_dn);
+  if (step == 0) {
+    layers.texture_dn = kFirstTexture * layers.noise_dn;
+    Reweigh(layers.noise_dn, frames);
+  } else if (layers.flat) {
+    const double texture = CommonTextureOf(stack, layers, fit.poses, frames);
+    // So much texture draws outlines by hundredths of a pixel.
+    constexpr double kMatters = 0.5;  // of the noise
+    if (step >= kFlatSteps && texture > kMatters * layers.noise_dn) {
+      LearnTexture(layers);
+      layers.texture_dn = texture;
+      LinearizeAll(stack, layers, fit.poses, options.threads, frames);
+    }
+  } else {
+    layers.picture_weight = WeighPicture(layers, frames);
+    layers.texture_dn = TextureOf(layers, layers.picture_weight);
+  }
+}
+
+// A step in all unknowns, none farther than the derivatives hold. How far the
+// poses moved, px.
+double Advance(const JointStep& joint, const FitLayersOptions& options,
+               LayerFit& fit) {
+  constexpr double kMostBlurStep = 0.3;
+  constexpr double kMostExposureStep = 0.2;
+  constexpr double kMostSizeStep_px = 0.5;
+  constexpr double kMostCurveStep = 0.5;
+  Layers& layers = fit.layers;
+  const double reach = layers.shape.Reach();
+  const double most_px = 1.5 * options.prior.value[kBlur];
+  double moved = 0.0;
+  for (std::size_t t = 0; t < fit.poses.size(); ++t) {
+    LayerPose& pose = fit.poses[t];
+    const double d_x = Limited(joint.poses[t].x, most_px);
+    const double d_y = Limited(joint.poses[t].y, most_px);
+    const double turn = Limited(joint.poses[t].angle_rad, most_px / reach);
+    pose.x += d_x;
+    pose.y += d_y;
+    pose.angle_rad += turn;
+    moved =
+        std::max({moved, std::abs(d_x), std::abs(d_y), std::abs(turn) * reach});
+  }
+  layers.blur =
+      std::clamp(layers.blur + Limited(joint.shared[kBlur], kMostBlurStep), 0.3,
+                 kMostBlur * options.prior.value[kBlur]);
+  layers.exposure = std::clamp(
+      layers.exposure + Limited(joint.shared[kExposure], kMostExposureStep),
+      0.0, 1.0);
+  layers.shape.half_long += Limited(joint.shared[kLong], kMostSizeStep_px);
+  layers.shape.half_short =
+      layers.shape.disc ? layers.shape.half_long
+                        : layers.shape.half_short +
+                              Limited(joint.shared[kShort], kMostSizeStep_px);
+  layers.curve += Limited(joint.shared[kCurve], kMostCurveStep);
+  layers.slope_x += joint.shared[kSlopeX];
+  layers.slope_y += joint.shared[kSlopeY];
+  for (std::size_t k = 0; k < kTerms && layers.flat; ++k) {
+    layers.quadratic[k] += joint.shared[kQuadratic + k];
+  }
+  for (std::size_t c = 0; c < joint.picture.size(); ++c) {
+    layers.picture[c] += joint.picture[c];
+  }
+  for (std::size_t x = 0; x < layers.still.size(); ++x) {
+    layers.still[x] += joint.still[x];
+  }
+  return moved;
+}
+
+JointStepOptions SolveOptions(const FitLayersOptions& options, double u_curve) {
+  JointStepOptions solve;
+  solve.prior = options.prior;
+  solve.prior.u[kCurve] = u_curve;
+  solve.turns = options.turns;
+  solve.threads = options.threads;
+  solve.tolerance = kFine;
+  return solve;
+}
+
+// C, from layers that hold 0 and are settled. One step tells whether there is
+// any; its size takes some more.
+double MeasureCurve(const PictureStack& stack, const FreePart& free,
+                    const FitLayersOptions& options, LayerFit fit,
+                    std::vector<FrameSamples>& frames) {
+  // A camera's gamma below 0.8: more of it moves outlines by 0.05 px.
+  constexpr double kWorthIt = 0.25;
+  const JointStepOptions solve = SolveOptions(options, options.prior.u[kCurve]);
+  double curve = 0.0;
+  for (int step = 0; step < options.steps; ++step) {
+    const double before = curve;
+    const StillEvidence evidence =
+        WeighStill(stack, fit.layers, frames, options.threads);
+    const JointStep joint =
+        SolveJointStep(fit.layers, frames, evidence, free, solve);
+    curve = fit.layers.curve + joint.shared[kCurve];
+    constexpr double kSettled = 0.02;
+    if (curve < kWorthIt || std::abs(curve - before) < kSettled) break;
+    Advance(joint, options, fit);
+    LinearizeAll(stack, fit.layers, fit.poses, options.threads, frames);
+  }
+  return curve;
+}
+
 }  // namespace
 
 LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
@@ -87,13 +202,6 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   layers.exposure = options.prior.value[kExposure];
   layers.still = still;
   layers.noise_dn = noise_dn;
-  // A body is flat until its pictures say that it is not.
-  constexpr double kFirstTexture = 0.3;
-  constexpr double kAnything = 1e4;  // DN
-  constexpr int kFlatSteps = 2;      // by then a flat body is told
-  constexpr double kRough = 0.05;
-  constexpr double kFine = 5e-3;
-  constexpr double kMostBlur = 2.0;  // times the first
   layers.grid = PictureGrid(shape, kRimBlurs * layers.blur * kMostBlur);
   layers.picture.assign(layers.grid.size(), 0.0F);
   const FreePart free(layers.grid);
@@ -102,84 +210,20 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   layers.quadratic = {static_cast<double>(MeanLevel(stack, frames))};
   if (options.textured) LearnTexture(layers);
 
-  JointStepOptions solve;
-  solve.prior = options.prior;
-  solve.turns = options.turns;
-  solve.threads = options.threads;
-  // A step goes no farther: beyond, the derivatives say nothing.
-  const double most_px = 1.5 * layers.blur;
-  const double most_rad = most_px / shape.Reach();
-  constexpr double kMostBlurStep = 0.3;
-  constexpr double kMostExposureStep = 0.2;
-  constexpr double kMostSizeStep_px = 0.5;
-  constexpr double kMostCurveStep = 0.5;
+  constexpr double kHeld = 0.0;
+  JointStepOptions solve = SolveOptions(options, kHeld);
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
-  for (int step = 0; step < options.steps; ++step) {
+  for (int step = 0; step < options.steps && !fit.converged; ++step) {
     LinearizeAll(stack, layers, fit.poses, options.threads, frames);
-    // At first residuals are those of rough poses: as if all were noise.
-    layers.noise_dn = NoiseOf(frames, step == 0 ? kAnything : layers.noise_dn);
-    if (step == 0) {
-      layers.texture_dn = kFirstTexture * layers.noise_dn;
-      Reweigh(layers.noise_dn, frames);
-    } else if (layers.flat) {
-      const double texture = CommonTextureOf(stack, layers, fit.poses, frames);
-      // So much texture draws outlines by hundredths of a pixel.
-      constexpr double kMatters = 0.5;  // of the noise
-      if (step >= kFlatSteps && texture > kMatters * layers.noise_dn) {
-        LearnTexture(layers);
-        layers.texture_dn = texture;
-        LinearizeAll(stack, layers, fit.poses, options.threads, frames);
-      }
-    } else {
-      layers.picture_weight = WeighPicture(layers, frames);
-      layers.texture_dn = TextureOf(layers, layers.picture_weight);
-    }
+    Judge(stack, options, step, fit, frames);
     // First steps are not worth more.
     solve.tolerance = step < kFlatSteps ? kRough : kFine;
     const StillEvidence evidence =
         WeighStill(stack, layers, frames, options.threads);
-    const JointStep joint =
-        SolveJointStep(layers, frames, evidence, free, solve);
-    double moved = 0.0;
-    for (std::size_t t = 0; t < fit.poses.size(); ++t) {
-      LayerPose& pose = fit.poses[t];
-      const double d_x = Limited(joint.poses[t].x, most_px);
-      const double d_y = Limited(joint.poses[t].y, most_px);
-      const double turn = Limited(joint.poses[t].angle_rad, most_rad);
-      pose.x += d_x;
-      pose.y += d_y;
-      pose.angle_rad += turn;
-      moved = std::max({moved, std::abs(d_x), std::abs(d_y),
-                        std::abs(turn) * shape.Reach()});
-    }
-    layers.blur =
-        std::clamp(layers.blur + Limited(joint.shared[kBlur], kMostBlurStep),
-                   0.3, kMostBlur * options.prior.value[kBlur]);
-    layers.exposure = std::clamp(
-        layers.exposure + Limited(joint.shared[kExposure], kMostExposureStep),
-        0.0, 1.0);
-    layers.shape.half_long += Limited(joint.shared[kLong], kMostSizeStep_px);
-    layers.shape.half_short =
-        shape.disc ? layers.shape.half_long
-                   : layers.shape.half_short +
-                         Limited(joint.shared[kShort], kMostSizeStep_px);
-    layers.curve += Limited(joint.shared[kCurve], kMostCurveStep);
-    layers.slope_x += joint.shared[kSlopeX];
-    layers.slope_y += joint.shared[kSlopeY];
-    for (std::size_t k = 0; k < kTerms && layers.flat; ++k) {
-      layers.quadratic[k] += joint.shared[kQuadratic + k];
-    }
-    for (std::size_t c = 0; c < joint.picture.size(); ++c) {
-      layers.picture[c] += joint.picture[c];
-    }
-    for (std::size_t x = 0; x < layers.still.size(); ++x) {
-      layers.still[x] += joint.still[x];
-    }
-    if (moved < kStill_px && step > kFlatSteps) {
-      fit.converged = true;
-      break;
-    }
+    const double moved = Advance(
+        SolveJointStep(layers, frames, evidence, free, solve), options, fit);
+    fit.converged = moved < kStill_px && step > kFlatSteps;
   }
   LinearizeAll(stack, layers, fit.poses, options.threads, frames);
   layers.noise_dn = NoiseOf(frames, layers.noise_dn);
@@ -195,6 +239,9 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
       layers.still_weight[static_cast<std::size_t>(samples.pixel[i])] +=
           samples.weight[i] * samples.open[i] * samples.open[i];
     }
+  }
+  if (options.prior.u[kCurve] > 0.0) {
+    fit.curve = MeasureCurve(stack, free, options, fit, frames);
   }
   return fit;
 }

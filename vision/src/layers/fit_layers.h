@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "joint_step.h"
@@ -25,6 +26,10 @@ struct LayerFit {
   Layers layers;
   std::vector<LayerPose> poses;  // of each picture of the stack
   bool converged = false;
+  // C as the outlines show it, where the prior's u leaves it free: what a
+  // camera's gamma makes of them, but a blur of another kind than Gauss's looks
+  // alike. `layers` hold 0.
+  std::optional<double> curve;
 };
 
 // `still`: a first B. Poses within about 2 s of the truth; from farther they

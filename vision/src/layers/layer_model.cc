@@ -180,6 +180,7 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
           0.5F * (still[pixel + stack.width] - still[pixel - stack.width]);
       const StillEdge edge = edges.At(pixel);
       float covered = 0.0F;
+      float lifted = 0.0F;  // by what covers it: sum of w M (T + S - B)
       float model = behind;
       std::array<float, kPose> by_pose{};
       std::array<float, kShared> by_shared{};
@@ -223,6 +224,7 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
         }
         const float own = m_x * t_x + m_y * t_y;
         covered += shares[k];
+        lifted += shares[k] * over;
         model += shares[k] * over + node.weight * (blur2 * own - product.value);
         const float g_x = m.by_x * over + m.value * tilt.by_x - product.by_x;
         const float g_y = m.by_y * over + m.value * tilt.by_y - product.by_y;
@@ -252,7 +254,7 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
         }
       }
       if (covered < kLeastCover) continue;
-      const float step = (model - behind) / covered;
+      const float step = lifted / covered;
       const float bent = 0.5F * step / std::max(model, kLeastLevel_dn);
       const float by_curve = covered * (1.0F - covered) * step * bent;
       by_shared[kCurve] = by_curve;
@@ -260,6 +262,9 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
         model += curve * by_curve;
         const float steeper = 1.0F + curve * (1.0F - 2.0F * covered) * bent;
         for (float& slope : by_pose) slope *= steeper;
+        for (const std::size_t i : {kBlur, kExposure, kLong, kShort}) {
+          by_shared[i] *= steeper;
+        }
       }
       const float residual = levels[pixel] - model;
       const std::size_t at = count++;

@@ -61,19 +61,22 @@ ShapeCover::ShapeCover(const Shape& shape, double blur)
       disc_(shape.disc),
       half_long_(static_cast<float>(shape.half_long)),
       half_short_(static_cast<float>(shape.half_short)),
-      per_blur_(static_cast<float>(1.0 / blur)) {}
+      per_blur_(static_cast<float>(1.0 / blur)),
+      bend_(static_cast<float>(
+          shape.disc ? 0.5 * blur / std::max(shape.half_long, blur) : 0.0)) {}
 
 CoverAt ShapeCover::At(float x, float y) const {
   CoverAt at;
   if (disc_) {
     const float distance = std::sqrt(x * x + y * y) + 1e-6F;
-    const float z = (half_long_ - distance) * per_blur_;
+    const float z = (half_long_ - distance) * per_blur_ - bend_;
     float density = 0.0F;
     table_.Look(z, at.value, density);
-    at.by_long = density * per_blur_;
-    at.by_x = -at.by_long * x / distance;
-    at.by_y = -at.by_long * y / distance;
-    at.by_blur = -at.by_long * z;
+    const float slope = density * per_blur_;
+    at.by_x = -slope * x / distance;
+    at.by_y = -slope * y / distance;
+    at.by_long = slope * (1.0F + bend_ / (half_long_ * per_blur_));
+    at.by_blur = -slope * (z + 2.0F * bend_);
     return at;
   }
   const Span along = SpanAt(table_, x, half_long_, per_blur_);
@@ -97,7 +100,7 @@ Product ShapeCover::WithEdge(float x, float y, const StillEdge& edge,
   const float normal_y = cosine * edge.normal_y - sine * edge.normal_x;
   if (disc_) {
     const float distance = std::sqrt(x * x + y * y) + 1e-6F;
-    const float z = (half_long_ - distance) * per_blur_;
+    const float z = (half_long_ - distance) * per_blur_ - bend_;
     if (std::abs(z) > kFar) return product;
     const float rho = -(normal_x * x + normal_y * y) / distance;
     product.value = edge.contrast * EdgeProduct(z, edge.z, rho);

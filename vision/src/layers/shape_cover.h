@@ -4,8 +4,11 @@
 // Gaussian of standard deviation s (the edge's blur and the pixel's own width,
 // s^2 = psf^2 + 1/12):
 //   M = A(x; a) A(y; b),  A(u; h) = Phi((h - u) / s) + Phi((h + u) / s) - 1
-// Disc of radius a: M = Phi((a - |p|) / s), which holds for a >> s; for a = 4 s
-// the middle of the edge lies 0.1 s further out.
+// Disc of radius a:
+//   M = Phi((a - |p|) / s - s / (2 a))
+// to first order in s / a: blur draws a curved edge inward by s^2 / (2 a), as
+// heat does (the mean of Rice's distribution is |p| + s^2 / (2 |p|)). For
+// a >= 4 s it is 0.006 off at most; without the last term it were 0.05.
 #pragma once
 
 #include <array>
@@ -85,6 +88,7 @@ class ShapeCover {
   float half_long_;
   float half_short_;
   float per_blur_;
+  float bend_;  // s / (2 a) of a disc
 };
 
 }  // namespace touchdown::vision::layers
