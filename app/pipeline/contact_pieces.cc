@@ -23,7 +23,8 @@ using core::PixelRect;
 constexpr double kTravel = 0.6;
 // About the outlines, in sizes of the body.
 constexpr double kMargin = 0.2;
-constexpr double kAspect = 4.0 / 3.0;
+// Five strips of three fit on a page of A4.
+constexpr double kAspect = 1.5;
 constexpr std::int32_t kLeastWidth_px = 48;
 // Wider pieces are averaged down: a page shows no more samples.
 constexpr std::int32_t kMostSamples = 320;

@@ -61,15 +61,16 @@ std::string ScaleBar(const core::PixelRect& piece,
   const double px_per_unit = px_per_m ? *px_per_m * 1e-3 : 1.0;
   const double units = Round(kShare * piece.width / px_per_unit);
   const double length = units * px_per_unit;
-  const double text = piece.width / 15.0;
+  const double text = piece.width / 17.0;
   const double x = piece.x + 0.05 * piece.width;
-  const double y = piece.y + piece.height - 0.06 * piece.height;
+  const double y = piece.y + piece.height - 0.07 * piece.height;
   return Line("polyline", {{x, y}, {x + length, y}}, "#ffffff", "") +
          fmt::format(
              "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\" "
              "fill=\"#ffffff\" stroke=\"#101418\" stroke-width=\"{:.2f}\" "
              "paint-order=\"stroke\">{:g} {}</text>",
-             x, y - 0.35 * text, text, text / 5, units, px_per_m ? "mm" : "px");
+             x + length + 0.5 * text, y + 0.35 * text, text, text / 5, units,
+             px_per_m ? "mm" : "px");
 }
 
 std::string Cross(core::PixelPoint at, double reach) {

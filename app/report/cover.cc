@@ -251,8 +251,9 @@ constexpr const char* kDecisionRule =
     "the campaign's bounce height, not a bounce where it lies below, else "
     "undecided. A declared theory is confirmed where the boundary's 90 % "
     "interval lies within its value \u00b1 margin, contradicted where the 95 % "
-    "interval lies outside of it, else inconclusive. Risk, by simulation: at "
-    "most 5 of 100 campaigns see a false verdict.";
+    "interval lies outside of value \u00b1 (margin + U of the theory), else "
+    "inconclusive. Risk, by simulation: at most 5 of 100 campaigns see a false "
+    "verdict.";
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "app/report/document.h"
+#include "app/report/format.h"
 #include "app/report/page_style.h"
 #include "app/report/text.h"
 
@@ -35,15 +36,15 @@ std::string_view ClassOf(Tone tone) {
   return "";
 }
 
-// Text with its signs, a number kept together with its uncertainty's sign.
-std::string Escaped(std::string_view text) {
-  std::string out = HtmlEscape(Typeset(text));
-  constexpr std::string_view kSign = "\u00b1 ";
-  for (std::size_t at = out.find(kSign); at != std::string::npos;
-       at = out.find(kSign, at + 1)) {
-    out.replace(at + kSign.size() - 1, 1, "&nbsp;");
-  }
-  return out;
+// Text with its signs.
+std::string Escaped(std::string_view text) { return HtmlEscape(Typeset(text)); }
+
+// A number whose uncertainty may stand in a line of its own, in one piece.
+std::string InTwoLines(const std::string& text) {
+  const std::size_t at = text.find(kPlusMinus);
+  if (at == std::string::npos) return Escaped(text);
+  return fmt::format("{}<span class=\"u\">{}</span>",
+                     Escaped(text.substr(0, at)), Escaped(text.substr(at)));
 }
 
 // Where the contents lead to: the headings of level 2 are numbered through.
@@ -171,7 +172,10 @@ class Writer {
       const bool is_heading = i == 0 && table.row_headings;
       out_ += is_heading ? "<th scope=\"row\"" : "<td";
       if (!classes.empty()) out_ += fmt::format(" class=\"{}\"", classes);
-      out_ += ">" + Linked(row[i].link, row[i].text) +
+      const bool is_narrow = table.row_headings && !is_heading;
+      out_ += ">" +
+              (is_narrow ? InTwoLines(row[i].text)
+                         : Linked(row[i].link, row[i].text)) +
               (is_heading ? "</th>" : "</td>");
     }
     out_ += "</tr>\n";

@@ -49,9 +49,10 @@ th.num, td.num { text-align: right; }
 td.num { white-space: nowrap; }
 td.long { white-space: normal; min-width: 14ch; }
 .across td, .across th { padding-right: 9px; }
-.across td.num { white-space: normal; }
+.across td.num { white-space: normal; } .u { white-space: nowrap; }
 td.muted { overflow-wrap: anywhere; min-width: 8ch; }
-td.muted:last-child { min-width: 16ch; }
+td.muted:last-child { min-width: 20ch; }
+.across td.muted { min-width: 0; } .across tbody th { min-width: 13em; }
 .slide { color: var(--slide); }
 .bounce { color: var(--bounce); font-weight: bold; }
 .undecided { font-style: italic; }
@@ -99,15 +100,17 @@ summary { cursor: pointer; color: var(--soft); }
   h1 { font-size: 16pt; } h2 { font-size: 13pt; } h3 { font-size: 11pt; }
   h2, h3 { break-after: avoid; } ul, ol { font-size: 9pt; line-height: 1.3; }
   nav ol { font-size: 9pt; columns: 2; }
-  dl { font-size: 8.8pt; line-height: 1.3; margin: 5px 0 8px;
-    grid-template-columns: 34mm 1fr; }
-  dl.lead { font-size: 10pt; } dt, dd { padding: 1.5px 0; }
-  dt { break-after: avoid; } dd { break-inside: avoid; }
+  dl { display: block; font-size: 8.8pt; line-height: 1.3; margin: 5px 0 8px; }
+  dl.lead { font-size: 9.6pt; } dt, dd { padding: 1.5px 0; }
+  dt { float: left; clear: left; width: 34mm; border: 0; }
+  dd { margin-left: 37mm; break-inside: avoid; }
   .scroll, .plot { overflow: visible; }
   table { font-size: 8.6pt; } .scroll { margin: 6px 0 10px; }
   th { font-size: 8pt; }
   th, td { padding: 1.5px 10px 1.5px 0; }
   .across td, .across th { padding-right: 5px; font-size: 8pt; }
+  .across tbody th { min-width: 33mm; }
+  td.muted:last-child { min-width: 24ch; } .across td.muted { min-width: 0; }
   p, .callout, .banner, figure { margin: 5px 0 6px; }
   .callout { font-size: 9.4pt; padding: 6px 11px; }
   thead { display: table-header-group; }

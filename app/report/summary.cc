@@ -65,11 +65,11 @@ std::string Tested(const Group& group, std::span<const core::Trial> trials) {
                         : "filmed";
   const std::string& surface = group.campaign.surface;
   return fmt::format(
-      "{}: a {} ({}) on {}. {}, {}, with the {}{}: the angle {}.",
+      "{}: a {} ({}); surface: {}. {}, {}, with the {}{}, which is the one {}.",
       group.trials.campaign.empty() ? "No campaign" : group.trials.campaign,
       core::Name(group.trials.body), SizeText(body),
-      surface.empty() ? "a surface that was not recorded" : surface,
-      Trials(group.members.size()), how, AngleName(group), AngleRange(group),
+      surface.empty() ? "not recorded" : surface, Trials(group.members.size()),
+      how, AngleName(group), AngleRange(group),
       AngleMeaning(group.trials.angle_kind));
 }
 

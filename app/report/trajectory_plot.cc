@@ -58,6 +58,14 @@ std::string DataBlock(const TrajectoryPlot& plot, const Look& look,
 }  // namespace
 
 std::string DrawTrajectoryPlot(const TrajectoryPlot& plot) {
+  // Not beyond what was seen.
+  double seen = 0.0;
+  for (const TrajectoryLine& line : plot.lines) {
+    for (const core::PlanePoint& p : line.path->centre) {
+      seen = std::max(seen, std::abs(p.x_m));
+    }
+  }
+  const double reach_m = std::min(plot.reach_m, 1.05 * seen + 1e-3);
   std::string data;
   std::vector<std::string> parts;
   double top = 0.0;
@@ -85,7 +93,7 @@ std::string DrawTrajectoryPlot(const TrajectoryPlot& plot) {
       "lc rgb '#40505c' back\n"
       "set key outside top right horizontal maxrows 1 samplen 3 width 0 font "
       "',13'\n",
-      plot.id, -plot.reach_m / kMillimetre, plot.reach_m / kMillimetre,
+      plot.id, -reach_m / kMillimetre, reach_m / kMillimetre,
       -0.08 * top / kMillimetre - 0.1, 1.05 * top / kMillimetre + 0.1);
   if (plot.simulated) {
     s += "set label 'SIMULATED' at graph 0.5,0.5 center rotate by 12 font "

@@ -16,7 +16,7 @@ struct TrajectoryLine {
 
 struct TrajectoryPlot {
   std::vector<TrajectoryLine> lines;
-  double reach_m = 0.1;  // shown on either side of touchdown
+  double reach_m = 0.1;  // shown on either side of touchdown, at most
   bool simulated = false;
   std::string id;  // as in BoundaryPlot
 };
