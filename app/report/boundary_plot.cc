@@ -139,7 +139,7 @@ std::string Script(const BoundaryPlot& plot) {
   if (plot.bracket.closed()) {
     s += fmt::format(
         "set object rectangle from {:.6f},graph 0 to {:.6f},graph 1 fc rgb "
-        "'#dfe6ec' fs solid 0.75 noborder behind\n",
+        "'#c3cfda' fs solid 0.75 noborder behind\n",
         *plot.bracket.low_rad / kDegree, *plot.bracket.high_rad / kDegree);
   }
   for (const PlotLine& line : plot.lines) {
@@ -195,7 +195,7 @@ std::string Script(const BoundaryPlot& plot) {
   }
   if (plot.bracket.closed()) {
     parts.push_back(
-        "NaN with boxes fc rgb '#dfe6ec' fs solid 0.75 noborder title "
+        "NaN with boxes fc rgb '#c3cfda' fs solid 0.75 noborder title "
         "'bracket'");
   }
   const auto marks = [&](Outcome outcome, std::string_view block, int mark,

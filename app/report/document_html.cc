@@ -89,8 +89,8 @@ class Writer {
   void operator()(const Terms& terms) {
     out_ += terms.lead ? "<dl class=\"lead\">\n" : "<dl>\n";
     for (const auto& [term, text] : terms.items) {
-      out_ +=
-          fmt::format("<dt>{}</dt><dd>{}</dd>\n", Escaped(term), Escaped(text));
+      out_ += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", Escaped(term),
+                          Escaped(text));
     }
     out_ += "</dl>\n";
   }

@@ -30,12 +30,11 @@ ul, ol { margin: 6px 0 12px; padding-left: 22px; max-width: 84ch; }
 li { margin: 3px 0; }
 nav ol { columns: 2 300px; font-size: 14px; }
 .muted { color: var(--soft); font-size: 13px; }
-dl { display: grid; grid-template-columns: minmax(9em, 13em) 1fr; gap: 0 16px;
-  margin: 10px 0 16px; font-size: 14px; }
-dt, dd { margin: 0; padding: 3px 0; border-bottom: 1px solid var(--line); }
-dt { font-weight: bold; }
-dl.lead { font-size: 16.5px; }
-dl.lead dt, dl.lead dd { border: 0; }
+dl { margin: 10px 0 16px; font-size: 14px; }
+dl div { display: grid; grid-template-columns: 12em 1fr; gap: 0 16px;
+  padding: 3px 0; border-bottom: 1px solid var(--line); }
+dt { font-weight: bold; } dd { margin: 0; max-width: 92ch; }
+dl.lead { font-size: 16.5px; } dl.lead div { border: 0; }
 .scroll { overflow-x: auto; margin: 10px 0 16px; }
 table { border-collapse: collapse; font-size: 13.5px;
   font-variant-numeric: tabular-nums; }
@@ -88,7 +87,7 @@ details { font-size: 13px; margin: 4px 0 12px; }
 summary { cursor: pointer; color: var(--soft); }
 @media (max-width: 600px) {
   body { padding: 16px 14px 40px; } h1 { font-size: 22px; }
-  dl { grid-template-columns: 1fr; } dt { border: 0; padding-bottom: 0; }
+  dl div { grid-template-columns: 1fr; }
 }
 @page { size: A4; margin: 15mm 14mm 18mm; }
 @media print {
@@ -100,10 +99,10 @@ summary { cursor: pointer; color: var(--soft); }
   h1 { font-size: 16pt; } h2 { font-size: 13pt; } h3 { font-size: 11pt; }
   h2, h3 { break-after: avoid; } ul, ol { font-size: 9pt; line-height: 1.3; }
   nav ol { font-size: 9pt; columns: 2; }
-  dl { display: block; font-size: 8.8pt; line-height: 1.3; margin: 5px 0 8px; }
-  dl.lead { font-size: 9.6pt; } dt, dd { padding: 1.5px 0; }
-  dt { float: left; clear: left; width: 34mm; border: 0; }
-  dd { margin-left: 37mm; break-inside: avoid; }
+  dl { font-size: 8.8pt; line-height: 1.3; margin: 5px 0 8px; }
+  dl.lead { font-size: 9.6pt; } dd { max-width: none; }
+  dl div { grid-template-columns: 36mm 1fr; padding: 1.2px 0;
+    break-inside: avoid; }
   .scroll, .plot { overflow: visible; }
   table { font-size: 8.6pt; } .scroll { margin: 6px 0 10px; }
   th { font-size: 8pt; }
