@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -20,6 +21,7 @@
 
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
 
 namespace touchdown::report {
 namespace {
@@ -41,6 +43,7 @@ class Scratch {
                       fs::temp_directory_path().string()));
     }
     path_ = name;
+    unfinished_ = std::make_unique<core::Unfinished>(path_);
   }
   ~Scratch() {
     std::error_code ignored;
@@ -52,6 +55,7 @@ class Scratch {
 
  private:
   fs::path path_;
+  std::unique_ptr<core::Unfinished> unfinished_;  // gone with a Ctrl-C, too
 };
 
 // The path as an address: bytes that are no plain letters by their numbers.
