@@ -38,9 +38,10 @@ const CLI::App* CommandOf(const std::vector<std::string>& arguments,
                           const CLI::App& app) {
   const CLI::App* at = &app;
   for (const std::string& word : arguments) {
-    const CLI::App* next = at->get_subcommand_no_throw(word);
-    if (next == nullptr) break;
-    at = next;
+    const auto called = at->get_subcommands(
+        [&](const CLI::App* one) { return one->get_name() == word; });
+    if (called.empty()) break;
+    at = called.front();
   }
   return at;
 }
