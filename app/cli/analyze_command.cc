@@ -79,7 +79,7 @@ int Run(const Flags& flags) {
     }
   }();
   bar.Finish();
-  if (!flags.out.empty()) pipeline::WriteEvidence(analysis, options, flags.out);
+  if (!flags.out.empty()) pipeline::WriteEvidence(analysis, flags.out);
   std::optional<pipeline::Logged> logged;
   if (!flags.db.empty()) {
     logged =

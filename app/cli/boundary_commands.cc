@@ -13,11 +13,15 @@
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
 #include "app/pipeline/pictures.h"
+#include "app/pipeline/report_input.h"
+#include "app/pipeline/report_pictures.h"
 #include "app/pipeline/rig_prediction.h"
 #include "app/report/boundary_json.h"
+#include "app/report/eln_file.h"
 #include "app/report/evidence_page.h"
 #include "app/report/format.h"
 #include "app/report/group.h"
+#include "app/report/print_pdf.h"
 #include "app/report/report.h"
 #include "app/report/sentences.h"
 #include "touchdown/core/units.h"
@@ -97,12 +101,12 @@ void PrintGroup(const report::Group& group) {
              report::StatusSentence(study));
   for (const auto& t : study.theories) {
     fmt::print(
-        "  theory      {} {} deg{}: E_n {:+.2f}, P(boundary below it) "
-        "{:.3f}, the 90 % interval fits a margin of {:.1f} deg\n",
+        "  theory      {} {} deg{}: E_n {}, P(boundary below it) {}, the 90 % "
+        "interval fits a margin of {:.1f} deg\n",
         t.theory.name,
         report::WithU({t.theory.boundary_rad, t.theory.u_rad, {}}, kDegree),
-        t.declared ? " (declared)" : "", t.e_n, t.p_below,
-        t.smallest_margin_rad / kDegree);
+        t.declared ? " (declared)" : "", report::Signed(t.e_n, 2),
+        report::Probability(t.p_below), t.smallest_margin_rad / kDegree);
     fmt::print("              {}\n", report::AgreementSentence(t));
   }
   fmt::print("  verdict     {}: {}\n", report::VerdictWord(group),
@@ -131,6 +135,10 @@ int RunBoundary(const BoundaryFlags& flags) {
 }
 
 int RunReport(const BoundaryFlags& flags, const std::string& options) {
+  if (flags.details_example) {
+    fmt::print("{}", report::DetailsExample());
+    return 0;
+  }
   if (!flags.csv.empty() && flags.body.empty()) {
     throw std::invalid_argument(
         "--trials: a report needs --body sphere or rectangle, which the file "
@@ -139,6 +147,8 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
   report::ReportInput input = MakeInput(flags, true);
   KeepLook(flags, "report", input);
   input.options = options;
+  input.details = flags.details.empty() ? pipeline::DetailsBeside(flags.store)
+                                        : report::ReadDetails(flags.details);
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();
   if (!flags.rig.empty()) {
@@ -154,20 +164,33 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
     input.pictures =
         pipeline::FindPictures(flags.evidence_pictures, input.trials);
   }
+  if (!flags.no_pictures) {
+    // Pages of evidence are one file a trial: they have room for all.
+    pipeline::AddPictures(
+        input, flags.evidence ? input.trials.size() : pipeline::kMostStrips);
+  }
   report::WriteReport(report::MakeReport(input), flags.out);
   if (flags.evidence) report::WriteEvidencePages(input, flags.out);
   const std::string page =
       (std::filesystem::path(flags.out) / "table1.html").string();
+  nlohmann::ordered_json files = report::kReportFiles;
+  if (flags.pdf) {
+    report::PrintPdf(page, std::filesystem::path(flags.out) / "table1.pdf");
+    files.push_back("table1.pdf");
+  }
+  if (flags.eln) {
+    report::WriteEln(input, flags.out);
+    files.push_back("table1.eln");
+  }
   if (flags.json) {
     const nlohmann::ordered_json document = {
         {"schema", "touchdown.report-files/1"},
         {"trials", n},
         {"folder", flags.out},
-        {"files",
-         {"table1.md", "table1.csv", "table1.html", "table1.tex",
-          "table1.json"}},
+        {"files", files},
         {"evidence_pages", flags.evidence ? n : 0},
-        {"pictures", input.pictures.size()}};
+        {"pictures", input.pictures.size()},
+        {"strips", input.strips.size()}};
     fmt::print("{}\n",
                document.dump(2, ' ', false,
                              nlohmann::ordered_json::error_handler_t::replace));
@@ -196,11 +219,24 @@ void AddBoundary(CLI::App& app, Action& action) {
 void AddReport(CLI::App& app, Action& action) {
   auto flags = std::make_shared<BoundaryFlags>();
   CLI::App* command = app.add_subcommand(
-      "report", "Write table1.md, .csv, .html, .tex and .json");
+      "report", "Write the report: table1.html, .md, .csv, .tex and .json");
   AddBoundaryFlags(*command, *flags);
   command->add_option("--out", flags->out, "folder for the report")
       ->capture_default_str();
   command->add_option("--title", flags->title, "title of the report");
+  command->add_option("--details", flags->details,
+                      "report.toml: laboratory, customer, order, equipment, "
+                      "signatures (default: the one beside the store)");
+  command->add_flag("--details-example", flags->details_example,
+                    "print a commented report.toml, and nothing else");
+  command->add_flag("--no-pictures", flags->no_pictures,
+                    "no pictures of the contacts and no trajectories: the "
+                    "recordings are not opened");
+  command->add_flag("--pdf", flags->pdf,
+                    "also table1.pdf, tagged, printed by chromium");
+  command->add_flag("--eln", flags->eln,
+                    "also table1.eln, all of it for a laboratory notebook "
+                    "(RO-Crate in a zip archive)");
   command->add_option("--bin-deg", flags->bin_deg,
                       "width of the bins of the angle in Table 1 (default: one "
                       "row an angle, bins where there are many)");

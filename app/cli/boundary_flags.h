@@ -53,6 +53,11 @@ struct BoundaryFlags {
   std::string evidence_pictures;  // folder in which their pictures are sought
   std::string out = ".";
   std::string title;
+  std::string details;  // report.toml; empty: beside the store
+  bool details_example = false;
+  bool no_pictures = false;
+  bool pdf = false;
+  bool eln = false;
   bool json = false;
 };
 

@@ -10,8 +10,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/defaults.h"
 #include "app/cli/interruption.h"
 #include "app/cli/log_setup.h"
 #include "app/cli/messages.h"
@@ -54,6 +56,7 @@ constexpr Command kCommands[] = {{"analyze", touchdown::cli::AddAnalyze},
                                  {"session", touchdown::cli::AddSession},
                                  {"rig", touchdown::cli::AddRig},
                                  {"theory", touchdown::cli::AddTheory},
+                                 {"use", touchdown::cli::AddUse},
                                  {"demo", touchdown::cli::AddDemo}};
 
 // The command of that name alone: to make all takes milliseconds. Those of
@@ -68,6 +71,29 @@ void AddCommands(CLI::App& app, touchdown::cli::Action& action,
       command.add(app, action);
     }
   }
+}
+
+// What to say of a first word that is no command; empty where it is one, or an
+// option.
+std::string UnknownCommand(std::string_view word) {
+  if (word.empty() || word.starts_with('-')) return "";
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) {
+    if (command.name == word) return "";
+    names.emplace_back(command.name);
+  }
+  const std::string meant = touchdown::cli::Nearest(word, names);
+  return "there is no command '" + std::string(word) + "'; " +
+         (meant.empty() ? "`touchdown --help` lists them"
+                        : "did you mean `touchdown " + meant + "`?");
+}
+
+// The command line as CLI11 takes it: in reverse.
+std::vector<std::string> Arguments(int argc, char** argv, const CLI::App& app) {
+  std::vector<std::string> out = touchdown::cli::WithDefaults(
+      {argv + 1, argv + argc}, app, touchdown::cli::ReadDefaults(""));
+  std::reverse(out.begin(), out.end());
+  return out;
 }
 
 // Where LAPACK is OpenBLAS, OpenCV brings a thread for each further core that
@@ -132,7 +158,11 @@ int main(int argc, char** argv) {
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");
   try {
-    app.parse(argc, argv);
+    if (const std::string unknown = UnknownCommand(argc > 1 ? argv[1] : "");
+        !unknown.empty()) {
+      throw std::invalid_argument(unknown);
+    }
+    app.parse(Arguments(argc, argv, app));
     touchdown::cli::SetUpLog(log);
     JournalStart(argc, argv);
     return Run(action);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/cli/store_flags.h"
+#include "app/report/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -21,15 +22,11 @@ std::size_t Width(std::string_view text) {
 
 std::string WithU(const core::Measured& measured, double unit) {
   if (!measured) return "-";
-  const double value = measured->value / unit;
-  const double u = measured->u / unit;
-  if (!(u > 0.0) || !std::isfinite(u) || !std::isfinite(value)) {
-    return fmt::format("{:.6g}", value);
+  if (!(measured->u > 0.0) || !std::isfinite(measured->u) ||
+      !std::isfinite(measured->value)) {
+    return fmt::format("{:.6g}", measured->value / unit);
   }
-  // The decimals of u's second significant digit; 0.0996 rounds up to 0.10.
-  const int magnitude = static_cast<int>(std::floor(std::log10(u * 1.005)));
-  const int decimals = std::clamp(1 - magnitude, 0, 12);
-  return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, u, decimals);
+  return report::InAscii(report::WithU(*measured, unit));
 }
 
 std::string Aligned(const std::vector<std::vector<std::string>>& rows) {

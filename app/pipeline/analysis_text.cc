@@ -4,22 +4,15 @@
 
 #include <cmath>
 
+#include "app/report/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::pipeline {
 namespace {
 
-// Two digits of uncertainty, the value to the same place.
 std::string Number(const core::Measured& m, double factor, const char* unit) {
   if (!m) return fmt::format("absent: {}", m.error().reason);
-  const core::Estimate e = core::Scaled(*m, factor);
-  int digits = 3;
-  if (e.u > 0.0) {
-    digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(e.u))));
-  }
-  digits = std::min(digits, 9);
-  return fmt::format("{:.{}f} +- {:.{}f} {}", e.value, digits, e.u, digits,
-                     unit);
+  return report::InAscii(report::WithU(*m, 1.0 / factor)) + " " + unit;
 }
 
 // A number that has no uncertainty of its own.

@@ -161,8 +161,7 @@ class Batch {
       Journal("batch: " + clip.name + " begins");
       const Analysis analysis = Analyze(clip.clip, analyze);
       if (!options_.evidence.empty()) {
-        WriteEvidence(analysis, analyze,
-                      EvidenceFolder(options_.evidence, clip));
+        WriteEvidence(analysis, EvidenceFolder(options_.evidence, clip));
       }
       core::Trial trial = LoggableTrial(analysis, campaign);
       trial.set_angle_rad = clip.set_angle_rad;

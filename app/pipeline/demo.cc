@@ -12,6 +12,7 @@
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/pictures.h"
 #include "app/pipeline/report_input.h"
+#include "app/pipeline/report_pictures.h"
 #include "app/pipeline/simulate.h"
 #include "app/pipeline/trial_selection.h"
 #include "app/report/evidence_page.h"
@@ -126,8 +127,7 @@ DemoResult RunDemo(const DemoOptions& options) {
     AnalyzeOptions analyze = OptionsFor(CampaignOf(shot));
     analyze.limit_s = options.limit_s;
     analyses[at] = Analyze(made.clip, analyze);
-    WriteEvidence(analyses[at], analyze,
-                  options.folder / "evidence" / shot.name);
+    WriteEvidence(analyses[at], options.folder / "evidence" / shot.name);
     const Analysis& a = analyses[at];
     DemoRow& row = result.rows[at];
     row.clip = shot.name;
@@ -179,6 +179,7 @@ DemoResult RunDemo(const DemoOptions& options) {
       "out";
   input.evidence_pages = true;
   input.pictures = FindPictures(options.folder / "evidence", input.trials);
+  AddPictures(input);
   report::WriteReport(report::MakeReport(input), options.folder / "report");
   report::WriteEvidencePages(input, options.folder / "report");
   result.report = options.folder / "report" / "table1.html";

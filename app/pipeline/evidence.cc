@@ -5,15 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "app/pipeline/open_recording.h"
 #include "app/pipeline/undistorted_clip.h"
+#include "app/report/format.h"
 #include "app/report/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/unfinished.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/contact_sheet.h"
 #include "touchdown/vision/image_file.h"
-#include "touchdown/vision/lens_track.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -57,44 +56,34 @@ std::string Title(const Analysis& analysis) {
   title += fmt::format("   state: {}", Name(first.state.label));
   const core::Measured& angle = Angle(first.contact, analysis.angle_kind);
   if (angle) {
-    title += fmt::format(
-        "   {} angle {:.3f} +- {:.3f} deg", Name(analysis.angle_kind),
-        angle->value / core::kDegree, angle->u / core::kDegree);
+    title += fmt::format("   {} angle {} deg", Name(analysis.angle_kind),
+                         report::InAscii(report::WithU(*angle, core::kDegree)));
   }
   return title;
 }
 
 // Nothing where no body was followed over a ground.
-std::optional<vision::ColourImage> ContactSheetOf(
-    const Analysis& analysis, const AnalyzeOptions& options) {
+std::optional<vision::ColourImage> ContactSheetOf(const Analysis& analysis) {
   if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
     return std::nullopt;
   }
-  vision::ClipOptions clip_options;
-  clip_options.fps = options.fps;
-  auto clip = OpenRecording(analysis.clip.path, clip_options);
-  vision::Track track = *analysis.track;
-  if (analysis.calibration && analysis.calibration->lens) {
-    const calib::Lens& lens = analysis.calibration->lens->lens;
-    clip = UndistortedClip(std::move(clip), lens);
-    track = vision::Undistorted(track, lens);
-  }
+  const Drawable drawable = OpenToDraw(analysis);
   vision::ContactSheetOptions sheet_options;
   sheet_options.title = Title(analysis);
-  return vision::DrawContactSheet(*clip, track, *analysis.plane,
-                                  analysis.contacts, sheet_options);
+  return vision::DrawContactSheet(*drawable.clip, drawable.track,
+                                  *analysis.plane, analysis.contacts,
+                                  sheet_options);
 }
 
 }  // namespace
 
-void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
+void WriteEvidence(const Analysis& analysis,
                    const std::filesystem::path& folder) {
   // All of it is made before any is written: who ends the program between two
   // files leaves none.
   const std::string track = TrackCsv(analysis);
   const std::string document = ToJson(analysis) + "\n";
-  const std::optional<vision::ColourImage> sheet =
-      ContactSheetOf(analysis, options);
+  const std::optional<vision::ColourImage> sheet = ContactSheetOf(analysis);
   const core::AllOrNothing together;
   std::error_code trouble;
   std::filesystem::create_directories(folder, trouble);

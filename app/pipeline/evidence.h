@@ -13,7 +13,7 @@ namespace touchdown::pipeline {
 //   analysis.json the touchdown.analysis/1 document
 // Each appears under its name only when it is complete. Throws core::InputError
 // naming the file that cannot be written or the clip that cannot be read again.
-void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
+void WriteEvidence(const Analysis& analysis,
                    const std::filesystem::path& folder);
 
 }  // namespace touchdown::pipeline

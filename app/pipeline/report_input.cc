@@ -1,6 +1,10 @@
 #include "app/pipeline/report_input.h"
 
+#include <fmt/chrono.h>
+
+#include <ctime>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "app/pipeline/version.h"
@@ -16,8 +20,18 @@ report::ReportInput InputOf(Selection selection) {
   }
   input.plan = std::move(selection.plan);
   input.source = std::move(selection.source);
+  input.first_logged_utc = std::move(selection.first_logged_utc);
+  input.register_entries = std::move(selection.register_entries);
   input.software_version = std::string(Version());
+  input.made_on = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   return input;
+}
+
+report::Details DetailsBeside(const std::filesystem::path& store) {
+  const std::filesystem::path file = store.parent_path() / "report.toml";
+  std::error_code ignored;
+  if (store.empty() || !std::filesystem::exists(file, ignored)) return {};
+  return report::ReadDetails(file);
 }
 
 }  // namespace touchdown::pipeline

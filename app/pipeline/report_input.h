@@ -1,12 +1,19 @@
 // Selected trials as the report takes them.
 #pragma once
 
+#include <filesystem>
+
 #include "app/pipeline/trial_selection.h"
 #include "app/report/report.h"
 
 namespace touchdown::pipeline {
 
-// With this program's version; theories and study are the defaults.
+// With this program's version and the day (UTC); theories and study are the
+// defaults.
 report::ReportInput InputOf(Selection selection);
+
+// What stands in report.toml beside the store; nothing where there is none.
+// Throws core::InputError as report::ReadDetails.
+report::Details DetailsBeside(const std::filesystem::path& store);
 
 }  // namespace touchdown::pipeline

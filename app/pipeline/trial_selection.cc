@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "app/pipeline/paper_trials.h"
@@ -29,12 +30,12 @@ bool IsReviewed(const db::Store& store, const std::string& id) {
 }
 
 // Nothing where the program never spoke, or no person after it.
-std::optional<TwoLabels> LabelsOf(const db::Store& store,
+std::optional<TwoLabels> LabelsOf(const std::vector<db::Revision>& history,
                                   const std::string& id) {
   TwoLabels out{id};
   bool program = false;
   bool person = false;
-  for (const auto& revision : store.History(id)) {
+  for (const auto& revision : history) {
     const core::MotionState label = revision.trial.first.state.label;
     if (revision.kind == db::RevisionKind::kLogged &&
         !revision.trial.document_json.empty()) {
@@ -46,6 +47,22 @@ std::optional<TwoLabels> LabelsOf(const db::Store& store,
     }
   }
   if (!program || !person) return std::nullopt;
+  return out;
+}
+
+// The versions of the register that the trials' conditions name.
+std::vector<db::Entry> EntriesOf(const db::Store& store,
+                                 const std::vector<core::Trial>& trials) {
+  std::set<std::string> ids;
+  for (const core::Trial& trial : trials) {
+    if (!trial.conditions) continue;
+    for (const db::ConditionEntry& entry : db::kConditionEntries) {
+      ids.insert(((*trial.conditions).*entry.member).id);
+    }
+  }
+  if (ids.empty()) return {};
+  std::vector<db::Entry> out = db::AllVersions(store);
+  std::erase_if(out, [&](const db::Entry& e) { return !ids.contains(e.id); });
   return out;
 }
 
@@ -76,10 +93,13 @@ Selection FromStore(const SelectionOptions& options) {
   if (options.with_evidence) {
     for (const core::Trial& trial : out.trials) {
       if (trial.revision < 2) continue;
-      if (auto labels = LabelsOf(store, trial.id)) {
+      const std::vector<db::Revision> history = store.History(trial.id);
+      if (auto labels = LabelsOf(history, trial.id)) {
         out.labels.push_back(std::move(*labels));
       }
+      out.first_logged_utc[trial.id] = history.front().trial.recorded_at_utc;
     }
+    out.register_entries = EntriesOf(store, out.trials);
   }
   out.source = fmt::format("store {} ({})", options.store.filename().string(),
                            store.uuid());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "touchdown/core/trial.h"
 #include "touchdown/core/words.h"
 #include "touchdown/db/plan.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::pipeline {
 
@@ -54,6 +56,10 @@ struct Selection {
   std::vector<TwoLabels> labels;  // with_evidence: of those that bear both
   std::string source;             // in words: file and filters
   std::vector<db::PlanEvent> plan = {};  // of a store's campaigns
+  // with_evidence, of a store: when trials that were revised had been logged,
+  // by id, and the versions of the register that the trials name.
+  std::map<std::string, std::string> first_logged_utc = {};
+  std::vector<db::Entry> register_entries = {};
 };
 
 // Throws std::invalid_argument unless there is exactly one source,

@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/pipeline/open_recording.h"
+#include "touchdown/vision/lens_track.h"
+
 namespace touchdown::pipeline {
 namespace {
 
@@ -69,6 +72,18 @@ class Straightened final : public vision::Clip {
 std::unique_ptr<vision::Clip> UndistortedClip(
     std::unique_ptr<vision::Clip> clip, const calib::Lens& lens) {
   return std::make_unique<Straightened>(std::move(clip), lens);
+}
+
+Drawable OpenToDraw(const Analysis& analysis) {
+  vision::ClipOptions options;
+  options.fps = analysis.options.fps;
+  Drawable out{OpenRecording(analysis.clip.path, options), *analysis.track};
+  if (analysis.calibration && analysis.calibration->lens) {
+    const calib::Lens& lens = analysis.calibration->lens->lens;
+    out.clip = UndistortedClip(std::move(out.clip), lens);
+    out.track = vision::Undistorted(out.track, lens);
+  }
+  return out;
 }
 
 }  // namespace touchdown::pipeline

@@ -4,8 +4,10 @@
 
 #include <memory>
 
+#include "app/pipeline/analyze.h"
 #include "touchdown/calib/lens.h"
 #include "touchdown/vision/clip.h"
+#include "touchdown/vision/track.h"
 
 namespace touchdown::pipeline {
 
@@ -13,5 +15,16 @@ namespace touchdown::pipeline {
 // is 0. Windows are not read faster than whole pictures.
 std::unique_ptr<vision::Clip> UndistortedClip(
     std::unique_ptr<vision::Clip> clip, const calib::Lens& lens);
+
+// A recording with its track as lines are drawn into it: undistorted, where a
+// lens was undone.
+struct Drawable {
+  std::unique_ptr<vision::Clip> clip;
+  vision::Track track;
+};
+
+// Opens the analysis's recording again; it must have a track. Throws
+// core::InputError where that cannot be read.
+Drawable OpenToDraw(const Analysis& analysis);
 
 }  // namespace touchdown::pipeline

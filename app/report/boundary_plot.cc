@@ -116,13 +116,16 @@ void AddInterval(const PlotInterval& interval, const Range& range,
 std::string Script(const BoundaryPlot& plot) {
   const Range range = RangeOf(plot);
   std::string s = fmt::format(
-      "set terminal svg size 940,232 dynamic noenhanced "
+      "set terminal svg size 940,320 dynamic noenhanced "
       "font 'Arial,14' name '{}'\n"
-      "set lmargin 12\nset rmargin 3\nset tmargin 2.2\nset bmargin 3.4\n"
+      "set lmargin 13\nset rmargin 3\nset tmargin 2.2\nset bmargin 3.4\n"
       "set border 3 lc rgb '#1c2126'\nset tics nomirror\n"
       "set xrange [{:.1f}:{:.1f}]\nset yrange [-0.16:1.16]\n"
-      "set ytics ('slide' 0, 'bounce' 1)\n"
-      "set ylabel 'what was seen'\nset xlabel {}\n"
+      "set ytics ('slide  0' 0, '0.25' 0.25, '0.5' 0.5, '0.75' 0.75, 'bounce  "
+      "1' "
+      "1)\n"
+      "set grid ytics lw 0.5 lc rgb '#d4dadf'\n"
+      "set ylabel 'probability of a bounce'\nset xlabel {}\n"
       "set key outside top right horizontal maxrows 1 samplen 1.6 width 0 font "
       "',13'\n",
       plot.id, range.low_deg, range.high_deg,
@@ -136,7 +139,7 @@ std::string Script(const BoundaryPlot& plot) {
   if (plot.bracket.closed()) {
     s += fmt::format(
         "set object rectangle from {:.6f},graph 0 to {:.6f},graph 1 fc rgb "
-        "'#dfe6ec' fs solid 0.75 noborder behind\n",
+        "'#c3cfda' fs solid 0.75 noborder behind\n",
         *plot.bracket.low_rad / kDegree, *plot.bracket.high_rad / kDegree);
   }
   for (const PlotLine& line : plot.lines) {
@@ -166,6 +169,17 @@ std::string Script(const BoundaryPlot& plot) {
         "transparent solid 0.3 title {}",
         GnuplotQuote(plot.density.name)));
   }
+  if (!plot.p_bounce.angle_rad.empty()) {
+    s += "$chance << EOD\n";
+    for (std::size_t i = 0; i < plot.p_bounce.angle_rad.size(); ++i) {
+      s += fmt::format("{:.4f} {:.5f}\n", plot.p_bounce.angle_rad[i] / kDegree,
+                       plot.p_bounce.height[i]);
+    }
+    s += "EOD\n";
+    parts.push_back(fmt::format(
+        "$chance using 1:2 with lines lw 2 lc rgb '#1c2126' title {}",
+        GnuplotQuote(plot.p_bounce.name)));
+  }
   static constexpr std::string_view kDash[] = {"(10,5)", "(3,4)", "(12,4,3,4)",
                                                "(6,3)"};
   static constexpr std::string_view kLineColour[] = {"#1f6f3f", "#7a4a00",
@@ -181,7 +195,7 @@ std::string Script(const BoundaryPlot& plot) {
   }
   if (plot.bracket.closed()) {
     parts.push_back(
-        "NaN with boxes fc rgb '#dfe6ec' fs solid 0.75 noborder title "
+        "NaN with boxes fc rgb '#c3cfda' fs solid 0.75 noborder title "
         "'bracket'");
   }
   const auto marks = [&](Outcome outcome, std::string_view block, int mark,

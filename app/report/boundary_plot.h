@@ -18,7 +18,7 @@ struct PlotLine {
   double u_rad = 0.0;  // a band of +- 2 u is drawn where it is not 0
 };
 
-// A curve over the angle, drawn to its own height.
+// A curve over the angle.
 struct PlotCurve {
   std::string name;
   std::vector<double> angle_rad;
@@ -40,7 +40,8 @@ struct BoundaryPlot {
   analysis::Bracket bracket;
   std::vector<PlotLine> lines;
   std::optional<PlotInterval> interval;  // of the boundary angle, 95 %
-  PlotCurve density;                     // of the boundary angle; empty: none
+  PlotCurve density;   // of the boundary angle, to its own height; empty: none
+  PlotCurve p_bounce;  // against the axis; empty: none
   bool simulated = false;
   std::string id;  // prefix of the identifiers inside the SVG: unique in a
                    // document, letters and digits

@@ -25,7 +25,7 @@ std::vector<Cell> Row(const char* what,
   return {{what},
           {fmt::format("{}", check->trials)},
           {WithU(check->ratio, 0.01)},
-          {fmt::format("{:+.1f}", check->z)},
+          {Signed(check->z, 1)},
           {check->failed ? "failed" : "agrees",
            check->failed ? Tone::kBad : Tone::kPlain}};
 }
@@ -61,10 +61,6 @@ std::optional<Callout> MakeChecksCallout(const Group& group,
   if (checks.Failed()) {
     return Callout{name + ": scale, frame rate or size is wrong.",
                    checks.explanation, Tone::kBad};
-  }
-  if (!checks.gravity && !checks.size) {
-    return Callout{name + ": scale and frame rate are not checked.",
-                   WhatChecksShow(checks) + "."};
   }
   return std::nullopt;
 }

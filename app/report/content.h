@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/report/check_shots.h"
@@ -18,14 +19,38 @@ std::vector<Table> MakeTable1(std::span<const Group> groups,
                               std::span<const core::Trial> trials,
                               const ReportInput& input);
 
-// The group's own pages (group_section.cc).
-Section MakeGroupSection(const Group& group, std::span<const Group> groups,
-                         std::span<const core::Trial> trials,
-                         const ReportInput& input);
+// What the cover block holds beside results (cover.cc), and why an entry of it
+// is absent: "report.toml does not say customer.name".
+Section MakeCover(const ReportInput& input);
+std::string Where(std::string_view key, const ReportInput& input);
 
-// The numbers of a group, in the order in which they should be read
+// What a reader wants first of a group, in plain words (summary.cc).
+Terms MakeSummary(const Group& group, std::span<const core::Trial> trials);
+
+// The words of the report (glossary.cc).
+Section MakeGlossary();
+
+// "diameter 40.000 ± 0.020 mm" (group_section.cc).
+std::string SizeText(const core::Body& body);
+
+// The group's own pages (group_section.cc).
+Section MakeGroupSection(const Group& group,
+                         std::span<const core::Trial> trials,
+                         const ReportInput& input, std::size_t& figures);
+
+// "shot7.mraw: approach angle 12.400 ± 0.050 deg, bounce": above the pictures
+// of a contact (group_pictures.cc).
+std::string StripCaption(const core::Trial& trial);
+
+// The group's trajectories in one plot, and a strip of pictures a trial
+// (group_pictures.cc). `figures` makes identifiers unique.
+std::vector<Block> MakePictures(const Group& group,
+                                std::span<const core::Trial> trials,
+                                const ReportInput& input, std::size_t& figures);
+
+// The annex of a group's numbers, in the order in which they should be read
 // (group_statistics.cc).
-std::vector<Block> MakeStatistics(const Group& group);
+Section MakeStatistics(const Group& group, std::span<const core::Trial> trials);
 
 // Every trial of the group, its set-points, and what was left out
 // (trial_tables.cc).
@@ -59,9 +84,6 @@ std::optional<Callout> MakeDependenceCallout(
     const Group& group, std::span<const Group> groups,
     std::span<const core::Trial> trials);
 
-// The group's verdict in a box, for page 1 (group_section.cc).
-Callout MakeVerdict(const Group& group, std::span<const Group> groups);
-
 // What was declared before the first trial, what was changed, who looked when,
 // and what was excluded (plan_section.cc).
 std::vector<Block> MakePlan(const Group& group,
@@ -73,8 +95,8 @@ std::vector<Block> MakePlan(const Group& group,
 std::vector<Block> MakeChecks(const Group& group,
                               std::span<const core::Trial> trials);
 
-// For page 1: that scale, frame rate or size are wrong in all trials alike, or
-// that nothing could show it; nothing where they agree.
+// For page 1: that scale, frame rate or size are wrong in all trials alike;
+// nothing where no check failed.
 std::optional<Callout> MakeChecksCallout(const Group& group,
                                          std::span<const Group> groups,
                                          std::span<const core::Trial> trials);
@@ -87,7 +109,8 @@ Section MakeCheckSection(const CheckShots& checks,
 // What the paper's own Table 1 supports, and its errata (paper_section.cc).
 Section MakePaperSection();
 
-// table1.csv (report_csv.cc).
+// table1.csv and its schema, table1.csv-metadata.json (report_csv.cc).
+std::string CsvSchema();
 std::string MakeCsv(std::span<const Group> groups,
                     std::span<const core::Trial> trials);
 

@@ -109,8 +109,8 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
     table.rows.push_back(
         {{what},
          {fmt::format("{}", test.trials)},
-         {fmt::format("{:+.2f}", test.z)},
-         {fmt::format("{:.3f}", test.p), clear ? Tone::kBad : Tone::kPlain},
+         {Signed(test.z, 2)},
+         {Probability(test.p), clear ? Tone::kBad : Tone::kPlain},
          {moves}});
   };
   const auto number = [&](const std::string& what, const char* per,
@@ -119,9 +119,10 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
         analysis::TestCovariate(observations, covariate, posterior);
     if (!test) return;
     row(what, *test,
-        fmt::format("{} deg {}",
-                    WithU({test->slope_rad, test->u_slope_rad, {}}, kDegree),
-                    per));
+        fmt::format(
+            "{} deg {}",
+            DifferenceWithU({test->slope_rad, test->u_slope_rad, {}}, kDegree),
+            per));
   };
   const auto name = [&](const std::string& what,
                         const std::vector<std::string>& names) {
@@ -130,7 +131,8 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
     row(what, test->test,
         fmt::format(
             "{} deg for {} against the others",
-            WithU({test->test.slope_rad, test->test.u_slope_rad, {}}, kDegree),
+            DifferenceWithU({test->test.slope_rad, test->test.u_slope_rad, {}},
+                            kDegree),
             test->name));
   };
   number("order of the trials", "from the first to the last",

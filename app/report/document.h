@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -25,12 +26,17 @@ struct Table {
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;  // each as long as `columns`
+  // The first cell of each row says what the row is, as a heading does.
+  bool row_headings = false;
 };
 
 struct Heading {
-  int level = 2;  // 1..3
+  int level = 2;  // 1..3; those of level 2 are in the contents
   std::string text;
 };
+
+// The headings of level 2 of the whole document, with links to them.
+struct Contents {};
 
 struct Paragraph {
   std::string text;
@@ -39,6 +45,12 @@ struct Paragraph {
 
 struct List {
   std::vector<std::string> items;
+};
+
+// Terms, each with what is said of it: a cover, a glossary.
+struct Terms {
+  std::vector<std::pair<std::string, std::string>> items;
+  bool lead = false;  // what is read first: larger
 };
 
 // A boxed sentence: the verdict, a warning.
@@ -64,6 +76,18 @@ struct Picture {
   std::string caption;
 };
 
+// Pictures side by side, each with a few words below. `svg` is trusted markup
+// as in a Figure.
+struct Strip {
+  struct Panel {
+    std::string svg;
+    std::string label;
+  };
+  std::string caption;
+  std::string alt;  // what a reader who cannot see them must know
+  std::vector<Panel> panels;
+};
+
 // A way to another file of the report.
 struct Link {
   std::string to;  // relative
@@ -72,8 +96,8 @@ struct Link {
 
 struct PageBreak {};
 
-using Block = std::variant<Heading, Paragraph, List, Callout, Table, Figure,
-                           Picture, Link, PageBreak>;
+using Block = std::variant<Heading, Contents, Paragraph, List, Terms, Callout,
+                           Table, Figure, Picture, Strip, Link, PageBreak>;
 
 // Blocks about one subject. `simulated` puts the watermark on all of them.
 struct Section {
@@ -83,13 +107,18 @@ struct Section {
 
 struct Document {
   std::string title;
+  std::string footer;  // of every printed page, beside its number
   std::vector<Section> sections;
 };
+
+// Those of level 2, in their order.
+std::vector<Heading> HeadingsOf(const Document& document);
 
 // One self-contained page: no request leaves it, and it prints on A4.
 std::string ToHtml(const Document& document);
 
-// Plain Markdown (GitHub tables). Plots appear as their alternative text.
+// Plain Markdown (GitHub tables). Plots and pictures appear as their
+// alternative text.
 std::string ToMarkdown(const Document& document);
 
 // The words of the watermark.

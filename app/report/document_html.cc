@@ -4,85 +4,12 @@
 #include <string_view>
 
 #include "app/report/document.h"
+#include "app/report/format.h"
+#include "app/report/page_style.h"
 #include "app/report/text.h"
 
 namespace touchdown::report {
 namespace {
-
-// The watermark is a background picture of each simulated section, so that it
-// lies behind every line of it, on the screen and on paper.
-constexpr std::string_view kStyle = R"css(
-:root { --ink: #1c2126; --soft: #5b6670; --line: #d4dadf; --slide: #17548f;
-  --bounce: #b3430f; --good: #1f6f3f; --bad: #a3201d; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 1120px; padding: 28px 36px 60px;
-  color: var(--ink); background: #fff; font: 15px/1.5 "Liberation Sans", Arial,
-  Helvetica, sans-serif; }
-h1 { font-size: 27px; line-height: 1.2; margin: 0 0 6px; }
-h2 { font-size: 20px; margin: 34px 0 8px; padding-top: 10px;
-  border-top: 2px solid var(--ink); }
-h3 { font-size: 16px; margin: 22px 0 6px; }
-p { margin: 6px 0 10px; max-width: 84ch; }
-ul { margin: 6px 0 12px; padding-left: 22px; max-width: 84ch; }
-li { margin: 3px 0; }
-.muted { color: var(--soft); font-size: 13px; }
-table { border-collapse: collapse; margin: 10px 0 16px; font-size: 13.5px;
-  font-variant-numeric: tabular-nums; }
-caption { text-align: left; font-weight: bold; padding: 0 0 5px; }
-th { text-align: left; vertical-align: bottom; border-bottom: 1.5px solid
-  var(--ink); padding: 3px 12px 3px 0; font-size: 12.5px; }
-td { border-bottom: 1px solid var(--line); padding: 3px 12px 3px 0;
-  vertical-align: top; }
-th.num { text-align: right; }
-td.num { text-align: right; white-space: nowrap; }
-td.long { white-space: normal; min-width: 14ch; }
-td.muted { overflow-wrap: anywhere; min-width: 8ch; }
-td.muted:last-child { min-width: 16ch; }
-.slide { color: var(--slide); }
-.bounce { color: var(--bounce); font-weight: bold; }
-.undecided { font-style: italic; }
-.good { color: var(--good); }
-.bad { color: var(--bad); font-weight: bold; }
-.callout { border-left: 5px solid var(--soft); background: #f3f5f7cc;
-  padding: 9px 14px; margin: 10px 0; }
-.callout.good { border-color: var(--good); color: inherit; }
-.callout.bad { border-color: var(--bad); color: inherit; font-weight: normal; }
-.callout b { margin-right: 4px; }
-.banner { border: 1.5px solid var(--bad); color: var(--bad); font-weight: bold;
-  padding: 5px 12px; margin: 10px 0; letter-spacing: .03em; background: #fff; }
-section.simulated { background-image: url("data:image/svg+xml,%3Csvg \
-xmlns='http://www.w3.org/2000/svg' width='400' height='260'%3E%3Ctext x='200' \
-y='146' text-anchor='middle' transform='rotate(-26 200 130)' font-family='Arial,sans-serif' \
-font-size='46' font-weight='bold' fill='%23a3201d' fill-opacity='0.09'\
-%3ESIMULATED%3C/text%3E%3C/svg%3E"); -webkit-print-color-adjust: exact;
-  print-color-adjust: exact; }
-figure { margin: 12px 0 16px; break-inside: avoid; }
-figure img { max-width: 100%; height: auto; display: block; }
-a { color: var(--slide); }
-figure svg { width: 100%; height: auto; display: block; }
-figure svg text { font-family: "Liberation Sans", Arial, sans-serif; }
-figcaption { font-size: 13px; color: var(--soft); max-width: 92ch; }
-details { font-size: 13px; margin: 4px 0 12px; }
-summary { cursor: pointer; color: var(--soft); }
-@page { size: A4; margin: 15mm 14mm 16mm; }
-@media print {
-  body { max-width: none; padding: 0; font-size: 10pt; line-height: 1.38; }
-  h1 { font-size: 17pt; } h2 { font-size: 13pt; } h3 { font-size: 11pt; }
-  h2, h3 { break-after: avoid; } ul { font-size: 9pt; line-height: 1.3; }
-  table { font-size: 8.6pt; margin: 6px 0 10px; } th { font-size: 8pt; }
-  th, td { padding: 1.5px 10px 1.5px 0; }
-  p, .callout, .banner, figure { margin: 5px 0 6px; }
-  .callout { font-size: 9.4pt; padding: 6px 11px; }
-  thead { display: table-header-group; }
-  tr, .keep, .callout, .banner, figure { break-inside: avoid; }
-  caption { break-after: avoid; }
-  .muted, figcaption { font-size: 8.8pt; }
-  p, ul, figcaption { max-width: none; }
-  .page-break { break-before: page; }
-  .page-break + h2 { border-top: 0; margin-top: 0; }
-  details { display: none; }
-}
-)css";
 
 // Tables of so few rows are not split between pages.
 constexpr std::size_t kKeepTogether = 12;
@@ -109,67 +36,99 @@ std::string_view ClassOf(Tone tone) {
   return "";
 }
 
+// Text with its signs.
+std::string Escaped(std::string_view text) { return HtmlEscape(Typeset(text)); }
+
+// A number whose uncertainty may stand in a line of its own, in one piece.
+std::string InTwoLines(const std::string& text) {
+  const std::size_t at = text.find(kPlusMinus);
+  if (at == std::string::npos) return Escaped(text);
+  return fmt::format("{}<span class=\"u\">{}</span>",
+                     Escaped(text.substr(0, at)), Escaped(text.substr(at)));
+}
+
+// Where the contents lead to: the headings of level 2 are numbered through.
+std::string Anchor(std::size_t heading) {
+  return fmt::format("section-{}", heading + 1);
+}
+
 class Writer {
  public:
-  explicit Writer(bool simulated) : simulated_(simulated) {}
+  // `headings` counts those of level 2 written so far.
+  Writer(const Document& document, bool simulated, std::size_t& headings)
+      : document_(document), simulated_(simulated), headings_(headings) {}
 
   void operator()(const Heading& heading) {
-    out_ += fmt::format("<h{0}>{1}</h{0}>\n", heading.level,
-                        HtmlEscape(heading.text));
+    const std::string id = heading.level == 2
+                               ? fmt::format(" id=\"{}\"", Anchor(headings_++))
+                               : "";
+    out_ += fmt::format("<h{0}{1}>{2}</h{0}>\n", heading.level, id,
+                        Escaped(heading.text));
+  }
+  void operator()(const Contents&) {
+    out_ += "<nav aria-label=\"Contents\">\n<ol>\n";
+    std::size_t at = 0;
+    for (const Heading& heading : HeadingsOf(document_)) {
+      out_ += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", Anchor(at++),
+                          Escaped(heading.text));
+    }
+    out_ += "</ol>\n</nav>\n";
   }
   void operator()(const Paragraph& paragraph) {
     out_ +=
         fmt::format("<p{}>{}</p>\n", paragraph.muted ? " class=\"muted\"" : "",
-                    HtmlEscape(paragraph.text));
+                    Escaped(paragraph.text));
   }
   void operator()(const List& list) {
     out_ += "<ul>\n";
     for (const std::string& item : list.items) {
-      out_ += "<li>" + HtmlEscape(item) + "</li>\n";
+      out_ += "<li>" + Escaped(item) + "</li>\n";
     }
     out_ += "</ul>\n";
   }
+  void operator()(const Terms& terms) {
+    out_ += terms.lead ? "<dl class=\"lead\">\n" : "<dl>\n";
+    for (const auto& [term, text] : terms.items) {
+      out_ += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", Escaped(term),
+                          Escaped(text));
+    }
+    out_ += "</dl>\n";
+  }
   void operator()(const Callout& callout) {
     out_ += fmt::format("<div class=\"callout {}\"><b>{}</b> {}</div>\n",
-                        ClassOf(callout.tone), HtmlEscape(callout.title),
-                        HtmlEscape(callout.text));
+                        ClassOf(callout.tone), Escaped(callout.title),
+                        Escaped(callout.text));
   }
   void operator()(const Table& table) {
-    out_ += table.rows.size() <= kKeepTogether ? "<table class=\"keep\">\n"
-                                               : "<table>\n";
+    // A group that the keyboard can scroll where the table is wider than the
+    // page.
+    out_ += fmt::format(
+        "<div class=\"scroll\" role=\"group\" aria-label=\"{}\" "
+        "tabindex=\"0\">\n<table class=\"{}{}\">\n",
+        HtmlEscape(table.caption.empty() ? "table" : table.caption),
+        table.rows.size() <= kKeepTogether ? "keep" : "",
+        table.row_headings ? " across" : "");
     if (!table.caption.empty()) {
-      out_ +=
-          fmt::format("<caption>{}{}</caption>\n", HtmlEscape(table.caption),
-                      simulated_ ? " (simulated)" : "");
+      out_ += fmt::format("<caption>{}{}</caption>\n", Escaped(table.caption),
+                          simulated_ ? " (simulated)" : "");
     }
     out_ += "<thead><tr>";
     for (const Column& column : table.columns) {
-      out_ += fmt::format("<th scope=\"col\"{}>{}</th>",
-                          column.numeric ? " class=\"num\"" : "",
-                          HtmlEscape(column.heading));
+      out_ += column.heading.empty()
+                  ? "<td></td>"
+                  : fmt::format("<th scope=\"col\"{}>{}</th>",
+                                column.numeric ? " class=\"num\"" : "",
+                                Escaped(column.heading));
     }
     out_ += "</tr></thead>\n<tbody>\n";
-    for (const auto& row : table.rows) {
-      out_ += "<tr>";
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        std::string classes(ClassOf(row[i].tone));
-        if (i < table.columns.size() && table.columns[i].numeric) {
-          classes += classes.empty() ? "num" : " num";
-          if (row[i].text.size() > kLongNumber) classes += " long";
-        }
-        out_ += classes.empty() ? "<td>"
-                                : fmt::format("<td class=\"{}\">", classes);
-        out_ += Linked(row[i].link, row[i].text) + "</td>";
-      }
-      out_ += "</tr>\n";
-    }
-    out_ += "</tbody>\n</table>\n";
+    for (const auto& row : table.rows) WriteRow(table, row);
+    out_ += "</tbody>\n</table>\n</div>\n";
   }
   void operator()(const Figure& figure) {
     out_ += fmt::format(
-        "<figure>\n<div role=\"img\" aria-label=\"{}\">\n{}</div>\n"
-        "<figcaption>{}</figcaption>\n</figure>\n",
-        HtmlEscape(figure.alt), figure.svg, HtmlEscape(figure.caption));
+        "<figure>\n<div class=\"plot\" role=\"img\" aria-label=\"{}\" "
+        "tabindex=\"0\">\n{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+        Escaped(figure.alt), figure.svg, Escaped(figure.caption));
     if (!figure.data.rows.empty()) {
       out_ += "<details><summary>The numbers behind this plot</summary>\n";
       (*this)(figure.data);
@@ -180,8 +139,17 @@ class Writer {
     out_ += fmt::format(
         "<figure>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
         "<figcaption>{}</figcaption>\n</figure>\n",
-        HtmlEscape(picture.alt), picture.png_base64,
-        HtmlEscape(picture.caption));
+        Escaped(picture.alt), picture.png_base64, Escaped(picture.caption));
+  }
+  void operator()(const Strip& strip) {
+    out_ += fmt::format(
+        "<figure class=\"strip\">\n<figcaption>{}</figcaption>\n<div "
+        "class=\"panels\" role=\"img\" aria-label=\"{}\">\n",
+        Escaped(strip.caption), Escaped(strip.alt));
+    for (const Strip::Panel& panel : strip.panels) {
+      out_ += fmt::format("<div>{}{}</div>\n", panel.svg, Escaped(panel.label));
+    }
+    out_ += "</div>\n</figure>\n";
   }
   void operator()(const Link& link) {
     out_ += "<p>" + Linked(link.to, link.text) + "</p>\n";
@@ -193,17 +161,50 @@ class Writer {
   const std::string& html() const { return out_; }
 
  private:
+  void WriteRow(const Table& table, const std::vector<Cell>& row) {
+    out_ += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      std::string classes(ClassOf(row[i].tone));
+      if (i < table.columns.size() && table.columns[i].numeric) {
+        classes += classes.empty() ? "num" : " num";
+        if (row[i].text.size() > kLongNumber) classes += " long";
+      }
+      const bool is_heading = i == 0 && table.row_headings;
+      out_ += is_heading ? "<th scope=\"row\"" : "<td";
+      if (!classes.empty()) out_ += fmt::format(" class=\"{}\"", classes);
+      const bool is_narrow = table.row_headings && !is_heading;
+      out_ += ">" +
+              (is_narrow ? InTwoLines(row[i].text)
+                         : Linked(row[i].link, row[i].text)) +
+              (is_heading ? "</th>" : "</td>");
+    }
+    out_ += "</tr>\n";
+  }
+
   static std::string Linked(const std::string& to, const std::string& text) {
-    if (to.empty()) return HtmlEscape(text);
+    if (to.empty()) return Escaped(text);
     return fmt::format("<a href=\"{}\">{}</a>", HtmlEscape(to),
                        HtmlEscape(text));
   }
 
+  const Document& document_;
   bool simulated_;
+  std::size_t& headings_;
   std::string out_;
 };
 
 }  // namespace
+
+std::vector<Heading> HeadingsOf(const Document& document) {
+  std::vector<Heading> out;
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      const auto* heading = std::get_if<Heading>(&block);
+      if (heading != nullptr && heading->level == 2) out.push_back(*heading);
+    }
+  }
+  return out;
+}
 
 std::string ToHtml(const Document& document) {
   std::string out = fmt::format(
@@ -211,13 +212,14 @@ std::string ToHtml(const Document& document) {
       "<meta name=\"viewport\" content=\"width=device-width\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
       "'none'; style-src 'unsafe-inline'; img-src data:\">\n"
-      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
+      "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<main>\n"
       "<h1>{0}</h1>\n",
-      HtmlEscape(document.title), kStyle);
+      Escaped(document.title), kPageStyle, PrintedFooter(document.footer));
+  std::size_t headings = 0;
   for (const Section& section : document.sections) {
     out +=
         section.simulated ? "<section class=\"simulated\">\n" : "<section>\n";
-    Writer writer(section.simulated);
+    Writer writer(document, section.simulated, headings);
     // The banner follows a leading page break and heading.
     auto block = section.blocks.begin();
     while (block != section.blocks.end() &&
@@ -229,11 +231,11 @@ std::string ToHtml(const Document& document) {
     if (section.simulated) {
       out += fmt::format("<div class=\"banner\">{}</div>\n", kWatermark);
     }
-    Writer rest(section.simulated);
+    Writer rest(document, section.simulated, headings);
     for (; block != section.blocks.end(); ++block) std::visit(rest, *block);
     out += rest.html() + "</section>\n";
   }
-  out += "</body>\n</html>\n";
+  out += "</main>\n</body>\n</html>\n";
   return out;
 }
 

@@ -8,35 +8,51 @@
 namespace touchdown::report {
 namespace {
 
+std::string Escaped(const std::string& text) {
+  return MarkdownEscape(Typeset(text));
+}
+
 class Writer {
  public:
-  explicit Writer(bool simulated) : simulated_(simulated) {}
+  Writer(const Document& document, bool simulated)
+      : document_(document), simulated_(simulated) {}
 
   void operator()(const Heading& heading) {
     out_ += std::string(static_cast<std::size_t>(heading.level), '#') + " " +
-            MarkdownEscape(heading.text) + (simulated_ ? " (SIMULATED)" : "") +
-            "\n\n";
+            Escaped(heading.text) + (simulated_ ? " (SIMULATED)" : "") + "\n\n";
+  }
+  void operator()(const Contents&) {
+    for (const Heading& heading : HeadingsOf(document_)) {
+      out_ += "- " + Escaped(heading.text) + "\n";
+    }
+    out_ += "\n";
   }
   void operator()(const Paragraph& paragraph) {
-    out_ += MarkdownEscape(paragraph.text) + "\n\n";
+    out_ += Escaped(paragraph.text) + "\n\n";
   }
   void operator()(const List& list) {
     for (const std::string& item : list.items) {
-      out_ += "- " + MarkdownEscape(item) + "\n";
+      out_ += "- " + Escaped(item) + "\n";
+    }
+    out_ += "\n";
+  }
+  void operator()(const Terms& terms) {
+    for (const auto& [term, text] : terms.items) {
+      out_ += "- **" + Escaped(term) + "**: " + Escaped(text) + "\n";
     }
     out_ += "\n";
   }
   void operator()(const Callout& callout) {
-    out_ += "> **" + MarkdownEscape(callout.title) + "** " +
-            MarkdownEscape(callout.text) + "\n\n";
+    out_ += "> **" + Escaped(callout.title) + "** " + Escaped(callout.text) +
+            "\n\n";
   }
   void operator()(const Table& table) {
     if (!table.caption.empty()) {
-      out_ += "**" + MarkdownEscape(table.caption) +
+      out_ += "**" + Escaped(table.caption) +
               (simulated_ ? " (SIMULATED)" : "") + "**\n\n";
     }
     for (const Column& column : table.columns) {
-      out_ += "| " + MarkdownEscape(column.heading) + " ";
+      out_ += "| " + Escaped(column.heading) + " ";
     }
     out_ += "|\n";
     for (const Column& column : table.columns) {
@@ -53,12 +69,14 @@ class Writer {
   }
   void operator()(const Figure& figure) {
     out_ += "*Figure" + std::string(simulated_ ? " (SIMULATED)" : "") + ": " +
-            MarkdownEscape(figure.caption) + "* " + MarkdownEscape(figure.alt) +
-            "\n\n";
+            Escaped(figure.caption) + "* " + Escaped(figure.alt) + "\n\n";
   }
   void operator()(const Picture& picture) {
-    out_ += "*" + MarkdownEscape(picture.caption) + "* " +
-            MarkdownEscape(picture.alt) + "\n\n";
+    out_ +=
+        "*" + Escaped(picture.caption) + "* " + Escaped(picture.alt) + "\n\n";
+  }
+  void operator()(const Strip& strip) {
+    out_ += "*" + Escaped(strip.caption) + "* " + Escaped(strip.alt) + "\n\n";
   }
   void operator()(const Link& link) {
     out_ += Linked(link.to, link.text) + "\n\n";
@@ -69,10 +87,11 @@ class Writer {
 
  private:
   static std::string Linked(const std::string& to, const std::string& text) {
-    if (to.empty()) return MarkdownEscape(text);
+    if (to.empty()) return Escaped(text);
     return "[" + MarkdownEscape(text) + "](" + to + ")";
   }
 
+  const Document& document_;
   bool simulated_;
   std::string out_;
 };
@@ -80,10 +99,10 @@ class Writer {
 }  // namespace
 
 std::string ToMarkdown(const Document& document) {
-  std::string out = "# " + MarkdownEscape(document.title) + "\n\n";
+  std::string out = "# " + Escaped(document.title) + "\n\n";
   for (const Section& section : document.sections) {
     if (section.simulated) out += fmt::format("> **{}**\n\n", kWatermark);
-    Writer writer(section.simulated);
+    Writer writer(document, section.simulated);
     for (const Block& block : section.blocks) std::visit(writer, block);
     out += writer.text();
   }

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "app/report/analysis_facts.h"
+#include "app/report/content.h"
 #include "app/report/format.h"
 #include "app/report/group.h"
 #include "app/report/set_points.h"
@@ -74,7 +75,7 @@ void AddState(const core::StateDecision& state, const std::string& caption,
             fmt::format("{} (in the paper's two words: {})",
                         core::Name(state.label), PaperWord(state.label)));
   facts.Add("because", state.reason);
-  facts.Add("P(bounce)", state.p_bounce ? Plain(*state.p_bounce, 6)
+  facts.Add("P(bounce)", state.p_bounce ? Probability(*state.p_bounce)
                                         : "absent: " + state.reason);
   facts.Add("greatest gap", state.max_gap_m, kMillimetre, "mm");
   facts.Add("greatest gap that the flight would reach",
@@ -175,6 +176,12 @@ std::string ReadPicture(const std::filesystem::path& path) {
 void AddPicture(const core::Trial& trial, const ReportInput& input,
                 std::vector<Block>& out) {
   const auto found = input.pictures.find(trial.id);
+  const auto strip = input.strips.find(trial.id);
+  if (found == input.pictures.end() && strip != input.strips.end()) {
+    out.push_back(DrawStrip(strip->second, StripCaption(trial)));
+    out.push_back(Paragraph{kStripLegend, true});
+    return;
+  }
   if (found == input.pictures.end()) {
     out.push_back(Paragraph{
         trial.clip.path.empty()
@@ -225,6 +232,7 @@ Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
       "{}: {} angle {}, {}", TrialName(trial), core::Name(trial.angle_kind),
       angle ? WithU(*angle, kDegree) + " deg" : "absent",
       core::Name(state.label));
+  document.footer = fmt::format("Evidence of trial {}", trial.id);
   Section section{trial.origin == core::Origin::kSimulated, {}};
   auto& out = section.blocks;
   out.push_back(Link{"../table1.html", "The report"});

@@ -11,6 +11,7 @@
 #include "app/report/content.h"
 #include "app/report/format.h"
 #include "app/report/set_points.h"
+#include "app/report/tally.h"
 #include "touchdown/analysis/agreement_statistics.h"
 #include "touchdown/core/units.h"
 
@@ -66,40 +67,21 @@ std::vector<Block> MakeLabels(const Group& group) {
   return {table, Paragraph{text, true}};
 }
 
-// Each trial's budget: one column a source, largest first.
-Table MakeTrialBudgets(
-    const Group& group, std::span<const core::Trial> trials,
-    const std::vector<std::pair<double, std::string>>& sources,
-    const ReportInput& input) {
-  Table table{
-      fmt::format("Budget of each trial's {} (u in deg)", AngleName(group)),
-      {},
-      {}};
-  for (const auto& [u, source] : sources) {
-    table.columns.push_back({source, true});
+// What one source gives to a budget: its lines, added in squares.
+double FromSource(const core::Budget& budget, const std::string& source) {
+  double square = 0.0;
+  for (const auto& line : budget) {
+    if (line.source == source) square += line.u * line.u;
   }
-  table.columns.push_back({"all", true});
-  table.columns.push_back({"clip or trial"});
-  for (const std::size_t t : group.members) {
-    const core::Budget& budget = AngleBudget(trials[t]);
-    if (budget.empty()) continue;
-    std::vector<Cell> row;
-    for (const auto& [rms, source] : sources) {
-      double square = 0.0;
-      for (const auto& line : budget) {
-        if (line.source == source) square += line.u * line.u;
-      }
-      row.push_back({fmt::format("{:.2g}", std::sqrt(square) / kDegree)});
-    }
-    const core::Measured& angle = core::ContactAngle(trials[t]);
-    row.push_back({angle ? fmt::format("{:.2g}", angle->u / kDegree) : ""});
-    row.push_back(TrialCell(trials[t], input));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  return std::sqrt(square);
 }
 
-// Root mean square over the trials of each source, largest first.
+Cell Degrees(double u_rad) {
+  return {u_rad > 0.0 ? fmt::format("{:.2g}", u_rad / kDegree) : "0"};
+}
+
+// One row a trial, one column a source with the largest first; the last row has
+// the root mean squares.
 std::vector<Block> MakeBudget(const Group& group,
                               std::span<const core::Trial> trials,
                               const ReportInput& input) {
@@ -112,53 +94,46 @@ std::vector<Block> MakeBudget(const Group& group,
     for (const auto& line : budget) squares[line.source] += line.u * line.u;
   }
   if (n == 0) return {};
-  std::vector<std::pair<double, std::string>> lines;
-  lines.reserve(squares.size());
+  std::vector<std::pair<double, std::string>> sources;
+  sources.reserve(squares.size());
+  double all = 0.0;
   for (const auto& [source, sum] : squares) {
-    lines.emplace_back(std::sqrt(sum / n), source);
+    sources.emplace_back(std::sqrt(sum / n), source);
+    all += sum / n;
   }
-  std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) {
+  std::sort(sources.begin(), sources.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first > b.first : a.second < b.second;
   });
-  Table table{fmt::format("Budget of the {}", AngleName(group)),
-              {{"source"}, {"u, root mean square over the trials (deg)", true}},
+  Table table{fmt::format("Budget of the {} (u in deg)", AngleName(group)),
+              {{"clip or trial"}},
               {}};
-  for (const auto& [u, source] : lines) {
-    table.rows.push_back({{source}, {fmt::format("{:.3g}", u / kDegree)}});
+  for (const auto& [u, source] : sources) {
+    table.columns.push_back({source, true});
   }
-  std::vector<Block> out{table};
+  table.columns.push_back({"all", true});
+  for (const std::size_t t : group.members) {
+    const core::Budget& budget = AngleBudget(trials[t]);
+    if (budget.empty()) continue;
+    std::vector<Cell> row{TrialCell(trials[t], input)};
+    for (const auto& [rms, source] : sources) {
+      row.push_back(Degrees(FromSource(budget, source)));
+    }
+    const core::Measured& angle = core::ContactAngle(trials[t]);
+    row.push_back(angle ? Degrees(angle->u) : Cell{});
+    table.rows.push_back(std::move(row));
+  }
+  std::vector<Cell> last{{"root mean square of the trials that count"}};
+  for (const auto& [rms, source] : sources) last.push_back(Degrees(rms));
+  last.push_back(Degrees(std::sqrt(all)));
+  table.rows.push_back(std::move(last));
+  std::vector<Block> out{std::move(table)};
   const auto total = static_cast<int>(group.trials.observations.size());
   if (n < total) {
     out.push_back(Paragraph{
         fmt::format("{} of {} trials have a budget.", n, total), true});
   }
-  out.push_back(MakeTrialBudgets(group, trials, lines, input));
   return out;
 }
-
-// The distinct values of one thing, and how many trials have each.
-class Tally {
- public:
-  void Add(const std::string& value) {
-    if (!value.empty()) ++count_[value];
-  }
-  std::string Text() const {
-    // Beyond these the row would say less than "many".
-    constexpr std::size_t kMost = 6;
-    if (count_.size() > kMost) {
-      return fmt::format("{} different ones", count_.size());
-    }
-    std::string out;
-    for (const auto& [value, n] : count_) {
-      out += fmt::format("{}{} ({} trial{})", out.empty() ? "" : "; ", value, n,
-                         n == 1 ? "" : "s");
-    }
-    return out;
-  }
-
- private:
-  std::map<std::string, int> count_;
-};
 
 std::vector<Block> MakeProvenance(const Group& group,
                                   std::span<const core::Trial> trials,

@@ -1,6 +1,9 @@
 // The group's plot, and what it shows in words and numbers.
 #include <fmt/core.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "app/report/boundary_plot.h"
 #include "app/report/content.h"
 #include "app/report/format.h"
@@ -30,6 +33,28 @@ Table Numbers(const Group& group) {
                           {Plain(o.p_bounce, 4)}});
   }
   return table;
+}
+
+// P(bounce) at any angle, as the trials leave boundary and scatter: the mean
+// over their joint posterior of Phi((x - boundary) / scatter).
+PlotCurve MakeChance(const analysis::BoundaryPosterior& posterior) {
+  const analysis::BoundaryGrid& grid = posterior.grid;
+  PlotCurve curve{"P(bounce), as fitted", {}, {}};
+  constexpr int kSteps = 180;  // of half a degree
+  for (int i = 0; i <= kSteps; ++i) {
+    const double x = i * 0.5 * kDegree;
+    double sum = 0.0;
+    std::size_t at = 0;
+    for (const double boundary : grid.angle_rad) {
+      for (const double scatter : grid.scatter_rad) {
+        sum += grid.weight[at++] * 0.5 *
+               std::erfc((boundary - x) / (scatter * std::numbers::sqrt2));
+      }
+    }
+    curve.angle_rad.push_back(x);
+    curve.height.push_back(posterior.lapse + (1 - 2 * posterior.lapse) * sum);
+  }
+  return curve;
 }
 
 // Why one end of the interval is an arrow.
@@ -65,6 +90,7 @@ Figure MakeFigure(const Group& group, std::size_t index) {
   if (study.counts.decided() > 0) {
     plot.density = {"posterior", study.posterior.angle_rad,
                     study.posterior.density_per_rad};
+    plot.p_bounce = MakeChance(study.posterior);
   }
 
   const analysis::BoundaryPosterior& posterior = study.posterior;
@@ -78,8 +104,9 @@ Figure MakeFigure(const Group& group, std::size_t index) {
   Figure figure;
   figure.svg = DrawBoundaryPlot(plot);
   figure.caption = fmt::format(
-      "{}{}, {}: what was seen at each {}. Bars are {} 2 u (95 %). Shaded: the "
-      "bracket. Hill: posterior density of the boundary angle, to its own "
+      "{}{}, {}: what was seen at each {}. Bars are {} 2 u (95 %). Line: the "
+      "probability of a bounce at each angle, as the trials leave it. Shaded: "
+      "the bracket. Hill: posterior density of the boundary angle, to its own "
       "height; bar: its median and 95 % interval.",
       group.simulated() ? "Simulated. " : "", core::Name(group.trials.body),
       group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,

@@ -16,20 +16,6 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
-std::string SizeText(const core::Body& body) {
-  const auto with_unit = [](const core::Measured& size) {
-    return WithU(*size, kMillimetre) + " mm";
-  };
-  if (body.kind == core::BodyKind::kSphere) {
-    return body.diameter_m
-               ? "diameter " + with_unit(body.diameter_m)
-               : "diameter absent: " + body.diameter_m.error().reason;
-  }
-  if (!body.long_m) return "sides absent: " + body.long_m.error().reason;
-  if (!body.short_m) return "short side absent: " + body.short_m.error().reason;
-  return "sides " + with_unit(body.long_m) + " and " + with_unit(body.short_m);
-}
-
 // The one bounce height of the trials, or that they differ.
 std::string BounceHeightText(const Group& group,
                              std::span<const core::Trial> trials) {
@@ -94,10 +80,6 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
                 WithU({*c.theory_boundary_rad, c.theory_u_rad, {}}, kDegree),
                 Plain(c.margin_rad / kDegree))
           : "none declared before the first trial");
-  row("trials",
-      fmt::format("{} slide, {} bounce, {} undecided; {} left out",
-                  study.counts.not_bounce, study.counts.bounce,
-                  study.counts.undecided, group.trials.left_out.size()));
   row("u of the angles",
       fmt::format("{} to {} deg", Plain(study.least_u_rad / kDegree, 3),
                   Plain(study.greatest_u_rad / kDegree, 3)));
@@ -109,7 +91,6 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
                     study.repeated_set_angles,
                     Plain(study.set_u_rad.value_or(0.0) / kDegree, 2)));
   }
-  row("what the trials alone say", BracketSentence(study.bracket));
   row("next angle", NextSentence(group));
   return table;
 }
@@ -136,27 +117,23 @@ std::string FaceAngleText(const Group& group) {
 
 }  // namespace
 
-Callout MakeVerdict(const Group& group, std::span<const Group> groups) {
-  Callout callout;
-  const std::string word = VerdictWord(group);
-  callout.tone = word == "confirmed"      ? Tone::kGood
-                 : word == "contradicted" ? Tone::kBad
-                                          : Tone::kPlain;
-  callout.title = fmt::format("{}: {}.", ShortName(group, groups), word);
-  const analysis::Counts& counts = group.study.counts;
-  callout.text = fmt::format(
-      "{} slide, {} bounce, {} undecided; {}. The boundary is {}. {}",
-      counts.not_bounce, counts.bounce, counts.undecided,
-      BracketSentence(group.study.bracket), BoundarySentence(group.study),
-      VerdictSentence(group));
-  const std::string outlook = OutlookSentence(group);
-  if (!outlook.empty()) callout.text += " " + outlook;
-  return callout;
+std::string SizeText(const core::Body& body) {
+  const auto with_unit = [](const core::Measured& size) {
+    return WithU(*size, kMillimetre) + " mm";
+  };
+  if (body.kind == core::BodyKind::kSphere) {
+    return body.diameter_m
+               ? "diameter " + with_unit(body.diameter_m)
+               : "diameter absent: " + body.diameter_m.error().reason;
+  }
+  if (!body.long_m) return "sides absent: " + body.long_m.error().reason;
+  if (!body.short_m) return "short side absent: " + body.short_m.error().reason;
+  return "sides " + with_unit(body.long_m) + " and " + with_unit(body.short_m);
 }
 
-Section MakeGroupSection(const Group& group, std::span<const Group> groups,
+Section MakeGroupSection(const Group& group,
                          std::span<const core::Trial> trials,
-                         const ReportInput& input) {
+                         const ReportInput& input, std::size_t& figures) {
   Section section{group.simulated(), {}};
   auto& out = section.blocks;
   out.push_back(PageBreak{});
@@ -165,18 +142,16 @@ Section MakeGroupSection(const Group& group, std::span<const Group> groups,
   if (group.trials.angle_kind == core::AngleKind::kFace) {
     out.push_back(Callout{"Which angle.", FaceAngleText(group)});
   }
-  out.push_back(MakeVerdict(group, groups));
   for (Block& block : MakePlan(group, trials, input)) {
-    out.push_back(std::move(block));
-  }
-  for (Block& block : MakeStatistics(group)) out.push_back(std::move(block));
-  for (Block& block : MakeDependence(group, trials)) {
     out.push_back(std::move(block));
   }
   for (Block& block : MakeChecks(group, trials)) {
     out.push_back(std::move(block));
   }
   for (Block& block : MakeTrialTables(group, trials, input)) {
+    out.push_back(std::move(block));
+  }
+  for (Block& block : MakePictures(group, trials, input, figures)) {
     out.push_back(std::move(block));
   }
   for (Block& block : MakeEvidence(group, trials, input)) {

@@ -14,9 +14,13 @@ namespace {
 
 using core::kDegree;
 
-std::string Range(const core::Interval& interval) {
-  return fmt::format("{:.2f} to {:.2f}", interval.low / kDegree,
-                     interval.high / kDegree);
+std::string Range(const core::Interval& interval, int decimals) {
+  return fmt::format("{:.{}f} to {:.{}f}", interval.low / kDegree, decimals,
+                     interval.high / kDegree, decimals);
+}
+
+std::string Degrees(double angle_rad, int decimals) {
+  return fmt::format("{:.{}f}", angle_rad / kDegree, decimals);
 }
 
 std::string Share(const core::Interval& interval) {
@@ -36,6 +40,7 @@ std::string PriorName(const analysis::ScatterPrior& prior) {
 Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
   const auto& p = group.study.posterior;
   const auto& l = group.study.likelihood;
+  const int decimals = Decimals(p.sd_rad / kDegree);
   Table table{"The boundary angle",
               {{"method"},
                {"boundary (deg)", true},
@@ -47,19 +52,20 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
     remark += fmt::format(
         ", alone {}; the 95 % interval holds under {}, too, as outcomes that "
         "do not overlap tell nothing of the scatter",
-        Range({analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)}),
+        Range({analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)},
+              decimals),
         PriorName(*p.cautious_prior));
   }
-  table.rows.push_back(
-      {{"posterior median"},
-       {fmt::format("{:.2f}", p.median_rad / kDegree)},
-       {Range(p.interval95_rad)},
-       {fmt::format("{}; 90 %: {} deg; sd {:.2f} deg", remark,
-                    Range(p.interval90_rad), p.sd_rad / kDegree)}});
+  table.rows.push_back({{"posterior median"},
+                        {Degrees(p.median_rad, decimals)},
+                        {Range(p.interval95_rad, decimals)},
+                        {fmt::format("{}; 90 %: {} deg; sd {} deg", remark,
+                                     Range(p.interval90_rad, decimals),
+                                     Degrees(p.sd_rad, decimals))}});
   for (const auto& line : p.sensitivity) {
     table.rows.push_back({{"the same, other prior"},
-                          {fmt::format("{:.2f}", line.median_rad / kDegree)},
-                          {Range(line.interval95_rad)},
+                          {Degrees(line.median_rad, decimals)},
+                          {Range(line.interval95_rad, decimals)},
                           {PriorName(line.prior)}});
   }
   remark = l.has_estimate ? "no prior" : "no estimate, no prior";
@@ -70,13 +76,13 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
   }
   table.rows.push_back(
       {{"likelihood profile"},
-       {l.has_estimate ? fmt::format("{:.2f}", l.estimate_rad / kDegree) : ""},
-       {Range(l.interval95_rad)},
+       {l.has_estimate ? Degrees(l.estimate_rad, decimals) : ""},
+       {Range(l.interval95_rad, decimals)},
        {remark}});
   table.rows.push_back(
       {{"scatter of the boundary"},
-       {fmt::format("{:.2f}", p.scatter_median_rad / kDegree)},
-       {Range(p.scatter95_rad)},
+       {Degrees(p.scatter_median_rad, decimals)},
+       {Range(p.scatter95_rad, decimals)},
        {"posterior; what a boundary varies from trial to trial"}});
   return table;
 }
@@ -85,7 +91,7 @@ Table MakeTheories(const Group& group) {
   Table table{"Boundary angles of theory beside the trials",
               {{"theory"},
                {fmt::format("value {} u (deg)", kPlusMinus), true},
-               {"median - theory (deg)", true},
+               {"median minus theory (deg)", true},
                {"E_n", true},
                {"P(boundary below it)", true},
                {fmt::format("P(within {} {} deg)", kPlusMinus,
@@ -101,10 +107,11 @@ Table MakeTheories(const Group& group) {
     table.rows.push_back(
         {{t.theory.name + (t.declared ? " (declared)" : "")},
          {WithU({t.theory.boundary_rad, t.theory.u_rad, {}}, kDegree)},
-         {fmt::format("{:+.2f}", t.difference_rad / kDegree)},
-         {fmt::format("{:+.2f}", t.e_n)},
-         {fmt::format("{:.3f}", t.p_below)},
-         {fmt::format("{:.3f}", t.p_within)},
+         {Signed(t.difference_rad / kDegree,
+                 Decimals(group.study.posterior.sd_rad / kDegree))},
+         {Signed(t.e_n, 2)},
+         {Probability(t.p_below)},
+         {Probability(t.p_within)},
          {fmt::format("{:.1f}", t.smallest_margin_rad / kDegree)},
          {verdict      ? std::string(core::Name(*verdict))
           : t.declared ? "none"
@@ -163,36 +170,48 @@ std::string AgreementNumbers(const analysis::TheoryComparison& t) {
   return text;
 }
 
-}  // namespace
-
-std::vector<Block> MakeStatistics(const Group& group) {
+std::vector<Block> MakeComparison(const Group& group) {
   std::vector<Block> out;
-  out.push_back(MakeEstimates(group, group.prior));
-  out.push_back(Paragraph{StatusSentence(group.study), true});
-  if (group.study.theories.empty()) return out;
   out.push_back(MakeTheories(group));
   const auto& first = group.study.theories.front();
   if (first.declared) {
+    const double theory = first.theory.boundary_rad;
+    const double margin = group.study.margin_rad;
     out.push_back(Paragraph{
         fmt::format(
             "Equivalence (two one-sided tests) at the margin of {} deg: "
-            "P(boundary below {} deg) = {:.3f}, P(above {} deg) = {:.3f}; both "
-            "under 0.05 is one of the things that confirmed needs. |E_n| up to "
-            "1 is called "
+            "P(boundary below {} deg): {}, P(above {} deg): {}; both under "
+            "0.05 "
+            "is one of the things that confirmed needs. |E_n| up to 1 is "
+            "called "
             "compatible, which is not the same as confirmed.",
-            Plain(group.study.margin_rad / kDegree),
-            Plain((first.theory.boundary_rad - group.study.margin_rad) /
-                  kDegree),
-            first.p_too_low,
-            Plain((first.theory.boundary_rad + group.study.margin_rad) /
-                  kDegree),
-            first.p_too_high),
+            Plain(margin / kDegree), Plain((theory - margin) / kDegree),
+            Probability(first.p_too_low), Plain((theory + margin) / kDegree),
+            Probability(first.p_too_high)),
         true});
   }
   out.push_back(MakeConfusion(group, first));
   out.push_back(Paragraph{AgreementSentence(first)});
   out.push_back(Paragraph{AgreementNumbers(first), true});
   return out;
+}
+
+}  // namespace
+
+Section MakeStatistics(const Group& group,
+                       std::span<const core::Trial> trials) {
+  Section section{group.simulated(), {}};
+  auto& out = section.blocks;
+  out.push_back(Heading{2, "Annex: statistics of " + FullName(group)});
+  out.push_back(MakeEstimates(group, group.prior));
+  out.push_back(Paragraph{StatusSentence(group.study), true});
+  if (!group.study.theories.empty()) {
+    for (Block& block : MakeComparison(group)) out.push_back(std::move(block));
+  }
+  for (Block& block : MakeDependence(group, trials)) {
+    out.push_back(std::move(block));
+  }
+  return section;
 }
 
 }  // namespace touchdown::report

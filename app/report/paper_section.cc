@@ -39,7 +39,7 @@ Section MakePaperSection() {
   Section section;
   auto& out = section.blocks;
   out.push_back(PageBreak{});
-  out.push_back(Heading{2, "What the paper's own Table 1 supports"});
+  out.push_back(Heading{2, "Annex: what the paper's own Table 1 supports"});
   Table table{"The paper's Table 1 (omega = 0), evaluated in the same way",
               {{"body"},
                {"published boundary (deg)", true},

@@ -1,8 +1,10 @@
-// Table 1 in the paper's layout: angles down, bodies across, two words.
+// Table 1 in the paper's layout: angles across, bodies down, two words; below
+// each body what the paper's own table says.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -16,33 +18,34 @@ namespace {
 
 using core::kDegree;
 
-// So many groups fit side by side on A4.
-constexpr std::size_t kGroupsAcross = 3;
-// More rows than this are binned.
-constexpr std::size_t kMaxRows = 40;
-// Rows are told apart to a hundredth of a degree: set-points are not finer.
-constexpr double kRow_deg = 0.01;
-// A row is one of the paper's angles where it is this close: they are printed
-// to a tenth.
+// So many angles fit side by side on A4; the paper has nine.
+constexpr std::size_t kAnglesAcross = 9;
+// More angles than this are binned.
+constexpr std::size_t kMaxAngles = 36;
+// Angles are told apart to a hundredth of a degree: set-points are not finer.
+constexpr double kAngle_deg = 0.01;
+// An angle is one of the paper's where it is this close: they are printed to a
+// tenth.
 constexpr double kPaperAngle_deg = 0.05;
 
-using RowKey = long long;  // units of the row's width
+using AngleKey = long long;  // units of the column's width
 
 double Position_deg(const core::Trial& trial) {
   if (trial.set_angle_rad) return *trial.set_angle_rad / kDegree;
   return std::abs(core::ContactAngle(trial)->value) / kDegree;
 }
 
-struct Rows {
-  double width_deg = kRow_deg;
+struct Angles {
+  double width_deg = kAngle_deg;
   bool binned = false;
-  // [row][group] -> trials
-  std::map<RowKey, std::vector<std::vector<std::size_t>>> cells;
+  // [angle][group] -> trials
+  std::map<AngleKey, std::vector<std::vector<std::size_t>>> cells;
 };
 
-Rows Collect(std::span<const Group> groups, std::span<const core::Trial> trials,
-             double width_deg, bool binned) {
-  Rows rows{width_deg, binned, {}};
+Angles Collect(std::span<const Group> groups,
+               std::span<const core::Trial> trials, double width_deg,
+               bool binned) {
+  Angles rows{width_deg, binned, {}};
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<std::size_t> members;
     for (const auto& o : groups[g].trials.observations) {
@@ -51,8 +54,8 @@ Rows Collect(std::span<const Group> groups, std::span<const core::Trial> trials,
     std::sort(members.begin(), members.end());
     for (const std::size_t t : members) {
       const double at = Position_deg(trials[t]) / width_deg;
-      const auto key =
-          static_cast<RowKey>(binned ? std::floor(at + 1e-9) : std::round(at));
+      const auto key = static_cast<AngleKey>(binned ? std::floor(at + 1e-9)
+                                                    : std::round(at));
       auto& row = rows.cells[key];
       row.resize(groups.size());
       row[g].push_back(t);
@@ -61,14 +64,14 @@ Rows Collect(std::span<const Group> groups, std::span<const core::Trial> trials,
   return rows;
 }
 
-Rows CollectToFit(std::span<const Group> groups,
-                  std::span<const core::Trial> trials, double bin_width_rad) {
+Angles CollectToFit(std::span<const Group> groups,
+                    std::span<const core::Trial> trials, double bin_width_rad) {
   if (bin_width_rad > 0.0) {
     return Collect(groups, trials, bin_width_rad / kDegree, true);
   }
-  Rows rows = Collect(groups, trials, kRow_deg, false);
+  Angles rows = Collect(groups, trials, kAngle_deg, false);
   for (const double width_deg : {1.0, 2.0, 5.0, 10.0}) {
-    if (rows.cells.size() <= kMaxRows) break;
+    if (rows.cells.size() <= kMaxAngles) break;
     rows = Collect(groups, trials, width_deg, true);
   }
   return rows;
@@ -122,58 +125,23 @@ std::optional<bool> PaperBounces(core::BodyKind body, double angle_deg) {
   return std::nullopt;
 }
 
-Table MakeOne(std::span<const Group> groups, std::span<const Group> all,
-              std::span<const core::Trial> trials, double bin_width_rad) {
-  const Rows rows = CollectToFit(groups, trials, bin_width_rad);
-  bool any_set = false;
-  std::vector<bool> with_paper(groups.size(), false);
-  for (const auto& [key, row] : rows.cells) {
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (const std::size_t t : row[g]) {
-        any_set = any_set || trials[t].set_angle_rad.has_value();
-      }
-      const double angle_deg = static_cast<double>(key) * rows.width_deg;
-      if (!rows.binned && !row[g].empty() &&
-          PaperBounces(groups[g].trials.body, angle_deg)) {
-        with_paper[g] = true;
-      }
-    }
-  }
-  Table table;
-  table.caption = "Table 1: motion state by contact angle";
-  table.columns.push_back(
-      {rows.binned
-           ? fmt::format("{} angle, bins of {} deg",
-                         any_set ? "set" : "contact", Plain(rows.width_deg))
-       : any_set ? "set angle (deg)"
-                 : "contact angle (deg)",
-       true});
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::string name = ShortName(groups[g], all);
-    table.columns.push_back({fmt::format("{}: {} {} u (deg)", name,
-                                         AngleName(groups[g]), kPlusMinus),
-                             true});
-    table.columns.push_back({name + ": state"});
-    if (with_paper[g]) table.columns.push_back({"paper's Table 1"});
-  }
-  for (const auto& [key, row] : rows.cells) {
-    const double angle_deg = static_cast<double>(key) * rows.width_deg;
-    std::vector<Cell> cells;
-    cells.push_back({rows.binned
-                         ? fmt::format("{} {} {}", Plain(angle_deg), kDash,
-                                       Plain(angle_deg + rows.width_deg))
-                         : Plain(angle_deg)});
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      cells.push_back(AngleCell(row[g], trials));
-      cells.push_back(StateCell(row[g], trials));
-      if (!with_paper[g]) continue;
-      const auto paper = PaperBounces(groups[g].trials.body, angle_deg);
-      cells.push_back(
-          {paper ? (*paper ? "bounce" : "slide") : "", Tone::kMuted});
-    }
-    table.rows.push_back(std::move(cells));
-  }
-  return table;
+std::string AngleHeading(const Angles& angles, double angle_deg) {
+  return angles.binned ? fmt::format("{} {} {}", Plain(angle_deg), kDash,
+                                     Plain(angle_deg + angles.width_deg))
+                       : Plain(angle_deg);
+}
+
+// Whether the paper has one of the angles at which the group was thrown.
+bool HasPaperAngle(const Angles& angles, std::size_t group,
+                   core::BodyKind body) {
+  return !angles.binned &&
+         std::any_of(
+             angles.cells.begin(), angles.cells.end(), [&](const auto& column) {
+               const auto& [key, cells] = column;
+               return !cells[group].empty() &&
+                      PaperBounces(body,
+                                   static_cast<double>(key) * angles.width_deg);
+             });
 }
 
 }  // namespace
@@ -181,11 +149,64 @@ Table MakeOne(std::span<const Group> groups, std::span<const Group> all,
 std::vector<Table> MakeTable1(std::span<const Group> groups,
                               std::span<const core::Trial> trials,
                               const ReportInput& input) {
+  const Angles angles = CollectToFit(groups, trials, input.bin_width_rad);
+  const bool any_set =
+      std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
+        return std::any_of(group.trials.observations.begin(),
+                           group.trials.observations.end(),
+                           [&](const analysis::Observation& o) {
+                             return trials[o.trial].set_angle_rad.has_value();
+                           });
+      });
+  const char* angle_word = any_set ? "set" : "contact";
+  const std::size_t parts =
+      (angles.cells.size() + kAnglesAcross - 1) / kAnglesAcross;
   std::vector<Table> out;
-  for (std::size_t i = 0; i < groups.size(); i += kGroupsAcross) {
-    const std::size_t n = std::min(kGroupsAcross, groups.size() - i);
-    out.push_back(
-        MakeOne(groups.subspan(i, n), groups, trials, input.bin_width_rad));
+  auto column = angles.cells.begin();
+  for (std::size_t part = 0; part < parts; ++part) {
+    Table table;
+    table.row_headings = true;
+    table.caption = "Table 1: motion state by contact angle";
+    if (parts > 1) {
+      table.caption += fmt::format(" ({} of {})", part + 1, parts);
+    }
+    table.columns.push_back(
+        {angles.binned ? fmt::format("{} angle, bins of {} deg", angle_word,
+                                     Plain(angles.width_deg))
+                       : fmt::format("{} angle (deg)", angle_word)});
+    // As many in each part, as far as they go.
+    const std::size_t left = angles.cells.size() * (part + 1) / parts -
+                             angles.cells.size() * part / parts;
+    const auto begin = column;
+    std::advance(column, left);
+    for (auto at = begin; at != column; ++at) {
+      table.columns.push_back(
+          {AngleHeading(angles,
+                        static_cast<double>(at->first) * angles.width_deg),
+           true});
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const core::BodyKind body = groups[g].trials.body;
+      const std::string name = ShortName(groups[g], groups);
+      std::vector<Cell> measured{{fmt::format(
+          "{}: {} {} u (deg)", name, AngleName(groups[g]), kPlusMinus)}};
+      std::vector<Cell> states{{name + ": motion state"}};
+      std::vector<Cell> papers{{name + ": the paper's own"}};
+      for (auto at = begin; at != column; ++at) {
+        measured.push_back(AngleCell(at->second[g], trials));
+        states.push_back(StateCell(at->second[g], trials));
+        const auto paper = PaperBounces(
+            body, static_cast<double>(at->first) * angles.width_deg);
+        papers.push_back(
+            {paper ? (*paper ? "bounce" : "slide") : "", Tone::kMuted});
+      }
+      table.rows.push_back(std::move(measured));
+      table.rows.push_back(std::move(states));
+      if (HasPaperAngle(angles, g, body)) {
+        table.rows.push_back(std::move(papers));
+      }
+    }
+    out.push_back(std::move(table));
   }
   return out;
 }

@@ -22,27 +22,13 @@ namespace {
 constexpr core::Origin kOrigins[] = {
     core::Origin::kRecorded, core::Origin::kManual, core::Origin::kSimulated};
 
-Section MakeQuestion(std::span<const Group> groups) {
-  Section section;
-  section.blocks.push_back(Paragraph{
-      "At what angle does a body cease to slide and begin to bounce, and do "
-      "these trials agree with the boundary angles that the paper publishes: "
-      "11.8 deg for a sphere, 7.8 deg for a rectangle?"});
-  if (groups.empty()) {
-    section.blocks.push_back(
-        Callout{"No trials.", "The store holds no trial for this report."});
-  }
-  return section;
-}
-
-// Everything of page 1 for the groups of one origin: never pooled.
-Section MakeFront(std::span<const Group> groups,
-                  std::span<const core::Trial> trials, const ReportInput& input,
-                  std::size_t& figures) {
+// What is read first, of the groups of one origin: those are never pooled.
+Section MakeSummaries(std::span<const Group> groups,
+                      std::span<const core::Trial> trials) {
   Section section{groups.front().simulated(), {}};
   auto& out = section.blocks;
   for (const Group& group : groups) {
-    out.push_back(MakeVerdict(group, groups));
+    out.push_back(MakeSummary(group, trials));
     if (auto callout = MakeChecksCallout(group, groups, trials)) {
       out.push_back(std::move(*callout));
     }
@@ -50,6 +36,18 @@ Section MakeFront(std::span<const Group> groups,
       out.push_back(std::move(*callout));
     }
   }
+  return section;
+}
+
+Section MakeTables(std::span<const Group> groups,
+                   std::span<const core::Trial> trials,
+                   const ReportInput& input, std::size_t& figures) {
+  Section section{groups.front().simulated(), {}};
+  auto& out = section.blocks;
+  out.push_back(PageBreak{});
+  out.push_back(
+      Heading{2, fmt::format("Table 1 and the boundary, {} trials",
+                             core::Name(groups.front().trials.origin))});
   for (Table& table : MakeTable1(groups, trials, input)) {
     out.push_back(std::move(table));
   }
@@ -68,7 +66,7 @@ Section MakeFront(std::span<const Group> groups,
 Section MakeMethods(const ReportInput& input, const std::string& csv) {
   Section section;
   auto& out = section.blocks;
-  out.push_back(Heading{2, "How this report was made"});
+  out.push_back(Heading{2, "Annex: how this report was made"});
   out.push_back(List{
       {fmt::format(
            "Boundary angle: posterior on a grid; this is the estimate. A trial "
@@ -119,6 +117,17 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
   return section;
 }
 
+// "Report 2026-17 of the laboratory", what is known of it.
+std::string FooterOf(const ReportInput& input) {
+  std::string out = input.details.number.empty()
+                        ? input.title
+                        : "Report " + input.details.number;
+  for (const std::string& part : {input.details.laboratory, input.made_on}) {
+    if (!part.empty()) out += ", " + part;
+  }
+  return out;
+}
+
 }  // namespace
 
 Report MakeReport(const ReportInput& input) {
@@ -128,30 +137,53 @@ Report MakeReport(const ReportInput& input) {
 
   Document document;
   document.title = input.title;
-  document.sections.push_back(MakeQuestion(groups));
-  std::size_t figures = 0;
+  document.footer = FooterOf(input);
+  auto& sections = document.sections;
+  std::vector<std::vector<Group>> by_origin;
   for (const core::Origin origin : kOrigins) {
     std::vector<Group> same;
     std::copy_if(
         groups.begin(), groups.end(), std::back_inserter(same),
         [origin](const Group& g) { return g.trials.origin == origin; });
-    if (same.empty()) continue;
-    document.sections.push_back(MakeFront(same, trials, input, figures));
+    if (!same.empty()) by_origin.push_back(std::move(same));
+  }
+  if (groups.empty()) {
+    sections.push_back(
+        {false,
+         {Callout{"No trials.", "The store holds no trial for this report."}}});
+  }
+  for (const auto& same : by_origin) {
+    sections.push_back(MakeSummaries(same, trials));
+  }
+  sections.push_back(MakeCover(input));
+  sections.push_back({false, {Heading{3, "Contents"}, Contents{}}});
+  std::size_t figures = 0;
+  for (const auto& same : by_origin) {
+    sections.push_back(MakeTables(same, trials, input, figures));
   }
   for (const Group& group : groups) {
-    document.sections.push_back(MakeGroupSection(group, groups, trials, input));
+    sections.push_back(MakeGroupSection(group, trials, input, figures));
   }
   for (const CheckShots& checks : CollectCheckShots(input, trials)) {
-    document.sections.push_back(
-        MakeCheckSection(checks, trials, input, figures));
+    sections.push_back(MakeCheckSection(checks, trials, input, figures));
   }
-  document.sections.push_back(MakePaperSection());
+  for (const Group& group : groups) {
+    sections.push_back(MakeStatistics(group, trials));
+    if (&group == &groups.front()) {
+      auto& blocks = sections.back().blocks;
+      blocks.insert(blocks.begin(), PageBreak{});
+    }
+  }
+  sections.push_back(MakePaperSection());
   const std::string csv = MakeCsv(groups, trials);
-  document.sections.push_back(MakeMethods(input, csv));
+  sections.push_back(MakeMethods(input, csv));
+  sections.push_back(MakeGlossary());
+  sections.back().blocks.push_back(Paragraph{"End of the report.", true});
   Report out;
   out.markdown = ToMarkdown(document);
   out.csv = csv;
   out.html = ToHtml(document);
+  out.csv_schema = CsvSchema();
   out.latex = MakeLatex(groups, trials, input);
   out.json = ReportDocument(input, groups, trials)
                  .dump(1, ' ', false,
@@ -168,11 +200,12 @@ void WriteReport(const Report& report, const std::filesystem::path& folder) {
         fmt::format("{}: cannot be made: {}; give a folder that can",
                     folder.string(), trouble.message()));
   }
-  WriteTextFile(folder / "table1.md", report.markdown);
-  WriteTextFile(folder / "table1.csv", report.csv);
-  WriteTextFile(folder / "table1.html", report.html);
-  WriteTextFile(folder / "table1.tex", report.latex);
-  WriteTextFile(folder / "table1.json", report.json);
+  const std::string* const texts[] = {&report.markdown, &report.csv,
+                                      &report.html,     &report.latex,
+                                      &report.json,     &report.csv_schema};
+  for (std::size_t i = 0; i < std::size(texts); ++i) {
+    WriteTextFile(folder / kReportFiles[i], *texts[i]);
+  }
 }
 
 }  // namespace touchdown::report

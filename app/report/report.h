@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/report/contact_strip.h"
+#include "app/report/details.h"
 #include "app/report/shot_prediction.h"
 #include "touchdown/analysis/agreement.h"
 #include "touchdown/analysis/boundary_study.h"
@@ -14,6 +16,7 @@
 #include "touchdown/core/expected.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/db/plan.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::report {
 
@@ -62,6 +65,18 @@ struct ReportInput {
   // and the pictures of the contacts where there are any, by trial id.
   bool evidence_pages = false;
   std::map<std::string, std::filesystem::path> pictures;
+  // Of the recordings, by trial id: the contact as it was filmed, or why it is
+  // not shown, and the path.
+  std::map<std::string, ContactStrip> strips;
+  std::map<std::string, std::string> no_strip;
+  std::map<std::string, Trajectory> trajectories;
+  // For the cover: what no trial knows; the day of the report, YYYY-MM-DD; when
+  // the trials that were revised since had been logged, by id; the versions of
+  // the lab's register that the trials name.
+  Details details;
+  std::string made_on;
+  std::map<std::string, std::string> first_logged_utc;
+  std::vector<db::Entry> register_entries;
   // Bins of the angle in Table 1; 0: a row an angle, or bins that fit a page.
   double bin_width_rad = 0.0;
   std::string title = "Table 1: slide or bounce at touchdown";
@@ -75,17 +90,23 @@ struct Report {
   std::string markdown;
   std::string csv;  // one line a trial
   std::string html;
-  std::string latex;  // Table 1 alone, to \input into a paper
-  std::string json;   // touchdown.report/1: every number
+  std::string latex;       // Table 1 alone, to \input into a paper
+  std::string json;        // touchdown.report/1: every number
+  std::string csv_schema;  // the columns of `csv`, as the W3C's CSVW
 };
+
+// The files of a report, in their order in Report.
+inline constexpr const char* kReportFiles[] = {
+    "table1.md",  "table1.csv",  "table1.html",
+    "table1.tex", "table1.json", "table1.csv-metadata.json"};
 
 // Makes the report. The same input gives the same bytes: no clock, everything
 // sorted. Throws std::invalid_argument where two campaigns have one name, and
 // core::InputError where a plot cannot be drawn.
 Report MakeReport(const ReportInput& input);
 
-// Writes table1.md, .csv, .html, .tex and .json into `folder` (made where it is
-// missing), each under a temporary name first. Throws core::InputError.
+// Writes kReportFiles into `folder` (made where it is missing), each under a
+// temporary name first. Throws core::InputError.
 void WriteReport(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace touchdown::report

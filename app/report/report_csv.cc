@@ -1,7 +1,8 @@
-// table1.csv: one line a trial, units in the heading.
+// table1.csv: one line a trial, units in the heading; and its schema.
 #include <fmt/core.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/report/content.h"
@@ -13,6 +14,39 @@ namespace {
 
 using core::kDegree;
 using core::kMillimetre;
+
+struct CsvField {
+  const char* name;
+  const char* type;  // of XML Schema
+  const char* unit;  // "" where there is none
+  const char* meaning;
+};
+// The order is that of the file; a column is added at the end.
+constexpr CsvField kFields[] = {
+    {"campaign", "string", "", "name of the campaign"},
+    {"origin", "string", "", "recorded, simulated or manual; never pooled"},
+    {"watermark", "string", "", "SIMULATED, or empty"},
+    {"body", "string", "", "sphere or rectangle"},
+    {"surface", "string", "", "of the campaign"},
+    {"angle_kind", "string", "", "approach, radius or face"},
+    {"set_angle_deg", "decimal", "deg", "set-point of the varied angle"},
+    {"angle_deg", "decimal", "deg", "contact angle, of that kind"},
+    {"u_angle_deg", "decimal", "deg", "its standard uncertainty"},
+    {"state", "string", "", "motion state"},
+    {"paper_word", "string", "", "slide (not a bounce), bounce or undecided"},
+    {"p_bounce", "decimal", "", "probability of a bounce"},
+    {"max_gap_mm", "decimal", "mm", "greatest gap after release"},
+    {"u_max_gap_mm", "decimal", "mm", "its standard uncertainty"},
+    {"bounce_height_mm", "decimal", "mm", "rising above it is a bounce"},
+    {"micro_bounce", "string", "", "left the ground without reaching it"},
+    {"left_out", "string", "", "why the statistics leave the trial out"},
+    {"clip", "string", "", "path of the recording"},
+    {"trial", "string", "", "identity of the trial"},
+    {"revision", "integer", "", "of the statement about it, from 1"},
+    {"extrapolated_gap_mm", "decimal", "mm",
+     "that a flight would reach that the film cuts off"},
+    {"u_extrapolated_gap_mm", "decimal", "mm", "its standard uncertainty"},
+    {"state_because", "string", "", "the reason of the state"}};
 
 std::string Number(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "";
@@ -38,11 +72,11 @@ std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group) {
 
 std::string MakeCsv(std::span<const Group> groups,
                     std::span<const core::Trial> trials) {
-  std::string out =
-      "campaign,origin,watermark,body,surface,angle_kind,set_angle_deg,"
-      "angle_deg,u_angle_deg,state,paper_word,p_bounce,max_gap_mm,"
-      "u_max_gap_mm,bounce_height_mm,micro_bounce,left_out,clip,trial,"
-      "revision,extrapolated_gap_mm,u_extrapolated_gap_mm,state_because\r\n";
+  std::string out;
+  for (const CsvField& field : kFields) {
+    out += (out.empty() ? "" : ",") + std::string(field.name);
+  }
+  out += "\r\n";
   for (const Group& group : groups) {
     const auto left_out = ReasonsLeftOut(group);
     for (const std::size_t t : group.members) {
@@ -83,6 +117,26 @@ std::string MakeCsv(std::span<const Group> groups,
     }
   }
   return out;
+}
+
+// The W3C's vocabulary for tabular data, so that a program can read the columns
+// without a person.
+std::string CsvSchema() {
+  using Json = nlohmann::ordered_json;
+  Json columns = Json::array();
+  for (const CsvField& field : kFields) {
+    Json column = {{"name", field.name},
+                   {"titles", field.name},
+                   {"dc:description", field.meaning},
+                   {"datatype", field.type}};
+    if (*field.unit != '\0') column["schema:unitText"] = field.unit;
+    columns.push_back(std::move(column));
+  }
+  const Json schema = {{"@context", "http://www.w3.org/ns/csvw"},
+                       {"url", "table1.csv"},
+                       {"dc:title", "one row a trial; empty cells are absent"},
+                       {"tableSchema", {{"columns", std::move(columns)}}}};
+  return schema.dump(1) + "\n";
 }
 
 }  // namespace touchdown::report

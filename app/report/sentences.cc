@@ -46,9 +46,11 @@ std::string BoundarySentence(const analysis::BoundaryStudy& study) {
         (is_below ? p.interval95_rad.high : p.interval95_rad.low) / kDegree,
         is_below ? "below" : "above");
   }
-  return fmt::format("{:.1f} deg, 95 % interval {:.1f} to {:.1f} deg",
-                     p.median_rad / kDegree, p.interval95_rad.low / kDegree,
-                     p.interval95_rad.high / kDegree);
+  const int decimals = Decimals(p.sd_rad / kDegree);
+  return fmt::format("{:.{}f} deg, 95 % interval {:.{}f} to {:.{}f} deg",
+                     p.median_rad / kDegree, decimals,
+                     p.interval95_rad.low / kDegree, decimals,
+                     p.interval95_rad.high / kDegree, decimals);
 }
 
 std::string AgreementSentence(const analysis::TheoryComparison& theory) {

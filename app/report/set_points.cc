@@ -22,9 +22,9 @@ using Members = std::span<const std::size_t>;
 std::string ErrorNumber(const core::Estimate& measured,
                         const core::Estimate& expected) {
   if (!(measured.u > 0.0) && !(expected.u > 0.0)) return "u = 0";
-  return fmt::format("{:+.2f}",
-                     analysis::NormalizedError(measured.value, 2 * measured.u,
-                                               expected.value, 2 * expected.u));
+  return Signed(analysis::NormalizedError(measured.value, 2 * measured.u,
+                                          expected.value, 2 * expected.u),
+                2);
 }
 
 std::string ErrorNumber(const core::Measured& measured,
@@ -32,18 +32,18 @@ std::string ErrorNumber(const core::Measured& measured,
   return measured && expected ? ErrorNumber(*measured, *expected) : "";
 }
 
-// E_n = (measured - set) / U with U = 2 u of the measurement: the setting's own
-// uncertainty is the rig's, and not in a trial.
+// Without E_n: it counts both uncertainties, and the setting's is the rig's,
+// not in a trial. MakePredictionTable() has it.
 Table MakeSetTable(Members members, std::span<const core::Trial> trials,
                    const ReportInput& input) {
   const bool with_speed = std::any_of(
       members.begin(), members.end(),
       [&](std::size_t t) { return trials[t].set_speed_mps.has_value(); });
-  Table table{"Set-points beside measurement",
-              {{"set angle (deg)", true},
-               {"measured - set (deg)", true},
-               {"E_n of the angle", true}},
-              {}};
+  Table table{
+      "Set-points beside measurement",
+      {{"set angle (deg)", true},
+       {fmt::format("measured minus set {} u (deg)", kPlusMinus), true}},
+      {}};
   if (with_speed) {
     table.columns.push_back({"set launch speed (m/s)", true});
     table.columns.push_back(
@@ -53,14 +53,13 @@ Table MakeSetTable(Members members, std::span<const core::Trial> trials,
   for (const std::size_t t : members) {
     const core::Trial& trial = trials[t];
     if (!trial.set_angle_rad && !trial.set_speed_mps) continue;
-    std::vector<Cell> row(3);
+    std::vector<Cell> row(2);
     const core::Measured& angle = core::ContactAngle(trial);
     if (trial.set_angle_rad) {
       row[0].text = Plain(*trial.set_angle_rad / kDegree);
       if (angle) {
-        row[1].text = fmt::format(
-            "{:+.3f}", (angle->value - *trial.set_angle_rad) / kDegree);
-        row[2].text = ErrorNumber(*angle, {*trial.set_angle_rad, 0.0, {}});
+        row[1].text = DifferenceWithU(
+            {angle->value - *trial.set_angle_rad, angle->u, {}}, kDegree);
       }
     }
     if (with_speed) {
@@ -176,9 +175,9 @@ std::string SetPointText(const Group& group) {
   }
   if (n == 0) return "";
   return fmt::format(
-      "Measured minus set angle over {} trials: mean {:+.3f} deg, root mean "
-      "square {:.3f} deg.",
-      n, sum / n, std::sqrt(squares / n));
+      "Measured minus set angle over {} trials: mean {} deg, root mean square "
+      "{:.3f} deg.",
+      n, Signed(sum / n, 3), std::sqrt(squares / n));
 }
 
 }  // namespace

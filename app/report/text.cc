@@ -12,6 +12,28 @@ bool IsPlainNumber(const std::string& text) {
   return end == text.c_str() + text.size();
 }
 
+bool Contains(std::string_view characters, char c) {
+  return characters.find(c) != std::string_view::npos;
+}
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+// Digits with at most one point, then the end of a word: not "3.mraw".
+bool BeginsWithNumber(std::string_view text) {
+  std::size_t at = 0;
+  const auto skip_digits = [&] {
+    while (at < text.size() && IsDigit(text[at])) ++at;
+  };
+  skip_digits();
+  if (at == 0) return false;
+  if (at + 1 < text.size() && text[at] == '.' && IsDigit(text[at + 1])) {
+    ++at;
+    skip_digits();
+  }
+  if (at < text.size() && text[at] == '.') ++at;  // of the sentence
+  return at == text.size() || Contains(" )],;:%", text[at]);
+}
+
 }  // namespace
 
 std::string HtmlEscape(std::string_view text) {
@@ -36,6 +58,24 @@ std::string HtmlEscape(std::string_view text) {
         break;
       default:
         out += c;
+    }
+  }
+  return out;
+}
+
+std::string Typeset(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || Contains(" ([,;", text[i - 1]);
+    if (begins && text.substr(i, 3) == "+- ") {
+      out += "\u00b1";
+      ++i;
+    } else if (begins && text[i] == '-' &&
+               BeginsWithNumber(text.substr(i + 1))) {
+      out += "\u2212";
+    } else {
+      out += text[i];
     }
   }
   return out;

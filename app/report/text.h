@@ -1,4 +1,4 @@
-// Small text helpers of every report: escaping.
+// Small text helpers of every report: signs, escaping.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,10 @@ namespace touchdown::report {
 
 // Text that is safe inside HTML elements and quoted attributes.
 std::string HtmlEscape(std::string_view text);
+
+// Signs as a printer sets them: the minus of a number ("-0.5" at the beginning
+// or after a space or bracket) and "+-" between two. Names keep their hyphens.
+std::string Typeset(std::string_view text);
 
 // One CSV cell (RFC 4180): quoted where it must be. A cell that a spreadsheet
 // would run as a formula (it starts with = + - @ or a tab, and is not a plain

@@ -80,8 +80,8 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials,
     row.push_back({WithUOrReason(core::ContactAngle(trial), kDegree)});
     row.push_back(StateCell(state));
     row.push_back({PaperWord(state.label)});
-    row.push_back(
-        {state.p_bounce ? Plain(*state.p_bounce, 4) : std::string("absent")});
+    row.push_back({state.p_bounce ? Probability(*state.p_bounce)
+                                  : std::string("absent")});
     row.push_back({GapText(state)});
     if (theory != nullptr) {
       row.push_back(AgreesCell(

@@ -9,6 +9,7 @@
 #include "app/pipeline/analyze.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/report_input.h"
+#include "app/pipeline/report_pictures.h"
 #include "app/pipeline/statement.h"
 #include "app/review/fields.h"
 #include "touchdown/core/errors.h"
@@ -79,6 +80,8 @@ std::size_t BuildReport(const std::filesystem::path& store,
   report::ReportInput input =
       pipeline::InputOf(pipeline::SelectTrials(options));
   input.reach_of = reach_of;
+  input.details = pipeline::DetailsBeside(store);
+  pipeline::AddPictures(input);
   report::WriteReport(report::MakeReport(input), folder);
   return input.trials.size();
 }

@@ -9,6 +9,7 @@
 
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
+#include "app/report/report.h"
 #include "app/report/text_file.h"
 #include "app/report/trial_list.h"
 #include "app/review/corrections.h"
@@ -165,11 +166,10 @@ std::optional<TrialPath> TrialPathOf(const std::string& path) {
 // --- report ------------------------------------------------------------------
 
 Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
-  // The five files that a report is, and no other of the folder.
-  static constexpr std::string_view kNames[] = {
-      "table1.html", "table1.md", "table1.csv", "table1.tex", "table1.json"};
-  if (std::find(std::begin(kNames), std::end(kNames), name) ==
-      std::end(kNames)) {
+  // The files that a report is, and no other of the folder.
+  if (std::find(std::begin(report::kReportFiles),
+                std::end(report::kReportFiles),
+                name) == std::end(report::kReportFiles)) {
     throw NotThere(request.path);
   }
   const auto text = report::ReadTextFile(desk.reports() / name);

@@ -102,9 +102,24 @@ TEST(ReportPage, IsQuietAsksForNothingAndPrints) {
   EXPECT_THAT(visit.console, IsEmpty());
   EXPECT_THAT(visit.requests, IsEmpty());
   EXPECT_THAT(visit.pdf.substr(0, 8), HasSubstr("%PDF-"));
-  // Page 1, two groups, the paper and the methods: on A4 from 4 to 9 pages.
-  EXPECT_GE(CountPages(visit.pdf), 4);
-  EXPECT_LE(CountPages(visit.pdf), 9);
+  // Page 1, Table 1, two groups, the annexes: on A4 from 6 to 14 pages.
+  EXPECT_GE(CountPages(visit.pdf), 6);
+  EXPECT_LE(CountPages(visit.pdf), 14);
+}
+
+TEST(ReportPage, ThePdfIsTaggedAndHasAnOutline) {
+  if (FindBrowser().empty()) GTEST_SKIP() << "chromium is not installed";
+  const TemporaryFolder folder;
+  const auto ran = RunProgram("report --paper-table1 --pdf --json --out " +
+                              (folder.path() / "report").string());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("table1.pdf"));
+  const std::string pdf = ReadAll(folder.path() / "report" / "table1.pdf");
+  for (const char* part :
+       {"%PDF-", "/StructTreeRoot", "/Outlines", "/Lang (en"}) {
+    EXPECT_THAT(pdf, HasSubstr(part));
+  }
+  EXPECT_GE(CountPages(pdf), 6);
 }
 
 TEST(ReportPage, APageOfEvidenceIsQuietAndPrints) {

@@ -31,6 +31,18 @@ bool Has(const std::string& text, std::string_view part) {
   return text.find(part) != std::string::npos;
 }
 
+// What page 1 says of the theory begins with.
+const std::string kTheory = "**Does the theory agree**: ";
+
+int Count(const std::string& text, std::string_view part) {
+  int n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos;
+       at = text.find(part, at + 1)) {
+    ++n;
+  }
+  return n;
+}
+
 struct Shot {
   double set_deg;
   double angle_deg;
@@ -103,8 +115,8 @@ TEST(MakeReport, SimulatedTrialsAreWatermarkedAndGetNoVerdict) {
   EXPECT_TRUE(Has(report.html, "SIMULATED"));
   EXPECT_TRUE(Has(report.html, "yield no verdict"));
   EXPECT_TRUE(Has(report.markdown, "SIMULATED"));
-  for (const char* verdict : {"confirmed.", "contradicted.", "inconclusive."}) {
-    EXPECT_FALSE(Has(report.markdown, std::string("sphere: ") + verdict));
+  for (const char* verdict : {"Confirmed.", "Contradicted.", "Inconclusive."}) {
+    EXPECT_FALSE(Has(report.markdown, kTheory + verdict));
   }
   // Every line of the CSV bears the mark.
   std::istringstream csv(report.csv);
@@ -121,7 +133,7 @@ TEST(MakeReport, SimulatedTrialsAreWatermarkedAndGetNoVerdict) {
 TEST(MakeReport, RecordedTrialsGetAVerdictAndNoWatermark) {
   const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
   EXPECT_FALSE(Has(report.html, "class=\"simulated\""));
-  EXPECT_TRUE(Has(report.markdown, "sphere: inconclusive."));
+  EXPECT_TRUE(Has(report.markdown, kTheory + "Inconclusive."));
 }
 
 // Sixty shots about a boundary that rises by 2.4 deg from the first to the last
@@ -160,9 +172,9 @@ ReportInput Drifting(bool in_order) {
 
 TEST(MakeReport, ABoundaryThatDriftsIsNotConfirmed) {
   const Report steady = MakeReport(Drifting(false));
-  EXPECT_TRUE(Has(steady.markdown, "sphere: confirmed.")) << steady.markdown;
+  EXPECT_TRUE(Has(steady.markdown, kTheory + "Confirmed.")) << steady.markdown;
   const Report drifting = MakeReport(Drifting(true));
-  EXPECT_TRUE(Has(drifting.markdown, "sphere: inconclusive."));
+  EXPECT_TRUE(Has(drifting.markdown, kTheory + "Inconclusive."));
   EXPECT_TRUE(Has(drifting.markdown, "only its average lies within"));
   EXPECT_TRUE(Has(drifting.markdown, "not one boundary"));
   // What would decide is another campaign, not more of this one.
@@ -175,7 +187,7 @@ TEST(MakeReport, ADriftIsTheReasonOfWhatIsInconclusiveAnyway) {
   ReportInput input = Drifting(true);
   input.campaigns.back().margin_rad = 0.2 * kDegree;
   const Report report = MakeReport(input);
-  EXPECT_TRUE(Has(report.markdown, "sphere: inconclusive."));
+  EXPECT_TRUE(Has(report.markdown, kTheory + "Inconclusive."));
   EXPECT_TRUE(Has(report.markdown, "these trials have no one boundary; "));
   EXPECT_FALSE(Has(report.markdown, "would decide,"));
 }
@@ -327,10 +339,144 @@ TEST(MakeReport, WhatStandsBehindTheTrialsIsSaid) {
   input.trials[0].document_json = "{ damaged";
   const Report report = MakeReport(input);
   EXPECT_THAT(report.markdown, HasSubstr("Budget of the approach angle"));
-  EXPECT_THAT(report.markdown, HasSubstr("| localisation | 0.04 |"));
+  // Once: a row a trial, and the root mean square below.
+  EXPECT_EQ(Count(report.markdown, "Budget of the approach angle"), 1);
+  EXPECT_THAT(report.markdown,
+              HasSubstr("| clip or trial | localisation | ground | all |"));
+  EXPECT_THAT(report.markdown, HasSubstr("that count | 0.04 | 0.03 | 0.05 |"));
   EXPECT_THAT(report.markdown, HasSubstr("calibration (8 trials)"));
   EXPECT_THAT(report.markdown,
               HasSubstr("2000 frames/s, from the header (8 trials)"));
+}
+
+// Who knows nothing of the project reads this first.
+TEST(MakeReport, BeginsWithPlainWords) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  const std::string& text = report.markdown;
+  std::size_t at = 0;
+  for (const char* part :
+       {"What was tested",
+        "a sphere (diameter 40.000 \u00b1 0.020 mm); surface: "
+        "asphalt, dry. 9 trials, filmed, with the approach "
+        "angle from 0 to 90 deg",
+        "What came out", "stayed down in 4 trials and bounced in 5",
+        "bounces from about", "How sure",
+        "without any model, between 11.79 and "
+        "27.4 deg",
+        "Does the theory agree", "neither confirm nor contradict",
+        "May I rely on it", "not enough for a verdict",
+        "Order, laboratory, equipment", "Table 1: motion state"}) {
+    const std::size_t next = text.find(part, at);
+    ASSERT_NE(next, std::string::npos) << part << "\n" << text.substr(at, 900);
+    at = next;
+  }
+}
+
+TEST(MakeReport, AVerdictIsSaidOnce) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  EXPECT_EQ(Count(report.markdown, "neither confirm nor contradict"), 2)
+      << "one of each body";
+}
+
+TEST(MakeReport, TheCoverNamesWhatIsAbsent) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  input.made_on = "2026-11-23";
+  input.trials[0].recorded_at_utc = "2026-08-02T09:00:00.000Z";
+  input.trials[1].recorded_at_utc = "2026-08-09T09:00:00.000Z";
+  // Revised since: its shot was made earlier.
+  input.first_logged_utc[input.trials[1].id] = "2026-08-01T09:00:00.000Z";
+  core::Conditions conditions;
+  conditions.person.name = "Ada";
+  conditions.camera = {"south", "version-1"};
+  conditions.temperature_k = core::Estimate{core::kIcePoint_k + 21.5, 0.2};
+  conditions.anomaly = core::Anomaly::kLight;
+  conditions.anomaly_note = "a lamp failed";
+  input.trials[0].conditions = conditions;
+  db::Entry camera = db::NewEntry(db::RegisterKind::kCamera, "south");
+  camera.texts["serial"] = "4711";
+  input.register_entries = {camera};
+  input.details.file = "report.toml";
+  input.details.laboratory = "Rig hall";
+  input.details.equipment = {{"south", "", "2025-07-01", "2026-07-01", ""},
+                             {"plumb line", "P 2", "", "", ""}};
+  input.details.signatures = {{"tested by", "Ada"}};
+  const std::string text = MakeReport(input).markdown;
+  for (const char* part :
+       {"**laboratory**: Rig hall", "2026-08-01 to 2026-08-02",
+        "**operator**: Ada (1 trial)", "air 21.5 degC in 1 of 18 trials",
+        "light: a lamp failed (1 trial)", "17 of 18 trials say nothing",
+        "customer (customer.name)", "order (order.number)",
+        "**date of the report**: 2026-11-23",
+        "| camera | south | no. 4711 | 2025-07-01 | 2026-07-01, overdue at the "
+        "last trial | absent |",
+        "|  | plumb line | P 2 | absent | absent | absent |",
+        "| tested by | Ada |", "at most 5 of 100 campaigns"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+// As the paper has it: angles across, and the paper's own below each body.
+TEST(MakeReport, Table1HasTheAnglesAcross) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  EXPECT_THAT(report.markdown,
+              HasSubstr("| set angle (deg) | 0 | 3.9 | 7.8 | 11.8 | 27.4 | 43 "
+                        "| 58.7 | 74.4 | 90 |"));
+  const std::string words =
+      " | slide | slide | slide | slide | bounce | bounce | bounce | bounce | "
+      "bounce |";
+  EXPECT_THAT(report.markdown, HasSubstr("| sphere: motion state" + words));
+  EXPECT_THAT(report.markdown, HasSubstr("| sphere: the paper's own" + words));
+}
+
+// An E_n counts both uncertainties: without the rig's there is none.
+TEST(MakeReport, SetPointsWithoutARigHaveNoErrorNumber) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  EXPECT_THAT(report.markdown,
+              HasSubstr("| set angle (deg) | measured minus set \u00b1 u (deg) "
+                        "| clip or trial |"));
+  EXPECT_FALSE(Has(report.markdown, "E\\_n of the angle"));
+  EXPECT_THAT(report.markdown, HasSubstr("\u22120.013 \u00b1 0.048"));
+}
+
+TEST(MakeReport, NumbersAreTypesetAndNeverMinusZero) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  input.trials[0].first.contact.approach_angle_rad =
+      core::Estimate{-0.0001 * kDegree, 0.05 * kDegree};
+  for (const std::string& text :
+       {MakeReport(input).markdown, MakeReport(input).html}) {
+    for (const char* part : {"+-", "-0.00", "\u22120.00 ", " -0."}) {
+      EXPECT_FALSE(Has(text, part)) << part;
+    }
+  }
+}
+
+// A strip as the pipeline takes it, a path, and a trial that has neither.
+TEST(MakeReport, ShowsTheContactsAndThePaths) {
+  ReportInput input = Table1Input(core::Origin::kRecorded);
+  ContactStrip strip;
+  strip.px_per_m = 1000.0;
+  strip.pictures.push_back({"before: frame 4, 2.00 ms earlier",
+                            "PNG",
+                            {10, 20, 100, 75},
+                            {{20, 30}, {40, 30}, {40, 50}},
+                            {{0, 90}, {200, 90}},
+                            {{20, 30}, {60, 60}},
+                            {},
+                            core::PixelPoint{60, 90}});
+  input.strips.emplace(input.trials[0].id, strip);
+  input.no_strip.emplace(input.trials[1].id, "logged by hand");
+  input.trajectories.emplace(
+      input.trials[0].id,
+      Trajectory{{{-0.02, 0.04}, {0.0, 0.02}, {0.02, 0.02}}, {0.02, 0.0, 0.0}});
+  const Report report = MakeReport(input);
+  for (const char* part :
+       {"<figure class=\"strip\">", "href=\"data:image/png;base64,UE5H\"",
+        "viewBox=\"9.5 19.5 100 75\"", ">20 mm</text>", "stroke-dasharray",
+        "before: frame 4, 2.00 ms earlier", "Paths of 1 of 9 trials",
+        "logged by hand (1 trial)"}) {
+    EXPECT_THAT(report.html, HasSubstr(part));
+  }
+  EXPECT_THAT(report.markdown, HasSubstr("before: frame 4"));
 }
 
 TEST(MakeReport, RefusesTwoCampaignsOfOneName) {
@@ -436,18 +582,26 @@ TEST(MakeReport, TheUserChoosesTheBins) {
   EXPECT_THAT(text, HasSubstr("slide 4, bounce 1"));
 }
 
-TEST(WriteReport, WritesFiveFilesAndNothingElse) {
+TEST(WriteReport, WritesItsFilesAndNothingElse) {
   const auto folder = std::filesystem::temp_directory_path() /
                       ("touchdown-report-test-" + std::to_string(getpid()));
-  WriteReport({"m", "c", "h", "t", "j"}, folder);
+  WriteReport({"m", "c", "h", "t", "j", "s"}, folder);
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     names.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(names, ::testing::UnorderedElementsAre(
-                         "table1.md", "table1.csv", "table1.html", "table1.tex",
-                         "table1.json"));
+  EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(kReportFiles));
   std::filesystem::remove_all(folder);
+}
+
+TEST(MakeReport, TheCsvSchemaHasTheColumnsOfTheCsv) {
+  const Report report = MakeReport(Table1Input(core::Origin::kRecorded));
+  const auto schema = nlohmann::json::parse(report.csv_schema);
+  std::string names;
+  for (const auto& column : schema["tableSchema"]["columns"]) {
+    names += (names.empty() ? "" : ",") + column["name"].get<std::string>();
+  }
+  EXPECT_EQ(names, report.csv.substr(0, report.csv.find("\r\n")));
 }
 
 TEST(WriteReport, AFolderThatCannotBeMadeIsAnInputError) {

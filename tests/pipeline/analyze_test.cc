@@ -279,7 +279,7 @@ TEST(AnalyzeFiles, EvidenceIsWhatAPersonCanCheck) {
     const Analysis analysis = Analyze(path, Known(film));
     const auto out = folder / "out/deep";
     std::filesystem::remove_all(out);
-    WriteEvidence(analysis, Known(film), out);
+    WriteEvidence(analysis, out);
     EXPECT_THAT(Names(out), UnorderedElementsAre("track.csv", "contact.png",
                                                  "analysis.json"));
     EXPECT_EQ(json::parse(testing::ReadAll(out / "analysis.json")),
@@ -296,7 +296,7 @@ TEST(AnalyzeFiles, EvidenceIsWhatAPersonCanCheck) {
     EXPECT_NEAR(row.Number("x_px"), analysis.track->poses.front().centre.x_px,
                 1e-4);
     // Again into the same folder: replaced, nothing left over.
-    WriteEvidence(analysis, Known(film), out);
+    WriteEvidence(analysis, out);
     EXPECT_EQ(Names(out).size(), 3u);
   }
 }
@@ -307,7 +307,7 @@ TEST(AnalyzeFiles, EvidenceOfNothing) {
   film.lead_in = film.frames + 10;
   film.frames = 20;
   const auto path = WriteFilm(film, folder / "empty.mraw");
-  WriteEvidence(Analyze(path, {}), {}, folder / "out");
+  WriteEvidence(Analyze(path, {}), folder / "out");
   EXPECT_THAT(Names(folder / "out"),
               UnorderedElementsAre("track.csv", "analysis.json"));
 }
@@ -319,7 +319,7 @@ TEST(AnalyzeFiles, UnwritableFolderIsNamedAndLeavesNothing) {
   const Analysis analysis = Analyze(path, Known(film));
   folder.Write("file", "not a folder");
   try {
-    WriteEvidence(analysis, {}, folder / "file/out");
+    WriteEvidence(analysis, folder / "file/out");
     ADD_FAILURE() << "written";
   } catch (const core::InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("file/out"));
@@ -328,7 +328,7 @@ TEST(AnalyzeFiles, UnwritableFolderIsNamedAndLeavesNothing) {
   // One of the names is taken by a folder: nothing half-written stays.
   std::filesystem::create_directories(folder / "taken/contact.png/x");
   try {
-    WriteEvidence(analysis, {}, folder / "taken");
+    WriteEvidence(analysis, folder / "taken");
     ADD_FAILURE() << "written";
   } catch (const core::InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("contact.png"));

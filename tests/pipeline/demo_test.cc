@@ -39,7 +39,15 @@ TEST(RunDemo, Table1IsRightAndItsUncertaintiesCover) {
   // No verdict rests on simulated trials, and the report says so.
   const std::string html = ReadAll(demo.report);
   EXPECT_NE(html.find("SIMULATED"), std::string::npos);
-  EXPECT_NE(html.find("no verdict"), std::string::npos);
+  EXPECT_NE(html.find("No verdict"), std::string::npos);
+  // Every contact is shown, and every path.
+  int strips = 0;
+  for (std::size_t at = html.find("class=\"strip\""); at != std::string::npos;
+       at = html.find("class=\"strip\"", at + 1)) {
+    ++strips;
+  }
+  EXPECT_EQ(strips, 18);
+  EXPECT_NE(html.find("touchdown: frame "), std::string::npos);
 
   // A second run adds revisions of the same trials, and says the same.
   const DemoResult again = RunDemo(options);

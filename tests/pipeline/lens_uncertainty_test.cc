@@ -293,7 +293,7 @@ TEST(ThroughALens, DocumentAndEvidence) {
   EXPECT_NEAR(json["ground"]["y1_px"].get<double>(), truth.p1.y_px, 0.3);
   EXPECT_NEAR(json["ground"]["y2_px"].get<double>(), truth.p2.y_px, 0.3);
   EXPECT_EQ(json["ground"]["ideal_px"].size(), 4u);
-  WriteEvidence(analysis, options, folder / "evidence");
+  WriteEvidence(analysis, folder / "evidence");
   EXPECT_TRUE(std::filesystem::exists(folder / "evidence" / "contact.png"));
 }
 

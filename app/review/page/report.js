@@ -4,6 +4,7 @@ import {element, post, tell} from './parts.js';
 const kFiles = [
   ['table1.html', 'the page, to read and to print'],
   ['table1.csv', 'one line a trial'],
+  ['table1.csv-metadata.json', 'what its columns mean'],
   ['table1.md', 'Markdown'],
   ['table1.tex', 'Table 1 for LaTeX'],
   ['table1.json', 'every number'],

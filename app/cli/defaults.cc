@@ -1,0 +1,150 @@
+// toml++ stays in this file.
+#include "app/cli/defaults.h"
+
+#include <fmt/core.h>
+#include <toml++/toml.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "app/report/text_file.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::cli {
+namespace {
+
+std::string Variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+// The option `name` or `name=value` is in the line.
+bool Has(const std::vector<std::string>& arguments, const std::string& name) {
+  return std::any_of(
+      arguments.begin(), arguments.end(), [&](const std::string& argument) {
+        return argument == name || argument.starts_with(name + "=");
+      });
+}
+
+// The command that the line calls: the last of the words at its beginning that
+// are names of commands.
+const CLI::App* CommandOf(const std::vector<std::string>& arguments,
+                          const CLI::App& app) {
+  const CLI::App* at = &app;
+  for (const std::string& word : arguments) {
+    const auto called = at->get_subcommands(
+        [&](const CLI::App* one) { return one->get_name() == word; });
+    if (called.empty()) break;
+    at = called.front();
+  }
+  return at;
+}
+
+// Letters to change, add or leave out (Levenshtein).
+std::size_t Distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+Defaults ReadDefaults(const std::filesystem::path& folder) {
+  Defaults out;
+  const std::filesystem::path path = folder / kDefaultsFile;
+  if (const auto text = report::ReadTextFile(path)) {
+    const std::string name = path.string();
+    try {
+      const toml::table table = toml::parse(*text, name);
+      for (const auto& [key, node] : table) {
+        std::string* to = key == "db"         ? &out.store
+                          : key == "campaign" ? &out.campaign
+                                              : nullptr;
+        const auto* value = node.as_string();
+        if (to == nullptr || value == nullptr) {
+          throw core::InputError(fmt::format(
+              "{}:{}: {}; expected db = \"lab.db\" and campaign = \"name\"",
+              name, key.source().begin.line, key.str()));
+        }
+        *to = value->get();
+      }
+    } catch (const toml::parse_error& error) {
+      throw core::InputError(fmt::format(
+          "{}:{}: {}", name, error.source().begin.line, error.description()));
+    }
+    // A store is named as seen from the folder.
+    if (!out.store.empty() && std::filesystem::path(out.store).is_relative() &&
+        !folder.empty()) {
+      out.store = (folder / out.store).string();
+    }
+  }
+  const std::string store = Variable(kStoreVariable);
+  if (!store.empty()) out = {store, ""};
+  const std::string campaign = Variable(kCampaignVariable);
+  if (!campaign.empty()) out.campaign = campaign;
+  return out;
+}
+
+void WriteDefaults(const Defaults& defaults,
+                   const std::filesystem::path& folder) {
+  toml::table table;
+  table.insert("db", defaults.store);
+  if (!defaults.campaign.empty()) table.insert("campaign", defaults.campaign);
+  std::ostringstream text;
+  text << table << "\n";
+  report::WriteTextFile(folder / kDefaultsFile, text.str());
+}
+
+std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
+                                      const CLI::App& app,
+                                      const Defaults& defaults) {
+  if (defaults.store.empty() || arguments.empty() ||
+      arguments.front() == "analyze") {
+    return arguments;
+  }
+  for (const char* own : {"--db", "--trials", "--paper-table1", "--help", "-h",
+                          "--details-example", "--columns"}) {
+    if (Has(arguments, own)) return arguments;
+  }
+  const CLI::App* command = CommandOf(arguments, app);
+  const auto add = [&](const char* option, const std::string& value) {
+    if (value.empty() || Has(arguments, option) ||
+        command->get_option_no_throw(option) == nullptr) {
+      return false;
+    }
+    arguments.push_back(fmt::format("{}={}", option, value));
+    return true;
+  };
+  if (add("--db", defaults.store)) add("--campaign", defaults.campaign);
+  return arguments;
+}
+
+std::string Nearest(std::string_view word,
+                    const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t least = word.size() / 3 + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = Distance(word, candidate);
+    if (distance < least || (distance == least && best.empty())) {
+      best = candidate;
+      least = distance;
+    }
+  }
+  return best;
+}
+
+}  // namespace touchdown::cli

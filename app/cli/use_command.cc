@@ -1,0 +1,61 @@
+// touchdown use lab.db "asphalt, block": what the next commands are about.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/command.h"
+#include "app/cli/defaults.h"
+#include "touchdown/db/store.h"
+
+namespace touchdown::cli {
+namespace {
+
+int RunUse(const Defaults& defaults) {
+  const db::Store store = db::Store::Open(defaults.store, db::OpenMode::kRead);
+  if (!defaults.campaign.empty()) {
+    std::vector<std::string> names;
+    for (const core::Campaign& campaign : store.Campaigns()) {
+      names.push_back(campaign.name);
+    }
+    if (std::find(names.begin(), names.end(), defaults.campaign) ==
+        names.end()) {
+      const std::string meant = Nearest(defaults.campaign, names);
+      throw std::invalid_argument(
+          fmt::format("{}: there is no campaign '{}'; {}", defaults.store,
+                      defaults.campaign,
+                      meant.empty() ? "see `touchdown campaign list`"
+                                    : "did you mean '" + meant + "'?"));
+    }
+  }
+  WriteDefaults(defaults, "");
+  fmt::print("{}: commands in this folder mean {}{}\n", kDefaultsFile,
+             defaults.store,
+             defaults.campaign.empty()
+                 ? ""
+                 : fmt::format(", campaign '{}'", defaults.campaign));
+  return 0;
+}
+
+}  // namespace
+
+void AddUse(CLI::App& app, Action& action) {
+  auto defaults = std::make_shared<Defaults>();
+  CLI::App* command = app.add_subcommand(
+      "use",
+      "Write touchdown.toml: the store and campaign that commands in this "
+      "folder mean where they name no --db. TOUCHDOWN_DB and "
+      "TOUCHDOWN_CAMPAIGN go before it; `analyze` logs only where told to");
+  command->add_option("store", defaults->store, "the trial store, e.g. lab.db")
+      ->required();
+  command->add_option("campaign", defaults->campaign, "one of its campaigns");
+  command->callback([defaults, &action] {
+    action = [defaults] { return RunUse(*defaults); };
+  });
+}
+
+}  // namespace touchdown::cli

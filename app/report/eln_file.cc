@@ -1,0 +1,119 @@
+#include "app/report/eln_file.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "app/report/evidence_page.h"
+#include "app/report/text_file.h"
+#include "app/report/zip_file.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// The one folder in the archive bears its name.
+constexpr std::string_view kRoot = "table1";
+
+std::string MediaType(const fs::path& name) {
+  const std::string kind = name.extension().string();
+  if (kind == ".html") return "text/html";
+  if (kind == ".csv") return "text/csv";
+  if (kind == ".json") return "application/json";
+  if (kind == ".md") return "text/markdown";
+  if (kind == ".tex") return "application/x-tex";
+  return "application/pdf";
+}
+
+// Relative to the report's folder, in an order that does not depend on it.
+std::vector<std::string> FilesOf(const ReportInput& input,
+                                 const fs::path& folder) {
+  std::vector<std::string> out(std::begin(kReportFiles),
+                               std::end(kReportFiles));
+  std::error_code ignored;
+  if (fs::exists(folder / "table1.pdf", ignored))
+    out.emplace_back("table1.pdf");
+  for (const core::Trial& trial : input.trials) {
+    const std::string page = EvidenceLink(input, trial);
+    if (!page.empty()) out.push_back(page);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Json Reference(const std::string& id) { return {{"@id", id}}; }
+
+std::string Metadata(const ReportInput& input,
+                     const std::vector<ZipEntry>& files) {
+  Json parts = Json::array();
+  Json graph = Json::array();
+  const std::string root = std::string(kRoot) + "/";
+  for (const ZipEntry& file : files) {
+    const std::string id = "./" + file.name.substr(root.size());
+    parts.push_back(Reference(id));
+    graph.push_back({{"@id", id},
+                     {"@type", "File"},
+                     {"name", fs::path(file.name).filename().string()},
+                     {"encodingFormat", MediaType(file.name)},
+                     {"contentSize", std::to_string(file.bytes.size())}});
+  }
+  const std::string laboratory = input.details.laboratory.empty()
+                                     ? "laboratory not named"
+                                     : input.details.laboratory;
+  Json report = {{"@id", "./"},
+                 {"@type", "Dataset"},
+                 {"name", input.title},
+                 {"description", input.source},
+                 {"datePublished", input.made_on},
+                 {"author", Reference("#laboratory")},
+                 {"hasPart", std::move(parts)}};
+  if (!input.details.number.empty()) {
+    report["identifier"] = input.details.number;
+  }
+  Json head = {
+      {{"@id", "ro-crate-metadata.json"},
+       {"@type", "CreativeWork"},
+       {"about", Reference("./")},
+       {"conformsTo", Reference("https://w3id.org/ro/crate/1.1")},
+       {"sdPublisher", Reference("#software")},
+       {"dateCreated", input.made_on}},
+      std::move(report),
+      {{"@id", "#laboratory"}, {"@type", "Organization"}, {"name", laboratory}},
+      {{"@id", "#software"},
+       {"@type", "SoftwareApplication"},
+       {"name", "touchdown"},
+       {"softwareVersion", input.software_version}}};
+  for (Json& one : graph) head.push_back(std::move(one));
+  const Json out = {{"@context", "https://w3id.org/ro/crate/1.1/context"},
+                    {"@graph", std::move(head)}};
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+void WriteEln(const ReportInput& input, const fs::path& folder) {
+  std::vector<ZipEntry> entries;
+  for (const std::string& name : FilesOf(input, folder)) {
+    auto bytes = ReadTextFile(folder / name);
+    if (!bytes) {
+      throw core::InputError(
+          fmt::format("{}: cannot be read; make the report again",
+                      (folder / name).string()));
+    }
+    entries.push_back({fmt::format("{}/{}", kRoot, name), std::move(*bytes)});
+  }
+  entries.insert(entries.begin(),
+                 {fmt::format("{}/ro-crate-metadata.json", kRoot),
+                  Metadata(input, entries)});
+  WriteTextFile(folder / "table1.eln", ZipArchive(entries));
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,179 @@
+#include "app/report/print_pdf.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "app/report/text_file.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/unfinished.h"
+
+namespace touchdown::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A browser that takes longer for one page hangs.
+constexpr std::chrono::seconds kLimit{120};
+
+// A folder of its own for the browser's profile, gone with it.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name =
+        (fs::temp_directory_path() / "touchdown-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw core::OutputError(
+          fmt::format("{}: no folder for the browser can be made there",
+                      fs::temp_directory_path().string()));
+    }
+    path_ = name;
+    unfinished_ = std::make_unique<core::Unfinished>(path_);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  std::unique_ptr<core::Unfinished> unfinished_;  // gone with a Ctrl-C, too
+};
+
+// The path as an address: bytes that are no plain letters by their numbers.
+std::string FileUrl(const fs::path& path) {
+  std::string out = "file://";
+  for (const char c : fs::absolute(path).string()) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                       (c >= '0' && c <= '9') || c == '/' || c == '-' ||
+                       c == '_' || c == '.';
+    out += plain ? std::string(1, c)
+                 : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+std::vector<std::string> Arguments(const fs::path& page, const fs::path& pdf,
+                                   const fs::path& scratch) {
+  std::vector<std::string> out{
+      "",
+      "--headless",
+      "--disable-gpu",
+      "--disable-dev-shm-usage",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--disable-extensions",
+      "--no-pdf-header-footer",
+      "--export-tagged-pdf",
+      "--generate-pdf-document-outline",
+      "--user-data-dir=" + (scratch / "profile").string(),
+      "--print-to-pdf=" + pdf.string()};
+  // It refuses root its sandbox. The page is ours and loads nothing.
+  if (geteuid() == 0) out.emplace_back("--no-sandbox");
+  out.push_back(FileUrl(page));
+  return out;
+}
+
+// Nothing where no program of that name is installed.
+bool Start(const char* name, std::vector<std::string> arguments,
+           const fs::path& scratch, pid_t& child) {
+  arguments[0] = name;
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const char* path = std::getenv("PATH");
+  std::array<std::string, 3> variables{
+      "HOME=" + scratch.string(), "LC_ALL=C.UTF-8",
+      std::string("PATH=") + (path != nullptr ? path : "/usr/bin:/bin")};
+  std::array<char*, 4> environment{variables[0].data(), variables[1].data(),
+                                   variables[2].data(), nullptr};
+  const std::string log = (scratch / "log").string();
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null",
+                                   O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
+                                   O_WRONLY | O_CREAT | O_APPEND, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  const int trouble = posix_spawnp(&child, name, &actions, nullptr, argv.data(),
+                                   environment.data());
+  posix_spawn_file_actions_destroy(&actions);
+  return trouble == 0;
+}
+
+// Whether it ended well within the limit.
+bool EndsWell(pid_t child) {
+  const auto end = std::chrono::steady_clock::now() + kLimit;
+  int status = 0;
+  while (true) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child) return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (ended < 0 && errno != EINTR) return false;
+    if (std::chrono::steady_clock::now() > end) {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+std::string LastLine(const fs::path& log) {
+  std::ifstream file(log);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+}  // namespace
+
+void PrintPdf(const fs::path& page, const fs::path& pdf) {
+  const Scratch scratch;
+  const fs::path printed = scratch.path() / "page.pdf";
+  pid_t child = -1;
+  bool started = false;
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome",
+                           "google-chrome-stable"}) {
+    started = Start(name, Arguments(page, printed, scratch.path()),
+                    scratch.path(), child);
+    if (started) break;
+  }
+  if (!started) {
+    throw core::InputError(
+        "chromium: not found; the PDF needs it: install the package chromium, "
+        "or print the page table1.html from any browser");
+  }
+  std::optional<std::string> bytes;
+  if (EndsWell(child)) bytes = ReadTextFile(printed);
+  if (!bytes) {
+    throw core::InputError(
+        fmt::format("chromium: printed no page: {}; print table1.html from any "
+                    "browser instead",
+                    LastLine(scratch.path() / "log")));
+  }
+  WriteTextFile(pdf, *bytes);
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,80 @@
+#include "app/report/eln_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "app/report/text_file.h"
+#include "app/report/zip_file.h"
+#include "tests/support/temporary_folder.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::report {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The check value of the CRC catalogues.
+TEST(Crc32, OfTheUsualNineDigits) {
+  EXPECT_EQ(Crc32("123456789"), 0xCBF43926U);
+  EXPECT_EQ(Crc32(""), 0U);
+}
+
+// Byte by byte as the specification has it.
+TEST(ZipArchive, OneStoredFile) {
+  const ZipEntry entry{"a/b", "hi"};
+  const std::string zip = ZipArchive({&entry, 1});
+  constexpr std::size_t kLocal = 30 + 3 + 2;
+  constexpr std::size_t kCentral = 46 + 3;
+  ASSERT_EQ(zip.size(), kLocal + kCentral + 22);
+  EXPECT_EQ(zip.substr(0, 4), "PK\x03\x04");
+  EXPECT_EQ(zip.substr(30, 5), "a/bhi");
+  EXPECT_EQ(zip.substr(kLocal, 4), "PK\x01\x02");
+  EXPECT_EQ(zip.substr(kLocal + kCentral, 4), "PK\x05\x06");
+  // The directory begins where the end record says.
+  EXPECT_EQ(static_cast<unsigned char>(zip[kLocal + kCentral + 16]), kLocal);
+}
+
+TEST(WriteEln, IsACrateOfTheReport) {
+  const testing::TemporaryFolder folder;
+  ReportInput input;
+  input.title = "A \"report\"";
+  input.made_on = "2026-11-23";
+  input.details.number = "17";
+  WriteReport(MakeReport(input), folder.path());
+  WriteEln(input, folder.path());
+  const std::string zip = *ReadTextFile(folder.path() / "table1.eln");
+  const std::size_t begin = zip.find('{');
+  const std::size_t end = zip.find("\n}\n", begin);
+  const auto crate = nlohmann::json::parse(zip.substr(begin, end + 3 - begin));
+  std::set<std::string> files;
+  for (const auto& entity : crate["@graph"]) {
+    if (entity["@type"] == "File") {
+      files.insert(entity["@id"].get<std::string>().substr(2));
+    }
+    if (entity["@id"] == "./") {
+      EXPECT_EQ(entity["identifier"], "17");
+      EXPECT_EQ(entity["hasPart"].size(), std::size(kReportFiles));
+    }
+  }
+  EXPECT_THAT(files, ::testing::UnorderedElementsAreArray(kReportFiles));
+  for (const std::string& file : files) {
+    EXPECT_THAT(zip, HasSubstr("table1/" + file));
+  }
+}
+
+TEST(WriteEln, AMissingFileIsNamed) {
+  const testing::TemporaryFolder folder;
+  try {
+    WriteEln({}, folder.path());
+    FAIL();
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("table1.csv: cannot be read"));
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::report
