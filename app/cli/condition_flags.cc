@@ -7,7 +7,7 @@
 
 #include "app/cli/store_flags.h"
 #include "app/cli/values.h"
-#include "app/report/edge_unit.h"
+#include "touchdown/core/edge_unit.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::cli {
@@ -20,7 +20,8 @@ constexpr const char* kAnomalyWords =
 constexpr const char* kForm =
     "KEY=VALUE with one of the keys rig, spring, camera, calibration, body, "
     "surface, operator (names in the register), temperature_c, "
-    "relative_humidity (0 .. 1), anomaly, anomaly_note";
+    "relative_humidity (0 .. 1), elevation_deg, compression_mm, "
+    "muzzle_height_mm, note, anomaly, anomaly_note";
 
 void ApplyOne(const std::string& flag, core::Conditions& conditions) {
   const std::size_t sign = flag.find('=');
@@ -34,7 +35,7 @@ void ApplyOne(const std::string& flag, core::Conditions& conditions) {
       return;
     }
     for (const auto& quantity : db::kConditionQuantities) {
-      const report::EdgeUnit unit = report::AtTheEdge(quantity.name);
+      const core::EdgeUnit unit = core::AtTheEdge(quantity.name);
       if (key != unit.stem + unit.suffix) continue;
       conditions.*quantity.member =
           ParseMeasured("--condition " + key, value, unit.factor, unit.offset);
@@ -47,6 +48,10 @@ void ApplyOne(const std::string& flag, core::Conditions& conditions) {
     }
     if (key == "anomaly_note") {
       conditions.anomaly_note = value;
+      return;
+    }
+    if (key == "note") {
+      conditions.note = value;
       return;
     }
   }

@@ -7,6 +7,7 @@
 
 #include "app/report/format.h"
 #include "app/report/trial_csv_columns.h"
+#include "touchdown/core/edge_unit.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/vision/flight.h"
@@ -111,7 +112,7 @@ Json QuantitiesJson(const core::ContactRecord& record) {
   Json out = Json::array();
   for (const auto& quantity : db::kContactQuantities) {
     const core::Measured& measured = db::At(record, quantity);
-    const report::EdgeUnit edge = report::AtTheEdge(quantity.name);
+    const core::EdgeUnit edge = core::AtTheEdge(quantity.name);
     Json row = {{"name", edge.stem + edge.suffix}};
     if (measured) {
       row["text"] = report::WithU(*measured, edge.factor);
@@ -235,7 +236,7 @@ Json ChangesJson(const core::Trial& before, const core::Trial& after) {
           {{"field", change.field}, {"from", change.from}, {"to", change.to}});
       continue;
     }
-    const report::EdgeUnit edge = report::AtTheEdge(quantity->name);
+    const core::EdgeUnit edge = core::AtTheEdge(quantity->name);
     const auto text = [&](const core::Trial& trial) {
       return report::WithUOrReason(db::At(trial.first, *quantity), edge.factor);
     };
