@@ -12,6 +12,7 @@
 #include "app/cli/seal_command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/pictures.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
@@ -126,6 +127,22 @@ int Columns() {
   return 0;
 }
 
+int Pictures(const DbFlags& flags) {
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  const auto trials = store.Trials();
+  const auto there = pipeline::KeptPictures(flags.db, trials);
+  std::size_t drawn = 0;
+  for (const core::Trial& trial : trials) {
+    if (there.contains(trial.id)) continue;
+    drawn += pipeline::KeepPicture(flags.db, trial) ? 1 : 0;
+  }
+  fmt::print("{} in {}: {} were there, {} drawn, {} not to be had\n",
+             Plural(trials.size(), "trial"),
+             Printable(pipeline::PicturesOf(flags.db).string()), there.size(),
+             drawn, trials.size() - there.size() - drawn);
+  return 0;
+}
+
 int Migrate(const DbFlags& flags) {
   const db::Migration migration = db::Migrate(flags.db);
   if (migration.from_version == migration.to_version) {
@@ -170,6 +187,13 @@ void AddDb(CLI::App& app, Action& action) {
       "the views that other programs read (docs/reading-the-store.md): every "
       "column with its unit and meaning");
   columns->callback([&action] { action = [] { return Columns(); }; });
+  CLI::App* pictures = command->add_subcommand(
+      "pictures",
+      "draw the contact of every trial that has no picture yet, from its "
+      "recording, into DB.evidence");
+  AddDbFlag(*pictures, flags->db);
+  pictures->callback(
+      [flags, &action] { action = [flags] { return Pictures(*flags); }; });
   CLI::App* merge = command->add_subcommand(
       "merge", "add what other stores hold; can be repeated");
   AddDbFlag(*merge, flags->db);

@@ -64,7 +64,8 @@ std::string Title(const Analysis& analysis) {
   return title;
 }
 
-// Nothing where no body was followed over a ground.
+}  // namespace
+
 std::optional<vision::ColourImage> ContactSheetOf(
     const Analysis& analysis, const AnalyzeOptions& options) {
   if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
@@ -84,8 +85,6 @@ std::optional<vision::ColourImage> ContactSheetOf(
   return vision::DrawContactSheet(*clip, track, *analysis.plane,
                                   analysis.contacts, sheet_options);
 }
-
-}  // namespace
 
 void WriteEvidence(const Analysis& analysis, const AnalyzeOptions& options,
                    const std::filesystem::path& folder) {
