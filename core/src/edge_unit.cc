@@ -12,7 +12,8 @@ EdgeUnit AtTheEdge(std::string_view inner) {
     double factor;
     double offset = 0.0;
   };
-  // As rig.toml has them, too. The longer endings first: "_rad_per_s" also ends in "_s", and "_n_per_m" in
+  // As rig.toml has them, too. The longer endings first: "_rad_per_s" also ends
+  // in "_s", and "_n_per_m" in
   // "_m", though it is no length.
   static constexpr Rule kRules[] = {
       {"_n_per_m", "_n_per_m", 1.0},

@@ -50,8 +50,8 @@ class ReadingTheStore : public ::testing::Test {
     const std::string bin =
         std::filesystem::path(TOUCHDOWN_BINARY).parent_path().string();
     return testing::RunProgram({"/bin/sh", "-c",
-                                "set -e; cd '" + folder_.path().string() + "'; PATH='" +
-                                    bin + "':$PATH; " + command},
+                                "set -e; cd '" + folder_.path().string() +
+                                    "'; PATH='" + bin + "':$PATH; " + command},
                                scratch_.path().string());
   }
   void SetUp() override {
