@@ -273,8 +273,7 @@ void CheckChain(Connection& connection, std::vector<std::string>& problems) {
         connection,
         fmt::format("SELECT {0} {1} AND NOT EXISTS (SELECT 1 FROM chain l "
                     "WHERE l.subject = '{2}' AND l.key = {0}) ORDER BY id",
-                    subject.key == "uuid" ? "uuid" : subject.key, subject.rows,
-                    subject.word));
+                    subject.key, subject.rows, subject.word));
     while (row.Step()) {
       problems.push_back(Describe(connection, subject.word, row.TakeText()) +
                          " is not in the chain: another program added it");
