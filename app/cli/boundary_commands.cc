@@ -160,9 +160,12 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         fmt::format("--bin-deg: {}; expected 0 to 90", flags.bin_deg));
   }
   input.bin_width_rad = flags.bin_deg * kDegree;
+  if (flags.evidence && !flags.store.empty()) {
+    input.pictures = pipeline::KeptPictures(flags.store, input.trials);
+  }
   if (!flags.evidence_pictures.empty()) {
-    input.pictures =
-        pipeline::FindPictures(flags.evidence_pictures, input.trials);
+    input.pictures.merge(
+        pipeline::FindPictures(flags.evidence_pictures, input.trials));
   }
   if (!flags.no_pictures) {
     // Pages of evidence are one file a trial: they have room for all.

@@ -225,8 +225,8 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
       return report::Reach{asked, "as --feasible-deg says"};
     };
   } else if (!flags.rig.empty()) {
-    input.reach_of =
-        pipeline::ReachOfRig(flags.rig, flags.speed_mps, CornerOf(flags));
+    input.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps,
+                                          CornerOf(flags), flags.store);
   }
   if (flags.support == kOfTheRig) {
     if (!input.reach_of) {

@@ -19,6 +19,10 @@ namespace touchdown::cli {
 using ConditionFlags = std::vector<std::string>;
 void AddConditionFlag(CLI::App& command, ConditionFlags& flags);
 
+// "KEY=VALUE" into `conditions`; the rest stays as it is. Throws
+// std::invalid_argument.
+void ApplyCondition(const std::string& text, core::Conditions& conditions);
+
 // Puts what was given into `conditions`; the rest stays as it is. Throws
 // std::invalid_argument naming what was given and what is expected.
 void ApplyConditions(const ConditionFlags& flags,

@@ -1,4 +1,4 @@
-// db check|backup|merge|migrate: care of the store.
+// db check|seal|backup|merge|migrate|columns: care of the store.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/seal_command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/pictures.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
+#include "touchdown/db/views.h"
 #include "touchdown/vision/clip_digest.h"
 
 namespace touchdown::cli {
@@ -24,6 +27,7 @@ struct DbFlags {
   std::string to;
   std::vector<std::string> from;
   bool no_clips = false;
+  std::string against;
 };
 
 std::string Plural(std::size_t n, std::string_view word) {
@@ -64,6 +68,7 @@ int Check(const DbFlags& flags) {
       report.clips_verified, report.clips_changed.size(),
       report.clips_missing.size(), report.clips_without_digest,
       flags.no_clips ? "; not looked at (--no-clips)" : "");
+  if (!flags.against.empty()) CheckSeal(store, flags.against);
   if (!report.problems.empty()) {
     throw core::StoreError(
         fmt::format("{}: {}; go back to a backup, or export what can be read",
@@ -109,14 +114,44 @@ int Merge(const DbFlags& flags) {
   return 0;
 }
 
+int Columns() {
+  std::vector<std::vector<std::string>> rows = {
+      {"view", "column", "type", "unit", "meaning"}};
+  for (const db::View& view : db::Views()) {
+    for (const db::ViewColumn& column : view.columns) {
+      rows.push_back({view.name, column.name, std::string(Name(column.type)),
+                      column.unit, column.meaning});
+    }
+  }
+  fmt::print("{}", Aligned(rows));
+  return 0;
+}
+
+int Pictures(const DbFlags& flags) {
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  const auto trials = store.Trials();
+  const auto there = pipeline::KeptPictures(flags.db, trials);
+  std::size_t drawn = 0;
+  for (const core::Trial& trial : trials) {
+    if (there.contains(trial.id)) continue;
+    drawn += pipeline::KeepPicture(flags.db, trial) ? 1 : 0;
+  }
+  fmt::print("{} in {}: {} were there, {} drawn, {} not to be had\n",
+             Plural(trials.size(), "trial"),
+             Printable(pipeline::PicturesOf(flags.db).string()), there.size(),
+             drawn, trials.size() - there.size() - drawn);
+  return 0;
+}
+
 int Migrate(const DbFlags& flags) {
   const db::Migration migration = db::Migrate(flags.db);
   if (migration.from_version == migration.to_version) {
     fmt::print("the store has version {}: nothing to do\n",
                migration.to_version);
   } else {
-    fmt::print("from version {} to {}\n", migration.from_version,
-               migration.to_version);
+    fmt::print("from version {} to {}; as it was, it is {}\n",
+               migration.from_version, migration.to_version,
+               Printable(migration.old_store.string()));
   }
   return 0;
 }
@@ -128,13 +163,18 @@ void AddDb(CLI::App& app, Action& action) {
   command->require_subcommand(1);
   auto flags = std::make_shared<DbFlags>();
   CLI::App* check = command->add_subcommand(
-      "check", "pages, foreign keys, the chain of revisions, the clips");
+      "check",
+      "pages, tables, the hash chain over all that was recorded, the clips");
   AddDbFlag(*check, flags->db);
   check->add_flag("--no-clips", flags->no_clips,
                   "do not read the clips again (it takes as long as reading "
                   "all their bytes)");
+  check->add_option("--against", flags->against,
+                    "a seal that was kept apart, its file or its head: names "
+                    "the first row that is not as it was sealed");
   check->callback(
       [flags, &action] { action = [flags] { return Check(*flags); }; });
+  AddSeal(*command, action);
   CLI::App* backup =
       command->add_subcommand("backup", "a whole copy, while others write");
   AddDbFlag(*backup, flags->db);
@@ -142,6 +182,18 @@ void AddDb(CLI::App& app, Action& action) {
       ->required();
   backup->callback(
       [flags, &action] { action = [flags] { return Backup(*flags); }; });
+  CLI::App* columns = command->add_subcommand(
+      "columns",
+      "the views that other programs read (docs/reading-the-store.md): every "
+      "column with its unit and meaning");
+  columns->callback([&action] { action = [] { return Columns(); }; });
+  CLI::App* pictures = command->add_subcommand(
+      "pictures",
+      "draw the contact of every trial that has no picture yet, from its "
+      "recording, into DB.evidence");
+  AddDbFlag(*pictures, flags->db);
+  pictures->callback(
+      [flags, &action] { action = [flags] { return Pictures(*flags); }; });
   CLI::App* merge = command->add_subcommand(
       "merge", "add what other stores hold; can be repeated");
   AddDbFlag(*merge, flags->db);

@@ -16,6 +16,7 @@
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/cli/tidy_export.h"
 #include "app/pipeline/paper_trials.h"
 #include "app/report/plan_json.h"
 #include "app/report/register_json.h"
@@ -34,21 +35,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Format { kCsv, kJsonLines };
+enum class Format { kCsv, kJsonLines, kTidy };
 
 Format FormatOf(const std::string& flag, const std::string& file) {
   const std::string kind =
       !flag.empty() ? flag : fs::path(file).extension().string();
   if (kind == "csv" || kind == ".csv") return Format::kCsv;
   if (kind == "jsonl" || kind == ".jsonl") return Format::kJsonLines;
+  if (flag == "tidy") return Format::kTidy;
   if (flag.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: the format does not follow from the name; give "
-                    "--format csv or --format jsonl",
+                    "--format csv, jsonl or (export) tidy",
                     file.empty() ? "stdout" : file));
   }
-  throw std::invalid_argument(
-      fmt::format("--format is '{}', must be csv or jsonl", flag));
+  throw std::invalid_argument(fmt::format(
+      "--format is '{}', must be csv, jsonl or (export) tidy", flag));
 }
 
 // --- export ------------------------------------------------------------------
@@ -121,6 +123,13 @@ int Export(const ExportFlags& flags) {
                     "list --db {}`",
                     flags.db, flags.campaign, flags.db));
   }
+  if (format == Format::kTidy) {
+    if (flags.out.empty()) {
+      throw std::invalid_argument("--out is missing, must be a folder");
+    }
+    WriteTidy(store, flags.campaign, flags.out);
+    return 0;
+  }
   if (flags.out.empty()) {
     WriteAll(std::cout, store, flags, format);
     std::cout.flush();
@@ -136,6 +145,7 @@ int Export(const ExportFlags& flags) {
   out.exceptions(std::ios::badbit);
   WriteAll(out, store, flags, format);
   file.Commit();
+  if (format == Format::kCsv) WriteTrialsSchema(flags.out);
   return 0;
 }
 
@@ -338,6 +348,9 @@ int Import(const ImportFlags& flags) {
   }
   if (flags.db.empty()) throw std::invalid_argument("--db is missing");
   const Format format = FormatOf(flags.format, flags.file);
+  if (format == Format::kTidy) {
+    throw std::invalid_argument("--format is 'tidy', must be csv or jsonl");
+  }
   const auto import_into = [&](const fs::path& db) {
     std::ifstream in(flags.file, std::ios::binary);
     if (!in || fs::is_directory(flags.file)) {
@@ -366,10 +379,13 @@ int Import(const ImportFlags& flags) {
 void AddExport(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand(
-      "export", "trials as CSV (flat) or JSON lines (lossless)");
+      "export",
+      "trials as CSV (flat, with its schema beside it), tidy CSV (a table for "
+      "each view) or JSON lines (lossless)");
   AddDbFlag(*command, flags->db);
-  command->add_option("--out", flags->out, "FILE.csv or FILE.jsonl; or stdout");
-  command->add_option("--format", flags->format, "csv or jsonl");
+  command->add_option("--out", flags->out,
+                      "FILE.csv or FILE.jsonl; or stdout; of tidy, a folder");
+  command->add_option("--format", flags->format, "csv, jsonl or tidy");
   command->add_option("--campaign", flags->campaign, "only of this campaign");
   command->callback(
       [flags, &action] { action = [flags] { return Export(*flags); }; });

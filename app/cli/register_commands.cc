@@ -18,9 +18,9 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/cli/values.h"
-#include "app/report/edge_unit.h"
 #include "app/report/register_json.h"
 #include "touchdown/calib/calibration_file.h"
+#include "touchdown/core/edge_unit.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/register.h"
 #include "touchdown/rig/description.h"
@@ -49,7 +49,7 @@ bool HasFile(RegisterKind kind) {
 }
 
 std::string EdgeName(const RegisterField& field) {
-  const report::EdgeUnit unit = report::AtTheEdge(field.name);
+  const core::EdgeUnit unit = core::AtTheEdge(field.name);
   return unit.stem + unit.suffix;
 }
 
@@ -118,7 +118,7 @@ void Apply(const EntryFlags& flags, Entry& entry) {
       case FieldType::kMeasured:
         entry.measured.insert_or_assign(
             key, ParseMeasured(FlagName(field), text,
-                               report::AtTheEdge(field.name).factor));
+                               core::AtTheEdge(field.name).factor));
         break;
       case FieldType::kEntry:
         entry.entries[key] = {text, ""};
@@ -136,7 +136,7 @@ std::string FieldText(const Entry& entry, const RegisterField& field) {
   switch (field.type) {
     case FieldType::kMeasured: {
       const core::Measured& number = entry.measured.at(key);
-      return number ? WithU(number, report::AtTheEdge(field.name).factor)
+      return number ? WithU(number, core::AtTheEdge(field.name).factor)
                     : "absent: " + Printable(number.error().reason);
     }
     case FieldType::kEntry:

@@ -52,7 +52,8 @@ int Run(const ReviewFlags& flags) {
           ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
                                   "leading, trailing or flush");
     }
-    options.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps, corner);
+    options.reach_of =
+        pipeline::ReachOfRig(flags.rig, flags.speed_mps, corner, flags.db);
   }
   // The server's threads leave these signals to the one that waits for them.
   sigset_t signals;

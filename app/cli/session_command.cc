@@ -14,6 +14,7 @@
 
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
+#include "app/cli/condition_flags.h"
 #include "app/cli/folder_watch.h"
 #include "app/cli/interruption.h"
 #include "app/cli/store_flags.h"
@@ -22,6 +23,7 @@
 #include "app/cli/values.h"
 #include "app/pipeline/journal.h"
 #include "app/pipeline/log_analysis.h"
+#include "app/pipeline/pictures.h"
 #include "app/pipeline/recordings.h"
 #include "app/session/session.h"
 #include "touchdown/core/errors.h"
@@ -51,6 +53,7 @@ struct Flags {
   int baud = 115200;
   double quiet_s = 1.0;
   AnalyzeFlags analyze;
+  ConditionFlags conditions;
 };
 
 // For the handlers of signals.
@@ -241,8 +244,8 @@ int Run(const Flags& flags) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   const core::Campaign campaign =
       pipeline::RequireCampaign(store, flags.campaign);
-  pipeline::Thrower thrower =
-      pipeline::MakeThrower(flags.rig, campaign, flags.speed_mps, corner);
+  pipeline::Thrower thrower = pipeline::MakeThrower(
+      flags.rig, campaign, flags.speed_mps, corner, flags.db);
   if (!flags.no_check) options.check = CheckOf(flags, campaign, thrower.rig);
   const session::SessionLock lock(flags.db);
   const auto before = session::ReadSession(flags.db);
@@ -254,6 +257,12 @@ int Run(const Flags& flags) {
     throw std::invalid_argument(
         "--operator is missing, must name who is at the rig");
   }
+  core::Conditions conditions =
+      ConditionsOf(flags.conditions, flags.db).value_or(core::Conditions{});
+  if (conditions.rig.name.empty()) {
+    conditions.rig = pipeline::KeepRig(store, thrower, options.operator_name);
+  }
+  options.conditions = conditions;
   CatchSignals();
   TerminalLines lines([] {
     if (rig::Driver* const driver = driven.load()) driver->Stop();
@@ -278,6 +287,9 @@ int Run(const Flags& flags) {
         .count();
   };
   ends.driver = &driver;
+  ends.keep_picture = [&store](const core::Trial& trial) {
+    pipeline::KeepPicture(store.path(), trial);
+  };
   fmt::print("{}", CampaignText(campaign));
   session::Session session(store, campaign, std::move(thrower), options, ends,
                            before);
@@ -301,7 +313,12 @@ void AddSession(CLI::App& app, Action& action) {
   AddDbFlag(*command, flags->db);
   command->add_option("--campaign", flags->campaign, "what is thrown for")
       ->required();
-  command->add_option("--rig", flags->rig, "rig.toml")->required();
+  command
+      ->add_option("--rig", flags->rig,
+                   "rig.toml, which is kept in the register; or the name of a "
+                   "rig there")
+      ->required();
+  AddConditionFlag(*command, flags->conditions);
   command
       ->add_option("--watch", flags->watch,
                    "the folder that recordings appear in")

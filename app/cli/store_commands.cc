@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
@@ -176,6 +177,18 @@ void ShowConditions(const core::Conditions& conditions,
   if (conditions.relative_humidity) {
     rows.push_back({"  relative humidity, %",
                     WithU(conditions.relative_humidity, kPercent)});
+  }
+  for (const auto& [name, number, unit] :
+       {std::tuple("  elevation, deg", &conditions.elevation_rad,
+                   core::kDegree),
+        std::tuple("  compression, mm", &conditions.compression_m,
+                   core::kMillimetre),
+        std::tuple("  muzzle height, mm", &conditions.muzzle_height_m,
+                   core::kMillimetre)}) {
+    if (*number) rows.push_back({name, WithU(*number, unit)});
+  }
+  if (!conditions.note.empty()) {
+    rows.push_back({"  note", Printable(conditions.note)});
   }
   rows.push_back(
       {"  anomaly", conditions.anomaly_note.empty()

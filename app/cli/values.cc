@@ -40,45 +40,6 @@ std::vector<std::string_view> Split(std::string_view text, char at) {
 
 }  // namespace
 
-core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double unit, DefaultU default_u) {
-  const std::string form =
-      "a number, or one with its standard uncertainty as in 40+-0.02";
-  const std::size_t sign = text.find("+-");
-  const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
-  if (!value || !std::isfinite(*value)) Refuse(flag, text, form);
-  if (sign == std::string::npos) {
-    return {
-        *value * unit,
-        std::max(default_u.relative * std::abs(*value), default_u.absolute) *
-            unit,
-        std::nullopt};
-  }
-  const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
-  if (!u || !std::isfinite(*u)) Refuse(flag, text, form);
-  if (*u < 0.0) {
-    throw std::invalid_argument(fmt::format(
-        "{} is '{}', its uncertainty must be at least 0", flag, text));
-  }
-  return {*value * unit, *u * unit, std::nullopt};
-}
-
-core::Measured ParseMeasured(const std::string& flag, const std::string& text,
-                             double unit, double offset) {
-  constexpr std::string_view kAbsent = "absent:";
-  if (text.starts_with(kAbsent) && text.size() > kAbsent.size()) {
-    return core::AbsentBecause(text.substr(kAbsent.size()));
-  }
-  if (text.find("+-") == std::string::npos) {
-    Refuse(flag, text,
-           "a number with its standard uncertainty as in 40+-0.02, or "
-           "absent:REASON");
-  }
-  core::Estimate estimate = ParseEstimate(flag, text, unit);
-  estimate.value += offset;
-  return estimate;
-}
-
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
                                                      double unit, DefaultU u) {

@@ -8,31 +8,20 @@
 #include <utility>
 #include <vector>
 
+#include "app/pipeline/typed_values.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/points.h"
 
 namespace touchdown::cli {
 
-// What a number is given without: `relative` of the value, and `absolute` in
-// its unit; the larger of the two.
-struct DefaultU {
-  double relative = 0.0;
-  double absolute = 0.0;
-};
+using pipeline::DefaultU;
+using pipeline::ParseEstimate;
+using pipeline::ParseMeasured;
 
 // Of a plain scale or size, everywhere (rig.toml too): 0.1 %, a caliper's 0.02
 // mm on 20 mm. Smaller claims more than a bare number tells; larger hides what
 // the picture says of a wrong one.
 inline constexpr DefaultU kPlainSize = {.relative = 1e-3};
-
-// "40" or "40+-0.02", in SI by `unit`.
-core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
-                             double unit, DefaultU u = {});
-
-// "40+-0.02", its standard uncertainty always given, or "absent:REASON"; in SI
-// as value * unit + offset.
-core::Measured ParseMeasured(const std::string& flag, const std::string& text,
-                             double unit, double offset = 0.0);
 
 // "60x20" or "60+-0.02x20+-0.02", likewise.
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,

@@ -1,9 +1,12 @@
 // The touchdown.analysis/1 document. Names are a contract: add fields, never
 // rename. An absent number is null, and its reason stands under "absent".
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/pipeline/analyze.h"
+#include "app/pipeline/judge.h"
 #include "app/pipeline/replay.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/units.h"
@@ -271,6 +274,26 @@ Json TrackOf(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
+// Where the body was, for people and other programs (the view v_tracks of the
+// store): a line of text for each frame.
+Json PathJson(const Analysis& analysis) {
+  const vision::PlaneTrack& plane = *analysis.plane;
+  const double mm =
+      1.0 / PxPerMetre(plane, *analysis.scale).value / core::kMillimetre;
+  Json rows = Json::array();
+  for (const vision::PlaneSample& s : plane.samples) {
+    const std::string face =
+        plane.kind == core::BodyKind::kRectangle
+            ? fmt::format("{:.4f}", s.face_rad / core::kDegree)
+            : "null";
+    rows.push_back(fmt::format("{} {} {:.4f} {:.4f} {:.4f} {}", s.frame,
+                               s.time_s, s.along_px * mm, s.height_px * mm,
+                               s.gap_px * mm, face));
+  }
+  return {{"columns", "frame time_s x_mm y_mm gap_mm face_angle_deg"},
+          {"rows", std::move(rows)}};
+}
+
 }  // namespace
 
 std::string ToJson(const Analysis& analysis) {
@@ -345,6 +368,7 @@ std::string ToJson(const Analysis& analysis) {
   if (!analysis.corrections.empty()) {
     json["corrections"] = analysis.corrections;
   }
+  if (analysis.plane && analysis.scale) json["path"] = PathJson(analysis);
   json["replay"] = ReplayJson(analysis);
   json["software"] = {{"version", std::string(Version())},
                       {"options_hash", analysis.options_hash}};

@@ -17,6 +17,7 @@
 #include "app/pipeline/journal.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/options_hash.h"
+#include "app/pipeline/pictures.h"
 #include "app/pipeline/set_aside.h"
 #include "touchdown/core/cancellation.h"
 #include "touchdown/core/errors.h"
@@ -167,6 +168,7 @@ class Batch {
       trial.set_angle_rad = clip.set_angle_rad;
       trial.set_speed_mps = clip.set_speed_mps;
       trial.conditions = options_.conditions;
+      KeepPicture(store_.path(), trial);
       answer.what = std::move(trial);
     } catch (const core::StoreError&) {
       throw;

@@ -62,7 +62,8 @@ std::string Title(const Analysis& analysis) {
   return title;
 }
 
-// Nothing where no body was followed over a ground.
+}  // namespace
+
 std::optional<vision::ColourImage> ContactSheetOf(const Analysis& analysis) {
   if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
     return std::nullopt;
@@ -74,8 +75,6 @@ std::optional<vision::ColourImage> ContactSheetOf(const Analysis& analysis) {
                                   *analysis.plane, analysis.contacts,
                                   sheet_options);
 }
-
-}  // namespace
 
 void WriteEvidence(const Analysis& analysis,
                    const std::filesystem::path& folder) {

@@ -2,10 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "app/pipeline/analyze.h"
+#include "touchdown/vision/contact_sheet.h"
 
 namespace touchdown::pipeline {
+
+// The frames around contact with what was measured drawn in; nothing where no
+// body was followed over a ground. Throws core::InputError where the clip
+// cannot be read again.
+std::optional<vision::ColourImage> ContactSheetOf(const Analysis& analysis);
 
 // Writes into `folder` (made where there is none):
 //   track.csv     one row a frame: image and plane coordinates with u

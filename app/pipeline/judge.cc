@@ -88,15 +88,19 @@ bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track) {
              track.poses.back().time_s - track.frame_interval_s;
 }
 
+core::Estimate PxPerMetre(const vision::PlaneTrack& plane,
+                          const calib::Scale& scale) {
+  return core::Scaled(scale.px_per_m,
+                      scale.source == calib::ScaleSource::kBodySize
+                          ? plane.size_stretch
+                          : plane.along_stretch);
+}
+
 vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
                                  const vision::ContactOptions& options) {
   vision::ContactOptions in_plane = options;
   if (in_plane.scale) {
-    in_plane.scale->px_per_m =
-        core::Scaled(in_plane.scale->px_per_m,
-                     in_plane.scale->source == calib::ScaleSource::kBodySize
-                         ? plane.size_stretch
-                         : plane.along_stretch);
+    in_plane.scale->px_per_m = PxPerMetre(plane, *options.scale);
   }
   return vision::FindContacts(plane, in_plane);
 }

@@ -28,6 +28,10 @@ bool PassesThrough(const vision::PlaneTrack& plane);
 // line that the path happens to point at will have one.
 bool IsAtTheEnd(const core::Contact& contact, const vision::Track& track);
 
+// Of the samples of `plane`, of which `scale` is that of the ideal picture.
+core::Estimate PxPerMetre(const vision::PlaneTrack& plane,
+                          const calib::Scale& scale);
+
 // FindContacts with `options` as of the ideal picture: a scale that was
 // measured along the ground, or by the body, is that of the plane.
 vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,

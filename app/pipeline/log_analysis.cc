@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "app/pipeline/pictures.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/store.h"
@@ -95,6 +96,7 @@ Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
     }
   }
   const db::Logged logged = store.LogTrial(trial);
+  KeepPicture(db, trial);
   return {logged.id, logged.revision, logged.is_proposal};
 }
 

@@ -2,12 +2,18 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "app/pipeline/evidence.h"
+#include "app/pipeline/journal.h"
+#include "app/pipeline/replay.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/vision/image_file.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -33,7 +39,58 @@ Key KeyOf(const fs::path& analysis) {
   return {TextAt(json, "clip", "id"), TextAt(json, "software", "options_hash")};
 }
 
+// Of the recording and the options of the analysis that the trial states;
+// nothing where a person or another program gave them a name that is none.
+std::optional<fs::path> PictureOf(const fs::path& store,
+                                  const core::Trial& trial) {
+  const std::string name =
+      fmt::format("{}-{}", trial.clip.id, trial.options_hash);
+  const bool is_plain = std::ranges::all_of(name, [](char c) {
+    return c == '-' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z');
+  });
+  if (trial.clip.id.empty() || !is_plain) return std::nullopt;
+  return PicturesOf(store) / (name + ".png");
+}
+
 }  // namespace
+
+fs::path PicturesOf(const fs::path& store) {
+  return store.string() + ".evidence";
+}
+
+bool KeepPicture(const fs::path& store, const core::Trial& trial) {
+  const auto picture = PictureOf(store, trial);
+  if (!picture) return false;
+  try {
+    auto analysis = Replay(trial);
+    if (!analysis) return false;
+    analysis->clip.path = trial.clip.path;
+    const auto sheet = ContactSheetOf(*analysis);
+    if (!sheet) return false;
+    std::error_code ignored;
+    fs::create_directories(PicturesOf(store), ignored);
+    vision::WritePngRgb(*picture, sheet->width_px, sheet->height_px,
+                        sheet->rgb);
+    return true;
+  } catch (const std::exception& trouble) {
+    Journal(fmt::format("no picture of the contact in {}: {}", trial.clip.path,
+                        trouble.what()));
+    return false;
+  }
+}
+
+std::map<std::string, fs::path> KeptPictures(
+    const fs::path& store, std::span<const core::Trial> trials) {
+  std::map<std::string, fs::path> out;
+  for (const core::Trial& trial : trials) {
+    const auto picture = PictureOf(store, trial);
+    std::error_code ignored;
+    if (picture && fs::is_regular_file(*picture, ignored)) {
+      out.emplace(trial.id, *picture);
+    }
+  }
+  return out;
+}
 
 std::map<std::string, fs::path> FindPictures(
     const fs::path& folder, std::span<const core::Trial> trials) {

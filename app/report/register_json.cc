@@ -89,6 +89,7 @@ Json ConditionsJson(const core::Conditions& conditions) {
   }
   json["anomaly"] = core::Name(conditions.anomaly);
   json["anomaly_note"] = TextJson(conditions.anomaly_note);
+  json["note"] = TextJson(conditions.note);
   return json;
 }
 
@@ -99,10 +100,14 @@ core::Conditions ConditionsOf(const Json& json) {
         RegisteredOf(json, std::string(Name(entry.kind)));
   }
   for (const auto& quantity : db::kConditionQuantities) {
-    conditions.*quantity.member = MeasuredOf(json, std::string(quantity.name));
+    const std::string key(quantity.name);
+    // An earlier program wrote none.
+    if (quantity.is_later && !json.contains(key)) continue;
+    conditions.*quantity.member = MeasuredOf(json, key);
   }
   conditions.anomaly = WordOf(json, "anomaly", core::ParseAnomaly);
   conditions.anomaly_note = TextOf(json, "anomaly_note");
+  if (json.contains("note")) conditions.note = TextOf(json, "note");
   return conditions;
 }
 

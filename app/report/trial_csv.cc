@@ -13,6 +13,7 @@
 #include "app/report/csv_record.h"
 #include "app/report/text.h"
 #include "app/report/trial_csv_columns.h"
+#include "touchdown/core/edge_unit.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/quantities.h"
 
@@ -161,7 +162,7 @@ CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
                                const core::Measured& measured) {
       if (measured && measured->u < 0 &&
           result.errors.size() == errors_before) {
-        const EdgeUnit unit = AtTheEdge(quantity);
+        const core::EdgeUnit unit = core::AtTheEdge(quantity);
         fail(unit.stem + "_u" + unit.suffix, "",
              "a standard uncertainty was expected beside the value");
       }

@@ -17,6 +17,7 @@ namespace touchdown::report {
 struct CsvColumn {
   std::string name;
   std::string meaning;
+  bool is_number = false;  // else a text or a word
 };
 const std::vector<CsvColumn>& TrialCsvColumns();
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "touchdown/core/edge_unit.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
@@ -75,11 +76,11 @@ class Columns {
   }
 
   // Two columns, value and standard uncertainty, in the unit of the edge.
-  void Measured(std::string_view inner,
+  void Measured(std::string_view inner, std::string_view meaning,
                 core::Measured& (*select)(Trial&, std::size_t),
                 std::size_t index) {
     Measured(
-        inner,
+        inner, meaning,
         [select, index](const Trial& t) {
           return &select(const_cast<Trial&>(t), index);
         },
@@ -87,13 +88,14 @@ class Columns {
   }
 
   // `get` may give nothing, which is an empty cell; `set` never does.
-  void Measured(std::string_view inner,
+  void Measured(std::string_view inner, std::string_view meaning,
                 const std::function<const core::Measured*(const Trial&)>& get,
                 const std::function<core::Measured*(Trial&)>& set) {
-    const EdgeUnit unit = AtTheEdge(inner);
+    const core::EdgeUnit unit = core::AtTheEdge(inner);
     const std::string u_name = unit.stem + "_u" + unit.suffix;
     columns_.push_back(
-        {{unit.stem + unit.suffix, "measured; empty: absent"},
+        {{unit.stem + unit.suffix, fmt::format("{}; empty: absent", meaning),
+          true},
          [get, unit](const Trial& t) {
            const auto* m = get(t);
            if (m == nullptr || !*m) return std::string();
@@ -114,7 +116,7 @@ class Columns {
            }
          }});
     columns_.push_back(
-        {{u_name, "its standard uncertainty"},
+        {{u_name, "its standard uncertainty", true},
          [get, unit](const Trial& t) {
            const auto* m = get(t);
            return m != nullptr && *m ? Shortest((*m)->u / unit.factor)
@@ -141,7 +143,7 @@ class Columns {
 
 TrialColumn OptionalNumber(std::string name, std::string meaning, double factor,
                            std::optional<double>& (*at)(Trial&)) {
-  return {{std::move(name), std::move(meaning)},
+  return {{std::move(name), std::move(meaning), true},
           [at, factor](const Trial& t) {
             const auto& value = at(const_cast<Trial&>(t));
             return value ? Shortest(*value / factor) : std::string();
@@ -174,14 +176,19 @@ void AddConditions(Columns& c) {
              Stated(t).*member = {cell, ""};
            }});
   }
-  for (const auto& [name, member] : db::kConditionQuantities) {
+  for (const auto& quantity : db::kConditionQuantities) {
     c.Measured(
-        name,
-        [member = member](const Trial& t) {
+        quantity.name, quantity.meaning,
+        [member = quantity.member](const Trial& t) {
           return t.conditions ? &((*t.conditions).*member) : nullptr;
         },
-        [member = member](Trial& t) { return &(Stated(t).*member); });
+        [member = quantity.member](Trial& t) { return &(Stated(t).*member); });
   }
+  c.Add({{"note", "the operator's"},
+         [](const Trial& t) {
+           return t.conditions ? t.conditions->note : std::string();
+         },
+         [](Trial& t, const std::string& cell) { Stated(t).note = cell; }});
   c.Add({{"anomaly",
           "none, rig, camera, light, body, surface, operator, other, not "
           "applicable or not recorded"},
@@ -226,7 +233,8 @@ std::vector<TrialColumn> MakeColumns() {
       [](Trial& t) -> core::BodyKind& { return t.body.kind; },
       core::ParseBodyKind, "sphere or rectangle");
   for (std::size_t i = 0; i < db::kBodyQuantities.size(); ++i) {
-    c.Measured(db::kBodyQuantities.at(i).name, BodyMeasured, i);
+    c.Measured(db::kBodyQuantities.at(i).name,
+               db::kBodyQuantities.at(i).meaning, BodyMeasured, i);
   }
   c.Word<core::AngleKind>(
       "angle_kind", "which angle is the contact angle",
@@ -270,7 +278,8 @@ std::vector<TrialColumn> MakeColumns() {
            }
          }});
   for (std::size_t i = 0; i < db::kContactQuantities.size(); ++i) {
-    c.Measured(db::kContactQuantities.at(i).name, ContactMeasured, i);
+    c.Measured(db::kContactQuantities.at(i).name,
+               db::kContactQuantities.at(i).meaning, ContactMeasured, i);
   }
   AddConditions(c);
   c.Text("clip_path", "where the clip was last seen",

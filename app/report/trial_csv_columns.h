@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/edge_unit.h"
 #include "app/report/trial_csv.h"
 #include "touchdown/core/trial.h"
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/pipeline/judge.h"
+#include "app/pipeline/pictures.h"
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
 #include "app/pipeline/whole_number.h"
@@ -135,7 +136,9 @@ db::Logged Revise(db::Store& store, const std::string& id,
     throw std::invalid_argument("nothing would change; correct something");
   }
   try {
-    return store.Correct(trial, who, why);
+    const db::Logged logged = store.Correct(trial, who, why);
+    pipeline::KeepPicture(store.path(), trial);
+    return logged;
   } catch (const core::StoreError&) {
     // Between looking and writing somebody else may have been quicker.
     const auto now = store.Find(id);

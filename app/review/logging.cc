@@ -8,16 +8,35 @@
 
 #include "app/pipeline/analyze.h"
 #include "app/pipeline/log_analysis.h"
+#include "app/pipeline/pictures.h"
 #include "app/pipeline/report_input.h"
 #include "app/pipeline/report_pictures.h"
 #include "app/pipeline/statement.h"
+#include "app/pipeline/typed_values.h"
 #include "app/review/fields.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::review {
 namespace {
 
 using pipeline::FieldError;
+
+// Under "conditions": what was filled in, by the keys of --condition.
+std::optional<core::Conditions> ConditionsOf(const nlohmann::json& asked) {
+  std::optional<core::Conditions> conditions;
+  const auto given = asked.find("conditions");
+  if (given == asked.end()) return conditions;
+  for (const auto& [key, value] : given->items()) {
+    const std::string text = TextOf(*given, key.c_str());
+    if (text.empty()) continue;
+    if (!conditions) conditions.emplace();
+    if (!pipeline::SetCondition(key, text, *conditions)) {
+      throw FieldError(key, "is no condition of a shot");
+    }
+  }
+  return conditions;
+}
 
 pipeline::Statement StatementOf(const nlohmann::json& asked) {
   pipeline::Statement out;
@@ -28,6 +47,7 @@ pipeline::Statement StatementOf(const nlohmann::json& asked) {
   out.set_angle_deg = NumberOf(asked, "set_angle_deg");
   out.set_speed_mps = NumberOf(asked, "set_speed_mps");
   out.note = TextOf(asked, "note");
+  out.conditions = ConditionsOf(asked);
   return out;
 }
 
@@ -57,18 +77,25 @@ db::Logged LogRecording(const std::filesystem::path& store,
   pipeline::Statement setting;
   setting.set_angle_deg = NumberOf(asked, "set_angle_deg");
   setting.set_speed_mps = NumberOf(asked, "set_speed_mps");
+  setting.conditions = ConditionsOf(asked);
   core::Trial rehearsal;
   pipeline::Apply(setting, rehearsal);  // before the work, not after it
   pipeline::AnalyzeOptions options;
-  const core::Campaign campaign = pipeline::RequireCampaign(
-      db::Store::Open(store, db::OpenMode::kRead), name);
+  const auto open = db::Store::Open(store, db::OpenMode::kRead);
+  const core::Campaign campaign = pipeline::RequireCampaign(open, name);
+  if (setting.conditions) {
+    setting.conditions = db::Resolved(open, *setting.conditions);
+  }
   pipeline::FillFromCampaign(campaign, options);
   options.limit_s = pipeline::kUsualLimit_s;
   core::Trial trial =
       pipeline::LoggableTrial(pipeline::Analyze(clip, options), &campaign);
   pipeline::Apply(setting, trial);
   trial.reason = "logged on the review page by " + who;
-  return db::Store::Open(store, db::OpenMode::kWrite).LogTrial(trial);
+  const db::Logged logged =
+      db::Store::Open(store, db::OpenMode::kWrite).LogTrial(trial);
+  pipeline::KeepPicture(store, trial);
+  return logged;
 }
 
 std::size_t BuildReport(const std::filesystem::path& store,

@@ -1,5 +1,7 @@
 #include "app/review/trial_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,8 +9,10 @@
 
 #include "app/report/format.h"
 #include "app/report/trial_csv_columns.h"
+#include "touchdown/core/edge_unit.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
+#include "touchdown/db/register.h"
 #include "touchdown/vision/flight.h"
 
 namespace touchdown::review {
@@ -111,7 +115,7 @@ Json QuantitiesJson(const core::ContactRecord& record) {
   Json out = Json::array();
   for (const auto& quantity : db::kContactQuantities) {
     const core::Measured& measured = db::At(record, quantity);
-    const report::EdgeUnit edge = report::AtTheEdge(quantity.name);
+    const core::EdgeUnit edge = core::AtTheEdge(quantity.name);
     Json row = {{"name", edge.stem + edge.suffix}};
     if (measured) {
       row["text"] = report::WithU(*measured, edge.factor);
@@ -209,6 +213,37 @@ Json ViewJson(const pipeline::Analysis& analysis) {
   return view;
 }
 
+namespace {
+
+// With what the shot was made, in the words of --condition; what was not
+// recorded is left out.
+Json ConditionsJson(const core::Trial& trial) {
+  Json out = Json::array();
+  if (!trial.conditions) return out;
+  const core::Conditions& conditions = *trial.conditions;
+  const auto add = [&out](std::string_view name, const std::string& text) {
+    if (!text.empty()) out.push_back({{"name", name}, {"text", text}});
+  };
+  for (const auto& entry : db::kConditionEntries) {
+    add(Name(entry.kind), (conditions.*entry.member).name);
+  }
+  for (const auto& quantity : db::kConditionQuantities) {
+    core::Measured number = conditions.*quantity.member;
+    if (!number) continue;
+    const core::EdgeUnit edge = core::AtTheEdge(quantity.name);
+    number->value -= edge.offset;
+    add(edge.stem + edge.suffix, report::WithU(*number, edge.factor));
+  }
+  add("note", conditions.note);
+  if (conditions.anomaly != core::Anomaly::kNotRecorded) {
+    add("anomaly", std::string(core::Name(conditions.anomaly)));
+  }
+  add("anomaly_note", conditions.anomaly_note);
+  return out;
+}
+
+}  // namespace
+
 Json NumbersJson(const core::Trial& trial) {
   Json out = RecordJson(trial.first);
   core::Measured angle = core::ContactAngle(trial);
@@ -221,27 +256,43 @@ Json NumbersJson(const core::Trial& trial) {
   Json later = Json::array();
   for (const auto& record : trial.later) later.push_back(RecordJson(record));
   out["later"] = std::move(later);
+  out["conditions"] = ConditionsJson(trial);
   return out;
 }
 
 Json ChangesJson(const core::Trial& before, const core::Trial& after) {
   Json out = Json::array();
   for (const db::Change& change : db::Changes(before, after)) {
-    const auto quantity = std::find_if(
-        db::kContactQuantities.begin(), db::kContactQuantities.end(),
-        [&](const auto& candidate) { return candidate.name == change.field; });
-    if (quantity == db::kContactQuantities.end()) {
-      out.push_back(
-          {{"field", change.field}, {"from", change.from}, {"to", change.to}});
-      continue;
-    }
-    const report::EdgeUnit edge = report::AtTheEdge(quantity->name);
-    const auto text = [&](const core::Trial& trial) {
-      return report::WithUOrReason(db::At(trial.first, *quantity), edge.factor);
+    Json one = {
+        {"field", change.field}, {"from", change.from}, {"to", change.to}};
+    const auto at_the_edge = [&](std::string_view prefix,
+                                 std::string_view inner, const auto& of) {
+      const core::EdgeUnit edge = core::AtTheEdge(inner);
+      const auto text = [&](const core::Trial& trial) {
+        core::Measured number = of(trial);
+        if (number) number->value -= edge.offset;
+        return report::WithUOrReason(number, edge.factor);
+      };
+      one = {{"field", fmt::format("{}{}{}", prefix, edge.stem, edge.suffix)},
+             {"from", text(before)},
+             {"to", text(after)}};
     };
-    out.push_back({{"field", edge.stem + edge.suffix},
-                   {"from", text(before)},
-                   {"to", text(after)}});
+    for (const auto& quantity : db::kContactQuantities) {
+      if (change.field != quantity.name) continue;
+      at_the_edge("", quantity.name, [&](const core::Trial& trial) {
+        return db::At(trial.first, quantity);
+      });
+    }
+    constexpr std::string_view kOfConditions = "conditions: ";
+    for (const auto& quantity : db::kConditionQuantities) {
+      if (change.field != fmt::format("{}{}", kOfConditions, quantity.name)) {
+        continue;
+      }
+      at_the_edge(kOfConditions, quantity.name, [&](const core::Trial& trial) {
+        return trial.conditions.value_or(core::Conditions{}).*quantity.member;
+      });
+    }
+    out.push_back(std::move(one));
   }
   return out;
 }

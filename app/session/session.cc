@@ -21,6 +21,7 @@
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/plan.h"
+#include "touchdown/db/register.h"
 #include "touchdown/vision/clip_digest.h"
 
 namespace touchdown::session {
@@ -227,6 +228,7 @@ void Session::PlanAngle() {
   const auto point = PlanNext(thrower_, file_.angle_rad);
   file_.set_points = SetPointsJson(thrower_, point);
   setting_.reset();
+  read_.reset();
   plan_lines_ = {
       fmt::format("next shot: {} angle {:.2f} deg",
                   core::Name(campaign_.angle_kind), file_.angle_rad / kDegree),
@@ -360,6 +362,7 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     }
     trial.set_angle_rad = last_->trial.set_angle_rad;
     trial.set_speed_mps = last_->trial.set_speed_mps;
+    trial.conditions = last_->trial.conditions;
   } else if (is_check) {
     trial.set_angle_rad = 90.0 * kDegree;
     trial.reason = Compare(*options_.check, trial).text;
@@ -367,13 +370,16 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     trial.set_angle_rad = file_.angle_rad;
     if (setting_) trial.set_speed_mps = LaunchSpeedOfPlan();
   }
+  if (!grown) trial.conditions = ConditionsNow(belongs, is_check);
   trial.id = store_.LogTrial(trial).id;
+  note_.clear();
   last_ = LastTaken{trial.clip.path, trial.clip.size_bytes, pictures, trial};
   acts_.push_back({Act::kLogged, trial.id});
   file_.recording.clear();
   skipped_rad_.clear();
   if (is_check) check_wanted_ = false;
   Answer(trial, ends_.now_s() - WrittenAt_s(recording), is_check);
+  if (ends_.keep_picture) ends_.keep_picture(trial);
   if (!belongs) {
     Say("  (recorded before these set-points were shown: logged without them)");
   }
@@ -383,6 +389,35 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     db::RecordLook(store_, campaign_.name, "session");
   }
   SayPlan();
+}
+
+core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
+  core::Conditions now = options_.conditions;
+  now.note = note_;
+  if (now.person.name.empty()) {
+    const auto person = db::FindEntry(store_, db::RegisterKind::kOperator,
+                                      options_.operator_name);
+    if (person) now.person = {person->name, person->id};
+  }
+  if (belongs && !is_check && setting_) {
+    const rig::Setting& set = read_ ? *read_ : *setting_;
+    const rig::Description& rig = thrower_.rig;
+    now.elevation_rad =
+        core::Estimate{set.elevation_rad, rig.u_elevation_rad, std::nullopt};
+    now.compression_m =
+        core::Estimate{set.compression_m, rig.u_compression_m, std::nullopt};
+    now.muzzle_height_m = core::Estimate{set.muzzle_height_m,
+                                         rig.u_muzzle_height_m, std::nullopt};
+    return now;
+  }
+  const char* const why = is_check
+                              ? "dropped, not thrown"
+                              : "recorded before these set-points were shown";
+  for (core::Measured* set :
+       {&now.elevation_rad, &now.compression_m, &now.muzzle_height_m}) {
+    if (!*set) *set = core::AbsentBecause(why);
+  }
+  return now;
 }
 
 double Session::LaunchSpeedOfPlan() const {

@@ -32,6 +32,9 @@ struct SessionOptions {
   // As batch takes them; the campaign's conventions where not given.
   pipeline::AnalyzeOptions analyze;
   analysis::StudyOptions study;
+  // Of every shot, but for what it was set to and the note, which the session
+  // adds; `condition` changes them.
+  core::Conditions conditions;
   // Nothing: none is asked for.
   std::optional<CheckShot> check;
   // Take also what is set aside (pipeline/set_aside.h).
@@ -44,6 +47,8 @@ struct SessionEnds {
   // Seconds since 1970, of the clock that dates files.
   std::function<double()> now_s;
   rig::Driver* driver = nullptr;  // nothing: hands only
+  // Keeps the picture of a trial's contact; nothing: none is kept.
+  std::function<void(const core::Trial&)> keep_picture = {};
 };
 
 // How a typed line came: what was pasted in one go never fires.
@@ -99,6 +104,8 @@ class Session {
   void PlanAngle();  // file_.angle_rad
   double AngleBesides() const;
   double LaunchSpeedOfPlan() const;
+  // Of the shot that is logged now.
+  core::Conditions ConditionsNow(bool belongs, bool is_check) const;
   bool Belongs(const std::filesystem::path& recording) const;
   std::optional<std::string> KnownAs(const std::string& clip_id) const;
   void Log(const std::filesystem::path& recording, const std::string& clip_id);
@@ -115,6 +122,8 @@ class Session {
   void Include(const std::string& why);
   void Undo();
   void Operator(const std::string& name);
+  void Condition(const std::string& text);
+  void Note(const std::string& text);
   void Drive(const std::string& word, const std::string& rest,
              const Arrival& arrival);
   void Fire(rig::Driver& driver, const std::string& arming,
@@ -131,6 +140,8 @@ class Session {
   SessionFile file_;
   bool resumed_plan_ = false;
   std::optional<rig::Setting> setting_;  // of the plan
+  std::optional<rig::Setting> read_;     // as the controller read it back
+  std::string note_;                     // of the next shot
   std::vector<std::string> plan_lines_;  // as they were said
   std::set<double> skipped_rad_;         // since the last shot
   bool check_skipped_ = false;

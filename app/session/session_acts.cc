@@ -7,9 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/pipeline/statement.h"
+#include "app/pipeline/typed_values.h"
 #include "app/session/session.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/register.h"
 
 namespace touchdown::session {
 namespace {
@@ -76,6 +79,10 @@ bool Session::Obey(const std::string& line, const Arrival& arrival) {
       Undo();
     } else if (word == "operator") {
       Operator(rest);
+    } else if (word == "condition") {
+      Condition(rest);
+    } else if (word == "note") {
+      Note(rest);
     } else if (word == "check") {
       if (!check_campaign_) {
         throw std::invalid_argument(
@@ -110,6 +117,8 @@ void Session::Help() const {
         "exclude REASON   the last trial does not count (include REASON)",
         "undo             take back the last log, exclude or include",
         "operator NAME    who is at the rig now",
+        "condition K=V    of the shots from now on, as temperature_c=21+-0.5",
+        "note TEXT        your words, logged with the next shot",
         "check            a check shot now",
         "set              bring the rig to the set-points",
         "arm              latch the springs",
@@ -212,6 +221,34 @@ void Session::Operator(const std::string& name) {
   Say("operator: " + name);
 }
 
+void Session::Condition(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  core::Conditions changed = options_.conditions;
+  const std::string key = text.substr(0, sign);
+  bool is_known = sign != std::string::npos;
+  try {
+    is_known = is_known && key != "note" &&
+               pipeline::SetCondition(key, text.substr(sign + 1), changed);
+  } catch (const pipeline::FieldError& mistake) {
+    throw std::invalid_argument(
+        fmt::format("condition {} {}", mistake.field(), mistake.problem()));
+  }
+  if (!is_known) {
+    throw std::invalid_argument(fmt::format(
+        "condition '{}', must be KEY=VALUE, as temperature_c=21.5+-0.5 or "
+        "spring=S 3",
+        text));
+  }
+  options_.conditions = db::Resolved(store_, changed);
+  Say(fmt::format("from now on: {}", text));
+}
+
+void Session::Note(const std::string& text) {
+  if (text.empty()) throw std::invalid_argument("note wants words: note TEXT");
+  note_ = text;
+  Say("logged with the next shot: " + text);
+}
+
 void Session::Drive(const std::string& word, const std::string& rest,
                     const Arrival& arrival) {
   if (ends_.driver == nullptr) {
@@ -239,6 +276,7 @@ void Session::Drive(const std::string& word, const std::string& rest,
     if (!setting_) throw std::invalid_argument("there are no set-points now");
     const auto read = driver.Set(*setting_);
     if (!read) return refused(read.error());
+    read_ = *read;
     Say(fmt::format("set: it reads elevation {:.2f} deg, compression {:.2f} mm",
                     read->elevation_rad / kDegree,
                     read->compression_m / core::kMillimetre));

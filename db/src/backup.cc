@@ -57,9 +57,7 @@ class TemporaryFile {
   std::vector<std::unique_ptr<core::Unfinished>> unfinished_;
 };
 
-}  // namespace
-
-void Backup(const Store& store, const fs::path& to) {
+void RequireNew(const fs::path& to) {
   if (fs::exists(to)) {
     throw StoreError(fmt::format(
         "{}: this file exists; a backup expects a new name", to.string()));
@@ -70,11 +68,15 @@ void Backup(const Store& store, const fs::path& to) {
         fmt::format("{}: its folder {} does not exist; make it first",
                     to.string(), folder.string()));
   }
-  const TemporaryFile temporary(
-      fs::path(to.string() + "." + store.sources().new_uuid() + ".part"));
+}
+
+// `name` is of the copy while it is made.
+void CopyTo(Connection& source, const fs::path& to, const std::string& name) {
+  RequireNew(to);
+  const fs::path folder = fs::absolute(to).parent_path();
+  const TemporaryFile temporary(fs::path(to.string() + "." + name + ".part"));
   {
     Connection copy(temporary.path(), Connection::Access::kCreate, 0.0);
-    Connection& source = store.connection();
     sqlite3_backup* backup =
         sqlite3_backup_init(copy.handle(), "main", source.handle(), "main");
     if (backup == nullptr) copy.Fail(sqlite3_extended_errcode(copy.handle()));
@@ -104,7 +106,13 @@ void Backup(const Store& store, const fs::path& to) {
   Sync(folder);
 }
 
-namespace {
+// Where the store as it was stays: "lab.db.version7"; the next free name.
+fs::path OldNameOf(const fs::path& path, std::int64_t version) {
+  const std::string name = fmt::format("{}.version{}", path.string(), version);
+  fs::path free = name;
+  for (int i = 2; fs::exists(free); ++i) free = fmt::format("{}-{}", name, i);
+  return free;
+}
 
 // Before an upgrade is committed.
 void RequireSound(Connection& connection, const fs::path& path) {
@@ -118,33 +126,49 @@ void RequireSound(Connection& connection, const fs::path& path) {
   }
 }
 
+// All steps in one transaction: killed in between, it is the old store. Returns
+// the version that it had.
+std::int64_t UpgradeFile(Connection& connection) {
+  // Foreign keys are checked, all of them, before the commit.
+  connection.Execute("PRAGMA foreign_keys = OFF");
+  Transaction transaction(connection, Transaction::Kind::kWrite);
+  // Another process may have been faster.
+  const std::int64_t from = connection.Integer("PRAGMA user_version");
+  Upgrade(connection, from);
+  connection.Execute(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
+  RequireSound(connection, connection.path());
+  transaction.Commit();
+  return from;
+}
+
 }  // namespace
+
+void Backup(const Store& store, const fs::path& to) {
+  CopyTo(store.connection(), to, store.sources().new_uuid());
+}
 
 Migration Migrate(const fs::path& path, OpenOptions options) {
   if (!fs::exists(path)) {
     throw StoreError(fmt::format(
         "{}: there is no such trial store; check the path", path.string()));
   }
-  Migration migration{kSchemaVersion, kSchemaVersion};
+  Migration migration{kSchemaVersion, kSchemaVersion, {}};
   {
     Connection connection(path, Connection::Access::kWrite, options.patience_s);
-    const auto version = [&connection] {
-      return connection.Integer("PRAGMA user_version");
-    };
+    const std::int64_t version = connection.Integer("PRAGMA user_version");
     const bool ours =
         connection.Integer("PRAGMA application_id") == kApplicationId;
-    if (ours && version() >= 1 && version() < kSchemaVersion) {
-      // They are checked, all of them, before the commit.
-      connection.Execute("PRAGMA foreign_keys = OFF");
-      // One transaction for all steps: killed in between, it is the old store.
-      Transaction transaction(connection, Transaction::Kind::kWrite);
-      // Another process may have been faster.
-      migration.from_version = version();
-      Upgrade(connection, migration.from_version);
-      connection.Execute(
-          fmt::format("PRAGMA user_version = {}", kSchemaVersion));
-      RequireSound(connection, path);
-      transaction.Commit();
+    if (ours && version >= 1 && version < kSchemaVersion) {
+      // Older programs cannot read the upgraded one: as it was, it stays.
+      migration.old_store = OldNameOf(path, version);
+      CopyTo(connection, migration.old_store, options.sources.new_uuid());
+      try {
+        migration.from_version = UpgradeFile(connection);
+      } catch (...) {
+        std::error_code ignored;
+        fs::remove(migration.old_store, ignored);
+        throw;
+      }
     }
   }
   // Says what is wrong with a newer file, or one that is not a store.

@@ -108,6 +108,7 @@ class Differences {
     }
     CompareWords("anomaly", before.anomaly, after.anomaly);
     Compare("anomaly_note", before.anomaly_note, after.anomaly_note);
+    Compare("note", before.note, after.note);
   }
   void SetPrefix(std::string prefix) { prefix_ = std::move(prefix); }
   void Push(Change change) { changes_.push_back(std::move(change)); }

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
-#include "digests.h"
+#include "chain.h"
 #include "register_rows.h"
 #include "schema.h"
 #include "statement.h"
@@ -36,28 +38,42 @@ void CheckFile(Connection& connection, std::vector<std::string>& problems) {
   }
 }
 
-// Every trigger of the schema is there, as this program wrote it.
-void CheckGuards(Connection& connection, std::vector<std::string>& problems) {
+// Every table, index, view and trigger of the schema is there, as this program
+// wrote it, and no trigger of another's.
+void CheckSchema(Connection& connection, std::vector<std::string>& problems) {
   const std::string schema = SchemaSql();
-  constexpr std::string_view kCreate = "CREATE TRIGGER ";
-  for (auto at = schema.find(kCreate); at != std::string::npos;
-       at = schema.find(kCreate, at + 1)) {
-    const std::size_t begin = at + kCreate.size();
-    const std::string name =
-        schema.substr(begin, schema.find(' ', begin) - begin);
+  constexpr std::string_view kCreate = "CREATE ";
+  std::set<std::string> triggers;
+  for (std::size_t at = 0; at != std::string::npos;) {
+    std::istringstream words(schema.substr(at + kCreate.size(), 200));
+    std::string type;
+    words >> type;
+    if (type == "UNIQUE") words >> type;  // of an index
+    std::ranges::transform(type, type.begin(),
+                           [](char c) { return static_cast<char>(c | 0x20); });
+    std::string name;
+    words >> name;
+    if (type == "trigger") triggers.insert(name);
     Statement find(connection,
-                   "SELECT sql FROM sqlite_schema WHERE type = 'trigger' AND "
-                   "name = ?");
-    find.Add(name);
+                   "SELECT sql FROM sqlite_schema WHERE type = ? AND name = ?");
+    find.Add(type).Add(name);
     if (!find.Step()) {
-      problems.push_back(
-          fmt::format("trigger {} is missing: the store is not guarded", name));
-      continue;
-    }
-    const std::string sql = find.TakeText();
-    if (schema.compare(at, sql.size(), sql) != 0) {
       problems.push_back(fmt::format(
-          "trigger {} is not what it was: the store is not guarded", name));
+          "{} {} is missing: the store is not guarded", type, name));
+    } else if (const std::string sql = find.TakeText();
+               schema.compare(at, sql.size(), sql) != 0) {
+      problems.push_back(fmt::format(
+          "{} {} is not what it was: the store is not guarded", type, name));
+    }
+    const std::size_t next = schema.find("\nCREATE ", at);
+    at = next == std::string::npos ? next : next + 1;
+  }
+  Statement own(connection,
+                "SELECT name FROM sqlite_schema WHERE type = 'trigger'");
+  while (own.Step()) {
+    const std::string name = own.TakeText();
+    if (!triggers.contains(name)) {
+      problems.push_back(fmt::format("trigger {} is not this program's", name));
     }
   }
 }
@@ -92,7 +108,7 @@ void CheckChains(Connection& connection, std::vector<std::string>& problems) {
           "WHERE s.contacts <> (SELECT count(*) FROM contacts c "
           "WHERE c.revision_id = s.revision_id)",
           problems);
-  CheckGuards(connection, problems);
+  CheckSchema(connection, problems);
 }
 
 struct KnownClip {
@@ -136,7 +152,7 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
     Transaction snapshot(connection, Transaction::Kind::kRead);
     CheckFile(connection, report.problems);
     CheckChains(connection, report.problems);
-    CheckDigests(connection, report.problems);
+    CheckChain(connection, report.problems);
     report.campaigns = connection.Integer("SELECT count(*) FROM campaigns");
     for (const RegisterKind kind : kRegisterKinds) {
       report.register_versions += connection.Integer(

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "register_rows.h"
 #include "rows.h"
@@ -21,7 +23,7 @@ std::string Names() {
   for (const auto& entry : kConditionEntries) {
     names += fmt::format(", {}_id", Name(entry.kind));
   }
-  return names;
+  return names + ", note";
 }
 
 [[noreturn]] void Refuse(std::string_view field, double value,
@@ -73,6 +75,18 @@ void RequireStorable(const Conditions& conditions) {
       share && !(share->value >= 0.0 && share->value <= 1.0)) {
     Refuse("relative_humidity", share->value, "in 0 .. 1");
   }
+  for (const auto& [name, length] :
+       {std::pair("compression_m", &conditions.compression_m),
+        std::pair("muzzle_height_m", &conditions.muzzle_height_m)}) {
+    if (*length &&
+        !((*length)->value >= 0.0 && std::isfinite((*length)->value))) {
+      Refuse(name, (*length)->value, "at least 0 and finite");
+    }
+  }
+  if (const auto& rad = conditions.elevation_rad;
+      rad && !(std::abs(rad->value) <= std::numbers::pi / 2)) {
+    Refuse("elevation_rad", rad->value, "from -pi/2 to pi/2");
+  }
   if (conditions.anomaly == core::Anomaly::kOther &&
       conditions.anomaly_note.empty()) {
     throw std::invalid_argument(
@@ -92,7 +106,7 @@ std::optional<std::int64_t> KeepConditions(
   }
   static const std::string sql = fmt::format(
       "INSERT INTO conditions (revision_id, {}) VALUES ({})", Names(),
-      Placeholders(3 + 5 * kConditionQuantities.size() + rows.size()));
+      Placeholders(4 + 5 * kConditionQuantities.size() + rows.size()));
   Statement insert(connection, sql);
   insert.Add(revision_row)
       .Add(core::Name(meant.anomaly))
@@ -101,6 +115,7 @@ std::optional<std::int64_t> KeepConditions(
     AddMeasured(insert, meant.*quantity.member);
   }
   for (const auto& row : rows) insert.Add(row);
+  insert.Add(meant.note);
   insert.Run();
   return revision_row;
 }
@@ -123,6 +138,7 @@ Conditions SelectConditions(Connection& connection, std::int64_t row) {
     conditions.*entry.member =
         SelectRegistered(connection, entry.kind, select.TakeOptionalInteger());
   }
+  conditions.note = select.TakeText();
   return conditions;
 }
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "digests.h"
+#include "chain.h"
 #include "register_rows.h"
 #include "rows.h"
 #include "touchdown/core/errors.h"
@@ -107,7 +107,7 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
         .Add(clip.sha256)
         .Add(*known)
         .Run();
-    KeepClipDigest(connection, *known);
+    KeepClipLink(connection, *known);
     return known;
   }
   Statement(connection,
@@ -120,7 +120,7 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
       .Add(now_utc)
       .Run();
   const std::int64_t row = sqlite3_last_insert_rowid(connection.handle());
-  KeepClipDigest(connection, row);
+  KeepClipLink(connection, row);
   return row;
 }
 
@@ -217,7 +217,7 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
       .Add(revision.recorded_at_utc)
       .Add(conditions)
       .Run();
-  KeepDigest(connection, trial_row, row, number);
+  KeepLink(connection, "revision", revision.uuid);
   return number;
 }
 

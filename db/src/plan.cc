@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "digests.h"
+#include "chain.h"
 #include "plan_rows.h"
 #include "statement.h"
 #include "touchdown/core/errors.h"
@@ -90,12 +90,9 @@ bool InsertPlanEvent(Connection& connection, const PlanEvent& event) {
       .Add(event.at_utc)
       .Add(event.campaign)
       .Run();
-  Statement added(connection,
-                  "SELECT campaign_id, id FROM plan_events WHERE uuid = ?");
-  added.Add(event.id);
-  if (!added.Step()) return false;  // there is no such campaign
-  const std::int64_t campaign = added.TakeInteger();
-  KeepPlanDigest(connection, campaign, added.TakeInteger());
+  // Nothing was added where there is no such campaign.
+  if (sqlite3_changes(connection.handle()) == 0) return false;
+  KeepLink(connection, "plan", event.id);
   return true;
 }
 

@@ -12,8 +12,8 @@ namespace touchdown::db {
 std::vector<PlanEvent> PlanEventsIn(Connection& connection,
                                     std::string_view campaign);
 
-// As it is, id and date too, with its digest, but for one whose id is there
-// already or whose campaign is not; false then.
+// As it is, id and date too, with its link of the chain, but for one whose id
+// is there already or whose campaign is not; false then.
 bool InsertPlanEvent(Connection& connection, const PlanEvent& event);
 
 }  // namespace touchdown::db

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "chain.h"
 #include "register_rows.h"
 #include "rows.h"
 #include "touchdown/core/errors.h"
@@ -178,7 +179,9 @@ std::int64_t InsertEntry(Connection& connection, const Entry& entry) {
     }
   }
   insert.Run();
-  return sqlite3_last_insert_rowid(connection.handle());
+  const std::int64_t row = sqlite3_last_insert_rowid(connection.handle());
+  KeepLink(connection, Name(entry.kind), entry.id);
+  return row;
 }
 
 bool HasVersion(Connection& connection, RegisterKind kind,

@@ -55,7 +55,9 @@ void AddMeasured(Statement& statement, const Measured& measured) {
 Measured TakeMeasured(Statement& statement) {
   if (statement.NextIsNull()) {
     statement.Skip(4);
-    return AbsentBecause(statement.TakeText());
+    // NULL: of a row that is older than the column.
+    return AbsentBecause(
+        statement.TakeOptionalText().value_or("logged before it was recorded"));
   }
   Estimate estimate;
   estimate.value = statement.TakeReal();

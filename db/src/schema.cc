@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "chain.h"
 #include "schema_columns.h"
 #include "schema_parts.h"
 
@@ -151,14 +152,14 @@ std::string Evidence() {
 
 }  // namespace
 
-std::string DigestsSql() {
-  return "CREATE TABLE digests (\n"
-         "  trial_id INTEGER PRIMARY KEY REFERENCES trials (id),\n"
-         "  revisions INTEGER NOT NULL CHECK (revisions >= 1),\n"
-         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n"
-         "CREATE TABLE clip_digests (\n"
-         "  clip_id INTEGER PRIMARY KEY REFERENCES clips (id),\n"
-         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n";
+std::string ChainSql() {
+  return "CREATE TABLE chain (\n"
+         "  number INTEGER PRIMARY KEY CHECK (number >= 1),\n"
+         "  subject TEXT NOT NULL,\n"
+         "  key TEXT NOT NULL,\n"
+         "  row_sha256 TEXT NOT NULL CHECK (length(row_sha256) = 64),\n"
+         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64),\n"
+         "  UNIQUE (subject, key)\n) STRICT;\n";
 }
 
 std::string PlanSql() {
@@ -178,21 +179,14 @@ std::string PlanSql() {
       kUuid, Word("kind", "'plan', 'look'"), Stamp("at_utc"));
 }
 
-std::string PlanDigestsSql() {
-  return "CREATE TABLE plan_digests (\n"
-         "  campaign_id INTEGER PRIMARY KEY REFERENCES campaigns (id),\n"
-         "  events INTEGER NOT NULL CHECK (events >= 1),\n"
-         "  sha256 TEXT NOT NULL CHECK (length(sha256) = 64)\n) STRICT;\n";
-}
-
 std::string SchemaSql() {
   return fmt::format(
              "CREATE TABLE store (\n"
              "  id INTEGER PRIMARY KEY CHECK (id = 1),\n"
              "  {},\n  {}\n) STRICT;\n",
              kUuid, Stamp("created_at_utc")) +
-         RegisterSql() + Evidence() + DigestsSql() + PlanSql() +
-         PlanDigestsSql() + TriggersSql();
+         RegisterSql() + Evidence() + PlanSql() + ChainSql() + ViewsSql() +
+         TriggersSql();
 }
 
 void CreateSchema(Connection& connection, std::string_view store_uuid,
@@ -202,6 +196,7 @@ void CreateSchema(Connection& connection, std::string_view store_uuid,
       .Add(store_uuid)
       .Add(now_utc)
       .Run();
+  KeepLink(connection, "store", store_uuid);
   connection.Execute(
       fmt::format("PRAGMA application_id = {}; "
                   "PRAGMA user_version = {}",

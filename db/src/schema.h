@@ -20,7 +20,11 @@ inline constexpr std::int64_t kApplicationId = 0x54445354;
 //   5  each trial has a digest of its evidence, each clip of its SHA-256
 //   6  a campaign has its plan and the looks at its answer on record
 //   7  the plan and looks of a campaign have a digest
-inline constexpr std::int64_t kSchemaVersion = 7;
+//   8  a hash chain in place of the digests; what the rig was set to and the
+//      operator's note are conditions; views
+// A step leaves NULL in what it adds to rows that are there: their links
+// (chain.h) pass over it, and heads that were sealed before stay good.
+inline constexpr std::int64_t kSchemaVersion = 8;
 
 // All tables, indexes and triggers of version kSchemaVersion.
 std::string SchemaSql();

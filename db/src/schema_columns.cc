@@ -71,6 +71,14 @@ Group MeasuredGroup(std::string_view name) {
   return {both.substr(0, split), both.substr(split + 2)};
 }
 
+Group LaterMeasuredGroup(std::string_view name) {
+  Group group = MeasuredGroup(name);
+  const std::string is_stated = fmt::format("{}_absent IS NOT NULL", name);
+  const std::size_t at = group.checks.find(is_stated);
+  group.checks.erase(at, is_stated.size() + std::string_view(" AND ").size());
+  return group;
+}
+
 Group BodyGroup() {
   Group group{
       "body_kind TEXT NOT NULL CHECK (body_kind IN ('sphere', 'rectangle'))",

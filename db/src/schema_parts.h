@@ -2,18 +2,23 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace touchdown::db {
 
 // The lab's register, and the conditions that refer to it.
 std::string RegisterSql();
 
-// The digests of trials and clips (digests.h).
-std::string DigestsSql();
+// The chain (chain.h).
+std::string ChainSql();
 
 // Plans and looks (plan.h).
 std::string PlanSql();
-std::string PlanDigestsSql();
+
+// What people and other programs read (views.h).
+std::string ViewsSql();
+// The query of one of them, by name.
+const std::string& QueryOf(std::string_view view);
 
 // What keeps evidence from being changed or removed.
 std::string TriggersSql();

@@ -77,10 +77,12 @@ std::string ConditionsSql() {
                        kOpenWords)));
   std::string checks;
   for (const auto& quantity : kConditionQuantities) {
-    const Group one = MeasuredGroup(quantity.name);
+    const Group one = quantity.is_later ? LaterMeasuredGroup(quantity.name)
+                                        : MeasuredGroup(quantity.name);
     columns += ",\n  " + one.columns;
     checks += ",\n" + one.checks;
   }
+  columns += ",\n  note TEXT";
   // Its revision comes after it, as after a statement.
   return fmt::format(
       "CREATE TABLE conditions (\n"

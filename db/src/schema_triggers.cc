@@ -133,30 +133,19 @@ std::string TriggersSql() {
       "WHEN EXISTS (SELECT 1 FROM plan_events WHERE id = NEW.id)\n"
       "  OR EXISTS (SELECT 1 FROM plan_events WHERE uuid = NEW.uuid)\n"
       "BEGIN SELECT raise(ABORT, 'plan_events are kept'); END;\n";
-  // A digest grows by one revision at a time.
-  sql +=
-      "CREATE TRIGGER digests_grow BEFORE UPDATE ON digests\n"
-      "WHEN NEW.trial_id <> OLD.trial_id OR NEW.revisions <> OLD.revisions + "
-      "1\n"
-      "BEGIN SELECT raise(ABORT, 'a digest grows with its trial'); END;\n"
-      "CREATE TRIGGER plan_digests_grow BEFORE UPDATE ON plan_digests\n"
-      "WHEN NEW.campaign_id <> OLD.campaign_id OR NEW.events <> OLD.events + "
-      "1\n"
-      "BEGIN SELECT raise(ABORT, 'a digest grows with its plan'); END;\n"
-      "CREATE TRIGGER clip_digests_refuse_UPDATE BEFORE UPDATE ON "
-      "clip_digests\n"
-      "BEGIN SELECT raise(ABORT, 'a clip keeps its digest'); END;\n";
-  for (const auto& [table, key] :
-       {std::pair{"digests", "trial_id"}, std::pair{"clip_digests", "clip_id"},
-        std::pair{"plan_digests", "campaign_id"}}) {
+  // The chain grows by one link at a time.
+  for (const char* act : {"UPDATE", "DELETE"}) {
     sql += fmt::format(
-        "CREATE TRIGGER {0}_refuse_DELETE BEFORE DELETE ON {0}\n"
-        "BEGIN SELECT raise(ABORT, '{0} are kept'); END;\n"
-        "CREATE TRIGGER {0}_refuse_REPLACE BEFORE INSERT ON {0}\n"
-        "WHEN EXISTS (SELECT 1 FROM {0} WHERE {1} = NEW.{1})\n"
-        "BEGIN SELECT raise(ABORT, '{0} are kept'); END;\n",
-        table, key);
+        "CREATE TRIGGER chain_refuse_{0} BEFORE {0} ON chain\n"
+        "BEGIN SELECT raise(ABORT, 'the chain is kept'); END;\n",
+        act);
   }
+  sql +=
+      "CREATE TRIGGER chain_grows BEFORE INSERT ON chain\n"
+      "WHEN NEW.number <> 1 + (SELECT ifnull(max(number), 0) FROM chain)\n"
+      "  OR EXISTS (SELECT 1 FROM chain WHERE subject = NEW.subject\n"
+      "             AND key = NEW.key)\n"
+      "BEGIN SELECT raise(ABORT, 'the chain grows link by link'); END;\n";
   return sql + RegisterTriggers() + InsertTriggers();
 }
 

@@ -3,12 +3,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "digests.h"
+#include "chain.h"
+#include "old_digests.h"
 #include "register_rows.h"
 #include "rows.h"
 #include "schema.h"
 #include "schema_parts.h"
 #include "statement.h"
+#include "touchdown/core/errors.h"
 
 namespace touchdown::db {
 namespace {
@@ -126,18 +128,42 @@ void UpgradeFrom3(Connection& connection) {
       "'logged before it was measured'");
 }
 
-void DropTriggers(Connection& connection) {
+// Version 8: a chain in place of the digests, and more conditions, which are
+// NULL in the rows that are there.
+void UpgradeFrom7(Connection& connection) {
+  connection.Execute(
+      "DROP TABLE IF EXISTS digests; DROP TABLE IF EXISTS clip_digests; "
+      "DROP TABLE IF EXISTS plan_digests;");
+  ExchangeText(connection, {"conditions"});
+  connection.Execute(ChainSql());
+  KeepAllLinks(connection);
+}
+
+// Triggers and views, which are made anew at the end.
+void DropProgram(Connection& connection) {
   std::string drop;
   Statement row(connection,
-                "SELECT name FROM sqlite_schema WHERE type = 'trigger'");
-  while (row.Step()) drop += fmt::format("DROP TRIGGER {};", row.TakeText());
+                "SELECT 'DROP ' || type || ' \"' || name || '\";' FROM "
+                "sqlite_schema WHERE type = 'trigger' OR type = 'view'");
+  while (row.Step()) drop += row.TakeText();
   connection.Execute(drop);
+}
+
+void RequireAsRecorded(Connection& connection, std::int64_t version) {
+  std::vector<std::string> problems;
+  CheckOldDigests(connection, version, problems);
+  if (problems.empty()) return;
+  throw core::StoreError(fmt::format(
+      "{}: {}, and was not upgraded; go back to a backup, or see `touchdown db "
+      "check` of the version that made it",
+      connection.path().string(), problems.front()));
 }
 
 }  // namespace
 
 void Upgrade(Connection& connection, std::int64_t from_version) {
-  DropTriggers(connection);
+  RequireAsRecorded(connection, from_version);
+  DropProgram(connection);
   for (std::int64_t version = from_version; version < kSchemaVersion;
        ++version) {
     switch (version) {
@@ -150,24 +176,21 @@ void Upgrade(Connection& connection, std::int64_t from_version) {
       case 3:
         UpgradeFrom3(connection);
         break;
-      case 4:
-        connection.Execute(DigestsSql());
-        break;
       case 5:
         connection.Execute(PlanSql());
         break;
+      case 4:  // the digests of versions 5 and 7 are no more
       case 6:
-        connection.Execute(PlanDigestsSql());
+        break;
+      case 7:
+        UpgradeFrom7(connection);
         break;
       default:
         throw std::logic_error(fmt::format(
             "there is no step from version {} of the store", version));
     }
   }
-  // Of what stands there now: whether it was altered before, nobody can tell.
-  if (from_version < 5) KeepAllDigests(connection);
-  if (from_version < 7) KeepAllPlanDigests(connection);
-  connection.Execute(TriggersSql());
+  connection.Execute(ViewsSql() + TriggersSql());
 }
 
 }  // namespace touchdown::db

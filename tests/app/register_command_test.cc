@@ -115,7 +115,7 @@ TEST_F(RegisterCommand, MistakesAreOneLineAndMakeNoStore) {
                  "--friction", "0.7"},
                 2, "a number with its standard uncertainty");
   ExpectMistake({"register", "add", "body", "x", "--db", Db(), "--by", "A",
-                 "--mass-kg", "-1+-0.1"},
+                 "--mass-g", "-1000+-100"},
                 2, "mass_kg is -1");
   ExpectMistake({"register", "add", "calibration", "x", "--db", Db(), "--by",
                  "A", "--file", folder_ / "none.json"},

@@ -229,5 +229,74 @@ TEST_F(StoreCommand, SimulatedTrialsAreMarked) {
   EXPECT_THAT(show.out, HasSubstr("\\x1b[2Jescape\\x0a"));
 }
 
+// --- seals -------------------------------------------------------------------
+
+TEST_F(StoreCommand, ASealIsPrintedWrittenSignedAndChecked) {
+  LogOne();
+  const Ran head = Run("db seal --db lab.db");
+  ASSERT_EQ(head.status, 0) << head.error;
+  const std::string line = head.out.substr(0, head.out.find('\n'));
+  const Ran written = Run("db seal --db lab.db --out lab.seal");
+  EXPECT_THAT(written.out, StartsWith(line + "\nlab.seal: "));
+  ExpectMistake("db seal --db lab.db --out lab.seal", 6, "seals are kept");
+  ExpectMistake("db seal --db lab.db --key k", 2, "give --out");
+  Run("log --db lab.db --campaign asphalt --state slide --by Ada");
+  for (const std::string& seal : {line, std::string("lab.seal")}) {
+    const Ran ran = Run("db check --db lab.db --against " + seal);
+    EXPECT_EQ(ran.status, 0) << ran.error;
+    EXPECT_THAT(ran.out, HasSubstr("links that were sealed"));
+    EXPECT_THAT(ran.out, HasSubstr("are as they were, 1 since"));
+  }
+  EXPECT_EQ(Run("db check --db lab.db --against nowhere").status, 2);
+  std::ofstream(folder_ / "no.seal") << "touchdown seal 1\n";
+  EXPECT_EQ(Run("db check --db lab.db --against no.seal").status, 3);
+  // Another store is not this one.
+  Run("log --db other.db --body sphere --state slide --by Ada");
+  const Ran other = Run("db check --db other.db --against lab.seal");
+  EXPECT_EQ(other.status, 4);
+  EXPECT_THAT(other.error, HasSubstr("another store"));
+}
+
+// With whatever of the three is here; each is verified by the tool itself.
+TEST_F(StoreCommand, ASealIsSignedWithWhatIsThere) {
+  LogOne();
+  const auto shell = [this](const std::string& command) {
+    return std::system(("cd '" + folder_.path().string() + "' && (" + command +
+                        ") >sh.out 2>&1")
+                           .c_str()) == 0;
+  };
+  int signed_by = 0;
+  const auto expect_signed = [&](const std::string& tool,
+                                 const std::string& verify) {
+    SCOPED_TRACE(tool);
+    ++signed_by;
+    const Ran ran = Run("db seal --db lab.db --out " + tool + ".seal --key " +
+                        tool + ".key");
+    EXPECT_EQ(ran.status, 0) << ran.error;
+    EXPECT_THAT(ran.out, HasSubstr("verify with `" + tool));
+    EXPECT_TRUE(shell(verify)) << Slurp(folder_ / "sh.out");
+    EXPECT_FALSE(shell("echo >>" + tool + ".seal && " + verify));
+  };
+  if (shell("ssh-keygen -q -t ed25519 -N '' -f ssh-keygen.key")) {
+    expect_signed("ssh-keygen",
+                  "(printf 'lab ' && cat ssh-keygen.key.pub) >signers && "
+                  "ssh-keygen -Y verify -f signers -I lab -n touchdown -s "
+                  "ssh-keygen.seal.sig <ssh-keygen.seal");
+  }
+  if (shell("openssl genpkey -algorithm ed25519 -out openssl.key && openssl "
+            "pkey -in openssl.key -pubout -out openssl.pub")) {
+    expect_signed("openssl",
+                  "openssl pkeyutl -verify -rawin -pubin -inkey openssl.pub "
+                  "-in openssl.seal -sigfile openssl.seal.sig");
+  }
+  if (shell("minisign -G -W -p minisign.pub -s minisign.key")) {
+    expect_signed("minisign", "minisign -V -p minisign.pub -m minisign.seal");
+  }
+  std::ofstream(folder_ / "no.key") << "no key";
+  ExpectMistake("db seal --db lab.db --out x.seal --key no.key", 2,
+                "no private key");
+  if (signed_by == 0) GTEST_SKIP() << "no ssh-keygen, openssl or minisign here";
+}
+
 }  // namespace
 }  // namespace touchdown

@@ -97,7 +97,7 @@ TEST(AppendOnly, NoOrdinaryStatementChangesOrRemovesEvidence) {
   EXPECT_THAT(Check(store).problems,
               ElementsAre(AllOf(HasSubstr("trial"),
                                 HasSubstr("is not what was recorded")),
-                          HasSubstr("clip clip-1 is not what was recorded")));
+                          HasSubstr("clip clip-1 is not in the chain")));
   EXPECT_EQ(store.Trials().size(), 2u);
 }
 

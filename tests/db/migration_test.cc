@@ -15,6 +15,7 @@
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
+#include "touchdown/db/seal.h"
 
 namespace touchdown::db {
 namespace {
@@ -111,8 +112,61 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
     EXPECT_EQ(plan[1].kind, PlanEventKind::kLook);
     EXPECT_THAT(Check(store).problems, ::testing::IsEmpty());
   }
+  if (GetParam() >= 3) {
+    const core::Conditions& conditions = *trials[0].conditions;
+    if (GetParam() >= 8) {
+      EXPECT_DOUBLE_EQ(conditions.elevation_rad->value, 12.5 * core::kDegree);
+      EXPECT_EQ(conditions.note, "a draught");
+    } else {
+      EXPECT_EQ(conditions.elevation_rad.error().reason,
+                "logged before it was recorded");
+      EXPECT_EQ(conditions.note, "");
+    }
+  }
+  const Seal seal = MakeSeal(store);
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);
+  EXPECT_EQ(CheckAgainst(store, seal).problem, "");
+}
+
+// The copy is the store as it was, and nothing else is left.
+TEST_P(MigrateFrom, KeepsTheStoreAsItWas) {
+  Folder folder;
+  const auto path = folder / "lab.db";
+  MakeOldStore(path, GetParam());
+  const auto before = SchemaOf(path);
+  const Migration migration = Migrate(path);
+  if (GetParam() == kSchemaVersion) {
+    EXPECT_EQ(migration.old_store, "");
+    return;
+  }
+  EXPECT_EQ(migration.old_store.string(),
+            path.string() + ".version" + std::to_string(GetParam()));
+  EXPECT_EQ(SchemaOf(migration.old_store), before);
+  EXPECT_THAT([&] { Store::Open(migration.old_store, OpenMode::kRead); },
+              ThrowsMessage<core::StoreError>(HasSubstr("has version")));
+}
+
+// What was altered before is not taken for what was recorded.
+TEST(Migrate, RefusesWhatDoesNotAgreeWithItsOldDigests) {
+  for (const char* act :
+       {"DROP TRIGGER statements_refuse_UPDATE; UPDATE statements SET "
+        "clip_path = 'x' WHERE revision_id = 1",
+        "DROP TRIGGER plan_events_refuse_UPDATE; UPDATE plan_events SET "
+        "trials = 0",
+        "DROP TRIGGER springs_refuse_UPDATE; UPDATE springs SET note = 'x'"}) {
+    SCOPED_TRACE(act);
+    Folder folder;
+    const auto path = folder / "lab.db";
+    MakeOldStore(path, 7);
+    Tamper(path, act);
+    EXPECT_THAT(
+        [&] { Migrate(path); },
+        ThrowsMessage<core::StoreError>(HasSubstr("is not what was recorded")));
+    EXPECT_THAT([&] { Store::Open(path, OpenMode::kRead); },
+                ThrowsMessage<core::StoreError>(HasSubstr("has version 7")));
+    EXPECT_FALSE(std::filesystem::exists(path.string() + ".version7"));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryVersion, MigrateFrom,

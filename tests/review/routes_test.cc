@@ -234,9 +234,22 @@ TEST_F(Routes, LogsByHandWithTheTroubleOfAField) {
   asked["angle_deg"] = "3l";
   EXPECT_EQ(Json::parse(Post("/api/log", asked).body)["field"], "angle-deg");
   asked["angle_deg"] = "31.5";
+  asked["conditions"] = {{"elevation_deg", "12.5"}, {"note", "a draught"}};
+  EXPECT_EQ(Json::parse(Post("/api/log", asked).body)["field"],
+            "elevation_deg");
+  asked["conditions"]["elevation_deg"] = "12.5+-0.2";
+  asked["conditions"]["temperature_c"] = "";
   const Reply right = Post("/api/log", asked);
   ASSERT_EQ(right.status, 200) << right.body;
-  EXPECT_TRUE(Json::parse(right.body)["is_new"].get<bool>());
+  const Json logged = Json::parse(right.body);
+  EXPECT_TRUE(logged["is_new"].get<bool>());
+  const auto store = db::Store::Open(lab.store, db::OpenMode::kRead);
+  const auto trial = store.Find(logged["id"].get<std::string>());
+  ASSERT_TRUE(trial && trial->conditions);
+  EXPECT_DOUBLE_EQ(trial->conditions->elevation_rad->value,
+                   12.5 * core::kDegree);
+  EXPECT_EQ(trial->conditions->note, "a draught");
+  EXPECT_FALSE(trial->conditions->temperature_k);
 }
 
 TEST_F(Routes, BuildsAReportAndGivesItsFilesOnly) {

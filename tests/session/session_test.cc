@@ -6,11 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "tests/session/bench.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
 #include "touchdown/db/plan.h"
+#include "touchdown/db/register.h"
 #include "touchdown/rig/driver/manual_driver.h"
 
 namespace touchdown::session {
@@ -118,6 +122,83 @@ TEST_F(SessionTest, FromConventionsToTheSecondShot) {
   EXPECT_THAT(Take(bench_.films() / "copy.mraw"), HasSubstr("known, trial"));
   EXPECT_EQ(Trials().size(), 2u);
   EXPECT_FALSE(session_->Obey("quit"));
+}
+
+// What was set is stored with each shot: as the controller read it, else as it
+// was planned; who, with what, and the operator's words.
+TEST_F(SessionTest, WhatWasSetIsStoredWithTheShot) {
+  {
+    auto store = db::Store::Open(bench_.db(), db::OpenMode::kWrite);
+    for (const auto& [kind, name] :
+         {std::pair(db::RegisterKind::kSpring, "S 3"),
+          std::pair(db::RegisterKind::kOperator, "A. Lee")}) {
+      db::Entry entry = db::NewEntry(kind, name);
+      entry.author = "Ada";
+      db::AddEntry(store, entry);
+    }
+  }
+  Begin();
+  Obey("");
+  EXPECT_THAT(Obey("condition spring=S 4"), HasSubstr("must be a spring"));
+  EXPECT_THAT(Obey("condition temperature_c=21"), HasSubstr("40+-0.02"));
+  EXPECT_THAT(Obey("condition hop=1"), HasSubstr("KEY=VALUE"));
+  EXPECT_THAT(Obey("condition spring=S 3"), HasSubstr("from now on"));
+  EXPECT_THAT(Obey("condition temperature_c=21.5+-0.5"),
+              HasSubstr("from now on"));
+  EXPECT_THAT(Obey("note the door was open"), HasSubstr("with the next shot"));
+  const auto planned = ReadSession(bench_.db())->set_points;
+  Take(bench_.Film("a.mraw", 24.0, 1));
+  Take(bench_.Film("b.mraw", 24.0, 2));
+  ASSERT_EQ(Trials().size(), 2u);
+  const core::Conditions first = *Trials()[0].conditions;
+  EXPECT_NEAR(first.elevation_rad->value / kDegree,
+              planned["elevation_deg"].get<double>(), 0.01);
+  EXPECT_NEAR(first.compression_m->value / core::kMillimetre,
+              planned["compression_mm"].get<double>(), 0.01);
+  EXPECT_NEAR(first.muzzle_height_m->value / core::kMillimetre,
+              planned["muzzle_height_mm"].get<double>(), 0.1);
+  EXPECT_DOUBLE_EQ(first.compression_m->u, 0.1 * core::kMillimetre);  // kRig
+  EXPECT_EQ(first.spring.name, "S 3");
+  EXPECT_EQ(first.person.name, "A. Lee");
+  EXPECT_DOUBLE_EQ(first.temperature_k->value, 294.65);
+  EXPECT_EQ(first.note, "the door was open");
+  const core::Conditions second = *Trials()[1].conditions;
+  EXPECT_EQ(second.note, "");
+  EXPECT_EQ(second.spring.name, "S 3");
+  // A shot of before these set-points has none.
+  const auto early = bench_.Film("early.mraw", 24.0, 9);
+  const auto minute_ago =
+      std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1);
+  for (const auto& file :
+       std::filesystem::directory_iterator(early.parent_path())) {
+    std::filesystem::last_write_time(file.path(), minute_ago);
+  }
+  Take(early);
+  EXPECT_THAT(Trials()[2].conditions->elevation_rad.error().reason,
+              HasSubstr("before these set-points"));
+}
+
+// rig.toml and the register are one: what is thrown by is kept there, once for
+// each text, and can be thrown by from there.
+TEST_F(SessionTest, TheRigIsKeptInTheRegister) {
+  auto store = db::Store::Open(bench_.db(), db::OpenMode::kWrite);
+  const auto thrower = pipeline::MakeThrower(bench_.rig(), Bench::campaign());
+  const core::Registered first = pipeline::KeepRig(store, thrower, "A. Lee");
+  EXPECT_EQ(first.name, "bench");
+  EXPECT_EQ(pipeline::KeepRig(store, thrower, "Bob"), first);
+  const auto named = pipeline::MakeThrower("bench", Bench::campaign(), 0.0,
+                                           std::nullopt, bench_.db());
+  EXPECT_EQ(named.entry, first);
+  EXPECT_EQ(named.rig.u_compression_m, thrower.rig.u_compression_m);
+  EXPECT_THROW(pipeline::MakeThrower("no such rig", Bench::campaign(), 0.0,
+                                     std::nullopt, bench_.db()),
+               core::InputError);
+  std::ofstream(bench_.rig(), std::ios::app) << "# measured again\n";
+  const core::Registered changed = pipeline::KeepRig(
+      store, pipeline::MakeThrower(bench_.rig(), Bench::campaign()), "Bob");
+  EXPECT_EQ(changed.name, "bench");
+  EXPECT_NE(changed.id, first.id);
+  EXPECT_EQ(db::VersionsOf(store, db::RegisterKind::kRig, "bench").size(), 2u);
 }
 
 TEST_F(SessionTest, TheDailyCheckShotIsAskedForComparedAndLogged) {

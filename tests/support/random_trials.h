@@ -64,6 +64,13 @@ class RandomTrials {
     }
     conditions.anomaly = static_cast<core::Anomaly>(Below(10));
     conditions.anomaly_note = "n" + Text();
+    if (Below(2) == 0) {
+      conditions.elevation_rad =
+          core::Estimate{share - 0.5, share, std::nullopt};
+      conditions.compression_m = core::Estimate{share, 0.0, std::nullopt};
+      conditions.muzzle_height_m = core::AbsentBecause(Text());
+      conditions.note = Text();
+    }
     return conditions;
   }
 

@@ -46,7 +46,8 @@ function form(title, prefix, path, fields, doing) {
     const asked = {who: who()};
     for (const input of made.elements) {
       if (!input.name) continue;
-      asked[input.name] = input.value.trim();
+      const into = input.dataset.condition ? asked.conditions ??= {} : asked;
+      into[input.dataset.condition ?? input.name] = input.value.trim();
       say(input.name, '');
     }
     try {
@@ -61,8 +62,10 @@ function form(title, prefix, path, fields, doing) {
       }
     } catch (error) {
       done.textContent = '';
-      const name = error instanceof Refused && error.answer.field
+      const named = error instanceof Refused && error.answer.field
           ? error.answer.field.replaceAll('-', '_') : null;
+      const name = named && made.elements[`condition_${named}`]
+          ? `condition_${named}` : named;
       if (name === 'who') {
         trouble.textContent = `Your name (above) ${error.answer.problem}`;
         document.getElementById('who').focus();
@@ -75,6 +78,29 @@ function form(title, prefix, path, fields, doing) {
     send.disabled = false;
   });
   return made;
+}
+
+// What the shot was made with: the keys of `--condition`.
+const kConditions = [
+  ['elevation_deg', 'Elevation, deg', '12.5+-0.2'],
+  ['compression_mm', 'Compression, mm', '30+-0.3'],
+  ['muzzle_height_mm', 'Muzzle height, mm', '300+-1'],
+  ['rig', 'Rig', 'as in the register'],
+  ['spring', 'Spring', 'as in the register'],
+  ['camera', 'Camera', 'as in the register'],
+  ['temperature_c', 'Air, °C', '21.5+-0.5'],
+  ['note', "Operator's note", ''],
+];
+
+function conditions(prefix) {
+  const fields = kConditions.map(([key, label, placeholder]) => {
+    const input = element('input', {size: 16, placeholder,
+                                    autocomplete: 'off'});
+    input.dataset.condition = key;
+    return field(prefix, `condition_${key}`, label, input);
+  });
+  return element('details', {}, element('summary', {text: 'As it was set'}),
+                 ...fields);
 }
 
 export async function log(main) {
@@ -98,6 +124,7 @@ export async function log(main) {
         field('hand', 'corner', 'Corner (rectangle)',
               select(['', 'leading', 'trailing', 'flush'])),
         field('hand', 'note', 'What was seen', element('input', {size: 34})),
+        conditions('hand'),
       ], 'Logging …'),
       form('A recording', 'clip', '/api/recordings', [
         campaign('clip'),
@@ -105,5 +132,6 @@ export async function log(main) {
               element('input', {size: 34, spellcheck: 'false'})),
         field('clip', 'set_angle_deg', 'Set angle, deg', number()),
         field('clip', 'set_speed_mps', 'Set speed, m/s', number()),
+        conditions('clip'),
       ], 'Analysing … this takes some seconds.')));
 }

@@ -13,6 +13,20 @@ function numbersTable(numbers) {
                {class: 'numbers'});
 }
 
+const kConditions = {
+  person: 'operator', temperature_c: 'air, °C',
+  relative_humidity: 'relative humidity, 0 to 1',
+  elevation_deg: 'elevation, deg', compression_mm: 'compression, mm',
+  muzzle_height_mm: 'muzzle height, mm', note: "operator's note",
+  anomaly_note: 'what it was',
+};
+
+function conditionsTable(conditions) {
+  if (conditions.length === 0) return null;
+  return table('As it was set', ['what', 'value'], conditions.map(
+      c => [kConditions[c.name] ?? c.name, c.text]), {class: 'numbers'});
+}
+
 function budget(name, lines) {
   if (lines.length === 0) return null;
   return table(`Where the uncertainty of the ${name} comes from`,
@@ -133,6 +147,7 @@ export async function trial(main, id, revision) {
     summary.replaceChildren(said(numbers));
     details.replaceChildren(
         numbersTable(numbers),
+        conditionsTable(numbers.conditions) ?? '',
         budget('approach angle', numbers.approach_budget) ?? '',
         budget('radius and face angle', numbers.attitude_budget) ?? '');
   }

@@ -53,8 +53,17 @@ struct Conditions {
   Measured temperature_k = AbsentBecause("not recorded");      // of the air
   Measured relative_humidity = AbsentBecause("not recorded");  // 0 .. 1
 
+  // What the rig was set to: as its controller read it, else as it was asked
+  // for. Elevation of the barrel above horizontal; travel of the springs; the
+  // body's centre above the ground as it leaves the barrel.
+  Measured elevation_rad = AbsentBecause("not recorded");
+  Measured compression_m = AbsentBecause("not recorded");
+  Measured muzzle_height_m = AbsentBecause("not recorded");
+
   Anomaly anomaly = Anomaly::kNotRecorded;
   std::string anomaly_note;
+
+  std::string note;  // the operator's, whatever it is about
 
   friend bool operator==(const Conditions&, const Conditions&) = default;
 };

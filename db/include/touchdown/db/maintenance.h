@@ -28,7 +28,8 @@ using DigestOf =
 
 struct CheckReport {
   // One line each, empty if the store is sound: pages and indexes, foreign
-  // keys, the chain of revisions of every trial, contacts that are missing.
+  // keys, tables, views and triggers, the revisions of every trial, the hash
+  // chain over all that was recorded.
   std::vector<std::string> problems;
   // Where clips were last seen and are no more: gone, or another recording that
   // the store knows has the name now. No damage.
@@ -96,10 +97,14 @@ MergeReport Restore(Store& into, std::string_view source,
 struct Migration {
   std::int64_t from_version = 0;
   std::int64_t to_version = 0;
+  // A copy of the store as it was, "lab.db.version7"; empty where it is
+  // current.
+  std::filesystem::path old_store;
 };
 
-// Brings a store of an older version to this program's, in one transaction;
-// nothing changes if it is current. Throws core::StoreError if it is newer.
+// Brings a store of an older version to this program's, in one transaction,
+// after a copy of it was made beside it; nothing changes if it is current.
+// Throws core::StoreError if it is newer, damaged, or not what was recorded.
 Migration Migrate(const std::filesystem::path& path, OpenOptions options = {});
 
 }  // namespace touchdown::db

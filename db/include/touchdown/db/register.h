@@ -56,10 +56,20 @@ inline constexpr std::array<ConditionEntry, 7> kConditionEntries{{
 struct ConditionQuantity {
   std::string_view name;
   core::Measured core::Conditions::*member;
+  std::string_view meaning;
+  // Since version 8 of the store: NULL in rows that are older.
+  bool is_later = false;
 };
-inline constexpr std::array<ConditionQuantity, 2> kConditionQuantities{{
-    {"temperature_k", &core::Conditions::temperature_k},
-    {"relative_humidity", &core::Conditions::relative_humidity},
+inline constexpr std::array<ConditionQuantity, 5> kConditionQuantities{{
+    {"temperature_k", &core::Conditions::temperature_k, "of the air"},
+    {"relative_humidity", &core::Conditions::relative_humidity,
+     "of the air, 0 to 1"},
+    {"elevation_rad", &core::Conditions::elevation_rad,
+     "of the barrel above horizontal, as set", true},
+    {"compression_m", &core::Conditions::compression_m,
+     "travel of the springs, as set", true},
+    {"muzzle_height_m", &core::Conditions::muzzle_height_m,
+     "of the body's centre above the ground as it leaves, as set", true},
 }};
 
 // What an entry of a kind can say.

@@ -1,31 +1,14 @@
-#include "digests.h"
+#include "old_digests.h"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
-#include <array>
-#include <new>
-#include <stdexcept>
 #include <string_view>
 
+#include "chain.h"
 #include "register_rows.h"
-#include "touchdown/db/quantities.h"
 
 namespace touchdown::db {
 namespace {
-
-std::string Sha256(std::string_view text) {
-  std::array<unsigned char, 32> digest{};
-  unsigned size = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(),
-                 nullptr) != 1 ||
-      size != digest.size()) {
-    throw std::logic_error("SHA-256 is not to be had");
-  }
-  std::string hex;
-  for (const unsigned char byte : digest) hex += fmt::format("{:02x}", byte);
-  return hex;
-}
 
 // What a revision's digest covers: the word for it, and the rows, of parameter
 // ?1, the revision's row.
@@ -103,98 +86,6 @@ std::string PlanDigestOf(Connection& connection, std::string_view before,
   return Sha256(text);
 }
 
-}  // namespace
-
-void KeepDigest(Connection& connection, std::int64_t trial_row,
-                std::int64_t revision_row, std::int64_t number) {
-  std::string before;
-  {
-    Statement row(connection, "SELECT sha256 FROM digests WHERE trial_id = ?");
-    row.Add(trial_row);
-    if (row.Step()) before = row.TakeText();
-  }
-  const std::string digest = DigestOf(connection, before, revision_row);
-  if (number == 1) {
-    Statement(connection,
-              "INSERT INTO digests (trial_id, revisions, sha256) "
-              "VALUES (?, 1, ?)")
-        .Add(trial_row)
-        .Add(digest)
-        .Run();
-    return;
-  }
-  Statement(connection,
-            "UPDATE digests SET revisions = ?, sha256 = ? WHERE trial_id = ?")
-      .Add(number)
-      .Add(digest)
-      .Add(trial_row)
-      .Run();
-}
-
-void KeepClipDigest(Connection& connection, std::int64_t clip_row) {
-  {
-    Statement row(connection,
-                  "SELECT sha256 IS NOT NULL AND NOT EXISTS (SELECT 1 FROM "
-                  "clip_digests d WHERE d.clip_id = clips.id) FROM clips "
-                  "WHERE id = ?");
-    row.Add(clip_row);
-    if (!row.Step() || !row.TakeBool()) return;
-  }
-  Statement(connection,
-            "INSERT INTO clip_digests (clip_id, sha256) VALUES (?, ?)")
-      .Add(clip_row)
-      .Add(ClipDigestOf(connection, clip_row))
-      .Run();
-}
-
-void KeepPlanDigest(Connection& connection, std::int64_t campaign_row,
-                    std::int64_t event_row) {
-  std::string before;
-  {
-    Statement row(connection,
-                  "SELECT sha256 FROM plan_digests WHERE campaign_id = ?");
-    row.Add(campaign_row);
-    if (row.Step()) before = row.TakeText();
-  }
-  const std::string digest = PlanDigestOf(connection, before, event_row);
-  Statement(connection,
-            before.empty()
-                ? "INSERT INTO plan_digests (sha256, campaign_id, events) "
-                  "VALUES (?, ?, 1)"
-                : "UPDATE plan_digests SET sha256 = ?, events = events + 1 "
-                  "WHERE campaign_id = ?")
-      .Add(digest)
-      .Add(campaign_row)
-      .Run();
-}
-
-void KeepAllPlanDigests(Connection& connection) {
-  Statement row(connection,
-                "SELECT campaign_id, id FROM plan_events "
-                "ORDER BY id");
-  while (row.Step()) {
-    const std::int64_t campaign = row.TakeInteger();
-    KeepPlanDigest(connection, campaign, row.TakeInteger());
-  }
-}
-
-void KeepAllDigests(Connection& connection) {
-  {
-    Statement row(connection,
-                  "SELECT trial_id, id, number FROM revisions "
-                  "ORDER BY trial_id, number");
-    while (row.Step()) {
-      const std::int64_t trial = row.TakeInteger();
-      const std::int64_t revision = row.TakeInteger();
-      KeepDigest(connection, trial, revision, row.TakeInteger());
-    }
-  }
-  Statement clip(connection, "SELECT id FROM clips ORDER BY id");
-  while (clip.Step()) KeepClipDigest(connection, clip.TakeInteger());
-}
-
-namespace {
-
 void CheckPlanDigests(Connection& connection,
                       std::vector<std::string>& problems) {
   Statement campaign(connection,
@@ -232,8 +123,10 @@ void CheckPlanDigests(Connection& connection,
 
 }  // namespace
 
-void CheckDigests(Connection& connection, std::vector<std::string>& problems) {
-  CheckPlanDigests(connection, problems);
+void CheckOldDigests(Connection& connection, std::int64_t version,
+                     std::vector<std::string>& problems) {
+  if (version < 5) return;
+  if (version >= 7) CheckPlanDigests(connection, problems);
   Statement trial(connection,
                   "SELECT t.id, t.uuid, ifnull(d.revisions, 0), "
                   "ifnull(d.sha256, '') FROM trials t "

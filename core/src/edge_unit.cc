@@ -1,9 +1,9 @@
-#include "app/report/edge_unit.h"
+#include "touchdown/core/edge_unit.h"
 
 #include "touchdown/core/conditions.h"
 #include "touchdown/core/units.h"
 
-namespace touchdown::report {
+namespace touchdown::core {
 
 EdgeUnit AtTheEdge(std::string_view inner) {
   struct Rule {
@@ -12,17 +12,20 @@ EdgeUnit AtTheEdge(std::string_view inner) {
     double factor;
     double offset = 0.0;
   };
-  // The longer endings first: "_rad_per_s" also ends in "_s", and "_n_per_m" in
+  // As rig.toml has them, too. The longer endings first: "_rad_per_s" also ends
+  // in "_s", and "_n_per_m" in
   // "_m", though it is no length.
   static constexpr Rule kRules[] = {
       {"_n_per_m", "_n_per_m", 1.0},
       {"_rad_per_s", "_rad_per_s", 1.0},
-      {"_rad", "_deg", core::kDegree},
+      {"_rad", "_deg", kDegree},
       {"_mps2", "_mps2", 1.0},
       {"_mps", "_mps", 1.0},
-      {"_m", "_mm", core::kMillimetre},
+      {"_m", "_mm", kMillimetre},
       {"_s", "_s", 1.0},
-      {"_k", "_c", 1.0, core::kIcePoint_k},
+      {"_k", "_c", 1.0, kIcePoint_k},
+      {"_pa", "_gpa", 1e9},
+      {"_kg", "_g", 1e-3},
   };
   for (const Rule& rule : kRules) {
     if (inner.ends_with(rule.from)) {
@@ -33,4 +36,4 @@ EdgeUnit AtTheEdge(std::string_view inner) {
   return {std::string(inner), "", 1.0};
 }
 
-}  // namespace touchdown::report
+}  // namespace touchdown::core

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchdown::report {
+namespace touchdown::core {
 
 // inner = edge * factor + offset.
 struct EdgeUnit {
@@ -16,4 +16,4 @@ struct EdgeUnit {
 
 EdgeUnit AtTheEdge(std::string_view inner);
 
-}  // namespace touchdown::report
+}  // namespace touchdown::core

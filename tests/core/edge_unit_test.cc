@@ -1,4 +1,4 @@
-#include "app/report/edge_unit.h"
+#include "touchdown/core/edge_unit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "touchdown/core/units.h"
 
-namespace touchdown::report {
+namespace touchdown::core {
 namespace {
 
 struct Case {
@@ -24,8 +24,8 @@ TEST(AtTheEdge, ConvertsEveryUnitInUse) {
            {"gravity_check_mps2", "gravity_check_mps2", 1.0},
            {"wire_diameter_m", "wire_diameter_mm", core::kMillimetre},
            {"stiffness_n_per_m", "stiffness_n_per_m", 1.0},
-           {"shear_modulus_pa", "shear_modulus_pa", 1.0},
-           {"mass_kg", "mass_kg", 1.0},
+           {"shear_modulus_pa", "shear_modulus_gpa", 1e9},
+           {"mass_kg", "mass_g", 1e-3},
            {"temperature_k", "temperature_c", 1.0},
            {"relative_humidity", "relative_humidity", 1.0},
            {"friction", "friction", 1.0},
@@ -38,4 +38,4 @@ TEST(AtTheEdge, ConvertsEveryUnitInUse) {
 }
 
 }  // namespace
-}  // namespace touchdown::report
+}  // namespace touchdown::core

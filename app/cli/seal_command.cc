@@ -1,0 +1,196 @@
+#include "app/cli/seal_command.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "app/cli/messages.h"
+#include "app/cli/store_flags.h"
+#include "app/cli/store_text.h"
+#include "app/report/text_file.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/db/seal.h"
+
+namespace touchdown::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SealFlags {
+  std::string db;
+  std::string out;
+  std::string key;
+};
+
+std::string Contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in || fs::is_directory(path)) {
+    throw core::InputError(
+        fmt::format("{}: cannot be read; check the path and its permissions",
+                    path.string()));
+  }
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// --- signing -----------------------------------------------------------------
+
+// A program that signs files, and how its signature is verified.
+struct Signer {
+  std::vector<std::string> command;
+  std::string signature;  // the file that it writes
+  std::string verify;
+};
+
+// By what the key's file begins with.
+Signer SignerOf(const std::string& key, const std::string& file) {
+  const std::string text = Contents(key);
+  if (text.starts_with("untrusted comment:")) {
+    return {{"minisign", "-S", "-s", key, "-m", file, "-x", file + ".minisig"},
+            file + ".minisig",
+            fmt::format("minisign -V -p PUBLIC_KEY -m {}", file)};
+  }
+  if (text.starts_with("-----BEGIN OPENSSH PRIVATE KEY-----")) {
+    return {{"ssh-keygen", "-Y", "sign", "-f", key, "-n", "touchdown", file},
+            file + ".sig",
+            fmt::format("ssh-keygen -Y verify -f ALLOWED_SIGNERS -I WHO -n "
+                        "touchdown -s {0}.sig < {0}",
+                        file)};
+  }
+  if (text.find("PRIVATE KEY-----") != std::string::npos) {
+    return {{"openssl", "pkeyutl", "-sign", "-rawin", "-inkey", key, "-in",
+             file, "-out", file + ".sig"},
+            file + ".sig",
+            fmt::format("openssl pkeyutl -verify -rawin -pubin -inkey "
+                        "PUBLIC_KEY -in {0} -sigfile {0}.sig",
+                        file)};
+  }
+  throw std::invalid_argument(fmt::format(
+      "--key: {} is no private key of minisign, ssh-keygen or openssl (PEM)",
+      key));
+}
+
+// The signer may ask for a passphrase; what it says goes to stderr.
+void Run(const std::vector<std::string>& command) {
+  std::vector<char*> words;
+  for (const std::string& word : command) {
+    words.push_back(const_cast<char*>(word.c_str()));
+  }
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  pid_t child = 0;
+  const int trouble =
+      posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (trouble != 0) {
+    throw core::OutputError(
+        fmt::format("{}: cannot be started ({}); install it, or sign with "
+                    "another kind of key",
+                    command[0], std::strerror(trouble)));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    throw core::OutputError(
+        fmt::format("{}: could not sign; nothing was written", command[0]));
+  }
+}
+
+// --- commands ----------------------------------------------------------------
+
+int MakeSeal(const SealFlags& flags) {
+  if (!flags.key.empty() && flags.out.empty()) {
+    throw std::invalid_argument("--key signs a file: give --out FILE, too");
+  }
+  std::optional<Signer> signer;
+  if (!flags.key.empty()) signer = SignerOf(flags.key, flags.out);
+  for (const std::string& file :
+       {flags.out, signer ? signer->signature : std::string()}) {
+    if (!file.empty() && fs::exists(file)) {
+      throw core::OutputError(fmt::format(
+          "{}: this file exists, and seals are kept; give a new name", file));
+    }
+  }
+  const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  const db::Seal seal = db::MakeSeal(store);
+  if (!flags.out.empty()) {
+    report::WriteTextFile(flags.out, db::SealText(seal));
+    try {
+      if (signer) Run(signer->command);
+    } catch (...) {
+      std::error_code ignored;
+      fs::remove(flags.out, ignored);
+      throw;
+    }
+  }
+  fmt::print("{}\n", db::HeadText(seal.head));
+  if (!flags.out.empty()) {
+    fmt::print("{}: {} links, sealed {}\n", Printable(flags.out),
+               seal.head.links, seal.sealed_at_utc);
+  }
+  if (signer) {
+    fmt::print("{}: verify with `{}`\n", Printable(signer->signature),
+               Printable(signer->verify));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void CheckSeal(const db::Store& store, const std::string& seal) {
+  db::Seal sealed;
+  if (const auto head = db::ParseHead(seal)) {
+    sealed.head = *head;
+  } else if (std::error_code ignored; fs::exists(seal, ignored)) {
+    sealed = db::ParseSeal(Contents(seal), seal);
+  } else {
+    throw std::invalid_argument(fmt::format(
+        "--against is '{}', must be a file of `touchdown db seal --out`, or "
+        "the head that it printed",
+        seal));
+  }
+  const db::SealCheck check = db::CheckAgainst(store, sealed);
+  if (!check.problem.empty()) {
+    throw core::StoreError(fmt::format(
+        "{}: not what was sealed{}: {}", store.path().string(),
+        sealed.sealed_at_utc.empty() ? "" : " at " + sealed.sealed_at_utc,
+        Printable(check.problem)));
+  }
+  fmt::print("all {} links that were sealed{} are as they were, {} since\n",
+             sealed.head.links,
+             sealed.sealed_at_utc.empty() ? "" : " at " + sealed.sealed_at_utc,
+             check.links_since);
+}
+
+void AddSeal(CLI::App& db, Action& action) {
+  auto flags = std::make_shared<SealFlags>();
+  CLI::App* seal = db.add_subcommand(
+      "seal",
+      "print the head of the hash chain, to be kept apart from the store: "
+      "`db check --against` finds what was altered since, whoever did it");
+  AddDbFlag(*seal, flags->db);
+  seal->add_option("--out", flags->out,
+                   "write the whole seal, by which the first row that changed "
+                   "is named; a new file");
+  seal->add_option("--key", flags->key,
+                   "sign that file with this private key: of minisign, "
+                   "ssh-keygen or openssl (PEM)");
+  seal->callback(
+      [flags, &action] { action = [flags] { return MakeSeal(*flags); }; });
+}
+
+}  // namespace touchdown::cli
