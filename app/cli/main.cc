@@ -54,7 +54,12 @@ constexpr Command kCommands[] = {{"analyze", touchdown::cli::AddAnalyze},
                                  {"session", touchdown::cli::AddSession},
                                  {"rig", touchdown::cli::AddRig},
                                  {"theory", touchdown::cli::AddTheory},
-                                 {"demo", touchdown::cli::AddDemo}};
+                                 {"demo", touchdown::cli::AddDemo},
+                                 {"doctor", touchdown::cli::AddDoctor},
+                                 {"report-bug", touchdown::cli::AddReportBug}};
+
+// Of the build, which tells of all others; no user is told of it.
+constexpr std::string_view kDescribe = "describe";
 
 // The command of that name alone: to make all takes milliseconds. Those of
 // another name, such as --help, see all of them.
@@ -68,6 +73,7 @@ void AddCommands(CLI::App& app, touchdown::cli::Action& action,
       command.add(app, action);
     }
   }
+  if (name == kDescribe) touchdown::cli::AddDescribe(app, action);
 }
 
 // Where LAPACK is OpenBLAS, OpenCV brings a thread for each further core that
@@ -124,6 +130,12 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version",
                        std::string(touchdown::pipeline::Version()) + " (" +
                            std::string(touchdown::pipeline::Commit()) + ")");
+  app.footer(
+      "Exit status: 0 done (an undecided trial is a result); 2 wrong usage or "
+      "impossible argument; 3 input unreadable, damaged or unsupported; 4 "
+      "trouble with the trial store; 5 a batch finished with some recordings "
+      "failed; 6 output could not be written; 130 or 143 ended by Ctrl-C or "
+      "SIGTERM.");
   // Until it is known who listens nobody does.
   touchdown::cli::SetUpLog({});
   touchdown::cli::LogFlags log;
