@@ -31,7 +31,7 @@ install(FILES app/review/touchdown.svg
         DESTINATION "${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps")
 
 set(documents "${CMAKE_INSTALL_DATADIR}/doc/touchdown")
-install(FILES README.md DESTINATION "${documents}")
+install(FILES README.md CONTRIBUTING.md DESTINATION "${documents}")
 install(
   DIRECTORY docs
   DESTINATION "${documents}"

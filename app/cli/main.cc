@@ -130,12 +130,6 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version",
                        std::string(touchdown::pipeline::Version()) + " (" +
                            std::string(touchdown::pipeline::Commit()) + ")");
-  app.footer(
-      "Exit status: 0 done (an undecided trial is a result); 2 wrong usage or "
-      "impossible argument; 3 input unreadable, damaged or unsupported; 4 "
-      "trouble with the trial store; 5 a batch finished with some recordings "
-      "failed; 6 output could not be written; 130 or 143 ended by Ctrl-C or "
-      "SIGTERM.");
   // Until it is known who listens nobody does.
   touchdown::cli::SetUpLog({});
   touchdown::cli::LogFlags log;
@@ -143,6 +137,13 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");
+  // Not of each command: what is set before them they take over.
+  app.footer(
+      "Exit status: 0 done (an undecided trial is a result); 2 wrong usage or "
+      "impossible argument; 3 input unreadable, damaged or unsupported; 4 "
+      "trouble with the trial store; 5 a batch finished with some recordings "
+      "failed; 6 output could not be written; 130 or 143 ended by Ctrl-C or "
+      "SIGTERM.");
   try {
     app.parse(argc, argv);
     touchdown::cli::SetUpLog(log);
