@@ -38,5 +38,8 @@ void AddExport(CLI::App& app, Action& action);
 void AddImport(CLI::App& app, Action& action);
 void AddDemo(CLI::App& app, Action& action);
 void AddDb(CLI::App& app, Action& action);
+void AddDescribe(CLI::App& app, Action& action);
+void AddDoctor(CLI::App& app, Action& action);
+void AddReportBug(CLI::App& app, Action& action);
 
 }  // namespace touchdown::cli

@@ -57,7 +57,12 @@ constexpr Command kCommands[] = {{"analyze", touchdown::cli::AddAnalyze},
                                  {"rig", touchdown::cli::AddRig},
                                  {"theory", touchdown::cli::AddTheory},
                                  {"use", touchdown::cli::AddUse},
-                                 {"demo", touchdown::cli::AddDemo}};
+                                 {"demo", touchdown::cli::AddDemo},
+                                 {"doctor", touchdown::cli::AddDoctor},
+                                 {"report-bug", touchdown::cli::AddReportBug}};
+
+// Of the build, which tells of all others; no user is told of it.
+constexpr std::string_view kDescribe = "describe";
 
 // The command of that name alone: to make all takes milliseconds. Those of
 // another name, such as --help, see all of them.
@@ -71,12 +76,13 @@ void AddCommands(CLI::App& app, touchdown::cli::Action& action,
       command.add(app, action);
     }
   }
+  if (name == kDescribe) touchdown::cli::AddDescribe(app, action);
 }
 
 // What to say of a first word that is no command; empty where it is one, or an
 // option.
 std::string UnknownCommand(std::string_view word) {
-  if (word.empty() || word.starts_with('-')) return "";
+  if (word.empty() || word.starts_with('-') || word == kDescribe) return "";
   std::vector<std::string> names;
   for (const Command& command : kCommands) {
     if (command.name == word) return "";
@@ -157,6 +163,13 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");
+  // Not of each command: what is set before them they take over.
+  app.footer(
+      "Exit status: 0 done (an undecided trial is a result); 2 wrong usage or "
+      "impossible argument; 3 input unreadable, damaged or unsupported; 4 "
+      "trouble with the trial store; 5 a batch finished with some recordings "
+      "failed; 6 output could not be written; 130 or 143 ended by Ctrl-C or "
+      "SIGTERM.");
   try {
     if (const std::string unknown = UnknownCommand(argc > 1 ? argv[1] : "");
         !unknown.empty()) {

@@ -142,7 +142,7 @@ TEST_F(BatchCommand, MistakesAreOneLineAndLeaveNoStore) {
   EXPECT_FALSE(std::filesystem::exists(Db("new.db")));
 }
 
-// What the array job of docs/slurm.md does, without Slurm.
+// What the array job of docs/cluster.md does, without Slurm.
 TEST_F(BatchCommand, ShardsOfTheirOwnStoresMerge) {
   for (int i = 0; i < 3; ++i) {
     pipeline::filmed::WriteSphere(

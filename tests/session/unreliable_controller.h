@@ -3,9 +3,7 @@
 // README asks of a controller it does, the heartbeat too.
 #pragma once
 
-#include <fcntl.h>
 #include <poll.h>
-#include <stdlib.h>  // posix_openpt
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -17,11 +15,11 @@
 #include <mutex>
 #include <optional>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "tests/support/pseudo_terminal.h"
 #include "touchdown/rig/driver/line_protocol.h"
 
 namespace touchdown::session {
@@ -50,16 +48,6 @@ class UnreliableController {
 
   UnreliableController(std::uint64_t seed, LineTrouble trouble)
       : random_(seed), trouble_(trouble) {
-    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) {
-      // By these words ctest knows a test that cannot be made here.
-      throw std::runtime_error(
-          "no pseudo-terminal can be had here (/dev/ptmx, /dev/pts): skipped");
-    }
-    std::array<char, 128> name{};
-    ptsname_r(master_, name.data(), name.size());
-    port_ = name.data();
-    slave_ = open(port_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     end_ = eventfd(0, EFD_CLOEXEC);
     thread_ = std::thread([this] { Run(); });
   }
@@ -67,14 +55,12 @@ class UnreliableController {
     const std::uint64_t one = 1;
     if (write(end_, &one, sizeof one) != sizeof one) std::abort();
     thread_.join();
-    close(master_);
-    close(slave_);
     close(end_);
   }
   UnreliableController(const UnreliableController&) = delete;
   UnreliableController& operator=(const UnreliableController&) = delete;
 
-  const std::string& port() const { return port_; }
+  const std::string& port() const { return line_.port(); }
   void LatchByHand() {
     const std::lock_guard lock(mutex_);
     // Whoever comes now is heard from now on.
@@ -138,7 +124,7 @@ class UnreliableController {
           std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now());
       // Short, for a latching by hand that comes meanwhile.
       constexpr std::int64_t kLook_ms = 100;
-      std::array<pollfd, 2> ends{pollfd{master_, POLLIN, 0},
+      std::array<pollfd, 2> ends{pollfd{line_.master(), POLLIN, 0},
                                  pollfd{end_, POLLIN, 0}};
       poll(ends.data(), ends.size(),
            static_cast<int>(
@@ -157,7 +143,7 @@ class UnreliableController {
       }
       if ((ends[0].revents & POLLIN) == 0) continue;
       std::array<char, 256> bytes{};
-      const ssize_t n = read(master_, bytes.data(), bytes.size());
+      const ssize_t n = read(line_.master(), bytes.data(), bytes.size());
       if (n <= 0) return;
       const std::lock_guard lock(mutex_);
       for (ssize_t i = 0; i < n; ++i) {
@@ -265,13 +251,14 @@ class UnreliableController {
 
   void Say(const std::string& bytes) {
     // Never more than a terminal holds: nobody may read any more.
-    pollfd room{master_, POLLOUT, 0};
+    pollfd room{line_.master(), POLLOUT, 0};
     if (poll(&room, 1, 0) != 1) return;
-    [[maybe_unused]] const auto n = write(master_, bytes.data(), bytes.size());
+    [[maybe_unused]] const auto n =
+        write(line_.master(), bytes.data(), bytes.size());
   }
 
-  std::string port_;
-  int master_ = -1, slave_ = -1, end_ = -1;
+  testing::PseudoTerminal line_;
+  int end_ = -1;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::mt19937_64 random_;

@@ -4,9 +4,7 @@
 // Its heartbeat is a matter of real time and off unless Watch() asks for it.
 #pragma once
 
-#include <fcntl.h>
 #include <poll.h>
-#include <stdlib.h>  // posix_openpt
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -25,6 +23,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/pseudo_terminal.h"
 #include "touchdown/rig/driver/line_protocol.h"
 #include "touchdown/rig/driver/serial_line.h"
 
@@ -48,33 +47,20 @@ enum class Act {
 class SimulatedController {
  public:
   SimulatedController() {
-    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) {
-      // By these words ctest knows a test that cannot be made here.
-      throw std::runtime_error(
-          "no pseudo-terminal can be had here (/dev/ptmx, /dev/pts): skipped");
-    }
-    std::array<char, 128> name{};
-    ptsname_r(master_, name.data(), name.size());
-    port_ = name.data();
-    // Held open, so that a closed program is no hang-up of this end.
-    slave_ = open(port_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     end_ = eventfd(0, EFD_CLOEXEC);
     silence_ = eventfd(0, EFD_NONBLOCK | EFD_SEMAPHORE | EFD_CLOEXEC);
     thread_ = std::thread([this] { Run(); });
   }
   ~SimulatedController() {
     StopListening();
-    if (master_ >= 0) close(master_);
-    close(slave_);
     close(end_);
     close(silence_);
   }
   SimulatedController(const SimulatedController&) = delete;
   SimulatedController& operator=(const SimulatedController&) = delete;
 
-  const std::string& port() const { return port_; }
-  int master() const { return master_; }
+  const std::string& port() const { return line_.port(); }
+  int master() const { return line_.master(); }
 
   // What becomes of the next requests with `verb`; afterwards it behaves.
   void Script(const std::string& verb, std::deque<Act> acts) {
@@ -194,7 +180,7 @@ class SimulatedController {
   void Run() {
     std::string line;
     while (true) {
-      std::array<pollfd, 2> ends{pollfd{master_, POLLIN, 0},
+      std::array<pollfd, 2> ends{pollfd{line_.master(), POLLIN, 0},
                                  pollfd{end_, POLLIN, 0}};
       if (poll(ends.data(), ends.size(), UntilSilent_ms()) == 0) {
         const std::lock_guard lock(mutex_);
@@ -207,7 +193,7 @@ class SimulatedController {
       }
       if (ends[1].revents != 0) return;
       std::array<char, 256> bytes{};
-      const ssize_t n = read(master_, bytes.data(), bytes.size());
+      const ssize_t n = read(line_.master(), bytes.data(), bytes.size());
       if (n <= 0) return;
       for (ssize_t i = 0; i < n; ++i) {
         const char c = bytes[static_cast<std::size_t>(i)];
@@ -268,10 +254,7 @@ class SimulatedController {
     late_.clear();
     if (act == Act::kDeafness) return Silence();
     if (act == Act::kHangUp) {
-      close(slave_);
-      close(master_);
-      slave_ = open("/dev/null", O_RDWR | O_CLOEXEC);
-      master_ = -1;
+      line_.HangUp();
       return false;
     }
     const Answer refusal{request.number, false, request.verb, "worn"};
@@ -369,7 +352,7 @@ class SimulatedController {
     std::size_t done = 0;
     while (done < bytes.size()) {
       const ssize_t n =
-          write(master_, bytes.data() + done, bytes.size() - done);
+          write(line_.master(), bytes.data() + done, bytes.size() - done);
       if (n <= 0) return;
       done += static_cast<std::size_t>(n);
     }
@@ -379,8 +362,8 @@ class SimulatedController {
     return write(silence_, &one, sizeof one) == sizeof one;
   }
 
-  std::string port_;
-  int master_ = -1, slave_ = -1, end_ = -1, silence_ = -1;
+  testing::PseudoTerminal line_;
+  int end_ = -1, silence_ = -1;
   SerialTime::Instant now_{};  // of the driver's thread
 
   mutable std::mutex mutex_;

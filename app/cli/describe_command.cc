@@ -1,0 +1,48 @@
+// touchdown describe: manual pages and completions, written when the program is
+// built. A tool of the build; no --help shows it.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/cli/command.h"
+#include "app/cli/command_tree.h"
+#include "app/cli/completions.h"
+#include "app/cli/manual_pages.h"
+#include "touchdown/core/output_file.h"
+
+namespace touchdown::cli {
+namespace {
+
+void Write(const std::filesystem::path& path, const std::string& text) {
+  core::OutputFile file(path);
+  file.Write(text);
+  file.Commit();
+}
+
+int Run(const CLI::App& app, const std::filesystem::path& out) {
+  const auto tree = DescribeCommands(app);
+  std::filesystem::create_directories(out / "man1");
+  for (const CommandText& command : tree) {
+    Write(out / "man1" / ManualPageName(command), ManualPage(command, tree));
+  }
+  Write(out / "touchdown.bash", BashCompletion(tree));
+  Write(out / "_touchdown", ZshCompletion(tree));
+  Write(out / "touchdown.fish", FishCompletion(tree));
+  return 0;
+}
+
+}  // namespace
+
+void AddDescribe(CLI::App& app, Action& action) {
+  auto out = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("describe", "manual pages and completions");
+  command->group("");
+  command->add_option("OUT", *out, "a folder")->required();
+  command->callback([&app, out, &action] {
+    action = [&app, out] { return Run(app, *out); };
+  });
+}
+
+}  // namespace touchdown::cli

@@ -1,0 +1,77 @@
+// touchdown doctor: what stands in the way of a measurement, before it does.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "app/cli/command.h"
+#include "app/cli/dates.h"
+#include "app/cli/doctor_flags.h"
+#include "app/cli/messages.h"
+
+namespace touchdown::cli {
+namespace {
+
+// Something that was asked for will not work: as of an input that cannot be
+// read.
+constexpr int kTroubleFound = 3;
+
+struct Flags {
+  DoctorFlags doctor;
+  bool json = false;
+};
+
+int Run(const Flags& flags) {
+  const auto findings = pipeline::Examine(ToOptions(flags.doctor));
+  if (flags.json) {
+    fmt::print("{}\n", pipeline::ToJson(findings));
+  } else {
+    std::istringstream lines(pipeline::ToText(findings));
+    for (std::string line; std::getline(lines, line);) {
+      fmt::print("{}\n", Printable(line));
+    }
+  }
+  const bool trouble =
+      std::any_of(findings.begin(), findings.end(), [](const auto& finding) {
+        return finding.health == pipeline::Health::kTrouble;
+      });
+  return trouble ? kTroubleFound : 0;
+}
+
+}  // namespace
+
+void AddDoctorFlags(CLI::App& command, DoctorFlags& flags) {
+  command.add_option("--db", flags.store, "a trial store to look at");
+  command.add_option("--camera", flags.calibration,
+                     "a calibration file to look at");
+  command.add_option("--recordings", flags.recordings,
+                     "the folder that the camera writes into: its newest "
+                     "recording is opened");
+}
+
+pipeline::DoctorOptions ToOptions(const DoctorFlags& flags) {
+  pipeline::DoctorOptions options;
+  options.store = flags.store;
+  options.calibration = flags.calibration;
+  options.recordings = flags.recordings;
+  options.today = Today();
+  options.now = std::chrono::system_clock::now();
+  return options;
+}
+
+void AddDoctor(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = app.add_subcommand(
+      "doctor",
+      "what of this machine, its store and its camera would stand in the way "
+      "(exit status 3 where something will not work)");
+  AddDoctorFlags(*command, flags->doctor);
+  command->add_flag("--json", flags->json, "one JSON document on stdout");
+  command->callback(
+      [flags, &action] { action = [flags] { return Run(*flags); }; });
+}
+
+}  // namespace touchdown::cli

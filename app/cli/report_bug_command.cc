@@ -1,0 +1,109 @@
+// touchdown report-bug: an archive for who is to find out what went wrong.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/cli/analyze_flags.h"
+#include "app/cli/command.h"
+#include "app/cli/dates.h"
+#include "app/cli/messages.h"
+#include "app/pipeline/bug_report.h"
+
+namespace touchdown::cli {
+namespace {
+
+struct Flags {
+  std::string clip;
+  AnalyzeFlags analyze;
+  std::vector<std::string> typed;  // of the flags of `analyze`
+  std::string out = "touchdown-bug.zip";
+  int pictures = 8;
+  bool yes = false;
+};
+
+// The flags of `analyze` as they were typed.
+std::vector<std::string> TypedOf(const std::vector<CLI::Option*>& options) {
+  std::vector<std::string> typed;
+  for (const CLI::Option* option : options) {
+    if (option->count() == 0) continue;
+    const std::string name = "--" + option->get_lnames().front();
+    typed.push_back(option->get_items_expected_max() == 0
+                        ? name  // a flag
+                        : name + "=" + option->results().back());
+  }
+  return typed;
+}
+
+bool IsWanted(const Flags& flags) {
+  if (flags.yes) return true;
+  Tell(fmt::format("write these into {}? [y/N]", flags.out));
+  std::string answer;
+  if (!std::getline(std::cin, answer)) {
+    throw std::invalid_argument(
+        "report-bug asks before it writes, and nobody answered; give --yes");
+  }
+  return answer == "y" || answer == "Y" || answer == "yes";
+}
+
+int Run(const Flags& flags) {
+  ToOptions(flags.analyze);  // what is wrong is said before all else
+  pipeline::BugOptions options;
+  options.clip = flags.clip;
+  options.flags = flags.typed;
+  options.frames = flags.pictures;
+  if (!flags.analyze.calibration.empty()) {
+    options.also.emplace_back(flags.analyze.calibration);
+  }
+  options.doctor.today = Today();
+  options.doctor.now = std::chrono::system_clock::now();
+  const std::vector<pipeline::BugFile> files = pipeline::CollectBug(options);
+  constexpr std::size_t kKilobyte = 1000;
+  for (const pipeline::BugFile& file : files) {
+    fmt::print("{:<28} {:>8} kB  {}\n", Printable(file.name),
+               (file.bytes.size() + kKilobyte - 1) / kKilobyte, file.what);
+  }
+  fmt::print(
+      "These show what the camera saw, names of files and what machine this "
+      "is. Nothing is sent.\n");
+  RequireStdoutWritten();
+  if (!IsWanted(flags)) {
+    Tell("nothing was written");
+    return 0;
+  }
+  pipeline::WriteBug(files, flags.out);
+  fmt::print("{}\n", Printable(flags.out));
+  return 0;
+}
+
+}  // namespace
+
+void AddReportBug(CLI::App& app, Action& action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = app.add_subcommand(
+      "report-bug",
+      "analyse a recording and put the answer, the log, the options, the "
+      "machine and some frames into one ZIP file, after showing what is in it");
+  AddAnalyzeFlags(*command, flags->analyze);
+  const std::vector<CLI::Option*> of_analyze = command->get_options(
+      [](const CLI::Option* option) { return option->get_name() != "--help"; });
+  command->add_option("CLIP", flags->clip, "the recording")->required();
+  command->add_option("--out", flags->out, "the ZIP file")
+      ->capture_default_str();
+  command
+      ->add_option("--pictures", flags->pictures,
+                   "frames of the recording in it, at most; 0: none")
+      ->capture_default_str();
+  command->add_flag("--yes", flags->yes, "write it without asking");
+  command->callback([flags, of_analyze, &action] {
+    flags->typed = TypedOf(of_analyze);
+    action = [flags] { return Run(*flags); };
+  });
+}
+
+}  // namespace touchdown::cli

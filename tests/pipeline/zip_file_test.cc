@@ -1,0 +1,53 @@
+#include "app/pipeline/zip_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/temporary_folder.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+// What another program (CMake's libarchive) finds in it.
+TEST(ZipFile, IsReadByOthers) {
+  const testing::TemporaryFolder folder;
+  std::string all_bytes;
+  for (int i = 0; i < 256; ++i) all_bytes += static_cast<char>(i);
+  ZipFile zip(folder / "a.zip");
+  zip.Add("empty", "");
+  zip.Add("in/a/folder.bin", all_bytes);
+  zip.Add("größe.txt", "utf-8\n");
+  zip.Commit();
+  const std::string command =
+      "cd " + folder.path().string() + " && cmake -E tar xf a.zip";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(testing::ReadAll(folder / "in/a/folder.bin"), all_bytes);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "empty"));
+  EXPECT_EQ(testing::ReadAll(folder / "größe.txt"), "utf-8\n");
+}
+
+TEST(ZipFile, SameMembersSameBytes) {
+  const testing::TemporaryFolder folder;
+  for (const char* name : {"a.zip", "b.zip"}) {
+    ZipFile zip(folder / name);
+    zip.Add("x", "y");
+    zip.Commit();
+  }
+  EXPECT_EQ(testing::ReadAll(folder / "a.zip"),
+            testing::ReadAll(folder / "b.zip"));
+}
+
+TEST(ZipFile, IsNotThereBeforeItIsWhole) {
+  const testing::TemporaryFolder folder;
+  {
+    ZipFile zip(folder / "a.zip");
+    zip.Add("x", "y");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace touchdown::pipeline
