@@ -8,8 +8,8 @@
 
 namespace touchdown::pipeline {
 
-// More trials than this have no strip in a report: 100 take some 4 MB of it and
-// 10 s. Pages of evidence have theirs.
+// More trials than this have no strip in a report, for its size and the time
+// that it takes. Pages of evidence have theirs.
 inline constexpr std::size_t kMostStrips = 100;
 
 // Fills strips, no_strip and trajectories of `input` from its trials' documents
