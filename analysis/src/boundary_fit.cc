@@ -1,7 +1,5 @@
 #include "touchdown/analysis/boundary_fit.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "likelihood.h"
+#include "require.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -29,13 +28,6 @@ constexpr double kFall90 = 2.7055434540954;
 constexpr double kFall95 = 3.8414588206941;
 // Splitting stops at this many angles: far beyond what any posterior needed.
 constexpr std::size_t kMaxAngles = 20000;
-
-void Require(bool ok, const char* field, double value, const char* range) {
-  if (!ok) {
-    throw std::invalid_argument(
-        fmt::format("{} is {}; it must be {}", field, value, range));
-  }
-}
 
 void Check(const BoundaryFitOptions& o) {
   Require(std::isfinite(o.low_rad), "low_rad", o.low_rad, "finite");

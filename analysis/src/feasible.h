@@ -1,23 +1,13 @@
 // What every rule for the next angle does with its options and its answer.
 #pragma once
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "require.h"
 #include "touchdown/analysis/next_angle.h"
 
 namespace touchdown::analysis {
-
-inline void Require(bool ok, const char* field, double value,
-                    const char* range) {
-  if (!ok) {
-    throw std::invalid_argument(
-        fmt::format("{} is {}; it must be {}", field, value, range));
-  }
-}
 
 inline void CheckFeasible(const core::Interval& feasible) {
   Require(std::isfinite(feasible.low), "feasible_rad.low", feasible.low,

@@ -10,17 +10,11 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "require.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {
 namespace {
-
-void Require(bool ok, const char* field, double value, const char* range) {
-  if (!ok) {
-    throw std::invalid_argument(
-        fmt::format("{} is {}; it must be {}", field, value, range));
-  }
-}
 
 Outcome OutcomeOf(double p_bounce) {
   if (p_bounce >= kDecidedProbability) return Outcome::kBounce;

@@ -17,6 +17,11 @@ namespace touchdown::analysis {
                                           range));
 }
 
+inline void Require(bool ok, std::string_view field, double value,
+                    std::string_view range) {
+  if (!ok) Refuse(field, value, "", range);
+}
+
 inline void RequireFinite(std::string_view field, double value,
                           std::string_view unit = "") {
   if (!std::isfinite(value)) Refuse(field, value, unit, "finite");

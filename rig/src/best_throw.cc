@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "angles.h"
 #include "throw_search.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/launch.h"
@@ -23,8 +23,6 @@ using core::AngleKind;
 using core::Expected;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
-constexpr double kAngleSlack_rad = 1e-9;  // rounding at limits given in degrees
 constexpr double kLengthSlack_m = 1e-9;
 constexpr double kSlowestLaunch_mps = 1e-6;  // slower is a drop from rest
 // How many standard uncertainties of its height a muzzle keeps the body off
@@ -36,12 +34,7 @@ constexpr int kBisections = 60;
 // not end in this contact (it touches earlier).
 constexpr double kMiss = 1e-7;
 
-double Deg(double rad) { return rad / core::kDegree; }
 double Mm(double m) { return m / core::kMillimetre; }
-
-bool IsRectangle(const Description& rig) {
-  return rig.body && rig.body->kind == core::BodyKind::kRectangle;
-}
 
 Landing LandingAt(const Description& rig, double face_rad) {
   return Land(rig.body->long_m->value, rig.body->short_m->value,
@@ -136,7 +129,7 @@ std::string Choice::Way(const Candidate& c) const {
         "at least {:.3g} mm in the ground",
         -Mm(c.slack[kClear]));
   }
-  if (!IsRectangle(input_.rig)) return "";
+  if (!ThrowsRectangle(input_.rig)) return "";
   const auto flown = FlyTurning(
       {.long_m = input_.rig.body->long_m->value,
        .short_m = input_.rig.body->short_m->value,

@@ -1,14 +1,13 @@
 #include "touchdown/rig/flight.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "angles.h"
 #include "require.h"
 
 namespace touchdown::rig {
 namespace {
 
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 constexpr double kFlush_rad = 1e-9;  // far below any protractor, above rounding
 
 }  // namespace

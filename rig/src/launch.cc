@@ -1,8 +1,8 @@
 #include "touchdown/rig/launch.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "angles.h"
 #include "require.h"
 
 namespace touchdown::rig {
@@ -17,7 +17,6 @@ void Validate(const Launch& launch) {
   RequireAtLeastZero("barrel_friction", launch.barrel_friction);
   RequireAtLeastZero("loss_j", launch.loss_j);
   RequireAtLeastZero("gravity_mps2", launch.gravity_mps2);
-  constexpr double kQuarterTurn = std::numbers::pi / 2.0;
   if (!(std::abs(launch.elevation_rad) <= kQuarterTurn * (1.0 + 1e-12))) {
     Refuse("elevation_rad", launch.elevation_rad, "within -pi/2 .. pi/2");
   }

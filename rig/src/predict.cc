@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "angles.h"
 #include "require.h"
 #include "touchdown/rig/flight.h"
 #include "touchdown/rig/turning_flight.h"
@@ -15,7 +16,6 @@ namespace touchdown::rig {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
 // Everything that varies from draw to draw.
 struct State {
@@ -97,10 +97,6 @@ std::vector<Slot> SlotsOf(const State& s) {
   return slots;
 }
 
-bool IsRectangle(const Description& rig) {
-  return rig.body && rig.body->kind == core::BodyKind::kRectangle;
-}
-
 enum Output : std::size_t {
   kStiffness,
   kLaunchSpeed,
@@ -140,7 +136,7 @@ core::Expected<TurningFlight> FlyFrom(const Description& rig,
                                       const Release& release, double speed_mps,
                                       double height_m) {
   const double g = rig.gravity_mps2.value;
-  if (IsRectangle(rig)) {
+  if (ThrowsRectangle(rig)) {
     return FlyTurning({.long_m = rig.body->long_m->value,
                        .short_m = rig.body->short_m->value,
                        .speed_mps = speed_mps,
@@ -179,7 +175,7 @@ core::Expected<Outcome> Simulate(const State& s) {
   out.values[kApproach] = flight.approach_angle_rad;
   out.values[kTime] = flight.time_s;
   out.values[kRange] = flight.range_m;
-  if (IsRectangle(rig)) {
+  if (ThrowsRectangle(rig)) {
     // A long side has no direction: half turns are the same face.
     const double face = std::remainder(flown->face_rad, 2.0 * kQuarterTurn);
     const Landing landing =
@@ -242,7 +238,7 @@ void AddFindings(const Description& rig, ContactPrediction& out) {
              "the others",
              100.0 * out.p_no_contact)});
   }
-  if (IsRectangle(rig) && out.face_angle_rad.first_order) {
+  if (ThrowsRectangle(rig) && out.face_angle_rad.first_order) {
     const core::Estimate& face = *out.face_angle_rad.first_order;
     if (std::abs(face.value) < 2.0 * face.u) {
       out.findings.push_back(
@@ -306,7 +302,7 @@ ContactPrediction Predict(const Description& rig, const Setting& setting,
       {kRange, &out.range_m},
   }};
   for (const auto& [index, predicted] : outputs) {
-    if (!IsRectangle(rig) && (index == kRadius || index == kFace)) {
+    if (!ThrowsRectangle(rig) && (index == kRadius || index == kFace)) {
       predicted->first_order = core::AbsentBecause("not a rectangle");
       predicted->monte_carlo = core::AbsentBecause("not a rectangle");
       continue;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "angles.h"
 #include "require.h"
 #include "throw_family.h"
-#include "touchdown/core/units.h"
 #include "touchdown/rig/flight.h"
 
 namespace touchdown::rig {
@@ -17,11 +17,6 @@ namespace {
 using core::AbsentBecause;
 using core::AngleKind;
 using core::Expected;
-
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
-constexpr double kAngleSlack_rad = 1e-9;  // rounding at limits given in degrees
-
-double Deg(double rad) { return rad / core::kDegree; }
 
 void Validate(const ContactWish& wish) {
   RequirePositive("speed_mps", wish.speed_mps);
@@ -37,10 +32,6 @@ void Validate(const ContactWish& wish) {
 }
 
 // The radius and face angles need a rectangle.
-bool IsRectangle(const Description& rig) {
-  return rig.body && rig.body->kind == core::BodyKind::kRectangle;
-}
-
 // The attitudes in which a corner stands at a radius angle: tilts up to the
 // diagonal's, and beyond it. First those that land on the trailing corner.
 std::vector<double> AttitudesOf(double radius_rad, double least_rad) {
@@ -83,7 +74,7 @@ Expected<Setting> FirstPossible(const Description& rig, const ContactWish& wish,
 core::Expected<Setting> SettingFor(const Description& rig,
                                    const ContactWish& wish) {
   Validate(wish);
-  if (!IsRectangle(rig)) {
+  if (!ThrowsRectangle(rig)) {
     if (wish.kind != AngleKind::kApproach) {
       return AbsentBecause(fmt::format(
           "a sphere has no {} angle: the contact point is always straight "

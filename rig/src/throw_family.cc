@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "touchdown/core/units.h"
+#include "angles.h"
 #include "touchdown/rig/predict.h"
 
 namespace touchdown::rig {
@@ -14,7 +13,6 @@ namespace {
 
 using core::AngleKind;
 
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 // Cells of a search over the time of flight: at least this many, and none in
 // which the body turns by more than the angle. Finer cells find nothing more
 // among 2000 random rigs (tests/rig/setpoints_test.cc), coarser ones miss

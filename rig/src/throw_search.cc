@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "angles.h"
 #include "touchdown/rig/launch.h"
 #include "touchdown/rig/predict.h"
 
@@ -16,13 +16,8 @@ namespace {
 using core::AngleKind;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 constexpr int kBisections = 60;   // to the last bit of a double
 constexpr int kGoldenSteps = 40;  // to 1e-8 of a cell
-
-bool IsRectangle(const Description& rig) {
-  return rig.body && rig.body->kind == core::BodyKind::kRectangle;
-}
 
 class Search {
  public:
@@ -68,7 +63,7 @@ Slacks Search::SlacksOf(const Throw& t) const {
   }
   s[kFlattest] = t.elevation_rad - input_.rig.elevation_min_rad;
   s[kSteepest] = input_.rig.elevation_max_rad - t.elevation_rad;
-  if (IsRectangle(input_.rig) && input_.wish.corner) {
+  if (ThrowsRectangle(input_.rig) && input_.wish.corner) {
     const double c = std::cos(t.face_rad);
     const double n = std::sin(t.face_rad);
     s[kCornerTurns] = c * n *

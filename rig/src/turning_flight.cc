@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "angles.h"
 #include "require.h"
 
 namespace touchdown::rig {
 namespace {
 
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 // What lies less deep than this at the muzzle lies on the ground. 1 nm: above
 // rounding, far below what anyone sets.
 constexpr double kOnGround_m = 1e-9;

@@ -75,6 +75,10 @@ struct Description {
                                  std::nullopt};
 };
 
+inline bool ThrowsRectangle(const Description& rig) {
+  return rig.body && rig.body->kind == core::BodyKind::kRectangle;
+}
+
 // One of the springs, at the values of `springs`. Absent where the geometry is
 // unknown.
 core::Expected<Spring> SpringOf(const Springs& springs);
