@@ -93,7 +93,8 @@ std::string CameOut(const Group& group) {
   }
   const auto& p = group.study.posterior;
   return out + fmt::format(
-                   "It bounces from about {:.{}f} deg on (the boundary angle).",
+                   "The boundary, above which it bounces, is estimated at "
+                   "{:.{}f} deg.",
                    p.median_rad / kDegree, Decimals(p.sd_rad / kDegree));
 }
 
@@ -108,18 +109,20 @@ std::string HowSure(const Group& group) {
         "of 95 %",
         p.interval95_rad.low / kDegree, decimals,
         p.interval95_rad.high / kDegree, decimals);
-    if (study.bracket.closed()) {
-      out += fmt::format("; without any model, between {} and {} deg",
-                         Plain(*study.bracket.low_rad / kDegree),
-                         Plain(*study.bracket.high_rad / kDegree));
-    }
     out += ". ";
+    if (study.bracket.closed()) {
+      out += fmt::format(
+          "No trial lies between {} deg, the steepest that stayed down, and {} "
+          "deg, the flattest that bounced. ",
+          Plain(*study.bracket.low_rad / kDegree),
+          Plain(*study.bracket.high_rad / kDegree));
+    }
   } else {
     out = "Only one side of the boundary is known. ";
   }
   return out + fmt::format(
-                   "Each angle is known to {} deg or better (one standard "
-                   "uncertainty).",
+                   "The angle of a single trial is known to {} deg or better "
+                   "(one standard uncertainty).",
                    Plain(study.greatest_u_rad / kDegree, 3));
 }
 

@@ -360,9 +360,9 @@ TEST(MakeReport, BeginsWithPlainWords) {
         "asphalt, dry. 9 trials, filmed, with the approach "
         "angle from 0 to 90 deg",
         "What came out", "stayed down in 4 trials and bounced in 5",
-        "bounces from about", "How sure",
-        "without any model, between 11.79 and "
-        "27.4 deg",
+        "above which it bounces, is estimated at", "How sure",
+        "No trial lies between 11.79 deg, the steepest that stayed down, and "
+        "27.4 deg, the flattest that bounced",
         "Does the theory agree", "neither confirm nor contradict",
         "May I rely on it", "not enough for a verdict",
         "Order, laboratory, equipment", "Table 1: motion state"}) {

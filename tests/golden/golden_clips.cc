@@ -101,7 +101,7 @@ void WriteAll(const fs::path& folder) {
     WriteImages(folder, named("jpeg"), vision::ImageKind::kJpeg, c);
     WriteVideo(folder, named("mjpeg") + ".avi", vision::VideoCodec::kMjpeg, c);
     WriteVideo(folder, named("h264") + ".mp4", vision::VideoCodec::kH264, c);
-    WriteVideo(folder, named("ffv1") + ".mkv", vision::VideoCodec::kFfv1, c);
+    WriteVideo(folder, named("ffv1") + ".avi", vision::VideoCodec::kFfv1, c);
   }
 }
 
