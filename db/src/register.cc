@@ -9,6 +9,7 @@
 #include "register_rows.h"
 #include "rows.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/names.h"
 
 namespace touchdown::db {
 namespace {
@@ -214,9 +215,7 @@ Entry ChangeEntry(Store& store, const Entry& seen) {
   Transaction transaction(store.connection(), Transaction::Kind::kWrite);
   const auto head = InForce(store.connection(), seen.kind, seen.name);
   if (!head) {
-    throw StoreError(
-        fmt::format("{}: there is no {} '{}'; see `touchdown register list`",
-                    store.path().string(), Name(seen.kind), seen.name));
+    RequireEntry(store, seen.kind, seen.name);
   }
   if (head->id != seen.id) {
     throw StoreError(fmt::format(
