@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "campaigns.h"
+#include "register_rows.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/nearest.h"
 
@@ -30,11 +31,18 @@ core::Campaign RequireCampaign(const Store& store, std::string_view name) {
 Entry RequireEntry(const Store& store, RegisterKind kind,
                    std::string_view name) {
   if (auto found = FindEntry(store, kind, name)) return *std::move(found);
+  throw core::StoreError(
+      fmt::format("{}: there is no {} '{}'; {}", store.path().string(),
+                  Name(kind), name, NameMeant(store.connection(), kind, name)));
+}
+
+std::string NameMeant(Connection& connection, RegisterKind kind,
+                      std::string_view name) {
   std::vector<std::string> names;
-  for (const Entry& entry : Entries(store, kind)) names.push_back(entry.name);
-  throw core::StoreError(fmt::format(
-      "{}: there is no {} '{}'; {}", store.path().string(), Name(kind), name,
-      core::DidYouMean(name, names, "see `touchdown register list`")));
+  Statement row(connection, fmt::format("SELECT DISTINCT name FROM {}",
+                                        TableOf(kind).table));
+  while (row.Step()) names.push_back(row.TakeText());
+  return core::DidYouMean(name, names, "see `touchdown register list`");
 }
 
 }  // namespace touchdown::db

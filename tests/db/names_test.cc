@@ -32,9 +32,7 @@ TEST(RequireCampaign, AsksWhetherTheNearestNameWasMeant) {
 TEST(RequireEntry, AsksWhetherTheNearestNameWasMeant) {
   const Folder folder;
   Store store = OpenFixed(folder / "lab.db");
-  Entry body;
-  body.kind = RegisterKind::kBody;
-  body.name = "steel ball 40";
+  Entry body = NewEntry(RegisterKind::kBody, "steel ball 40");
   body.author = "Ada";
   AddEntry(store, body);
   EXPECT_EQ(RequireEntry(store, RegisterKind::kBody, "steel ball 40").name,

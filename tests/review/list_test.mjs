@@ -66,12 +66,12 @@ test('the list is sorted by any column, filtered, and holds a long name',
   // Pictures of what is in sight; a trial by hand has none.
   await page.waitForFunction(() => [...document.querySelectorAll(
       '.thumbnail')].filter(i => i.naturalWidth === 96).length === 2);
+  await picture(page, 'list');
   for (const [name, width] of [['narrow', 390], ['wide', 1920]]) {
     await page.setViewportSize({width, height: 900});
     assert.ok(await page.evaluate(
         () => document.documentElement.scrollWidth <= innerWidth), name);
   }
-  await picture(page, 'list');
   requireClean(page, review);
   await page.context().close();
 });
