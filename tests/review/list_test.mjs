@@ -30,7 +30,7 @@ test('the list is sorted by any column, filtered, and holds a long name',
   lab.addCampaign('long');
   const folder = join(lab.folder, 'long');
   mkdirSync(folder);
-  for (const ending of ['mraw', 'cihx']) {
+  for (const ending of ['mraw', 'cihx', 'truth.json']) {
     renameSync(lab.clip.replace(/mraw$/, ending),
                  join(folder, `${kLong}.${ending}`));
   }
