@@ -75,6 +75,34 @@ test('a draft of a trial that was revised meanwhile is offered and does not ' +
   }
 });
 
+test('of two tabs of one browser the second does not overwrite the first, and ' +
+     'keeps what was begun', async () => {
+  const first = await sitDown(browser, review, 'Ada');
+  await openTrial(first);
+  const second = await first.context().newPage();
+  second.setDefaultTimeout(60_000);
+  await openTrial(second);
+  await second.selectOption('#state', 'stick');
+  await second.fill('#why', 'of the second tab');
+  await first.selectOption('#state', 'roll-slide');
+  await first.fill('#why', 'of the first tab');
+  await first.click('text=Store this correction');
+  await says(first, '#news', 'Stored as revision');
+  const count = lab.show().history.length;
+  await second.click('text=Store this correction');
+  await says(second, '.correct .bad', 'was made meanwhile');
+  assert.equal(lab.show().history.length, count);
+  assert.equal(await second.inputValue('#state'), 'stick');
+  assert.equal(await second.inputValue('#why'), 'of the second tab');
+  await second.click('text=Show what is there now');
+  await says(second, '.draft', 'You began a correction');
+  await second.click('text=Take it over');
+  assert.equal(await second.inputValue('#why'), 'of the second tab');
+  await second.click('text=Start over');
+  requireClean(first, review);
+  await first.context().close();
+});
+
 test('undo is a further revision that says the former values', async () => {
   const before = lab.show();
   const count = before.history.length;

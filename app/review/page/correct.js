@@ -242,6 +242,7 @@ export class Correcting {
     if (error.answer?.field === 'who') document.getElementById('who').focus();
     if (error.answer?.field === 'why') this.why.focus();
     if (error.status === 409) {
+      this.keep();  // whoever stored may have been another tab of this browser
       this.trouble.append(' ', element('button', {
         type: 'button', text: 'Show what is there now',
         onclick: () => this.page.saved()}));
