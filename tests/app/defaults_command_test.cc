@@ -85,7 +85,7 @@ TEST_F(DefaultsCommand, AMistakeIsOneLineThatSaysWhatWasMeant) {
        {"campaign show paper-table1-shere --db lab.db",
         "list --campaign paper-table1-shere --db lab.db",
         "boundary --campaign paper-table1-shere --db lab.db",
-        "export --campaign paper-table1-shere --db lab.db"}) {
+        "export --campaign paper-table1-shere --db lab.db --format csv"}) {
     EXPECT_THAT(Run(command).err,
                 HasSubstr("did you mean 'paper-table1-sphere'?"))
         << command;

@@ -63,14 +63,14 @@ class Relinking : public ::testing::Test {
 TEST_F(Relinking, FindsWhatWasMovedByWhatItIs) {
   const auto before = Open().History(trials[0]);
   // The other one now bears its name: a name says nothing.
-  Move("a", folder / "archive" / "2026", "shot");
+  Move("a", clips / "archive" / "2026", "shot");
   Move("b", clips, "a");
   auto store = Open();
-  const Relinked relinked = Relink(store, folder.path());
+  const Relinked relinked = Relink(store, clips);
   EXPECT_EQ(relinked.looked_at, 2u);
   EXPECT_THAT(relinked.missing, IsEmpty());
   EXPECT_EQ(store.Find(trials[0])->clip.path,
-            (folder / "archive" / "2026" / "shot.mraw").string());
+            (clips / "archive" / "2026" / "shot.mraw").string());
   EXPECT_EQ(store.Find(trials[1])->clip.path, (clips / "a.mraw").string());
   // Nothing else: no revision, and the chain holds.
   const auto after = store.History(trials[0]);
