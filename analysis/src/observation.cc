@@ -63,7 +63,7 @@ std::optional<Observation> ObserveTrial(const core::Trial& trial,
     why = "excluded: " + trial.exclusion_reason;
     return std::nullopt;
   }
-  const core::Measured& angle = core::ContactAngle(trial);
+  const core::Measured angle = core::ContactAngle(trial);
   if (!angle) {
     why = fmt::format("no {} angle: {}", core::Name(trial.angle_kind),
                       angle.error().reason);
@@ -75,9 +75,7 @@ std::optional<Observation> ObserveTrial(const core::Trial& trial,
     return std::nullopt;
   }
   Observation out;
-  out.angle_rad = trial.angle_kind == core::AngleKind::kFace
-                      ? std::abs(angle->value)
-                      : angle->value;
+  out.angle_rad = angle->value;
   out.u_rad = angle->u;
   out.set_angle_rad = trial.set_angle_rad;
   const core::StateDecision& state = trial.first.state;

@@ -12,8 +12,8 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/report/trial_json.h"
-#include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/names.h"
 #include "touchdown/db/plan.h"
 #include "touchdown/db/store.h"
 
@@ -184,22 +184,32 @@ int ListCampaigns(const CampaignFlags& flags) {
   return 0;
 }
 
+// The one that was named, or the only one.
+core::Campaign CampaignToShow(const db::Store& store, const std::string& name) {
+  if (!name.empty()) return db::RequireCampaign(store, name);
+  const auto campaigns = store.Campaigns();
+  if (campaigns.size() == 1) return campaigns.front();
+  std::string names;
+  for (const auto& campaign : campaigns) {
+    names += (names.empty() ? "" : ", ") + campaign.name;
+  }
+  throw std::invalid_argument(fmt::format(
+      "NAME is missing, must be {}",
+      names.empty() ? "a campaign: make one with `touchdown campaign new`"
+                    : "one of: " + names));
+}
+
 int ShowCampaign(const CampaignFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  const auto campaign = store.FindCampaign(flags.name);
-  if (!campaign) {
-    throw core::StoreError(fmt::format(
-        "{}: there is no campaign '{}'; see `touchdown campaign list --db {}`",
-        flags.db, flags.name, flags.db));
-  }
+  const core::Campaign campaign = CampaignToShow(store, flags.name);
   if (flags.json) {
-    fmt::print("{}\n", report::CampaignJson(*campaign));
+    fmt::print("{}\n", report::CampaignJson(campaign));
     return 0;
   }
   db::TrialFilter filter;
-  filter.campaign = flags.name;
+  filter.campaign = campaign.name;
   filter.with_documents = false;
-  fmt::print("{}trials: {}\n", CampaignText(*campaign),
+  fmt::print("{}trials: {}\n", CampaignText(campaign),
              store.Trials(filter).size());
   return 0;
 }
@@ -253,7 +263,8 @@ void AddCampaign(CLI::App& app, Action& action) {
   list->callback(
       [flags, &action] { action = [flags] { return ListCampaigns(*flags); }; });
   CLI::App* show = command->add_subcommand("show", "one campaign");
-  show->add_option("NAME", flags->name, "of the campaign")->required();
+  show->add_option("NAME", flags->name,
+                   "of the campaign; not needed where there is only one");
   AddDbFlag(*show, flags->db);
   show->add_flag("--json", flags->json, "one JSON document");
   show->callback(

@@ -1,4 +1,4 @@
-// db check|seal|backup|merge|migrate|columns: care of the store.
+// db check|seal|backup|merge|migrate|columns|relink: care of the store.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +13,7 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/pipeline/pictures.h"
+#include "app/pipeline/relink.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
@@ -28,6 +29,7 @@ struct DbFlags {
   std::vector<std::string> from;
   bool no_clips = false;
   std::string against;
+  std::string folder;
 };
 
 std::string Plural(std::size_t n, std::string_view word) {
@@ -143,6 +145,22 @@ int Pictures(const DbFlags& flags) {
   return 0;
 }
 
+int Relink(const DbFlags& flags) {
+  auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  const pipeline::Relinked relinked = pipeline::Relink(store, flags.folder);
+  for (const auto& move : relinked.found) {
+    fmt::print("found: {} -> {}\n", Printable(move.from), Printable(move.to));
+  }
+  for (const auto& path : relinked.missing) {
+    fmt::print("not found: {}\n", Printable(path));
+  }
+  fmt::print("{} found, {} not found, {} where last seen; {} in {}\n",
+             Plural(relinked.found.size(), "recording"),
+             relinked.missing.size(), relinked.in_place,
+             Plural(relinked.looked_at, "recording"), Printable(flags.folder));
+  return 0;
+}
+
 int Migrate(const DbFlags& flags) {
   const db::Migration migration = db::Migrate(flags.db);
   if (migration.from_version == migration.to_version) {
@@ -200,6 +218,15 @@ void AddDb(CLI::App& app, Action& action) {
   merge->add_option("FROM", flags->from, "the other stores")->required();
   merge->callback(
       [flags, &action] { action = [flags] { return Merge(*flags); }; });
+  CLI::App* relink = command->add_subcommand(
+      "relink",
+      "find recordings that were moved, by what they are and not by their "
+      "names; nothing else of the store changes");
+  AddDbFlag(*relink, flags->db);
+  relink->add_option("FOLDER", flags->folder, "where they are, or above")
+      ->required();
+  relink->callback(
+      [flags, &action] { action = [flags] { return Relink(*flags); }; });
   CLI::App* migrate = command->add_subcommand(
       "migrate", "bring a store of an older touchdown to this one");
   AddDbFlag(*migrate, flags->db);

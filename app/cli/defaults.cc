@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -44,21 +43,6 @@ const CLI::App* CommandOf(const std::vector<std::string>& arguments,
     at = called.front();
   }
   return at;
-}
-
-// Letters to change, add or leave out (Levenshtein).
-std::size_t Distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
@@ -131,20 +115,6 @@ std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
   };
   if (add("--db", defaults.store)) add("--campaign", defaults.campaign);
   return arguments;
-}
-
-std::string Nearest(std::string_view word,
-                    const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t least = word.size() / 3 + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = Distance(word, candidate);
-    if (distance < least || (distance == least && best.empty())) {
-      best = candidate;
-      least = distance;
-    }
-  }
-  return best;
 }
 
 }  // namespace touchdown::cli

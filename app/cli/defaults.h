@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "app/cli/command.h"
@@ -40,10 +39,5 @@ std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
 
 // touchdown use (use_command.cc).
 void AddUse(CLI::App& app, Action& action);
-
-// The candidate that a person who typed `word` may have meant: off by at most a
-// third of its letters, the nearest one; empty where there is none.
-std::string Nearest(std::string_view word,
-                    const std::vector<std::string>& candidates);
 
 }  // namespace touchdown::cli

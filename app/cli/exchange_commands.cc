@@ -26,6 +26,7 @@
 #include "touchdown/core/output_file.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"
+#include "touchdown/db/names.h"
 #include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
@@ -117,12 +118,7 @@ class FileBuffer : public std::streambuf {
 int Export(const ExportFlags& flags) {
   const Format format = FormatOf(flags.format, flags.out);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  if (!flags.campaign.empty() && !store.FindCampaign(flags.campaign)) {
-    throw core::StoreError(
-        fmt::format("{}: there is no campaign '{}'; see `touchdown campaign "
-                    "list --db {}`",
-                    flags.db, flags.campaign, flags.db));
-  }
+  if (!flags.campaign.empty()) db::RequireCampaign(store, flags.campaign);
   if (format == Format::kTidy) {
     if (flags.out.empty()) {
       throw std::invalid_argument("--out is missing, must be a folder");

@@ -20,6 +20,7 @@
 #include "app/pipeline/journal.h"
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/nearest.h"
 #include "touchdown/vision/clip_apart.h"
 
 namespace {
@@ -88,7 +89,7 @@ std::string UnknownCommand(std::string_view word) {
     if (command.name == word) return "";
     names.emplace_back(command.name);
   }
-  const std::string meant = touchdown::cli::Nearest(word, names);
+  const std::string meant = touchdown::core::Nearest(word, names);
   return "there is no command '" + std::string(word) + "'; " +
          (meant.empty() ? "`touchdown --help` lists them"
                         : "did you mean `touchdown " + meant + "`?");

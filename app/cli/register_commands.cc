@@ -21,7 +21,7 @@
 #include "app/report/register_json.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/core/edge_unit.h"
-#include "touchdown/core/errors.h"
+#include "touchdown/db/names.h"
 #include "touchdown/db/register.h"
 #include "touchdown/rig/description.h"
 #include "touchdown/vision/clip_digest.h"
@@ -206,17 +206,9 @@ int Add(const EntryFlags& flags, RegisterKind kind) {
   return 0;
 }
 
-Entry RequireEntry(const db::Store& store, RegisterKind kind,
-                   const std::string& name) {
-  if (auto entry = db::FindEntry(store, kind, name)) return *std::move(entry);
-  throw core::StoreError(
-      fmt::format("{}: there is no {} '{}'; see `touchdown register list`",
-                  store.path().string(), Name(kind), name));
-}
-
 int Change(const EntryFlags& flags, RegisterKind kind) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
-  Entry entry = RequireEntry(store, kind, flags.name);
+  Entry entry = db::RequireEntry(store, kind, flags.name);
   Apply(flags, entry);
   Print(db::ChangeEntry(store, entry), flags.json);
   return 0;
@@ -257,7 +249,7 @@ int List(const LookFlags& flags) {
 int Show(const LookFlags& flags) {
   const RegisterKind kind = KindOf(flags.kind);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  const Entry entry = RequireEntry(store, kind, flags.name);
+  const Entry entry = db::RequireEntry(store, kind, flags.name);
   const auto versions = db::VersionsOf(store, kind, flags.name);
   if (flags.json && flags.history) {
     for (const Entry& version : versions) Print(version, true);

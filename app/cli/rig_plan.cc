@@ -24,6 +24,7 @@ struct PlanFlags {
   std::vector<double> angles_deg;
   double speed_mps = 0.0;
   std::optional<double> height_mm;
+  bool all = false;
   bool json = false;
 };
 
@@ -54,6 +55,29 @@ rig::ContactWish WishFrom(const PlanFlags& flags, const rig::Description& rig) {
     wish.muzzle_height_m = *flags.height_mm * core::kMillimetre;
   }
   return wish;
+}
+
+// "20 deg: elevation ..., lands at 20.0 +- 0.4 deg": one line for each angle,
+// and one for each thing to look at.
+std::string PlanText(double angle_deg, core::AngleKind kind,
+                     const rig::SetPoint& point, bool all) {
+  const rig::ContactPrediction& contact = point.contact;
+  const rig::Predicted& angle =
+      kind == core::AngleKind::kApproach ? contact.approach_angle_rad
+      : kind == core::AngleKind::kRadius ? contact.radius_angle_rad
+                                         : contact.face_angle_rad;
+  std::string out = fmt::format(
+      "{:g} deg: elevation {:.2f} deg, compression {:.2f} mm, muzzle height "
+      "{:.1f} mm",
+      angle_deg, point.setting.elevation_rad / core::kDegree,
+      point.setting.compression_m / core::kMillimetre,
+      point.setting.muzzle_height_m / core::kMillimetre);
+  if (angle.first_order) {
+    out += fmt::format(
+        "; lands at {} deg",
+        Rounded(core::Scaled(*angle.first_order, 1.0 / core::kDegree)));
+  }
+  return out + '\n' + (all ? Text(contact, true) : "") + Text(contact.findings);
 }
 
 int RunPlan(const PlanFlags& flags) {
@@ -90,17 +114,10 @@ int RunPlan(const PlanFlags& flags) {
       continue;
     }
     if (!point) {
-      fmt::print("\n{:g} deg: REFUSED: {}\n", angle_deg, point.error().reason);
+      fmt::print("{:g} deg: REFUSED: {}\n", angle_deg, point.error().reason);
       continue;
     }
-    fmt::print(
-        "\n{:g} deg: elevation {:.2f} deg, compression {:.2f} mm, muzzle "
-        "height "
-        "{:.1f} mm\n{}{}",
-        angle_deg, point->setting.elevation_rad / core::kDegree,
-        point->setting.compression_m / core::kMillimetre,
-        point->setting.muzzle_height_m / core::kMillimetre,
-        Text(point->contact, true), Text(point->contact.findings));
+    fmt::print("{}", PlanText(angle_deg, wish.kind, *point, flags.all));
   }
   if (flags.json) Print(out);
   return 0;
@@ -126,6 +143,8 @@ void AddRigPlan(CLI::App& rig, Action& action) {
                   "that lands first: leading, trailing or flush");
   one->add_option("--height-mm", plan->height_mm, "muzzle height to keep");
   AddDrawFlags(*one, plan->draw);
+  one->add_flag("--all", plan->all,
+                "speeds, angles, flight time and range of each, with their u");
   one->add_flag("--json", plan->json, "one JSON document");
   one->callback(
       [&action, plan] { action = [plan] { return RunPlan(*plan); }; });

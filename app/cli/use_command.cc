@@ -10,6 +10,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/defaults.h"
+#include "touchdown/core/nearest.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::cli {
@@ -22,14 +23,12 @@ int RunUse(const Defaults& defaults) {
     for (const core::Campaign& campaign : store.Campaigns()) {
       names.push_back(campaign.name);
     }
-    if (std::find(names.begin(), names.end(), defaults.campaign) ==
-        names.end()) {
-      const std::string meant = Nearest(defaults.campaign, names);
+    if (std::ranges::find(names, defaults.campaign) == names.end()) {
       throw std::invalid_argument(
           fmt::format("{}: there is no campaign '{}'; {}", defaults.store,
                       defaults.campaign,
-                      meant.empty() ? "see `touchdown campaign list`"
-                                    : "did you mean '" + meant + "'?"));
+                      core::DidYouMean(defaults.campaign, names,
+                                       "see `touchdown campaign list`")));
     }
   }
   WriteDefaults(defaults, "");

@@ -69,13 +69,8 @@ Json ContactOf(Writer& writer, const std::string& at,
     json["frame"] = writer.Missing(at + "frame", contact.frame.error().reason);
   }
   json["angle_kind"] = Name(kind);
-  // The contact angle of kind `face` is its magnitude.
-  core::Measured angle = Angle(contact, kind);
-  if (angle && kind == core::AngleKind::kFace) {
-    angle->value = std::abs(angle->value);
-    angle->interval95.reset();
-  }
-  json["angle_deg"] = writer.Number(at + "angle_deg", angle, kToDegrees);
+  json["angle_deg"] = writer.Number(
+      at + "angle_deg", core::ContactAngle(contact, kind), kToDegrees);
   json["approach_angle_deg"] = writer.Number(
       at + "approach_angle_deg", contact.approach_angle_rad, kToDegrees);
   json["radius_angle_deg"] = writer.Number(

@@ -129,22 +129,19 @@ std::string ToText(const Analysis& a) {
                      contact.frame->value));
   }
   if (contact.found) {
-    core::Measured angle = Angle(contact, a.angle_kind);
-    if (angle && a.angle_kind == core::AngleKind::kFace) {
-      angle->value = std::abs(angle->value);
-    }
     Line(out, "angle",
-         Number(angle, kDeg, "deg") +
+         Number(core::ContactAngle(contact, a.angle_kind), kDeg, "deg") +
              fmt::format(" ({} angle)", core::Name(a.angle_kind)));
-    // The other kinds, where the body has them.
+    // The other kinds, where the body has them; of a face also its sign.
     if (a.angle_kind != core::AngleKind::kApproach) {
       Line(out, "approach", Number(contact.approach_angle_rad, kDeg, "deg"));
     }
     if (a.angle_kind != core::AngleKind::kRadius && contact.radius_angle_rad) {
       Line(out, "radius", Number(contact.radius_angle_rad, kDeg, "deg"));
     }
-    if (a.angle_kind != core::AngleKind::kFace && contact.face_angle_rad) {
-      Line(out, "face", Number(contact.face_angle_rad, kDeg, "deg"));
+    const core::Measured& face = contact.face_angle_rad;
+    if (face && (a.angle_kind != core::AngleKind::kFace || face->value < 0)) {
+      Line(out, "face", Number(face, kDeg, "deg"));
     }
     if (contact.corner) Line(out, "corner", std::string(Name(*contact.corner)));
     Line(out, "duration", Number(contact.duration_s, 1e3, "ms"));
@@ -181,10 +178,8 @@ std::string ToText(const Analysis& a) {
     Line(out, "explained", "absent: " + a.explained.error().reason);
   }
   for (const core::ContactRecord& later : a.contacts.later) {
-    core::Measured angle = Angle(later.contact, a.angle_kind);
-    if (angle && a.angle_kind == core::AngleKind::kFace) {
-      angle->value = std::abs(angle->value);
-    }
+    const core::Measured angle =
+        core::ContactAngle(later.contact, a.angle_kind);
     Line(out, "later",
          fmt::format("contact at {}, {} angle {}, {}",
                      Number(later.contact.time_s, 1e3, "ms"),

@@ -7,7 +7,7 @@
 
 #include "app/pipeline/pictures.h"
 #include "app/pipeline/version.h"
-#include "touchdown/core/errors.h"
+#include "touchdown/db/names.h"
 #include "touchdown/db/store.h"
 #include "touchdown/vision/clip_digest.h"
 
@@ -15,11 +15,7 @@ namespace touchdown::pipeline {
 
 core::Campaign RequireCampaign(const db::Store& store,
                                const std::string& name) {
-  if (auto found = store.FindCampaign(name)) return *std::move(found);
-  throw core::StoreError(
-      fmt::format("{}: there is no campaign '{}'; make it first: touchdown "
-                  "campaign new",
-                  store.path().string(), name));
+  return db::RequireCampaign(store, name);
 }
 
 void FillFromCampaign(const std::filesystem::path& db,

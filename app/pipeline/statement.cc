@@ -8,6 +8,7 @@
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/names.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 
@@ -139,17 +140,11 @@ db::Logged LogByHand(const std::filesystem::path& path,
   auto store = db::Store::Open(
       path, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
   if (!entry.campaign.empty()) {
-    const auto campaign = store.FindCampaign(entry.campaign);
-    if (!campaign) {
-      throw core::StoreError(fmt::format(
-          "{}: there is no campaign '{}'; make it with `touchdown campaign "
-          "new`, or see `touchdown campaign list`",
-          path.string(), entry.campaign));
-    }
-    trial.body = campaign->body;
-    trial.angle_kind = campaign->angle_kind;
+    const core::Campaign campaign = db::RequireCampaign(store, entry.campaign);
+    trial.body = campaign.body;
+    trial.angle_kind = campaign.angle_kind;
     trial.first.state.bounce_height_m =
-        core::Estimate{campaign->bounce_height_m, 0.0, std::nullopt};
+        core::Estimate{campaign.bounce_height_m, 0.0, std::nullopt};
   }
   if (body) {
     trial.body = *body;

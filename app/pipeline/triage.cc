@@ -34,14 +34,6 @@ std::vector<std::string> WarningsOf(const core::Trial& trial) {
   return warnings;
 }
 
-core::Measured AngleOf(const core::Trial& trial) {
-  core::Measured angle = ContactAngle(trial);
-  if (angle && trial.angle_kind == core::AngleKind::kFace) {
-    angle->value = std::abs(angle->value);  // the kind is a magnitude
-  }
-  return angle;
-}
-
 }  // namespace
 
 std::string_view Name(Done done) {
@@ -85,7 +77,7 @@ std::string ProposalSentence(const core::Trial& trial,
   const auto words = [](const core::Trial& one) {
     return fmt::format("{}, {} angle {} deg", core::Name(one.first.state.label),
                        core::Name(one.angle_kind),
-                       report::WithUOrReason(AngleOf(one), kDegree));
+                       report::WithUOrReason(ContactAngle(one), kDegree));
   };
   const std::size_t differences = db::Changes(trial, proposal).size();
   return fmt::format(
@@ -108,7 +100,7 @@ TriageEntry TriageOf(const std::string& clip, Done done,
   entry.state = trial.first.state.label;
   entry.p_bounce = trial.first.state.p_bounce;
   entry.angle_kind = trial.angle_kind;
-  entry.angle_rad = AngleOf(trial);
+  entry.angle_rad = ContactAngle(trial);
   const auto warnings = WarningsOf(trial);
   if (!trial.first.contact.found) {
     entry.attention = Attention::kNoContact;

@@ -9,6 +9,7 @@
 #include "app/pipeline/paper_trials.h"
 #include "app/pipeline/trials_csv.h"
 #include "touchdown/core/body.h"
+#include "touchdown/core/nearest.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::pipeline {
@@ -79,9 +80,13 @@ Selection FromStore(const SelectionOptions& options) {
   out.campaigns = store.Campaigns();
   if (options.campaign && !options.campaign->empty() &&
       Find(out.campaigns, *options.campaign) == nullptr) {
+    std::vector<std::string> names;
+    for (const auto& campaign : out.campaigns) names.push_back(campaign.name);
     throw std::invalid_argument(
-        fmt::format("--campaign: there is no campaign '{}' in {}",
-                    *options.campaign, options.store.string()));
+        fmt::format("--campaign: there is no campaign '{}' in {}; {}",
+                    *options.campaign, options.store.string(),
+                    core::DidYouMean(*options.campaign, names,
+                                     "see `touchdown campaign list`")));
   }
   out.plan = db::PlanEvents(store);
   out.trials = store.Trials(filter);

@@ -52,8 +52,11 @@ void AddContact(const core::ContactRecord& record, core::AngleKind kind,
   Facts facts(caption);
   if (!contact.found) facts.Add("contact", "not found: " + contact.reason);
   const auto angle = [&](core::AngleKind which, const core::Measured& value) {
+    const char* const names = which == core::AngleKind::kFace
+                                  ? " (its magnitude is the contact angle)"
+                                  : " (the contact angle)";
     facts.Add(fmt::format("{} angle{}", core::Name(which),
-                          which == kind ? " (the contact angle)" : ""),
+                          which == kind ? names : ""),
               value, kDegree, "deg");
   };
   angle(core::AngleKind::kApproach, contact.approach_angle_rad);
@@ -225,7 +228,7 @@ std::string EvidenceLink(const ReportInput& input, const core::Trial& trial) {
 }
 
 Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
-  const core::Measured& angle = core::ContactAngle(trial);
+  const core::Measured angle = core::ContactAngle(trial);
   const core::StateDecision& state = trial.first.state;
   Document document;
   document.title = fmt::format(

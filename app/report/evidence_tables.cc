@@ -118,7 +118,7 @@ std::vector<Block> MakeBudget(const Group& group,
     for (const auto& [rms, source] : sources) {
       row.push_back(Degrees(FromSource(budget, source)));
     }
-    const core::Measured& angle = core::ContactAngle(trials[t]);
+    const core::Measured angle = core::ContactAngle(trials[t]);
     row.push_back(angle ? Degrees(angle->u) : Cell{});
     table.rows.push_back(std::move(row));
   }

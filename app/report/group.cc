@@ -20,7 +20,7 @@ double OrLast(const std::optional<double>& value) {
 }
 
 double AngleOrLast(const core::Trial& trial) {
-  const core::Measured& angle = core::ContactAngle(trial);
+  const core::Measured angle = core::ContactAngle(trial);
   return angle ? angle->value : std::numeric_limits<double>::infinity();
 }
 

@@ -68,7 +68,7 @@ std::optional<Figure> MakeTrajectories(const Group& group,
 }  // namespace
 
 std::string StripCaption(const core::Trial& trial) {
-  const core::Measured& angle = core::ContactAngle(trial);
+  const core::Measured angle = core::ContactAngle(trial);
   return fmt::format(
       "{}{}: {} angle {}, {}",
       trial.origin == core::Origin::kSimulated ? "SIMULATED, " : "",

@@ -32,7 +32,7 @@ using AngleKey = long long;  // units of the column's width
 
 double Position_deg(const core::Trial& trial) {
   if (trial.set_angle_rad) return *trial.set_angle_rad / kDegree;
-  return std::abs(core::ContactAngle(trial)->value) / kDegree;
+  return core::ContactAngle(trial)->value / kDegree;
 }
 
 struct Angles {

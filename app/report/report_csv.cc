@@ -83,7 +83,7 @@ std::string MakeCsv(std::span<const Group> groups,
       const auto why = left_out.find(t);
       const core::Trial& trial = trials[t];
       const core::StateDecision& state = trial.first.state;
-      const core::Measured& angle = core::ContactAngle(trial);
+      const core::Measured angle = core::ContactAngle(trial);
       std::optional<double> set_deg;
       if (trial.set_angle_rad) set_deg = *trial.set_angle_rad / kDegree;
       const std::string cells[] = {trial.campaign,

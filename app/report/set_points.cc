@@ -54,7 +54,7 @@ Table MakeSetTable(Members members, std::span<const core::Trial> trials,
     const core::Trial& trial = trials[t];
     if (!trial.set_angle_rad && !trial.set_speed_mps) continue;
     std::vector<Cell> row(2);
-    const core::Measured& angle = core::ContactAngle(trial);
+    const core::Measured angle = core::ContactAngle(trial);
     if (trial.set_angle_rad) {
       row[0].text = Plain(*trial.set_angle_rad / kDegree);
       if (angle) {

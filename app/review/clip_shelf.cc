@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/pipeline/open_recording.h"
+#include "app/review/thumbnail.h"
 #include "touchdown/vision/encode_image.h"
 #include "touchdown/vision/image_file.h"
 
@@ -163,6 +164,16 @@ Picture ClipShelf::Frame(const std::filesystem::path& path,
   // A raw frame is made again as quickly as it is found.
   if (compressed) Keep(key, picture);
   return picture;
+}
+
+Picture ClipShelf::Small(const std::filesystem::path& path, std::int64_t index,
+                         core::PixelPoint centre, double width_px) {
+  const ReaderPool::Lease reader = readers_.Take(path);
+  const Known known = Learn(path.string(), reader.clip());
+  const vision::Image image =
+      Shrunk(reader.clip().Read(index), centre, width_px, known.white);
+  return {"image/jpeg", std::make_shared<const std::string>(
+                            vision::EncodeJpeg(image.View(), kJpegQuality))};
 }
 
 void ClipShelf::Ask(const std::string& path, std::int64_t index) {

@@ -57,6 +57,11 @@ class ClipShelf {
   // thousandth of the first frame is white.
   Picture Frame(const std::filesystem::path& path, std::int64_t index);
 
+  // JPEG of a part of a frame (thumbnail.h). Not kept, and the recording is not
+  // decoded ahead for it.
+  Picture Small(const std::filesystem::path& path, std::int64_t index,
+                core::PixelPoint centre, double width_px);
+
   std::size_t bytes() const;  // of the pictures kept
 
  private:

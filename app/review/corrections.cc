@@ -11,6 +11,7 @@
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
 #include "app/pipeline/whole_number.h"
+#include "app/review/changes.h"
 #include "app/review/fields.h"
 #include "app/review/trial_view.h"
 #include "touchdown/core/errors.h"

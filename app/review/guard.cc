@@ -30,6 +30,41 @@ const std::vector<std::pair<std::string, std::string>>& SafeHeaders() {
   return kHeaders;
 }
 
+namespace {
+
+// Asks for the key in a page that loads nothing; its form may send it here
+// alone.
+Reply KeyPage(std::string_view what) {
+  Reply reply;
+  reply.status = 403;
+  reply.type = "text/html; charset=utf-8";
+  reply.body = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><title>touchdown review</title>\n"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n"
+      "<h1>touchdown review</h1>\n<p>{}</p>\n"
+      "<form action=\"/\"><label>The address that <code>touchdown "
+      "review</code> printed last <input name=\"token\" size=\"60\" "
+      "autofocus></label> <button>Open the page</button></form></html>\n",
+      what);
+  reply.headers = {{"Content-Security-Policy",
+                    "default-src 'none'; base-uri 'none'; form-action 'self'; "
+                    "frame-ancestors 'none'"}};
+  return reply;
+}
+
+// The key in an address that holds it, or the key itself.
+std::string KeyIn(std::string_view text) {
+  constexpr std::string_view kName = "token=";
+  const std::size_t at = text.rfind(kName);
+  if (at != std::string_view::npos) text.remove_prefix(at + kName.size());
+  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return std::string(text);
+}
+
+}  // namespace
+
 std::string CookieValue(const std::string& header, const std::string& name) {
   std::string_view rest(header);
   while (!rest.empty()) {
@@ -90,6 +125,9 @@ std::optional<Reply> Guard::Refuse(const Request& request) const {
   }
   if (!IsOurs(request.token) &&
       !IsOurs(CookieValue(request.cookie, CookieName()))) {
+    if (request.method == "GET" && request.path == "/") {
+      return KeyPage("This page needs the key of the session.");
+    }
     return Refusal(403,
                    "open the whole address that `touchdown review` printed: it "
                    "holds the key of this session");
@@ -112,10 +150,8 @@ std::optional<Reply> Guard::Welcome(const Request& request) const {
       given == request.query.end() || !IsOwnHost(request.host)) {
     return std::nullopt;
   }
-  if (!IsOurs(given->second)) {
-    return Refusal(403,
-                   "this address is of another session; open the one that "
-                   "`touchdown review` printed last");
+  if (!IsOurs(KeyIn(given->second))) {
+    return KeyPage("This address is of another session.");
   }
   // A page and no redirection: where another page or a file led here, as the
   // one that opens the browser does, a redirection would go without the cookie

@@ -21,11 +21,13 @@ class Guard {
   // `token` is not empty; `port` is where the server listens.
   Guard(std::string token, int port);
 
-  // The answer to a request that may not pass; nothing where it may.
+  // The answer to a request that may not pass; nothing where it may. Who opens
+  // the page itself without the key is asked for it.
   std::optional<Reply> Refuse(const Request& request) const;
 
   // The answer to the printed address: hands the token over into a cookie, and
-  // on to the page without it. Nothing where the request bears no token.
+  // on to the page without it. The token may be all of the address, as a person
+  // pastes it. Nothing where the request bears no token.
   std::optional<Reply> Welcome(const Request& request) const;
 
   // What a person opens: http://127.0.0.1:PORT/?token=...

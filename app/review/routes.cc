@@ -12,9 +12,13 @@
 #include "app/report/report.h"
 #include "app/report/text_file.h"
 #include "app/report/trial_list.h"
+#include "app/review/changes.h"
 #include "app/review/corrections.h"
 #include "app/review/logging.h"
 #include "app/review/page_files.h"
+#include "app/review/relinking.h"
+#include "app/review/thumbnail.h"
+#include "app/review/trajectory.h"
 #include "app/review/trial_view.h"
 #include "touchdown/core/errors.h"
 
@@ -114,6 +118,7 @@ Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
   const core::Trial trial = RevisionOf(history, request);
   const db::Revision* proposal = db::OpenProposal(history);
   Json json = {{"schema", "touchdown.review.trial/1"},
+               {"store_id", store.uuid()},
                {"row", report::TrialRowJson(trial)},
                {"last_revision", db::RevisionInForce(history).trial.revision},
                {"proposal", proposal != nullptr ? Json(proposal->trial.revision)
@@ -139,6 +144,41 @@ Reply FrameReply(Desk& desk, const Request& request, const std::string& id,
   reply.body = *picture.bytes;
   // A frame stays what it is as long as a person looks at it.
   reply.headers = {{"Cache-Control", "private, max-age=600"}};
+  return reply;
+}
+
+// The trial as it stands, or the revision asked for.
+core::Trial AskedTrial(Desk& desk, const Request& request,
+                       const std::string& id) {
+  const auto history = desk.Open(db::OpenMode::kRead).History(id);
+  if (history.empty()) throw NotThere(request.path);
+  return RevisionOf(history, request);
+}
+
+Reply ThumbnailReply(Desk& desk, const Request& request,
+                     const std::string& id) {
+  const auto trial = desk.Open(db::OpenMode::kRead).Find(id);
+  if (!trial || trial->clip.path.empty()) throw NotThere(request.path);
+  const Picture picture = ThumbnailOf(desk.shelf(), *trial);
+  Reply reply;
+  reply.type = picture.type;
+  reply.body = *picture.bytes;
+  reply.headers = {{"Cache-Control", "private, max-age=600"}};
+  return reply;
+}
+
+Reply TrajectoryReply(Desk& desk, const Request& request,
+                      const std::string& id) {
+  const auto csv = TrajectoryCsv(AskedTrial(desk, request, id));
+  if (!csv) return Refusal(404, csv.error().reason);
+  Reply reply;
+  reply.type = "text/csv; charset=utf-8";
+  reply.body = *csv;
+  constexpr std::size_t kShortId = 8;
+  reply.headers = {
+      {"Content-Disposition", fmt::format("attachment; filename=trajectory-"
+                                          "{}.csv",
+                                          id.substr(0, kShortId))}};
   return reply;
 }
 
@@ -192,7 +232,11 @@ Reply Get(Desk& desk, const Request& request) {
   const std::string& path = request.path;
   if (path == "/") return PageReply("index.html");
   if (const auto name = After(path, "/page/")) return PageReply(*name);
-  if (path == "/api/stamp") return JsonReply({{"stamp", desk.Stamp()}});
+  if (path == "/api/stamp") {
+    return JsonReply(
+        {{"stamp", desk.Stamp()},
+         {"store", std::filesystem::absolute(desk.store()).string()}});
+  }
   if (path == "/api/trials") {
     const std::string stamp = desk.Stamp();
     Json json = TrialListJson(desk.Open(db::OpenMode::kRead), desk.triage());
@@ -209,6 +253,12 @@ Reply Get(Desk& desk, const Request& request) {
   }
   if (const auto trial = TrialPathOf(path)) {
     if (trial->rest.empty()) return TrialReply(desk, request, trial->id);
+    if (trial->rest == "thumbnail") {
+      return ThumbnailReply(desk, request, trial->id);
+    }
+    if (trial->rest == "trajectory.csv") {
+      return TrajectoryReply(desk, request, trial->id);
+    }
     if (const auto n = After(trial->rest, "frames/")) {
       return FrameReply(desk, request, trial->id, *n);
     }
@@ -245,6 +295,9 @@ Reply Post(Desk& desk, const Request& request) {
   }
   if (path == "/api/recordings") {
     return JsonReply(LoggedJson(LogRecording(desk.store(), asked)));
+  }
+  if (path == "/api/relink") {
+    return JsonReply(RelinkedJson(desk.store(), asked));
   }
   if (path == "/api/report") {
     return JsonReply(

@@ -1,16 +1,20 @@
 // What the page asks for, and the answers.
 //
 //   GET  /                        the page; /page/NAME its files
-//   GET  /api/stamp               {"stamp"}: differs when the store changed
+//   GET  /api/stamp               {"stamp", "store"}: the stamp differs when
+//                                 the store changed
 //   GET  /api/trials              touchdown.review.trials/1
 //   GET  /api/statistics          touchdown.review.statistics/1
 //   GET  /api/plots/N             SVG of the N-th group of it
 //   GET  /api/trials/ID           touchdown.review.trial/1; ?revision=N
 //   GET  /api/trials/ID/frames/N  a picture
+//   GET  /api/trials/ID/thumbnail a small picture of the contact
+//   GET  /api/trials/ID/trajectory.csv  ?revision=N
 //   POST /api/trials/ID/preview   a correction, judged and not stored
 //   POST /api/trials/ID/revisions stored (corrections.h)
 //   POST /api/log                 a trial by hand (logging.h)
 //   POST /api/recordings          a recording analysed and logged
+//   POST /api/relink              looks for moved recordings (relinking.h)
 //   POST /api/report              builds it; GET /report/NAME its files
 #pragma once
 

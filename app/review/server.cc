@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -11,10 +13,28 @@
 #include "app/review/guard.h"
 #include "app/review/http_server.h"
 #include "app/review/routes.h"
+#include "touchdown/core/errors.h"
 #include "touchdown/db/identity.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::review {
+namespace {
+
+// Above the ports that the system gives to programs that ask for any.
+constexpr int kFirstOwnPort = 61000;
+constexpr int kOwnPorts = 65536 - kFirstOwnPort;
+
+// The same for a store at every start: FNV-1a of its path.
+int OwnPort(const std::filesystem::path& store) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : std::filesystem::weakly_canonical(store).string()) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  }
+  return kFirstOwnPort + static_cast<int>(hash % kOwnPorts);
+}
+
+}  // namespace
+
 struct Server::Impl {
   explicit Impl(const ServerOptions& options)
       : desk(options.store, options.reports, options.reach_of),
@@ -50,6 +70,16 @@ struct Server::Impl {
 
 Server::Server(const ServerOptions& options) {
   db::Store::Open(options.store, db::OpenMode::kWrite);
+  if (options.http.port == 0) {
+    try {
+      ServerOptions own = options;
+      own.http.port = OwnPort(options.store);
+      impl_ = std::make_unique<Impl>(own);
+      return;
+    } catch (const core::InputError&) {
+      // Another program has it.
+    }
+  }
   impl_ = std::make_unique<Impl>(options);
 }
 

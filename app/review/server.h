@@ -12,7 +12,10 @@ namespace touchdown::review {
 
 struct ServerOptions {
   std::filesystem::path store;
-  HttpOptions http = {};  // the port, and what clients may do
+  // The port, and what clients may do. Port 0: one that is the store's own,
+  // where it is free, so that the tabs of an earlier session find the server
+  // again; else any.
+  HttpOptions http = {};
   // Where reports go that the page builds.
   std::filesystem::path reports;
   // What the next angle stays within; empty: no rig was given, any angle.

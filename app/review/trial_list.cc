@@ -110,6 +110,7 @@ Json TrialListJson(const db::Store& store, TriageMemory& memory) {
   }
   return {{"schema", "touchdown.review.trials/1"},
           {"store", store.path().filename().string()},
+          {"store_id", store.uuid()},
           {"to_look_at", to_look_at},
           {"campaigns", CampaignsJson(store, trials)},
           {"trials", std::move(rows)}};

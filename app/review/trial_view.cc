@@ -8,8 +8,7 @@
 #include <string>
 
 #include "app/report/format.h"
-#include "app/report/trial_csv_columns.h"
-#include "touchdown/core/edge_unit.h"
+#include "app/review/words.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
@@ -111,18 +110,26 @@ Json BudgetJson(const core::Budget& budget) {
   return out;
 }
 
+Json ChecksJson(const pipeline::Analysis& analysis) {
+  Json out = Json::array();
+  for (const pipeline::AnswerCheck& check : analysis.checks) {
+    out.push_back({{"name", check.name},
+                   {"verdict", pipeline::Name(check.verdict)},
+                   {"reason", check.reason}});
+  }
+  return out;
+}
+
 Json QuantitiesJson(const core::ContactRecord& record) {
   Json out = Json::array();
-  for (const auto& quantity : db::kContactQuantities) {
+  for (const std::string_view column : ColumnsInOrder()) {
+    const auto& quantity = *std::ranges::find(db::kContactQuantities, column,
+                                              &db::ContactQuantity::name);
     const core::Measured& measured = db::At(record, quantity);
-    const core::EdgeUnit edge = core::AtTheEdge(quantity.name);
-    Json row = {{"name", edge.stem + edge.suffix}};
+    const Shown shown = ShownAs(column);
+    Json row = {{"name", shown.name}, {"words", Label(shown)}};
     if (measured) {
-      row["text"] = report::WithU(*measured, edge.factor);
-      if (const auto& interval = measured->interval95) {
-        row["interval95"] = {interval->low / edge.factor,
-                             interval->high / edge.factor};
-      }
+      row["text"] = report::WithU(*measured, shown.factor);
     } else {
       row["absent"] = measured.error().reason;
     }
@@ -168,7 +175,8 @@ Json ViewJson(const pipeline::Analysis& analysis) {
                {"fps", analysis.clip.time_base.fps},
                {"poses", std::move(poses)},
                {"warnings", analysis.warnings},
-               {"corrections", analysis.corrections}};
+               {"corrections", analysis.corrections},
+               {"checks", ChecksJson(analysis)}};
   if (!analysis.plane) {
     view["ground"] = nullptr;
     return view;
@@ -185,6 +193,10 @@ Json ViewJson(const pipeline::Analysis& analysis) {
     gaps.push_back({s.frame, s.gap_px * unit, s.u_gap_px * unit});
   }
   view["gaps"] = std::move(gaps);
+  if (const auto& height = analysis.contacts.first.state.bounce_height_m;
+      height && analysis.scale) {
+    view["bounce_height"] = height->value / core::kMillimetre;
+  }
   view["refuted"] = analysis.contacts.ground_refuted;
   Json flights = Json::array();
   Json residuals = Json::array();
@@ -222,7 +234,10 @@ Json ConditionsJson(const core::Trial& trial) {
   if (!trial.conditions) return out;
   const core::Conditions& conditions = *trial.conditions;
   const auto add = [&out](std::string_view name, const std::string& text) {
-    if (!text.empty()) out.push_back({{"name", name}, {"text", text}});
+    if (text.empty()) return;
+    const Shown shown = ShownAs(name);
+    out.push_back(
+        {{"name", shown.name}, {"words", Label(shown)}, {"text", text}});
   };
   for (const auto& entry : db::kConditionEntries) {
     add(Name(entry.kind), (conditions.*entry.member).name);
@@ -230,9 +245,9 @@ Json ConditionsJson(const core::Trial& trial) {
   for (const auto& quantity : db::kConditionQuantities) {
     core::Measured number = conditions.*quantity.member;
     if (!number) continue;
-    const core::EdgeUnit edge = core::AtTheEdge(quantity.name);
-    number->value -= edge.offset;
-    add(edge.stem + edge.suffix, report::WithU(*number, edge.factor));
+    const Shown shown = ShownAs(quantity.name);
+    number->value -= shown.offset;
+    add(quantity.name, report::WithU(*number, shown.factor));
   }
   add("note", conditions.note);
   if (conditions.anomaly != core::Anomaly::kNotRecorded) {
@@ -246,72 +261,14 @@ Json ConditionsJson(const core::Trial& trial) {
 
 Json NumbersJson(const core::Trial& trial) {
   Json out = RecordJson(trial.first);
-  core::Measured angle = core::ContactAngle(trial);
+  const core::Measured angle = core::ContactAngle(trial);
   out["angle_kind"] = core::Name(trial.angle_kind);
-  if (angle && trial.angle_kind == core::AngleKind::kFace) {
-    angle->value = std::abs(angle->value);  // the kind is a magnitude
-  }
   out["angle"] = angle ? Json(report::WithU(*angle, kDegree) + " deg")
                        : Json("absent: " + angle.error().reason);
   Json later = Json::array();
   for (const auto& record : trial.later) later.push_back(RecordJson(record));
   out["later"] = std::move(later);
   out["conditions"] = ConditionsJson(trial);
-  return out;
-}
-
-Json ChangesJson(const core::Trial& before, const core::Trial& after) {
-  Json out = Json::array();
-  for (const db::Change& change : db::Changes(before, after)) {
-    Json one = {
-        {"field", change.field}, {"from", change.from}, {"to", change.to}};
-    const auto at_the_edge = [&](std::string_view prefix,
-                                 std::string_view inner, const auto& of) {
-      const core::EdgeUnit edge = core::AtTheEdge(inner);
-      const auto text = [&](const core::Trial& trial) {
-        core::Measured number = of(trial);
-        if (number) number->value -= edge.offset;
-        return report::WithUOrReason(number, edge.factor);
-      };
-      one = {{"field", fmt::format("{}{}{}", prefix, edge.stem, edge.suffix)},
-             {"from", text(before)},
-             {"to", text(after)}};
-    };
-    for (const auto& quantity : db::kContactQuantities) {
-      if (change.field != quantity.name) continue;
-      at_the_edge("", quantity.name, [&](const core::Trial& trial) {
-        return db::At(trial.first, quantity);
-      });
-    }
-    constexpr std::string_view kOfConditions = "conditions: ";
-    for (const auto& quantity : db::kConditionQuantities) {
-      if (change.field != fmt::format("{}{}", kOfConditions, quantity.name)) {
-        continue;
-      }
-      at_the_edge(kOfConditions, quantity.name, [&](const core::Trial& trial) {
-        return trial.conditions.value_or(core::Conditions{}).*quantity.member;
-      });
-    }
-    out.push_back(std::move(one));
-  }
-  return out;
-}
-
-Json HistoryJson(const std::vector<db::Revision>& history) {
-  Json out = Json::array();
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    const core::Trial& trial = history[i].trial;
-    out.push_back(
-        {{"revision", trial.revision},
-         {"kind", db::Name(history[i].kind)},
-         {"who", trial.author},
-         {"why", trial.reason},
-         {"when", trial.recorded_at_utc},
-         {"changes",
-          i == 0 ? Json::array()
-                 : ChangesJson(db::RevisionInForce({history.data(), i}).trial,
-                               trial)}});
-  }
   return out;
 }
 

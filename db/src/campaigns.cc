@@ -148,8 +148,7 @@ void Store::ChangeCampaign(const Campaign& campaign) {
                  "FROM campaigns c WHERE name = ?");
   find.Add(campaign.name);
   if (!find.Step()) {
-    throw StoreError(fmt::format("{}: there is no campaign '{}' to change",
-                                 path().string(), campaign.name));
+    throw NoCampaign(c, campaign.name);
   }
   const std::int64_t row = find.TakeInteger();
   const std::int64_t trials = find.TakeInteger();

@@ -6,6 +6,7 @@
 
 #include "statement.h"
 #include "touchdown/core/campaign.h"
+#include "touchdown/core/errors.h"
 
 namespace touchdown::db {
 
@@ -20,6 +21,10 @@ std::optional<std::int64_t> KeepSurface(Connection& connection,
                                         std::string_view name,
                                         std::string_view uuid,
                                         std::string_view now_utc);
+
+// To throw where there is no campaign of that name: with what may have been
+// meant (names.cc).
+core::StoreError NoCampaign(Connection& connection, std::string_view name);
 
 // Equal in every convention.
 bool SameConventions(const core::Campaign& a, const core::Campaign& b);

@@ -4,10 +4,10 @@
 
 #include <stdexcept>
 
+#include "campaigns.h"
 #include "chain.h"
 #include "register_rows.h"
 #include "rows.h"
-#include "touchdown/core/errors.h"
 
 namespace touchdown::db {
 
@@ -71,7 +71,7 @@ std::optional<TrialRow> FindTrialOfClip(
 
 std::optional<std::int64_t> KeepClip(Connection& connection,
                                      const core::ClipIdentity& clip,
-                                     std::string_view now_utc) {
+                                     std::string_view now_utc, Told told) {
   if (clip.id.empty()) return std::nullopt;
   // The same clip: the same cheap id (the size is part of what it digests; some
   // clips were logged without), and the same digest where both are known.
@@ -99,11 +99,18 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
     }
   }
   if (known) {
+    if (told == Told::kHere) {
+      Statement(connection,
+                "UPDATE clips SET last_seen_path = ?, last_seen_at_utc = ? "
+                "WHERE id = ?")
+          .Add(clip.path)
+          .Add(now_utc)
+          .Add(*known)
+          .Run();
+    }
     Statement(connection,
-              "UPDATE clips SET last_seen_path = ?, last_seen_at_utc = ?, "
-              "sha256 = ifnull(sha256, nullif(?, '')) WHERE id = ?")
-        .Add(clip.path)
-        .Add(now_utc)
+              "UPDATE clips SET sha256 = ifnull(sha256, nullif(?, '')) "
+              "WHERE id = ?")
         .Add(clip.sha256)
         .Add(*known)
         .Run();
@@ -131,12 +138,7 @@ std::optional<std::int64_t> CampaignOf(Connection& connection,
       connection,
       "SELECT id, body_kind, angle_kind FROM campaigns WHERE name = ?");
   row.Add(trial.campaign);
-  if (!row.Step()) {
-    throw core::StoreError(fmt::format(
-        "{}: there is no campaign '{}'; make it with `touchdown campaign new`, "
-        "or see `touchdown campaign list`",
-        connection.path().string(), trial.campaign));
-  }
+  if (!row.Step()) throw NoCampaign(connection, trial.campaign);
   const std::int64_t id = row.TakeInteger();
   const std::string body = row.TakeText();
   const std::string angle = row.TakeText();

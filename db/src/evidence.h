@@ -41,10 +41,13 @@ std::optional<TrialRow> FindTrialOfClip(
     std::int64_t clip_row);
 
 // The row of a clip, made or brought up to date (digest, where last seen);
-// nothing for a trial without a clip.
+// nothing for a trial without a clip. What another store tells of a clip that
+// is known is no sight of it.
+enum class Told { kHere, kElsewhere };
 std::optional<std::int64_t> KeepClip(Connection& connection,
                                      const core::ClipIdentity& clip,
-                                     std::string_view now_utc);
+                                     std::string_view now_utc,
+                                     Told told = Told::kHere);
 
 // Row of the campaign; nothing for no campaign. Throws core::StoreError if
 // there is none of that name, std::invalid_argument if the trial's body or

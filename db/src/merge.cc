@@ -176,7 +176,8 @@ class Restorer {
     const core::Trial first = Renamed(history.front().trial);
     const auto campaign = CampaignOf(connection_, first);
     const auto clip =
-        KeepClip(connection_, first.clip, history.back().trial.recorded_at_utc);
+        KeepClip(connection_, first.clip, history.back().trial.recorded_at_utc,
+                 Told::kElsewhere);
     auto row = FindTrial(connection_, first.id);
     if (!row && clip) {
       row = FindTrialOfClip(connection_, campaign, *clip);

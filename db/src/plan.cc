@@ -4,10 +4,10 @@
 
 #include <stdexcept>
 
+#include "campaigns.h"
 #include "chain.h"
 #include "plan_rows.h"
 #include "statement.h"
-#include "touchdown/core/errors.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::db {
@@ -100,12 +100,7 @@ void SetPlan(Store& store, std::string_view campaign, const Plan& plan,
              std::string_view author, std::string_view reason) {
   Connection& c = store.connection();
   Transaction transaction(c, Transaction::Kind::kWrite);
-  if (!store.FindCampaign(campaign)) {
-    throw core::StoreError(
-        fmt::format("{}: there is no campaign '{}'; see `touchdown campaign "
-                    "list`",
-                    store.path().string(), campaign));
-  }
+  if (!store.FindCampaign(campaign)) throw NoCampaign(c, campaign);
   const std::int64_t trials = TrialsOf(c, campaign);
   bool first = true;
   for (const PlanEvent& event : PlanEventsIn(c, campaign)) {

@@ -141,11 +141,9 @@ std::optional<std::int64_t> RowOf(Connection& connection, RegisterKind kind,
   if (!entry.id.empty()) row.Add(entry.id);
   if (!row.Step()) {
     throw std::invalid_argument(fmt::format(
-        "{} is '{}'{}, must be a {} of the register; see `touchdown register "
-        "list`",
-        field, entry.name,
+        "{} is '{}'{}, must be a {} of the register; {}", field, entry.name,
         entry.id.empty() ? "" : fmt::format(" (version {})", entry.id),
-        Name(kind)));
+        Name(kind), NameMeant(connection, kind, entry.name)));
   }
   return row.TakeInteger();
 }
@@ -214,9 +212,9 @@ Entry ChangeEntry(Store& store, const Entry& seen) {
   Transaction transaction(store.connection(), Transaction::Kind::kWrite);
   const auto head = InForce(store.connection(), seen.kind, seen.name);
   if (!head) {
-    throw StoreError(
-        fmt::format("{}: there is no {} '{}'; see `touchdown register list`",
-                    store.path().string(), Name(seen.kind), seen.name));
+    throw StoreError(fmt::format(
+        "{}: there is no {} '{}'; {}", store.path().string(), Name(seen.kind),
+        seen.name, NameMeant(store.connection(), seen.kind, seen.name)));
   }
   if (head->id != seen.id) {
     throw StoreError(fmt::format(

@@ -33,6 +33,11 @@ std::optional<std::int64_t> RowOf(Connection& connection, RegisterKind kind,
 core::Registered SelectRegistered(Connection& connection, RegisterKind kind,
                                   std::optional<std::int64_t> row);
 
+// What to do where there is no entry of that name: "did you mean 'S 3'?", or
+// where the names are (names.cc).
+std::string NameMeant(Connection& connection, RegisterKind kind,
+                      std::string_view name);
+
 // The version in force; nothing if there is no entry of that name.
 std::optional<Entry> InForce(Connection& connection, RegisterKind kind,
                              std::string_view name);

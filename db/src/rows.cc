@@ -333,7 +333,8 @@ void InsertStatement(Connection& connection, std::int64_t revision_id,
 std::string SelectRevisions(bool with_documents) {
   return fmt::format(
       "SELECT r.uuid, r.kind, r.statement_id, t.uuid, ifnull(c.name, ''), "
-      "t.origin, s.clip_path, ifnull(k.clip_id, ''), ifnull(k.sha256, ''), "
+      "t.origin, ifnull(k.last_seen_path, s.clip_path), ifnull(k.clip_id, ''), "
+      "ifnull(k.sha256, ''), "
       "ifnull(k.size_bytes, 0), s.angle_kind, {}, s.set_angle_rad, "
       "s.set_speed_mps, r.conditions_id, r.number, r.author, r.reason, "
       "r.recorded_at_utc, "

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "campaigns.h"
 #include "evidence.h"
 #include "rows.h"
 #include "schema.h"
@@ -358,9 +359,7 @@ std::vector<core::Trial> Store::Trials(const TrialFilter& filter) const {
   Transaction snapshot(connection, Transaction::Kind::kRead);
   if (filter.campaign && !filter.campaign->empty() &&
       !FindCampaign(*filter.campaign)) {
-    throw StoreError(fmt::format(
-        "{}: there is no campaign {}; see `touchdown campaign list`",
-        path().string(), Quoted(*filter.campaign)));
+    throw NoCampaign(connection, *filter.campaign);
   }
   Statement row(connection, TrialsSql(filter));
   if (filter.campaign) row.Add(*filter.campaign);

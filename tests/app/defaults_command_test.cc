@@ -80,6 +80,16 @@ TEST_F(DefaultsCommand, AMistakeIsOneLineThatSaysWhatWasMeant) {
   const Ran name = Run("use lab.db paper-table1-shere");
   EXPECT_EQ(name.status, 2);
   EXPECT_THAT(name.err, HasSubstr("did you mean 'paper-table1-sphere'?"));
+  // Wherever a campaign is named.
+  for (const char* command :
+       {"campaign show paper-table1-shere --db lab.db",
+        "list --campaign paper-table1-shere --db lab.db",
+        "boundary --campaign paper-table1-shere --db lab.db",
+        "export --campaign paper-table1-shere --db lab.db --format csv"}) {
+    EXPECT_THAT(Run(command).err,
+                HasSubstr("did you mean 'paper-table1-sphere'?"))
+        << command;
+  }
   EXPECT_FALSE(std::filesystem::exists(lab_ / "touchdown.toml"));
   std::ofstream(lab_ / "touchdown.toml") << "db = \"lab.db\"\nstore = 1\n";
   const Ran key = Run("boundary");

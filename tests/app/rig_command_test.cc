@@ -283,6 +283,19 @@ TEST(RigCommand, ExampleFeedsTheOthers) {
   EXPECT_FALSE(contact["radius_angle_deg"]["budget"].empty());
 }
 
+TEST(RigCommand, APlanIsALineForEachAngleAndTheRestWithAll) {
+  const TemporaryFile toml("rig.toml", Rig("example").out);
+  const std::string plan =
+      "plan --angle-deg 10,30 --speed-mps 4 --draws 2000 --rig " + toml.path();
+  const Ran brief = Rig(plan);
+  ASSERT_EQ(brief.status, 0);
+  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 3) << brief.out;
+  EXPECT_THAT(brief.out, HasSubstr("10 deg: REFUSED: "));
+  EXPECT_THAT(brief.out, HasSubstr("mm; lands at 30."));
+  EXPECT_THAT(brief.out, ::testing::Not(HasSubstr("flight time")));
+  EXPECT_THAT(Rig(plan + " --all").out, HasSubstr("flight time"));
+}
+
 TEST(RigCommand, DirectFlagsWithoutAFile) {
   const Ran ran = Rig(
       "launch --json --draws 1000 --shear-modulus-gpa 79.3 --wire-mm 2.0+-0.01 "

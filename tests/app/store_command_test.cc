@@ -69,6 +69,25 @@ class StoreCommand : public ::testing::Test {
   db::Folder folder_;
 };
 
+TEST_F(StoreCommand, TheOnlyCampaignNeedsNoName) {
+  LogOne();
+  const Ran one = Run("campaign show --db lab.db");
+  EXPECT_EQ(one.status, 0) << one.error;
+  EXPECT_EQ(one.out, Run("campaign show asphalt --db lab.db").out);
+  Run("campaign new ice --db lab.db --body sphere --diameter-mm 40");
+  ExpectMistake("campaign show --db lab.db", 2, "one of: asphalt, ice");
+}
+
+TEST_F(StoreCommand, RelinkSaysWhatItFoundAndWhatNot) {
+  LogOne();  // by hand: it has no recording
+  const Ran ran = Run("db relink . --db lab.db");
+  EXPECT_EQ(ran.status, 0) << ran.error;
+  EXPECT_EQ(ran.out,
+            "0 recordings found, 0 not found, 0 where last seen; 0 recordings "
+            "in .\n");
+  ExpectMistake("db relink nowhere --db lab.db", 3, "nowhere");
+}
+
 TEST_F(StoreCommand, LogListShowCorrect) {
   const std::string id = LogOne();
   const Ran list = Run("list --db lab.db --json");

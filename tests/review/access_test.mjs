@@ -30,21 +30,34 @@ async function findings(page) {
       v => v.impact === 'serious' || v.impact === 'critical'));
 }
 
-const kSizes = {laptop: {width: 1280, height: 720},
-                tablet: {width: 820, height: 1180}};
+// At the side.
+async function requireNothingCutOff(page) {
+  assert.ok(await page.evaluate(
+      () => document.documentElement.scrollWidth <= innerWidth));
+}
 
-for (const [name, size] of Object.entries(kSizes)) {
+const kViews = {laptop: [1280, 720, 'light'], tablet: [820, 1180, 'light'],
+                dark: [1280, 720, 'dark'], phone: [390, 844, 'light'],
+                wide: [1920, 1080, 'light']};
+
+for (const [name, [width, height, colorScheme]] of Object.entries(kViews)) {
   test(`axe-core has nothing serious to say (${name})`, async () => {
-    const page = await sitDown(browser, review, 'Ada', size);
+    const page = await sitDown(browser, review, 'Ada', {width, height});
+    await page.emulateMedia({colorScheme});
     await page.waitForSelector('.card .next');
     assert.deepEqual(await findings(page), []);
+    await picture(page, `overview-${name}`);
+    await requireNothingCutOff(page);
     await page.goto(`${review.origin}/#/trial/${lab.trial}`);
     await frameShown(page, 89);
     assert.deepEqual(await findings(page), []);
     await picture(page, `trial-${name}`);
-    // Nothing is cut off at the side.
-    assert.ok(await page.evaluate(
-        () => document.documentElement.scrollWidth <= innerWidth));
+    await requireNothingCutOff(page);
+    await page.goto(`${review.origin}/#/compare/${lab.trial}/${lab.trial}`);
+    await page.waitForSelector('.side .picture[data-shown]');
+    assert.deepEqual(await findings(page), []);
+    await picture(page, `compare-${name}`);
+    await requireNothingCutOff(page);
     await page.goto(`${review.origin}/#/log`);
     await page.waitForSelector('form');
     assert.deepEqual(await findings(page), []);

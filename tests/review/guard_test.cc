@@ -76,6 +76,24 @@ TEST(Guard, RefusesAnybodyWithoutTheKey) {
   }
 }
 
+TEST(Guard, AsksWhoOpensThePageForTheKeyAndNobodyElse) {
+  Request request = Ours();
+  request.cookie.clear();
+  const Guard guard(kToken, 8080);
+  auto reply = guard.Refuse(request);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 403);
+  EXPECT_EQ(reply->type, "text/html; charset=utf-8");
+  EXPECT_NE(reply->body.find("name=\"token\""), std::string::npos);
+  EXPECT_EQ(reply->body.find(kToken), std::string::npos);
+  // No script, and a form that leads nowhere else.
+  EXPECT_EQ(reply->headers.at(0).second,
+            "default-src 'none'; base-uri 'none'; form-action 'self'; "
+            "frame-ancestors 'none'");
+  request.path = "/api/trials";
+  EXPECT_EQ(guard.Refuse(request)->type, "application/json");
+}
+
 TEST(Guard, RefusesChangesThatAFormCouldSend) {
   Request request = Ours();
   request.method = "POST";
@@ -106,6 +124,12 @@ TEST(Guard, HandsTheKeyOverOnce) {
             "SameSite=Strict");
   request.query["token"] = "wrong";
   EXPECT_EQ(guard.Welcome(request)->status, 403);
+  // As a person may paste it.
+  for (const std::string& pasted :
+       {guard.Address(), "  " + std::string(kToken) + " "}) {
+    request.query["token"] = pasted;
+    EXPECT_EQ(guard.Welcome(request)->status, 200) << pasted;
+  }
   request.query.clear();
   EXPECT_FALSE(guard.Welcome(request));
   request.query["token"] = kToken;

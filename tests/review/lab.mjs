@@ -73,10 +73,10 @@ export async function startReview(db, ...args) {
     address,
     origin: url.origin,
     token: url.searchParams.get('token'),
-    stop: () => new Promise(resolve => {
+    stop: (signal = 'SIGTERM') => new Promise(resolve => {
       child.removeAllListeners('exit');
       child.once('exit', resolve);
-      child.kill('SIGTERM');
+      child.kill(signal);
     }),
   };
 }

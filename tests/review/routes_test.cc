@@ -93,6 +93,51 @@ TEST_F(Routes, ShowsATrialWithWhatIsDrawnOfIt) {
   EXPECT_EQ(Get(Trial(), "2").status, 404);
 }
 
+TEST_F(Routes, ShowsTheChecksOfTheAnswerAndTheBounceHeight) {
+  const Json view = Json::parse(Get(Trial()).body)["view"];
+  EXPECT_NEAR(view["bounce_height"].get<double>(), 0.5, 1e-9);  // campaign's
+  const Json document = Json::parse(lab.Now().document_json);
+  EXPECT_EQ(view["checks"], document["checks"]);
+  EXPECT_GE(view["checks"].size(), 5u);
+}
+
+TEST_F(Routes, GivesTheTrajectoryOfARevisionAsAFile) {
+  const Reply reply = Get(Trial("/trajectory.csv"));
+  EXPECT_EQ(reply.type, "text/csv; charset=utf-8");
+  EXPECT_THAT(reply.body, ::testing::StartsWith("frame,time_s,x_mm,"));
+  EXPECT_THAT(reply.headers,
+              Contains(::testing::Pair("Content-Disposition",
+                                       "attachment; filename=trajectory-" +
+                                           std::string(lab.trial).substr(0, 8) +
+                                           ".csv")));
+  EXPECT_EQ(Get(Trial("/trajectory.csv"), "1").body, reply.body);
+  EXPECT_EQ(Get(Trial("/trajectory.csv"), "2").status, 404);
+}
+
+TEST_F(Routes, FindsAMovedRecordingAndShowsItAtOnce) {
+  EXPECT_EQ(Get(Trial("/thumbnail")).type, "image/jpeg");
+  std::filesystem::create_directory(lab.folder / "archive");
+  for (const char* ending : {"mraw", "cihx"}) {
+    std::filesystem::rename(
+        std::filesystem::path(lab.clip).replace_extension(ending),
+        (lab.folder / "archive" / "x").replace_extension(ending));
+  }
+  EXPECT_EQ(Json::parse(Post("/api/relink", {{"folder", ""}}).body)["field"],
+            "folder");
+  EXPECT_EQ(
+      Post("/api/relink", {{"folder", (lab.folder / "none").string()}}).status,
+      422);
+  const Reply reply =
+      Post("/api/relink", {{"folder", lab.folder.path().string()}});
+  ASSERT_EQ(reply.status, 200) << reply.body;
+  const Json found = Json::parse(reply.body)["found"];
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["from"], lab.clip.string());
+  EXPECT_EQ(Json::parse(Get(Trial()).body)["clip"]["frames"], 115);
+  EXPECT_EQ(Get(Trial("/frames/80")).status, 200);
+  EXPECT_EQ(Get(Trial("/thumbnail")).status, 200);
+}
+
 TEST_F(Routes, GivesFrames) {
   const Reply reply = Get(Trial("/frames/80"));
   EXPECT_EQ(reply.status, 200);

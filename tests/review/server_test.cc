@@ -52,6 +52,23 @@ TEST(Server, AnswersWithTheKeyOnly) {
   EXPECT_EQ(nlohmann::json::parse(list->body)["trials"].size(), 1u);
 }
 
+TEST(Server, ListensWhereItDidBeforeAndElsewhereWhileThatIsTaken) {
+  const Lab lab;
+  const ServerOptions options{lab.store, {}, lab.folder / "report"};
+  int port = 0;
+  std::string token;
+  {
+    const Running first(options);
+    port = first.server.port();
+    token = first.token;
+    const Running second(options);
+    EXPECT_NE(second.server.port(), port);
+  }
+  const Running again(options);
+  EXPECT_EQ(again.server.port(), port);
+  EXPECT_NE(again.token, token);
+}
+
 TEST(Server, IsNotThereForOtherMachines) {
   const Lab lab;
   Running running({lab.store, {}, lab.folder / "report"});

@@ -1,28 +1,40 @@
 // Which page is shown, and when it is shown anew.
-import {element, get, rememberWho, tell} from './parts.js';
+import {element, rememberWho, turnNews} from './parts.js';
+import {compare} from './compare.js';
 import {log} from './log.js';
 import {overview} from './overview.js';
 import {report} from './report.js';
+import {watchServer} from './session.js';
 import {trial} from './trial.js';
 
-const pages = {log, overview, report, trial};
+const pages = {compare, log, overview, report, trial};
 
 // What the page shown wants: `changed` is called when the store has changed,
-// `keys` gets key presses, `close` ends it.
+// `keys` gets key presses, `close` ends it; `pending` says whether something
+// was begun and not stored; `back`: the server answers again.
 let shown = null;
-let stamp = null;
 
 function pageOf(hash) {
   const [name, ...rest] = hash.replace(/^#\//, '').split('/');
   return {name: name || 'overview', rest: rest.map(decodeURIComponent)};
 }
 
-async function show() {
+// One page after the other: one that is slow to come does not overwrite the one
+// that was asked for after it.
+let asked = 0;
+let turn = Promise.resolve();
+function show() {
+  const mine = ++asked;
+  turn = turn.then(() => mine === asked ? showNow() : null);
+  return turn;
+}
+
+async function showNow() {
   const {name, rest} = pageOf(location.hash);
   const page = pages[name] ?? pages.overview;
   shown?.close?.();
   shown = null;
-  tell('');
+  turnNews();
   for (const link of document.querySelectorAll('nav a')) {
     if (link.dataset.page === name) link.setAttribute('aria-current', 'page');
     else link.removeAttribute('aria-current');
@@ -43,22 +55,6 @@ async function show() {
   }
 }
 
-// Every two seconds: cheap for the server, quick enough for two people at one
-// rig.
-const kAskEvery_ms = 2000;
-
-async function watch() {
-  try {
-    const now = (await get('/api/stamp')).stamp;
-    const changed = stamp !== null && now !== stamp;
-    stamp = now;
-    if (changed) await shown?.changed?.();
-  } catch (error) {
-    tell(error.message, true);
-  }
-  setTimeout(watch, kAskEvery_ms);
-}
-
 addEventListener('hashchange', show);
 addEventListener('keydown', event => {
   const typing = event.target.closest?.('input, textarea, select');
@@ -66,6 +62,13 @@ addEventListener('keydown', event => {
     shown?.keys?.(event);
   }
 });
+addEventListener('beforeunload', event => {
+  if (shown?.pending?.()) event.preventDefault();
+});
 rememberWho();
 show();
-watch();
+watchServer({
+  changed: () => shown?.changed?.(),
+  // A page that could not be shown is shown now; another goes on.
+  back: () => shown ? shown.back?.() : show(),
+});

@@ -1,5 +1,6 @@
 // Campaigns, what the trials say together, and the trials that need a look.
-import {baseName, degrees, element, get, table, tell, withU} from './parts.js';
+import {TrialList} from './list.js';
+import {element, get, table, tell} from './parts.js';
 
 function campaignTable(campaigns) {
   return table(
@@ -67,84 +68,17 @@ function table1(tables) {
                  {class: t.origin === 'simulated' ? 'simulated' : null}));
 }
 
-// The shape says it as well as the colour does.
-const kStateMarks = {bounce: '▲', undecided: '?'};
-
-function trialRow(trial) {
-  const mark = kStateMarks[trial.state] ?? '▬';
-  const shade = trial.state === 'bounce' || trial.state === 'undecided'
-      ? trial.state : 'slide';
-  return [
-    element('a', {href: `#/trial/${trial.id}`,
-                  text: baseName(trial.clip.path) || trial.id.slice(0, 8)}),
-    {text: trial.attention ?? '', class: trial.attention ? 'look' : null},
-    {text: trial.excluded ? `excluded: ${trial.exclusion_reason}` : trial.why,
-     class: 'why'},
-    trial.campaign || '–',
-    trial.origin,
-    {text: `${withU(trial.angle_deg)}`, class: 'num'},
-    trial.angle_kind,
-    {text: `${mark} ${trial.state}`, class: shade},
-    {text: trial.revision, class: 'num'},
-  ];
-}
-
-function trialTable(trials) {
-  const headings = [
-    'trial', 'needs a look', 'why', 'campaign', 'origin',
-    {text: 'angle, deg', class: 'num'}, 'kind', 'state',
-    {text: 'revision', class: 'num'}];
-  const made = table('Trials, those that need a look first', headings,
-                     trials.map(trialRow), {class: 'trials'});
-  made.querySelectorAll('tbody tr').forEach((row, i) => {
-    row.dataset.id = trials[i].id;
-    if (trials[i].excluded) row.classList.add('excluded');
-  });
-  return made;
-}
-
-// Up and down go from trial to trial.
-function moveInList(event, list) {
-  if (event.key !== 'ArrowDown' && event.key !== 'ArrowUp') return;
-  const links = [...list.querySelectorAll('tbody a')].filter(
-      link => link.offsetParent !== null);
-  const at = links.indexOf(document.activeElement);
-  const next = links[at + (event.key === 'ArrowDown' ? 1 : -1)] ?? links[0];
-  next?.focus();
-  event.preventDefault();
-}
-
 export async function overview(main) {
-  const list = element('div', {class: 'list'});
+  const list = new TrialList();
   const said = element('div', {class: 'together'},
                        element('p', {text: 'Working out the boundary …'}));
-  const campaigns = element('div');
-  const filter = element('input', {
-    type: 'search', id: 'filter', placeholder: 'name, campaign, state …'});
-  const count = element('span', {role: 'status'});
-
-  function applyFilter() {
-    const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-    let visible = 0;
-    const rows = list.querySelectorAll('tbody tr');
-    for (const row of rows) {
-      const text = row.textContent.toLowerCase();
-      row.hidden = !words.every(word => text.includes(word));
-      visible += row.hidden ? 0 : 1;
-    }
-    count.textContent = `${visible} of ${rows.length}`;
-  }
-  filter.addEventListener('input', applyFilter);
+  const campaigns = element('div', {class: 'wide', tabindex: '0', role: 'region',
+                                    'aria-label': 'Campaigns'});
 
   async function load() {
     const trials = await get('/api/trials');
     campaigns.replaceChildren(campaignTable(trials.campaigns));
-    const focused = document.activeElement?.closest?.('tr')?.dataset.id;
-    list.replaceChildren(trialTable(trials.trials));
-    applyFilter();
-    if (focused) {
-      list.querySelector(`tr[data-id="${focused}"] a`)?.focus();
-    }
+    list.show(trials.trials, trials.store_id);
     heading.textContent = trials.to_look_at
         ? `Trials: ${trials.to_look_at} of ${trials.trials.length} to look at`
         : `Trials: ${trials.trials.length}, none to look at`;
@@ -181,10 +115,7 @@ export async function overview(main) {
   const heading = element('h1', {text: 'Trials'});
   main.replaceChildren(
       heading,
-      element('p', {class: 'tools'},
-              element('label', {for: 'filter', text: 'Show only '}), filter,
-              ' ', count),
-      list, element('h2', {text: 'What they say together'}), said, campaigns);
+      list.node, element('h2', {text: 'What they say together'}), said, campaigns);
   loadStatistics(await load());
   return {
     async changed() {
@@ -192,6 +123,6 @@ export async function overview(main) {
       tell('The store has changed; this is what it says now.');
       await loadStatistics(stamp);
     },
-    keys(event) { moveInList(event, list); },
+    keys(event) { list.move(event); },
   };
 }

@@ -75,11 +75,20 @@ export function degrees(value, decimals = 2) {
 // The last part of a path.
 export function baseName(path) { return path.split('/').pop() || path; }
 
-// Says something to everybody, also to who cannot see it appear.
-export function tell(text, bad = false) {
+// Says something to everybody, also to who cannot see it appear; `more`:
+// buttons behind it.
+export function tell(text, bad = false, ...more) {
   const news = document.getElementById('news');
-  news.textContent = text;
+  news.replaceChildren(text, ...more);
   news.className = bad ? 'bad' : '';
+}
+
+// The same once the next page is shown.
+let next = [''];
+export function tellNext(text, ...more) { next = [text, false, ...more]; }
+export function turnNews() {
+  tell(...next);
+  next = [''];
 }
 
 // Who the person at this page is; kept in this browser.

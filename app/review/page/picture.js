@@ -12,12 +12,14 @@ export class Picture {
     this.frameUrl = frameUrl;
     this.onGround = onGround;
     this.editing = false;
+    this.aspect = height / width;  // of the part that is shown
+    this.mark_permille = 4;        // radius of the contact point, of its width
     this.frame = 0;
     this.view = null;
     // Pixel centres are at integers.
     this.image = svg('image', {x: -0.5, y: -0.5, width, height,
                                preserveAspectRatio: 'none'});
-    this.drawing = svg('g', {'aria-hidden': 'true'});
+    this.drawing = svg('g', {class: 'drawing', 'aria-hidden': 'true'});
     this.handles = svg('g');
     this.node = svg('svg', {class: 'picture', role: 'group',
                             'aria-label': label},
@@ -29,7 +31,7 @@ export class Picture {
   }
 
   setBox(x, y, width) {
-    const height = width * this.height / this.width;
+    const height = width * this.aspect;
     this.box = {x, y, width, height};
     this.node.setAttribute('viewBox', `${x} ${y} ${width} ${height}`);
     // Enlarged pixels are shown as they are.
@@ -50,7 +52,7 @@ export class Picture {
   }
 
   zoomTo(x, y, width) {
-    const height = width * this.height / this.width;
+    const height = width * this.aspect;
     this.setBox(x - width / 2, y - height / 2, width);
   }
 
@@ -129,7 +131,7 @@ export class Picture {
     if (pose) this.drawing.append(this.outline(view.body, pose));
     if (view.contact) {
       const [x, y] = view.contact.touching_px;
-      const r = 4 * this.box.width / 1000;
+      const r = this.mark_permille * this.box.width / 1000;
       this.drawing.append(svg('circle', {cx: x, cy: y, r, class: 'touching'}));
       line(view.contact.approach_px, 'approach');
     }

@@ -17,6 +17,7 @@ function ticks(low, high, count) {
 }
 
 // series: [{name, points: [[frame, value, u], ...]}]; drawn with bars of 2 u.
+// lines: [{value, text}]: heights drawn across.
 export class Plot {
   constructor(title, unit, onFrame) {
     this.title = title;
@@ -34,7 +35,7 @@ export class Plot {
     });
   }
 
-  show(series, frame, from, to, words) {
+  show(series, frame, from, to, words, lines = []) {
     const all = series.flatMap(s => s.points).filter(
         p => p[0] >= from && p[0] <= to);
     this.node.setAttribute('aria-label', `${this.title}. ${words}`);
@@ -45,7 +46,8 @@ export class Plot {
       return;
     }
     let low = Math.min(0, ...all.map(p => p[1] - 2 * p[2]));
-    let high = Math.max(0, ...all.map(p => p[1] + 2 * p[2]));
+    let high = Math.max(0, ...all.map(p => p[1] + 2 * p[2]),
+                        ...lines.map(line => line.value));
     const room = (high - low || 1) * 0.05;
     low -= room;
     high += room;
@@ -66,6 +68,12 @@ export class Plot {
     for (const t of ticks(from, to, 5)) {
       parts.push(svg('text', {x: x(t), y: kHeight - 8, class: 'axis middle',
                               text: t}));
+    }
+    for (const {value, text} of lines) {
+      parts.push(svg('line', {x1: kLeft, x2: kWidth - kRight, y1: y(value),
+                              y2: y(value), class: 'across'}),
+                 svg('text', {x: kLeft + 4, y: y(value) - 3,
+                              class: 'axis across', text}));
     }
     series.forEach(({name, points}) => {
       for (const [f, value, u] of points) {

@@ -146,10 +146,19 @@ struct Trial {
   std::string exclusion_reason;
 };
 
-// The trial's contact angle: the angle its protocol names, with its kind
-// beside.
-inline const Measured& ContactAngle(const Trial& trial) {
-  return Angle(trial.first.contact, trial.angle_kind);
+// The contact angle that a protocol names by `kind`: of kind face the magnitude
+// of the face angle, which itself is positive with the leading end up.
+inline Measured ContactAngle(const Contact& contact, AngleKind kind) {
+  Measured angle = Angle(contact, kind);
+  if (kind != AngleKind::kFace || !angle || angle->value >= 0.0) return angle;
+  angle->value = -angle->value;
+  if (const auto interval = angle->interval95) {
+    angle->interval95 = Interval{-interval->high, -interval->low};
+  }
+  return angle;
+}
+inline Measured ContactAngle(const Trial& trial) {
+  return ContactAngle(trial.first.contact, trial.angle_kind);
 }
 
 }  // namespace touchdown::core

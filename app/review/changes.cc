@@ -1,0 +1,146 @@
+#include "app/review/changes.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "app/report/format.h"
+#include "app/review/words.h"
+#include "touchdown/core/units.h"
+#include "touchdown/db/quantities.h"
+#include "touchdown/db/register.h"
+
+namespace touchdown::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kOfConditions = "conditions: ";
+constexpr std::string_view kOfContact = "contact ";  // "contact 2: "
+
+// "contact 2: state": which part of a trial, and its column.
+struct Field {
+  std::string_view prefix;
+  std::string_view column;
+};
+
+Field FieldOf(std::string_view change) {
+  const std::size_t colon = change.find(": ");
+  if (colon == std::string_view::npos) return {"", change};
+  return {change.substr(0, colon + 2), change.substr(colon + 2)};
+}
+
+// Null where the trial has no such contact, or the field is of no contact.
+const core::ContactRecord* RecordOf(const core::Trial& trial,
+                                    const Field& field) {
+  if (field.prefix.empty()) return &trial.first;
+  if (!field.prefix.starts_with(kOfContact)) return nullptr;
+  const std::string_view digits = field.prefix.substr(kOfContact.size());
+  std::size_t number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (number < 2 || number - 2 >= trial.later.size()) return nullptr;
+  return &trial.later[number - 2];
+}
+
+core::Measured Exactly(const std::optional<double>& value) {
+  if (!value) return core::AbsentBecause("not set");
+  return core::Estimate{*value, 0.0, std::nullopt};
+}
+
+// Nothing where the field is no number of a unit.
+std::optional<core::Measured> NumberOf(const core::Trial& trial,
+                                       const Field& field) {
+  if (field.prefix == kOfConditions) {
+    for (const auto& quantity : db::kConditionQuantities) {
+      if (field.column == quantity.name) {
+        return trial.conditions.value_or(core::Conditions{}).*quantity.member;
+      }
+    }
+    return std::nullopt;
+  }
+  if (const core::ContactRecord* record = RecordOf(trial, field)) {
+    for (const auto& quantity : db::kContactQuantities) {
+      if (field.column == quantity.name) return db::At(*record, quantity);
+    }
+  }
+  if (!field.prefix.empty()) return std::nullopt;
+  for (const auto& quantity : db::kBodyQuantities) {
+    if (field.column == quantity.name) return trial.body.*quantity.member;
+  }
+  if (field.column == "set_angle_rad") return Exactly(trial.set_angle_rad);
+  if (field.column == "set_speed_mps") return Exactly(trial.set_speed_mps);
+  return std::nullopt;
+}
+
+std::string BudgetText(const core::Budget& budget) {
+  std::string text;
+  for (const auto& line : budget) {
+    text += fmt::format("{}{} {:.4f} deg", text.empty() ? "" : ", ",
+                        line.source, line.u / core::kDegree);
+  }
+  return text.empty() ? "none" : text;
+}
+
+// The value of a field of `trial` for a person; `as_is` where it is a word.
+std::string TextOf(const core::Trial& trial, const Field& field,
+                   const Shown& shown, const std::string& as_is) {
+  if (auto number = NumberOf(trial, field)) {
+    if (*number) (*number)->value -= shown.offset;
+    return report::WithUOrReason(*number, shown.factor);
+  }
+  const core::ContactRecord* record = RecordOf(trial, field);
+  if (record == nullptr) return as_is;
+  if (field.column == "p_bounce" && record->state.p_bounce) {
+    return report::Probability(*record->state.p_bounce);
+  }
+  for (const auto& budget : db::kBudgets) {
+    if (field.column == fmt::format("{}_budget", budget.name)) {
+      return BudgetText(record->contact.*budget.member);
+    }
+  }
+  return as_is;
+}
+
+}  // namespace
+
+Json ChangesJson(const core::Trial& before, const core::Trial& after) {
+  Json out = Json::array();
+  Json document;
+  for (const db::Change& change : db::Changes(before, after)) {
+    const Field field = FieldOf(change.field);
+    const Shown shown = ShownAs(field.column);
+    const std::string from = TextOf(before, field, shown, change.from);
+    const std::string to = TextOf(after, field, shown, change.to);
+    if (from == to) continue;  // less than the last digit shown
+    Json one = {{"field", std::string(field.prefix) + shown.name},
+                {"words", std::string(field.prefix) + Label(shown)},
+                {"from", from},
+                {"to", to}};
+    (change.field == "document" ? document : out).push_back(std::move(one));
+  }
+  return out.empty() && !document.is_null() ? document : out;
+}
+
+Json HistoryJson(const std::vector<db::Revision>& history) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const core::Trial& trial = history[i].trial;
+    out.push_back(
+        {{"revision", trial.revision},
+         {"kind", db::Name(history[i].kind)},
+         {"who", trial.author},
+         {"why", trial.reason},
+         {"when", trial.recorded_at_utc},
+         {"changes",
+          i == 0 ? Json::array()
+                 : ChangesJson(db::RevisionInForce({history.data(), i}).trial,
+                               trial)}});
+  }
+  return out;
+}
+
+}  // namespace touchdown::review

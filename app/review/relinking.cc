@@ -1,0 +1,27 @@
+#include "app/review/relinking.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/pipeline/relink.h"
+#include "app/review/fields.h"
+
+namespace touchdown::review {
+
+nlohmann::ordered_json RelinkedJson(const std::filesystem::path& store,
+                                    const nlohmann::json& asked) {
+  using Json = nlohmann::ordered_json;
+  const std::string folder =
+      RequiredText(asked, "folder", "where recordings are");
+  auto opened = db::Store::Open(store, db::OpenMode::kWrite);
+  const pipeline::Relinked relinked = pipeline::Relink(opened, folder);
+  Json found = Json::array();
+  for (const auto& move : relinked.found) {
+    found.push_back({{"from", move.from}, {"to", move.to}});
+  }
+  return {{"found", std::move(found)},
+          {"missing", relinked.missing},
+          {"in_place", relinked.in_place},
+          {"looked_at", relinked.looked_at}};
+}
+
+}  // namespace touchdown::review
