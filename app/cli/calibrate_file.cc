@@ -7,8 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "app/cli/dates.h"
 #include "app/cli/values.h"
+#include "app/pipeline/new_calibration.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/clip_apart.h"
 
@@ -118,12 +118,8 @@ calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
     // The oldest part decides how long the whole is good.
     return out;
   }
-  out.camera = flags.camera;
-  out.date = flags.date.empty() ? Today() : flags.date;
-  out.expires = DaysAfter("--date", out.date, flags.valid_days);
-  out.picture = picture;
-  if (!out.picture.corner) out.picture.corner = calib::SensorCorner{};
-  return out;
+  return pipeline::NewCalibration(flags.camera, picture, flags.date,
+                                  flags.valid_days);
 }
 
 }  // namespace touchdown::cli

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/pipeline/new_calibration.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/calib/references.h"
 #include "touchdown/vision/image_file.h"
@@ -18,7 +19,7 @@ namespace touchdown::cli {
 struct CalibrationFileFlags {
   std::string camera;
   std::string date;
-  int valid_days = 365;
+  int valid_days = pipeline::kValidDays;
   std::string sensor_origin;
   std::string calibration;
   std::string out;
