@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -12,9 +12,11 @@
 #include "app/report/report.h"
 #include "app/report/text_file.h"
 #include "app/report/trial_list.h"
+#include "app/review/answers.h"
 #include "app/review/corrections.h"
 #include "app/review/logging.h"
 #include "app/review/page_files.h"
+#include "app/review/recording_routes.h"
 #include "app/review/trial_view.h"
 #include "touchdown/core/errors.h"
 
@@ -22,19 +24,6 @@ namespace touchdown::review {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// A path, a number or a trial that there is not.
-class NotThere : public std::runtime_error {
- public:
-  explicit NotThere(const std::string& path)
-      : std::runtime_error(path + ": there is nothing here") {}
-};
-
-Reply JsonReply(const Json& json) {
-  Reply reply;
-  reply.body = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return reply;
-}
 
 std::string TypeOf(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
@@ -58,14 +47,6 @@ std::optional<std::string> After(const std::string& path,
                                  std::string_view prefix) {
   if (!path.starts_with(prefix)) return std::nullopt;
   return path.substr(prefix.size());
-}
-
-std::int64_t NumberIn(const std::string& text, const std::string& path) {
-  std::int64_t n = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, n);
-  if (error != std::errc{} || stop != end || n < 0) throw NotThere(path);
-  return n;
 }
 
 Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
@@ -190,12 +171,15 @@ Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
 
 Reply Get(Desk& desk, const Request& request) {
   const std::string& path = request.path;
+  if (auto reply = GetOfRecordings(desk, request)) return *std::move(reply);
   if (path == "/") return PageReply("index.html");
   if (const auto name = After(path, "/page/")) return PageReply(*name);
   if (path == "/api/stamp") return JsonReply({{"stamp", desk.Stamp()}});
   if (path == "/api/trials") {
     const std::string stamp = desk.Stamp();
-    Json json = TrialListJson(desk.Open(db::OpenMode::kRead), desk.triage());
+    Json json = desk.HasStore() ? TrialListJson(desk.Open(db::OpenMode::kRead),
+                                                desk.triage())
+                                : EmptyListJson(desk.store());
     json["stamp"] = stamp;
     return JsonReply(json);
   }
@@ -228,6 +212,9 @@ Json LoggedJson(const db::Logged& logged) {
 Reply Post(Desk& desk, const Request& request) {
   const auto asked = nlohmann::json::parse(request.body);
   const std::string& path = request.path;
+  if (auto reply = PostToRecordings(desk, path, asked)) {
+    return *std::move(reply);
+  }
   if (const auto trial = TrialPathOf(path)) {
     if (trial->rest == "preview") {
       const db::Store store = desk.Open(db::OpenMode::kRead);
@@ -242,9 +229,6 @@ Reply Post(Desk& desk, const Request& request) {
   }
   if (path == "/api/log") {
     return JsonReply(LoggedJson(LogTyped(desk.store(), asked)));
-  }
-  if (path == "/api/recordings") {
-    return JsonReply(LoggedJson(LogRecording(desk.store(), asked)));
   }
   if (path == "/api/report") {
     return JsonReply(

@@ -2,10 +2,12 @@
 import {element, get, rememberWho, tell} from './parts.js';
 import {log} from './log.js';
 import {overview} from './overview.js';
+import {recordings} from './recordings.js';
 import {report} from './report.js';
+import {setup} from './setup.js';
 import {trial} from './trial.js';
 
-const pages = {log, overview, report, trial};
+const pages = {log, overview, recordings, report, setup, trial};
 
 // What the page shown wants: `changed` is called when the store has changed,
 // `keys` gets key presses, `close` ends it.

@@ -138,6 +138,11 @@ export async function overview(main) {
 
   async function load() {
     const trials = await get('/api/trials');
+    // Nothing to look at yet: the first campaign is made.
+    if (trials.campaigns.length === 0 && trials.trials.length === 0) {
+      location.replace('#/setup');
+      return null;
+    }
     campaigns.replaceChildren(campaignTable(trials.campaigns));
     const focused = document.activeElement?.closest?.('tr')?.dataset.id;
     list.replaceChildren(trialTable(trials.trials));
@@ -185,7 +190,9 @@ export async function overview(main) {
               element('label', {for: 'filter', text: 'Show only '}), filter,
               ' ', count),
       list, element('h2', {text: 'What they say together'}), said, campaigns);
-  loadStatistics(await load());
+  const first = await load();
+  if (first === null) return {};
+  loadStatistics(first);
   return {
     async changed() {
       const stamp = await load();
