@@ -60,6 +60,7 @@ Json FolderJson(const RecordingFolders& folders, std::size_t place,
             {{"id", trial->second.id}, {"campaign", trial->second.campaign}});
       }
       Json one = {{"name", name},
+                  {"is_folder", std::filesystem::is_directory(path)},
                   {"bytes", extent.bytes},
                   {"trials", std::move(known)}};
       if (extent.files > 0) one["written_s"] = UnixSeconds(extent.written);
@@ -242,6 +243,9 @@ std::optional<Reply> PostToRecordings(Desk& desk, const std::string& path,
   }
   if (path == "/api/tests") {
     return JsonReply({{"id", Add(desk, TestOf(desk, asked))}});
+  }
+  if (path == "/api/lens") {
+    return JsonReply(LensJson(desk.recordings(), asked));
   }
   if (!path.starts_with(kAnalyses)) return std::nullopt;
   const std::string rest = path.substr(kAnalyses.size());

@@ -11,6 +11,7 @@
 //   GET  /api/analyses/ID          one of them; of a test its answer (setup.h)
 //   POST /api/analyses/ID/cancel
 //   POST /api/tests                settings of a new campaign tested (setup.h)
+//   POST /api/lens                 a lens from pictures of a board (setup.h)
 //   POST /api/analyses/ID/keep     the campaign made and its first trial
 //   logged;
 //                                  {"who"}

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "app/pipeline/board_pictures.h"
 #include "app/pipeline/recordings.h"
 #include "app/pipeline/statement.h"
 #include "app/pipeline/whole_number.h"
@@ -81,13 +82,21 @@ fs::path RecordingFolders::Require(const Recording& recording) const {
   return *path;
 }
 
-fs::path RecordingFolders::RequireFolder(const Recording& folder) const {
-  std::error_code trouble;
+std::vector<fs::path> RecordingFolders::RequirePictures(
+    const Recording& folder) const {
+  std::vector<fs::path> pictures;
+  std::optional<fs::path> path;
   if (folder.folder < folders_.size()) {
-    const auto path =
-        Inside(folder.folder, folders_[folder.folder] / folder.name);
-    if (path && fs::is_directory(*path, trouble)) return *path;
+    path = Inside(folder.folder, folders_[folder.folder] / folder.name);
   }
+  std::error_code trouble;
+  if (path && fs::is_directory(*path, trouble)) {
+    pictures = pipeline::PicturesIn(*path);
+  }
+  const bool are_inside = std::ranges::all_of(pictures, [&](const auto& one) {
+    return Inside(folder.folder, one).has_value();
+  });
+  if (!pictures.empty() && are_inside) return pictures;
   throw FieldError("pictures",
                    fmt::format("is '{}', must be a folder with pictures of the "
                                "board, inside one of the folders",

@@ -36,9 +36,10 @@ class RecordingFolders {
   // "recording", where there is no such recording inside the folder.
   std::filesystem::path Require(const Recording& recording) const;
 
-  // A folder inside, of pictures of a board. Throws like Require, naming
-  // "pictures".
-  std::filesystem::path RequireFolder(const Recording& folder) const;
+  // The pictures of a folder inside, at least one, by their names. Throws like
+  // Require, naming "pictures".
+  std::vector<std::filesystem::path> RequirePictures(
+      const Recording& folder) const;
 
  private:
   // Nothing where it is not there or leads outside.

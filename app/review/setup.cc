@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/pipeline/board_pictures.h"
 #include "app/pipeline/campaign_entry.h"
 #include "app/pipeline/dates.h"
 #include "app/pipeline/judge.h"
@@ -98,7 +99,14 @@ pipeline::AnalyzeOptions CameraOf(const nlohmann::json& asked,
       pipeline::NewCalibration(camera, PictureOf(clip));
   if (const auto lens = asked.find("lens");
       lens != asked.end() && !lens->is_null()) {
-    calibration = calib::ParseCalibration(lens->dump(), "the lens of the page");
+    auto fitted = calib::FittedTo(
+        calib::ParseCalibration(lens->dump(), "the lens of the page"),
+        PictureOf(clip));
+    if (!fitted) {
+      throw FieldError("pictures", "gave a lens of other pictures: " +
+                                       fitted.error().reason);
+    }
+    calibration = *std::move(fitted);
     if (!camera.empty()) calibration.camera = camera;
   }
   std::optional<calib::Lens> lens;
@@ -180,6 +188,35 @@ AnalysisOrder TestOf(Desk& desk, const nlohmann::json& asked) {
   }
   order.camera = CameraOf(Part(asked, "camera"), desk.shelf().Info(order.path));
   return order;
+}
+
+Json LensJson(const RecordingFolders& folders, const nlohmann::json& asked) {
+  const auto pictures =
+      folders.RequirePictures(RecordingOf(Part(asked, "pictures")));
+  const std::string typed =
+      RequiredText(asked, "board", "like chessboard:9x6:25mm");
+  calib::Board board;
+  try {
+    board = calib::ParseBoard(typed);
+  } catch (const std::invalid_argument& error) {
+    throw FieldError("board",
+                     fmt::format("is not understood: {}", error.what()));
+  }
+  const pipeline::BoardPictures found = pipeline::FindBoards(pictures, board);
+  const calib::LensCalibration lens = pipeline::LensOf(found, board);
+  calib::Calibration file =
+      pipeline::NewCalibration(TextOf(asked, "camera"), found.picture);
+  file.lens = pipeline::RecordOf(lens, board);
+  return {
+      {"schema", "touchdown.review.lens/1"},
+      {"views", found.views.size()},
+      {"without_board", found.without},
+      {"rms_px", lens.rms_px},
+      {"bends_px", calib::LargestDisplacement(lens.lens, found.picture.width_px,
+                                              found.picture.height_px)},
+      {"coverage", lens.coverage},
+      {"warnings", lens.warnings},
+      {"calibration", Json::parse(calib::CalibrationText(file))}};
 }
 
 Json TestJson(const AnalysisStatus& status) {

@@ -24,6 +24,13 @@ namespace touchdown::review {
 // pipeline::FieldError; also for a campaign that has trials already.
 AnalysisOrder TestOf(Desk& desk, const nlohmann::json& asked);
 
+// A lens from a folder of board pictures, as `touchdown calibrate lens` makes
+// it: {"pictures": {folder, name}, "board": text, "camera": name}. The answer
+// holds it as "calibration", for TestOf, with how good it is. Throws
+// pipeline::FieldError, and core::InputError where the pictures tell none.
+nlohmann::ordered_json LensJson(const RecordingFolders& folders,
+                                const nlohmann::json& asked);
+
 // touchdown.review.test/1: what became of it, its numbers and picture, what was
 // known of the camera, and each check of the answer.
 nlohmann::ordered_json TestJson(const AnalysisStatus& status);

@@ -62,7 +62,8 @@ TEST_F(RecordingFoldersTest, GivesThePathWithoutLinks) {
   EXPECT_EQ(folders.Require({0, "pictures"}), given / "pictures");
   EXPECT_EQ(RecordingFolders({folder / "given/pictures"}).Require({0, "."}),
             given / "pictures");
-  EXPECT_EQ(folders.RequireFolder({0, "pictures"}), given / "pictures");
+  EXPECT_THAT(folders.RequirePictures({0, "pictures"}),
+              ElementsAre(given / "pictures/1.png"));
 }
 
 TEST_P(RecordingFoldersTest, RefusesWhatDoesNot) {
@@ -80,9 +81,10 @@ TEST_F(RecordingFoldersTest, RefusesFoldersThatAreNotThere) {
   const RecordingFolders folders({folder / "given"});
   EXPECT_THROW(folders.Require({1, "a.mraw"}), FieldError);
   EXPECT_THROW(RecordingFolders().Require({0, "a.mraw"}), FieldError);
-  EXPECT_THROW(folders.RequireFolder({0, "way"}), FieldError);
-  EXPECT_THROW(folders.RequireFolder({0, ".."}), FieldError);
-  EXPECT_THROW(folders.RequireFolder({0, "a.mraw"}), FieldError);
+  for (const char* name : {"way/pictures", "mixed", "below", "..", "a.mraw"}) {
+    EXPECT_THROW(folders.RequirePictures({0, name}), FieldError) << name;
+  }
+  EXPECT_THROW(folders.RequirePictures({1, "pictures"}), FieldError);
   EXPECT_THROW(RecordingFolders({folder / "none"}), core::InputError);
   EXPECT_THROW(RecordingFolders({folder / "given/a.mraw"}), core::InputError);
 }

@@ -13,7 +13,9 @@
 #include "app/pipeline/statement.h"
 #include "app/review/routes.h"
 #include "tests/pipeline/film_file.h"
+#include "tests/support/board_files.h"
 #include "tests/support/temporary_folder.h"
+#include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::review {
@@ -148,6 +150,39 @@ TEST_F(Setup, RefusesAnAnswerOfABodyThatIsNotThere) {
   EXPECT_EQ(json["checks"][1]["name"], "size");
   EXPECT_EQ(json["checks"][1]["verdict"], "refused");
   EXPECT_TRUE(json["numbers"]["frame"].is_null());
+}
+
+TEST_F(Setup, MakesALensFromPicturesOfABoard) {
+  std::filesystem::create_directories(folder / "board");
+  testing::WriteBoardPictures(folder / "board", 9);
+  const Json asked = {{"pictures", {{"folder", 0}, {"name", "board"}}},
+                      {"board", "chessboard:7x5:20mm"},
+                      {"camera", "left"}};
+  const Json json = LensJson(desk.recordings(), asked);
+  EXPECT_EQ(json["views"], 9);
+  EXPECT_LT(json["rms_px"].get<double>(), 0.2);
+  const auto file =
+      calib::ParseCalibration(json["calibration"].dump(), "the answer");
+  EXPECT_EQ(file.camera, "left");
+  EXPECT_NEAR(file.lens->lens.fx_px, testing::SmallLens().fx_px, 5.0);
+  const auto field_of = [&](const char* field, const Json& value) {
+    Json other = asked;
+    other[field] = value;
+    try {
+      LensJson(desk.recordings(), other);
+    } catch (const FieldError& error) {
+      return error.field();
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(field_of("board", "cheese:7x5"), "board");
+  EXPECT_EQ(field_of("pictures", Json{{"folder", 0}, {"name", ".."}}),
+            "pictures");
+  EXPECT_THROW(field_of("board", "chessboard:9x8:20mm"), core::InputError);
+  // A clip of another size is not of this lens.
+  EXPECT_EQ(
+      FieldOf([&](Json& j) { j["camera"]["lens"] = json["calibration"]; }),
+      "lens");
 }
 
 TEST_F(Setup, KeepsACampaignOnce) {

@@ -2,7 +2,7 @@
 // as a new user goes it: commands and clicks are counted. Then what may be told
 // wrong: the body, its size.
 import assert from 'node:assert/strict';
-import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
@@ -185,6 +185,56 @@ test('a test is cancelled, and another can be made', async () => {
   await page.context().close();
   await review.stop();
   rmSync(folder, {recursive: true});
+});
+
+// Pictures of a chessboard of 7 x 5 inner corners, as a browser draws it in
+// space: a camera without distortion.
+async function photographBoard(folder) {
+  mkdirSync(folder);
+  const page = await browser.newPage({viewport: {width: 640, height: 400}});
+  for (let i = 0; i < 9; ++i) {
+    const place = `translate(${(i % 3 - 1) * 110}px, ` +
+        `${(Math.floor(i / 3) - 1) * 60}px)`;
+    const tilt = `rotateX(${[-32, 25, 8][i % 3]}deg) ` +
+        `rotateY(${[28, -12, -35][Math.floor(i / 3)]}deg) rotate(${3 * i}deg)`;
+    const squares = Array.from({length: 48}, (_, n) =>
+      `<i style="background:${(n + Math.floor(n / 8)) % 2 ? '#222' : '#eee'}">` +
+      '</i>').join('');
+    await page.setContent(`<style>
+      body { margin: 0; height: 400px; background: #eee; perspective: 700px;
+             display: grid; place-items: center; overflow: hidden; }
+      div { display: grid; grid-template-columns: repeat(8, 32px);
+            grid-auto-rows: 32px; } </style>
+      <div style="transform: ${place} ${tilt}">${squares}</div>`);
+    await page.screenshot({path: join(folder, `${i}.png`)});
+  }
+  await page.close();
+}
+
+test('a lens is made from a folder of board pictures', async () => {
+  await newcomer(async (review, db, folder) => {
+    await photographBoard(join(folder, 'board'));
+    const page = await sitDown(browser, review, 'Ada');
+    await ready(page);
+    await page.click('text=A lens, from pictures of a board');
+    const make = page.getByRole('button', {name: 'Make the lens'});
+    await make.click();
+    await says(page, '#setup-board-trouble', 'is missing');
+    await page.fill('#setup-board', 'chessboard:7x5:20mm');
+    await make.click();
+    await says(page, 'form', 'over 9 pictures');
+    await page.fill('#setup-name', 'with a lens');
+    await page.fill('#setup-diameter_mm', '40');
+    await page.getByRole('button', {name: 'Analyse'}).click();
+    await says(page, '.answer .angle', '19.');
+    await picture(page, 'lens');
+    await page.getByRole('button', {name: 'Keep it'}).click();
+    await says(page, '.under', 'with a lens');
+    await page.goto(`${review.origin}/#/recordings`);
+    await says(page, 'form[aria-label="Analyse"]', 'lens undone');
+    requireClean(page, review);
+    await page.context().close();
+  });
 });
 
 test('points are marked without a mouse', async () => {

@@ -82,6 +82,7 @@ export function showTrouble(form, error, trouble) {
     trouble.textContent = `Your name (above) ${error.answer.problem}`;
     document.getElementById('who').focus();
   } else if (name && say(form, name, error.answer.problem)) {
+    form.elements[name].closest('details')?.setAttribute('open', '');
     form.elements[name].focus();
   } else {
     trouble.textContent = error.message;

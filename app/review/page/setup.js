@@ -102,10 +102,76 @@ function campaignFields(kind) {
   ];
 }
 
+// A lens from a folder of board pictures: `calibration`, null where there is
+// none.
+class LensPart {
+  constructor(data) {
+    const places = data.folders.flatMap((f, folder) => f.recordings
+        .filter(r => r.is_folder).map(r => ({folder, name: r.name})));
+    this.calibration = null;
+    this.folder = element('select', {}, ...places.map((p, i) => element(
+        'option', {value: i, text: p.name === '.' ? data.folders[p.folder].folder
+                                                  : p.name})));
+    this.places = places;
+    this.board = element('input', {size: 20, autocomplete: 'off',
+                                   placeholder: 'chessboard:9x6:25mm'});
+    this.said = element('p', {class: 'hint', role: 'status'});
+    this.make = element('button', {type: 'button', text: 'Make the lens',
+                                   onclick: () => this.calibrate()});
+    this.drop = element('button', {type: 'button', text: 'Without a lens',
+                                   onclick: () => this.clear()});
+    this.drop.hidden = true;
+    this.node = element('details', {},
+        element('summary', {text: 'A lens, from pictures of a board'}),
+        places.length === 0
+            ? element('p', {class: 'hint', text: 'Put ten or more pictures of ' +
+                  'a board into a folder of their own, below the recordings.'})
+            : element('div', {},
+                  field('setup', 'pictures', 'Folder of pictures', this.folder),
+                  field('setup', 'board', 'Board (inner corners, square)',
+                        this.board),
+                  element('div', {class: 'buttons'}, this.make, this.drop)),
+        this.said);
+  }
+
+  clear() {
+    this.calibration = null;
+    this.drop.hidden = true;
+    this.said.textContent = '';
+  }
+
+  async calibrate() {
+    const form = this.node.closest('form');
+    clearTrouble(form, this.said);
+    this.said.className = 'hint';
+    this.said.textContent = 'Looking for the board …';
+    this.make.disabled = true;
+    try {
+      const lens = await post('/api/lens', {
+        pictures: this.places[this.folder.value], board: this.board.value.trim(),
+        camera: form.elements.camera.value.trim()});
+      this.calibration = lens.calibration;
+      this.drop.hidden = false;
+      this.said.textContent = [
+        `The lens bends up to ${lens.bends_px.toFixed(2)} px; ` +
+            `${lens.rms_px.toFixed(3)} px rms over ${lens.views} pictures, ` +
+            `${Math.round(100 * lens.coverage)} % of the picture covered.`,
+        lens.without_board.length === 0 ? ''
+            : `No whole board in ${lens.without_board.join(', ')}.`,
+        ...lens.warnings].filter(Boolean).join(' ');
+    } catch (error) {
+      this.said.className = 'bad';
+      this.said.textContent = '';
+      showTrouble(form, error, this.said);
+    }
+    this.make.disabled = false;
+  }
+}
+
 export async function setup(main) {
   const data = await get('/api/recordings');
   const all = data.folders.flatMap((f, folder) => f.recordings.map(
-      r => ({folder, name: r.name})));
+      r => ({folder, name: r.name, isFolder: r.is_folder})));
   const see = element('div', {class: 'see'});
   const answer = element('div', {class: 'tell'});
   const trouble = element('p', {class: 'bad', role: 'alert'});
@@ -151,6 +217,7 @@ export async function setup(main) {
         ? 'click on the picture, left and right' : 'else found in the clip';
   }
 
+  const lens = new LensPart(data);
   const camera = input => { input.dataset.part = 'camera'; return input; };
   const lengthField = field('setup', 'length_mm', 'Their distance, mm',
                             camera(length));
@@ -162,7 +229,7 @@ export async function setup(main) {
       field('setup', 'fps', 'Frames per second', camera(fps)),
       field('setup', 'camera', 'Camera (its name)', camera(element('input', {
         size: 20, autocomplete: 'off'}))),
-      scale.row, lengthField, ground.row, trouble, progress, send);
+      scale.row, lengthField, ground.row, lens.node, trouble, progress, send);
 
   async function chooseRecording(next) {
     recording = next;
@@ -261,9 +328,11 @@ export async function setup(main) {
     clearTrouble(form, trouble);
     answer.replaceChildren();
     send.disabled = true;
-    const asked = {...valuesOf(form), recording};
+    const {folder, name} = recording;
+    const asked = {...valuesOf(form), recording: {folder, name}};
     asked.camera.scale_px = marks.of('scale');
     asked.camera.ground_px = marks.of('ground');
+    asked.camera.lens = lens.calibration;
     try {
       analysis = (await post('/api/tests', asked)).id;
       await follow(analysis);
@@ -279,8 +348,9 @@ export async function setup(main) {
     radio.addEventListener('change', () => chooseRecording({folder, name}));
     return radio;
   };
-  // One recording needs no choice; of several the first is shown.
-  recording = all[0] ?? null;
+  // One recording needs no choice; of several the first is shown, of folders of
+  // pictures, which may show a board, only where there is nothing else.
+  recording = all.find(r => !r.isFolder) ?? all[0] ?? null;
   const list = element('details', {open: all.length > 1},
       element('summary', {text: all.length === 0 ? 'No recording is there yet'
           : `Recording: ${all.length} to choose from`}),
