@@ -64,7 +64,9 @@ test('an analysis shows its frames and is cancelled; nothing is stored',
   await openRecordings(page);
   await analyse(page, kLong);
   const running = line(page, 'running');
-  await says(page, '.queue', `of ${kLongFrames}`);
+  await page.waitForFunction(
+      n => new RegExp(`frame [1-9]\\d* of ${n}`).test(
+          document.querySelector('.queue').textContent), kLongFrames);
   await picture(page, 'progress');
   await running.getByRole('button', {name: 'cancel'}).click();
   await line(page, 'cancelled').waitFor();

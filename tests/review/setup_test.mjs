@@ -72,6 +72,7 @@ test('from an empty folder to the first answer in at most 8 commands or ' +
     assert.match(await page.textContent('.answer .angle'),
                  /^19\.[89]\d+ ± 0\.\d+ deg/);
     assert.ok(!existsSync(db));  // shown before anything is stored
+    await page.setViewportSize({width: 1280, height: 1060});
     await picture(page, 'first-answer');
     await act('type who you are', page.fill('#who', 'Ada'));
     await act('press Keep it', page.getByRole('button', {name: 'Keep it'}).click());
@@ -150,6 +151,7 @@ test('a body that is told wrong is seen in the checks, before anything is ' +
     await page.fill('#setup-sides_mm', '60x20');
     await page.getByRole('button', {name: 'Analyse'}).click();
     await says(page, '.answer', 'looks like a sphere, not like a rectangle');
+    assert.equal(await page.locator('.picture .drawn.path').count(), 0);
     await page.waitForSelector('text=Keep it without an answer');
     await picture(page, 'wrong-body');
     assert.ok(!existsSync(db));

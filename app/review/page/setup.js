@@ -41,8 +41,9 @@ function answerOf(test) {
           element('dt', {text: 'because'}),
           element('dd', {text: numbers.state_reason || numbers.reason || '–'}),
           element('dt', {text: 'scale'}),
-          element('dd', {text: `${settings.scale ?? ''} ` +
-              `(${sourceText(settings.scale_source)})`}),
+          element('dd', {text: settings.scale
+              ? `${settings.scale} (${sourceText(settings.scale_source)})`
+              : settings.scale_source}),
           element('dt', {text: 'ground'}),
           element('dd', {text: sourceText(settings.ground_source)}),
           element('dt', {text: 'frame rate'}),
@@ -274,7 +275,7 @@ export async function setup(main) {
 
   function showAnswer(test) {
     const view = test.view;
-    if (view.absent === undefined) picture.show(view);
+    picture.show(view);
     const frame = test.numbers.frame;
     if (frame !== null) picture.go(Math.floor(frame));
     const keep = element('button', {
@@ -327,6 +328,7 @@ export async function setup(main) {
     event.preventDefault();
     clearTrouble(form, trouble);
     answer.replaceChildren();
+    picture.show(null);
     send.disabled = true;
     const {folder, name} = recording;
     const asked = {...valuesOf(form), recording: {folder, name}};
