@@ -97,6 +97,7 @@ std::optional<pipeline::AnalyzeOptions> LastCamera(
     const db::Store& store, const std::string& campaign) {
   db::TrialFilter filter;
   filter.campaign = campaign;
+  filter.excluded = false;  // perhaps for its camera's sake
   filter.with_documents = false;
   std::optional<pipeline::AnalyzeOptions> camera;
   const std::vector<core::Trial> trials = store.Trials(filter);

@@ -28,8 +28,8 @@ AnalysisOrder OrderOf(const std::filesystem::path& store,
                       const RecordingFolders& folders,
                       const nlohmann::json& asked);
 
-// What the campaign's last recording was analysed with (pipeline::CameraOf);
-// nothing where there is none.
+// What the campaign's last recording that counts was analysed with
+// (pipeline::CameraOf); nothing where there is none.
 std::optional<pipeline::AnalyzeOptions> LastCamera(const db::Store& store,
                                                    const std::string& campaign);
 

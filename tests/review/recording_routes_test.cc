@@ -142,7 +142,8 @@ TEST_F(RecordingRoutes, TakeTheCameraOfTheLastRecording) {
   last.document_json = document.dump();
   last.id.clear();
   last.clip.id = std::string(64, 'b');
-  db::Store::Open(lab.store, db::OpenMode::kWrite).LogTrial(last);
+  const std::string id =
+      db::Store::Open(lab.store, db::OpenMode::kWrite).LogTrial(last).id;
   const Json json = Json::parse(Get("/api/recordings").body);
   EXPECT_EQ(json["campaigns"][0]["camera"], "1234 frames/s");
   const auto order = [&](bool other) {
@@ -154,6 +155,9 @@ TEST_F(RecordingRoutes, TakeTheCameraOfTheLastRecording) {
   };
   EXPECT_EQ(order(false).camera.fps, 1234.0);
   EXPECT_FALSE(order(true).camera.fps);
+  db::Store::Open(lab.store, db::OpenMode::kWrite)
+      .Exclude(id, "Ada", "the frame rate was another");
+  EXPECT_FALSE(order(false).camera.fps);
 }
 
 }  // namespace
