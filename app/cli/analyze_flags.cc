@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "app/cli/calibrate_file.h"
-#include "app/cli/dates.h"
 #include "app/cli/values.h"
+#include "app/pipeline/dates.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -27,7 +27,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   options.gamma = flags.gamma;
   if (!flags.calibration.empty()) {
     options.calibration = calib::ReadCalibration(flags.calibration);
-    options.today = Today();
+    options.today = pipeline::Today();
   }
   if (!flags.crop.empty()) options.crop = ParseCorner("--crop", flags.crop);
   if (!flags.scale.empty()) {

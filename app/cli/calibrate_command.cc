@@ -2,10 +2,10 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,6 +14,7 @@
 #include "app/cli/command.h"
 #include "app/cli/progress.h"
 #include "app/cli/rig_print.h"
+#include "app/pipeline/board_pictures.h"
 #include "touchdown/calib/board.h"
 #include "touchdown/calib/lens_calibration.h"
 #include "touchdown/core/errors.h"
@@ -29,69 +30,42 @@ struct LensFlags {
   bool json = false;
 };
 
-// Folders stand for the pictures in them, in the order of their names.
-std::vector<std::string> Expanded(const std::vector<std::string>& arguments) {
-  std::vector<std::string> images;
+// Folders stand for the pictures in them.
+std::vector<std::filesystem::path> Expanded(
+    const std::vector<std::string>& arguments) {
+  std::vector<std::filesystem::path> images;
   for (const std::string& argument : arguments) {
     if (!std::filesystem::is_directory(argument)) {
-      images.push_back(argument);
+      images.emplace_back(argument);
       continue;
     }
-    std::vector<std::string> inside;
-    for (const auto& entry : std::filesystem::directory_iterator(argument)) {
-      if (vision::IsImageName(entry.path())) {
-        inside.push_back(entry.path().string());
-      }
-    }
-    std::sort(inside.begin(), inside.end());
+    const auto inside = pipeline::PicturesIn(argument);
     images.insert(images.end(), inside.begin(), inside.end());
   }
   return images;
 }
 
-struct Found {
-  calib::Picture picture;
-  std::vector<calib::BoardView> views;
-  std::vector<std::string> without;  // the board
-};
-
-Found FindBoards(const LensFlags& flags, const calib::Board& board) {
-  Found found;
-  const std::vector<std::string> images = Expanded(flags.images);
+pipeline::BoardPictures Find(const LensFlags& flags,
+                             const calib::Board& board) {
+  const auto images = Expanded(flags.images);
   if (images.empty()) {
     throw core::InputError(
         fmt::format("{}: holds no PNG, TIFF or JPEG picture; give pictures of "
                     "the board",
                     flags.images.front()));
   }
-  ProgressBar bar("calibrate");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const StillPicture still = ReadPicture(images[i], 0);
-    const calib::Picture picture = PictureOf(flags.file, still);
-    if (i == 0) found.picture = picture;
-    if (picture.width_px != found.picture.width_px ||
-        picture.height_px != found.picture.height_px) {
-      throw core::InputError(fmt::format(
-          "{}: has {}x{} px, {} has {}x{}; all pictures must be of one camera "
-          "at one resolution",
-          images[i], picture.width_px, picture.height_px, images[0],
-          found.picture.width_px, found.picture.height_px));
-    }
-    auto points = calib::FindBoard(still.image.View(), board);
-    const std::string name =
-        std::filesystem::path(images[i]).filename().string();
-    if (points) {
-      found.views.push_back({name, *std::move(points)});
-    } else {
-      found.without.push_back(name);
-    }
-    bar.Show(static_cast<double>(i + 1) / static_cast<double>(images.size()));
+  std::optional<calib::SensorCorner> corner;
+  if (!flags.file.sensor_origin.empty()) {
+    corner = ParseCorner("--sensor-origin", flags.file.sensor_origin);
   }
+  ProgressBar bar("calibrate");
+  auto found = pipeline::FindBoards(images, board, corner,
+                                    [&bar](double share) { bar.Show(share); });
   bar.Finish();
   return found;
 }
 
-nlohmann::ordered_json Json(const Found& found,
+nlohmann::ordered_json Json(const pipeline::BoardPictures& found,
                             const calib::LensCalibration& lens,
                             const calib::Calibration& file) {
   nlohmann::ordered_json json;
@@ -121,8 +95,9 @@ nlohmann::ordered_json Json(const Found& found,
   return json;
 }
 
-void PrintLens(const Found& found, const calib::LensCalibration& lens,
-               const calib::Board& board, const std::string& out) {
+void PrintLens(const pipeline::BoardPictures& found,
+               const calib::LensCalibration& lens, const calib::Board& board,
+               const std::string& out) {
   fmt::print("board      {} in {} of {} pictures of {}x{} px\n",
              calib::Text(board), found.views.size(),
              found.views.size() + found.without.size(), found.picture.width_px,
@@ -163,37 +138,17 @@ void PrintLens(const Found& found, const calib::LensCalibration& lens,
 
 int RunLens(const LensFlags& flags) {
   const calib::Board board = calib::ParseBoard(flags.board);
-  const Found found = FindBoards(flags, board);
-  const auto lens = calib::CalibrateLens(
-      found.views, board, found.picture.width_px, found.picture.height_px);
-  if (!lens) {
-    std::string reason = lens.error().reason;
-    if (!found.without.empty()) {
-      reason += fmt::format(" (no whole {} in {} of {} pictures, {} first)",
-                            flags.board, found.without.size(),
-                            found.without.size() + found.views.size(),
-                            found.without.front());
-    }
-    throw core::InputError("calibrate lens: " + reason);
-  }
+  const pipeline::BoardPictures found = Find(flags, board);
+  const calib::LensCalibration lens = pipeline::LensOf(found, board);
   calib::Calibration file = BeginCalibration(flags.file, found.picture);
-  calib::LensRecord record;
-  record.lens = lens->lens;
-  record.covariance = lens->covariance;
-  record.board = calib::Text(board);
-  record.rms_px = lens->rms_px;
-  record.coverage = lens->coverage;
-  for (const calib::ViewResult& view : lens->views) {
-    record.views.push_back({view.name, view.rms_px});
-  }
-  file.lens = std::move(record);
+  file.lens = pipeline::RecordOf(lens, board);
   calib::WriteCalibration(flags.file.out, file);
   if (flags.json) {
-    fmt::print("{}\n", Json(found, *lens, file)
+    fmt::print("{}\n", Json(found, lens, file)
                            .dump(2, ' ', false,
                                  nlohmann::json::error_handler_t::replace));
   } else {
-    PrintLens(found, *lens, board, flags.file.out);
+    PrintLens(found, lens, board, flags.file.out);
   }
   return 0;
 }

@@ -4,13 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
-#include "app/cli/dates.h"
 #include "app/cli/values.h"
+#include "app/pipeline/new_calibration.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip_apart.h"
 
 namespace touchdown::cli {
 
@@ -35,39 +33,6 @@ void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
                        "a calibration of this camera to add to: its lens is "
                        "used, and all of it goes into --out");
   }
-}
-
-StillPicture ReadPicture(const std::string& path, std::int64_t frame) {
-  StillPicture picture;
-  if (!std::filesystem::is_directory(path) && vision::IsImageName(path) &&
-      !vision::IsTiffStack(path)) {
-    picture.image = vision::ReadImageApart(path);
-    return picture;
-  }
-  vision::ClipOptions options;
-  options.fps = 1.0;  // time is not looked at
-  const auto clip = vision::OpenClipApart(path, options);
-  if (frame < 0 || frame >= clip->info().frames) {
-    throw std::invalid_argument(
-        fmt::format("--frame is {}, must be within 0 .. {} of {}", frame,
-                    clip->info().frames - 1, path));
-  }
-  const core::Frame view = clip->Read(frame);
-  vision::Image& image = picture.image;
-  image.width_px = view.width_px;
-  image.height_px = view.height_px;
-  image.bit_depth = view.bit_depth;
-  const std::size_t row_bytes =
-      static_cast<std::size_t>(view.width_px) * (view.is_16_bit() ? 2u : 1u);
-  image.pixels.resize(row_bytes * static_cast<std::size_t>(view.height_px));
-  for (std::int32_t y = 0; y < view.height_px; ++y) {
-    std::memcpy(image.pixels.data() + static_cast<std::size_t>(y) * row_bytes,
-                view.data + y * view.stride_bytes, row_bytes);
-  }
-  if (const auto& origin = clip->info().sensor_origin) {
-    picture.corner = calib::SensorCorner{origin->x_px, origin->y_px};
-  }
-  return picture;
 }
 
 calib::SensorCorner ParseCorner(const std::string& flag,
@@ -118,12 +83,8 @@ calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
     // The oldest part decides how long the whole is good.
     return out;
   }
-  out.camera = flags.camera;
-  out.date = flags.date.empty() ? Today() : flags.date;
-  out.expires = DaysAfter("--date", out.date, flags.valid_days);
-  out.picture = picture;
-  if (!out.picture.corner) out.picture.corner = calib::SensorCorner{};
-  return out;
+  return pipeline::NewCalibration(flags.camera, picture, flags.date,
+                                  flags.valid_days);
 }
 
 }  // namespace touchdown::cli

@@ -3,22 +3,22 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/pipeline/board_pictures.h"
+#include "app/pipeline/new_calibration.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/calib/references.h"
-#include "touchdown/vision/image_file.h"
 
 namespace touchdown::cli {
 
 struct CalibrationFileFlags {
   std::string camera;
   std::string date;
-  int valid_days = 365;
+  int valid_days = pipeline::kValidDays;
   std::string sensor_origin;
   std::string calibration;
   std::string out;
@@ -27,12 +27,8 @@ struct CalibrationFileFlags {
 // `add`: with --calibration, the file to be added to.
 void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add);
 
-// One picture: a still image, or frame `frame` of a clip.
-struct StillPicture {
-  vision::Image image;
-  std::optional<calib::SensorCorner> corner;  // where the file says it
-};
-StillPicture ReadPicture(const std::string& path, std::int64_t frame);
+using pipeline::ReadPicture;
+using pipeline::StillPicture;
 
 // The calibration that the command begins with: the file of --calibration, as
 // it fits the picture, or an empty one. Dates and names as the flags say.

@@ -11,6 +11,7 @@
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
+#include "app/pipeline/campaign_entry.h"
 #include "app/report/trial_json.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/names.h"
@@ -25,16 +26,7 @@ using core::kMillimetre;
 
 struct CampaignFlags {
   std::string db;
-  std::string name;
-  BodyFlags body;
-  std::string surface;
-  std::string angle_kind;
-  std::optional<double> bounce_height_mm;
-  std::string speed_mps;
-  std::string theory;
-  std::optional<double> theory_boundary_deg;
-  std::optional<double> theory_u_deg;
-  double margin_deg = 1.0;
+  pipeline::CampaignEntry entry;
   bool change = false;
   bool json = false;
   db::Plan plan;
@@ -62,66 +54,8 @@ void AddPlanFlags(CLI::App& command, CampaignFlags& flags) {
   command.add_option("--by", flags.by, "who declares it");
 }
 
-core::Campaign CampaignOf(const CampaignFlags& flags) {
-  core::Campaign campaign;
-  campaign.name = flags.name;
-  const auto body = ParseBody(flags.body);
-  if (!body) {
-    throw std::invalid_argument(
-        "--body is missing, must be sphere (with --diameter-mm) or rectangle "
-        "(with --sides-mm)");
-  }
-  campaign.body = *body;
-  campaign.surface = flags.surface;
-  campaign.angle_kind = core::DefaultAngleKind(body->kind);
-  if (!flags.angle_kind.empty()) {
-    campaign.angle_kind = ParseWord<core::AngleKind>(
-        "--angle-kind", flags.angle_kind, core::ParseAngleKind,
-        "approach, radius or face");
-  }
-  if (flags.bounce_height_mm) {
-    campaign.bounce_height_m = *flags.bounce_height_mm * kMillimetre;
-  } else {
-    const auto size = core::Size(*body);
-    if (!size) {
-      throw std::invalid_argument(
-          "--bounce-height-mm is missing, and without the body's size it has "
-          "no default");
-    }
-    campaign.bounce_height_m = core::DefaultBounceHeight(size->value);
-  }
-  if (!flags.speed_mps.empty()) {
-    const auto colon = flags.speed_mps.find(':');
-    std::size_t used_low = 0;
-    std::size_t used_high = 0;
-    bool good = colon != std::string::npos;
-    try {
-      if (good) {
-        const std::string low = flags.speed_mps.substr(0, colon);
-        const std::string high = flags.speed_mps.substr(colon + 1);
-        campaign.speed_min_mps = std::stod(low, &used_low);
-        campaign.speed_max_mps = std::stod(high, &used_high);
-        good = used_low == low.size() && used_high == high.size();
-      }
-    } catch (const std::logic_error&) {
-      good = false;
-    }
-    if (!good) {
-      throw std::invalid_argument(fmt::format(
-          "--speed-mps is '{}', must be like 3.5:4.5", flags.speed_mps));
-    }
-  }
-  campaign.theory_name = flags.theory;
-  if (flags.theory_boundary_deg) {
-    campaign.theory_boundary_rad = *flags.theory_boundary_deg * kDegree;
-  }
-  if (flags.theory_u_deg) campaign.theory_u_rad = *flags.theory_u_deg * kDegree;
-  campaign.margin_rad = flags.margin_deg * kDegree;
-  return campaign;
-}
-
 int NewCampaign(const CampaignFlags& flags) {
-  const core::Campaign campaign = CampaignOf(flags);
+  const core::Campaign campaign = pipeline::CampaignOf(flags.entry);
   // A store is made only for what has been found right.
   db::RequireStorable(campaign);
   auto store = db::Store::Open(
@@ -147,7 +81,7 @@ int ChangePlan(const CampaignFlags& flags) {
   }
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   db::Plan plan;
-  for (const db::PlanEvent& event : db::PlanEvents(store, flags.name)) {
+  for (const db::PlanEvent& event : db::PlanEvents(store, flags.entry.name)) {
     if (event.kind == db::PlanEventKind::kPlan) plan = event.plan;
   }
   const db::Plan next = PlanOf(flags, plan);
@@ -156,7 +90,7 @@ int ChangePlan(const CampaignFlags& flags) {
         "--design, --stopping-rule and --error-rates say nothing new, must "
         "change or declare one of them");
   }
-  db::SetPlan(store, flags.name, next, flags.by, flags.why);
+  db::SetPlan(store, flags.entry.name, next, flags.by, flags.why);
   return 0;
 }
 
@@ -201,7 +135,7 @@ core::Campaign CampaignToShow(const db::Store& store, const std::string& name) {
 
 int ShowCampaign(const CampaignFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
-  const core::Campaign campaign = CampaignToShow(store, flags.name);
+  const core::Campaign campaign = CampaignToShow(store, flags.entry.name);
   if (flags.json) {
     fmt::print("{}\n", report::CampaignJson(campaign));
     return 0;
@@ -223,24 +157,24 @@ void AddCampaign(CLI::App& app, Action& action) {
   auto flags = std::make_shared<CampaignFlags>();
   CLI::App* make = command->add_subcommand(
       "new", "declare a campaign before its first trial");
-  make->add_option("NAME", flags->name, "of the campaign")->required();
+  make->add_option("NAME", flags->entry.name, "of the campaign")->required();
   AddDbFlag(*make, flags->db);
-  AddBodyFlags(*make, flags->body);
-  make->add_option("--surface", flags->surface, "e.g. 'asphalt, dry'");
-  make->add_option("--angle-kind", flags->angle_kind,
+  AddBodyFlags(*make, flags->entry.body);
+  make->add_option("--surface", flags->entry.surface, "e.g. 'asphalt, dry'");
+  make->add_option("--angle-kind", flags->entry.angle_kind,
                    "the varied angle: approach (default for spheres), radius "
                    "(rectangles) or face");
-  make->add_option("--bounce-height-mm", flags->bounce_height_mm,
+  make->add_option("--bounce-height-mm", flags->entry.bounce_height_mm,
                    "default: the larger of 0.5 and 2 % of the body's size");
-  make->add_option("--speed-mps", flags->speed_mps,
+  make->add_option("--speed-mps", flags->entry.speed_mps,
                    "band of the speed at touchdown, LOW:HIGH");
-  make->add_option("--theory", flags->theory,
+  make->add_option("--theory", flags->entry.theory,
                    "the one theory that gets a verdict");
-  make->add_option("--theory-boundary-deg", flags->theory_boundary_deg,
+  make->add_option("--theory-boundary-deg", flags->entry.theory_boundary_deg,
                    "its boundary angle");
-  make->add_option("--theory-u-deg", flags->theory_u_deg,
+  make->add_option("--theory-u-deg", flags->entry.theory_u_deg,
                    "standard uncertainty of that");
-  make->add_option("--margin-deg", flags->margin_deg,
+  make->add_option("--margin-deg", flags->entry.margin_deg,
                    "equivalence margin of the verdict")
       ->capture_default_str();
   AddPlanFlags(*make, *flags);
@@ -250,7 +184,7 @@ void AddCampaign(CLI::App& app, Action& action) {
       [flags, &action] { action = [flags] { return NewCampaign(*flags); }; });
   CLI::App* plan = command->add_subcommand(
       "plan", "declare or change design, stopping rule and error rates");
-  plan->add_option("NAME", flags->name, "of the campaign")->required();
+  plan->add_option("NAME", flags->entry.name, "of the campaign")->required();
   AddDbFlag(*plan, flags->db);
   AddPlanFlags(*plan, *flags);
   plan->add_option("--why", flags->why,
@@ -263,7 +197,7 @@ void AddCampaign(CLI::App& app, Action& action) {
   list->callback(
       [flags, &action] { action = [flags] { return ListCampaigns(*flags); }; });
   CLI::App* show = command->add_subcommand("show", "one campaign");
-  show->add_option("NAME", flags->name,
+  show->add_option("NAME", flags->entry.name,
                    "of the campaign; not needed where there is only one");
   AddDbFlag(*show, flags->db);
   show->add_flag("--json", flags->json, "one JSON document");

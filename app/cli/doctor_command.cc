@@ -8,9 +8,9 @@
 #include <string>
 
 #include "app/cli/command.h"
-#include "app/cli/dates.h"
 #include "app/cli/doctor_flags.h"
 #include "app/cli/messages.h"
+#include "app/pipeline/dates.h"
 
 namespace touchdown::cli {
 namespace {
@@ -57,7 +57,7 @@ pipeline::DoctorOptions ToOptions(const DoctorFlags& flags) {
   options.store = flags.store;
   options.calibration = flags.calibration;
   options.recordings = flags.recordings;
-  options.today = Today();
+  options.today = pipeline::Today();
   options.now = std::chrono::system_clock::now();
   return options;
 }

@@ -67,16 +67,16 @@ void PrintLogged(const db::Logged& logged, bool json) {
 struct LogFlags {
   std::string db;
   std::string campaign;
-  BodyFlags body;
+  pipeline::BodyEntry body;
   StatementFlags statement;
   std::string by;
   bool json = false;
 };
 
 int Log(const LogFlags& flags) {
-  const pipeline::ManualEntry entry{flags.campaign, ParseBody(flags.body),
-                                    StatementOf(flags.statement, std::nullopt),
-                                    flags.by};
+  const pipeline::ManualEntry entry{
+      flags.campaign, pipeline::BodyOf(flags.body),
+      StatementOf(flags.statement, std::nullopt), flags.by};
   PrintLogged(pipeline::LogByHand(flags.db, entry), flags.json);
   return 0;
 }

@@ -11,9 +11,9 @@
 
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
-#include "app/cli/dates.h"
 #include "app/cli/messages.h"
 #include "app/pipeline/bug_report.h"
+#include "app/pipeline/dates.h"
 
 namespace touchdown::cli {
 namespace {
@@ -60,7 +60,7 @@ int Run(const Flags& flags) {
   if (!flags.analyze.calibration.empty()) {
     options.also.emplace_back(flags.analyze.calibration);
   }
-  options.doctor.today = Today();
+  options.doctor.today = pipeline::Today();
   options.doctor.now = std::chrono::system_clock::now();
   const std::vector<pipeline::BugFile> files = pipeline::CollectBug(options);
   constexpr std::size_t kKilobyte = 1000;

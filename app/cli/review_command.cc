@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "app/cli/browser.h"
 #include "app/cli/command.h"
@@ -28,6 +29,7 @@ struct ReviewFlags {
   int port = 0;
   bool no_open = false;
   std::string reports;
+  std::vector<std::string> recordings;
   std::string rig;
   double speed_mps = 0.0;
   std::string corner;
@@ -45,6 +47,7 @@ int Run(const ReviewFlags& flags) {
       flags.reports.empty()
           ? std::filesystem::absolute(flags.db).parent_path() / "report"
           : std::filesystem::path(flags.reports);
+  options.recordings.assign(flags.recordings.begin(), flags.recordings.end());
   if (!flags.rig.empty()) {
     std::optional<core::Corner> corner;
     if (!flags.corner.empty()) {
@@ -65,7 +68,11 @@ int Run(const ReviewFlags& flags) {
   fmt::print("{}\n", server.address());
   // Whoever does not learn the address has no page.
   RequireStdoutWritten();
-  Tell(fmt::format("the page of {}; Ctrl-C ends it", flags.db));
+  Tell(fmt::format("the page of {}{}; Ctrl-C ends it", flags.db,
+                   std::filesystem::exists(flags.db)
+                       ? ""
+                       : " (not there yet: the page makes it with the first "
+                         "answer that is kept)"));
   std::optional<BrowserPage> page;
   if (!flags.no_open && HasDesktop()) {
     page.emplace(server.address());
@@ -103,6 +110,12 @@ void AddReview(CLI::App& app, Action& action) {
   command->add_option("--reports", flags->reports,
                       "folder for reports built on the page (default: "
                       "`report` beside the store)");
+  command
+      ->add_option("--recordings", flags->recordings,
+                   "a folder that recordings are chosen from on the page, with "
+                   "all below it; may be given several times")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
   command->add_option("--rig", flags->rig,
                       "rig.toml: the next angle stays within its reach");
   command->add_option("--speed-mps", flags->speed_mps,

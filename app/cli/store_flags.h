@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/pipeline/campaign_entry.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/db/store.h"
@@ -30,16 +31,8 @@ T ParseWord(const std::string& flag, const std::string& text,
   throw std::invalid_argument(flag + " is '" + text + "', must be " + words);
 }
 
-// --body sphere --diameter-mm D, --body rectangle --sides-mm AxB; sizes may
-// bear their standard uncertainty: "40+-0.02", "60+-0.02x20+-0.02".
-struct BodyFlags {
-  std::string kind;
-  std::string diameter_mm;
-  std::string sides_mm;
-};
-void AddBodyFlags(CLI::App& command, BodyFlags& flags);
-// Nothing if none of the three was given.
-std::optional<core::Body> ParseBody(const BodyFlags& flags);
+// --body, --diameter-mm and --sides-mm.
+void AddBodyFlags(CLI::App& command, pipeline::BodyEntry& flags);
 
 // The trial of that id or beginning of an id; core::StoreError where none is.
 core::Trial RequireTrial(const db::Store& store, const std::string& id);

@@ -40,17 +40,6 @@ std::vector<std::string_view> Split(std::string_view text, char at) {
 
 }  // namespace
 
-std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
-                                                     const std::string& text,
-                                                     double unit, DefaultU u) {
-  const std::size_t times = text.find('x');
-  if (times == std::string::npos) {
-    Refuse(flag, text, "two lengths as in 60x20");
-  }
-  return {ParseEstimate(flag, text.substr(0, times), unit, u),
-          ParseEstimate(flag, text.substr(times + 1), unit, u)};
-}
-
 std::vector<double> ParseNumbers(const std::string& flag,
                                  const std::string& text, std::size_t count,
                                  const std::string& form) {

@@ -9,25 +9,14 @@
 #include <vector>
 
 #include "app/pipeline/typed_values.h"
-#include "touchdown/core/estimate.h"
 #include "touchdown/core/points.h"
 
 namespace touchdown::cli {
 
-using pipeline::DefaultU;
+using pipeline::kPlainSize;
 using pipeline::ParseEstimate;
 using pipeline::ParseMeasured;
-
-// Of a plain scale or size, everywhere (rig.toml too): 0.1 %, a caliper's 0.02
-// mm on 20 mm. Smaller claims more than a bare number tells; larger hides what
-// the picture says of a wrong one.
-inline constexpr DefaultU kPlainSize = {.relative = 1e-3};
-
-// "60x20" or "60+-0.02x20+-0.02", likewise.
-std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
-                                                     const std::string& text,
-                                                     double unit,
-                                                     DefaultU u = {});
+using pipeline::ParseSides;
 
 // Exactly `count` numbers separated by commas.
 std::vector<double> ParseNumbers(const std::string& flag,

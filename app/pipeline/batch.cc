@@ -168,6 +168,10 @@ class Batch {
       trial.set_angle_rad = clip.set_angle_rad;
       trial.set_speed_mps = clip.set_speed_mps;
       trial.conditions = options_.conditions;
+      trial.reason = options_.reason;
+      if (analyze.interrupted != nullptr && *analyze.interrupted) {
+        throw core::Cancelled(clip.name + ": ended before it was logged");
+      }
       KeepPicture(store_.path(), trial);
       answer.what = std::move(trial);
     } catch (const core::StoreError&) {

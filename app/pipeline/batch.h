@@ -66,6 +66,8 @@ struct BatchOptions {
   std::filesystem::path evidence = {};
   // Of each shot. Nothing: those stated before, if any, stay in force.
   std::optional<core::Conditions> conditions = {};
+  // Of each trial: why it is stated.
+  std::string reason = {};
   // Called from any thread, one call at a time. May be empty.
   std::function<void(const BatchProgress&)> progress = {};
   // Looked at before each recording: true ends the batch early. May be empty.

@@ -22,6 +22,9 @@ constexpr std::array<std::string_view, 19> kVideos = {
     ".cine", ".ts",  ".mpg", ".mpeg", ".asf", ".wmv", ".flv",
     ".ogv",  ".nut", ".y4m", ".mxf",  ".dv"};
 
+// Of the folder that a store keeps its pictures in (pictures.h).
+constexpr const char* kEvidence = ".evidence";
+
 std::string LowerExtension(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) {
@@ -49,9 +52,14 @@ bool IsStack(const fs::path& path) {
   }
 }
 
-void Collect(const fs::path& folder, std::vector<fs::path>& recordings) {
+struct Inside {
+  std::vector<fs::path> recordings;
+  std::vector<fs::path> folders;  // to be looked through, too
+};
+
+Inside LookInto(const fs::path& folder, const Admit& admit) {
+  Inside inside;
   std::error_code trouble;
-  std::vector<fs::path> folders;
   std::vector<fs::path> files;
   std::vector<fs::path> images;
   fs::directory_iterator entry(folder, trouble);
@@ -60,10 +68,12 @@ void Collect(const fs::path& folder, std::vector<fs::path>& recordings) {
     const fs::path& path = entry->path();
     std::error_code ignored;
     if (IsHidden(path)) continue;
-    if (path.filename() == "analysis.json") return;  // evidence
+    if (path.filename() == "analysis.json") return {};  // evidence
     if (entry->is_directory(ignored)) {
-      if (!entry->is_symlink(ignored)) folders.push_back(path);
-    } else if (entry->is_regular_file(ignored)) {
+      if (!entry->is_symlink(ignored) && path.extension() != kEvidence) {
+        inside.folders.push_back(path);
+      }
+    } else if (entry->is_regular_file(ignored) && (!admit || admit(path))) {
       if (IsRecordingFile(path)) {
         files.push_back(path);
       } else if (vision::IsImageName(path)) {
@@ -85,9 +95,19 @@ void Collect(const fs::path& folder, std::vector<fs::path>& recordings) {
     images.erase(stacks, images.end());
   }
   // Pictures beside a video are somebody's notes; alone they are a recording.
-  if (!images.empty() && files.empty()) recordings.push_back(folder);
-  recordings.insert(recordings.end(), files.begin(), files.end());
-  for (const fs::path& below : folders) Collect(below, recordings);
+  if (!images.empty() && files.empty()) inside.recordings.push_back(folder);
+  inside.recordings.insert(inside.recordings.end(), files.begin(), files.end());
+  return inside;
+}
+
+void Collect(const fs::path& folder, const Admit& admit,
+             std::vector<fs::path>& recordings) {
+  const Inside inside = LookInto(folder, admit);
+  recordings.insert(recordings.end(), inside.recordings.begin(),
+                    inside.recordings.end());
+  for (const fs::path& below : inside.folders) {
+    Collect(below, admit, recordings);
+  }
 }
 
 void AddFile(const fs::path& file, Extent& extent) {
@@ -103,31 +123,50 @@ void AddFile(const fs::path& file, Extent& extent) {
 
 }  // namespace
 
-std::vector<fs::path> FindRecordings(const fs::path& folder) {
+std::vector<fs::path> FindRecordings(const fs::path& folder,
+                                     const Admit& admit) {
   std::vector<fs::path> recordings;
-  Collect(folder, recordings);
+  Collect(folder, admit, recordings);
   std::sort(recordings.begin(), recordings.end());
   return recordings;
 }
 
-Extent ExtentOf(const fs::path& recording) {
-  Extent extent;
+bool IsRecording(const fs::path& path) {
+  std::error_code trouble;
+  if (fs::is_directory(path, trouble)) {
+    const auto found = LookInto(path, {}).recordings;
+    return !found.empty() && found.front() == path;
+  }
+  return fs::is_regular_file(path, trouble) && !IsHidden(path) &&
+         (IsRecordingFile(path) ||
+          (vision::IsImageName(path) && IsStack(path)));
+}
+
+std::vector<fs::path> FilesOf(const fs::path& recording) {
+  std::vector<fs::path> files;
   std::error_code trouble;
   if (fs::is_directory(recording, trouble)) {
     fs::directory_iterator entry(recording, trouble);
     for (; !trouble && entry != fs::directory_iterator();
          entry.increment(trouble)) {
-      if (vision::IsImageName(entry->path())) AddFile(entry->path(), extent);
+      if (vision::IsImageName(entry->path())) files.push_back(entry->path());
     }
-    return extent;
+    return files;
   }
-  AddFile(recording, extent);
+  files.push_back(recording);
   if (LowerExtension(recording) == ".mraw") {
     for (const char* header : {".cih", ".cihx", ".CIH", ".CIHX"}) {
       fs::path beside = recording;
-      AddFile(beside.replace_extension(header), extent);
+      beside.replace_extension(header);
+      if (fs::exists(beside, trouble)) files.push_back(std::move(beside));
     }
   }
+  return files;
+}
+
+Extent ExtentOf(const fs::path& recording) {
+  Extent extent;
+  for (const fs::path& file : FilesOf(recording)) AddFile(file, extent);
   return extent;
 }
 

@@ -14,9 +14,21 @@ namespace touchdown::pipeline {
 // by their extension, .mraw files, TIFFs of several pages (where the first
 // picture of their folder is one), folders of images. Left out are hidden files
 // and folders, symbolic links to folders, and folders of evidence (they hold an
-// analysis.json). Throws core::InputError if the folder cannot be read.
+// analysis.json, or are a store's, lab.db.evidence), and files that `admit`
+// (empty: all pass) does not let pass: they are not opened. Throws
+// core::InputError if the folder cannot be read.
+using Admit = std::function<bool(const std::filesystem::path& file)>;
 std::vector<std::filesystem::path> FindRecordings(
-    const std::filesystem::path& folder);
+    const std::filesystem::path& folder, const Admit& admit = {});
+
+// Whether FindRecordings takes what lies at `path`: it need not be complete,
+// nor one that can be read.
+bool IsRecording(const std::filesystem::path& path);
+
+// The files that a recording is read from: itself, the header beside an .mraw
+// file, the images of a folder.
+std::vector<std::filesystem::path> FilesOf(
+    const std::filesystem::path& recording);
 
 // How large a recording is (all its files together) and when it was last
 // written to.

@@ -351,6 +351,29 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
   }
 }
 
+std::optional<AnalyzeOptions> CameraOf(const core::Trial& trial) {
+  const Json document = Json::parse(trial.document_json, nullptr, false);
+  if (!document.is_object() || !document.contains("replay")) {
+    return std::nullopt;
+  }
+  try {
+    const AnalyzeOptions all = OptionsOf(document["replay"].at("options"));
+    AnalyzeOptions camera;
+    camera.fps = all.fps;
+    camera.gamma = all.gamma;
+    camera.scale_px_per_m = all.scale_px_per_m;
+    camera.calibration = all.calibration;
+    camera.crop = all.crop;
+    return camera;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  } catch (const core::InputError&) {
+    return std::nullopt;
+  }
+}
+
 core::Trial WithAnalysis(const core::Trial& seen, const Analysis& analysis) {
   core::Trial trial = seen;
   const core::Trial judged = ToTrial(analysis);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
 #include "app/pipeline/analyze.h"
 #include "touchdown/core/expected.h"
@@ -21,6 +22,11 @@ nlohmann::ordered_json ReplayJson(const Analysis& analysis);
 // analysis saw no body or no ground, or an earlier program wrote it, which kept
 // no track.
 core::Expected<Analysis> Replay(const core::Trial& trial);
+
+// What the trial's analysis was told of the camera: frame rate, gamma, scale,
+// calibration and crop; nothing of the body or of this one clip. Nothing where
+// its document does not say.
+std::optional<AnalyzeOptions> CameraOf(const core::Trial& trial);
 
 // The trial as it is to be stored after a correction: who, when and the clip
 // stay, what was measured is the analysis's.

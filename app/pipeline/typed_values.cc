@@ -33,6 +33,16 @@ std::optional<T> ReadNumber(std::string_view text) {
   return value;
 }
 
+// What `parse` of a flag makes of a field: its message names the flag first.
+template <class Parse>
+auto OfField(const std::string& field, const Parse& parse) {
+  try {
+    return parse("");
+  } catch (const std::invalid_argument& mistake) {
+    throw FieldError(field, std::string(mistake.what()).substr(1));
+  }
+}
+
 }  // namespace
 
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
@@ -56,6 +66,31 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
         "{} is '{}', its uncertainty must be at least 0", flag, text));
   }
   return {*value * unit, *u * unit, std::nullopt};
+}
+
+std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
+                                                     const std::string& text,
+                                                     double unit, DefaultU u) {
+  const std::size_t times = text.find('x');
+  if (times == std::string::npos) {
+    Refuse(flag, text, "two lengths as in 60x20");
+  }
+  return {ParseEstimate(flag, text.substr(0, times), unit, u),
+          ParseEstimate(flag, text.substr(times + 1), unit, u)};
+}
+
+core::Estimate EstimateOf(const std::string& field, const std::string& text,
+                          double unit, DefaultU u) {
+  return OfField(field, [&](const char* flag) {
+    return ParseEstimate(flag, text, unit, u);
+  });
+}
+
+std::pair<core::Estimate, core::Estimate> SidesOf(const std::string& field,
+                                                  const std::string& text,
+                                                  double unit, DefaultU u) {
+  return OfField(
+      field, [&](const char* flag) { return ParseSides(flag, text, unit, u); });
 }
 
 core::Measured ParseMeasured(const std::string& flag, const std::string& text,
@@ -100,12 +135,9 @@ bool SetCondition(const std::string& key, const std::string& value,
   for (const auto& quantity : db::kConditionQuantities) {
     const core::EdgeUnit unit = core::AtTheEdge(quantity.name);
     if (key != unit.stem + unit.suffix) continue;
-    try {
-      conditions.*quantity.member =
-          ParseMeasured("", value, unit.factor, unit.offset);
-    } catch (const std::invalid_argument& mistake) {
-      throw FieldError(key, std::string(mistake.what()).substr(1));
-    }
+    conditions.*quantity.member = OfField(key, [&](const char* flag) {
+      return ParseMeasured(flag, value, unit.factor, unit.offset);
+    });
     return true;
   }
   if (key == "anomaly") {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "touchdown/core/conditions.h"
@@ -17,10 +18,29 @@ struct DefaultU {
   double absolute = 0.0;
 };
 
+// Of a plain scale or size, everywhere (rig.toml too): 0.1 %, a caliper's 0.02
+// mm on 20 mm. Smaller claims more than a bare number tells; larger hides what
+// the picture says of a wrong one.
+inline constexpr DefaultU kPlainSize = {.relative = 1e-3};
+
 // "40" or "40+-0.02", in SI by `unit`. Throws std::invalid_argument with the
 // flag's name, what was given and what is expected; so do the others.
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
                              double unit, DefaultU u = {});
+
+// "60x20" or "60+-0.02x20+-0.02", likewise.
+std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
+                                                     const std::string& text,
+                                                     double unit,
+                                                     DefaultU u = {});
+
+// The two of a field that is named as the flag is, without dashes; they throw
+// FieldError (statement.h).
+core::Estimate EstimateOf(const std::string& field, const std::string& text,
+                          double unit, DefaultU u = {});
+std::pair<core::Estimate, core::Estimate> SidesOf(const std::string& field,
+                                                  const std::string& text,
+                                                  double unit, DefaultU u = {});
 
 // "40+-0.02", its standard uncertainty always given, or "absent:REASON"; in SI
 // as value * unit + offset.

@@ -8,13 +8,20 @@
 namespace touchdown::review {
 
 Desk::Desk(std::filesystem::path store, std::filesystem::path reports,
-           report::ReachOf reach_of)
+           report::ReachOf reach_of, RecordingFolders recordings)
     : store_(std::move(store)),
       reports_(std::move(reports)),
-      reach_of_(std::move(reach_of)) {}
+      reach_of_(std::move(reach_of)),
+      recordings_(std::move(recordings)),
+      analyses_(store_) {}
 
 db::Store Desk::Open(db::OpenMode mode) const {
   return db::Store::Open(store_, mode);
+}
+
+bool Desk::HasStore() const {
+  std::error_code none;
+  return std::filesystem::file_size(store_, none) > 0 && !none;
 }
 
 std::string Desk::Stamp() const {

@@ -8,7 +8,9 @@
 #include <mutex>
 #include <string>
 
+#include "app/review/analyses.h"
 #include "app/review/clip_shelf.h"
+#include "app/review/recordings.h"
 #include "app/review/statistics.h"
 #include "app/review/trial_list.h"
 #include "touchdown/db/store.h"
@@ -18,11 +20,15 @@ namespace touchdown::review {
 class Desk {
  public:
   // `reach_of`: what the next angle stays within; empty: any angle.
+  // `recordings`: the folders that recordings are chosen from.
   Desk(std::filesystem::path store, std::filesystem::path reports,
-       report::ReachOf reach_of = {});
+       report::ReachOf reach_of = {}, RecordingFolders recordings = {});
 
   // A connection of the caller's own: one Store belongs to one thread.
   db::Store Open(db::OpenMode mode) const;
+  // Whether there is a store already: one that was named and is not there is
+  // made when its first trial is kept (setup.h).
+  bool HasStore() const;
   const std::filesystem::path& store() const { return store_; }
   const std::filesystem::path& reports() const { return reports_; }
   const report::ReachOf& reach_of() const { return reach_of_; }
@@ -36,6 +42,8 @@ class Desk {
 
   TriageMemory& triage() { return triage_; }
   ClipShelf& shelf() { return shelf_; }
+  const RecordingFolders& recordings() const { return recordings_; }
+  AnalysisQueue& analyses() { return analyses_; }
 
   // Where the recording of a trial was last seen; empty where there is none.
   // Asked for with every frame, so it is remembered.
@@ -55,6 +63,9 @@ class Desk {
   std::mutex clips_guard_;
   std::string clips_stamp_;
   std::map<std::string, std::string> clips_;
+
+  RecordingFolders recordings_;
+  AnalysisQueue analyses_;
 };
 
 }  // namespace touchdown::review

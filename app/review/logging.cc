@@ -4,11 +4,10 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
+#include <vector>
 
-#include "app/pipeline/analyze.h"
 #include "app/pipeline/log_analysis.h"
-#include "app/pipeline/pictures.h"
+#include "app/pipeline/replay.h"
 #include "app/pipeline/report_input.h"
 #include "app/pipeline/report_pictures.h"
 #include "app/pipeline/statement.h"
@@ -62,40 +61,54 @@ db::Logged LogTyped(const std::filesystem::path& store,
   return pipeline::LogByHand(store, entry);
 }
 
-db::Logged LogRecording(const std::filesystem::path& store,
-                        const nlohmann::json& asked) {
-  const std::string name =
-      RequiredText(asked, "campaign", "one of the campaigns");
-  const std::string who = RequiredText(asked, "who", "your name");
-  const std::filesystem::path clip =
-      RequiredText(asked, "clip", "the path of a recording on this machine");
-  if (!std::filesystem::exists(clip)) {
-    throw FieldError("clip", fmt::format("is '{}', must be a recording that "
-                                         "is there",
-                                         clip.string()));
+AnalysisOrder OrderOf(const std::filesystem::path& store,
+                      const RecordingFolders& folders,
+                      const nlohmann::json& asked) {
+  AnalysisOrder order;
+  order.campaign.name = RequiredText(asked, "campaign", "one of the campaigns");
+  order.who = RequiredText(asked, "who", "your name");
+  if (!asked.contains("recording")) {
+    throw FieldError("recording", "is missing, must be one of the list");
+  }
+  order.recording = RecordingOf(asked["recording"]);
+  order.path = folders.Require(order.recording);
+  order.again = asked.value("again", false);
+  const auto open = db::Store::Open(store, db::OpenMode::kRead);
+  pipeline::RequireCampaign(open, order.campaign.name);
+  if (!asked.value("other_camera", false)) {
+    order.camera = LastCamera(open, order.campaign.name)
+                       .value_or(pipeline::AnalyzeOptions{});
   }
   pipeline::Statement setting;
   setting.set_angle_deg = NumberOf(asked, "set_angle_deg");
   setting.set_speed_mps = NumberOf(asked, "set_speed_mps");
-  setting.conditions = ConditionsOf(asked);
   core::Trial rehearsal;
   pipeline::Apply(setting, rehearsal);  // before the work, not after it
-  pipeline::AnalyzeOptions options;
-  const auto open = db::Store::Open(store, db::OpenMode::kRead);
-  const core::Campaign campaign = pipeline::RequireCampaign(open, name);
-  if (setting.conditions) {
-    setting.conditions = db::Resolved(open, *setting.conditions);
+  order.set_angle_rad = rehearsal.set_angle_rad;
+  order.set_speed_mps = rehearsal.set_speed_mps;
+  order.conditions = ConditionsOf(asked);
+  if (order.conditions) {
+    order.conditions = db::Resolved(open, *order.conditions);
   }
-  pipeline::FillFromCampaign(campaign, options);
-  options.limit_s = pipeline::kUsualLimit_s;
-  core::Trial trial =
-      pipeline::LoggableTrial(pipeline::Analyze(clip, options), &campaign);
-  pipeline::Apply(setting, trial);
-  trial.reason = "logged on the review page by " + who;
-  const db::Logged logged =
-      db::Store::Open(store, db::OpenMode::kWrite).LogTrial(trial);
-  pipeline::KeepPicture(store, trial);
-  return logged;
+  return order;
+}
+
+std::optional<pipeline::AnalyzeOptions> LastCamera(
+    const db::Store& store, const std::string& campaign) {
+  db::TrialFilter filter;
+  filter.campaign = campaign;
+  filter.excluded = false;  // perhaps for its camera's sake
+  filter.with_documents = false;
+  std::optional<pipeline::AnalyzeOptions> camera;
+  const std::vector<core::Trial> trials = store.Trials(filter);
+  for (auto trial = trials.rbegin(); trial != trials.rend() && !camera;
+       ++trial) {
+    if (trial->clip.path.empty()) continue;
+    if (const auto whole = store.Find(trial->id)) {
+      camera = pipeline::CameraOf(*whole);
+    }
+  }
+  return camera;
 }
 
 std::size_t BuildReport(const std::filesystem::path& store,

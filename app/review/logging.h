@@ -3,8 +3,12 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
 
 #include "app/report/report.h"
+#include "app/review/analyses.h"
+#include "app/review/recordings.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::review {
@@ -16,10 +20,18 @@ namespace touchdown::review {
 db::Logged LogTyped(const std::filesystem::path& store,
                     const nlohmann::json& asked);
 
-// Analyses a recording of this machine as `touchdown analyze --db --campaign`
-// does, and logs it: campaign, clip, set_angle_deg, set_speed_mps.
-db::Logged LogRecording(const std::filesystem::path& store,
-                        const nlohmann::json& asked);
+// A recording that is to be analysed and logged: recording ({folder, name}),
+// campaign, who, set_angle_deg, set_speed_mps, conditions, again, and
+// other_camera: true where the settings of the campaign's last recording do not
+// hold. Throws pipeline::FieldError and core::StoreError.
+AnalysisOrder OrderOf(const std::filesystem::path& store,
+                      const RecordingFolders& folders,
+                      const nlohmann::json& asked);
+
+// What the campaign's last recording that counts was analysed with
+// (pipeline::CameraOf); nothing where there is none.
+std::optional<pipeline::AnalyzeOptions> LastCamera(const db::Store& store,
+                                                   const std::string& campaign);
 
 // The report of the whole store, into `folder`; how many trials are in it.
 // `reach_of`: what the next angle stays within.

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -12,10 +12,12 @@
 #include "app/report/report.h"
 #include "app/report/text_file.h"
 #include "app/report/trial_list.h"
+#include "app/review/answers.h"
 #include "app/review/changes.h"
 #include "app/review/corrections.h"
 #include "app/review/logging.h"
 #include "app/review/page_files.h"
+#include "app/review/recording_routes.h"
 #include "app/review/relinking.h"
 #include "app/review/thumbnail.h"
 #include "app/review/trajectory.h"
@@ -26,19 +28,6 @@ namespace touchdown::review {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// A path, a number or a trial that there is not.
-class NotThere : public std::runtime_error {
- public:
-  explicit NotThere(const std::string& path)
-      : std::runtime_error(path + ": there is nothing here") {}
-};
-
-Reply JsonReply(const Json& json) {
-  Reply reply;
-  reply.body = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return reply;
-}
 
 std::string TypeOf(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
@@ -62,14 +51,6 @@ std::optional<std::string> After(const std::string& path,
                                  std::string_view prefix) {
   if (!path.starts_with(prefix)) return std::nullopt;
   return path.substr(prefix.size());
-}
-
-std::int64_t NumberIn(const std::string& text, const std::string& path) {
-  std::int64_t n = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, n);
-  if (error != std::errc{} || stop != end || n < 0) throw NotThere(path);
-  return n;
 }
 
 Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
@@ -230,6 +211,7 @@ Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
 
 Reply Get(Desk& desk, const Request& request) {
   const std::string& path = request.path;
+  if (auto reply = GetOfRecordings(desk, request)) return *std::move(reply);
   if (path == "/") return PageReply("index.html");
   if (const auto name = After(path, "/page/")) return PageReply(*name);
   if (path == "/api/stamp") {
@@ -239,7 +221,9 @@ Reply Get(Desk& desk, const Request& request) {
   }
   if (path == "/api/trials") {
     const std::string stamp = desk.Stamp();
-    Json json = TrialListJson(desk.Open(db::OpenMode::kRead), desk.triage());
+    Json json = desk.HasStore() ? TrialListJson(desk.Open(db::OpenMode::kRead),
+                                                desk.triage())
+                                : EmptyListJson(desk.store());
     json["stamp"] = stamp;
     return JsonReply(json);
   }
@@ -278,6 +262,9 @@ Json LoggedJson(const db::Logged& logged) {
 Reply Post(Desk& desk, const Request& request) {
   const auto asked = nlohmann::json::parse(request.body);
   const std::string& path = request.path;
+  if (auto reply = PostToRecordings(desk, path, asked)) {
+    return *std::move(reply);
+  }
   if (const auto trial = TrialPathOf(path)) {
     if (trial->rest == "preview") {
       const db::Store store = desk.Open(db::OpenMode::kRead);
@@ -292,9 +279,6 @@ Reply Post(Desk& desk, const Request& request) {
   }
   if (path == "/api/log") {
     return JsonReply(LoggedJson(LogTyped(desk.store(), asked)));
-  }
-  if (path == "/api/recordings") {
-    return JsonReply(LoggedJson(LogRecording(desk.store(), asked)));
   }
   if (path == "/api/relink") {
     return JsonReply(RelinkedJson(desk.store(), asked));

@@ -13,9 +13,9 @@
 //   POST /api/trials/ID/preview   a correction, judged and not stored
 //   POST /api/trials/ID/revisions stored (corrections.h)
 //   POST /api/log                 a trial by hand (logging.h)
-//   POST /api/recordings          a recording analysed and logged
 //   POST /api/relink              looks for moved recordings (relinking.h)
 //   POST /api/report              builds it; GET /report/NAME its files
+// and recordings and analyses: recording_routes.h.
 #pragma once
 
 #include "app/review/desk.h"

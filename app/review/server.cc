@@ -33,11 +33,29 @@ int OwnPort(const std::filesystem::path& store) {
   return kFirstOwnPort + static_cast<int>(hash % kOwnPorts);
 }
 
+// A store, or a folder in which one can be made.
+void RequireStoreOrPlace(const std::filesystem::path& store) {
+  std::error_code none;
+  if (std::filesystem::exists(store, none) &&
+      (!std::filesystem::is_regular_file(store, none) ||
+       std::filesystem::file_size(store, none) > 0)) {
+    db::Store::Open(store, db::OpenMode::kWrite);
+    return;
+  }
+  const auto folder = std::filesystem::absolute(store).parent_path();
+  if (!std::filesystem::is_directory(folder, none)) {
+    throw core::StoreError(
+        fmt::format("{}: its folder {} does not exist; make it first",
+                    store.string(), folder.string()));
+  }
+}
+
 }  // namespace
 
 struct Server::Impl {
   explicit Impl(const ServerOptions& options)
-      : desk(options.store, options.reports, options.reach_of),
+      : desk(options.store, options.reports, options.reach_of,
+             RecordingFolders(options.recordings)),
         http(options.http,
              {[this](const Request& request) { return Admit(request); },
               [this](const Request& request) { return Answer(request); }}),
@@ -69,7 +87,7 @@ struct Server::Impl {
 };
 
 Server::Server(const ServerOptions& options) {
-  db::Store::Open(options.store, db::OpenMode::kWrite);
+  RequireStoreOrPlace(options.store);
   if (options.http.port == 0) {
     try {
       ServerOptions own = options;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/report/report.h"
 #include "app/review/http_server.h"
@@ -20,6 +21,8 @@ struct ServerOptions {
   std::filesystem::path reports;
   // What the next angle stays within; empty: no rig was given, any angle.
   report::ReachOf reach_of = {};
+  // Folders that recordings are chosen from.
+  std::vector<std::filesystem::path> recordings = {};
 };
 
 class Server {

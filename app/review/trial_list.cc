@@ -36,6 +36,16 @@ Json CampaignsJson(const db::Store& store,
   return out;
 }
 
+Json ListJson(const std::filesystem::path& store, const std::string& id,
+              std::size_t to_look_at, Json campaigns, Json rows) {
+  return {{"schema", "touchdown.review.trials/1"},
+          {"store", store.filename().string()},
+          {"store_id", id},
+          {"to_look_at", to_look_at},
+          {"campaigns", std::move(campaigns)},
+          {"trials", std::move(rows)}};
+}
+
 }  // namespace
 
 std::vector<TriageEntry> TriageMemory::Of(
@@ -108,12 +118,12 @@ Json TrialListJson(const db::Store& store, TriageMemory& memory) {
     row["why"] = triage[i].reason;
     rows.push_back(std::move(row));
   }
-  return {{"schema", "touchdown.review.trials/1"},
-          {"store", store.path().filename().string()},
-          {"store_id", store.uuid()},
-          {"to_look_at", to_look_at},
-          {"campaigns", CampaignsJson(store, trials)},
-          {"trials", std::move(rows)}};
+  return ListJson(store.path(), store.uuid(), to_look_at,
+                  CampaignsJson(store, trials), std::move(rows));
+}
+
+Json EmptyListJson(const std::filesystem::path& store) {
+  return ListJson(store, "", 0, Json::array(), Json::array());
 }
 
 }  // namespace touchdown::review

@@ -1,6 +1,7 @@
 // The list of trials, those that need a look first.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -29,5 +30,8 @@ class TriageMemory {
 // `why`, the most pressing first; `campaigns` with their counts.
 nlohmann::ordered_json TrialListJson(const db::Store& store,
                                      TriageMemory& memory);
+
+// The same of a store that is not there yet.
+nlohmann::ordered_json EmptyListJson(const std::filesystem::path& store);
 
 }  // namespace touchdown::review

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -85,6 +86,32 @@ std::vector<Done> DoneOf(const std::vector<TriageEntry>& entries) {
   std::vector<Done> done;
   for (const auto& entry : entries) done.push_back(entry.done);
   return done;
+}
+
+TEST_F(RunBatchTest, SaysWhyEachTrialIsStated) {
+  db::Store store = Open("lab.db");
+  BatchOptions options;
+  options.reason = "asked for by Ada";
+  RunBatch(store, Clips(), options);
+  ASSERT_EQ(store.Trials().size(), 3u);
+  for (const core::Trial& trial : store.Trials()) {
+    EXPECT_EQ(trial.reason, "asked for by Ada");
+  }
+}
+
+TEST_F(RunBatchTest, LogsNothingMoreOnceItIsInterrupted) {
+  db::Store store = Open("lab.db");
+  std::atomic<bool> interrupted = false;
+  AnalyzeOptions analyze;
+  analyze.interrupted = &interrupted;
+  BatchOptions options;
+  options.jobs = 1;
+  // When the frames of the first have been read.
+  options.progress = [&](const BatchProgress& progress) {
+    interrupted = interrupted || progress.share > 0.3;
+  };
+  EXPECT_THAT(RunBatch(store, Clips(analyze), options), IsEmpty());
+  EXPECT_THAT(store.Trials(), IsEmpty());
 }
 
 TEST_F(RunBatchTest, IsTheSameAsOneByOneWhateverTheJobs) {

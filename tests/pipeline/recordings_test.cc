@@ -26,15 +26,16 @@ std::vector<std::string> Names(const fs::path& folder) {
 
 TEST(FindRecordings, VideosRawsAndFoldersOfImages) {
   const TemporaryFolder folder;
-  for (const char* below : {"shots", "shots/img", "evidence", ".trash", "notes",
-                            "it's \"odd\"\n\xc3\xbc"}) {
+  for (const char* below : {"shots", "shots/img", "evidence", "lab.db.evidence",
+                            ".trash", "notes", "it's \"odd\"\n\xc3\xbc"}) {
     fs::create_directories(folder / below);
   }
   for (const char* file :
        {"b.MP4", "a.cine", "x.mraw", "x.cihx", "x.truth.json", ".hidden.avi",
         "y.avi.part123", "shots/img/1.png", "shots/img/2.png",
-        "evidence/analysis.json", "evidence/contact.png", ".trash/z.avi",
-        "notes/readme.txt", "it's \"odd\"\n\xc3\xbc/k.avi"}) {
+        "evidence/analysis.json", "evidence/contact.png",
+        "lab.db.evidence/1.png", ".trash/z.avi", "notes/readme.txt",
+        "it's \"odd\"\n\xc3\xbc/k.avi"}) {
     folder.Write(file, "x");
   }
   // A link to a folder could lead in a circle.
@@ -73,6 +74,45 @@ TEST(FindRecordings, StacksAreRecordings) {
   folder.Write("pictures/2.tif", "x");
   EXPECT_THAT(Names(folder.path()),
               ElementsAre("pictures", "stacks/a.tif", "stacks/b.TIFF"));
+}
+
+TEST(FindRecordings, OpensNothingThatIsNotAdmitted) {
+  const TemporaryFolder folder;
+  folder.Write("a.avi", "x");
+  folder.Write("b.avi", "x");
+  const auto found = FindRecordings(
+      folder.path(), [](const fs::path& p) { return p.stem() != "a"; });
+  EXPECT_THAT(found, ElementsAre(folder / "b.avi"));
+}
+
+TEST(IsRecording, AsFindRecordingsFindsThem) {
+  const TemporaryFolder folder;
+  for (const char* below : {"img", "none", "evidence"}) {
+    fs::create_directories(folder / below);
+  }
+  for (const char* file : {"a.avi", "a.txt", "img/1.png", "evidence/1.png",
+                           "evidence/analysis.json", ".b.avi"}) {
+    folder.Write(file, "x");
+  }
+  EXPECT_TRUE(IsRecording(folder / "a.avi"));
+  EXPECT_TRUE(IsRecording(folder / "img"));
+  for (const char* other :
+       {"a.txt", "none", "evidence", "img/1.png", ".b.avi", "not there.avi"}) {
+    EXPECT_FALSE(IsRecording(folder / other)) << other;
+  }
+}
+
+TEST(FilesOf, ARecordingIsReadFrom) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "img");
+  for (const char* file :
+       {"x.mraw", "x.cihx", "x.txt", "img/1.png", "img/notes.txt", "a.avi"}) {
+    folder.Write(file, "x");
+  }
+  EXPECT_THAT(FilesOf(folder / "x.mraw"),
+              ElementsAre(folder / "x.mraw", folder / "x.cihx"));
+  EXPECT_THAT(FilesOf(folder / "img"), ElementsAre(folder / "img/1.png"));
+  EXPECT_THAT(FilesOf(folder / "a.avi"), ElementsAre(folder / "a.avi"));
 }
 
 TEST(Settling, TellsARecordingWhenItHasStoppedGrowing) {

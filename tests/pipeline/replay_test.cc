@@ -186,6 +186,36 @@ TEST(Rejudge, RefusesFramesWithoutABody) {
   EXPECT_THROW(Rejudge(*analysis, correction), std::invalid_argument);
 }
 
+// What was told of the camera holds for the next clip; the rest does not.
+TEST(CameraOf, IsWhatTheAnalysisWasTold) {
+  Shot shot(core::BodyKind::kSphere);
+  shot.analysis.options.fps = 1234.5;
+  shot.analysis.options.gamma = 0.8;
+  shot.analysis.options.scale_px_per_m = core::Estimate{990.0, 2.0, {}};
+  shot.analysis.options.calibration.emplace();
+  shot.analysis.options.calibration->camera = "left";
+  shot.analysis.options.calibration->date = "2026-11-21";
+  shot.analysis.options.calibration->expires = "2027-11-21";
+  shot.analysis.options.calibration->picture = {640, 400,
+                                                calib::SensorCorner{}};
+  shot.analysis.options.calibration->scale =
+      calib::ScaleRecord{{1000.0, 1.0, {}}, 0.4, {}};
+  shot.analysis.options.contact_frame = 7;
+  shot.trial.document_json = ToJson(shot.analysis);
+  const auto camera = CameraOf(shot.trial).value();
+  EXPECT_EQ(camera.fps, 1234.5);
+  EXPECT_EQ(camera.gamma, 0.8);
+  EXPECT_EQ(camera.scale_px_per_m->value, 990.0);
+  EXPECT_EQ(camera.calibration->camera, "left");
+  EXPECT_EQ(camera.calibration->scale->px_per_m.value, 1000.0);
+  EXPECT_FALSE(camera.contact_frame);
+  EXPECT_FALSE(camera.diameter_m);
+  shot.trial.document_json = "no document";
+  EXPECT_FALSE(CameraOf(shot.trial));
+  shot.trial.document_json = "";
+  EXPECT_FALSE(CameraOf(shot.trial));
+}
+
 TEST(Replay, SaysWhyThereIsNothingToReplay) {
   Shot shot;
   core::Trial trial = shot.trial;

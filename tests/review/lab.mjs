@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {dirname, join} from 'node:path';
 import {createInterface} from 'node:readline';
 import {after, before} from 'node:test';
 
@@ -27,16 +27,27 @@ function scene() {
   return shot;
 }
 
+// Writes the shot into `folder`, as sphere_20_deg.mraw where no other format is
+// asked for; `change` may alter the scene.
+export function film(folder, change = () => {}, ...args) {
+  const shot = scene();
+  change(shot);
+  mkdirSync(folder, {recursive: true});
+  const file = join(mkdtempSync(join(tmpdir(), 'touchdown-scene-')),
+                    'scene.json');
+  writeFileSync(file, JSON.stringify(shot));
+  touchdown('simulate', file, '--out', folder, ...args);
+  rmSync(dirname(file), {recursive: true});
+}
+
 // A store with one analysed recording and a campaign.
 export class Lab {
   constructor() {
     this.folder = mkdtempSync(join(tmpdir(), 'touchdown-review-'));
     this.db = join(this.folder, 'lab.db');
-    const clips = join(this.folder, 'clips');
-    mkdirSync(clips);
-    writeFileSync(join(this.folder, 'scene.json'), JSON.stringify(scene()));
-    touchdown('simulate', join(this.folder, 'scene.json'), '--out', clips);
-    this.clip = join(clips, 'sphere_20_deg.mraw');
+    this.clips = join(this.folder, 'clips');
+    film(this.clips);
+    this.clip = join(this.clips, 'sphere_20_deg.mraw');
     this.addCampaign(kCampaign);
     touchdown('analyze', this.clip, '--db', this.db, '--campaign', kCampaign);
     this.trial = this.list()[0].id;
@@ -93,7 +104,7 @@ export let lab, review, browser;
 export function useLaboratory() {
   before(async () => {
     lab = new Lab();
-    review = await startReview(lab.db);
+    review = await startReview(lab.db, '--recordings', lab.clips);
     browser = await openBrowser();
   });
   after(async () => {

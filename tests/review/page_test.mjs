@@ -226,27 +226,6 @@ test('a trial is logged by hand; trouble stands beside its field and what ' +
   await page.context().close();
 });
 
-test('a recording is analysed and logged', async () => {
-  lab.addCampaign('second look');
-  const page = await sitDown(browser, review, 'Ada');
-  await page.goto(`${review.origin}/#/log`);
-  await page.selectOption('#clip-campaign', 'second look');
-  await page.fill('#clip-clip', join(lab.folder, 'no such.mraw'));
-  const send = page.locator('form[aria-label="A recording"] button');
-  await send.click();
-  await page.waitForFunction(() => document.getElementById(
-      'clip-clip-trouble').textContent.includes('is there'));
-  await page.fill('#clip-clip', lab.clip);
-  await page.fill('#clip-set_angle_deg', '20');
-  await send.click();
-  await page.waitForSelector('form[aria-label="A recording"] a');
-  const logged = lab.list().find(t => t.campaign === 'second look');
-  assert.ok(Math.abs(logged.angle_deg.value - 20) < 0.2);
-  assert.ok(Math.abs(logged.set_angle_deg - 20) < 1e-9);
-  requireClean(page, review);
-  await page.context().close();
-});
-
 test('a report is built, viewed and downloaded', async () => {
   const page = await sitDown(browser, review, 'Ada');
   await page.goto(`${review.origin}/#/report`);

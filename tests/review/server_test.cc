@@ -90,9 +90,14 @@ TEST(Server, GivesEachSessionAKeyOfItsOwn) {
   EXPECT_THROW(Server{taken}, core::InputError);
 }
 
-TEST(Server, NeedsAStore) {
+TEST(Server, NeedsAStoreOrAPlaceForOne) {
   const testing::TemporaryFolder folder;
-  EXPECT_THROW(Server({folder / "none.db", {}, {}}), core::StoreError);
+  EXPECT_NO_THROW(Server({folder / "none.db", {}, {}}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "none.db"));
+  EXPECT_THROW(Server({folder / "no folder/none.db", {}, {}}),
+               core::StoreError);
+  folder.Write("notes.txt", "not a store");
+  EXPECT_THROW(Server({folder / "notes.txt", {}, {}}), core::StoreError);
 }
 
 }  // namespace

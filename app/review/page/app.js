@@ -3,11 +3,13 @@ import {element, rememberWho, turnNews} from './parts.js';
 import {compare} from './compare.js';
 import {log} from './log.js';
 import {overview} from './overview.js';
+import {recordings} from './recordings.js';
 import {report} from './report.js';
 import {watchServer} from './session.js';
+import {setup} from './setup.js';
 import {trial} from './trial.js';
 
-const pages = {compare, log, overview, report, trial};
+const pages = {compare, log, overview, recordings, report, setup, trial};
 
 // What the page shown wants: `changed` is called when the store has changed,
 // `keys` gets key presses, `close` ends it; `pending` says whether something

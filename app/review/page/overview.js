@@ -77,6 +77,11 @@ export async function overview(main) {
 
   async function load() {
     const trials = await get('/api/trials');
+    // Nothing to look at yet: the first campaign is made.
+    if (trials.campaigns.length === 0 && trials.trials.length === 0) {
+      location.replace('#/setup');
+      return null;
+    }
     campaigns.replaceChildren(campaignTable(trials.campaigns));
     list.show(trials.trials, trials.store_id);
     heading.textContent = trials.to_look_at
@@ -116,7 +121,9 @@ export async function overview(main) {
   main.replaceChildren(
       heading,
       list.node, element('h2', {text: 'What they say together'}), said, campaigns);
-  loadStatistics(await load());
+  const first = await load();
+  if (first === null) return {};
+  loadStatistics(first);
   return {
     async changed() {
       const stamp = await load();

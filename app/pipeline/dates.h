@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace touchdown::cli {
+namespace touchdown::pipeline {
 
 std::string Today();  // of the local clock
 
@@ -12,4 +12,4 @@ std::string Today();  // of the local clock
 std::string DaysAfter(const std::string& flag, const std::string& date,
                       int days);
 
-}  // namespace touchdown::cli
+}  // namespace touchdown::pipeline

@@ -1,4 +1,4 @@
-#include "app/cli/dates.h"
+#include "app/pipeline/dates.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "touchdown/calib/calibration_file.h"
 
-namespace touchdown::cli {
+namespace touchdown::pipeline {
 
 std::string Today() {
   const std::time_t now =
@@ -38,4 +38,4 @@ std::string DaysAfter(const std::string& flag, const std::string& date,
                      static_cast<unsigned>(after.day()));
 }
 
-}  // namespace touchdown::cli
+}  // namespace touchdown::pipeline

@@ -1,0 +1,23 @@
+#include "app/review/answers.h"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+namespace touchdown::review {
+
+Reply JsonReply(const nlohmann::ordered_json& json) {
+  Reply reply;
+  reply.body = json.dump(-1, ' ', false,
+                         nlohmann::ordered_json::error_handler_t::replace);
+  return reply;
+}
+
+std::int64_t NumberIn(const std::string& text, const std::string& path) {
+  std::int64_t n = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, n);
+  if (error != std::errc{} || stop != end || n < 0) throw NotThere(path);
+  return n;
+}
+
+}  // namespace touchdown::review

@@ -1,0 +1,117 @@
+#include "app/review/recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "app/pipeline/board_pictures.h"
+#include "app/pipeline/recordings.h"
+#include "app/pipeline/statement.h"
+#include "app/pipeline/whole_number.h"
+#include "app/review/fields.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::review {
+namespace {
+
+namespace fs = std::filesystem;
+using pipeline::FieldError;
+
+bool IsBelow(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end())
+             .first == folder.end();
+}
+
+}  // namespace
+
+RecordingFolders::RecordingFolders(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    std::error_code trouble;
+    const fs::path canonical = fs::canonical(folder, trouble);
+    if (trouble || !fs::is_directory(canonical, trouble)) {
+      throw core::InputError(fmt::format(
+          "{}: there is no such folder; --recordings expects one that "
+          "recordings lie in",
+          folder.string()));
+    }
+    if (std::ranges::find(folders_, canonical) == folders_.end()) {
+      folders_.push_back(canonical);
+    }
+  }
+}
+
+std::optional<fs::path> RecordingFolders::Inside(std::size_t folder,
+                                                 const fs::path& path) const {
+  std::error_code trouble;
+  fs::path canonical = fs::canonical(path, trouble);
+  if (trouble || !IsBelow(canonical, folders_.at(folder))) return std::nullopt;
+  return canonical;
+}
+
+std::vector<std::string> RecordingFolders::Names(std::size_t folder) const {
+  const fs::path& root = folders_.at(folder);
+  const auto is_inside = [&](const fs::path& file) {
+    return Inside(folder, file).has_value();
+  };
+  std::vector<std::string> names;
+  for (const fs::path& found : pipeline::FindRecordings(root, is_inside)) {
+    if (std::ranges::all_of(pipeline::FilesOf(found), is_inside)) {
+      names.push_back(found.lexically_relative(root).string());
+    }
+  }
+  return names;
+}
+
+fs::path RecordingFolders::Require(const Recording& recording) const {
+  const auto refuse = [&]() -> FieldError {
+    return {"recording",
+            fmt::format("is '{}', must be one of the folders' recordings",
+                        recording.name)};
+  };
+  if (recording.folder >= folders_.size()) throw refuse();
+  const auto path =
+      Inside(recording.folder,
+             (folders_[recording.folder] / recording.name).lexically_normal());
+  // A name that ends outside of the folder is refused before it is looked at.
+  if (!path || !pipeline::IsRecording(*path)) throw refuse();
+  for (const fs::path& file : pipeline::FilesOf(*path)) {
+    if (!Inside(recording.folder, file)) throw refuse();
+  }
+  return *path;
+}
+
+std::vector<fs::path> RecordingFolders::RequirePictures(
+    const Recording& folder) const {
+  std::vector<fs::path> pictures;
+  std::optional<fs::path> path;
+  if (folder.folder < folders_.size()) {
+    path = Inside(folder.folder, folders_[folder.folder] / folder.name);
+  }
+  std::error_code trouble;
+  if (path && fs::is_directory(*path, trouble)) {
+    pictures = pipeline::PicturesIn(*path);
+  }
+  const bool are_inside = std::ranges::all_of(pictures, [&](const auto& one) {
+    return Inside(folder.folder, one).has_value();
+  });
+  if (!pictures.empty() && are_inside) return pictures;
+  throw FieldError("pictures",
+                   fmt::format("is '{}', must be a folder with pictures of the "
+                               "board, inside one of the folders",
+                               folder.name));
+}
+
+Recording RecordingOf(const nlohmann::json& asked) {
+  Recording recording;
+  recording.name = RequiredText(asked, "name", "a recording of a folder");
+  const auto folder = asked.find("folder");
+  if (folder == asked.end()) throw FieldError("folder", "is missing");
+  const auto place = pipeline::WholeNumber(*folder, "folder");
+  if (place < 0) throw FieldError("folder", "must be at least 0");
+  recording.folder = static_cast<std::size_t>(place);
+  return recording;
+}
+
+}  // namespace touchdown::review

@@ -1,0 +1,258 @@
+#include "app/review/setup.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "app/pipeline/board_pictures.h"
+#include "app/pipeline/campaign_entry.h"
+#include "app/pipeline/dates.h"
+#include "app/pipeline/judge.h"
+#include "app/pipeline/log_analysis.h"
+#include "app/pipeline/new_calibration.h"
+#include "app/pipeline/pictures.h"
+#include "app/pipeline/statement.h"
+#include "app/pipeline/typed_values.h"
+#include "app/report/format.h"
+#include "app/review/fields.h"
+#include "app/review/trial_view.h"
+#include "touchdown/calib/references.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using pipeline::FieldError;
+
+const nlohmann::json& Part(const nlohmann::json& asked, const char* name) {
+  const auto part = asked.find(name);
+  if (part == asked.end() || !part->is_object()) {
+    throw FieldError(name, "is missing");
+  }
+  return *part;
+}
+
+core::Campaign CampaignOf(const nlohmann::json& asked) {
+  pipeline::CampaignEntry entry;
+  entry.name = RequiredText(asked, "name", "a name for the campaign");
+  entry.body.kind = TextOf(asked, "body");
+  // Without the size there is no scale of it, and nothing to check it by.
+  entry.body.diameter_mm = TextOf(asked, "diameter_mm");
+  entry.body.sides_mm = TextOf(asked, "sides_mm");
+  if (entry.body.diameter_mm.empty() && entry.body.sides_mm.empty()) {
+    const bool is_block = entry.body.kind == "rectangle";
+    throw FieldError(is_block ? "sides-mm" : "diameter-mm",
+                     is_block ? "is missing, must be like 60x20"
+                              : "is missing, must be like 40 or 40+-0.02");
+  }
+  entry.surface = TextOf(asked, "surface");
+  entry.angle_kind = TextOf(asked, "angle_kind");
+  entry.bounce_height_mm = NumberOf(asked, "bounce_height_mm");
+  entry.speed_mps = TextOf(asked, "speed_mps");
+  entry.theory = TextOf(asked, "theory");
+  entry.theory_boundary_deg = NumberOf(asked, "theory_boundary_deg");
+  entry.theory_u_deg = NumberOf(asked, "theory_u_deg");
+  entry.margin_deg = NumberOf(asked, "margin_deg").value_or(entry.margin_deg);
+  core::Campaign campaign = pipeline::CampaignOf(entry);
+  db::RequireStorable(campaign);
+  return campaign;
+}
+
+// Two points of the picture; nothing where they were not marked.
+std::optional<calib::MarkedPair> PairOf(const nlohmann::json& asked,
+                                        const char* field) {
+  const auto given = asked.find(field);
+  if (given == asked.end() || given->is_null()) return std::nullopt;
+  const auto n = given->get<std::vector<double>>();
+  if (n.size() != 4) {
+    throw std::invalid_argument(
+        fmt::format("{} has {} numbers, must be two points x1, y1, x2, y2",
+                    field, n.size()));
+  }
+  const calib::MarkedPair pair{
+      {n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px};
+  if (pair.p1 == pair.p2) {
+    throw std::invalid_argument(
+        fmt::format("{}: both points are the same, must be two", field));
+  }
+  return pair;
+}
+
+calib::Picture PictureOf(const vision::ClipInfo& clip) {
+  calib::Picture picture{clip.width_px, clip.height_px, std::nullopt};
+  if (const auto& corner = clip.sensor_origin) {
+    picture.corner = calib::SensorCorner{corner->x_px, corner->y_px};
+  }
+  return picture;
+}
+
+pipeline::AnalyzeOptions CameraOf(const nlohmann::json& asked,
+                                  const vision::ClipInfo& clip) {
+  pipeline::AnalyzeOptions options;
+  options.fps = NumberOf(asked, "fps");
+  const std::string camera = TextOf(asked, "camera");
+  calib::Calibration calibration =
+      pipeline::NewCalibration(camera, PictureOf(clip));
+  if (const auto lens = asked.find("lens");
+      lens != asked.end() && !lens->is_null()) {
+    auto fitted = calib::FittedTo(
+        calib::ParseCalibration(lens->dump(), "the lens of the page"),
+        PictureOf(clip));
+    if (!fitted) {
+      throw FieldError("pictures", "gave a lens of other pictures: " +
+                                       fitted.error().reason);
+    }
+    calibration = *std::move(fitted);
+    if (!camera.empty()) calibration.camera = camera;
+  }
+  std::optional<calib::Lens> lens;
+  if (calibration.lens) lens = calibration.lens->lens;
+  const auto scale = PairOf(asked, "scale_px");
+  const std::string length = TextOf(asked, "length_mm");
+  if (scale) {
+    if (length.empty()) {
+      throw FieldError("length-mm",
+                       "is missing, must be the distance of the two points");
+    }
+    calibration.scale = calib::ScaleFrom(
+        *scale,
+        pipeline::EstimateOf("length-mm", length, core::kMillimetre,
+                             pipeline::kPlainSize),
+        lens);
+  } else if (!length.empty()) {
+    throw FieldError("length-mm",
+                     "is given, but its two points are not marked");
+  }
+  if (const auto ground = PairOf(asked, "ground_px")) {
+    calibration.ground = calib::GroundRecord{
+        ground->p1, ground->p2, ground->u_point_px, std::nullopt, std::nullopt};
+  }
+  if (calibration.lens || calibration.scale || calibration.ground) {
+    options.calibration = std::move(calibration);
+    options.today = pipeline::Today();
+  }
+  return options;
+}
+
+// A campaign's conventions are fixed by its first trial.
+void RequireWithoutTrials(const db::Store& store, const std::string& name) {
+  db::TrialFilter filter;
+  filter.campaign = name;
+  filter.with_documents = false;
+  if (store.Trials(filter).empty()) return;
+  throw FieldError("name", fmt::format("is '{}', a campaign that has trials "
+                                       "already; give another name",
+                                       name));
+}
+
+// --- the answer --------------------------------------------------------------
+
+Json SettingsJson(const pipeline::Analysis& analysis) {
+  const auto said = [](const auto& part, const std::string& reason) {
+    return part ? std::string(calib::Name(part->source)) : "none: " + reason;
+  };
+  return {{"fps", analysis.clip.time_base.fps},
+          {"fps_trusted", analysis.clip.time_base.trusted},
+          {"scale",
+           analysis.scale
+               ? Json(report::WithU(analysis.scale->px_per_m, 1.0) + " px/m")
+               : Json(nullptr)},
+          {"scale_source", said(analysis.scale, analysis.no_scale_reason)},
+          {"ground_source", said(analysis.ground, analysis.no_ground_reason)}};
+}
+
+Json ChecksJson(const pipeline::Analysis& analysis) {
+  Json out = Json::array();
+  for (const pipeline::AnswerCheck& check : analysis.checks) {
+    out.push_back({{"name", check.name},
+                   {"verdict", Name(check.verdict)},
+                   {"reason", check.reason}});
+  }
+  return out;
+}
+
+}  // namespace
+
+AnalysisOrder TestOf(Desk& desk, const nlohmann::json& asked) {
+  AnalysisOrder order;
+  order.is_test = true;
+  order.recording = RecordingOf(Part(asked, "recording"));
+  order.path = desk.recordings().Require(order.recording);
+  order.campaign = CampaignOf(Part(asked, "campaign"));
+  if (desk.HasStore()) {
+    RequireWithoutTrials(desk.Open(db::OpenMode::kRead), order.campaign.name);
+  }
+  order.camera = CameraOf(Part(asked, "camera"), desk.shelf().Info(order.path));
+  return order;
+}
+
+Json LensJson(const RecordingFolders& folders, const nlohmann::json& asked) {
+  const auto pictures =
+      folders.RequirePictures(RecordingOf(Part(asked, "pictures")));
+  const std::string typed =
+      RequiredText(asked, "board", "like chessboard:9x6:25mm");
+  calib::Board board;
+  try {
+    board = calib::ParseBoard(typed);
+  } catch (const std::invalid_argument& error) {
+    throw FieldError("board",
+                     fmt::format("is not understood: {}", error.what()));
+  }
+  const pipeline::BoardPictures found = pipeline::FindBoards(pictures, board);
+  const calib::LensCalibration lens = pipeline::LensOf(found, board);
+  calib::Calibration file =
+      pipeline::NewCalibration(TextOf(asked, "camera"), found.picture);
+  file.lens = pipeline::RecordOf(lens, board);
+  return {
+      {"schema", "touchdown.review.lens/1"},
+      {"views", found.views.size()},
+      {"without_board", found.without},
+      {"rms_px", lens.rms_px},
+      {"bends_px", calib::LargestDisplacement(lens.lens, found.picture.width_px,
+                                              found.picture.height_px)},
+      {"coverage", lens.coverage},
+      {"warnings", lens.warnings},
+      {"calibration", Json::parse(calib::CalibrationText(file))}};
+}
+
+Json TestJson(const AnalysisStatus& status) {
+  Json json = {{"schema", "touchdown.review.test/1"}};
+  if (!status.analysis) return json;
+  const pipeline::Analysis& analysis = *status.analysis;
+  json["numbers"] = NumbersJson(pipeline::ToTrial(analysis));
+  json["view"] = analysis.track ? ViewJson(analysis)
+                                : Json{{"absent", analysis.no_body_reason}};
+  json["warnings"] = analysis.warnings;
+  json["settings"] = SettingsJson(analysis);
+  json["checks"] = ChecksJson(analysis);
+  return json;
+}
+
+db::Logged Keep(const std::filesystem::path& store,
+                const AnalysisStatus& status, const std::string& who) {
+  if (!status.analysis) {
+    throw std::invalid_argument(
+        "there is nothing to keep: the analysis is not done");
+  }
+  const core::Campaign& campaign = status.order.campaign;
+  // The clip is read before the store is opened: what cannot be read makes
+  // none.
+  core::Trial trial = pipeline::LoggableTrial(*status.analysis, &campaign);
+  trial.reason = "logged on the review page by " + who;
+  db::Store open = db::Store::Open(store, db::OpenMode::kCreate);
+  if (open.FindCampaign(campaign.name)) {
+    RequireWithoutTrials(open, campaign.name);
+    open.ChangeCampaign(campaign);
+  } else {
+    open.AddCampaign(campaign);
+  }
+  const db::Logged logged = open.LogTrial(trial);
+  pipeline::KeepPicture(store, trial);
+  return logged;
+}
+
+}  // namespace touchdown::review
