@@ -271,12 +271,14 @@ double BounceHeight(const RecordContext& context, core::StateDecision& state) {
   return height_m * px_per_m;
 }
 
+// Without u where there is none: a bounce height is a convention.
 std::string LengthText(const RecordContext& context, double px, double u_px) {
-  if (context.options.scale) {
-    const double mm = 1e3 / context.options.scale->px_per_m.value;
-    return fmt::format("{:.3f} +- {:.3f} mm", px * mm, u_px * mm);
-  }
-  return fmt::format("{:.2f} +- {:.2f} px", px, u_px);
+  const double unit =
+      context.options.scale ? 1e3 / context.options.scale->px_per_m.value : 1.0;
+  const int decimals = context.options.scale ? 3 : 2;
+  std::string text = fmt::format("{:.{}f} ", px * unit, decimals);
+  if (u_px > 0.0) text += fmt::format("+- {:.{}f} ", u_px * unit, decimals);
+  return text + (context.options.scale ? "mm" : "px");
 }
 
 // Fills the state from the greatest gap after sample `from`; `event`: the
