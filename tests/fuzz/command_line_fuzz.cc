@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "app/cli/store_flags.h"
 #include "app/cli/values.h"
 #include "app/pipeline/batch.h"
+#include "app/pipeline/campaign_entry.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace touchdown::fuzz {
@@ -52,11 +52,11 @@ void Parse(int kind, const std::string& text) {
       break;
     }
     default: {
-      cli::BodyFlags flags;
+      pipeline::BodyEntry entry;
       const std::size_t split = std::min(text.find('\n'), text.size());
-      flags.diameter_mm = text.substr(0, split);
-      flags.sides_mm = text.substr(std::min(split + 1, text.size()));
-      if (const auto body = cli::ParseBody(flags)) {
+      entry.diameter_mm = text.substr(0, split);
+      entry.sides_mm = text.substr(std::min(split + 1, text.size()));
+      if (const auto body = pipeline::BodyOf(entry)) {
         for (const auto* size :
              {&body->diameter_m, &body->long_m, &body->short_m}) {
           if (*size) {
