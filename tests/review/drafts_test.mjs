@@ -120,6 +120,8 @@ test('undo is a further revision that says the former values', async () => {
   assert.equal(now.history.length, count + 2);
   assert.deepEqual(now.contacts, before.contacts);
   assert.equal(now.history.at(-1).reason, `undo of revision ${count + 1}`);
+  // Shown anew, with an empty form.
+  await says(page, '.under', `revision ${count + 2} of`);
   // An exclusion, too.
   await page.fill('#why', 'by mistake');
   await page.click('text=Exclude this trial');

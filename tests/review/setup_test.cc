@@ -182,7 +182,7 @@ TEST_F(Setup, MakesALensFromPicturesOfABoard) {
   // A clip of another size is not of this lens.
   EXPECT_EQ(
       FieldOf([&](Json& j) { j["camera"]["lens"] = json["calibration"]; }),
-      "lens");
+      "pictures");
 }
 
 TEST_F(Setup, KeepsACampaignOnce) {
