@@ -8,7 +8,7 @@
 #include "app/pipeline/trial_selection.h"
 #include "app/report/group.h"
 #include "app/report/report.h"
-#include "touchdown/analysis/boundary_study.h"
+#include "touchdown/analysis/statistics/boundary_study.h"
 #include "touchdown/core/estimate.h"
 
 namespace CLI {

@@ -18,7 +18,7 @@
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
 #include "touchdown/db/views.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::cli {
 namespace {

@@ -21,7 +21,7 @@
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/nearest.h"
-#include "touchdown/vision/clip_apart.h"
+#include "touchdown/vision/footage/clip_apart.h"
 
 namespace {
 

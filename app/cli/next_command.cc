@@ -19,7 +19,7 @@
 #include "app/report/group.h"
 #include "app/report/sentences.h"
 #include "app/session/next_shot.h"
-#include "touchdown/analysis/classic_designs.h"
+#include "touchdown/analysis/statistics/classic_designs.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/setpoints.h"
 

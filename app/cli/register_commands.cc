@@ -24,7 +24,7 @@
 #include "touchdown/db/names.h"
 #include "touchdown/db/register.h"
 #include "touchdown/rig/description.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::cli {
 namespace {

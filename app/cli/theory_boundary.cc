@@ -10,7 +10,7 @@
 #include "app/cli/case_file.h"
 #include "app/cli/theory_cases.h"
 #include "app/cli/theory_options.h"
-#include "touchdown/analysis/boundary_models.h"
+#include "touchdown/analysis/theory/boundary_models.h"
 
 namespace touchdown::cli {
 namespace {

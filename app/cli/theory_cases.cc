@@ -9,11 +9,11 @@
 
 #include "app/cli/case_file.h"
 #include "app/cli/theory_words.h"
-#include "touchdown/analysis/contact.h"
-#include "touchdown/analysis/flat_contact.h"
-#include "touchdown/analysis/impact.h"
-#include "touchdown/analysis/lcp.h"
-#include "touchdown/analysis/spin_boundary.h"
+#include "touchdown/analysis/theory/contact.h"
+#include "touchdown/analysis/theory/flat_contact.h"
+#include "touchdown/analysis/theory/impact.h"
+#include "touchdown/analysis/theory/lcp.h"
+#include "touchdown/analysis/theory/spin_boundary.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

@@ -11,10 +11,10 @@
 #include "app/cli/theory_cases.h"
 #include "app/cli/theory_options.h"
 #include "app/cli/theory_words.h"
-#include "touchdown/analysis/contact.h"
-#include "touchdown/analysis/flat_contact.h"
-#include "touchdown/analysis/impact.h"
-#include "touchdown/analysis/lcp.h"
+#include "touchdown/analysis/theory/contact.h"
+#include "touchdown/analysis/theory/flat_contact.h"
+#include "touchdown/analysis/theory/impact.h"
+#include "touchdown/analysis/theory/lcp.h"
 
 namespace touchdown::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/cli/case_file.h"
 #include "app/cli/theory_options.h"
 #include "app/report/theory_plots.h"
-#include "touchdown/analysis/regime_map.h"
+#include "touchdown/analysis/theory/regime_map.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::cli {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "touchdown/analysis/corner.h"
+#include "touchdown/analysis/theory/corner.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "touchdown/analysis/impact.h"
-#include "touchdown/analysis/spin_boundary.h"
+#include "touchdown/analysis/theory/impact.h"
+#include "touchdown/analysis/theory/spin_boundary.h"
 
 namespace touchdown::cli {
 

@@ -22,13 +22,13 @@
 #include "app/pipeline/unfinished_analysis.h"
 #include "app/pipeline/version.h"
 #include "touchdown/calib/ground_lines.h"
-#include "touchdown/vision/background.h"
-#include "touchdown/vision/clip_digest.h"
-#include "touchdown/vision/explained_change.h"
-#include "touchdown/vision/frame_store.h"
-#include "touchdown/vision/linear_clip.h"
-#include "touchdown/vision/supported_path.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/background/background.h"
+#include "touchdown/vision/contact/supported_path.h"
+#include "touchdown/vision/detection/frame_store.h"
+#include "touchdown/vision/explanation/explained_change.h"
+#include "touchdown/vision/footage/clip_digest.h"
+#include "touchdown/vision/footage/linear_clip.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 namespace touchdown::pipeline {
 namespace {

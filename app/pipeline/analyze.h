@@ -18,10 +18,10 @@
 #include "touchdown/core/body.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/trial.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/contact.h"
-#include "touchdown/vision/plane_track.h"
-#include "touchdown/vision/track.h"
+#include "touchdown/vision/contact/contact.h"
+#include "touchdown/vision/contact/plane_track.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/track/track.h"
 
 namespace touchdown::pipeline {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "touchdown/core/expected.h"
-#include "touchdown/vision/explained_change.h"
+#include "touchdown/vision/explanation/explained_change.h"
 
 namespace touchdown::pipeline {
 

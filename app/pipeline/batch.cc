@@ -21,7 +21,7 @@
 #include "app/pipeline/set_aside.h"
 #include "touchdown/core/cancellation.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
 namespace {

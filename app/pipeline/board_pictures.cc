@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip_apart.h"
+#include "touchdown/vision/footage/clip_apart.h"
 
 namespace touchdown::pipeline {
 

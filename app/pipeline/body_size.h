@@ -8,8 +8,8 @@
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/estimate.h"
-#include "touchdown/vision/track.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/track/track.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 namespace touchdown::pipeline {
 

@@ -22,8 +22,8 @@
 #include "app/pipeline/version.h"
 #include "app/pipeline/zip_file.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/encode_image.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/encode_image.h"
 
 namespace touchdown::pipeline {
 namespace {

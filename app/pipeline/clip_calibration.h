@@ -11,9 +11,9 @@
 #include "touchdown/calib/lens.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/estimate.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/contact.h"
-#include "touchdown/vision/plane_yaw.h"
+#include "touchdown/vision/contact/contact.h"
+#include "touchdown/vision/contact/plane_yaw.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::pipeline {
 

@@ -9,8 +9,8 @@
 
 #include "app/pipeline/undistorted_clip.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/encode_image.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/encode_image.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -18,7 +18,7 @@
 #include "touchdown/core/errors.h"
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -19,9 +19,9 @@
 #include "app/pipeline/version.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/frame.h"
-#include "touchdown/vision/clip_apart.h"
-#include "touchdown/vision/image_file.h"
-#include "touchdown/vision/video_decoders.h"
+#include "touchdown/vision/footage/clip_apart.h"
+#include "touchdown/vision/footage/image_file.h"
+#include "touchdown/vision/footage/video_decoders.h"
 
 namespace touchdown::pipeline {
 namespace {

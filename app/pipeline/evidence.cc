@@ -11,8 +11,8 @@
 #include "touchdown/core/errors.h"
 #include "touchdown/core/unfinished.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/contact_sheet.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
+#include "touchdown/vision/overlay/contact_sheet.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "app/pipeline/analyze.h"
-#include "touchdown/vision/contact_sheet.h"
+#include "touchdown/vision/overlay/contact_sheet.h"
 
 namespace touchdown::pipeline {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "touchdown/vision/steady_light.h"
+#include "touchdown/vision/background/steady_light.h"
 
 namespace touchdown::pipeline {
 

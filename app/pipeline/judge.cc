@@ -13,7 +13,7 @@
 #include "app/pipeline/options_hash.h"
 #include "app/pipeline/shared_uncertainty.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/lens_track.h"
+#include "touchdown/vision/contact/lens_track.h"
 
 namespace touchdown::pipeline {
 namespace {

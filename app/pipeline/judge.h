@@ -5,8 +5,8 @@
 
 #include "app/pipeline/analyze.h"
 #include "app/pipeline/clip_calibration.h"
-#include "touchdown/vision/contact.h"
-#include "touchdown/vision/track.h"
+#include "touchdown/vision/contact/contact.h"
+#include "touchdown/vision/track/track.h"
 
 namespace touchdown::pipeline {
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "touchdown/calib/lens.h"
-#include "touchdown/vision/contact.h"
+#include "touchdown/vision/contact/contact.h"
 
 namespace touchdown::pipeline {
 

@@ -9,7 +9,7 @@
 #include "app/pipeline/version.h"
 #include "touchdown/db/names.h"
 #include "touchdown/db/store.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/pipeline/journal.h"
-#include "touchdown/vision/clip_apart.h"
+#include "touchdown/vision/footage/clip_apart.h"
 
 namespace touchdown::pipeline {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::pipeline {
 

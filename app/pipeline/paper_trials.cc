@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/units.h"
 

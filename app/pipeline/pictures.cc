@@ -13,7 +13,7 @@
 #include "app/pipeline/journal.h"
 #include "app/pipeline/replay.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::pipeline {
 namespace {

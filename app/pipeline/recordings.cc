@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/pipeline/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/clips.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
 namespace {

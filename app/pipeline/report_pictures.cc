@@ -10,7 +10,7 @@
 #include "app/pipeline/contact_pieces.h"
 #include "app/pipeline/replay.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
 namespace {

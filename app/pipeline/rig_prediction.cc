@@ -12,7 +12,7 @@
 #include "touchdown/rig/launch.h"
 #include "touchdown/rig/predict.h"
 #include "touchdown/rig/setpoints.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
 namespace {

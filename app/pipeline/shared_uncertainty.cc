@@ -75,7 +75,7 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
     core::Contact& contact = records[i]->contact;
     core::Measured& approach = contact.approach_angle_rad;
     if (approach && approach->value < core::kNormal975 * approach->u) {
-      // As near 0 as without it (vision/src/contact_record.cc).
+      // As near 0 as without it (vision/src/contact/contact_record.cc).
       approach->interval95 =
           core::Interval{0.0, approach->value + core::kNormal975 * approach->u};
     }

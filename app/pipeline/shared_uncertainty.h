@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/vision/contact.h"
+#include "touchdown/vision/contact/contact.h"
 
 namespace touchdown::pipeline {
 

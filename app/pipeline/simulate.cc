@@ -19,8 +19,8 @@
 #include "touchdown/core/errors.h"
 #include "touchdown/core/output_file.h"
 #include "touchdown/core/unfinished.h"
-#include "touchdown/vision/clip_writer.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/footage/clip_writer.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "touchdown/analysis/rigid_motion.h"
+#include "touchdown/analysis/theory/rigid_motion.h"
 #include "touchdown/core/words.h"
-#include "touchdown/vision/scene.h"
+#include "touchdown/vision/synthetic/scene.h"
 
 namespace touchdown::pipeline {
 

@@ -12,7 +12,7 @@
 
 #include "app/pipeline/analyze.h"
 #include "app/pipeline/clip_calibration.h"
-#include "touchdown/vision/frame_store.h"
+#include "touchdown/vision/detection/frame_store.h"
 
 namespace touchdown::pipeline {
 

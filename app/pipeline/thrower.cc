@@ -7,7 +7,7 @@
 #include "app/pipeline/rig_reach.h"
 #include "app/report/text_file.h"
 #include "touchdown/db/register.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
 

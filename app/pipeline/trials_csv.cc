@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-#include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/statistics/observation.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/pipeline/open_recording.h"
-#include "touchdown/vision/lens_track.h"
+#include "touchdown/vision/contact/lens_track.h"
 
 namespace touchdown::pipeline {
 namespace {

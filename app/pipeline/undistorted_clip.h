@@ -6,8 +6,8 @@
 
 #include "app/pipeline/analyze.h"
 #include "touchdown/calib/lens.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/track.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/track/track.h"
 
 namespace touchdown::pipeline {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/pipeline/analyze.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::pipeline {
 

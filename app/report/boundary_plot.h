@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/analysis/agreement.h"
-#include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/statistics/agreement.h"
+#include "touchdown/analysis/statistics/observation.h"
 #include "touchdown/core/estimate.h"
 
 namespace touchdown::report {

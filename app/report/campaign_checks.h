@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/analysis/campaign_checks.h"
+#include "touchdown/analysis/statistics/campaign_checks.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::report {

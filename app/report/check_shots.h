@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/report/report.h"
-#include "touchdown/analysis/control_chart.h"
+#include "touchdown/analysis/statistics/control_chart.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/trial.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/analysis/control_chart.h"
+#include "touchdown/analysis/statistics/control_chart.h"
 
 namespace touchdown::report {
 

@@ -13,8 +13,8 @@
 
 #include "app/report/content.h"
 #include "app/report/format.h"
-#include "touchdown/analysis/score_tests.h"
-#include "touchdown/analysis/set_angles.h"
+#include "touchdown/analysis/statistics/score_tests.h"
+#include "touchdown/analysis/statistics/set_angles.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -12,7 +12,7 @@
 #include "app/report/format.h"
 #include "app/report/set_points.h"
 #include "app/report/tally.h"
-#include "touchdown/analysis/agreement_statistics.h"
+#include "touchdown/analysis/statistics/agreement_statistics.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/report/report.h"
-#include "touchdown/analysis/boundary_study.h"
-#include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/statistics/boundary_study.h"
+#include "touchdown/analysis/statistics/observation.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/trial.h"
 

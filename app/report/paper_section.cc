@@ -7,9 +7,9 @@
 
 #include "app/report/content.h"
 #include "app/report/format.h"
-#include "touchdown/analysis/boundary_fit.h"
-#include "touchdown/analysis/boundary_study.h"
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/boundary_fit.h"
+#include "touchdown/analysis/statistics/boundary_study.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -10,7 +10,7 @@
 
 #include "app/report/content.h"
 #include "app/report/format.h"
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "app/report/group.h"
-#include "touchdown/analysis/agreement.h"
-#include "touchdown/analysis/boundary_study.h"
+#include "touchdown/analysis/statistics/agreement.h"
+#include "touchdown/analysis/statistics/boundary_study.h"
 
 namespace touchdown::report {
 

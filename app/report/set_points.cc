@@ -9,7 +9,7 @@
 
 #include "app/report/evidence_page.h"
 #include "app/report/format.h"
-#include "touchdown/analysis/agreement_statistics.h"
+#include "touchdown/analysis/statistics/agreement_statistics.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

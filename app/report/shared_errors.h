@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/statistics/observation.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::report {

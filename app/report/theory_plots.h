@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/analysis/regime_map.h"
+#include "touchdown/analysis/theory/regime_map.h"
 
 namespace touchdown::report {
 

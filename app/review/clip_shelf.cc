@@ -6,8 +6,8 @@
 
 #include "app/pipeline/open_recording.h"
 #include "app/review/thumbnail.h"
-#include "touchdown/vision/encode_image.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/encode_image.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::review {
 namespace {

@@ -23,7 +23,7 @@
 #include <utility>
 
 #include "app/review/reader_pool.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::review {
 

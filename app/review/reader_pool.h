@@ -14,7 +14,7 @@
 #include <memory>
 #include <mutex>
 
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::review {
 

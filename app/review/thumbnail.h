@@ -6,7 +6,7 @@
 #include "app/review/clip_shelf.h"
 #include "touchdown/core/frame.h"
 #include "touchdown/core/trial.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::review {
 

@@ -12,7 +12,7 @@
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
-#include "touchdown/vision/flight.h"
+#include "touchdown/vision/contact/flight.h"
 
 namespace touchdown::review {
 namespace {

@@ -22,7 +22,7 @@
 #include "touchdown/core/units.h"
 #include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::session {
 namespace {

@@ -5,20 +5,14 @@
 #include <string>
 #include <utility>
 
+#include "touchdown/core/require.h"
+
 namespace touchdown::core {
 namespace {
 
-void RequireLength(const char* field, const Estimate& e) {
-  if (!(e.value > 0.0) || !std::isfinite(e.value)) {
-    throw std::invalid_argument(std::string(field) + " is " +
-                                std::to_string(e.value) +
-                                " m, must be positive and finite");
-  }
-  if (!(e.u >= 0.0) || !std::isfinite(e.u)) {
-    throw std::invalid_argument(std::string(field) + ".u is " +
-                                std::to_string(e.u) +
-                                " m, must be at least 0 and finite");
-  }
+void RequireLength(const std::string& field, const Estimate& e) {
+  RequirePositive(field, e.value, "m");
+  RequireNotNegative(field + ".u", e.u, "m");
 }
 
 }  // namespace
@@ -47,10 +41,7 @@ Measured Size(const Body& body) {
 }
 
 double DefaultBounceHeight(double size_m) {
-  if (!(size_m > 0.0) || !std::isfinite(size_m)) {
-    throw std::invalid_argument("size is " + std::to_string(size_m) +
-                                " m, must be positive and finite");
-  }
+  RequirePositive("size", size_m, "m");
   constexpr double kFloor_m = 0.5e-3;
   constexpr double kShareOfSize = 0.02;
   return std::fmax(kFloor_m, kShareOfSize * size_m);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "require.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 namespace {
@@ -81,14 +81,14 @@ template <class Points, class Value>
 bool AllBearU(const Points& points, const char* field, Value value) {
   std::size_t with = 0;
   for (const auto& point : points) {
-    RequireFinite("compression_m", point.compression_m);
-    RequireFinite(field, value(point).value);
-    RequireAtLeastZero("u", value(point).u);
+    core::RequireFinite("compression_m", point.compression_m);
+    core::RequireFinite(field, value(point).value);
+    core::RequireNotNegative("u", value(point).u);
     with += value(point).u > 0.0 ? 1 : 0;
   }
   if (with != 0 && with != points.size()) {
-    Refuse("number of points with u > 0", static_cast<double>(with),
-           "none or all of them");
+    core::Refuse("number of points with u > 0", static_cast<double>(with),
+                 "none or all of them");
   }
   return with != 0;
 }
@@ -146,7 +146,7 @@ double CurvatureT(const std::vector<Row>& rows, bool sigma_known) {
 }  // namespace
 
 double StudentT975(std::size_t dof) {
-  if (dof < 1) Refuse("dof", 0.0, "at least 1");
+  if (dof < 1) core::Refuse("dof", 0.0, "at least 1");
   constexpr double kTail = 0.05;  // both sides together
   constexpr double kHalfPi = std::numbers::pi / 2.0;
   if (dof == 1) return 1.0 / std::tan(kTail * kHalfPi);
@@ -180,7 +180,7 @@ double StudentT975(std::size_t dof) {
 
 core::Expected<StiffnessFit> FitStiffness(std::span<const ForcePoint> points,
                                           const StiffnessFitOptions& options) {
-  RequireAtLeastZero("u_compression_m", options.u_compression_m);
+  core::RequireNotNegative("u_compression_m", options.u_compression_m);
   const bool u_given = AllBearU(points, "force_n",
                                 [](const ForcePoint& p) { return p.force_n; });
   constexpr std::size_t kLeast = 3;
@@ -240,13 +240,13 @@ core::Expected<StiffnessFit> FitStiffness(std::span<const ForcePoint> points,
 core::Expected<EfficiencyFit> FitEfficiency(
     std::span<const SpeedPoint> points, const Launch& launch,
     const EfficiencyFitOptions& options) {
-  RequireAtLeastZero("u_stiffness_rel", options.u_stiffness_rel);
-  RequireAtLeastZero("u_mass_rel", options.u_mass_rel);
+  core::RequireNotNegative("u_stiffness_rel", options.u_stiffness_rel);
+  core::RequireNotNegative("u_mass_rel", options.u_mass_rel);
   const bool sigma_known = AllBearU(
       points, "speed_mps", [](const SpeedPoint& p) { return p.speed_mps; });
   for (const SpeedPoint& p : points) {
-    RequirePositive("compression_m", p.compression_m);
-    RequirePositive("speed_mps", p.speed_mps.value);
+    core::RequirePositive("compression_m", p.compression_m);
+    core::RequirePositive("speed_mps", p.speed_mps.value);
   }
   (void)CompressionFor(launch, 0.0);  // refuses an impossible launch by name
   const std::size_t unknowns = options.losses == LossModel::kNone ? 1 : 2;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "require.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "angles.h"
-#include "require.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 namespace {
@@ -14,11 +14,11 @@ constexpr double kFlush_rad = 1e-9;  // far below any protractor, above rounding
 
 Flight Fly(double speed_mps, double elevation_rad, double drop_m,
            double gravity_mps2) {
-  RequireAtLeastZero("speed_mps", speed_mps);
-  RequireAtLeastZero("drop_m", drop_m);
-  RequirePositive("gravity_mps2", gravity_mps2);
+  core::RequireNotNegative("speed_mps", speed_mps);
+  core::RequireNotNegative("drop_m", drop_m);
+  core::RequirePositive("gravity_mps2", gravity_mps2);
   if (!(std::abs(elevation_rad) <= kQuarterTurn * (1.0 + 1e-12))) {
-    Refuse("elevation_rad", elevation_rad, "within -pi/2 .. pi/2");
+    core::Refuse("elevation_rad", elevation_rad, "within -pi/2 .. pi/2");
   }
   const double up = speed_mps * std::sin(elevation_rad);
   // cos of the double nearest pi/2 is 6e-17, not 0, and may be negative beyond.
@@ -41,13 +41,13 @@ Flight Fly(double speed_mps, double elevation_rad, double drop_m,
 }
 
 Landing Land(double long_m, double short_m, double face_angle_rad) {
-  RequirePositive("short_m", short_m);
+  core::RequirePositive("short_m", short_m);
   if (!(long_m >= short_m) || !std::isfinite(long_m)) {
-    Refuse("long_m", long_m, "at least short_m and finite");
+    core::Refuse("long_m", long_m, "at least short_m and finite");
   }
   const double tilt = std::abs(face_angle_rad);
   if (!(tilt <= kQuarterTurn * (1.0 + 1e-12))) {
-    Refuse("face_angle_rad", face_angle_rad, "within -pi/2 .. pi/2");
+    core::Refuse("face_angle_rad", face_angle_rad, "within -pi/2 .. pi/2");
   }
   const double c = std::fmax(0.0, std::cos(tilt));
   const double s = std::sin(tilt);

@@ -3,22 +3,22 @@
 #include <cmath>
 
 #include "angles.h"
-#include "require.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 namespace {
 
 void Validate(const Launch& launch) {
-  RequirePositive("stiffness_n_per_m", launch.stiffness_n_per_m);
-  RequirePositive("mass_kg", launch.mass_kg);
-  RequireAtLeastZero("spring_mass_kg", launch.spring_mass_kg);
-  RequireAtLeastZero("preload_m", launch.preload_m);
-  RequirePositive("efficiency", launch.efficiency);
-  RequireAtLeastZero("barrel_friction", launch.barrel_friction);
-  RequireAtLeastZero("loss_j", launch.loss_j);
-  RequireAtLeastZero("gravity_mps2", launch.gravity_mps2);
+  core::RequirePositive("stiffness_n_per_m", launch.stiffness_n_per_m);
+  core::RequirePositive("mass_kg", launch.mass_kg);
+  core::RequireNotNegative("spring_mass_kg", launch.spring_mass_kg);
+  core::RequireNotNegative("preload_m", launch.preload_m);
+  core::RequirePositive("efficiency", launch.efficiency);
+  core::RequireNotNegative("barrel_friction", launch.barrel_friction);
+  core::RequireNotNegative("loss_j", launch.loss_j);
+  core::RequireNotNegative("gravity_mps2", launch.gravity_mps2);
   if (!(std::abs(launch.elevation_rad) <= kQuarterTurn * (1.0 + 1e-12))) {
-    Refuse("elevation_rad", launch.elevation_rad, "within -pi/2 .. pi/2");
+    core::Refuse("elevation_rad", launch.elevation_rad, "within -pi/2 .. pi/2");
   }
 }
 
@@ -41,23 +41,23 @@ double FrictionForce(const Launch& launch) {
 
 double IdealLaunchSpeed(double compression_m, double stiffness_n_per_m,
                         double mass_kg) {
-  RequireAtLeastZero("compression_m", compression_m);
-  RequirePositive("stiffness_n_per_m", stiffness_n_per_m);
-  RequirePositive("mass_kg", mass_kg);
+  core::RequireNotNegative("compression_m", compression_m);
+  core::RequirePositive("stiffness_n_per_m", stiffness_n_per_m);
+  core::RequirePositive("mass_kg", mass_kg);
   return compression_m * std::sqrt(stiffness_n_per_m / mass_kg);
 }
 
 double IdealCompression(double speed_mps, double stiffness_n_per_m,
                         double mass_kg) {
-  RequireAtLeastZero("speed_mps", speed_mps);
-  RequirePositive("stiffness_n_per_m", stiffness_n_per_m);
-  RequirePositive("mass_kg", mass_kg);
+  core::RequireNotNegative("speed_mps", speed_mps);
+  core::RequirePositive("stiffness_n_per_m", stiffness_n_per_m);
+  core::RequirePositive("mass_kg", mass_kg);
   return speed_mps * std::sqrt(mass_kg / stiffness_n_per_m);
 }
 
 core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
   Validate(launch);
-  RequireAtLeastZero("compression_m", compression_m);
+  core::RequireNotNegative("compression_m", compression_m);
   const double x = compression_m;
   Muzzle muzzle;
   EnergyBalance& energy = muzzle.energy;
@@ -112,7 +112,7 @@ core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
 
 double CompressionFor(const Launch& launch, double speed_mps) {
   Validate(launch);
-  RequireAtLeastZero("speed_mps", speed_mps);
+  core::RequireNotNegative("speed_mps", speed_mps);
   // a X^2 + 2 b X - c = 0 with a, c >= 0: of the two forms of the positive root
   // we take the one that does not subtract.
   const double a = launch.efficiency * launch.stiffness_n_per_m;

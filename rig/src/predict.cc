@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "angles.h"
-#include "require.h"
+#include "touchdown/core/require.h"
 #include "touchdown/rig/flight.h"
 #include "touchdown/rig/turning_flight.h"
 
@@ -267,7 +267,8 @@ ContactPrediction Predict(const Description& rig, const Setting& setting,
                           const PredictOptions& options,
                           std::mt19937_64& engine) {
   if (!(std::abs(setting.elevation_rad) <= kQuarterTurn * (1.0 + 1e-12))) {
-    Refuse("elevation_rad", setting.elevation_rad, "within -pi/2 .. pi/2");
+    core::Refuse("elevation_rad", setting.elevation_rad,
+                 "within -pi/2 .. pi/2");
   }
   ContactPrediction out;
   out.draws = options.draws;

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "angles.h"
-#include "require.h"
 #include "throw_family.h"
+#include "touchdown/core/require.h"
 #include "touchdown/rig/flight.h"
 
 namespace touchdown::rig {
@@ -19,15 +19,15 @@ using core::AngleKind;
 using core::Expected;
 
 void Validate(const ContactWish& wish) {
-  RequirePositive("speed_mps", wish.speed_mps);
+  core::RequirePositive("speed_mps", wish.speed_mps);
   const double low = wish.kind == AngleKind::kFace ? -kQuarterTurn : 0.0;
   if (!(wish.angle_rad >= low && wish.angle_rad <= kQuarterTurn)) {
-    Refuse(
+    core::Refuse(
         "angle_deg", Deg(wish.angle_rad),
         wish.kind == AngleKind::kFace ? "within -90 .. 90" : "within 0 .. 90");
   }
   if (wish.muzzle_height_m) {
-    RequireAtLeastZero("muzzle_height_m", *wish.muzzle_height_m);
+    core::RequireNotNegative("muzzle_height_m", *wish.muzzle_height_m);
   }
 }
 

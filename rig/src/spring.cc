@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "require.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 namespace {
@@ -11,17 +11,17 @@ namespace {
 using std::numbers::pi;
 
 void Validate(const Spring& spring) {
-  RequirePositive("shear_modulus_pa", spring.shear_modulus_pa);
-  RequirePositive("wire_diameter_m", spring.wire_diameter_m);
-  RequirePositive("coil_diameter_m", spring.coil_diameter_m);
-  RequirePositive("active_coils", spring.active_coils);
-  RequirePositive("density_kg_per_m3", spring.density_kg_per_m3);
+  core::RequirePositive("shear_modulus_pa", spring.shear_modulus_pa);
+  core::RequirePositive("wire_diameter_m", spring.wire_diameter_m);
+  core::RequirePositive("coil_diameter_m", spring.coil_diameter_m);
+  core::RequirePositive("active_coils", spring.active_coils);
+  core::RequirePositive("density_kg_per_m3", spring.density_kg_per_m3);
   if (!(spring.total_coils >= spring.active_coils) ||
       !std::isfinite(spring.total_coils)) {
-    Refuse("total_coils", spring.total_coils,
-           "at least active_coils and finite");
+    core::Refuse("total_coils", spring.total_coils,
+                 "at least active_coils and finite");
   }
-  if (spring.count < 1) Refuse("count", spring.count, "at least 1");
+  if (spring.count < 1) core::Refuse("count", spring.count, "at least 1");
 }
 
 double MeanOf(const Spring& spring) {
@@ -61,7 +61,7 @@ void CheckClearance(const SpringLimits& limits, double compression_m,
         "coil clearance and buckling not checked: no free length given");
     return;
   }
-  RequirePositive("free_length_m", *limits.free_length_m);
+  core::RequirePositive("free_length_m", *limits.free_length_m);
   const double clearance =
       *limits.free_length_m - compression_m - report.solid_length_m;
   report.clearance_m = clearance;
@@ -95,7 +95,7 @@ void CheckStress(const SpringLimits& limits, SpringReport& report) {
         "stress not checked: no allowable shear stress given");
     return;
   }
-  RequirePositive("allowable_shear_pa", *limits.allowable_shear_pa);
+  core::RequirePositive("allowable_shear_pa", *limits.allowable_shear_pa);
   if (report.max_shear_pa > *limits.allowable_shear_pa) {
     Add(report.findings, Severity::kRefusal,
         fmt::format("shear stress of {:.4g} MPa exceeds the allowable {:.4g} "
@@ -132,7 +132,8 @@ double MeanDiameter(const Spring& spring) {
   const double mean = MeanOf(spring);
   // At index 1 the hole closes: no such coil can be wound.
   if (!(mean > spring.wire_diameter_m)) {
-    Refuse("mean coil diameter in m", mean, "greater than the wire diameter");
+    core::Refuse("mean coil diameter in m", mean,
+                 "greater than the wire diameter");
   }
   return mean;
 }
@@ -159,13 +160,13 @@ double SpringIndex(const Spring& spring) {
 
 double WahlFactor(double index) {
   if (!(index > 1.0) || !std::isfinite(index)) {
-    Refuse("spring index", index, "greater than 1 and finite");
+    core::Refuse("spring index", index, "greater than 1 and finite");
   }
   return (4.0 * index - 1.0) / (4.0 * index - 4.0) + 0.615 / index;
 }
 
 double MaxShearStress(const Spring& spring, double compression_m) {
-  RequireAtLeastZero("compression_m", compression_m);
+  core::RequireNotNegative("compression_m", compression_m);
   return WahlFactor(SpringIndex(spring)) *
          UncorrectedShear(spring, compression_m);
 }
@@ -189,7 +190,7 @@ double SurgeFrequency(const Spring& spring) {
 
 SpringReport CheckSpring(const Spring& spring, double compression_m,
                          const SpringLimits& limits) {
-  RequireAtLeastZero("compression_m", compression_m);
+  core::RequireNotNegative("compression_m", compression_m);
   SpringReport report;
   report.mean_diameter_m = MeanDiameter(spring);
   report.index = SpringIndex(spring);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "angles.h"
-#include "require.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 namespace {
@@ -21,17 +21,17 @@ constexpr double kTouch_s = 1e-14;
 constexpr int kMostSteps = 100'000;
 
 void Validate(const TurningThrow& t) {
-  RequirePositive("short_m", t.short_m);
+  core::RequirePositive("short_m", t.short_m);
   if (!(t.long_m >= t.short_m) || !std::isfinite(t.long_m)) {
-    Refuse("long_m", t.long_m, "at least short_m and finite");
+    core::Refuse("long_m", t.long_m, "at least short_m and finite");
   }
-  RequireAtLeastZero("speed_mps", t.speed_mps);
-  RequireFinite("height_m", t.height_m);
-  RequireFinite("face_rad", t.face_rad);
-  RequireFinite("spin_rad_per_s", t.spin_rad_per_s);
-  RequirePositive("gravity_mps2", t.gravity_mps2);
+  core::RequireNotNegative("speed_mps", t.speed_mps);
+  core::RequireFinite("height_m", t.height_m);
+  core::RequireFinite("face_rad", t.face_rad);
+  core::RequireFinite("spin_rad_per_s", t.spin_rad_per_s);
+  core::RequirePositive("gravity_mps2", t.gravity_mps2);
   if (!(std::abs(t.elevation_rad) <= kQuarterTurn * (1.0 + 1e-12))) {
-    Refuse("elevation_rad", t.elevation_rad, "within -pi/2 .. pi/2");
+    core::Refuse("elevation_rad", t.elevation_rad, "within -pi/2 .. pi/2");
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "require.h"
+#include "touchdown/core/require.h"
 #include "touchdown/rig/launch.h"
 
 namespace touchdown::rig {
@@ -13,8 +13,8 @@ namespace {
 
 void Validate(std::span<const UncertainInput> inputs) {
   for (const UncertainInput& input : inputs) {
-    RequireFinite(input.name.c_str(), input.estimate.value);
-    RequireAtLeastZero((input.name + ".u").c_str(), input.estimate.u);
+    core::RequireFinite(input.name.c_str(), input.estimate.value);
+    core::RequireNotNegative((input.name + ".u").c_str(), input.estimate.u);
   }
 }
 
@@ -90,12 +90,12 @@ MonteCarlo Summary(std::vector<double>& values) {
 IdealSpeedU PowerLaw(const IdealRelativeU& u, double wire_first,
                      double wire_second, double coil_first,
                      double coil_second) {
-  RequireAtLeastZero("shear_modulus u", u.shear_modulus);
-  RequireAtLeastZero("wire_diameter u", u.wire_diameter);
-  RequireAtLeastZero("active_coils u", u.active_coils);
-  RequireAtLeastZero("coil_diameter u", u.coil_diameter);
-  RequireAtLeastZero("compression u", u.compression);
-  RequireAtLeastZero("mass u", u.mass);
+  core::RequireNotNegative("shear_modulus u", u.shear_modulus);
+  core::RequireNotNegative("wire_diameter u", u.wire_diameter);
+  core::RequireNotNegative("active_coils u", u.active_coils);
+  core::RequireNotNegative("coil_diameter u", u.coil_diameter);
+  core::RequireNotNegative("compression u", u.compression);
+  core::RequireNotNegative("mass u", u.mass);
   const auto square = [](double v) { return v * v; };
   IdealSpeedU out;
   out.u_rel = std::sqrt(
@@ -141,7 +141,7 @@ MonteCarloRun PropagateMonteCarlo(std::span<const UncertainInput> inputs,
                                   std::mt19937_64& engine) {
   Validate(inputs);
   if (draws < 2) {
-    Refuse("draws", static_cast<double>(draws), "at least 2");
+    core::Refuse("draws", static_cast<double>(draws), "at least 2");
   }
   std::normal_distribution<double> normal;
   std::vector<double> at = Values(inputs);
@@ -177,7 +177,7 @@ MonteCarloRun PropagateMonteCarlo(std::span<const UncertainInput> inputs,
 
 bool FirstOrderIsValid(const core::Estimate& first_order,
                        const MonteCarlo& monte_carlo, int digits) {
-  if (digits < 1) Refuse("digits", digits, "at least 1");
+  if (digits < 1) core::Refuse("digits", digits, "at least 1");
   const double u = monte_carlo.u;
   if (u == 0.0) return first_order.u == 0.0;
   // u rounded to `digits` digits is c 10^l with c a whole number; 9.6 rounds to

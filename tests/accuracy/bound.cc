@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "touchdown/core/units.h"
-#include "touchdown/vision/scene.h"
+#include "touchdown/vision/synthetic/scene.h"
 
 namespace touchdown::accuracy {
 namespace {

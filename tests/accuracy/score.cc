@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "tests/support/statistics.h"
-#include "touchdown/analysis/agreement_statistics.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/analysis/statistics/agreement_statistics.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::accuracy {
 

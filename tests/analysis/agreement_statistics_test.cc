@@ -1,4 +1,4 @@
-#include "touchdown/analysis/agreement_statistics.h"
+#include "touchdown/analysis/statistics/agreement_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/analysis/reference_data.h"
 #include "tests/support/shared_data.h"
-#include "touchdown/analysis/special_functions.h"
+#include "touchdown/analysis/statistics/special_functions.h"
 
 namespace touchdown::analysis {
 namespace {

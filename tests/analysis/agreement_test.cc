@@ -1,4 +1,4 @@
-#include "touchdown/analysis/agreement.h"
+#include "touchdown/analysis/statistics/agreement.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/binomial_regression.h"
+#include "touchdown/analysis/statistics/binomial_regression.h"
 
 #include <gtest/gtest.h>
 

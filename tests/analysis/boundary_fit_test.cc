@@ -1,4 +1,4 @@
-#include "touchdown/analysis/boundary_fit.h"
+#include "touchdown/analysis/statistics/boundary_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 
 #include "tests/analysis/reference_data.h"
 #include "tests/support/shared_data.h"
-#include "touchdown/analysis/likelihood_profile.h"
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/likelihood_profile.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/boundary_models.h"
+#include "touchdown/analysis/theory/boundary_models.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 
 #include "tests/support/csv.h"
 #include "tests/support/shared_data.h"
-#include "touchdown/analysis/rigid_motion.h"
-#include "touchdown/analysis/spin_boundary.h"
+#include "touchdown/analysis/theory/rigid_motion.h"
+#include "touchdown/analysis/theory/spin_boundary.h"
 
 namespace touchdown::analysis {
 namespace {

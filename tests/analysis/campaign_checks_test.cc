@@ -1,4 +1,4 @@
-#include "touchdown/analysis/campaign_checks.h"
+#include "touchdown/analysis/statistics/campaign_checks.h"
 
 #include <gtest/gtest.h>
 

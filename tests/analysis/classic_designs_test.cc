@@ -1,4 +1,4 @@
-#include "touchdown/analysis/classic_designs.h"
+#include "touchdown/analysis/statistics/classic_designs.h"
 
 #include <gtest/gtest.h>
 

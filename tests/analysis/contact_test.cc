@@ -1,4 +1,4 @@
-#include "touchdown/analysis/contact.h"
+#include "touchdown/analysis/theory/contact.h"
 
 #include <gtest/gtest.h>
 

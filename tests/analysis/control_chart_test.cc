@@ -1,4 +1,4 @@
-#include "touchdown/analysis/control_chart.h"
+#include "touchdown/analysis/statistics/control_chart.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/evidence.h"
+#include "touchdown/analysis/statistics/evidence.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "touchdown/analysis/likelihood_profile.h"
-#include "touchdown/analysis/special_functions.h"
+#include "touchdown/analysis/statistics/likelihood_profile.h"
+#include "touchdown/analysis/statistics/special_functions.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {

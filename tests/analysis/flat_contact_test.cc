@@ -1,4 +1,4 @@
-#include "touchdown/analysis/flat_contact.h"
+#include "touchdown/analysis/theory/flat_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/support/csv.h"
 #include "tests/support/shared_data.h"
-#include "touchdown/analysis/lcp.h"
+#include "touchdown/analysis/theory/lcp.h"
 
 namespace touchdown::analysis {
 namespace {

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/impact.h"
+#include "touchdown/analysis/theory/impact.h"
 
 #include <gtest/gtest.h>
 

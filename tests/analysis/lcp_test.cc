@@ -1,4 +1,4 @@
-#include "touchdown/analysis/lcp.h"
+#include "touchdown/analysis/theory/lcp.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

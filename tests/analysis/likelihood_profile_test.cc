@@ -1,4 +1,4 @@
-#include "touchdown/analysis/likelihood_profile.h"
+#include "touchdown/analysis/statistics/likelihood_profile.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "tests/analysis/reference_data.h"
 #include "tests/support/shared_data.h"
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {

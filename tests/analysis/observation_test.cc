@@ -1,4 +1,4 @@
-#include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/statistics/observation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

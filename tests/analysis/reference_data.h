@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/analysis/observation.h"
+#include "touchdown/analysis/statistics/observation.h"
 
 namespace touchdown::analysis {
 

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/regime_map.h"
+#include "touchdown/analysis/theory/regime_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/rigid_motion.h"
+#include "touchdown/analysis/theory/rigid_motion.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/score_tests.h"
+#include "touchdown/analysis/statistics/score_tests.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/set_angles.h"
+#include "touchdown/analysis/statistics/set_angles.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "touchdown/analysis/boundary_fit.h"
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/boundary_fit.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/special_functions.h"
+#include "touchdown/analysis/statistics/special_functions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "touchdown/analysis/spin_boundary.h"
+#include "touchdown/analysis/theory/spin_boundary.h"
 
 #include <gtest/gtest.h>
 

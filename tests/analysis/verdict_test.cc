@@ -1,4 +1,4 @@
-#include "touchdown/analysis/verdict.h"
+#include "touchdown/analysis/statistics/verdict.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "touchdown/analysis/boundary_study.h"
-#include "touchdown/analysis/paper_table1.h"
+#include "touchdown/analysis/statistics/boundary_study.h"
+#include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {

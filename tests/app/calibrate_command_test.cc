@@ -10,7 +10,7 @@
 #include "tests/support/board_files.h"
 #include "tests/support/run_program.h"
 #include "touchdown/calib/calibration_file.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown {
 namespace {

@@ -15,8 +15,8 @@
 #include "tests/pipeline/film_file.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::cli {
 namespace {

@@ -23,10 +23,10 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/analysis/boundary_fit.h"
-#include "touchdown/analysis/classic_designs.h"
-#include "touchdown/analysis/likelihood_profile.h"
-#include "touchdown/analysis/next_angle.h"
+#include "touchdown/analysis/statistics/boundary_fit.h"
+#include "touchdown/analysis/statistics/classic_designs.h"
+#include "touchdown/analysis/statistics/likelihood_profile.h"
+#include "touchdown/analysis/statistics/next_angle.h"
 #include "touchdown/core/units.h"
 
 namespace {

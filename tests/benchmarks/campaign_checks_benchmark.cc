@@ -15,7 +15,7 @@
 #include "app/pipeline/analyze.h"
 #include "app/report/campaign_checks.h"
 #include "tests/accuracy/design.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace {
 

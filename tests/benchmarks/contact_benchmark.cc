@@ -30,10 +30,10 @@
 
 #include "tests/support/csv.h"
 #include "tests/support/shared_data.h"
-#include "touchdown/analysis/contact.h"
-#include "touchdown/analysis/impact.h"
-#include "touchdown/analysis/lcp.h"
-#include "touchdown/analysis/regime_map.h"
+#include "touchdown/analysis/theory/contact.h"
+#include "touchdown/analysis/theory/impact.h"
+#include "touchdown/analysis/theory/lcp.h"
+#include "touchdown/analysis/theory/regime_map.h"
 
 #ifdef TOUCHDOWN_HAS_SICONOS
 extern "C" {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::accuracy {
 

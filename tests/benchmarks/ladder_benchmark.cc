@@ -14,7 +14,7 @@
 
 #include "tests/accuracy/score.h"
 #include "tests/support/statistics.h"
-#include "touchdown/analysis/agreement_statistics.h"
+#include "touchdown/analysis/statistics/agreement_statistics.h"
 #include "touchdown/core/units.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/video/background_segm.hpp>
 #include <vector>
 
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -5,7 +5,7 @@
 #include <opencv2/tracking/tracking_legacy.hpp>
 
 #include "tests/benchmarks/peer_followers.h"
-#include "touchdown/vision/scene.h"
+#include "touchdown/vision/synthetic/scene.h"
 
 namespace touchdown::accuracy {
 namespace {

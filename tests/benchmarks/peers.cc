@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "tests/benchmarks/peer_followers.h"
-#include "touchdown/vision/flight.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/contact/flight.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::accuracy {
 namespace {

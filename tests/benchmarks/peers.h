@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/accuracy/design.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::accuracy {
 

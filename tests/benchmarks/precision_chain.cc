@@ -9,9 +9,9 @@
 #include "tests/benchmarks/kept_clip.h"
 #include "tests/benchmarks/precision.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/contact.h"
-#include "touchdown/vision/render.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/contact/contact.h"
+#include "touchdown/vision/synthetic/render.h"
+#include "touchdown/vision/tracking/tracker.h"
 #ifdef TOUCHDOWN_HAS_PEERS
 #include "tests/benchmarks/peers.h"
 #endif

@@ -12,9 +12,9 @@
 #include "tests/accuracy/score.h"
 #include "tests/benchmarks/kept_clip.h"
 #include "tests/benchmarks/precision.h"
-#include "touchdown/vision/background.h"
-#include "touchdown/vision/outline.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/background/background.h"
+#include "touchdown/vision/outline/outline.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::accuracy {
 namespace {

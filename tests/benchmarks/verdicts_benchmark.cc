@@ -26,13 +26,13 @@
 #include <utility>
 #include <vector>
 
-#include "touchdown/analysis/agreement_statistics.h"
-#include "touchdown/analysis/boundary_fit.h"
-#include "touchdown/analysis/classic_designs.h"
-#include "touchdown/analysis/evidence.h"
-#include "touchdown/analysis/next_angle.h"
-#include "touchdown/analysis/set_angles.h"
-#include "touchdown/analysis/verdict.h"
+#include "touchdown/analysis/statistics/agreement_statistics.h"
+#include "touchdown/analysis/statistics/boundary_fit.h"
+#include "touchdown/analysis/statistics/classic_designs.h"
+#include "touchdown/analysis/statistics/evidence.h"
+#include "touchdown/analysis/statistics/next_angle.h"
+#include "touchdown/analysis/statistics/set_angles.h"
+#include "touchdown/analysis/statistics/verdict.h"
 #include "touchdown/core/units.h"
 
 namespace {

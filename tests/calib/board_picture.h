@@ -12,7 +12,7 @@
 #include "touchdown/calib/board.h"
 #include "touchdown/calib/lens.h"
 #include "touchdown/calib/lens_calibration.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::calib::board_picture {
 

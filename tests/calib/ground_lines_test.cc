@@ -11,7 +11,7 @@
 #include "tests/support/statistics.h"
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::calib {
 namespace {

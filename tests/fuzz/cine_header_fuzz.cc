@@ -1,8 +1,8 @@
 // The header of a .cine, and what its stamps say about the frames' spacing.
 #include <cmath>
 
-#include "cine_header.h"
-#include "frame_spacing.h"
+#include "footage/formats/cine_header.h"
+#include "footage/formats/frame_spacing.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace touchdown::fuzz {

@@ -1,6 +1,6 @@
 // PNG, TIFF and JPEG: what is read has the size that it says.
 #include "tests/fuzz/fuzz.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {

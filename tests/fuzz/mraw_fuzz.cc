@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "tests/fuzz/fuzz.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {

@@ -28,7 +28,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // The headers of Photron recordings: .cih and .cihx, from the same bytes.
 #include <cmath>
 
-#include "photron_header.h"
+#include "footage/formats/photron_header.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace touchdown::fuzz {

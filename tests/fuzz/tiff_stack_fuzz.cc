@@ -1,9 +1,9 @@
 // TIFFs of several pages: the list of pages is ours, the pages are libtiff's.
 #include <algorithm>
 
+#include "footage/formats/tiff_pages.h"
 #include "tests/fuzz/fuzz.h"
-#include "tiff_pages.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::fuzz {
 namespace {

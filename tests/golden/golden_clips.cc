@@ -14,8 +14,8 @@
 
 #include "tests/accuracy/design.h"
 #include "tests/pipeline/filmed.h"
-#include "touchdown/vision/clip_writer.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/footage/clip_writer.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::accuracy {
 namespace {

@@ -22,7 +22,7 @@
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::pipeline {
 namespace {

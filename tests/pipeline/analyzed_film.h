@@ -9,7 +9,7 @@
 #include "app/pipeline/analyze.h"
 #include "tests/pipeline/filmed.h"
 #include "touchdown/core/estimate.h"
-#include "touchdown/vision/scene.h"
+#include "touchdown/vision/synthetic/scene.h"
 
 namespace touchdown::pipeline::filmed {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::pipeline::filmed {
 

@@ -9,7 +9,7 @@
 
 #include "tests/pipeline/filmed.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::pipeline::filmed {
 

@@ -7,7 +7,7 @@
 
 #include "tests/vision/synthetic_track.h"
 #include "touchdown/core/body.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline::filmed {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/pipeline/filmed.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -21,7 +21,7 @@
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -15,7 +15,7 @@
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline {
 namespace {

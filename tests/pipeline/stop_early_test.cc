@@ -21,8 +21,8 @@
 #include "app/pipeline/replay.h"
 #include "tests/pipeline/document.h"
 #include "tests/vision/long_clip.h"
-#include "touchdown/vision/background.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/background/background.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline {
 namespace {

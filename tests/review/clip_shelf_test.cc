@@ -7,8 +7,8 @@
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip_writer.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/clip_writer.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::review {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/review/lab.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::review {
 namespace {

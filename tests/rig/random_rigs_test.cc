@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "touchdown/analysis/rigid_motion.h"
+#include "touchdown/analysis/theory/rigid_motion.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/launch.h"
 #include "touchdown/rig/setpoints.h"

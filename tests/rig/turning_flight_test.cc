@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "touchdown/analysis/rigid_motion.h"
+#include "touchdown/analysis/theory/rigid_motion.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::rig {

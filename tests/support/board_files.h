@@ -9,7 +9,7 @@
 #include "tests/calib/board_picture.h"
 #include "touchdown/calib/board.h"
 #include "touchdown/calib/lens.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::testing {
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::testing {
 

@@ -1,4 +1,4 @@
-#include "vision/src/appearance.h"
+#include "vision/src/outline/appearance.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "touchdown/core/units.h"
-#include "touchdown/vision/render.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/synthetic/render.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 namespace touchdown::vision {
 namespace {

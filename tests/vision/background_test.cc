@@ -1,4 +1,4 @@
-#include "touchdown/vision/background.h"
+#include "touchdown/vision/background/background.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/statistics.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "vision/src/best_outline.h"
+#include "vision/src/tracking/best_outline.h"
 
 #include <gtest/gtest.h>
 

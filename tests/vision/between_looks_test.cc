@@ -1,4 +1,4 @@
-#include "vision/src/between_looks.h"
+#include "vision/src/tracking/between_looks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/vision/long_clip.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 namespace touchdown::vision {
 namespace {

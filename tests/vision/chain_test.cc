@@ -1,4 +1,4 @@
-#include "vision/src/chain.h"
+#include "vision/src/detection/chain.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Phantom .cine files made by tests, by the format's own layout (see
-// vision/src/cine_header.h).
+// vision/src/footage/formats/cine_header.h).
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "touchdown/core/frame.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::vision {
 

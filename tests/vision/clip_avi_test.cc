@@ -1,4 +1,4 @@
-// touchdown/vision/clip.h on uncompressed gray .avi, as the software of
+// touchdown/vision/footage/clip.h on uncompressed gray .avi, as the software of
 // cameras writes it: samples are what they were, and up is up.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
 namespace {

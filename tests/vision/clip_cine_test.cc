@@ -1,5 +1,5 @@
-// touchdown/vision/clip.h on Phantom .cine files: samples, the camera's own
-// times, and frames that it dropped.
+// touchdown/vision/footage/clip.h on Phantom .cine files: samples, the camera's
+// own times, and frames that it dropped.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/cine_file.h"
 #include "tests/vision/clip_helpers.h"
-#include "touchdown/vision/clip.h"
-#include "vision/src/cine_curve.h"
-#include "vision/src/cine_header.h"
+#include "touchdown/vision/footage/clip.h"
+#include "vision/src/footage/formats/cine_curve.h"
+#include "vision/src/footage/formats/cine_header.h"
 
 namespace touchdown::vision {
 namespace {

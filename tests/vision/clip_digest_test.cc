@@ -1,4 +1,4 @@
-#include "touchdown/vision/clip_digest.h"
+#include "touchdown/vision/footage/clip_digest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::vision {
 

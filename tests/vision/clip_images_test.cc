@@ -1,12 +1,12 @@
-// touchdown/vision/clip.h on folders of images.
+// touchdown/vision/footage/clip.h on folders of images.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-// touchdown/vision/clip.h on real recordings; facts: footage/README.md.
+// touchdown/vision/footage/clip.h on real recordings; facts: footage/README.md.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
 #include "tests/vision/video_helpers.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
 namespace {

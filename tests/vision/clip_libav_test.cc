@@ -1,4 +1,5 @@
-// touchdown/vision/clip.h on video files: numbers, times, turns and damage.
+// touchdown/vision/footage/clip.h on video files: numbers, times, turns and
+// damage.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,8 +12,8 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
 #include "tests/vision/video_helpers.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::vision {
 namespace {

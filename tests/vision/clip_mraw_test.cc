@@ -1,4 +1,4 @@
-// touchdown/vision/clip.h on Photron recordings.
+// touchdown/vision/footage/clip.h on Photron recordings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-// touchdown/vision/clip.h on TIFFs of several pages.
+// touchdown/vision/footage/clip.h on TIFFs of several pages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tiffio.h>
@@ -9,8 +9,8 @@
 
 #include "tests/support/temporary_folder.h"
 #include "tests/vision/clip_helpers.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::vision {
 namespace {

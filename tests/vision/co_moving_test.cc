@@ -1,4 +1,4 @@
-#include "vision/src/co_moving.h"
+#include "vision/src/tracking/co_moving.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/vision/drawn_clip.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
 namespace {

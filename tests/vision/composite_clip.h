@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision::synthetic {
 

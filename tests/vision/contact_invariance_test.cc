@@ -13,7 +13,7 @@
 #include "tests/support/statistics.h"
 #include "tests/vision/contact_sweep.h"
 #include "tests/vision/synthetic_track.h"
-#include "touchdown/vision/contact.h"
+#include "touchdown/vision/contact/contact.h"
 
 namespace touchdown::vision {
 namespace {

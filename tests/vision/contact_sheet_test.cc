@@ -1,4 +1,4 @@
-#include "touchdown/vision/contact_sheet.h"
+#include "touchdown/vision/overlay/contact_sheet.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "tests/vision/synthetic_track.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "tests/support/statistics.h"
 #include "tests/vision/synthetic_track.h"
-#include "touchdown/vision/contact.h"
+#include "touchdown/vision/contact/contact.h"
 
 namespace touchdown::vision::synthetic {
 

@@ -1,6 +1,6 @@
 // Contacts of tracks with known truth. No pixel is needed: what the tracker
 // does to a track is the tracker's test.
-#include "touchdown/vision/contact.h"
+#include "touchdown/vision/contact/contact.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision::synthetic {
 

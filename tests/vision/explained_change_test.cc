@@ -1,4 +1,4 @@
-#include "touchdown/vision/explained_change.h"
+#include "touchdown/vision/explanation/explained_change.h"
 
 #include <gtest/gtest.h>
 

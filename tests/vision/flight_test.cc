@@ -1,4 +1,4 @@
-#include "touchdown/vision/flight.h"
+#include "touchdown/vision/contact/flight.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

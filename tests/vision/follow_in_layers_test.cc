@@ -1,4 +1,4 @@
-#include "vision/src/follow_in_layers.h"
+#include "vision/src/tracking/follow_in_layers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vision/src/follow_pattern.h"
+#include "vision/src/tracking/follow_pattern.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "tests/support/statistics.h"
 #include "tests/vision/drawn_clip.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,5 +1,5 @@
-// vision/src/frame_spacing.h: what the times of frames say.
-#include "vision/src/frame_spacing.h"
+// vision/src/footage/formats/frame_spacing.h: what the times of frames say.
+#include "vision/src/footage/formats/frame_spacing.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

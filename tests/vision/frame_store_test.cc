@@ -1,4 +1,4 @@
-#include "touchdown/vision/frame_store.h"
+#include "touchdown/vision/detection/frame_store.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 
 #include "tests/vision/long_clip.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "vision/src/glimpses.h"
+#include "vision/src/detection/glimpses.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The greatest gap after touchdown, of flights and of frames.
-#include "vision/src/greatest_gap.h"
+#include "vision/src/contact/greatest_gap.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "touchdown/core/units.h"
-#include "touchdown/vision/state.h"
-#include "vision/src/track_shape.h"
+#include "touchdown/vision/contact/state.h"
 
 namespace touchdown::vision {
 namespace {

@@ -8,8 +8,8 @@
 #include "tests/support/statistics.h"
 #include "tests/vision/synthetic_track.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/contact.h"
-#include "touchdown/vision/supported_path.h"
+#include "touchdown/vision/contact/contact.h"
+#include "touchdown/vision/contact/supported_path.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "vision/src/hider.h"
+#include "vision/src/outline/hider.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "touchdown/vision/render.h"
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/synthetic/render.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 namespace touchdown::vision {
 namespace {

@@ -19,9 +19,9 @@
 #include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip.h"
-#include "touchdown/vision/clip_digest.h"
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/clip_digest.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::vision {
 namespace {

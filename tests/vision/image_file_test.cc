@@ -1,4 +1,4 @@
-#include "touchdown/vision/image_file.h"
+#include "touchdown/vision/footage/image_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

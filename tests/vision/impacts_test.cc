@@ -1,4 +1,4 @@
-#include "vision/src/impacts.h"
+#include "vision/src/contact/impacts.h"
 
 #include <gtest/gtest.h>
 

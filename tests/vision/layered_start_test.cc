@@ -1,4 +1,4 @@
-#include "vision/src/layered_start.h"
+#include "vision/src/detection/layered_start.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

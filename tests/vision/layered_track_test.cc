@@ -1,4 +1,4 @@
-#include "vision/src/layered_track.h"
+#include "vision/src/tracking/layered_track.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "touchdown/vision/lens_track.h"
+#include "touchdown/vision/contact/lens_track.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Levels turned back into light.
-#include "touchdown/vision/linear_clip.h"
+#include "touchdown/vision/footage/linear_clip.h"
 
 #include <gtest/gtest.h>
 

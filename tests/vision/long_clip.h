@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision::testing {
 

@@ -1,4 +1,4 @@
-#include "vision/src/luma.h"
+#include "vision/src/footage/formats/luma.h"
 
 extern "C" {
 #include <libavutil/frame.h>

@@ -1,4 +1,4 @@
-#include "vision/src/mid_mean.h"
+#include "vision/src/background/mid_mean.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The path of a body cut into flights, contacts and supported stretches.
-#include "vision/src/motion_segments.h"
+#include "vision/src/contact/motion_segments.h"
 
 #include <gtest/gtest.h>
 

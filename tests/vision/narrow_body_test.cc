@@ -8,9 +8,9 @@
 
 #include "tests/pipeline/filmed.h"
 #include "tests/vision/synthetic_track.h"
-#include "touchdown/vision/render.h"
-#include "touchdown/vision/tracker.h"
-#include "vision/src/body_cover.h"
+#include "touchdown/vision/synthetic/render.h"
+#include "touchdown/vision/tracking/tracker.h"
+#include "vision/src/outline/body_cover.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "vision/src/natural_order.h"
+#include "vision/src/footage/formats/natural_order.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "vision/src/outline_image.h"
+#include "vision/src/outline/outline_image.h"
 
 #include <gtest/gtest.h>
 

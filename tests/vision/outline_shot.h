@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <random>
 
-#include "touchdown/vision/outline.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/outline/outline.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision::testing {
 

@@ -1,4 +1,4 @@
-#include "vision/src/outline_sums.h"
+#include "vision/src/outline/outline_sums.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "touchdown/vision/outline.h"
+#include "touchdown/vision/outline/outline.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "tests/support/statistics.h"
 #include "tests/vision/outline_shot.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "vision/src/path_linking.h"
+#include "vision/src/detection/path_linking.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "touchdown/vision/plane_track.h"
+#include "touchdown/vision/contact/plane_track.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Oracle: a pinhole camera written out here, in the camera's own coordinates.
-#include "touchdown/vision/plane_yaw.h"
+#include "touchdown/vision/contact/plane_yaw.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "touchdown/core/units.h"
-#include "touchdown/vision/plane_track.h"
+#include "touchdown/vision/contact/plane_track.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

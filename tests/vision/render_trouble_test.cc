@@ -1,5 +1,5 @@
-// touchdown/vision/scene_trouble.h as it is drawn: each trouble alone against
-// its closed form.
+// touchdown/vision/synthetic/scene_trouble.h as it is drawn: each trouble alone
+// against its closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "touchdown/core/units.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {

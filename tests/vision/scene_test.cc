@@ -1,4 +1,4 @@
-#include "touchdown/vision/scene.h"
+#include "touchdown/vision/synthetic/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

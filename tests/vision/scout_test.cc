@@ -1,4 +1,4 @@
-#include "vision/src/scout.h"
+#include "vision/src/detection/scout.h"
 
 #include <gtest/gtest.h>
 

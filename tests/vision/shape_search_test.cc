@@ -1,4 +1,4 @@
-#include "vision/src/shape_search.h"
+#include "vision/src/detection/shape_search.h"
 
 #include <gtest/gtest.h>
 

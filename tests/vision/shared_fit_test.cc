@@ -1,4 +1,4 @@
-#include "vision/src/shared_fit.h"
+#include "vision/src/outline/shared_fit.h"
 
 #include <gtest/gtest.h>
 

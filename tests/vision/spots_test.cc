@@ -1,4 +1,4 @@
-#include "vision/src/spots.h"
+#include "vision/src/outline/spots.h"
 
 #include <gtest/gtest.h>
 

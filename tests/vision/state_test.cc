@@ -1,4 +1,4 @@
-#include "touchdown/vision/state.h"
+#include "touchdown/vision/contact/state.h"
 
 #include <gtest/gtest.h>
 

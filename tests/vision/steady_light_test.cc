@@ -1,4 +1,4 @@
-#include "touchdown/vision/steady_light.h"
+#include "touchdown/vision/background/steady_light.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "tests/pipeline/filmed.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "touchdown/vision/supported_path.h"
+#include "touchdown/vision/contact/supported_path.h"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,10 @@
 
 #include "touchdown/calib/plane.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/contact.h"
-#include "touchdown/vision/plane_track.h"
-#include "touchdown/vision/scene.h"
-#include "touchdown/vision/track.h"
+#include "touchdown/vision/contact/contact.h"
+#include "touchdown/vision/contact/plane_track.h"
+#include "touchdown/vision/synthetic/scene.h"
+#include "touchdown/vision/track/track.h"
 
 namespace touchdown::vision::synthetic {
 

@@ -1,4 +1,4 @@
-#include "vision/src/track_shape.h"
+#include "vision/src/outline/track_shape.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <random>
 #include <vector>
+
+#include "vision/src/numbers/median.h"
 
 namespace touchdown::vision {
 namespace {

@@ -1,4 +1,4 @@
-#include "touchdown/vision/tracker.h"
+#include "touchdown/vision/tracking/tracker.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "tests/vision/long_clip.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
-#include "touchdown/vision/render.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {

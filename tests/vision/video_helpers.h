@@ -14,7 +14,7 @@ extern "C" {
 #include <optional>
 
 #include "tests/vision/clip_helpers.h"
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::vision {
 

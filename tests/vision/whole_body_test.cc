@@ -1,4 +1,4 @@
-#include "vision/src/whole_body.h"
+#include "vision/src/tracking/whole_body.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/vision/drawn_clip.h"
-#include "touchdown/vision/clip.h"
+#include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
 namespace {

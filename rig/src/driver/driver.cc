@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "require.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::rig {
 namespace {
@@ -29,9 +29,9 @@ std::string_view Name(ArmedState state) {
 }
 
 core::Expected<Setting> Driver::Set(const Setting& wanted) {
-  RequireAtLeastZero("compression_m", wanted.compression_m);
-  RequireFinite("elevation_rad", wanted.elevation_rad);
-  RequireAtLeastZero("muzzle_height_m", wanted.muzzle_height_m);
+  core::RequireNotNegative("compression_m", wanted.compression_m);
+  core::RequireFinite("elevation_rad", wanted.elevation_rad);
+  core::RequireNotNegative("muzzle_height_m", wanted.muzzle_height_m);
   const std::lock_guard lock(command_);
   if (is_stopped()) return core::AbsentBecause(kStopped);
   Disarm();

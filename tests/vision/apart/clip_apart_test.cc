@@ -1,4 +1,4 @@
-#include "touchdown/vision/clip_apart.h"
+#include "touchdown/vision/footage/clip_apart.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/clip_writer.h"
+#include "touchdown/vision/footage/clip_writer.h"
 
 namespace touchdown::vision {
 namespace {

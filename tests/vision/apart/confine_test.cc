@@ -1,5 +1,5 @@
 // What a confined process cannot do, tried in one.
-#include "apart/confine.h"
+#include "footage/apart/confine.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // These tests start themselves as readers, as the program does.
 #include <gtest/gtest.h>
 
-#include "touchdown/vision/clip_apart.h"
+#include "touchdown/vision/footage/clip_apart.h"
 
 int main(int argc, char** argv) {
   if (const auto status = touchdown::vision::ServeAsReader(argc, argv)) {

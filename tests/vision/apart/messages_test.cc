@@ -1,10 +1,10 @@
 // A reader that has been taken over says what it likes.
-#include "apart/messages.h"
+#include "footage/apart/messages.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
-#include "apart/frame_memory.h"
+#include "footage/apart/frame_memory.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::vision {

@@ -1,11 +1,11 @@
-#include "align_pose.h"
+#include "layers/align_pose.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "lanes.h"
+#include "numbers/lanes.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision::layers {

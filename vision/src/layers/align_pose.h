@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "layer_model.h"
+#include "layers/layer_model.h"
 
 namespace touchdown::vision::layers {
 

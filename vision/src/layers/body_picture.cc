@@ -1,4 +1,4 @@
-#include "body_picture.h"
+#include "layers/body_picture.h"
 
 #include <algorithm>
 #include <cmath>

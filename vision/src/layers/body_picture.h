@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shape_cover.h"
+#include "layers/shape_cover.h"
 
 namespace touchdown::vision::layers {
 

@@ -1,4 +1,4 @@
-#include "edge_product.h"
+#include "layers/edge_product.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "fit_layers.h"
+#include "layers/fit_layers.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "texture.h"
+#include "layers/texture.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision::layers {

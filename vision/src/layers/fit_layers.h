@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "joint_step.h"
-#include "layer_model.h"
+#include "layers/joint_step.h"
+#include "layers/layer_model.h"
 
 namespace touchdown::vision::layers {
 

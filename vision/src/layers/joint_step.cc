@@ -1,4 +1,4 @@
-#include "joint_step.h"
+#include "layers/joint_step.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

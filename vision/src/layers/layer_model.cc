@@ -1,10 +1,10 @@
-#include "layer_model.h"
+#include "layers/layer_model.h"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "edge_product.h"
+#include "layers/edge_product.h"
 
 namespace touchdown::vision::layers {
 namespace {

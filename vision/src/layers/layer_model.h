@@ -28,9 +28,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "body_picture.h"
-#include "picture_stack.h"
-#include "shape_cover.h"
+#include "layers/body_picture.h"
+#include "layers/picture_stack.h"
+#include "layers/shape_cover.h"
 
 namespace touchdown::vision::layers {
 

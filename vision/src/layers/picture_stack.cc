@@ -1,4 +1,4 @@
-#include "picture_stack.h"
+#include "layers/picture_stack.h"
 
 #include "touchdown/core/parallel.h"
 

@@ -1,4 +1,4 @@
-#include "shape_cover.h"
+#include "layers/shape_cover.h"
 
 #include <cmath>
 #include <numbers>

@@ -14,7 +14,7 @@
 #include <array>
 #include <cstddef>
 
-#include "edge_product.h"
+#include "layers/edge_product.h"
 
 namespace touchdown::vision::layers {
 

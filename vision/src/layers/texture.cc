@@ -1,4 +1,4 @@
-#include "texture.h"
+#include "layers/texture.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

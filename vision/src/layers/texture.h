@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "layer_model.h"
+#include "layers/layer_model.h"
 
 namespace touchdown::vision::layers {
 

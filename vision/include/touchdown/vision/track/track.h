@@ -1,0 +1,92 @@
+// The body's pose over time, as measured in the image: what the tracker hands
+// on. From here on no pixel is needed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "touchdown/core/estimate.h"
+#include "touchdown/core/points.h"
+#include "touchdown/core/words.h"
+
+namespace touchdown::vision {
+
+// The body in one frame.
+struct Pose {
+  std::int64_t frame = 0;  // index in the file
+  double time_s = 0.0;     // middle of the exposure
+  core::PixelPoint centre;
+
+  // Direction of the long side in the image, from +x towards +y (image y points
+  // down), continuous over the track; 0 for a sphere. Rectangles only.
+  double angle_rad = 0.0;
+
+  // Standard uncertainties and correlation from the fit: the image noise
+  // through the normal equations, widened where residuals exceed the noise.
+  double u_x_px = 0.0;
+  double u_y_px = 0.0;
+  double correlation_xy = 0.0;
+  double u_angle_rad = 0.0;
+
+  // Size in this frame over BodyImage's: 1 unless the body moves towards or
+  // away from the camera.
+  double relative_size = 1.0;
+
+  // Root mean square of the fit's residuals over the expected noise; about 1.
+  double misfit = 0.0;
+};
+
+// The body's shape in the image, common to all frames.
+struct BodyImage {
+  core::BodyKind kind = core::BodyKind::kSphere;
+  core::Estimate radius_px;      // sphere
+  core::Estimate half_long_px;   // rectangle, half sides
+  core::Estimate half_short_px;  //
+  // Where the body shows as several parts that move as one, the outline is that
+  // of the strongest part, and this is the length of the whole; else 0.
+  double whole_px = 0.0;
+  double blur_px = 0.0;  // standard deviation of the edge's blur
+  // Share of the frame interval in which the shutter is open; 0: not measured,
+  // or too short to blur the edge. After Refine.
+  double shutter_fraction = 0.0;
+  // What outline and poses may be off together in all frames, along any
+  // direction of the body, and in angle: a texture hides it.
+  double u_common_px = 0.0;
+  double u_common_angle_rad = 0.0;
+  // Of the camera (linear_clip.h), as far as outlines show it.
+  std::optional<double> gamma;
+  double contrast_dn = 0.0;  // body minus background, median over frames
+};
+
+struct Track {
+  BodyImage body;
+  std::vector<Pose> poses;  // by frame; frames without a good fit are missing
+  std::int64_t first_frame = 0;  // range searched: [first, last)
+  std::int64_t last_frame = 0;
+  double frame_interval_s = 0.0;
+  bool known_background = true;  // false: the body never left it uncovered
+  // More than 1: between two poses that are so many frames apart the path is
+  // smooth, and no outline has been fitted yet.
+  std::int64_t step = 1;
+  // Whether the picture near the ground line is what the body alone makes of
+  // it. Else there is a shadow, a reflection or an uneven edge, and the
+  // outline's lower part was left out there. After Refine.
+  bool near_ground_modelled = false;
+  // Whether poses are those of the body's picture, which moves with it: its
+  // outlines alone were bad witnesses.
+  bool patterned = false;
+  // Whether poses are those of two layers (src/tracking/follow_in_layers.h),
+  // which leave nothing to Refine.
+  bool layered = false;
+  // Whether outlines fitted to the frames tell size and place. Else the body
+  // has several parts, and they are those of what moves as one.
+  bool outlined = true;
+  bool is_predicted = false;    // ClipInfo's: poses may lag behind the body
+  bool several_bodies = false;  // another one of like size and contrast moves
+  std::vector<std::string> warnings;
+};
+
+}  // namespace touchdown::vision

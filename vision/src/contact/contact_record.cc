@@ -1,0 +1,493 @@
+#include "contact/contact_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contact/greatest_gap.h"
+#include "contact/impacts.h"
+#include "touchdown/vision/contact/state.h"
+
+namespace touchdown::vision {
+namespace {
+
+using core::AbsentBecause;
+using core::Estimate;
+using core::Measured;
+
+const char kNoScale[] =
+    "no scale: give a calibration, a scale or the body's size";
+
+// Paces below it are no motion, px a frame.
+constexpr double kLeastPace = 0.01;
+
+// How fast what all poses have in common drifts, per frame: as body and
+// surroundings change, by a quarter of it over a flight (51 clips with
+// photographed faces: 92 % of the drifts lie within 1.96 times that and their
+// own noise, of 76 % without).
+double DriftOf(double u_common, const SampleRange& flight) {
+  constexpr double kShare = 0.25;
+  return kShare * u_common / static_cast<double>(flight.size());
+}
+
+void MakeAbsent(std::initializer_list<Measured*> values, const char* reason) {
+  for (Measured* value : values) *value = AbsentBecause(reason);
+}
+
+// px (or px/s) to metres (or m/s), with the scale's uncertainty.
+Measured InMetres(const RecordContext& context, const Estimate& px) {
+  if (!context.options.scale) return AbsentBecause(kNoScale);
+  const Estimate& s = context.options.scale->px_per_m;
+  const double value = px.value / s.value;
+  return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value)};
+}
+
+// Velocities along and normal to the true ground, px per frame.
+double Tangential(const JointVector& p, JointParameter vx, JointParameter vy) {
+  return p[vx] + p[kSlope] * p[vy];
+}
+double Normal(const JointVector& p, JointParameter vx, JointParameter vy) {
+  return p[vy] - p[kSlope] * p[vx];
+}
+double NormalBefore(const JointVector& p) { return Normal(p, kVx, kVy); }
+double NormalAfter(const JointVector& p) { return Normal(p, kVx2, kVy2); }
+double TangentialBefore(const JointVector& p) {
+  return Tangential(p, kVx, kVy);
+}
+double TangentialAfter(const JointVector& p) {
+  return Tangential(p, kVx2, kVy2);
+}
+
+// The lowest point from the centre, along x', at touchdown.
+double ArmOf(const PlaneTrack& track, const JointVector& p) {
+  PlaneTrack sized;
+  sized.kind = track.kind;
+  sized.half_long_px = p[kHalfLong];
+  sized.half_short_px = p[kHalfShort];
+  return LowestPointAlong(sized, p[kFace] - p[kSlope]);
+}
+
+// What the uncertainty of `f` comes of; the squares add up to its own.
+core::Budget BudgetOf(const JointFit& fit, const JointFit::Function& f,
+                      double u) {
+  const double ground = fit.ShareOf(f, {kGround, kSlope});
+  const double with_size =
+      fit.ShareOf(f, {kGround, kSlope, kHalfLong, kHalfShort});
+  const double with_scale =
+      fit.ShareOf(f, {kGround, kSlope, kHalfLong, kHalfShort, kGravity});
+  const auto rest = [](double all, double part) {
+    return std::sqrt(std::max(0.0, all * all - part * part));
+  };
+  return {{"localisation", rest(u, with_scale)},
+          {"ground", ground},
+          {"size", rest(with_size, ground)},
+          {"scale", rest(with_scale, with_size)}};
+}
+
+// Flush where the second lowest corner is as low as the lowest within what the
+// attitude is known to (2 u), or within the resolution.
+void FillAttitude(const PlaneTrack& track, const Estimate& measured,
+                  double resolution_rad, core::Contact& contact) {
+  const double pi = std::numbers::pi;
+  double face = std::remainder(measured.value, pi);
+  if (face <= -0.5 * pi) face += pi;
+  contact.face_angle_rad = Estimate{face, measured.u};
+  const double tilt = std::abs(std::remainder(face, 0.5 * pi));
+  contact.corner =
+      tilt < std::max(2.0 * measured.u, resolution_rad) ? core::Corner::kFlush
+      : LowestPointAlong(track, face) > 0.0             ? core::Corner::kLeading
+                                            : core::Corner::kTrailing;
+}
+
+void FillAngles(const RecordContext& context, const Event& event,
+                core::Contact& contact) {
+  const PlaneTrack& track = context.track;
+  const JointFit& fit = *event.fit;
+  const auto approach = [](const JointVector& p) {
+    return std::atan2(-NormalBefore(p), std::abs(TangentialBefore(p)));
+  };
+  Estimate angle = fit.Of(approach);
+  const double localised_approach = angle.u;
+  // What all poses are off in the body's own directions turns with it, as if
+  // the centre moved; and it drifts.
+  const double paces = std::max(
+      std::hypot(fit.Of(NormalBefore).value, fit.Of(TangentialBefore).value),
+      kLeastPace);
+  const double turns =
+      track.kind == core::BodyKind::kSphere
+          ? 0.0
+          : fit.Of([](const JointVector& p) { return p[kOmega]; }).value;
+  const double picture =
+      std::hypot(context.u_common_place_px * turns,
+                 DriftOf(context.u_common_place_px, event.before_frames)) /
+      paces;
+  angle.u = std::hypot(angle.u, picture);
+  contact.approach_angle_rad =
+      Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u};
+  // No angle is negative: near 0 the normal interval promises what cannot be.
+  if (angle.value < core::kNormal975 * angle.u) {
+    Estimate& flat = *contact.approach_angle_rad;
+    flat.interval95 =
+        core::Interval{0.0, flat.value + core::kNormal975 * angle.u};
+  }
+  contact.approach_budget = BudgetOf(fit, approach, localised_approach);
+  if (picture > 0.0) contact.approach_budget.push_back({"picture", picture});
+  if (track.kind == core::BodyKind::kSphere) {
+    contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
+    contact.face_angle_rad = AbsentBecause("sphere");
+    return;
+  }
+  const auto to_ground = [](const JointVector& p) {
+    return p[kFace] - p[kSlope];
+  };
+  Estimate measured = fit.Of(to_ground);
+  const double localised = measured.u;
+  measured.u = std::hypot(measured.u, context.u_common_face_rad);
+  constexpr double kResolution_px = 0.05;
+  FillAttitude(track, measured, kResolution_px / (2.0 * track.half_long_px),
+               contact);
+  contact.attitude_budget = BudgetOf(fit, to_ground, localised);
+  contact.attitude_budget.push_back({"picture", context.u_common_face_rad});
+  contact.radius_angle_rad = fit.Of([&](const JointVector& p) {
+    const double at = p[kFace] - p[kSlope];
+    const double reach = p[kHalfLong] * std::abs(std::sin(at)) +
+                         p[kHalfShort] * std::abs(std::cos(at));
+    return std::atan2(reach, std::abs(ArmOf(track, p)));
+  });
+  Estimate& radius = *contact.radius_angle_rad;
+  radius.u = std::hypot(radius.u, context.u_common_face_rad);
+}
+
+void FillMotion(const RecordContext& context, const Event& event,
+                core::ContactRecord& record) {
+  const PlaneTrack& track = context.track;
+  const JointFit& fit = *event.fit;
+  core::Motion& m = record.motion;
+  const auto speed = [&](const JointFit::Function& f) {
+    return InMetres(context, core::Scaled(fit.Of(f), 1.0 / fit.interval_s));
+  };
+  m.before_speed_mps =
+      speed([](const JointVector& p) { return std::hypot(p[kVx], p[kVy]); });
+  m.before_normal_mps = speed(NormalBefore);
+  m.before_tangential_mps = speed(TangentialBefore);
+  const bool turns = track.kind == core::BodyKind::kRectangle;
+  const auto omega = [&](JointParameter k,
+                         const SampleRange& flight) -> Measured {
+    if (!turns) return AbsentBecause("no mark on the sphere");
+    // face grows as the leading end rises: counter-clockwise with x' ahead.
+    Estimate rate = fit.Of([k](const JointVector& p) { return p[k]; });
+    rate.u = std::hypot(rate.u, DriftOf(context.u_common_face_rad, flight));
+    return core::Scaled(rate, 1.0 / fit.interval_s);
+  };
+  m.before_omega_rad_per_s = omega(kOmega, event.before_frames);
+  if (!event.after) {
+    MakeAbsent(
+        {&m.after_normal_mps, &m.after_tangential_mps, &m.after_omega_rad_per_s,
+         &m.restitution, &m.centre_rebound_ratio, &m.impulse_ratio},
+        "no release from the ground was seen");
+  } else {
+    m.after_normal_mps = speed(NormalAfter);
+    m.after_tangential_mps = speed(TangentialAfter);
+    m.after_omega_rad_per_s = omega(kOmega2, event.after_frames);
+    const auto point_before = [&](const JointVector& p) {
+      return NormalBefore(p) + p[kOmega] * ArmOf(track, p);
+    };
+    const auto point_after = [&](const JointVector& p) {
+      return NormalAfter(p) + p[kOmega2] * ArmOf(track, p);
+    };
+    // A quotient, where its denominator stands out of its uncertainty.
+    const auto quotient = [&](const JointFit::Function& above,
+                              const JointFit::Function& below,
+                              const char* what) -> Measured {
+      constexpr double kMeasurable = 5.0;  // below, a quotient means nothing
+      const Estimate denominator = fit.Of(below);
+      if (!(std::abs(denominator.value) > kMeasurable * denominator.u)) {
+        return AbsentBecause(
+            fmt::format("the {} is below five times its uncertainty", what));
+      }
+      return fit.Of([&](const JointVector& p) { return above(p) / below(p); });
+    };
+    m.restitution =
+        quotient([&](const JointVector& p) { return -point_after(p); },
+                 point_before, "normal velocity before");
+    if (std::string several = WhySeveralImpacts(track, fit); !several.empty()) {
+      m.restitution = AbsentBecause(std::move(several));
+      m.unresolved_impacts = 2;
+    }
+    m.centre_rebound_ratio =
+        quotient([](const JointVector& p) { return -NormalAfter(p); },
+                 NormalBefore, "normal velocity before");
+    m.impulse_ratio = quotient(
+        [](const JointVector& p) {
+          return std::abs(TangentialAfter(p) - TangentialBefore(p));
+        },
+        [](const JointVector& p) { return NormalAfter(p) - NormalBefore(p); },
+        "change of normal velocity");
+  }
+
+  // Gravity free, as a check of scale and frame rate.
+  m.gravity_check_mps2 = AbsentBecause(kNoScale);
+  if (context.options.scale) {
+    m.gravity_check_mps2 =
+        AbsentBecause("uninformative: its uncertainty exceeds 3 %");
+    double sw = 0.0;
+    double swx = 0.0;
+    const auto add = [&](const SampleRange& range) {
+      if (range.size() < 6) return;
+      const Flight free = FitFlight(SamplesIn(track, range));
+      const double w = 1.0 / free.height_cov(2, 2);
+      sw += w;
+      swx += w * free.height[2];
+    };
+    add(event.before_frames);
+    if (event.after) add(event.after_frames);
+    if (sw > 0.0) {
+      const Measured g_si = InMetres(context, {swx / sw, 1.0 / std::sqrt(sw)});
+      constexpr double kInformative = 0.03;
+      if (g_si->u < kInformative * std::abs(g_si->value)) {
+        m.gravity_check_mps2 = g_si;
+      }
+    }
+  }
+}
+
+// The bounce height in px, and in metres where there is a scale.
+double BounceHeight(const RecordContext& context, core::StateDecision& state) {
+  const PlaneTrack& track = context.track;
+  const double size_px = track.size_px;
+  if (!context.options.scale) {
+    state.bounce_height_m = AbsentBecause(kNoScale);
+    constexpr double kShareOfSize = 0.02;
+    return kShareOfSize * size_px;
+  }
+  const double px_per_m = context.options.scale->px_per_m.value;
+  const double height_m = context.options.bounce_height_m
+                              ? *context.options.bounce_height_m
+                              : core::DefaultBounceHeight(size_px / px_per_m);
+  state.bounce_height_m = Estimate{height_m, 0.0};
+  return height_m * px_per_m;
+}
+
+// Without u where there is none: a bounce height is a convention.
+std::string LengthText(const RecordContext& context, double px, double u_px) {
+  const double unit =
+      context.options.scale ? 1e3 / context.options.scale->px_per_m.value : 1.0;
+  const int decimals = context.options.scale ? 3 : 2;
+  std::string text = fmt::format("{:.{}f} ", px * unit, decimals);
+  if (u_px > 0.0) text += fmt::format("+- {:.{}f} ", u_px * unit, decimals);
+  return text + (context.options.scale ? "mm" : "px");
+}
+
+// Fills the state from the greatest gap after sample `from`; `event`: the
+// contact before it, or null.
+void FillState(const RecordContext& context, std::size_t from,
+               const GroundLevel& ground, const Event* event,
+               core::StateDecision& state) {
+  const PlaneTrack& track = context.track;
+  const std::vector<PlaneSample>& samples = track.samples;
+  const double height_px = BounceHeight(context, state);
+  const double noise_px = samples[samples.size() / 2].u_gap_px;
+  if (context.options.scale) {
+    const double s = context.options.scale->px_per_m.value;
+    state.detectable_gap_m =
+        Estimate{DetectableGap(noise_px / s, 1.0 / track.frame_interval_s,
+                               ground.height_px.u / s,
+                               context.options.gravity_mps2.value),
+                 0.0};
+  } else {
+    state.detectable_gap_m = AbsentBecause(kNoScale);
+  }
+  const auto greatest = FindGreatestGap(track, context.stretches, from, ground,
+                                        context.flight, event);
+  constexpr std::size_t kLeastAfter = 3;
+  if (!greatest || samples.size() - from < kLeastAfter) {
+    state.label = core::MotionState::kUndecided;
+    state.max_gap_m = AbsentBecause("no rebound was filmed");
+    state.reason = fmt::format(
+        "no rebound was filmed: {} frames after touchdown, {} are needed",
+        samples.size() - from, kLeastAfter);
+    return;
+  }
+  // A gap is a difference of poses far from each other, each with what its
+  // neighbours have in common.
+  Estimate gap = greatest->gap_px;
+  gap.u = std::hypot(gap.u, std::numbers::sqrt2 * context.u_common_place_px);
+  // A gap is not negative; what is below is noise of pose and ground.
+  state.max_gap_m = InMetres(context, gap);
+  const StateEvidence evidence = DecideBounce(gap, height_px);
+  state.label = evidence.label;
+  state.p_bounce = evidence.p_bounce;
+  state.reason =
+      fmt::format("greatest gap {} at frame {}, bounce height {}",
+                  LengthText(context, gap.value, gap.u), greatest->frame,
+                  LengthText(context, height_px, 0.0));
+  if (state.label != core::MotionState::kBounce && greatest->reaches_px) {
+    Estimate reaches = *greatest->reaches_px;
+    reaches.u =
+        std::hypot(reaches.u, std::numbers::sqrt2 * context.u_common_place_px);
+    state.label = core::MotionState::kUndecided;
+    state.p_bounce.reset();
+    state.extrapolated_gap_m = InMetres(context, reaches);
+    state.reason += fmt::format(
+        "; the clip ends while the body still rises, to {} by its flight",
+        LengthText(context, reaches.value, reaches.u));
+    return;
+  }
+  state.micro_bounce = state.label == core::MotionState::kStaysDown && event &&
+                       event->after && gap.value > core::kNormal975 * gap.u;
+}
+
+// Of what stays down: did it slide, or stick? Where that can be seen.
+void NameWhatStaysDown(const RecordContext& context, std::size_t from,
+                       core::StateDecision& state) {
+  if (state.label != core::MotionState::kStaysDown) return;
+  const PlaneTrack& track = context.track;
+  if (track.kind == core::BodyKind::kSphere) {
+    state.reason += "; without a mark slip and roll look alike";
+    return;
+  }
+  const std::span<const PlaneSample> samples(track.samples);
+  const PlaneSample& a = samples[from];
+  const PlaneSample& b = samples.back();
+  double path = 0.0;
+  for (std::size_t i = from; i < samples.size(); ++i) {
+    path = std::max(path, std::abs(samples[i].along_px - a.along_px));
+  }
+  const double turned = std::abs(b.face_rad - a.face_rad);
+  const double u_turned = std::hypot(a.u_face_rad, b.u_face_rad);
+  constexpr double kClear = 3.0;
+  constexpr double kQuarterTurn = 0.25 * std::numbers::pi;
+  const double u_path = std::hypot(a.u_along_px, b.u_along_px);
+  if (turned > kQuarterTurn && turned > kClear * u_turned) {
+    state.label = core::MotionState::kRollSlide;
+    state.reason += "; it turns over along the ground";
+  } else if (path > std::max(1.0, kClear * u_path)) {
+    state.label = core::MotionState::kSlide;
+    state.reason += "; it moves along the ground without turning over";
+  } else {
+    state.label = core::MotionState::kStick;
+    state.reason += "; it stays where it touched down";
+  }
+}
+
+}  // namespace
+
+core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
+                             std::vector<std::string>& warnings) {
+  const PlaneTrack& track = context.track;
+  core::ContactRecord record;
+  core::Contact& contact = record.contact;
+  contact.found = true;
+  contact.time_s = event.time_s;
+  // Frame numbers follow the time: exact where frames are equally spaced.
+  const double dt = track.frame_interval_s;
+  // A codec that leaves out slow changes from frame to frame lags behind the
+  // body: before an impact it is above its place, after it below, so that the
+  // flights meet too late. Half of the common error of place: chosen on 79
+  // clips in H.264 (crf 23), of which 61 of 76 lay within 1.96 u without it; on
+  // 113 others 108 lie with it.
+  constexpr double kOfPlace = 0.5;
+  const double pace =
+      std::max(std::abs(event.fit->Of(NormalBefore).value), kLeastPace);
+  if (track.is_predicted) {
+    contact.time_s->u = std::hypot(
+        contact.time_s->u, kOfPlace * context.u_common_place_px / pace * dt);
+  }
+  const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
+                                                   track.samples.size() - 1)];
+  contact.frame = Estimate{
+      static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
+      contact.time_s->u / dt};
+  FillAngles(context, event, contact);
+  if (event.after) {
+    contact.duration_s =
+        Estimate{std::max(0.0, event.release_s.value - event.time_s.value),
+                 std::hypot(event.time_s.u, event.release_s.u)};
+  } else {
+    contact.duration_s = AbsentBecause("no release from the ground was seen");
+  }
+  FillMotion(context, event, record);
+  constexpr double kDisagree = 3.0;
+  if (std::abs(event.disagreement) > kDisagree && !event.after) {
+    warnings.push_back(
+        fmt::format("the body comes to rest {:.2f} px {} the ground line",
+                    std::abs(event.ground_px.value),
+                    event.ground_px.value > 0 ? "above" : "below"));
+  } else if (std::abs(event.disagreement) > kDisagree) {
+    warnings.push_back(fmt::format(
+        "touchdown lies {:.1f} standard deviations {} the ground line",
+        std::abs(event.disagreement),
+        event.disagreement > 0 ? "above" : "below"));
+  }
+  // Only what was filmed after touchdown speaks of a rebound.
+  std::size_t from = event.before_frames.end;
+  while (from < track.samples.size() &&
+         track.samples[from].time_s <= event.time_s.value) {
+    ++from;
+  }
+  const double along_px = event.before->At(event.time_s.value).along_px;
+  FillState(context, from,
+            {along_px, event.ground_px, track.ground.u_angle_rad}, &event,
+            record.state);
+  NameWhatStaysDown(context, from, record.state);
+  return record;
+}
+
+core::ContactRecord RecordFromStart(const RecordContext& context,
+                                    const Stretch& down, double slope_rad) {
+  const PlaneTrack& track = context.track;
+  const std::span<const PlaneSample> samples(track.samples);
+  core::ContactRecord record;
+  core::Contact& contact = record.contact;
+  contact.found = true;
+  contact.from_start = true;
+  const char reason[] = "on the ground from the start";
+  MakeAbsent({&contact.time_s, &contact.frame, &contact.duration_s}, reason);
+  // It does not approach; that its path and the visible line are inclined to
+  // each other is all that could be taken for it.
+  const double u_angle = std::hypot(track.ground.u_angle_rad, slope_rad);
+  contact.approach_angle_rad = Estimate{0.0, u_angle};
+  contact.approach_budget = {{"ground", track.ground.u_angle_rad},
+                             {"path", std::abs(slope_rad)}};
+
+  core::Motion& m = record.motion;
+  m = core::Motion{};
+  MakeAbsent(
+      {&m.before_normal_mps, &m.before_omega_rad_per_s, &m.after_normal_mps,
+       &m.after_tangential_mps, &m.after_omega_rad_per_s, &m.restitution,
+       &m.centre_rebound_ratio, &m.impulse_ratio, &m.gravity_check_mps2},
+      reason);
+  const std::size_t n = std::min<std::size_t>(samples.size(), 12);
+  const Flight start = FitFlight(samples.first(n), context.flight);
+  const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1))};
+  m.before_tangential_mps = InMetres(context, vt);
+  m.before_speed_mps = InMetres(context, vt);
+  if (track.kind == core::BodyKind::kSphere) {
+    contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
+    contact.face_angle_rad = AbsentBecause("sphere");
+  } else {
+    const PlaneSample& s = samples.front();
+    const double u_face = start.At(s.time_s).u_face_rad;
+    const Estimate face{s.face_rad,
+                        std::hypot(u_face, track.ground.u_angle_rad)};
+    constexpr double kResolution_rad = 0.05;  // lying on a face
+    FillAttitude(track, face, kResolution_rad, contact);
+    contact.attitude_budget = {{"localisation", u_face},
+                               {"ground", track.ground.u_angle_rad}};
+    contact.radius_angle_rad =
+        Estimate{std::atan2(SupportHeight(track, face.value),
+                            std::abs(LowestPointAlong(track, face.value))),
+                 face.u};
+  }
+  // Its own path is the line: its direction has no u of its own here.
+  FillState(context, 0,
+            {samples.front().along_px, LevelOf(SamplesIn(track, down)), 0.0},
+            nullptr, record.state);
+  record.state.reason = "on the ground from the start; " + record.state.reason;
+  NameWhatStaysDown(context, 0, record.state);
+  return record;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,464 @@
+#include "contact/motion_segments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "numbers/moments.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::vision {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kTold = 4;  // frames that tell of a motion of any kind
+
+// Squares that the best line of a supported stretch's gaps by place leaves,
+// with what is known of its level and slope as precisions.
+double RssOfLine(const Moments& gaps, double prior_level, double prior_slope) {
+  const double a = gaps.w + prior_level;
+  const double c = gaps.tt + prior_slope;
+  const double determinant = a * c - gaps.t * gaps.t;
+  constexpr double kLeast = 1e-12;
+  if (!(determinant > kLeast * a * c)) {
+    return std::max(0.0, gaps.yy - gaps.y * gaps.y / a);
+  }
+  const double level = (c * gaps.y - gaps.t * gaps.ty) / determinant;
+  const double slope = (a * gaps.ty - gaps.t * gaps.y) / determinant;
+  return std::max(0.0, gaps.yy - level * gaps.y - slope * gaps.ty);
+}
+
+// A forecast's variance over that of one frame, one frame beyond `n` frames of
+// a straight line.
+double ForecastVariance(std::size_t n) {
+  const auto m = static_cast<double>(n);
+  return 2.0 * (2.0 * m + 1.0) / (m * (m - 1.0));
+}
+
+// What the frames before a boundary were.
+enum State : std::size_t { kStart, kCarried, kTouched, kLeft, kEnded, kStates };
+
+struct Step {
+  double cost = kInfinity;
+  std::size_t begin = 0;
+  State from = kStart;
+  StretchKind kind = StretchKind::kOther;
+  double chi2 = 0.0;
+  int degrees = 0;
+};
+
+struct Motion {
+  StretchKind kind = StretchKind::kOther;
+  int parameters = 0;
+  double rss = 0.0;
+};
+
+// The coordinates of a frame: of the path by time, in frames; the gap by place.
+enum Coordinate : int { kAlong, kHeight, kFace, kGap, kCoordinates };
+using Each = double __attribute__((vector_size(kCoordinates * sizeof(double))));
+struct Seen {
+  Each at, value, weight;
+};
+
+class Segmenter {
+ public:
+  // `floor_px`: added to the poses' own u.
+  Segmenter(const PlaneTrack& track, const SegmentationOptions& options,
+            double floor_px);
+  std::vector<Stretch> Run();
+  // Moves each cut by some frames to where its neighbours cost the least.
+  void PlaceCuts(std::vector<Stretch>& stretches) const;
+
+ private:
+  struct Fits;
+  std::vector<Stretch> BestPath();
+  double CostOf(const Stretch& stretch, bool touches_at_end) const;
+  void GrowFrom(std::size_t begin);
+  void OfferFlight(const Fits& fits);
+  void OfferSupport(const Fits& fits);
+  void OfferAnyMotion(const Fits& fits);
+  void Offer(const Fits& fits, const Motion& motion, State from, State to,
+             double ends);
+  double FlightGap(const Fits& fits, std::size_t at) const;
+  double StartCost(const Fits& fits) const;
+  double EndCost(const Fits& fits) const;
+  double OffGround(double above, std::size_t at, std::size_t frames,
+                   double most) const;
+  bool MayTouch(std::size_t end) const;
+
+  const PlaneTrack& track_;
+  const SegmentationOptions& options_;
+  const std::vector<PlaneSample>& samples_;
+  bool turns_;
+  std::size_t least_flight_;  // frames
+  int per_frame_;             // numbers measured in a frame
+  Each falls_;                // half of gravity, px per frame^2
+  double per_parameter_;
+  double per_cut_;
+  double level_precision_;  // of a supported stretch's level and slope
+  double slope_precision_;
+  std::vector<bool> allowed_;                    // cuts before these samples
+  std::vector<std::array<Step, kStates>> best_;  // by boundary
+  std::vector<Seen> seen_;
+};
+
+// Of the frames from `begin` on, one after the other.
+struct Segmenter::Fits {
+  std::size_t begin = 0;
+  std::size_t frames = 0;
+  Seen first;  // but the gap, which is not relative to it
+  MomentsOf<Each> sums;
+  double lowest_px = kInfinity;
+  double highest_px = -kInfinity;
+  // Of the frames so far, once they were fitted.
+  Moments gaps;
+  Polynomial x, y, f;
+
+  Fits(const Segmenter& of, std::size_t from)
+      : begin(from), first(of.seen_[from]) {
+    first.at[kGap] = first.value[kGap] = 0.0;
+  }
+  std::size_t end() const { return begin + frames; }
+  void Add(const Segmenter& of);
+  void Fit();
+  double RssOf(StretchKind kind, const Segmenter& of) const;
+  Motion As(StretchKind kind, int parameters, const Segmenter& of) const {
+    return {kind, parameters, RssOf(kind, of)};
+  }
+};
+
+void Segmenter::Fits::Add(const Segmenter& of) {
+  const Seen& s = of.seen_[begin + frames++];
+  const Each at = s.at - first.at;
+  sums.Add(at, s.value - first.value + of.falls_ * at * at, s.weight);
+  lowest_px = std::min(lowest_px, s.value[kGap]);
+  highest_px = std::max(highest_px, s.value[kGap]);
+}
+
+void Segmenter::Fits::Fit() {
+  x = Polynomial(sums.Of(kAlong));
+  y = Polynomial(sums.Of(kHeight));
+  f = Polynomial(sums.Of(kFace));
+  gaps = sums.Of(kGap);
+}
+
+double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
+  if (kind == StretchKind::kFlight) {
+    const bool known = of.options_.gravity_px_per_s2.has_value();
+    return x.rss1 + (known ? y.rss1 : y.rss2) + f.rss1;
+  }
+  if (kind == StretchKind::kSupported) {
+    return x.rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + f.rss2;
+  }
+  return frames < kTold ? 0.0 : x.rss2 + y.rss2 + f.rss2;
+}
+
+Segmenter::Segmenter(const PlaneTrack& track,
+                     const SegmentationOptions& options, double floor_px)
+    : track_(track),
+      options_(options),
+      samples_(track.samples),
+      turns_(track.kind == core::BodyKind::kRectangle),
+      least_flight_(options.gravity_px_per_s2 ? 2 : kTold),
+      per_frame_(turns_ ? 3 : 2),
+      falls_{0.0, 0.5 * options.gravity_px_per_s2.value_or(0.0) *
+                      track.frame_interval_s * track.frame_interval_s},
+      per_parameter_(
+          0.5 * std::log(per_frame_ * static_cast<double>(samples_.size()))),
+      per_cut_(std::log(static_cast<double>(samples_.size()))),
+      best_(samples_.size() + 1) {
+  const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
+  level_precision_ = precision(std::hypot(
+      track.ground.u_offset_px, track.u_half_px, options.edge_bias_px));
+  // An edge of the ground seen in perspective differs so much from the line of
+  // contact, at most.
+  constexpr double kInclined_rad = 0.5 * core::kDegree;
+  slope_precision_ =
+      precision(std::hypot(track.ground.u_angle_rad, kInclined_rad));
+  const double floor_rad = floor_px / std::max(track.half_long_px, 1.0);
+  for (const PlaneSample& s : samples_) {
+    const auto weight = [](double u, double floor) {
+      return 1.0 / (u * u + floor * floor);
+    };
+    const double t = s.time_s / track.frame_interval_s;
+    const double face = turns_ ? weight(s.u_face_rad, floor_rad) : 0.0;
+    seen_.push_back(
+        Seen{{t, t, t, s.along_px},
+             {s.along_px, s.height_px, s.face_rad, s.gap_px},
+             {weight(s.u_along_px, floor_px), weight(s.u_height_px, floor_px),
+              face, weight(s.u_gap_px, floor_px)}});
+  }
+}
+
+// Of the flight fitted to the frames so far, at a sample.
+double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
+  const double t = seen_[at].at[kHeight] - fits.first.at[kHeight];
+  double height = fits.first.value[kHeight];
+  if (options_.gravity_px_per_s2) {
+    height += fits.y.Line(t) - falls_[kHeight] * t * t;
+  } else {
+    height += fits.y.Parabola(t);
+  }
+  const double face = turns_ ? fits.first.value[kFace] + fits.f.Line(t) : 0.0;
+  return height - SupportHeight(track_, face);
+}
+
+// What it costs that the gap is `above` zero (or below) by more than the line
+// and the forecast are known to.
+double Segmenter::OffGround(double above, std::size_t at, std::size_t frames,
+                            double most) const {
+  if (!(above > 0.0)) return 0.0;
+  const double tilt = track_.ground.u_angle_rad * samples_[at].along_px;
+  const double forecast = ForecastVariance(frames) / seen_[at].weight[kGap];
+  const double variance = 1.0 / level_precision_ + tilt * tilt + forecast;
+  return std::min(most, 0.5 * above * above / variance);
+}
+
+double Segmenter::StartCost(const Fits& fits) const {
+  const std::size_t begin = fits.begin;
+  if (begin == 0) return 0.0;
+  const double most = options_.off_line_cost;
+  return OffGround(FlightGap(fits, begin - 1), begin, fits.frames, most) +
+         OffGround(-FlightGap(fits, begin), begin, fits.frames, most);
+}
+
+double Segmenter::EndCost(const Fits& fits) const {
+  const std::size_t end = fits.end();
+  const double most = options_.off_line_cost;
+  const double last =
+      OffGround(-FlightGap(fits, end - 1), end - 1, fits.frames, most);
+  if (end == samples_.size() || end == options_.touchdown) return last;
+  return last + OffGround(FlightGap(fits, end), end, fits.frames, most);
+}
+
+// The frames of `fits` as one stretch after `from`, before `to`. `ends`: what
+// its start and its end cost.
+void Segmenter::Offer(const Fits& fits, const Motion& motion, State from,
+                      State to, double ends) {
+  const Step& before = best_[fits.begin][from];
+  if (!(before.cost < kInfinity)) return;
+  const auto [kind, parameters, rss] = motion;
+  const double cost = before.cost + 0.5 * rss + per_parameter_ * parameters +
+                      (fits.begin > 0 ? per_cut_ : 0.0) + ends;
+  Step& best = best_[fits.end()][to];
+  if (!(cost < best.cost)) return;
+  const int values = static_cast<int>(fits.frames) * per_frame_;
+  best = {cost, fits.begin, from, kind, rss, std::max(0, values - parameters)};
+}
+
+// Where a person says when it touches down, nothing touches before it, and the
+// flight up to it ends there wherever the line is.
+bool Segmenter::MayTouch(std::size_t end) const {
+  return !options_.touchdown || end >= *options_.touchdown;
+}
+
+// The last frame alone may have left the ground.
+void Segmenter::OfferFlight(const Fits& fits) {
+  const bool tail =
+      fits.frames == 1 && fits.begin > 0 && fits.end() == samples_.size();
+  if (fits.frames < least_flight_ && !tail) return;
+  const int values = static_cast<int>(fits.frames) * per_frame_;
+  const int free = 2 * per_frame_ + (options_.gravity_px_per_s2 ? 0 : 1);
+  const Motion flight =
+      fits.As(StretchKind::kFlight, std::min(values, free), *this);
+  const double ending = tail ? 0.0 : EndCost(fits);
+  for (const State from : {kStart, kCarried, kTouched}) {
+    double starting = from == kStart ? 0.0 : options_.rebound_cost;
+    if (from == kTouched && !tail) starting += StartCost(fits);
+    if (MayTouch(fits.end())) {
+      Offer(fits, flight, from, kTouched, starting + ending);
+    }
+    Offer(fits, flight, from, kLeft, starting);
+  }
+}
+
+// On the ground: one line of gaps, whose level and slope the ground line
+// foretells. Another level costs no more than a flight that ends off it.
+void Segmenter::OfferSupport(const Fits& fits) {
+  constexpr std::size_t kLeastSupported = 3;
+  const bool last = fits.begin > 0 && fits.end() == samples_.size();
+  if ((fits.frames < kLeastSupported && !last) || !MayTouch(fits.begin)) return;
+  const double off =
+      std::min(options_.off_line_cost,
+               0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
+                      RssOfLine(fits.gaps, 0.0, slope_precision_)));
+  const int along = static_cast<int>(std::min<std::size_t>(fits.frames, 3));
+  const Motion down = fits.As(StretchKind::kSupported,
+                              turns_ ? 1 + 2 * along : 1 + along, *this);
+  for (const State from : {kStart, kCarried, kTouched}) {
+    Offer(fits, down, from, kTouched, off);
+  }
+}
+
+// Of any kind: pressed to the ground, or in something's hand. Up to three
+// frames have a number of their own for each of theirs.
+void Segmenter::OfferAnyMotion(const Fits& fits) {
+  const std::size_t n = fits.frames;
+  const int k = static_cast<int>(std::min<std::size_t>(n, 3)) * per_frame_;
+  const Motion any = fits.As(StretchKind::kOther, k, *this);
+  // No motion that is known: mostly it is one, badly seen. A few frames tell of
+  // none, but those after an impact would be a rebound.
+  const double few = 2.0 * per_cut_;
+  const bool told = n >= kTold;
+  const double before = told ? options_.unknown_cost : few;
+  const double after =
+      told ? options_.unknown_cost : few + options_.rebound_cost;
+  const auto offer_other = [&](State from, State to, double ends) {
+    Offer(fits, any, from, to, ends);
+  };
+  // Twice as for a rebound: where the line is not known, or is not quite where
+  // the flights meet, it could stand for one.
+  // What is pressed down gives way by less than half of its size.
+  if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
+    const double above = fits.gaps.y / fits.gaps.w;
+    Offer(fits, {StretchKind::kContact, k, any.rss}, kTouched, kTouched,
+          2.0 * options_.rebound_cost + OffGround(above, fits.begin,
+                                                  std::max<std::size_t>(n, 2),
+                                                  kInfinity));
+  }
+  offer_other(kStart, kCarried, before);
+  if (told) offer_other(kCarried, kCarried, before);
+  if (!MayTouch(fits.begin)) return;
+  offer_other(kTouched, kEnded, after);
+  offer_other(kLeft, kEnded, after);
+  if (told) offer_other(kEnded, kEnded, after);
+}
+
+void Segmenter::GrowFrom(std::size_t begin) {
+  double least = kInfinity;
+  for (const Step& step : best_[begin]) least = std::min(least, step.cost);
+  if (!(least < kInfinity)) return;
+  const bool early = options_.touchdown && begin < *options_.touchdown;
+  const std::size_t limit = early ? *options_.touchdown : samples_.size();
+  Fits fits(*this, begin);
+  for (std::size_t end = begin + 1; end <= limit; ++end) {
+    fits.Add(*this);
+    if (!allowed_[end]) continue;
+    fits.Fit();
+    OfferFlight(fits);
+    OfferSupport(fits);
+    OfferAnyMotion(fits);
+    if (fits.frames < 2) continue;
+    // No stretch from here can become the best once even the loosest one, which
+    // later frames only make worse, has lost to what leads there already.
+    const double loosest = 0.5 * (fits.x.rss2 + fits.y.rss2 + fits.f.rss2);
+    double leads = kInfinity;
+    for (const State state : {kCarried, kTouched, kEnded}) {
+      leads = std::min(leads, best_[end][state].cost);
+    }
+    constexpr double kMargin = 80.0;  // end terms that may still be saved
+    if (least + loosest > leads + kMargin) return;
+  }
+}
+
+// Of one stretch, for the choice of its ends.
+double Segmenter::CostOf(const Stretch& stretch, bool touches_at_end) const {
+  Fits fits(*this, stretch.begin);
+  while (fits.frames < stretch.size()) fits.Add(*this);
+  fits.Fit();
+  double cost = 0.5 * fits.RssOf(stretch.kind, *this);
+  if (stretch.kind != StretchKind::kFlight) return cost;
+  cost += StartCost(fits);
+  if (touches_at_end) cost += EndCost(fits);
+  return cost;
+}
+
+void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
+  constexpr int kReach = 3;  // frames
+  for (std::size_t k = 0; k + 1 < stretches.size(); ++k) {
+    Stretch& a = stretches[k];
+    Stretch& b = stretches[k + 1];
+    // Stretches with a number for each of theirs explain any frame.
+    if (a.kind == StretchKind::kOther || b.kind == StretchKind::kOther ||
+        a.kind == StretchKind::kContact || b.kind == StretchKind::kContact ||
+        b.begin == options_.touchdown) {
+      continue;
+    }
+    std::size_t best = b.begin;
+    double best_cost = kInfinity;
+    for (int shift = -kReach; shift <= kReach; ++shift) {
+      const std::size_t cut =
+          b.begin + static_cast<std::size_t>(shift);  // wraps: beyond an end
+      if (cut < a.begin + least_flight_ || cut > a.end + kReach ||
+          cut + least_flight_ > b.end) {
+        continue;
+      }
+      Stretch left = a;
+      Stretch right = b;
+      left.end = right.begin = cut;
+      const bool ends = k + 2 < stretches.size();
+      const double cost = CostOf(left, true) + CostOf(right, ends);
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = cut;
+      }
+    }
+    a.end = b.begin = best;
+  }
+}
+
+std::vector<Stretch> Segmenter::Run() {
+  const std::size_t n = samples_.size();
+  if (n < 2) return {};
+  // Cuts at every few frames first; then at every frame beside those found,
+  // until they stay. What a coarse cut cannot explain asks for cuts beside it.
+  constexpr std::size_t kExact = 120;  // boundaries: about a millisecond
+  const std::size_t step = (n + kExact - 1) / kExact;
+  std::vector<bool> grid(n + 1, false);
+  for (std::size_t i = 0; i <= n; i += step) grid[i] = true;
+  grid[n] = true;
+  if (options_.touchdown) grid[*options_.touchdown] = true;
+  allowed_ = grid;
+  std::vector<Stretch> stretches = BestPath();
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds && step > 1; ++round) {
+    const std::vector<bool> before = allowed_;
+    for (const Stretch& stretch : stretches) {
+      const std::size_t reach = 2 * step;
+      const std::size_t from =
+          stretch.begin > reach ? stretch.begin - reach : 0;
+      const std::size_t to = std::min(n, stretch.begin + reach);
+      for (std::size_t i = from; i <= to; ++i) allowed_[i] = true;
+    }
+    if (allowed_ == before) break;
+    stretches = BestPath();
+  }
+  return stretches;
+}
+
+std::vector<Stretch> Segmenter::BestPath() {
+  const std::size_t n = samples_.size();
+  best_.assign(n + 1, {});
+  best_[0][kStart].cost = 0.0;
+  for (std::size_t begin = 0; begin < n; ++begin) {
+    if (allowed_[begin]) GrowFrom(begin);
+  }
+  State state = kTouched;
+  for (const State other : {kCarried, kLeft, kEnded}) {
+    if (best_[n][other].cost < best_[n][state].cost) state = other;
+  }
+  std::vector<Stretch> stretches;
+  for (std::size_t end = n; end > 0;) {
+    const Step& step = best_[end][state];
+    if (!(step.cost < kInfinity)) return {};
+    stretches.push_back(
+        {{step.begin, end}, step.kind, step.chi2, step.degrees});
+    end = step.begin;
+    state = step.from;
+  }
+  std::reverse(stretches.begin(), stretches.end());
+  return stretches;
+}
+
+}  // namespace
+
+std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
+                                   const SegmentationOptions& options) {
+  std::vector<Stretch> stretches =
+      Segmenter(track, options, options.floor_px).Run();
+  Segmenter(track, options, 0.0).PlaceCuts(stretches);
+  return stretches;
+}
+
+}  // namespace touchdown::vision

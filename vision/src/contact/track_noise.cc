@@ -1,0 +1,182 @@
+#include "contact/track_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "numbers/median.h"
+
+namespace touchdown::vision {
+namespace {
+
+std::vector<double> ThirdDifferences(const std::vector<PlaneSample>& samples,
+                                     double PlaneSample::*value,
+                                     std::size_t lag) {
+  std::vector<double> differences;
+  const auto apart = static_cast<std::int64_t>(3 * lag);
+  for (std::size_t i = 3 * lag; i < samples.size(); ++i) {
+    if (samples[i].frame - samples[i - 3 * lag].frame != apart) continue;
+    differences.push_back(std::abs(
+        samples[i].*value - 3.0 * samples[i - lag].*value +
+        3.0 * samples[i - 2 * lag].*value - samples[i - 3 * lag].*value));
+  }
+  return differences;
+}
+
+// Standard deviation of one pose's noise, from differences of poses `lag`
+// frames apart: what neighbours have in common shows at the longer lags.
+double NoiseOf(std::vector<double>& d) {
+  // An impact spoils three differences of neighbours: in short tracks too many
+  // for the median.
+  constexpr std::size_t kMany = 12;
+  const bool many = d.size() >= kMany;
+  const double quantile = many ? 0.6744898 : 0.4307273;  // of |normal|
+  const auto at =
+      d.begin() + static_cast<std::ptrdiff_t>(d.size() / (many ? 2 : 3));
+  std::nth_element(d.begin(), at, d.end());
+  return *at / quantile / std::sqrt(20.0);
+}
+
+// Returns the excess.
+double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
+             double PlaneSample::*u) {
+  std::vector<double> claims;
+  claims.reserve(samples.size());
+  for (const PlaneSample& s : samples) claims.push_back(s.*u);
+  constexpr double kLeastClaim = 1e-9;
+  const double claim = std::max(Median(std::move(claims)), kLeastClaim);
+  double factor = 1.0;
+  double neighbours = 0.0;
+  // An impact spoils three differences for each frame of the lag: here a tenth
+  // of all, so that the median still tells beside a few impacts.
+  constexpr std::size_t kShare = 30;
+  constexpr std::size_t kLongest = 4;
+  const std::size_t longest =
+      std::clamp<std::size_t>(samples.size() / kShare, 1, kLongest);
+  for (std::size_t lag = 1; lag <= longest; lag *= 2) {
+    std::vector<double> d = ThirdDifferences(samples, value, lag);
+    constexpr std::size_t kLeast = 5;
+    if (d.size() < kLeast) break;
+    const double ratio = NoiseOf(d) / claim;
+    // An excess within the scatter's own uncertainty is none. Third differences
+    // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
+    // not 1.2/sqrt(n); 4/sqrt(n) lets one honest track in a hundred be widened.
+    // Of longer lags fewer are apart from each other.
+    const double many =
+        static_cast<double>(d.size()) / static_cast<double>(lag);
+    // Neighbours share most of a drift; what differs by more over some frames
+    // is the path's own: of a body that bounces every few frames.
+    constexpr double kMostDrift = 4.0;  // times what neighbours differ by
+    if (lag > 1 && ratio > kMostDrift * std::max(1.0, neighbours)) break;
+    if (lag == 1) neighbours = ratio;
+    if (ratio > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, ratio);
+  }
+  const double excess = factor * factor - 1.0;
+  for (PlaneSample& s : samples) {
+    s.*u *= std::sqrt(1.0 + kExcessVariance * excess);
+  }
+  return claim * std::sqrt(excess);
+}
+
+}  // namespace
+
+double InflationOf(const std::vector<std::vector<double>>& runs, int degrees) {
+  double square = 0.0;
+  std::size_t n = 0;
+  for (const auto& run : runs) {
+    for (const double r : run) square += r * r;
+    n += run.size();
+  }
+  if (degrees < 1 || !(square > 0.0)) return 1.0;
+  // A correlation within its own uncertainty is none; 4: as for the scatter,
+  // one honest track in a hundred is widened, all lags and coordinates
+  // together.
+  const double noise = 4.0 / std::sqrt(static_cast<double>(n));
+  double alike = 1.0;
+  constexpr std::size_t kShare = 3;  // lags beyond a third of a run: noise
+  for (std::size_t lag = 1;; ++lag) {
+    double product = 0.0;
+    bool any = false;
+    for (const auto& run : runs) {
+      if (kShare * lag > run.size()) continue;
+      any = true;
+      for (std::size_t i = lag; i < run.size(); ++i) {
+        product += run[i] * run[i - lag];
+      }
+    }
+    const double rho = product / square;
+    if (!any || rho < (lag == 1 ? noise : 0.0)) break;
+    alike += 2.0 * rho;
+  }
+  return std::sqrt(std::max(1.0, square / degrees * alike));
+}
+
+bool WidenToCorrelation(const std::vector<Stretch>& stretches,
+                        const FlightOptions& options, PlaneTrack& track) {
+  std::vector<std::vector<double>> along, height, face;
+  int flat_degrees = 0;  // of a straight line
+  int bent_degrees = 0;  // of a parabola
+  const bool turns = track.kind == core::BodyKind::kRectangle;
+  constexpr std::size_t kLeast = 8;  // frames
+  for (const Stretch& stretch : stretches) {
+    const std::size_t n = stretch.size();
+    if (stretch.kind != StretchKind::kFlight || n < kLeast) continue;
+    const auto samples = SamplesIn(track, stretch);
+    const Flight flight = FitFlight(samples, options);
+    std::vector<double> x, y, f;
+    for (const PlaneSample& s : samples) {
+      const FlightState at = flight.At(s.time_s);
+      x.push_back((s.along_px - at.along_px) / s.u_along_px);
+      y.push_back((s.height_px - at.height_px) / s.u_height_px);
+      if (turns) f.push_back((s.face_rad - at.face_rad) / s.u_face_rad);
+    }
+    const int degrees = static_cast<int>(n) - 2;
+    along.push_back(std::move(x));
+    height.push_back(std::move(y));
+    face.push_back(std::move(f));
+    flat_degrees += degrees;
+    bent_degrees += degrees - (options.gravity_px_per_s2 ? 0 : 1);
+  }
+  const double by_along = InflationOf(along, flat_degrees);
+  const double by_height = InflationOf(height, bent_degrees);
+  const double by_face = turns ? InflationOf(face, flat_degrees) : 1.0;
+  for (PlaneSample& s : track.samples) {
+    const double arm = s.u_face_rad * LowestPointAlong(track, s.face_rad);
+    s.u_along_px *= by_along;
+    s.u_height_px *= by_height;
+    s.u_face_rad *= by_face;
+    s.u_gap_px = std::hypot(s.u_height_px, arm * by_face);
+  }
+  return std::max({by_along, by_height, by_face}) > 1.0;
+}
+
+ExcessNoise WidenToScatter(PlaneTrack& track) {
+  ExcessNoise excess;
+  constexpr std::size_t kLeast = 8;
+  auto& samples = track.samples;
+  if (samples.size() < kLeast) return excess;
+  Widen(samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
+  excess.height_px =
+      Widen(samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
+  if (track.kind == core::BodyKind::kRectangle) {
+    excess.face_rad =
+        Widen(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
+    // An attitude that was smoothed does not scatter, and is known no better
+    // than the ends of the long side are.
+    constexpr double kOfPlace = 0.25;  // about 1 where each frame has its own
+    for (PlaneSample& s : samples) {
+      s.u_face_rad = std::max(s.u_face_rad,
+                              kOfPlace * std::min(s.u_along_px, s.u_height_px) /
+                                  std::max(track.half_long_px, 1.0));
+    }
+    excess.face_rad =
+        std::max(excess.face_rad, kOfPlace * excess.height_px /
+                                      std::max(track.half_long_px, 1.0));
+  }
+  Widen(samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);
+  return excess;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,249 @@
+#include "detection/detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "footage/opencv_bridge.h"
+
+namespace touchdown::vision {
+namespace {
+
+cv::Rect SearchRegion(const core::Frame& frame, const core::PixelRect& wanted) {
+  const cv::Rect all(0, 0, frame.width_px, frame.height_px);
+  if (wanted.width <= 0 || wanted.height <= 0) return all;
+  return all & cv::Rect(wanted.x - frame.origin_x_px,
+                        wanted.y - frame.origin_y_px, wanted.width,
+                        wanted.height);
+}
+
+// Standard deviation of the smoothed difference: what the noise of single
+// pixels gives after a 3 x 3 mean, as many times as the frame's is larger.
+double SmoothedSigma(const Background& background,
+                     const DetectOptions& options) {
+  return options.noise * std::sqrt(background.UsualVariance()) / 3.0;
+}
+
+// By area times contrast.
+template <class Part>
+void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.area_px2 * std::abs(a.contrast_dn) >
+           b.area_px2 * std::abs(b.contrast_dn);
+  });
+  if (parts.size() > static_cast<std::size_t>(options.most_blobs)) {
+    parts.resize(static_cast<std::size_t>(options.most_blobs));
+  }
+}
+
+// A region that may be a blob, by its outer contour; holes (specular spots)
+// count as body.
+struct Region {
+  std::vector<cv::Point> contour;
+  double area_px2 = 0.0;
+  double contrast_dn = 0.0;
+};
+
+// A contour runs through pixel centres: the region reaches half a pixel
+// further.
+double AreaWithin(const std::vector<cv::Point>& contour) {
+  return cv::contourArea(contour) + 0.5 * cv::arcLength(contour, true) + 1.0;
+}
+
+// The regions within some contours that are large enough.
+void AddRegions(std::vector<std::vector<cv::Point>> contours,
+                const cv::Mat& difference, const DetectOptions& options,
+                std::vector<Region>& regions) {
+  for (std::vector<cv::Point>& contour : contours) {
+    const double area = AreaWithin(contour);
+    if (area < options.least_area_px2) continue;
+    // Mean difference over the filled contour.
+    const cv::Rect box = cv::boundingRect(contour);
+    cv::Mat mask = cv::Mat::zeros(box.size(), CV_8UC1);
+    cv::drawContours(mask, std::vector<std::vector<cv::Point>>{contour}, 0, 255,
+                     cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
+    regions.push_back(
+        {std::move(contour), area, cv::mean(difference(box), mask)[0]});
+  }
+}
+
+Blob BlobOf(const Region& part, const cv::Size& searched,
+            const core::PixelPoint& origin) {
+  Blob blob;
+  blob.area_px2 = part.area_px2;
+  blob.contrast_dn = part.contrast_dn;
+  const cv::Moments m = cv::moments(part.contour);
+  const cv::Rect box = cv::boundingRect(part.contour);
+  const double cx = m.m00 > 0.0 ? m.m10 / m.m00 : box.x + 0.5 * (box.width - 1);
+  const double cy =
+      m.m00 > 0.0 ? m.m01 / m.m00 : box.y + 0.5 * (box.height - 1);
+  blob.centre = {cx + origin.x_px, cy + origin.y_px};
+  const cv::RotatedRect tight = cv::minAreaRect(part.contour);
+  double angle = tight.angle * std::numbers::pi / 180.0;
+  double width = static_cast<double>(tight.size.width) + 1.0;
+  double height = static_cast<double>(tight.size.height) + 1.0;
+  if (height > width) {
+    std::swap(width, height);
+    angle += 0.5 * std::numbers::pi;
+  }
+  blob.long_px = width;
+  blob.short_px = height;
+  blob.angle_rad = std::remainder(angle, std::numbers::pi);
+  blob.fill = blob.area_px2 / (width * height);
+  blob.at_border = box.x <= 0 || box.y <= 0 ||
+                   box.x + box.width >= searched.width ||
+                   box.y + box.height >= searched.height;
+  return blob;
+}
+
+// Those of the strongest regions, which alone are worth a closer look.
+std::vector<Blob> BlobsOf(std::vector<Region> regions, const cv::Rect& searched,
+                          const core::Frame& frame,
+                          const DetectOptions& options) {
+  KeepStrongest(regions, options);
+  const core::PixelPoint origin{
+      static_cast<double>(searched.x + frame.origin_x_px),
+      static_cast<double>(searched.y + frame.origin_y_px)};
+  std::vector<Blob> blobs;
+  for (const Region& part : regions) {
+    blobs.push_back(BlobOf(part, searched.size(), origin));
+  }
+  return blobs;
+}
+
+std::vector<Blob> FromDifference(const core::Frame& frame,
+                                 const Background& background,
+                                 const DetectOptions& options) {
+  const cv::Rect region = SearchRegion(frame, options.region);
+  if (region.empty()) return {};
+  std::vector<Region> found;
+  cv::Mat value;
+  AsMat(frame)(region).convertTo(value, CV_32F);
+  const cv::Mat whole(background.height_px, background.width_px, CV_32FC1,
+                      const_cast<float*>(background.level.data()));
+  const cv::Mat still =
+      whole(region + cv::Point(frame.origin_x_px, frame.origin_y_px));
+  cv::Mat difference = value - still;
+  cv::Mat smooth;
+  cv::blur(difference, smooth, {3, 3});
+  const double threshold =
+      options.threshold_sigmas * SmoothedSigma(background, options);
+  cv::Mat magnitude = cv::abs(smooth);
+  cv::Mat mask = magnitude > threshold;
+  if (options.detector == Detector::kChange) {
+    // Across the lines where body and background are alike, and without what
+    // is thin: penumbras, the body's wake in compressed pictures.
+    constexpr int kAcross_px = 5;
+    const cv::Mat disc =
+        cv::getStructuringElement(cv::MORPH_ELLIPSE, {kAcross_px, kAcross_px});
+    cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, disc);
+    std::vector<std::vector<cv::Point>> changed;
+    cv::findContours(mask.clone(), changed, cv::RETR_EXTERNAL,
+                     cv::CHAIN_APPROX_NONE);
+    cv::drawContours(mask, changed, -1, 255, cv::FILLED);
+    cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc);
+    cv::findContours(mask, changed, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    AddRegions(std::move(changed), magnitude, options, found);
+    return BlobsOf(std::move(found), region, frame, options);
+  }
+  std::vector<std::vector<cv::Point>> regions;
+  cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
+                   cv::CHAIN_APPROX_NONE);
+  for (const auto& outer : regions) {
+    if (AreaWithin(outer) < options.least_area_px2) continue;
+    const cv::Rect box = cv::boundingRect(outer);
+    cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
+    cv::drawContours(own, std::vector<std::vector<cv::Point>>{outer}, 0, 255,
+                     cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
+    // The region's strong part: the 95th percentile of its difference.
+    std::vector<float> inside;
+    for (int y = 0; y < box.height; ++y) {
+      const float* row = magnitude.ptr<float>(box.y + y) + box.x;
+      const auto* in = own.ptr<std::uint8_t>(y);
+      for (int x = 0; x < box.width; ++x) {
+        if (in[x] != 0) inside.push_back(row[x]);
+      }
+    }
+    if (static_cast<double>(inside.size()) < options.least_area_px2) continue;
+    const auto high =
+        inside.begin() + static_cast<std::ptrdiff_t>(inside.size() * 95 / 100);
+    std::nth_element(inside.begin(), high, inside.end());
+    const double cut =
+        std::max(threshold, options.share_of_peak * static_cast<double>(*high));
+    cv::Mat strong = (magnitude(box) > cut) & own;
+    std::vector<std::vector<cv::Point>> parts;
+    cv::findContours(strong, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
+                     box.tl());
+    AddRegions(std::move(parts), difference, options, found);
+  }
+  return BlobsOf(std::move(found), region, frame, options);
+}
+
+std::vector<Blob> FromLevels(const core::Frame& frame,
+                             const DetectOptions& options) {
+  const cv::Rect region = SearchRegion(frame, options.region);
+  if (region.empty()) return {};
+  std::vector<Region> found;
+  cv::Mat value;
+  AsMat(frame)(region).convertTo(value, CV_32F);
+  cv::blur(value, value, {3, 3});
+  double low = 0.0;
+  double high = 0.0;
+  cv::minMaxLoc(value, &low, &high);
+  if (!(high > low)) return {};
+  // Otsu's threshold between the two levels.
+  cv::Mat eight;
+  value.convertTo(eight, CV_8U, 255.0 / (high - low),
+                  -255.0 * low / (high - low));
+  cv::Mat bright;
+  cv::threshold(eight, bright, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
+  const double mean = cv::mean(value)[0];
+  const cv::Mat difference = value - mean;
+  for (const cv::Mat& mask : {bright, cv::Mat(~bright)}) {
+    std::vector<std::vector<cv::Point>> regions;
+    cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
+                     cv::CHAIN_APPROX_NONE);
+    // What spans most of the picture is background.
+    constexpr double kMostOfPicture = 0.5;
+    std::erase_if(regions, [&](const auto& outer) {
+      return AreaWithin(outer) >=
+             kMostOfPicture * static_cast<double>(region.area());
+    });
+    AddRegions(std::move(regions), difference, options, found);
+  }
+  return BlobsOf(std::move(found), region, frame, options);
+}
+
+}  // namespace
+
+void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
+  KeepStrongest(blobs, options);
+}
+
+std::vector<Blob> DetectBlobs(const core::Frame& frame,
+                              const Background& background,
+                              const DetectOptions& options) {
+  return options.detector == Detector::kLevels
+             ? FromLevels(frame, options)
+             : FromDifference(frame, background, options);
+}
+
+Outline StartFrom(const Blob& blob, core::BodyKind kind) {
+  Outline start;
+  start.kind = kind;
+  start.centre = blob.centre;
+  if (kind == core::BodyKind::kSphere) {
+    start.radius_px = std::sqrt(blob.area_px2 / std::numbers::pi);
+    return start;
+  }
+  // The box around a blurred rectangle is a little larger than it: keep its
+  // proportions and take the size from the area.
+  const double shrink = std::sqrt(std::min(1.0, blob.fill));
+  start.half_long_px = 0.5 * blob.long_px * shrink;
+  start.half_short_px = 0.5 * blob.short_px * shrink;
+  start.angle_rad = blob.angle_rad;
+  return start;
+}
+
+}  // namespace touchdown::vision

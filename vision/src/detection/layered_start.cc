@@ -1,0 +1,283 @@
+#include "detection/layered_start.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "detection/path_linking.h"
+#include "detection/still_layer.h"
+#include "touchdown/core/parallel.h"
+
+namespace touchdown::vision {
+namespace {
+
+// Cells of the reduced picture across the short side, at least: the shape's
+// place is then known to a tenth of it. More cost time (their square).
+constexpr double kCellsAcross = 8.0;
+constexpr std::int32_t kMostReduction = 4;  // px a cell
+// The same of the picture that the shape is sought in.
+constexpr double kSearchedAcross = 5.0;
+
+// Cells inside of the shape, grown by `grow`.
+cv::Mat MaskOf(const PlacedShape& at, const KnownShape& shape, double grow,
+               const cv::Size& size) {
+  cv::Mat mask(size, CV_8U, cv::Scalar(0));
+  const double half_long = 0.5 * shape.long_side + grow;
+  const double half_short = 0.5 * shape.short_side + grow;
+  const bool disc = shape.kind == core::BodyKind::kSphere;
+  const double reach = disc ? half_long : std::hypot(half_long, half_short);
+  const double cosine = std::cos(at.angle_rad);
+  const double sine = std::sin(at.angle_rad);
+  const auto from = [&](double centre) {
+    return std::max(0, static_cast<int>(std::ceil(centre - reach)));
+  };
+  const auto to = [&](double centre, int end) {
+    return std::min(end - 1, static_cast<int>(std::floor(centre + reach)));
+  };
+  for (int y = from(at.centre.y_px); y <= to(at.centre.y_px, size.height);
+       ++y) {
+    for (int x = from(at.centre.x_px); x <= to(at.centre.x_px, size.width);
+         ++x) {
+      const double dx = x - at.centre.x_px;
+      const double dy = y - at.centre.y_px;
+      const bool inside =
+          disc ? std::hypot(dx, dy) <= half_long
+               : std::abs(cosine * dx + sine * dy) <= half_long &&
+                     std::abs(-sine * dx + cosine * dy) <= half_short;
+      if (inside) mask.at<std::uint8_t>(y, x) = 1;
+    }
+  }
+  return mask;
+}
+
+// The part of the change that is searched, a cell the mean of by x by.
+std::vector<float> Coarsen(const cv::Mat& change, const cv::Rect& searched,
+                           std::int32_t by) {
+  cv::Mat coarse;
+  cv::resize(change(searched), coarse,
+             {searched.width / by, searched.height / by}, 0.0, 0.0,
+             cv::INTER_AREA);
+  return {coarse.begin<float>(), coarse.end<float>()};
+}
+
+// Where anything changes in any frame, with `reach` to all sides; sides and
+// corner are multiples of `by`. Empty where nothing does.
+cv::Rect RegionOfChange(const ReducedFrames& sampled, const StillLayer& still,
+                        const ChangeScale& scale, double reach,
+                        std::int32_t by) {
+  constexpr double kChanged = 0.5;
+  cv::Mat most(still.level.size(), CV_32F, cv::Scalar(0));
+  for (const cv::Mat& picture : sampled.pictures) {
+    cv::max(most, ChangeFrom(still, picture, scale), most);
+  }
+  const cv::Mat changed = most > kChanged;
+  const cv::Rect box = cv::boundingRect(changed);
+  if (box.width == 0) return {};
+  const int grow = static_cast<int>(std::ceil(reach));
+  const int left = std::max(0, box.x - grow) / by * by;
+  const int top = std::max(0, box.y - grow) / by * by;
+  const int right = std::min(most.cols, box.x + box.width + grow) / by * by;
+  const int bottom = std::min(most.rows, box.y + box.height + grow) / by * by;
+  return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
+}
+
+KnownShape Scaled(const KnownShape& shape, double by) {
+  return {shape.kind, shape.long_side / by, shape.short_side / by};
+}
+
+double MedianScore(const std::vector<PlacedShape>& path) {
+  std::vector<float> scores;
+  scores.reserve(path.size());
+  for (const PlacedShape& p : path)
+    scores.push_back(static_cast<float>(p.score));
+  return static_cast<double>(MedianInPlace(scores));
+}
+
+// One path of the shape through all pictures, in reduced px.
+std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
+                                  const StillLayer& still,
+                                  const ChangeScale& scale,
+                                  const ShapeSearch& search,
+                                  const KnownShape& shape,
+                                  const cv::Rect& searched, std::int32_t by,
+                                  std::size_t every, int threads) {
+  constexpr std::size_t kMaxima = 6;
+  std::vector<std::vector<PlacedShape>> candidates(sampled.pictures.size());
+  core::InParallel(
+      static_cast<std::int64_t>(candidates.size()), threads,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto t = static_cast<std::size_t>(begin);
+             t < static_cast<std::size_t>(end); ++t) {
+          candidates[t] = search.FindMaxima(
+              Coarsen(ChangeFrom(still, sampled.pictures[t], scale), searched,
+                      by),
+              kMaxima, every);
+          for (PlacedShape& candidate : candidates[t]) {
+            const auto to_px = [by](double cell, int corner) {
+              return corner + cell * by + 0.5 * (by - 1);
+            };
+            candidate.centre = {to_px(candidate.centre.x_px, searched.x),
+                                to_px(candidate.centre.y_px, searched.y)};
+          }
+          if (candidates[t].empty()) {
+            const cv::Size size = sampled.pictures[t].size();
+            candidates[t].push_back(
+                {{0.5 * size.width, 0.5 * size.height}, 0.0, 0.0});
+          }
+        }
+      });
+  // A place is known to about a cell; a turn of the flight within `step` frames
+  // moves it by some hundredths of the body's size.
+  constexpr double kFlight = 0.02;
+  PathCosts costs;
+  costs.scatter = by + kFlight * 0.5 *
+                           std::hypot(shape.long_side, shape.short_side) *
+                           static_cast<double>(sampled.step);
+  costs.period_rad =
+      shape.kind == core::BodyKind::kSphere ? 0.0 : SymmetryPeriod(shape);
+  const LinkedPath linked = LinkPath(candidates, costs);
+  std::vector<PlacedShape> path;
+  for (std::size_t t = 0; t < candidates.size(); ++t) {
+    path.push_back(candidates[t][linked.chosen[t]]);
+  }
+  return path;
+}
+
+// Change outside of the masks over that inside.
+double UnexplainedShare(const ReducedFrames& sampled, const StillLayer& still,
+                        const std::vector<cv::Mat>& masks, ChangeScale scale,
+                        double noise_dn) {
+  constexpr double kClearly = 2.5;
+  scale.from_dn = kClearly * noise_dn;
+  double outside = 0.0;
+  double inside = 0.0;
+  for (std::size_t t = 0; t < masks.size(); ++t) {
+    const cv::Mat change = ChangeFrom(still, sampled.pictures[t], scale);
+    const double within =
+        cv::mean(change, masks[t])[0] * cv::countNonZero(masks[t]);
+    inside += within;
+    outside += cv::sum(change)[0] - within;
+  }
+  return outside / std::max(inside, 1.0);
+}
+
+}  // namespace
+
+core::Expected<LayeredStart> FindLayeredStart(
+    Clip& clip, const LayeredStartOptions& options) {
+  const KnownShape& shape = options.shape;
+  if (!(shape.long_side > 0.0) || !(shape.short_side > 0.0)) {
+    throw std::invalid_argument(fmt::format(
+        "LayeredStartOptions::shape: sides of {} x {} px; they must be above 0",
+        shape.long_side, shape.short_side));
+  }
+  const std::int64_t last = options.last < 0
+                                ? clip.info().frames
+                                : std::min(options.last, clip.info().frames);
+  constexpr std::int64_t kLeastFrames = 4;
+  if (last - options.first < kLeastFrames) {
+    return core::AbsentBecause("fewer than four frames");
+  }
+  const auto reduction = static_cast<std::int32_t>(
+      std::clamp(std::floor(shape.short_side / kCellsAcross), 1.0,
+                 static_cast<double>(kMostReduction)));
+  const ReducedFrames sampled =
+      SampleReducedFrames(clip, options.first, last, options.frames, reduction);
+  const KnownShape reduced = Scaled(shape, reduction);
+  const auto by = static_cast<std::int32_t>(
+      std::max(1.0, std::round(reduced.short_side / kSearchedAcross)));
+  const cv::Size size = sampled.pictures.front().size();
+  const double noise_dn = EstimateCellNoise(sampled);
+  const ChangeScale scale = ScaleOfChange(noise_dn, sampled.full_scale_dn);
+  // Beyond the outline the body's blur, and the path's error.
+  constexpr double kGrow = 0.12;  // of the short side
+  constexpr double kLeastGrow = 2.5;
+  const double grow = std::max(kLeastGrow, kGrow * reduced.short_side);
+
+  StillLayer still = MedianStill(sampled, options.threads);
+  const cv::Mat median = still.level;
+  const cv::Rect searched = RegionOfChange(
+      sampled, still, scale,
+      0.5 * std::hypot(reduced.long_side, reduced.short_side), by);
+  if (searched.empty()) {
+    return core::AbsentBecause(
+        "nothing of the stated size changes in these frames");
+  }
+  const ShapeSearch search(Scaled(reduced, by), searched.width / by,
+                           searched.height / by);
+  std::vector<PlacedShape> path;
+  std::vector<cv::Mat> masks;
+  for (int round = 0; round < options.rounds; ++round) {
+    // At first half of the angles do: the median's ghost is in the way.
+    const std::size_t every = round == 0 && search.angles() > 1 ? 2 : 1;
+    path = FindPath(sampled, still, scale, search, reduced, searched, by, every,
+                    options.threads);
+    masks.clear();
+    for (const PlacedShape& at : path) {
+      masks.push_back(MaskOf(at, reduced, grow, size));
+    }
+    still = LearnStill(sampled, masks, median, noise_dn, options.threads);
+  }
+
+  LayeredStart start;
+  start.reduction = reduction;
+  start.width = size.width;
+  start.height = size.height;
+  start.level.assign(still.level.begin<float>(), still.level.end<float>());
+  start.uncovered.assign(still.uncovered.begin<std::uint16_t>(),
+                         still.uncovered.end<std::uint16_t>());
+  start.most_covered =
+      1.0 - *std::min_element(start.uncovered.begin(), start.uncovered.end()) /
+                static_cast<double>(masks.size());
+  start.unexplained = UnexplainedShare(sampled, still, masks, scale, noise_dn);
+  const double usual = MedianScore(path);
+  constexpr double kSeen = 0.35;  // of the usual score
+  const double period =
+      shape.kind == core::BodyKind::kSphere ? 0.0 : SymmetryPeriod(shape);
+  double angle = path.front().angle_rad;
+  for (std::size_t t = 0; t < path.size(); ++t) {
+    StartPose pose;
+    pose.frame = sampled.frames[t];
+    const auto to_px = [reduction](double at) {
+      return at * reduction + 0.5 * (reduction - 1);
+    };
+    pose.centre = {to_px(path[t].centre.x_px), to_px(path[t].centre.y_px)};
+    if (period > 0.0) {
+      angle += std::remainder(path[t].angle_rad - angle, period);
+      pose.angle_rad = angle;
+    }
+    pose.score = path[t].score;
+    pose.seen = path[t].score > kSeen * usual;
+    start.poses.push_back(pose);
+  }
+  constexpr double kLeastScore = 0.1;  // mean change under the shape
+  if (usual < kLeastScore) {
+    return core::AbsentBecause(
+        "nothing of the stated size changes in these frames");
+  }
+  double travel = 0.0;
+  for (const StartPose& pose : start.poses) {
+    travel = std::max(
+        travel, std::hypot(pose.centre.x_px - start.poses.front().centre.x_px,
+                           pose.centre.y_px - start.poses.front().centre.y_px));
+  }
+  constexpr double kLeastTravel = 0.1;  // of the short side
+  if (travel < kLeastTravel * shape.short_side) {
+    return core::AbsentBecause("nothing of the stated size moves");
+  }
+  constexpr double kMostUnexplained = 0.6;
+  if (start.unexplained > kMostUnexplained) {
+    return core::AbsentBecause(fmt::format(
+        "most of what changes is not a body of the stated size ({:.0f} % of "
+        "its own change lies outside of it)",
+        100.0 * start.unexplained));
+  }
+  return start;
+}
+
+}  // namespace touchdown::vision

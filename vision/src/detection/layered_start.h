@@ -1,0 +1,81 @@
+// Where a body of known size is from the first frame to the last, found
+// together with the still picture behind it.
+//
+// A mean or median over the frames shows the body itself where it covers a
+// pixel in half of them, and a search in what differs from that follows its
+// ghost. Here picture and path are estimated in turn:
+//   B = median over the sampled frames, known everywhere
+//   three times:
+//     E_t = clip((G * |I_t - B| - 0.8 s) / (5 s + c), 0, 1); 0.5 where B is not
+//           known                                           (change, in noise)
+//     p_t = the smooth path through the places where E_t has the body's shape
+//     B   = robust mean of the pixels outside of the shape (grown) at p_t,
+//           known where at least one frame shows it
+// A ghost does not move, so that a smooth path passes over it; with the body
+// left out it is gone from the next B. s: noise of the reduced picture, G: a
+// Gaussian of 1 px of it, c: see the source.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "detection/shape_search.h"
+#include "touchdown/core/expected.h"
+#include "touchdown/vision/footage/clip.h"
+
+namespace touchdown::vision {
+
+struct LayeredStartOptions {
+  // Frames [first, last) to search; last < 0: to the end.
+  std::int64_t first = 0;
+  std::int64_t last = -1;
+
+  KnownShape shape;  // px
+
+  // About so many frames are looked at, evenly spread. Fewer cost less time and
+  // show less of what is behind the body; between two of them it may move by
+  // about its own size. 48: a body that needs 40 frames to leave its place is
+  // seen to do so.
+  int frames = 48;
+
+  int rounds = 3;   // by then the path no longer changes, on all clips tried
+  int threads = 0;  // 0: one for each core; affects speed only
+};
+
+// The body in one sampled frame.
+struct StartPose {
+  std::int64_t frame = 0;
+  core::PixelPoint centre;
+  double angle_rad = 0.0;  // continuous over the frames
+  double score = 0.0;      // mean change under the shape, 0 to 1
+  bool seen = true;        // false: the score is far below that of the others
+};
+
+struct LayeredStart {
+  std::vector<StartPose> poses;  // by frame, of all sampled frames
+
+  // The still picture, reduced by `reduction`: a cell (i, j) is the mean of as
+  // many pixels in both directions, its centre at reduction * i + (reduction -
+  // 1) / 2. Levels in DN; in how many sampled frames it was seen uncovered.
+  std::int32_t reduction = 1;
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  std::vector<float> level;
+  std::vector<std::uint16_t> uncovered;
+
+  // The largest share of the sampled frames in which any one cell is covered by
+  // the shape.
+  double most_covered = 0.0;
+
+  // Change outside of the shape over change inside of it, beyond 2.5 s: 0 where
+  // nothing else moves.
+  double unexplained = 0.0;
+};
+
+// Absent, with the reason, where nothing of the shape moves, or where what
+// changes is mostly something else. Throws what Clip::Read throws;
+// std::invalid_argument for a shape without size.
+core::Expected<LayeredStart> FindLayeredStart(
+    Clip& clip, const LayeredStartOptions& options);
+
+}  // namespace touchdown::vision

@@ -1,0 +1,163 @@
+#include "detection/still_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "touchdown/core/parallel.h"
+
+namespace touchdown::vision {
+namespace {
+
+template <class Sample>
+cv::Mat Reduce(const core::Frame& frame, std::int32_t by) {
+  cv::Mat reduced(frame.height_px / by, frame.width_px / by, CV_32F,
+                  cv::Scalar(0));
+  const float scale = 1.0F / static_cast<float>(by * by);
+  for (std::int32_t y = 0; y < reduced.rows * by; ++y) {
+    const Sample* const row = frame.row<Sample>(y);
+    float* const out = reduced.ptr<float>(y / by);
+    for (std::int32_t x = 0; x < reduced.cols; ++x) {
+      std::uint32_t sum = 0;
+      for (std::int32_t k = 0; k < by; ++k) sum += row[x * by + k];
+      out[x] += scale * static_cast<float>(sum);
+    }
+  }
+  return reduced;
+}
+
+}  // namespace
+
+float MedianInPlace(std::vector<float>& values) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
+                                  std::int64_t last, int count,
+                                  std::int32_t reduction) {
+  ReducedFrames sampled;
+  sampled.step = std::max<std::int64_t>(1, (last - first) / std::max(count, 3));
+  for (std::int64_t f = first; f < last; f += sampled.step) {
+    const core::Frame frame = clip.Read(f);
+    sampled.full_scale_dn = frame.full_scale();
+    sampled.frames.push_back(f);
+    sampled.pictures.push_back(frame.is_16_bit()
+                                   ? Reduce<std::uint16_t>(frame, reduction)
+                                   : Reduce<std::uint8_t>(frame, reduction));
+  }
+  return sampled;
+}
+
+double EstimateCellNoise(const ReducedFrames& sampled) {
+  constexpr int kEvery = 3;             // cells
+  constexpr double kLeastShare = 1e-3;  // of full scale: a quarter DN of 8 bits
+  std::vector<float> differences;
+  for (std::size_t t = 1; t < sampled.pictures.size(); ++t) {
+    const cv::Mat& a = sampled.pictures[t - 1];
+    const cv::Mat& b = sampled.pictures[t];
+    for (int y = 0; y < a.rows; y += kEvery) {
+      for (int x = 0; x < a.cols; x += kEvery) {
+        differences.push_back(std::abs(a.at<float>(y, x) - b.at<float>(y, x)));
+      }
+    }
+  }
+  constexpr double kMedianToSigma = 1.4826;
+  const double sigma = kMedianToSigma * std::numbers::sqrt2 / 2.0 *
+                       static_cast<double>(MedianInPlace(differences));
+  return std::max(sigma, kLeastShare * sampled.full_scale_dn);
+}
+
+StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
+  const cv::Mat& first = sampled.pictures.front();
+  cv::Mat median(first.size(), CV_32F);
+  core::InParallel(first.rows, threads,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     std::vector<float> values(sampled.pictures.size());
+                     for (auto y = static_cast<int>(begin); y < end; ++y) {
+                       for (int x = 0; x < first.cols; ++x) {
+                         for (std::size_t t = 0; t < values.size(); ++t) {
+                           values[t] = sampled.pictures[t].at<float>(y, x);
+                         }
+                         median.at<float>(y, x) = MedianInPlace(values);
+                       }
+                     }
+                   });
+  return {median, cv::Mat(first.size(), CV_16U, cv::Scalar(1))};
+}
+
+StillLayer LearnStill(const ReducedFrames& sampled,
+                      const std::vector<cv::Mat>& masks,
+                      const cv::Mat& fallback, double noise_dn, int threads) {
+  constexpr int kRobustPasses = 2;
+  constexpr float kCut = 3.0F;
+  StillLayer still;
+  still.level = fallback.clone();
+  still.uncovered = cv::Mat(fallback.size(), CV_16U, cv::Scalar(0));
+  const float per_cut = 1.0F / (kCut * static_cast<float>(noise_dn));
+  core::InParallel(
+      fallback.rows, threads, [&](std::int64_t begin, std::int64_t end) {
+        const auto width = static_cast<std::size_t>(fallback.cols);
+        std::vector<float> sum(width);
+        std::vector<float> weight(width);
+        for (auto y = static_cast<int>(begin); y < end; ++y) {
+          float* const level = still.level.ptr<float>(y);
+          auto* const uncovered = still.uncovered.ptr<std::uint16_t>(y);
+          for (int pass = 0; pass <= kRobustPasses; ++pass) {
+            std::fill(sum.begin(), sum.end(), 0.0F);
+            std::fill(weight.begin(), weight.end(), 0.0F);
+            for (std::size_t t = 0; t < masks.size(); ++t) {
+              const float* const value = sampled.pictures[t].ptr<float>(y);
+              const auto* const mask = masks[t].ptr<std::uint8_t>(y);
+              for (std::size_t x = 0; x < width; ++x) {
+                const float off = (value[x] - level[x]) * per_cut;
+                const float robust =
+                    pass == 0 ? 1.0F : 1.0F / (1.0F + off * off);
+                const float own = mask[x] != 0 ? 0.0F : robust;
+                sum[x] += own * value[x];
+                weight[x] += own;
+              }
+            }
+            for (std::size_t x = 0; x < width; ++x) {
+              if (pass == 0) {
+                uncovered[x] = static_cast<std::uint16_t>(weight[x]);
+              }
+              if (weight[x] > 0.0F) level[x] = sum[x] / weight[x];
+            }
+          }
+        }
+      });
+  return still;
+}
+
+ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn) {
+  constexpr double kMeanMagnitude = 0.8;
+  constexpr double kClear = 5.0;
+  constexpr double kUnsteady = 0.012;
+  return {kMeanMagnitude * noise_dn,
+          kClear * noise_dn + kUnsteady * full_scale_dn};
+}
+
+cv::Mat ChangeFrom(const StillLayer& still, const cv::Mat& picture,
+                   const ChangeScale& scale) {
+  constexpr float kUnknown = 0.5F;
+  cv::Mat change;
+  cv::absdiff(picture, still.level, change);
+  cv::GaussianBlur(change, change, {5, 5}, 1.0);
+  for (int y = 0; y < change.rows; ++y) {
+    float* const row = change.ptr<float>(y);
+    const auto* const uncovered = still.uncovered.ptr<std::uint16_t>(y);
+    for (int x = 0; x < change.cols; ++x) {
+      const float value = (row[x] - static_cast<float>(scale.from_dn)) /
+                          static_cast<float>(scale.range_dn);
+      row[x] = uncovered[x] == 0 ? kUnknown : std::clamp(value, 0.0F, 1.0F);
+    }
+  }
+  return change;
+}
+
+}  // namespace touchdown::vision

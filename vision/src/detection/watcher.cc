@@ -1,0 +1,83 @@
+#include "detection/watcher.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace touchdown::vision {
+namespace {
+
+// By which KeepLargest ranks.
+double Strength(const Blob& blob) {
+  return blob.area_px2 * std::abs(blob.contrast_dn);
+}
+
+// One more than is kept shows whether there are more.
+DetectOptions OneMore(DetectOptions detect) {
+  ++detect.most_blobs;
+  return detect;
+}
+
+void KeepStrongest(const DetectOptions& detect, Seen& seen) {
+  // Of the strongest: specks of noise and of compression, of which there may be
+  // any number, are no body that was overlooked.
+  constexpr double kLikeABody = 0.1;
+  KeepLargest(seen.blobs, OneMore(detect));
+  const auto most = static_cast<std::size_t>(detect.most_blobs);
+  if (seen.blobs.size() <= most) return;
+  seen.more =
+      Strength(seen.blobs[most]) > kLikeABody * Strength(seen.blobs.front());
+  seen.blobs.resize(most);
+}
+
+}  // namespace
+
+bool IsLong(const Clip& clip, const TrackOptions& options) {
+  const ClipInfo& info = clip.info();
+  const std::int64_t last = options.last < 0 ? info.frames : options.last;
+  return clip.ChangesIn(options.first) != nullptr ||
+         static_cast<double>(last - options.first) *
+                 static_cast<double>(info.width_px) *
+                 static_cast<double>(info.height_px) >
+             options.seen_whole_px;
+}
+
+Watcher::Watcher(const Clip& clip, const Background& background,
+                 const TrackOptions& options, Detector detector)
+    : background_(background) {
+  detect_.detector = detector;
+  detect_.region = options.region;
+  if (detector != Detector::kLevels && IsLong(clip, options)) {
+    ScoutOptions scout;
+    scout.region = options.region;
+    scout_.emplace(background, scout);
+  }
+}
+
+Seen Watcher::Look(Clip& clip, std::int64_t index) const {
+  Seen seen;
+  if (!scout_) {
+    const core::Frame frame = clip.Read(index);
+    seen.time_s = frame.time_s;
+    seen.blobs = DetectBlobs(frame, background_, OneMore(detect_));
+    KeepStrongest(detect_, seen);
+    return seen;
+  }
+  Changes changes;
+  if (const Changes* known = clip.ChangesIn(index)) {
+    changes = *known;
+  } else {
+    changes = scout_->Look(clip, index);
+  }
+  DetectOptions detect = OneMore(detect_);
+  detect.noise = changes.noise;
+  for (const core::PixelRect& rect : changes.where) {
+    const core::Frame window = clip.Read(index, rect);
+    seen.time_s = window.time_s;
+    const auto more = DetectBlobs(window, background_, detect);
+    seen.blobs.insert(seen.blobs.end(), more.begin(), more.end());
+  }
+  KeepStrongest(detect_, seen);
+  return seen;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,213 @@
+#include "touchdown/vision/explanation/explained_change.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "explanation/change_samples.h"
+#include "explanation/two_layers.h"
+#include "touchdown/vision/background/background.h"
+
+namespace touchdown::vision {
+namespace {
+
+void CheckArguments(const Clip& clip, const Track& track,
+                    const ExplainedChangeOptions& options) {
+  const auto check = [](const char* field, int value, int least) {
+    if (value >= least) return;
+    throw std::invalid_argument(
+        fmt::format("{} is {}, must be at least {}", field, value, least));
+  };
+  check("frames", options.frames, 3);
+  check("points_near", options.points_near, 100);
+  check("points_elsewhere", options.points_elsewhere, 100);
+  if (track.first_frame < 0 || track.last_frame > clip.info().frames) {
+    throw std::invalid_argument(
+        fmt::format("track is of frames {}:{}, must be within 0:{}",
+                    track.first_frame, track.last_frame, clip.info().frames));
+  }
+}
+
+// Mean and sum of squared deviations of each point over the frames.
+struct OverTime {
+  std::vector<float> mean;
+  std::vector<float> square;  // sum of (I - mean)^2
+};
+
+OverTime SumOverTime(const LatticeLevels& levels, std::size_t frames,
+                     std::size_t points) {
+  OverTime over;
+  over.mean.assign(points, 0.0F);
+  over.square.assign(points, 0.0F);
+  for (std::size_t k = 0; k < frames; ++k) {
+    const float* level = levels.of(k);
+    for (std::size_t p = 0; p < points; ++p) over.mean[p] += level[p];
+  }
+  for (float& mean : over.mean) mean /= static_cast<float>(frames);
+  for (std::size_t k = 0; k < frames; ++k) {
+    const float* level = levels.of(k);
+    for (std::size_t p = 0; p < points; ++p) {
+      const float off = level[p] - over.mean[p];
+      over.square[p] += off * off;
+    }
+  }
+  return over;
+}
+
+// Variance of a pixel over time where nothing moves: the median over the points
+// far from the body's path, where there are enough of them (near it most pixels
+// are crossed by the body); corrected for the median of chi^2 of n - 1 degrees
+// of freedom, which is (n - 1) (1 - 2 / (9 (n - 1)))^3.
+double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
+                     std::size_t frames) {
+  constexpr std::size_t kEnough = 200;  // the median is then known to 2 %
+  std::vector<float> squares =
+      elsewhere.square.size() >= kEnough ? elsewhere.square : near.square;
+  const auto middle =
+      squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  const double freedom = static_cast<double>(frames) - 1.0;
+  const double correction = std::pow(1.0 - 2.0 / (9.0 * freedom), 3.0);
+  return std::max(static_cast<double>(*middle) / (freedom * correction),
+                  Background::kVarianceFloor_dn2);
+}
+
+// Change beyond noise of the points whose own variance stands out of it.
+double ChangeOf(const OverTime& over, double variance, std::size_t frames) {
+  const double freedom = static_cast<double>(frames) - 1.0;
+  // Meant to leave out noise of other levels, of compression and of light that
+  // is not quite steady: three times the usual standard deviation (a choice,
+  // not measured yet), plus six standard deviations of the estimate itself.
+  constexpr double kOfNoise = 9.0;
+  constexpr double kSigmas = 6.0;
+  const double least =
+      variance * (kOfNoise * freedom + kSigmas * std::sqrt(2.0 * freedom));
+  double sum = 0.0;
+  for (const float square : over.square) {
+    if (square > least) sum += square - variance * freedom;
+  }
+  return sum;
+}
+
+struct Residuals {
+  double square = 0.0;       // near
+  double band_square = 0.0;  // where the edge is
+  std::int64_t band = 0;
+};
+
+// Of a frame with a pose.
+void AddResiduals(const TwoLayers& layers, const CoveredPoints& covered,
+                  const OverTime& over, const float* level,
+                  std::vector<float>& residual, Residuals& sums) {
+  constexpr float kWhole = 0.95F;
+  constexpr float kBandFrom = 0.02F;
+  constexpr float kBandTo = 0.98F;
+  for (std::size_t p = 0; p < residual.size(); ++p) {
+    residual[p] =
+        level[p] - (layers.is_known(p) ? layers.still(p) : over.mean[p]);
+  }
+  for (std::size_t i = 0; i < covered.point.size(); ++i) {
+    const auto p = static_cast<std::size_t>(covered.point[i]);
+    const float m = covered.cover[i];
+    if (!layers.is_known(p) && m < kWhole) continue;
+    const float behind = layers.is_known(p) ? layers.still(p) : 0.0F;
+    residual[p] =
+        level[p] - (1.0F - m) * behind - m * layers.picture(covered, i);
+    if (m > kBandFrom && m < kBandTo) {
+      sums.band_square += static_cast<double>(residual[p]) * residual[p];
+      ++sums.band;
+    }
+  }
+  for (const float r : residual) {
+    sums.square += static_cast<double>(r) * static_cast<double>(r);
+  }
+}
+
+// Of a frame without one: the mean or B, whichever is nearer.
+void AddUnexplained(const TwoLayers& layers, const OverTime& over,
+                    const float* level, Residuals& sums) {
+  double from_mean = 0.0;
+  double from_still = 0.0;
+  for (std::size_t p = 0; p < over.mean.size(); ++p) {
+    const double off = level[p] - over.mean[p];
+    from_mean += off * off;
+    const double other = layers.is_known(p) ? level[p] - layers.still(p) : off;
+    from_still += other * other;
+  }
+  sums.square += std::min(from_mean, from_still);
+}
+
+}  // namespace
+
+core::Expected<ExplainedChange> MeasureExplainedChange(
+    Clip& clip, const Track& track, const ExplainedChangeOptions& options) {
+  CheckArguments(clip, track, options);
+  constexpr std::ptrdiff_t kLeastPoses = 3;
+  if (track.poses.empty()) return core::AbsentBecause("no pose was measured");
+  const std::vector<SampledFrame> frames = ChooseFrames(clip, track, options);
+  if (std::count_if(frames.begin(), frames.end(), [](const SampledFrame& f) {
+        return f.has_pose;
+      }) < kLeastPoses) {
+    return core::AbsentBecause(
+        fmt::format("of {} sampled frames fewer than {} have a pose",
+                    frames.size(), kLeastPoses));
+  }
+  const LatticePoints near = PointsNear(clip, track, frames, options);
+  const LatticePoints rest = PointsElsewhere(clip, track, frames, options);
+  if (near.size() == 0) {
+    return core::AbsentBecause("the body's path lies outside the picture");
+  }
+  const std::size_t n = frames.size();
+  const LatticeLevels levels = ReadLevels(clip, frames, near, options.threads);
+  const OverTime over = SumOverTime(levels, n, near.size());
+  const OverTime over_rest = SumOverTime(
+      ReadLevels(clip, frames, rest, options.threads), n, rest.size());
+  const double variance = NoiseVariance(over, over_rest, n);
+
+  const std::vector<CoveredPoints> covered =
+      CoverPoints(track, frames, near, options.threads);
+  const TwoLayers layers(track, frames, near, levels, covered);
+
+  ExplainedChange out;
+  Residuals sums;
+  std::vector<float> residual(near.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    if (frames[k].has_pose) {
+      AddResiduals(layers, covered[k], over, levels.of(k), residual, sums);
+    } else {
+      AddUnexplained(layers, over, levels.of(k), sums);
+      out.lost += frames[k].is_within ? 1 : 0;
+    }
+  }
+  out.frames = static_cast<int>(n);
+  out.pixels = static_cast<std::int64_t>(n * near.size());
+  out.noise_dn = std::sqrt(variance);
+  double all = 0.0;
+  for (const float square : over.square) all += square;
+  // Both sums have lost a degree of freedom a pixel to the mean, or to B.
+  const double noise = variance * static_cast<double>((n - 1) * near.size());
+  // Noise alone scatters by sqrt(2 N) s0^2; ten times that is a change.
+  constexpr double kSigmas = 10.0;
+  if (all - noise <
+      kSigmas * variance * std::sqrt(2.0 * static_cast<double>(out.pixels))) {
+    return core::AbsentBecause(
+        "what changes near the body's path does not stand out of the noise");
+  }
+  out.near = 1.0 - (sums.square - noise) / (all - noise);
+  const double change_near =
+      ChangeOf(over, variance, n) * static_cast<double>(near.step) * near.step;
+  const double change_rest = ChangeOf(over_rest, variance, n) *
+                             static_cast<double>(rest.step) * rest.step;
+  out.elsewhere = change_near + change_rest > 0.0
+                      ? change_rest / (change_near + change_rest)
+                      : 0.0;
+  out.band_chi2 =
+      sums.band > 0
+          ? sums.band_square / (static_cast<double>(sums.band) * variance)
+          : 0.0;
+  return out;
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,46 @@
+#include "footage/formats/cine_curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::vision {
+namespace {
+
+constexpr std::int32_t kWhite = 4064;
+constexpr std::int32_t kSaturated = (1 << kCineLinearBits) - 1;
+// Fitted; see the header.
+constexpr double kBlack = 63.999;
+constexpr double kRange = 4034.445;
+constexpr double kCodeBlack = 63.527;
+constexpr double kCodeRange = 954.376;
+
+std::int32_t CodeOf(std::int32_t x) {
+  constexpr double kLinearBelow = 0.018;
+  const double light = (x - kBlack) / kRange;
+  const double v = light < kLinearBelow ? 4.5 * light
+                                        : 1.099 * std::pow(light, 0.45) - 0.099;
+  const double code = std::floor(kCodeBlack + kCodeRange * v + 0.5);
+  return std::clamp(static_cast<std::int32_t>(code), 0,
+                    (1 << kCineCodeBits) - 1);
+}
+
+}  // namespace
+
+CineCurve CineLinearOfCode() {
+  CineCurve linear{};
+  const std::int32_t last = CodeOf(kWhite);
+  std::int32_t x = 0;
+  std::int32_t mean = 0;
+  for (std::int32_t code = 0; code <= last; ++code) {
+    const std::int32_t first = x;
+    while (x <= kSaturated && CodeOf(x) == code) ++x;
+    if (x > first) mean = (first + x - 1) / 2;
+    linear[static_cast<std::size_t>(code)] =
+        static_cast<std::uint16_t>(std::min(mean, kWhite));
+  }
+  std::fill(linear.begin() + last + 1, linear.end(),
+            static_cast<std::uint16_t>(kSaturated));
+  return linear;
+}
+
+}  // namespace touchdown::vision

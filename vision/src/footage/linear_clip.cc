@@ -1,0 +1,103 @@
+#include "touchdown/vision/footage/linear_clip.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace touchdown::vision {
+namespace {
+
+std::int32_t LinearDepth(std::int32_t bit_depth) {
+  return bit_depth <= 8 ? 12 : 16;
+}
+
+std::vector<std::uint16_t> TableOf(std::int32_t bit_depth, double gamma) {
+  const auto levels = std::size_t{1} << static_cast<unsigned>(bit_depth);
+  const double full = static_cast<double>(levels - 1);
+  const double full_out =
+      std::exp2(static_cast<double>(LinearDepth(bit_depth))) - 1.0;
+  std::vector<std::uint16_t> table(levels);
+  for (std::size_t v = 0; v < levels; ++v) {
+    const double light = std::pow(static_cast<double>(v) / full, 1.0 / gamma);
+    table[v] = static_cast<std::uint16_t>(std::lround(light * full_out));
+  }
+  return table;
+}
+
+class LinearClip final : public Clip {
+ public:
+  LinearClip(std::unique_ptr<Clip> clip, double gamma)
+      : clip_(std::move(clip)), gamma_(gamma), info_(clip_->info()) {
+    table_ = TableOf(info_.bit_depth, gamma);
+    info_.bit_depth = LinearDepth(info_.bit_depth);
+    set_cancellation(clip_->cancellation());
+  }
+
+  const ClipInfo& info() const override { return info_; }
+  bool windows_are_cheap() const override { return clip_->windows_are_cheap(); }
+  void WillRead(std::int64_t index, const core::PixelRect& window) override {
+    clip_->WillRead(index, window);
+  }
+  void WillReadOnce(std::int64_t index,
+                    const core::PixelRect& window) override {
+    clip_->WillReadOnce(index, window);
+  }
+  void HasRead() const override { clip_->HasRead(); }
+  std::int64_t EntryFrame(std::int64_t index) const override {
+    return clip_->EntryFrame(index);
+  }
+  std::unique_ptr<Clip> Another() const override {
+    std::unique_ptr<Clip> another = clip_->Another();
+    if (!another) return nullptr;
+    return std::make_unique<LinearClip>(std::move(another), gamma_);
+  }
+
+ protected:
+  core::Frame ReadWindow(std::int64_t index,
+                         const core::PixelRect& window) override {
+    const core::Frame seen = clip_->Read(index, window);
+    const auto width = static_cast<std::size_t>(window.width);
+    samples_.resize(width * static_cast<std::size_t>(window.height));
+    for (std::int32_t y = 0; y < window.height; ++y) {
+      std::uint16_t* out = &samples_[static_cast<std::size_t>(y) * width];
+      if (seen.is_16_bit()) {
+        Convert(seen.row<std::uint16_t>(y), width, out);
+      } else {
+        Convert(seen.row<std::uint8_t>(y), width, out);
+      }
+    }
+    core::Frame frame = seen;
+    frame.data = reinterpret_cast<const std::byte*>(samples_.data());
+    frame.stride_bytes =
+        static_cast<std::ptrdiff_t>(width * sizeof(std::uint16_t));
+    frame.bit_depth = info_.bit_depth;
+    return frame;
+  }
+
+ private:
+  // What a file holds beyond its depth is white.
+  template <class Sample>
+  void Convert(const Sample* levels, std::size_t count,
+               std::uint16_t* out) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t level = levels[i];
+      out[i] = level < table_.size() ? table_[level] : table_.back();
+    }
+  }
+
+  std::unique_ptr<Clip> clip_;
+  double gamma_;
+  ClipInfo info_;
+  std::vector<std::uint16_t> table_;
+  std::vector<std::uint16_t> samples_;
+};
+
+}  // namespace
+
+std::unique_ptr<Clip> MakeLinear(std::unique_ptr<Clip> clip, double gamma) {
+  return std::make_unique<LinearClip>(std::move(clip), gamma);
+}
+
+}  // namespace touchdown::vision

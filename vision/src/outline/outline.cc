@@ -1,0 +1,499 @@
+#include "touchdown/vision/outline/outline.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "outline/outline_image.h"
+#include "outline/outline_inside.h"
+#include "outline/outline_pixels.h"
+#include "outline/outline_sums.h"
+#include "outline/shared_fit.h"
+#include "outline/track_shape.h"
+
+namespace touchdown::vision {
+namespace {
+
+// Geometry (x, y, size, size, angle), blur, open share, six interior and six
+// outer polynomial terms.
+constexpr int kMaxParameters = kMostTerms;
+constexpr double kTukey = 4.685;  // 95 % efficient
+// Pixels that come and go at the band's borders as the outline moves by so much
+// tell nothing of its place, and residuals at its edge are no outliers yet.
+constexpr double kNearStart_px = 0.05;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                             kMaxParameters, kMaxParameters>;
+
+class Fitter {
+ public:
+  Fitter(const core::Frame& frame, const Background& background,
+         const Outline& start, const OutlineOptions& options, Inside inside)
+      : frame_(frame),
+        background_(background),
+        options_(options),
+        height_(options.ground),
+        behind_(background, Models() ? height_ : Height(), Zone_px()),
+        usable_(Models() ? Height() : height_, options.ground_margin_px,
+                options.hider),
+        outline_(start),
+        blur_(options.blur_px),
+        open_(options.open),
+        smear_(options.travel_px, options.turn_rad, Extent(start)) {
+    geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
+    // A body of a few pixels cannot tell shading from shape; one with a look of
+    // its own has a shading, too, which other frames tell.
+    const double small_px = options.appearance != nullptr ? 3.0 : 5.0;
+    const bool flat =
+        inside == Inside::kOneLevel || SmallestHalf(start) < small_px;
+    interior_ = flat ? 1 : 6;
+    outer_ = options.surround == OutlineOptions::Surround::kPolynomial ? 6 : 0;
+  }
+
+  core::Expected<OutlineFit> Run();
+
+ private:
+  bool Models() const {
+    return options_.near_ground == OutlineOptions::NearGround::kModelled;
+  }
+  // Where the ground's blurred edge has ended, by 2e-4, and half of nine pixels
+  // above that.
+  double Zone_px() const {
+    constexpr double kBlurs = 3.5;
+    constexpr double kHalf_px = 1.5;
+    return kBlurs * options_.blur_px + kHalf_px;
+  }
+  void CollectPixels();
+  std::string Gather();
+  std::string Iterate(int& iterations);
+  bool SetAsideUnexplained();
+  void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
+  double Visible() const {
+    return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
+  }
+  void SolveLevels();
+  bool NearLevels();
+  static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
+  void Accumulate(bool robust);
+  void Sum(const OutlineRound& round);
+  OutlineRound Round() const;
+  Matrix Regular() const;
+  bool Step(double longer, double& geometric_step);
+  int OpenAt() const { return geometry_ + 1; }
+  int LevelsBegin() const { return geometry_ + 2; }
+  int Parameters() const { return LevelsBegin() + interior_ + outer_; }
+  bool Free(int k) const;
+  double full_scale() const { return background_.full_scale_dn; }
+  bool HasPrior() const { return options_.shading && interior_ == 6; }
+
+  const core::Frame& frame_;
+  const Background& background_;
+  const OutlineOptions& options_;
+  Height height_;
+  Behind behind_;
+  UsablePart usable_;
+  Outline outline_;
+  double blur_;
+  double open_;
+  Smear smear_;
+  int geometry_ = 3;
+  int interior_ = 6;
+  int outer_ = 0;
+  bool saturated_ = false;  // what lies around the body
+  double cosine_ = 1.0;
+  double sine_ = 0.0;
+  Vector levels_;  // interior then outer polynomial coefficients, DN
+  OutlinePixels pixels_;
+  std::vector<double> residuals_;  // in units of the expected noise
+  double robust_scale_ = 0.0;      // 0: plain least squares
+  OutlineSums sums_;
+  Matrix normal_;
+  Vector gradient_;
+  double contrast_ = 0.0;
+  double misfit_ = 0.0;
+  double inliers_ = 0.0;
+  bool converged_ = false;
+  double before_aside_ = 0.0;  // visible share, where something was set aside
+  bool telling_ = false;       // of what is held
+};
+
+void Fitter::CollectPixels() {
+  SetSmear();
+  PixelBand band;
+  constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
+  band.margin_px = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * smear_.way_px();
+  band.inner_px = saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
+  band.known_background = outer_ == 0;
+  band.appearance = outer_ == 0 ? options_.appearance : nullptr;
+  CollectOutlinePixels(frame_, behind_, outline_, cosine_, sine_, usable_, band,
+                       pixels_);
+}
+
+// Collects the pixels; why they are too few, or nothing.
+std::string Fitter::Gather() {
+  constexpr double kLeastVisible = 1.0 / 3.0;
+  if (Visible() < kLeastVisible) {
+    return "less than a third of the outline is visible";
+  }
+  CollectPixels();
+  if (static_cast<int>(pixels_.size) < 2 * Parameters()) {
+    return "too few pixels of the outline are visible";
+  }
+  return {};
+}
+
+bool Fitter::Free(int k) const {
+  if (k == geometry_) return options_.fit_blur || telling_;
+  if (k == OpenAt()) {
+    return options_.fit_open || (telling_ && smear_.IsResolved());
+  }
+  if (options_.fit_size || telling_) return true;
+  return !(k == 2 || (geometry_ == 5 && k == 3));
+}
+
+// Adds up the pixels and spreads the sums over all parameters: what is held has
+// no row.
+void Fitter::Sum(const OutlineRound& round) {
+  sums_.Of(pixels_, OutlineImage(outline_, smear_), round, residuals_);
+  std::array<int, kMostTerms> at{};
+  for (std::size_t k = 0; k < round.shapes; ++k) {
+    at[k] = round.shape[k] == OutlineRound::kBlur ? geometry_
+            : round.shape[k] == OutlineRound::kOpen
+                ? OpenAt()
+                : static_cast<int>(round.shape[k]);
+  }
+  for (std::size_t k = round.shapes; k < round.terms(); ++k) {
+    at[k] = LevelsBegin() + static_cast<int>(k - round.shapes);
+  }
+  normal_ = Matrix::Zero(Parameters(), Parameters());
+  gradient_ = Vector::Zero(Parameters());
+  for (std::size_t i = 0; i < round.terms(); ++i) {
+    gradient_[at[i]] = sums_.gradient(i);
+    for (std::size_t j = 0; j <= i; ++j) {
+      normal_(at[i], at[j]) = normal_(at[j], at[i]) = sums_.normal(i, j);
+    }
+  }
+  if (!HasPrior()) return;
+  for (int k = 0; k < interior_; ++k) {
+    const double u = options_.shading->u[At(k)];
+    const int row = LevelsBegin() + k;
+    normal_(row, row) += 1.0 / (u * u);
+    gradient_[row] +=
+        (options_.shading->level[At(k)] - round.levels[At(k)]) / (u * u);
+  }
+}
+
+OutlineRound Fitter::Round() const {
+  OutlineRound round;
+  round.interior = At(interior_);
+  round.outer = At(outer_);
+  return round;
+}
+
+// The levels that fit best at the present geometry: linear least squares, for a
+// start from which the joint iteration is tame.
+void Fitter::SolveLevels() {
+  Sum(Round());
+  const int n = interior_ + outer_;
+  Matrix a = normal_.bottomRightCorner(n, n);
+  // A trace of ridge keeps an unseen polynomial term at zero.
+  a.diagonal().array() += 1e-9 * (1e-12 + a.diagonal().maxCoeff());
+  levels_ = a.ldlt().solve(gradient_.tail(n));
+}
+
+// Those that the other frames tell, and with them that half of the residuals
+// are those of the noise, where the start is near; false elsewhere.
+bool Fitter::NearLevels() {
+  if (!options_.starts_near || !HasPrior() || outer_ != 0) return false;
+  levels_ = Eigen::Map<const Eigen::Vector<double, 6>>(
+      options_.shading->level.data());
+  robust_scale_ = 1.0;
+  return true;
+}
+
+// Builds the normal equations.
+void Fitter::Accumulate(bool robust) {
+  OutlineRound round = Round();
+  for (int k = 0; k < geometry_; ++k) {
+    if (Free(k)) round.shape[round.shapes++] = At(k);
+  }
+  if (Free(geometry_)) round.shape[round.shapes++] = OutlineRound::kBlur;
+  if (Free(OpenAt())) round.shape[round.shapes++] = OutlineRound::kOpen;
+  std::copy(levels_.begin(), levels_.end(), round.levels.begin());
+  if (robust) round.cut = kTukey * robust_scale_;
+  Sum(round);
+  contrast_ = sums_.contrast_dn;
+  const double clipped =
+      saturated_ ? ClippedAsExpected(pixels_, residuals_, full_scale()) : 0.0;
+  inliers_ = (sums_.inliers - clipped) /
+             std::max(1.0, static_cast<double>(pixels_.size) - clipped);
+  const double spare = sums_.inliers - clipped - Parameters();
+  misfit_ = spare > 0.0 ? std::sqrt(sums_.square / spare) : 0.0;
+}
+
+// The normal equations with what is held held, and a trace of ridge.
+Matrix Fitter::Regular() const {
+  Matrix a = normal_;
+  for (int k = 0; k < Parameters(); ++k) {
+    a(k, k) =
+        (k < LevelsBegin() && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
+  }
+  return a;
+}
+
+// A step of Gauss and Newton, `longer` so many times.
+bool Fitter::Step(double longer, double& geometric_step) {
+  const Eigen::LDLT<Matrix> factor(Regular());
+  if (factor.info() != Eigen::Success) return false;
+  Vector step = longer * factor.solve(gradient_);
+  if (!step.allFinite()) return false;
+  // No parameter may jump further than the linearisation holds.
+  const double size = SmallestHalf(outline_);
+  const double limit = std::max(0.5, 0.25 * size);
+  double shrink = 1.0;
+  for (int k = 0; k < geometry_; ++k) {
+    const double reach =
+        k == 4 ? limit / std::max(outline_.half_long_px, 1.0) : limit;
+    shrink = std::min(shrink, reach / std::max(std::abs(step[k]), 1e-300));
+  }
+  step.head(LevelsBegin()) *= std::min(1.0, shrink);
+  outline_.centre.x_px += step[0];
+  outline_.centre.y_px += step[1];
+  geometric_step = std::hypot(step[0], step[1]);
+  Grow(step[2], geometry_ == 5 ? step[3] : 0.0, outline_);
+  constexpr double kLeast_px = 0.7;
+  if (!(SmallestHalf(outline_) > kLeast_px)) return false;
+  geometric_step = std::max(geometric_step, std::abs(step[2]));
+  if (outline_.kind == core::BodyKind::kRectangle) {
+    outline_.angle_rad += step[4];
+    geometric_step = std::max({geometric_step, std::abs(step[3]),
+                               std::abs(step[4]) * outline_.half_long_px});
+    cosine_ = std::cos(outline_.angle_rad);
+    sine_ = std::sin(outline_.angle_rad);
+  }
+  // A pixel is a box of variance 1/12, so that no image is sharper than 0.29
+  // px.
+  constexpr double kSharpest_px = 0.25;
+  blur_ = std::clamp(blur_ + step[geometry_], kSharpest_px,
+                     std::max(2.0 * options_.blur_px, 0.5 * size));
+  open_ = std::clamp(open_ + step[OpenAt()], 0.0, 1.0);
+  levels_ += step.tail(interior_ + outer_);
+  SetSmear();
+  return true;
+}
+
+// Gauss-Newton to convergence; why it fails, or nothing.
+std::string Fitter::Iterate(int& iterations) {
+  double step = std::numeric_limits<double>::infinity();
+  converged_ = false;
+  core::PixelPoint collected = outline_.centre;
+  double collected_blur = blur_;
+  int robust_rounds = 0;
+  bool near = NearLevels();
+  for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+    ++iterations;
+    // It was not near enough, or the body is crudely modelled.
+    const auto begin_again = [&] {
+      near = false;
+      robust_rounds = 0;
+      iteration = -1;
+      step = std::numeric_limits<double>::infinity();
+      SolveLevels();
+    };
+    // Before the outline is nearly in place, its residuals are no outliers.
+    constexpr double kNear_px = 0.1;
+    const bool robust = near || iteration >= 2 || step < kNear_px;
+    const double last_step = step;
+    Accumulate(robust);
+    robust_rounds += robust ? 1 : 0;
+    // At least the expected noise, more where the model is crude. Held after a
+    // few rounds: a scale that follows the weights never settles.
+    constexpr int kSettled = 5;
+    if (iteration < kSettled) {
+      robust_scale_ = RobustScale(residuals_);
+    }
+    constexpr double kUsualScale = 1.25;  // of a good fit, noise being told
+    if (near && robust_scale_ > kUsualScale) {
+      begin_again();
+      continue;
+    }
+    // Weights change with the residuals: of normal ones Newton's step is longer
+    // by the mean of Tukey's weights over that of their influence's slope.
+    constexpr double kToNewton = 1.2;
+    if (!Step(near ? kToNewton : 1.0, step)) {
+      return "the outline's fit is degenerate";
+    }
+    if (near && step >= kNearStart_px) {
+      begin_again();
+      continue;
+    }
+    // From near, with the shape held, the next step is smaller by as much as
+    // this one is.
+    constexpr double kFewTolerances = 10.0;
+    constexpr double kSurer = 5.0;  // what is left is alike in all frames
+    const double next_step =
+        near && step < kFewTolerances * options_.tolerance_px
+            ? kSurer * step * (step / last_step)
+            : step;
+    if (std::min(step, next_step) < options_.tolerance_px &&
+        robust_rounds >= 2) {
+      converged_ = true;
+      break;
+    }
+    // Follow the body with the set of pixels while it still moves; at first
+    // closely, so that what is fitted to does not depend on the start.
+    const double kSamePlace_px = near ? kNearStart_px : 0.003;
+    // What is added to the shading moves with the body.
+    const double far_px = options_.appearance != nullptr ? 0.02 : 0.5;
+    const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
+                                    outline_.centre.y_px - collected.y_px);
+    const double spread = std::abs(blur_ - collected_blur);
+    if (moved > far_px ||
+        (iteration < 3 && std::max({moved, spread, step}) > kSamePlace_px)) {
+      if (std::string why = Gather(); !why.empty()) return why;
+      collected = outline_.centre;
+      collected_blur = blur_;
+    }
+  }
+  // Oscillation of a hundredth of a pixel comes from robust weights; more is no
+  // outline.
+  constexpr double kUsableStep_px = 0.02;
+  if (!converged_ && !(step < kUsableStep_px)) {
+    return "the outline's fit does not converge";
+  }
+  return {};
+}
+
+// Marks what lies clear inside the body and is not explained by it, as what is
+// in front of it or a highlight. Whether there is enough of it to fit again
+// without its neighbourhood, which biases the edge.
+bool Fitter::SetAsideUnexplained() {
+  // A body that is crudely modelled has such pixels everywhere.
+  if (robust_scale_ > kWellModelled) return false;
+  constexpr double kClear = 1.5;  // of the blur, inside the edge
+  constexpr double kReach = 4.0;  // of the blur: where its tail is 1e-4
+  const std::vector<core::PixelPoint> unexplained =
+      Unexplained(pixels_, residuals_, kTukey * robust_scale_, outline_,
+                  cosine_, sine_, kClear * blur_ + 0.5 * smear_.way_px());
+  if (unexplained.empty()) return false;
+  before_aside_ = Visible();
+  usable_.Without(unexplained, kReach * blur_ + 1.0);
+  return true;
+}
+
+core::Expected<OutlineFit> Fitter::Run() {
+  cosine_ = std::cos(outline_.angle_rad);
+  sine_ = std::sin(outline_.angle_rad);
+  std::string why = Gather();
+  if (!why.empty()) return core::AbsentBecause(why);
+  // Where the surround is saturated, the outer half of the edge's tail is cut
+  // off; its inner half must then not pass for shading, which would shift the
+  // edge outwards: one level for the whole body.
+  if (IsSurroundSaturated(pixels_, outline_, cosine_, sine_, full_scale())) {
+    saturated_ = true;
+    interior_ = 1;
+    CollectPixels();
+  }
+  if (!NearLevels()) SolveLevels();
+  int iterations = 0;
+  why = Iterate(iterations);
+  if (why.empty() && SetAsideUnexplained()) {
+    why = Gather();
+    if (why.empty()) why = Iterate(iterations);
+  }
+  if (!why.empty()) return core::AbsentBecause(why);
+  // What was summed a step of less than the tolerance ago is as good.
+  telling_ = options_.tell_shared;
+  if (!converged_ || telling_) Accumulate(true);
+  const double noise =
+      std::sqrt(background_.Variance(pixels_.MeanBackground()));
+  constexpr double kLeastContrast = 3.0;  // in noise of one pixel
+  // Noise has blobs of a pixel or two as bright as that: all of the body
+  // together must stand out, too.
+  constexpr double kLeastOfAll = 12.0;
+  const double area = Area(outline_);
+  if (!(std::abs(contrast_) > kLeastContrast * noise) ||
+      !(std::abs(contrast_) * std::sqrt(area) > kLeastOfAll * noise)) {
+    return core::AbsentBecause(
+        fmt::format("contrast {:.1f} DN is below {:.0f} times the noise {:.1f}",
+                    std::abs(contrast_), kLeastContrast, noise));
+  }
+
+  const Matrix covariance =
+      Regular().ldlt().solve(Matrix::Identity(Parameters(), Parameters()));
+  const double widen = std::max(1.0, misfit_);
+  const auto u = [&](int k) {
+    return k >= LevelsBegin() || Free(k)
+               ? widen * std::sqrt(std::max(0.0, covariance(k, k)))
+               : 0.0;
+  };
+  OutlineFit fit;
+  fit.outline = outline_;
+  if (telling_) {
+    const Vector step = covariance * gradient_;
+    Grow(step[2], geometry_ == 5 ? step[3] : 0.0, fit.outline);
+    const auto row = [&](int k) { return Free(k) ? k : -1; };
+    fit.shared =
+        WithoutOwn(Regular() / (widen * widen), gradient_ / (widen * widen),
+                   {2, geometry_ == 5 ? 3 : -1, geometry_, row(OpenAt())});
+  }
+  fit.blur_px = blur_;
+  fit.u_blur_px = u(geometry_);
+  fit.open = open_;
+  fit.u_open = u(OpenAt());
+  if (interior_ == 6) {
+    Shading shading;
+    for (int k = 0; k < interior_; ++k) {
+      shading.level[At(k)] = levels_[k];
+      shading.u[At(k)] = u(LevelsBegin() + k);
+    }
+    fit.shading = shading;
+  }
+  fit.u_x_px = u(0);
+  fit.u_y_px = u(1);
+  fit.correlation_xy =
+      covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1));
+  fit.u_size_px = u(2);
+  if (geometry_ == 5) {
+    fit.u_size_short_px = u(3);
+    fit.u_angle_rad = u(4);
+  }
+  fit.contrast_dn = contrast_;
+  fit.misfit = misfit_;
+  fit.inliers = inliers_;
+  fit.visible = Visible();
+  fit.hidden = std::max(0.0, before_aside_ - fit.visible);
+  fit.pixels = static_cast<int>(pixels_.size);
+  fit.iterations = iterations;
+  const NearGroundPixels near =
+      LookNearGround(pixels_, residuals_, height_, options_.ground_margin_px);
+  fit.pixels_near_ground = near.pixels;
+  fit.excess_near_ground = near.excess;
+  // Known to no better than half its size it is no outline.
+  const double vague = 0.5 * SmallestHalf(outline_);
+  if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <
+        vague) ||
+      !std::isfinite(fit.u_angle_rad) || inliers_ == 0.0) {
+    return core::AbsentBecause("the outline's covariance is degenerate");
+  }
+  return fit;
+}
+
+}  // namespace
+
+core::Expected<OutlineFit> FitOutlineWith(Inside inside,
+                                          const core::Frame& frame,
+                                          const Background& background,
+                                          const Outline& start,
+                                          const OutlineOptions& options) {
+  return Fitter(frame, background, start, options, inside).Run();
+}
+
+}  // namespace touchdown::vision

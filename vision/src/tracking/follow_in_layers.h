@@ -1,0 +1,32 @@
+// A track measured again by two layers: the picture behind the body and the
+// body's own (layers/layer_model.h).
+#pragma once
+
+#include <optional>
+
+#include "touchdown/core/expected.h"
+#include "touchdown/vision/background/background.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/tracking/tracker.h"
+
+namespace touchdown::vision {
+
+// Covered in a smaller share of the frames, a pixel's mid-mean is untouched by
+// the body but for a tenth of the noise.
+inline constexpr double kUntouched = 0.2;
+
+// What TrackBody asks of a track, so that it is worth the time: a body that its
+// outlines explain before a background that is known well needs no pictures.
+// `most_covered`: the largest share of the frames in which the track covers one
+// and the same pixel.
+bool NeedsLayers(const Track& track, double most_covered);
+
+// The same body in all frames between the first and the last pose of `track`,
+// which are within some pixels of the truth; Track::layered then. `size`: what
+// was stated. Absent, with the reason, where layers cannot be told apart.
+core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
+                                     const Track& track,
+                                     const std::optional<BodySize>& size,
+                                     int threads);
+
+}  // namespace touchdown::vision

@@ -1,0 +1,368 @@
+#include "tracking/follow_pattern.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "numbers/both_sides.h"
+#include "numbers/median.h"
+#include "outline/body_cover.h"
+#include "outline/track_shape.h"
+#include "touchdown/core/parallel.h"
+#include "track/image_size.h"
+#include "tracking/pattern.h"
+
+namespace touchdown::vision {
+namespace {
+
+constexpr std::size_t kLeast = 8;     // frames
+constexpr std::size_t kEnough = 120;  // frames that a pattern is learnt from
+constexpr int kLearningRounds = 12;   // of a pattern; most settle in five
+constexpr double kSlack_px = 6.0;     // that a pose may move within its view
+
+double SizeOf(const BodyImage& body) {
+  return body.kind == core::BodyKind::kSphere ? body.radius_px.value
+                                              : body.half_long_px.value;
+}
+
+Outline MiddleOutline(const Track& track) {
+  Pose pose;
+  std::vector<double> angles;
+  angles.reserve(track.poses.size());
+  for (const Pose& p : track.poses) angles.push_back(p.angle_rad);
+  pose.angle_rad = Median(std::move(angles));
+  return OutlineAt(track.body, pose);
+}
+
+// Of what moves as one it is known whether it turns.
+bool HasTurned(const Track& track) {
+  return std::any_of(track.poses.begin(), track.poses.end(),
+                     [&](const Pose& pose) {
+                       return pose.angle_rad != track.poses.front().angle_rad;
+                     });
+}
+
+// A pattern and the poses of the frames that it was learnt from.
+struct Learnt {
+  Pattern pattern;
+  std::vector<Pose> poses;
+  double misfit = 0.0;
+  bool settled = false;  // within the bound of rounds
+};
+
+// What all poses have moved by, which the pattern has, too.
+void TakeOutCommonMove(const std::vector<PatternPose>& before,
+                       std::vector<PatternPose>& after) {
+  std::vector<double> x, y, turn;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const Pose& a = before[k].pose;
+    const Pose& b = after[k].pose;
+    x.push_back(b.centre.x_px - a.centre.x_px);
+    y.push_back(b.centre.y_px - a.centre.y_px);
+    turn.push_back(b.angle_rad - a.angle_rad);
+  }
+  const double dx = Median(std::move(x));
+  const double dy = Median(std::move(y));
+  const double dt = Median(std::move(turn));
+  for (PatternPose& p : after) {
+    p.pose.centre.x_px -= dx;
+    p.pose.centre.y_px -= dy;
+    p.pose.angle_rad -= dt;
+  }
+}
+
+// In turns, the pattern of the frames and where it lies in each.
+std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
+                                std::vector<PatternPose> poses, Pattern pattern,
+                                const core::Cancellation& until, int threads) {
+  constexpr double kStill_px = 0.01;
+  bool settled = false;
+  for (int round = 0; round < kLearningRounds; ++round) {
+    if (!pattern.Learn(views, poses)) return std::nullopt;
+    std::vector<std::optional<PatternPose>> found(views.size());
+    core::InParallel(static_cast<std::int64_t>(views.size()), threads,
+                     [&](std::int64_t from, std::int64_t to) {
+                       for (auto k = static_cast<std::size_t>(from);
+                            k < static_cast<std::size_t>(to); ++k) {
+                         until.Check(poses[k].pose.frame);
+                         found[k] = pattern.Register(views[k], poses[k].pose);
+                       }
+                     });
+    std::vector<PatternView> kept;
+    std::vector<PatternPose> before;
+    std::vector<PatternPose> after;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (!found[k]) continue;
+      kept.push_back(std::move(views[k]));
+      before.push_back(poses[k]);
+      after.push_back(*found[k]);
+    }
+    if (kept.size() < kLeast) return std::nullopt;
+    TakeOutCommonMove(before, after);
+    std::vector<double> moved;
+    for (std::size_t k = 0; k < after.size(); ++k) {
+      moved.push_back(
+          std::hypot(after[k].pose.centre.x_px - before[k].pose.centre.x_px,
+                     after[k].pose.centre.y_px - before[k].pose.centre.y_px));
+    }
+    views = std::move(kept);
+    poses = std::move(after);
+    settled = Median(std::move(moved)) < kStill_px;
+    if (settled) break;
+  }
+  if (!pattern.Learn(views, poses)) return std::nullopt;
+  std::vector<Pose> learnt;
+  learnt.reserve(poses.size());
+  for (const PatternPose& p : poses) learnt.push_back(p.pose);
+  const double misfit = MedianMisfit(learnt);
+  return Learnt{std::move(pattern), std::move(learnt), misfit, settled};
+}
+
+// Where the path of three poses leads: what falls goes farther in a frame than
+// in the one before.
+Pose Ahead(const Pose& end, const Pose& next, const Pose& third,
+           std::int64_t frame) {
+  Pose pose = OnTheWay(end, next, frame);
+  if (std::abs(third.frame - end.frame) != 2) return pose;
+  pose.centre.x_px +=
+      end.centre.x_px - 2.0 * next.centre.x_px + third.centre.x_px;
+  pose.centre.y_px +=
+      end.centre.y_px - 2.0 * next.centre.y_px + third.centre.y_px;
+  return pose;
+}
+
+// The scatter of third differences is that of the poses (Roughness).
+double RoughnessOf(const std::vector<Pose>& poses) {
+  std::vector<Fitted> all(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    all[i].frame = poses[i].frame;
+    all[i].fit.outline.centre = poses[i].centre;
+  }
+  return Roughness(all);
+}
+
+// What poses tell of the path: frames over the square of their scatter.
+double Telling(const std::vector<Pose>& poses) {
+  const double rough = RoughnessOf(poses);
+  return static_cast<double>(poses.size()) / (rough * rough);
+}
+
+class Follower {
+ public:
+  Follower(Clip& clip, const Track& track, const Learnt& learnt, int threads)
+      : clip_(clip), track_(track), learnt_(learnt), threads_(threads) {}
+
+  // In the track's own frames, then on from there.
+  std::vector<Pose> All() const;
+
+ private:
+  std::vector<std::optional<PatternPose>> At(const std::vector<Pose>& starts,
+                                             double within_px) const;
+  bool IsGood(const Pose& pose) const {
+    constexpr double kUsual = 3.0;
+    return pose.misfit <= kUsual * learnt_.misfit;
+  }
+
+  Clip& clip_;
+  const Track& track_;
+  const Learnt& learnt_;
+  int threads_;
+};
+
+std::vector<std::optional<PatternPose>> Follower::At(
+    const std::vector<Pose>& starts, double within_px) const {
+  constexpr std::size_t kAtOnce = 64;  // views
+  std::vector<std::optional<PatternPose>> found(starts.size());
+  for (std::size_t begin = 0; begin < starts.size(); begin += kAtOnce) {
+    const std::size_t end = std::min(starts.size(), begin + kAtOnce);
+    std::vector<PatternView> views;
+    for (std::size_t i = begin; i < end; ++i) {
+      views.push_back(
+          ViewAround(clip_, starts[i].frame, starts[i].centre,
+                     learnt_.pattern.reach_px() + within_px + kSlack_px));
+    }
+    core::InParallel(static_cast<std::int64_t>(views.size()), threads_,
+                     [&](std::int64_t from, std::int64_t to) {
+                       for (auto k = static_cast<std::size_t>(from);
+                            k < static_cast<std::size_t>(to); ++k) {
+                         clip_.cancellation().Check(starts[begin + k].frame);
+                         found[begin + k] = learnt_.pattern.Register(
+                             views[k], starts[begin + k], within_px);
+                       }
+                     });
+  }
+  return found;
+}
+
+std::vector<Pose> Follower::All() const {
+  std::vector<Pose> poses;
+  std::vector<Pose> starts;
+  // Nearer to where the pattern lies than its own outline, if it was learnt
+  // from.
+  for (const Pose& pose : track_.poses) {
+    const auto known =
+        std::find_if(learnt_.poses.begin(), learnt_.poses.end(),
+                     [&](const Pose& p) { return p.frame == pose.frame; });
+    starts.push_back(known == learnt_.poses.end() ? pose : *known);
+  }
+  for (const auto& found : At(starts, 0.0)) {
+    if (found && IsGood(found->pose)) poses.push_back(found->pose);
+  }
+  if (poses.size() < kLeast) return poses;
+  // Frames within the track that have none, from both neighbours; then frame by
+  // frame beyond its ends, as long as it is found where it should be.
+  const double near = std::max(3.0, 0.15 * SizeOf(track_.body));
+  Track now = track_;
+  now.poses = poses;
+  starts.clear();
+  for (std::int64_t f = poses.front().frame + 1; f < poses.back().frame; ++f) {
+    const bool has = std::any_of(poses.begin(), poses.end(),
+                                 [&](const Pose& p) { return p.frame == f; });
+    if (!has) starts.push_back(*PoseIn(now, f));
+  }
+  const auto is_near = [&](const Pose& start, const Pose& found) {
+    return std::hypot(found.centre.x_px - start.centre.x_px,
+                      found.centre.y_px - start.centre.y_px) <= near;
+  };
+  const auto between = At(starts, near);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (between[i] && IsGood(between[i]->pose) &&
+        is_near(starts[i], between[i]->pose)) {
+      poses.push_back(between[i]->pose);
+    }
+  }
+  const auto by_frame = [](const Pose& a, const Pose& b) {
+    return a.frame < b.frame;
+  };
+  std::sort(poses.begin(), poses.end(), by_frame);
+  for (const bool on : {true, false}) {
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      // From the last two on, whichever way, into each gap and beyond the end.
+      const std::size_t at = on ? i : poses.size() - 1 - i;
+      const Pose& end = poses[at];
+      const Pose& next = on ? poses[at - 1] : poses[at + 1];
+      const std::int64_t frame = end.frame + (on ? 1 : -1);
+      if (frame < track_.first_frame || frame >= track_.last_frame) break;
+      const std::size_t beyond = on ? at + 1 : at - 1;
+      if (beyond < poses.size() && poses[beyond].frame == frame) continue;
+      // Straight on, or where a blow stopped it or turned it round.
+      const Pose last = end;
+      const std::size_t third_at = on ? at - 2 : at + 2;
+      const Pose straight = third_at < poses.size()
+                                ? Ahead(end, next, poses[third_at], frame)
+                                : OnTheWay(end, next, frame);
+      for (const double way : {1.0, 0.0, -1.0}) {
+        Pose start = straight;
+        start.centre.x_px =
+            last.centre.x_px + way * (straight.centre.x_px - last.centre.x_px);
+        start.centre.y_px =
+            last.centre.y_px + way * (straight.centre.y_px - last.centre.y_px);
+        const auto found = At({start}, near).front();
+        if (!found || !IsGood(found->pose) || !is_near(start, found->pose)) {
+          continue;
+        }
+        poses.insert(
+            poses.begin() + static_cast<std::ptrdiff_t>(on ? at + 1 : at),
+            found->pose);
+        break;
+      }
+    }
+  }
+  return poses;
+}
+
+}  // namespace
+
+Track FollowPattern(Clip& clip, const Background& background,
+                    const Track& track, int threads) {
+  if (!track.known_background || track.step > 1 || !IsSteady(track) ||
+      track.poses.size() < kLeast) {
+    return track;
+  }
+  if (!(MedianMisfit(track.poses) > kCrude)) return track;
+  clip.cancellation().Enter("the body's own picture is followed");
+  const std::size_t step = (track.poses.size() + kEnough - 1) / kEnough;
+  const Outline outline = MiddleOutline(track);
+  std::optional<Learnt> best;
+  std::vector<Pose> poses;
+  for (const bool turns : {false, true}) {
+    if (turns &&
+        !(track.outlined ? track.body.kind == core::BodyKind::kRectangle
+                         : HasTurned(track))) {
+      continue;
+    }
+    if (!turns && !track.outlined && HasTurned(track)) continue;
+    Pattern pattern(outline, turns, background);
+    std::vector<PatternView> views;
+    std::vector<PatternPose> starts;
+    for (const std::size_t i : FromBothSides(track.poses.size(), step)) {
+      const Pose& pose = track.poses[i];
+      starts.push_back({pose, {}});
+      views.push_back(ViewAround(clip, pose.frame, pose.centre,
+                                 pattern.reach_px() + kSlack_px));
+    }
+    auto learnt = LearnFrom(std::move(views), std::move(starts),
+                            std::move(pattern), clip.cancellation(), threads);
+    if (!learnt) continue;
+    std::vector<Pose> all = Follower(clip, track, *learnt, threads).All();
+    if (!best || Telling(all) > Telling(poses)) {
+      best = std::move(learnt);
+      poses = std::move(all);
+    }
+  }
+  constexpr double kNearlyAll = 0.9;
+  if (!best || static_cast<double>(poses.size()) <
+                   kNearlyAll * static_cast<double>(track.poses.size())) {
+    return track;
+  }
+  // Outlines of a crude body wander with what lies behind it, which neighbours
+  // in time do not show: the picture is taken unless it tells clearly less of
+  // the path; a dozen frames tell that to a half.
+  constexpr double kMuchLess = 0.5;
+  if (!(Telling(poses) > kMuchLess * Telling(track.poses))) return track;
+  Track patterned = track;
+  patterned.poses = std::move(poses);
+  patterned.patterned = true;
+  Track put = PutOn(track, patterned);
+  if (!best->settled) {
+    put.warnings.push_back(fmt::format(
+        "the body's own picture had not come to rest after {} rounds of "
+        "learning it; its places may wander",
+        kLearningRounds));
+  }
+  return put;
+}
+
+Track PutOn(const Track& outlines, const Track& patterned) {
+  Track put = outlines;
+  put.patterned = true;
+  put.poses = patterned.poses;
+  std::vector<double> x, y, turn, u_x, u_y;
+  for (const Pose& pose : patterned.poses) {
+    const auto same =
+        std::find_if(outlines.poses.begin(), outlines.poses.end(),
+                     [&](const Pose& p) { return p.frame == pose.frame; });
+    if (same == outlines.poses.end()) continue;
+    x.push_back(same->centre.x_px - pose.centre.x_px);
+    y.push_back(same->centre.y_px - pose.centre.y_px);
+    turn.push_back(same->angle_rad - pose.angle_rad);
+    u_x.push_back(same->u_x_px);
+    u_y.push_back(same->u_y_px);
+  }
+  if (x.empty()) return outlines;
+  const core::Estimate dx = RobustMean(x, u_x);
+  const core::Estimate dy = RobustMean(y, u_y);
+  const double dt = Median(std::move(turn));
+  for (Pose& pose : put.poses) {
+    pose.centre.x_px += dx.value;
+    pose.centre.y_px += dy.value;
+    pose.angle_rad += dt;
+  }
+  return put;
+}
+
+}  // namespace touchdown::vision

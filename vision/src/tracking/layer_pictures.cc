@@ -1,0 +1,220 @@
+#include "tracking/layer_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "outline/body_cover.h"
+
+namespace touchdown::vision {
+
+using layers::LayerPose;
+using layers::PictureStack;
+using layers::Shape;
+
+namespace {
+
+template <class Sample>
+void CopyRows(const core::Frame& window, const core::PixelRect& size,
+              float* out, std::int32_t stride) {
+  for (std::int32_t y = 0; y < size.height; ++y, out += stride) {
+    std::copy_n(window.row<Sample>(y), size.width, out);
+  }
+}
+
+// Reads `window` of a frame into rows that begin `stride` apart. The frame's
+// time.
+double ReadInto(Clip& clip, std::int64_t frame, const core::PixelRect& window,
+                float* out, std::int32_t stride) {
+  const core::Frame seen = clip.Read(frame, window);
+  if (seen.is_16_bit()) {
+    CopyRows<std::uint16_t>(seen, window, out, stride);
+  } else {
+    CopyRows<std::uint8_t>(seen, window, out, stride);
+  }
+  return seen.time_s;
+}
+
+}  // namespace
+
+core::PixelRect BoxAround(const Background& background, const Track& track,
+                          const Shape& shape, double blur_px) {
+  double left = 1e9;
+  double top = 1e9;
+  double right = -1e9;
+  double bottom = -1e9;
+  const auto include = [&](const core::PixelPoint& at) {
+    left = std::min(left, at.x_px);
+    right = std::max(right, at.x_px);
+    top = std::min(top, at.y_px);
+    bottom = std::max(bottom, at.y_px);
+  };
+  for (const Pose& pose : track.poses) include(pose.centre);
+  // Where it goes on from both ends; not far out of the picture.
+  const auto& poses = track.poses;
+  const auto beyond = [&](const Pose& end, const Pose& next,
+                          std::int64_t frame) {
+    const Pose there = OnTheWay(end, next, frame);
+    include({std::clamp(there.centre.x_px, 0.0, background.width_px - 1.0),
+             std::clamp(there.centre.y_px, 0.0, background.height_px - 1.0)});
+  };
+  beyond(poses[0], poses[1], track.first_frame);
+  beyond(poses.back(), poses[poses.size() - 2], track.last_frame - 1);
+  const double room = shape.Reach() + 4.0 * blur_px + 8.0;
+  const auto from = [room](double at) {
+    return std::max(0, static_cast<std::int32_t>(std::floor(at - room)));
+  };
+  const auto to = [room](double at, std::int32_t end) {
+    return std::min(end, static_cast<std::int32_t>(std::ceil(at + room)) + 1);
+  };
+  core::PixelRect box;
+  box.x = from(left);
+  box.y = from(top);
+  box.width = (to(right, background.width_px) - box.x) / 2 * 2;
+  box.height = (to(bottom, background.height_px) - box.y) / 2 * 2;
+  return box;
+}
+
+std::vector<float> CropBackground(const Background& background,
+                                  const core::PixelRect& box) {
+  std::vector<float> crop;
+  crop.reserve(static_cast<std::size_t>(box.width) *
+               static_cast<std::size_t>(box.height));
+  for (std::int32_t y = 0; y < box.height; ++y) {
+    for (std::int32_t x = 0; x < box.width; ++x) {
+      crop.push_back(background.at(box.x + x, box.y + y));
+    }
+  }
+  return crop;
+}
+
+LayerPath PathInBox(const Track& track, const core::PixelRect& box,
+                    bool turns) {
+  LayerPath path;
+  for (std::int64_t f = track.poses.front().frame;
+       f <= track.poses.back().frame; ++f) {
+    const auto pose = PoseIn(track, f);
+    if (!pose) continue;
+    path.frames.push_back(f);
+    path.poses.push_back({pose->centre.x_px - box.x, pose->centre.y_px - box.y,
+                          turns ? pose->angle_rad : 0.0});
+  }
+  return path;
+}
+
+std::vector<std::size_t> SpreadEvenly(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  const std::size_t taken = std::min(count, most);
+  for (std::size_t i = 0; i < taken; ++i) {
+    chosen.push_back(taken == count ? i : i * (count - 1) / (taken - 1));
+  }
+  return chosen;
+}
+
+LayerPath Choose(const LayerPath& all, const std::vector<std::size_t>& chosen) {
+  LayerPath some;
+  for (const std::size_t i : chosen) {
+    some.frames.push_back(all.frames[i]);
+    some.poses.push_back(all.poses[i]);
+  }
+  return some;
+}
+
+Track TrackInPicture(const Track& like, const LayerPath& path,
+                     const core::PixelRect& box) {
+  Track track = like;
+  track.poses.clear();
+  for (std::size_t t = 0; t < path.frames.size(); ++t) {
+    Pose pose;
+    pose.frame = path.frames[t];
+    pose.centre = {path.poses[t].x + box.x, path.poses[t].y + box.y};
+    pose.angle_rad = path.poses[t].angle_rad;
+    track.poses.push_back(pose);
+  }
+  return track;
+}
+
+PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
+                          const core::PixelRect& box) {
+  PictureStack stack;
+  stack.width = box.width;
+  stack.height = box.height;
+  stack.frames.assign(frames.begin(), frames.end());
+  stack.levels.resize(stack.pixels() * frames.size());
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    stack.times_s.push_back(ReadInto(clip, frames[t], box,
+                                     stack.levels.data() + t * stack.pixels(),
+                                     stack.width));
+  }
+  return stack;
+}
+
+PictureReader::PictureReader(Clip& clip, const std::vector<float>& still,
+                             const Shape& shape, const core::PixelRect& box)
+    : clip_(clip), still_(still), box_(box) {
+  constexpr double kRoom = 12.0;  // px
+  reach_ = shape.Reach() + kRoom;
+  stack_.width = box.width;
+  stack_.height = box.height;
+}
+
+core::PixelRect PictureReader::WindowAround(const LayerPose& pose) const {
+  const auto from = [this](double at, std::int32_t end) {
+    return std::clamp(static_cast<std::int32_t>(std::floor(at - reach_)), 0,
+                      end - 1);
+  };
+  const auto to = [this](double at, std::int32_t begin, std::int32_t end) {
+    return std::clamp(static_cast<std::int32_t>(std::ceil(at + reach_)),
+                      begin + 1, end);
+  };
+  core::PixelRect window;
+  window.x = from(pose.x, box_.width);
+  window.y = from(pose.y, box_.height);
+  window.width = to(pose.x, window.x, box_.width) - window.x;
+  window.height = to(pose.y, window.y, box_.height) - window.y;
+  return window;
+}
+
+const PictureStack& PictureReader::Read(const LayerPath& path) {
+  const bool whole =
+      path.frames.empty() || clip_.ChangesIn(path.frames.front()) == nullptr;
+  const std::size_t pixels = stack_.pixels();
+  stack_.frames = path.frames;
+  stack_.times_s.clear();
+  // It only grows: what `read_` says of a picture stays true.
+  stack_.levels.reserve(pixels * path.frames.size());
+  for (std::size_t t = 0; t < path.frames.size(); ++t) {
+    float* const levels = stack_.levels.data() + t * pixels;
+    if (t == read_.size()) {
+      stack_.levels.insert(stack_.levels.end(), still_.begin(), still_.end());
+      read_.emplace_back();
+    } else {
+      const core::PixelRect& old = read_[t];
+      for (std::int32_t y = old.y; y < old.y + old.height; ++y) {
+        const std::ptrdiff_t row = std::ptrdiff_t{y} * box_.width + old.x;
+        std::copy_n(still_.data() + row, old.width, levels + row);
+      }
+      read_[t] = {};
+    }
+    const core::PixelRect window =
+        whole ? core::PixelRect{0, 0, box_.width, box_.height}
+              : WindowAround(path.poses[t]);
+    stack_.times_s.push_back(ReadInto(
+        clip_, path.frames[t],
+        {box_.x + window.x, box_.y + window.y, window.width, window.height},
+        levels + std::ptrdiff_t{window.y} * box_.width + window.x, box_.width));
+    // A whole picture is written over by the next.
+    if (!whole) read_[t] = window;
+  }
+  return stack_;
+}
+
+PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
+                       const LayerPath& path, const Shape& shape,
+                       const core::PixelRect& box) {
+  PictureReader reader(clip, still, shape, box);
+  reader.Read(path);
+  return std::move(reader).Take();
+}
+
+}  // namespace touchdown::vision

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tracking/refiner.h"
+
+namespace touchdown::vision {
+
+void Refiner::LearnLook(Track& refined, std::vector<Fitted>& sized) {
+  if (!track_.known_background) return;
+  if (!LearnSpots(refined.body, sized) && !LearnRim(refined.body, sized)) {
+    options_.appearance = nullptr;
+    return;
+  }
+  options_.appearance = &*look_;
+  // A body that is well modelled now tells more of what is near it.
+  LookNearGround(refined);
+}
+
+bool Refiner::LearnSpots(const BodyImage& body, std::vector<Fitted>& sized) {
+  // The first outlines are drawn aside by what they do not know; after the
+  // third round nothing changes any more.
+  constexpr int kRounds = 3;
+  constexpr double kNearlyAll = 0.8;  // of the frames
+  look_.reset();
+  std::vector<Fitted> again = sized;
+  for (int round = 0; round < kRounds; ++round) {
+    auto look = LearnAppearance(clip_, background_, Seen(again), options_);
+    if (!look) break;
+    look_ = std::move(look);
+    options_.appearance = &*look_;
+    again = Sample(body);
+  }
+  if (!look_ ||
+      static_cast<double>(again.size()) <
+          kNearlyAll * static_cast<double>(sized.size()) ||
+      MedianMisfit(again) > std::max(kWellModelled, MedianMisfit(sized))) {
+    return false;
+  }
+  sized = std::move(again);
+  return true;
+}
+
+bool Refiner::LearnRim(const BodyImage& body, std::vector<Fitted>& sized) {
+  const double crude = MedianMisfit(sized);
+  if (body.kind != core::BodyKind::kSphere || !(crude > kWellModelled)) {
+    return false;
+  }
+  // Each round aligns the frames better to each other, or strays: the best
+  // counts. A hoop's misfit fell to 0.6 where its poses became twice as smooth,
+  // to 0.85 where they did not.
+  constexpr int kRounds = 8;
+  constexpr double kMuchBetter = 0.7;
+  constexpr double kNearlyAll = 0.8;  // of the frames
+  look_.reset();
+  options_.appearance = nullptr;
+  double least = kMuchBetter * crude;
+  std::vector<Fitted> best;
+  std::vector<Fitted> again = sized;
+  std::optional<Appearance> look;
+  for (int round = 0; round < kRounds; ++round) {
+    look = LearnRings(clip_, background_, Seen(again), options_);
+    if (!look) break;
+    options_.appearance = &*look;
+    again = Sample(body);
+    if (static_cast<double>(again.size()) <
+            kNearlyAll * static_cast<double>(sized.size()) ||
+        MedianMisfit(again) > least) {
+      continue;
+    }
+    least = MedianMisfit(again);
+    best = again;
+    look_ = look;
+  }
+  if (!look_) return false;
+  sized = std::move(best);
+  return true;
+}
+
+std::vector<SeenOutline> Refiner::Seen(const std::vector<Fitted>& fits) const {
+  std::vector<SeenOutline> seen;
+  std::size_t i = 0;  // both are in the frames' order
+  for (const Fitted& f : fits) {
+    while (i + 1 < track_.poses.size() && track_.poses[i].frame < f.frame) ++i;
+    const Motion& motion = motion_[i];
+    seen.push_back({f.frame, f.fit, core::PixelPoint{motion.x_px, motion.y_px},
+                    motion.turn_rad});
+  }
+  return seen;
+}
+
+}  // namespace touchdown::vision
