@@ -1,5 +1,7 @@
 #include "touchdown/rig/calibrate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,7 @@
 #include "touchdown/rig/description.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

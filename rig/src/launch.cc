@@ -1,5 +1,7 @@
 #include "touchdown/rig/launch.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "angles.h"

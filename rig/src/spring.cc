@@ -1,5 +1,7 @@
 #include "touchdown/rig/spring.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 

@@ -1,5 +1,7 @@
 #include "touchdown/rig/turning_flight.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,7 @@
 #include "touchdown/analysis/theory/boundary_models.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

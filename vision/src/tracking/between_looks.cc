@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "numbers/median.h"
 #include "outline/body_cover.h"
 
 namespace touchdown::vision {

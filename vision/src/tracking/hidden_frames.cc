@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "numbers/median.h"
 #include "outline/outline_pixels.h"
 #include "touchdown/calib/plane.h"
 

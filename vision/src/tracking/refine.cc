@@ -7,6 +7,7 @@
 #include "layers/layer_model.h"
 #include "numbers/both_sides.h"
 #include "outline/body_cover.h"
+#include "track/image_size.h"
 #include "tracking/between_looks.h"
 #include "tracking/follow_pattern.h"
 #include "tracking/refiner.h"

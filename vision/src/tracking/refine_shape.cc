@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "numbers/median.h"
 #include "tracking/refiner.h"
 
 namespace touchdown::vision {

@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "detection/first_look.h"
+#include "numbers/median.h"
 #include "outline/body_cover.h"
 #include "outline/outline_batch.h"
 #include "touchdown/core/errors.h"
+#include "track/image_size.h"
 #include "tracking/between_looks.h"
 #include "tracking/follow_in_layers.h"
 #include "tracking/follow_pattern.h"
