@@ -22,9 +22,10 @@ inline constexpr std::int64_t kApplicationId = 0x54445354;
 //   7  the plan and looks of a campaign have a digest
 //   8  a hash chain in place of the digests; what the rig was set to and the
 //      operator's note are conditions; views
+//   9  of kind face the contact angle of v_trials is a magnitude
 // A step leaves NULL in what it adds to rows that are there: their links
 // (chain.h) pass over it, and heads that were sealed before stay good.
-inline constexpr std::int64_t kSchemaVersion = 8;
+inline constexpr std::int64_t kSchemaVersion = 9;
 
 // All tables, indexes and triggers of version kSchemaVersion.
 std::string SchemaSql();

@@ -33,13 +33,23 @@ class Maker {
     Add(std::move(name), kReal, sql, std::move(meaning));
   }
   // Of the first contact f, in deg: the angle that the statement names.
+  // core::ContactAngle: of kind face the magnitude, so that below 0 the ends of
+  // an interval change places.
   void Angle(std::string name, std::string_view part, std::string meaning) {
+    std::string face = fmt::format("f.face_angle_rad{}", part);
+    if (part.empty()) {
+      face = fmt::format("abs({})", face);
+    } else if (part != "_u") {
+      face = fmt::format(
+          "CASE WHEN f.face_angle_rad < 0 THEN -f.face_angle_rad{} ELSE {} END",
+          part == "_low" ? "_high" : "_low", face);
+    }
     Add(std::move(name), kReal,
         fmt::format(
             "CASE s.angle_kind WHEN 'radius' THEN f.radius_angle_rad{0} "
-            "WHEN 'face' THEN f.face_angle_rad{0} "
-            "ELSE f.approach_angle_rad{0} END / {1}",
-            part, core::kDegree),
+            "WHEN 'face' THEN {1} "
+            "ELSE f.approach_angle_rad{0} END / {2}",
+            part, face, core::kDegree),
         std::move(meaning));
   }
   // In the unit of the edge; `inner` names column `column` of table `table`.
@@ -161,7 +171,9 @@ std::pair<View, std::string> Trials() {
   view.Text("angle_kind", "s.angle_kind",
             "approach, radius or face: what contact_angle_deg is");
   for (const auto& [part, name, meaning] :
-       {std::tuple("", "contact_angle_deg", "the angle that angle_kind names"),
+       {std::tuple("", "contact_angle_deg",
+                   "the angle that angle_kind names; of kind face its "
+                   "magnitude"),
         std::tuple("_u", "contact_angle_u_deg", "its standard uncertainty"),
         std::tuple("_low", "contact_angle_low_deg",
                    "lower end of its 95 % interval, where it has its own"),

@@ -181,6 +181,7 @@ void Upgrade(Connection& connection, std::int64_t from_version) {
         break;
       case 4:  // the digests of versions 5 and 7 are no more
       case 6:
+      case 8:  // a view
         break;
       case 7:
         UpgradeFrom7(connection);

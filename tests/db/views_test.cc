@@ -120,6 +120,38 @@ TEST_F(ViewsTest, TrialsAreAsTheyAreInForce) {
   EXPECT_EQ(Rows(store, "v_trials", "other").size(), 1u);
 }
 
+// As core::ContactAngle has it: a face that came down trailing end up is as
+// steep as its mirror image, and its interval lies on the same side.
+TEST_F(ViewsTest, TheContactAngleOfAFaceIsAMagnitude) {
+  core::Campaign campaign = SphereCampaign("faces");
+  campaign.body = core::Rectangle({0.04, 0.00002, {}}, {0.02, 0.00002, {}});
+  campaign.angle_kind = core::AngleKind::kFace;
+  core::Trial trial = SphereTrial(4, "faces");
+  trial.body = campaign.body;
+  trial.angle_kind = campaign.angle_kind;
+  trial.first.contact.face_angle_rad =
+      core::Estimate{-0.2, 0.01, core::Interval{-0.23, -0.18}};
+  Store store = Store::Open(path_, OpenMode::kWrite);
+  store.AddCampaign(campaign);
+  store.LogTrial(trial);
+  const auto rows = Rows(store, "v_trials", "faces");
+  ASSERT_EQ(rows.size(), 1u);
+  const Row& last = rows.front();
+  const auto angle = core::ContactAngle(trial);
+  EXPECT_DOUBLE_EQ(Real(last, "contact_angle_deg"),
+                   angle->value / core::kDegree);
+  EXPECT_DOUBLE_EQ(Real(last, "contact_angle_deg"), 0.2 / core::kDegree);
+  EXPECT_DOUBLE_EQ(Real(last, "contact_angle_u_deg"), 0.01 / core::kDegree);
+  EXPECT_DOUBLE_EQ(Real(last, "contact_angle_low_deg"), 0.18 / core::kDegree);
+  EXPECT_DOUBLE_EQ(Real(last, "contact_angle_high_deg"), 0.23 / core::kDegree);
+  EXPECT_DOUBLE_EQ(Real(last, "contact_angle_high_deg"),
+                   angle->interval95->high / core::kDegree);
+  // The face angle itself keeps its sign.
+  EXPECT_DOUBLE_EQ(
+      Real(Rows(store, "v_contacts", "faces").front(), "face_angle_deg"),
+      -0.2 / core::kDegree);
+}
+
 TEST_F(ViewsTest, ContactsTracksCampaignsAndRevisions) {
   const Store store = Store::Open(path_, OpenMode::kRead);
   const auto contacts = Rows(store, "v_contacts", "asphalt");
