@@ -56,8 +56,8 @@ struct BatchFlags {
 // analysed with it.
 std::atomic<bool> watch_interrupted = false;
 std::atomic<bool> analysing_batch = false;
-std::atomic<int> batch_ended_by =
-    0;  // the signal, where it cut an analysis off
+// The signal, where it cut an analysis off.
+std::atomic<int> batch_ended_by = 0;
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
 

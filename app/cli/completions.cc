@@ -86,8 +86,9 @@ std::string BashCompletion(const std::vector<CommandText>& tree) {
       Quoted(AllPaths(tree)), kFindPath);
   for (const CommandText& command : tree) {
     std::string names;
-    for (const Completion& word : CompletionsOf(command, tree))
+    for (const Completion& word : CompletionsOf(command, tree)) {
       names += " " + word.name;
+    }
     out += fmt::format("    {}) known={} ;;\n", Slashed(command.path),
                        Quoted(names.empty() ? names : names.substr(1)));
   }

@@ -56,8 +56,8 @@ void Listen() {
 }  // namespace
 
 void CatchInterruptions() {
-  if (pipe2(signal_pipe.data(), O_CLOEXEC) != 0)
-    return;  // the system's way, then
+  // Without a pipe signals end the program as the system has it.
+  if (pipe2(signal_pipe.data(), O_CLOEXEC) != 0) return;
   // Signals are for the other threads: waiting must end by them.
   sigset_t all;
   sigset_t before;

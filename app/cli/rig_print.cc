@@ -181,8 +181,9 @@ std::string SpringText(const rig::SpringReport& r) {
   out += ValueLine("force of one spring", r.force_of_one_n, "N");
   out += ValueLine("greatest shear stress", r.max_shear_pa * kPerMpa, "MPa");
   out += ValueLine("solid length", r.solid_length_m * kPerMm, "mm");
-  if (r.clearance_m)
+  if (r.clearance_m) {
     out += ValueLine("clearance", *r.clearance_m * kPerMm, "mm");
+  }
   out += ValueLine("mass of the springs", r.mass_kg * kPerGram, "g");
   out += ValueLine("surge frequency", r.surge_hz, "Hz");
   return out;

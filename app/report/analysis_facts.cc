@@ -61,8 +61,9 @@ std::string CalibrationText(const nlohmann::json& json) {
 std::string ListText(const nlohmann::json& json) {
   std::string out;
   if (json.is_array()) {
-    for (const nlohmann::json& item : json)
+    for (const nlohmann::json& item : json) {
       out += With(out.empty() ? "" : "; ", ScalarText(item));
+    }
   } else if (json.is_object()) {
     for (const auto& [name, why] : json.items()) {
       out += (out.empty() ? "" : "; ") + name + " (" + ScalarText(why) + ")";

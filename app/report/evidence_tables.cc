@@ -125,8 +125,9 @@ std::vector<Block> MakeBudget(const Group& group,
     table.rows.push_back(std::move(row));
   }
   std::vector<Cell> last{{"root mean square of the trials that count"}};
-  for (const auto& [rms, source] : sources)
+  for (const auto& [rms, source] : sources) {
     last.push_back(UncertaintyCell(rms));
+  }
   last.push_back(UncertaintyCell(std::sqrt(all)));
   table.rows.push_back(std::move(last));
   std::vector<Block> out{std::move(table)};
