@@ -20,7 +20,7 @@
 namespace touchdown::cli {
 namespace {
 
-struct Flags {
+struct AnalyzeCommandFlags {
   std::string clip;
   AnalyzeFlags analyze;
   std::string out;
@@ -34,7 +34,7 @@ struct Flags {
 // The document, with what became of it in the store.
 std::string DocumentOf(const pipeline::Analysis& analysis,
                        const std::optional<pipeline::Logged>& logged,
-                       const Flags& flags) {
+                       const AnalyzeCommandFlags& flags) {
   const std::string document = pipeline::ToJson(analysis);
   if (!logged) return document;
   using nlohmann::ordered_json;
@@ -46,7 +46,7 @@ std::string DocumentOf(const pipeline::Analysis& analysis,
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-int Run(const Flags& flags) {
+int RunAnalyze(const AnalyzeCommandFlags& flags) {
   KeepMemory();
   pipeline::AnalyzeOptions options = ToOptions(flags.analyze);
   if (flags.db.empty() && !flags.campaign.empty()) {
@@ -106,7 +106,7 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddAnalyze(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<AnalyzeCommandFlags>();
   CLI::App* command = app.add_subcommand(
       "analyze",
       "At what angle did it touch down, and did it slide or bounce?");
@@ -130,7 +130,7 @@ void AddAnalyze(CLI::App& app, Action& action) {
                     "leave clip.id out: nothing is read but what is measured");
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunAnalyze(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -36,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 using pipeline::TriageEntry;
 
-struct Flags {
+struct BatchFlags {
   std::string source;
   std::string db;
   std::string campaign;
@@ -54,27 +54,28 @@ struct Flags {
 
 // For the handler of SIGINT and SIGTERM: the watch ends, and what is being
 // analysed with it.
-std::atomic<bool> interrupted = false;
-std::atomic<bool> analysing = false;
-std::atomic<int> ended_by = 0;  // the signal, where it cut an analysis off
+std::atomic<bool> watch_interrupted = false;
+std::atomic<bool> analysing_batch = false;
+// The signal, where it cut an analysis off.
+std::atomic<int> batch_ended_by = 0;
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
 
-void OnSignal(int signal) {
-  interrupted = true;
-  if (!analysing) return;
-  ended_by = signal;
+void OnWatchSignal(int signal) {
+  watch_interrupted = true;
+  if (!analysing_batch) return;
+  batch_ended_by = signal;
   EndSoon(signal);
 }
 
-void CatchSignals() {
+void CatchWatchSignals() {
   struct sigaction action = {};
-  action.sa_handler = OnSignal;  // without SA_RESTART: waiting ends
+  action.sa_handler = OnWatchSignal;  // without SA_RESTART: waiting ends
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
 
-int PrintColumns() {
+int PrintManifestColumns() {
   std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
   for (const auto& column : pipeline::ManifestColumns()) {
     rows.push_back({std::string(column.name), std::string(column.meaning)});
@@ -83,7 +84,7 @@ int PrintColumns() {
   return 0;
 }
 
-db::Store OpenStore(const Flags& flags) {
+db::Store OpenStore(const BatchFlags& flags) {
   if (flags.campaign_from.empty()) {
     return db::Store::Open(flags.db, flags.campaign.empty()
                                          ? db::OpenMode::kCreate
@@ -138,7 +139,7 @@ void PrintTriage(const std::vector<TriageEntry>& entries) {
       counts.to_look_at);
 }
 
-int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
+int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   pipeline::SortByNeed(entries);
   if (!flags.out.empty()) {
     std::error_code trouble;  // writing says what is wrong
@@ -170,8 +171,8 @@ int Finish(std::vector<TriageEntry> entries, const Flags& flags) {
   return 5;
 }
 
-pipeline::BatchOptions OptionsOf(const Flags& flags, const db::Store& store,
-                                 ProgressBar& bar) {
+pipeline::BatchOptions OptionsOf(const BatchFlags& flags,
+                                 const db::Store& store, ProgressBar& bar) {
   pipeline::BatchOptions options;
   ApplyConditions(flags.conditions, options.conditions);
   if (options.conditions) {
@@ -185,24 +186,24 @@ pipeline::BatchOptions OptionsOf(const Flags& flags, const db::Store& store,
              fmt::format("{} of {}, {} failed, ", progress.done, progress.all,
                          progress.failed));
   };
-  options.stop = [] { return interrupted.load(); };
+  options.stop = [] { return watch_interrupted.load(); };
   return options;
 }
 
 // Takes what comes until SIGINT or SIGTERM.
-int WatchFolder(const Flags& flags, pipeline::AnalyzeOptions analyze) {
-  analyze.interrupted = &interrupted;
+int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
+  analyze.interrupted = &watch_interrupted;
   auto store = OpenStore(flags);
-  CatchSignals();
+  CatchWatchSignals();
   std::vector<TriageEntry> all;
   const auto take = [&](const std::vector<fs::path>& complete) {
     ProgressBar bar("batch");
-    analysing = true;
+    analysing_batch = true;
     const auto entries = pipeline::RunBatch(
         store,
         pipeline::ClipsOf(complete, flags.source, flags.campaign, analyze),
         OptionsOf(flags, store, bar));
-    analysing = false;
+    analysing_batch = false;
     bar.Finish();
     for (const TriageEntry& entry : entries) {
       if (!flags.json) {
@@ -222,19 +223,19 @@ int WatchFolder(const Flags& flags, pipeline::AnalyzeOptions analyze) {
   options.wait = [&](bool growing) {
     // Of a network drive nothing is heard: look now and then.
     constexpr std::chrono::milliseconds kNowAndThen{10000};
-    if (!interrupted) {
+    if (!watch_interrupted) {
       changes.Wait(growing ? pipeline::Settling::kQuiet : kNowAndThen);
     }
-    return !interrupted;
+    return !watch_interrupted;
   };
   pipeline::Watch(flags.source, options, take);
-  const int status = Finish(std::move(all), flags);
+  const int status = FinishBatch(std::move(all), flags);
   constexpr int kBySignal = 128;  // as shells count
-  return ended_by != 0 ? kBySignal + ended_by : status;
+  return batch_ended_by != 0 ? kBySignal + batch_ended_by : status;
 }
 
 std::vector<pipeline::BatchClip> ListClips(
-    const Flags& flags, const pipeline::AnalyzeOptions& analyze) {
+    const BatchFlags& flags, const pipeline::AnalyzeOptions& analyze) {
   if (!fs::is_directory(flags.source)) {
     return pipeline::ClipsOf(pipeline::ReadManifest(flags.source),
                              flags.campaign, analyze);
@@ -249,8 +250,8 @@ std::vector<pipeline::BatchClip> ListClips(
   return pipeline::ClipsOf(recordings, flags.source, flags.campaign, analyze);
 }
 
-int Run(const Flags& flags) {
-  if (flags.columns) return PrintColumns();
+int RunBatch(const BatchFlags& flags) {
+  if (flags.columns) return PrintManifestColumns();
   if (flags.source.empty()) {
     throw std::invalid_argument(
         "FOLDER is missing, must be a folder of recordings or a manifest.csv");
@@ -279,13 +280,13 @@ int Run(const Flags& flags) {
   ProgressBar bar("batch");
   auto entries = pipeline::RunBatch(store, clips, OptionsOf(flags, store, bar));
   bar.Finish();
-  return Finish(std::move(entries), flags);
+  return FinishBatch(std::move(entries), flags);
 }
 
 }  // namespace
 
 void AddBatch(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<BatchFlags>();
   CLI::App* command = app.add_subcommand(
       "batch",
       "analyse and log many recordings; can be killed and started again");
@@ -323,7 +324,7 @@ void AddBatch(CLI::App& app, Action& action) {
   AddConditionFlag(*command, flags->conditions);
   AddAnalyzeFlags(*command, flags->analyze);
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunBatch(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -54,10 +54,6 @@ Answer MakeAnswer(const BoundaryFlags& flags) {
   return out;
 }
 
-std::string Degrees(double angle_rad) {
-  return fmt::format("{:.2f}", angle_rad / kDegree);
-}
-
 void PrintGroup(const report::Group& group) {
   const auto& study = group.study;
   const auto& p = study.posterior;
@@ -70,33 +66,35 @@ void PrintGroup(const report::Group& group) {
   PrintLeftOut(group, "  left out    ");
   fmt::print("  alone       {}\n", report::BracketSentence(study.bracket));
   fmt::print("  boundary    {} deg, 95 % {} to {} deg, 90 % {} to {} deg\n",
-             Degrees(p.median_rad), Degrees(p.interval95_rad.low),
-             Degrees(p.interval95_rad.high), Degrees(p.interval90_rad.low),
-             Degrees(p.interval90_rad.high));
+             DegreesText(p.median_rad), DegreesText(p.interval95_rad.low),
+             DegreesText(p.interval95_rad.high),
+             DegreesText(p.interval90_rad.low),
+             DegreesText(p.interval90_rad.high));
   if (p.cautious_prior) {
     fmt::print(
         "              {} to {} deg under the first of its two priors on the "
         "scatter\n",
-        Degrees(analysis::Quantile(p, 0.025)),
-        Degrees(analysis::Quantile(p, 0.975)));
+        DegreesText(analysis::Quantile(p, 0.025)),
+        DegreesText(analysis::Quantile(p, 0.975)));
   }
   fmt::print(
       "  scatter     {} deg, 95 % {} to {} deg (sd of the estimate {} "
       "deg)\n",
-      Degrees(p.scatter_median_rad), Degrees(p.scatter95_rad.low),
-      Degrees(p.scatter95_rad.high), Degrees(p.sd_rad));
+      DegreesText(p.scatter_median_rad), DegreesText(p.scatter95_rad.low),
+      DegreesText(p.scatter95_rad.high), DegreesText(p.sd_rad));
   for (const auto& line : p.sensitivity) {
     fmt::print(
         "              {} deg, 95 % {} to {} deg if the scatter is about "
         "{} deg\n",
-        Degrees(line.median_rad), Degrees(line.interval95_rad.low),
-        Degrees(line.interval95_rad.high),
+        DegreesText(line.median_rad), DegreesText(line.interval95_rad.low),
+        DegreesText(line.interval95_rad.high),
         report::Plain(line.prior.median_rad / kDegree));
   }
-  fmt::print("  likelihood  {}, 95 % {}{} to {}{} deg\n",
-             l.has_estimate ? Degrees(l.estimate_rad) + " deg" : "no estimate",
-             l.open_low ? "(open) " : "", Degrees(l.interval95_rad.low),
-             Degrees(l.interval95_rad.high), l.open_high ? " (open)" : "");
+  fmt::print(
+      "  likelihood  {}, 95 % {}{} to {}{} deg\n",
+      l.has_estimate ? DegreesText(l.estimate_rad) + " deg" : "no estimate",
+      l.open_low ? "(open) " : "", DegreesText(l.interval95_rad.low),
+      DegreesText(l.interval95_rad.high), l.open_high ? " (open)" : "");
   fmt::print("  status      {}: {}\n", analysis::Name(p.status),
              report::StatusSentence(study));
   for (const auto& t : study.theories) {
@@ -116,7 +114,7 @@ void PrintGroup(const report::Group& group) {
   fmt::print("  next angle  {}\n", report::NextSentence(group));
 }
 
-int RunBoundary(const BoundaryFlags& flags) {
+int AnswerBoundary(const BoundaryFlags& flags) {
   const Answer answer = MakeAnswer(flags);
   if (flags.json) {
     fmt::print("{}\n",
@@ -215,8 +213,9 @@ void AddBoundary(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "boundary", "Estimate the boundary angle and compare it with theory");
   AddBoundaryFlags(*command, *flags);
-  command->callback(
-      [flags, &action] { action = [flags] { return RunBoundary(*flags); }; });
+  command->callback([flags, &action] {
+    action = [flags] { return AnswerBoundary(*flags); };
+  });
 }
 
 void AddReport(CLI::App& app, Action& action) {

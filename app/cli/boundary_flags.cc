@@ -29,7 +29,8 @@ using core::kDegree;
 // The word of --support-deg for the angles that can be thrown.
 constexpr std::string_view kOfTheRig = "rig";
 
-double Number(const char* flag, std::string_view text, const char* form) {
+double ReadFlagNumber(const char* flag, std::string_view text,
+                      const char* form) {
   double value = 0.0;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
@@ -41,8 +42,8 @@ double Number(const char* flag, std::string_view text, const char* form) {
 }
 
 template <class Parse>
-auto Word(const char* flag, const std::string& text, Parse parse,
-          const char* words) -> decltype(parse(text)) {
+auto OptionalWord(const char* flag, const std::string& text, Parse parse,
+                  const char* words) -> decltype(parse(text)) {
   if (text.empty()) return std::nullopt;
   auto parsed = parse(text);
   if (!parsed) {
@@ -62,12 +63,13 @@ std::optional<std::string> Given(const std::string& text) {
 core::Estimate ParseTheory(const std::string& text) {
   constexpr const char* kForm = "degrees from 0 to 90, e.g. 11.8 or 11.8+-0.5";
   const std::size_t sign = text.find("+-");
-  const double value =
-      Number("--theory-deg", std::string_view(text).substr(0, sign), kForm);
-  const double u = sign == std::string::npos
-                       ? 0.0
-                       : Number("--theory-deg",
-                                std::string_view(text).substr(sign + 2), kForm);
+  const double value = ReadFlagNumber(
+      "--theory-deg", std::string_view(text).substr(0, sign), kForm);
+  const double u =
+      sign == std::string::npos
+          ? 0.0
+          : ReadFlagNumber("--theory-deg",
+                           std::string_view(text).substr(sign + 2), kForm);
   if (!(value >= 0.0 && value <= 90.0) || !(u >= 0.0)) {
     throw std::invalid_argument(
         fmt::format("--theory-deg: '{}'; expected {}", text, kForm));
@@ -101,8 +103,8 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
   }
   const std::string_view view(text);
   const core::Interval range{
-      Number(flag, view.substr(0, colon), kForm) * kDegree,
-      Number(flag, view.substr(colon + 1), kForm) * kDegree};
+      ReadFlagNumber(flag, view.substr(0, colon), kForm) * kDegree,
+      ReadFlagNumber(flag, view.substr(colon + 1), kForm) * kDegree};
   if (!(range.low < range.high)) {
     throw std::invalid_argument(fmt::format(
         "{}: '{}'; expected {}, low below high", flag, text, kForm));
@@ -111,8 +113,8 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
 }
 
 std::optional<core::Corner> CornerOf(const BoundaryFlags& flags) {
-  return Word("--corner", flags.corner, core::ParseCorner,
-              "leading, trailing or flush");
+  return OptionalWord("--corner", flags.corner, core::ParseCorner,
+                      "leading, trailing or flush");
 }
 
 void RefuseCheckShots(const BoundaryFlags& flags,
@@ -158,12 +160,13 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
   out.paper_u_rad = flags.paper_u_deg * kDegree;
   out.campaign = Given(flags.campaign);
   out.surface = Given(flags.surface);
-  out.body =
-      Word("--body", flags.body, core::ParseBodyKind, "sphere or rectangle");
-  out.angle_kind = Word("--angle-kind", flags.angle_kind, core::ParseAngleKind,
-                        "approach, radius or face");
-  out.origin = Word("--origin", flags.origin, core::ParseOrigin,
-                    "recorded, simulated or manual");
+  out.body = OptionalWord("--body", flags.body, core::ParseBodyKind,
+                          "sphere or rectangle");
+  out.angle_kind =
+      OptionalWord("--angle-kind", flags.angle_kind, core::ParseAngleKind,
+                   "approach, radius or face");
+  out.origin = OptionalWord("--origin", flags.origin, core::ParseOrigin,
+                            "recorded, simulated or manual");
   out.from_utc = Given(flags.from);
   out.until_utc = Given(flags.until);
   out.reviewed_only = flags.reviewed;
@@ -311,6 +314,10 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
                      "with --rig: corner that lands first, leading, trailing "
                      "or flush");
   command.add_flag("--json", flags.json, "one JSON document");
+}
+
+std::string DegreesText(double angle_rad) {
+  return fmt::format("{:.2f}", angle_rad / kDegree);
 }
 
 }  // namespace touchdown::cli

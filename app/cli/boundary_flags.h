@@ -101,4 +101,7 @@ core::Estimate TheoryOf(const BoundaryFlags& flags);
 // "5:40", in degrees.
 core::Interval ParseRange(const char* flag, const std::string& text);
 
+// "11.80": an angle as these commands print it.
+std::string DegreesText(double angle_rad);
+
 }  // namespace touchdown::cli

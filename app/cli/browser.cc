@@ -18,7 +18,7 @@ std::filesystem::path OwnFolder() {
   return std::filesystem::temp_directory_path(ignored);
 }
 
-bool WriteAll(int descriptor, const std::string& text) {
+bool WriteToDescriptor(int descriptor, const std::string& text) {
   std::size_t written = 0;
   while (written < text.size()) {
     const ssize_t n =
@@ -48,7 +48,7 @@ BrowserPage::BrowserPage(const std::string& address) {
       "<meta http-equiv=\"refresh\" content=\"0; url={0}\">\n"
       "<p><a href=\"{0}\">touchdown review</a></html>\n",
       address);
-  const bool is_written = WriteAll(descriptor, page);
+  const bool is_written = WriteToDescriptor(descriptor, page);
   close(descriptor);
   if (is_written) return;
   unlink(name.c_str());

@@ -45,8 +45,8 @@ std::vector<std::filesystem::path> Expanded(
   return images;
 }
 
-pipeline::BoardPictures Find(const LensFlags& flags,
-                             const calib::Board& board) {
+pipeline::BoardPictures FindInPictures(const LensFlags& flags,
+                                       const calib::Board& board) {
   const auto images = Expanded(flags.images);
   if (images.empty()) {
     throw core::InputError(
@@ -65,9 +65,9 @@ pipeline::BoardPictures Find(const LensFlags& flags,
   return found;
 }
 
-nlohmann::ordered_json Json(const pipeline::BoardPictures& found,
-                            const calib::LensCalibration& lens,
-                            const calib::Calibration& file) {
+nlohmann::ordered_json LensJson(const pipeline::BoardPictures& found,
+                                const calib::LensCalibration& lens,
+                                const calib::Calibration& file) {
   nlohmann::ordered_json json;
   json["schema"] = "touchdown.calibrate.lens/1";
   for (int i = 0; i < calib::kLensParameters; ++i) {
@@ -138,13 +138,13 @@ void PrintLens(const pipeline::BoardPictures& found,
 
 int RunLens(const LensFlags& flags) {
   const calib::Board board = calib::ParseBoard(flags.board);
-  const pipeline::BoardPictures found = Find(flags, board);
+  const pipeline::BoardPictures found = FindInPictures(flags, board);
   const calib::LensCalibration lens = pipeline::LensOf(found, board);
   calib::Calibration file = BeginCalibration(flags.file, found.picture);
   file.lens = pipeline::RecordOf(lens, board);
   calib::WriteCalibration(flags.file.out, file);
   if (flags.json) {
-    fmt::print("{}\n", Json(found, lens, file)
+    fmt::print("{}\n", LensJson(found, lens, file)
                            .dump(2, ' ', false,
                                  nlohmann::json::error_handler_t::replace));
   } else {

@@ -44,8 +44,8 @@ Begun Begin(const ReferenceFlags& flags) {
   return begun;
 }
 
-void Finish(const ReferenceFlags& flags, const calib::Calibration& file,
-            const std::vector<std::string>& lines) {
+void WriteReference(const ReferenceFlags& flags, const calib::Calibration& file,
+                    const std::vector<std::string>& lines) {
   calib::WriteCalibration(flags.file.out, file);
   if (flags.json) {
     fmt::print("{}", calib::CalibrationText(file));
@@ -89,7 +89,7 @@ int RunScale(const ReferenceFlags& flags) {
         "--check-length-mm");
   }
   begun.file.scale = scale;
-  Finish(flags, begun.file, lines);
+  WriteReference(flags, begun.file, lines);
   return 0;
 }
 
@@ -226,7 +226,7 @@ int RunGround(const ReferenceFlags& flags) {
                   ground.p1.x_px, ground.p1.y_px, ground.p2.x_px,
                   ground.p2.y_px, ground.u_point_px));
   begun.file.ground = ground;
-  Finish(flags, begun.file, lines);
+  WriteReference(flags, begun.file, lines);
   return 0;
 }
 

@@ -36,7 +36,8 @@ struct RawRow {
   std::vector<std::string> cells;
 };
 
-std::vector<RawRow> Split(const std::string& file, const std::string& text) {
+std::vector<RawRow> ParseRows(const std::string& file,
+                              const std::string& text) {
   std::vector<RawRow> rows;
   RawRow row;
   std::string cell;
@@ -187,7 +188,7 @@ bool CaseTable::HasColumn(std::string_view column) const {
 
 CaseTable ReadCases(const std::string& path,
                     const std::vector<std::string>& columns) {
-  auto raw = Split(path, ReadAll(path));
+  auto raw = ParseRows(path, ReadAll(path));
   if (raw.empty()) {
     throw InputError(
         fmt::format("{}: is empty; expected a header and rows of cases", path));

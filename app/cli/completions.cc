@@ -33,13 +33,13 @@ std::string WithoutColons(std::string_view name) {
 }
 
 // Every word that may stand behind a command, with what it is.
-struct Word {
+struct Completion {
   std::string name;
   std::string description;
 };
-std::vector<Word> WordsOf(const CommandText& command,
-                          const std::vector<CommandText>& tree) {
-  std::vector<Word> words;
+std::vector<Completion> CompletionsOf(const CommandText& command,
+                                      const std::vector<CommandText>& tree) {
+  std::vector<Completion> words;
   for (const std::string& name : command.commands) {
     words.push_back(
         {name, CommandOf(tree, command.path + " " + name).description});
@@ -86,7 +86,9 @@ std::string BashCompletion(const std::vector<CommandText>& tree) {
       Quoted(AllPaths(tree)), kFindPath);
   for (const CommandText& command : tree) {
     std::string names;
-    for (const Word& word : WordsOf(command, tree)) names += " " + word.name;
+    for (const Completion& word : CompletionsOf(command, tree)) {
+      names += " " + word.name;
+    }
     out += fmt::format("    {}) known={} ;;\n", Slashed(command.path),
                        Quoted(names.empty() ? names : names.substr(1)));
   }
@@ -108,7 +110,7 @@ std::string ZshCompletion(const std::vector<CommandText>& tree) {
       Quoted(AllPaths(tree)), kFindPath);
   for (const CommandText& command : tree) {
     out += fmt::format("    {}) known=(\n", Slashed(command.path));
-    for (const Word& word : WordsOf(command, tree)) {
+    for (const Completion& word : CompletionsOf(command, tree)) {
       out += fmt::format("      {}\n", Quoted(WithoutColons(word.name) + ":" +
                                               word.description));
     }

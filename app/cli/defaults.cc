@@ -33,8 +33,8 @@ bool Has(const std::vector<std::string>& arguments, const std::string& name) {
 
 // The command that the line calls: the last of the words at its beginning that
 // are names of commands.
-const CLI::App* CommandOf(const std::vector<std::string>& arguments,
-                          const CLI::App& app) {
+const CLI::App* CalledCommand(const std::vector<std::string>& arguments,
+                              const CLI::App& app) {
   const CLI::App* at = &app;
   for (const std::string& word : arguments) {
     const auto called = at->get_subcommands(
@@ -104,7 +104,7 @@ std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
                           "--details-example", "--columns"}) {
     if (Has(arguments, own)) return arguments;
   }
-  const CLI::App* command = CommandOf(arguments, app);
+  const CLI::App* command = CalledCommand(arguments, app);
   const auto add = [&](const char* option, const std::string& value) {
     if (value.empty() || Has(arguments, option) ||
         command->get_option_no_throw(option) == nullptr) {

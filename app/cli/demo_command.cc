@@ -16,7 +16,7 @@
 namespace touchdown::cli {
 namespace {
 
-struct Flags {
+struct DemoFlags {
   std::string out = "touchdown-demo";
   std::uint64_t seed = 1;
   double limit_s = pipeline::kUsualLimit_s;
@@ -27,7 +27,7 @@ std::string TwoWords(core::MotionState state) {
   return core::IsNotBounce(state) ? "slide" : "bounce";
 }
 
-int Run(const Flags& flags) {
+int RunDemo(const DemoFlags& flags) {
   pipeline::DemoOptions options;
   options.folder = flags.out;
   options.seed = flags.seed;
@@ -70,7 +70,7 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddDemo(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<DemoFlags>();
   CLI::App* command = app.add_subcommand(
       "demo", "Table 1, end to end, on rendered clips with known truth");
   command
@@ -81,7 +81,7 @@ void AddDemo(CLI::App& app, Action& action) {
       ->capture_default_str();
   AddLimitFlag(*command, flags->limit_s);
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunDemo(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -20,7 +20,7 @@ void Write(const std::filesystem::path& path, const std::string& text) {
   file.Commit();
 }
 
-int Run(const CLI::App& app, const std::filesystem::path& out) {
+int WriteDescriptions(const CLI::App& app, const std::filesystem::path& out) {
   const auto tree = DescribeCommands(app);
   std::filesystem::create_directories(out / "man1");
   for (const CommandText& command : tree) {
@@ -41,7 +41,7 @@ void AddDescribe(CLI::App& app, Action& action) {
   command->group("");
   command->add_option("OUT", *out, "a folder")->required();
   command->callback([&app, out, &action] {
-    action = [&app, out] { return Run(app, *out); };
+    action = [&app, out] { return WriteDescriptions(app, *out); };
   });
 }
 

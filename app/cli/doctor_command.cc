@@ -19,12 +19,12 @@ namespace {
 // read.
 constexpr int kTroubleFound = 3;
 
-struct Flags {
+struct DoctorCommandFlags {
   DoctorFlags doctor;
   bool json = false;
 };
 
-int Run(const Flags& flags) {
+int RunDoctor(const DoctorCommandFlags& flags) {
   const auto findings = pipeline::Examine(ToOptions(flags.doctor));
   if (flags.json) {
     fmt::print("{}\n", pipeline::ToJson(findings));
@@ -63,7 +63,7 @@ pipeline::DoctorOptions ToOptions(const DoctorFlags& flags) {
 }
 
 void AddDoctor(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<DoctorCommandFlags>();
   CLI::App* command = app.add_subcommand(
       "doctor",
       "what of this machine, its store and its camera would stand in the way "
@@ -71,7 +71,7 @@ void AddDoctor(CLI::App& app, Action& action) {
   AddDoctorFlags(*command, flags->doctor);
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunDoctor(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -63,8 +63,8 @@ struct ExportFlags {
   std::string campaign;
 };
 
-void WriteAll(std::ostream& out, const db::Store& store,
-              const ExportFlags& flags, Format format) {
+void WriteExport(std::ostream& out, const db::Store& store,
+                 const ExportFlags& flags, Format format) {
   if (format == Format::kCsv) {
     db::TrialFilter filter;
     if (!flags.campaign.empty()) filter.campaign = flags.campaign;
@@ -127,7 +127,7 @@ int Export(const ExportFlags& flags) {
     return 0;
   }
   if (flags.out.empty()) {
-    WriteAll(std::cout, store, flags, format);
+    WriteExport(std::cout, store, flags, format);
     std::cout.flush();
     if (!std::cout) {
       throw core::OutputError("stdout: the export could not be written");
@@ -139,7 +139,7 @@ int Export(const ExportFlags& flags) {
   std::ostream out(&buffer);
   // What the file throws is thrown on.
   out.exceptions(std::ios::badbit);
-  WriteAll(out, store, flags, format);
+  WriteExport(out, store, flags, format);
   file.Commit();
   if (format == Format::kCsv) WriteTrialsSchema(flags.out);
   return 0;
@@ -158,7 +158,7 @@ struct ImportFlags {
   double paper_u_deg = 0.5;
 };
 
-int PrintColumns() {
+int PrintTrialColumns() {
   std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
   for (const auto& column : report::TrialCsvColumns()) {
     rows.push_back({column.name, column.meaning});
@@ -269,7 +269,7 @@ Imported ImportJsonLines(const ImportFlags& flags, const fs::path& db,
   return done;
 }
 
-int Print(const Imported& done) {
+int PrintImported(const Imported& done) {
   for (const auto& conflict : done.conflicts) {
     fmt::print("conflict: {}\n", Printable(conflict));
   }
@@ -335,7 +335,7 @@ int ImportPaperTable1(const ImportFlags& flags) {
 }
 
 int Import(const ImportFlags& flags) {
-  if (flags.columns) return PrintColumns();
+  if (flags.columns) return PrintTrialColumns();
   if (flags.paper_table1) return ImportPaperTable1(flags);
   if (flags.file.empty()) {
     throw std::invalid_argument(
@@ -365,9 +365,9 @@ int Import(const ImportFlags& flags) {
       fs::is_directory(fs::absolute(flags.db).parent_path(), ignored)) {
     const Rehearsal rehearsal;
     const Imported tried = import_into(rehearsal.store());
-    if (tried.count == 0) return Print(tried);
+    if (tried.count == 0) return PrintImported(tried);
   }
-  return Print(import_into(flags.db));
+  return PrintImported(import_into(flags.db));
 }
 
 }  // namespace

@@ -16,20 +16,22 @@ namespace touchdown::cli {
 namespace {
 
 // For the handler: where the thread listens.
-std::array<int, 2> listens = {-1, -1};
+std::array<int, 2> signal_pipe = {-1, -1};
 
 // What the thread is told: the signal's number, and whether the command may end
 // by itself first.
 constexpr unsigned char kSoon = 0x80;
 
-void Tell(unsigned char what) {
+void WakeListener(unsigned char what) {
   const int before = errno;
   // A full pipe has told enough.
-  [[maybe_unused]] const auto written = write(listens[1], &what, 1);
+  [[maybe_unused]] const auto written = write(signal_pipe[1], &what, 1);
   errno = before;
 }
 
-void OnSignal(int signal) { Tell(static_cast<unsigned char>(signal)); }
+void OnInterruption(int signal) {
+  WakeListener(static_cast<unsigned char>(signal));
+}
 
 [[noreturn]] void End(int signal) {
   core::RemoveUnfinished();
@@ -44,7 +46,7 @@ void OnSignal(int signal) { Tell(static_cast<unsigned char>(signal)); }
 void Listen() {
   constexpr std::chrono::milliseconds kMoment{100};
   unsigned char told = 0;
-  while (read(listens[0], &told, 1) != 1) {
+  while (read(signal_pipe[0], &told, 1) != 1) {
     if (errno != EINTR) return;
   }
   if ((told & kSoon) != 0) std::this_thread::sleep_for(kMoment);
@@ -54,7 +56,8 @@ void Listen() {
 }  // namespace
 
 void CatchInterruptions() {
-  if (pipe2(listens.data(), O_CLOEXEC) != 0) return;  // the system's way, then
+  // Without a pipe signals end the program as the system has it.
+  if (pipe2(signal_pipe.data(), O_CLOEXEC) != 0) return;
   // Signals are for the other threads: waiting must end by them.
   sigset_t all;
   sigset_t before;
@@ -63,13 +66,15 @@ void CatchInterruptions() {
   std::thread(Listen).detach();
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   struct sigaction action = {};
-  action.sa_handler = OnSignal;
+  action.sa_handler = OnInterruption;
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM}) {
     sigaction(signal, &action, nullptr);
   }
 }
 
-void EndSoon(int signal) { Tell(static_cast<unsigned char>(signal) | kSoon); }
+void EndSoon(int signal) {
+  WakeListener(static_cast<unsigned char>(signal) | kSoon);
+}
 
 }  // namespace touchdown::cli

@@ -64,7 +64,7 @@ void PrintLogged(const db::Logged& logged, bool json) {
   }
 }
 
-struct LogFlags {
+struct LogByHandFlags {
   std::string db;
   std::string campaign;
   pipeline::BodyEntry body;
@@ -73,7 +73,7 @@ struct LogFlags {
   bool json = false;
 };
 
-int Log(const LogFlags& flags) {
+int Log(const LogByHandFlags& flags) {
   const pipeline::ManualEntry entry{
       flags.campaign, pipeline::BodyOf(flags.body),
       StatementOf(flags.statement, std::nullopt), flags.by};
@@ -129,7 +129,7 @@ int Correct(const CorrectFlags& flags) {
 }  // namespace
 
 void AddLog(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<LogFlags>();
+  auto flags = std::make_shared<LogByHandFlags>();
   CLI::App* command =
       app.add_subcommand("log", "a trial by hand (origin: manual)");
   AddDbFlag(*command, flags->db);

@@ -44,8 +44,8 @@ std::string Dashed(std::string_view path) {
 }
 
 // One paragraph of each: its name in bold, its form, what it is.
-void AddList(std::string& page, std::string_view title,
-             const std::vector<OptionText>& options) {
+void AddOptionSection(std::string& page, std::string_view title,
+                      const std::vector<OptionText>& options) {
   if (options.empty()) return;
   page += fmt::format(".SH {}\n", title);
   for (const OptionText& option : options) {
@@ -58,8 +58,8 @@ void AddList(std::string& page, std::string_view title,
   }
 }
 
-void AddCommands(std::string& page, const CommandText& command,
-                 const std::vector<CommandText>& tree) {
+void AddCommandSection(std::string& page, const CommandText& command,
+                       const std::vector<CommandText>& tree) {
   if (command.commands.empty()) return;
   page += ".SH COMMANDS\n";
   for (const std::string& name : command.commands) {
@@ -88,9 +88,9 @@ std::string ManualPage(const CommandText& command,
   }
   if (!command.commands.empty()) page += " SUBCOMMAND";
   page += "\n";
-  AddList(page, "ARGUMENTS", command.positionals);
-  AddList(page, "OPTIONS", command.options);
-  AddCommands(page, command, tree);
+  AddOptionSection(page, "ARGUMENTS", command.positionals);
+  AddOptionSection(page, "OPTIONS", command.options);
+  AddCommandSection(page, command, tree);
   if (!command.footer.empty()) {
     page += fmt::format(".SH NOTES\n{}\n", Roff(command.footer));
   }

@@ -28,10 +28,6 @@ namespace {
 
 using core::kDegree;
 
-std::string Degrees(double angle_rad) {
-  return fmt::format("{:.2f}", angle_rad / kDegree);
-}
-
 // Neyer's test and up-and-down want the trials as they were thrown: the order
 // of a CSV file; of a store, the order in which trials were logged.
 std::vector<analysis::Observation> InOrder(
@@ -93,7 +89,7 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
 nlohmann::ordered_json PlanJson(const pipeline::Thrower& thrower,
                                 const core::Expected<rig::SetPoint>& point) {
   nlohmann::ordered_json out = session::SetPointsJson(thrower, point);
-  if (point) out["contact"] = Json(point->contact);
+  if (point) out["contact"] = PredictionJson(point->contact);
   return out;
 }
 
@@ -101,9 +97,10 @@ void PrintSetPoints(const pipeline::Thrower& thrower,
                     const core::Expected<rig::SetPoint>& point) {
   fmt::print("set-points        {}\n", session::SetPointsText(thrower, point));
   if (!point) return;
-  fmt::print("{}{}",
-             Line("launch speed", point->contact.launch_speed_mps, 1.0, "m/s"),
-             Text(point->contact.findings));
+  fmt::print(
+      "{}{}",
+      ValueLine("launch speed", point->contact.launch_speed_mps, 1.0, "m/s"),
+      FindingsText(point->contact.findings));
 }
 
 // The campaign without a trial yet: the one asked for, or what the flags say.
@@ -182,8 +179,8 @@ int RunNext(const BoundaryFlags& flags) {
   fmt::print("boundary now      {}\n", report::BoundarySentence(group.study));
   PrintLeftOut(group, "left out          ");
   fmt::print("sd after it       {} deg expected, {} deg now\n",
-             Degrees(next.expected_sd_rad),
-             Degrees(group.study.posterior.sd_rad));
+             DegreesText(next.expected_sd_rad),
+             DegreesText(group.study.posterior.sd_rad));
   switch (next.stop) {
     case analysis::StopReason::kTargetReached:
       fmt::print("stop              the 95 % interval is within +- {} deg\n",

@@ -169,7 +169,7 @@ std::string EntryText(const Entry& entry) {
   return Aligned(rows);
 }
 
-std::string HistoryText(const std::vector<Entry>& versions) {
+std::string EntryHistoryText(const std::vector<Entry>& versions) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < versions.size(); ++i) {
     text += fmt::format("  {}\n", VersionText(versions[i]));
@@ -182,7 +182,7 @@ std::string HistoryText(const std::vector<Entry>& versions) {
   return text;
 }
 
-void Print(const Entry& entry, bool json) {
+void PrintEntry(const Entry& entry, bool json) {
   if (json) {
     fmt::print("{}\n", report::EntryJson(entry));
   } else {
@@ -192,7 +192,7 @@ void Print(const Entry& entry, bool json) {
 
 // --- commands ----------------------------------------------------------------
 
-int Add(const EntryFlags& flags, RegisterKind kind) {
+int AddToRegister(const EntryFlags& flags, RegisterKind kind) {
   Entry entry = db::NewEntry(kind, flags.name);
   Apply(flags, entry);
   // A store is made only for what has been found right.
@@ -202,15 +202,15 @@ int Add(const EntryFlags& flags, RegisterKind kind) {
   });
   auto store = db::Store::Open(
       flags.db, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
-  Print(db::AddEntry(store, entry), flags.json);
+  PrintEntry(db::AddEntry(store, entry), flags.json);
   return 0;
 }
 
-int Change(const EntryFlags& flags, RegisterKind kind) {
+int ChangeInRegister(const EntryFlags& flags, RegisterKind kind) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   Entry entry = db::RequireEntry(store, kind, flags.name);
   Apply(flags, entry);
-  Print(db::ChangeEntry(store, entry), flags.json);
+  PrintEntry(db::ChangeEntry(store, entry), flags.json);
   return 0;
 }
 
@@ -227,7 +227,7 @@ RegisterKind KindOf(const std::string& word) {
                                  kKindWords);
 }
 
-int List(const LookFlags& flags) {
+int ListRegister(const LookFlags& flags) {
   std::vector<RegisterKind> kinds(db::kRegisterKinds.begin(),
                                   db::kRegisterKinds.end());
   if (!flags.kind.empty()) kinds = {KindOf(flags.kind)};
@@ -246,17 +246,17 @@ int List(const LookFlags& flags) {
   return 0;
 }
 
-int Show(const LookFlags& flags) {
+int ShowEntry(const LookFlags& flags) {
   const RegisterKind kind = KindOf(flags.kind);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   const Entry entry = db::RequireEntry(store, kind, flags.name);
   const auto versions = db::VersionsOf(store, kind, flags.name);
   if (flags.json && flags.history) {
-    for (const Entry& version : versions) Print(version, true);
+    for (const Entry& version : versions) PrintEntry(version, true);
     return 0;
   }
-  Print(entry, flags.json);
-  if (flags.history) fmt::print("{}", HistoryText(versions));
+  PrintEntry(entry, flags.json);
+  if (flags.history) fmt::print("{}", EntryHistoryText(versions));
   return 0;
 }
 
@@ -302,17 +302,17 @@ void AddRegister(CLI::App& app, Action& action) {
       "the lab's rigs, cameras, springs, calibrations, bodies, surfaces and "
       "operators");
   command->require_subcommand(1);
-  AddEntryCommands(*command, "add", "a new entry", action, Add);
+  AddEntryCommands(*command, "add", "a new entry", action, AddToRegister);
   AddEntryCommands(*command, "change",
                    "a further version of an entry; nothing is overwritten",
-                   action, Change);
+                   action, ChangeInRegister);
   auto flags = std::make_shared<LookFlags>();
   CLI::App* list = command->add_subcommand("list", "what is in the register");
   list->add_option("KIND", flags->kind, kKindWords);
   AddDbFlag(*list, flags->db);
   list->add_flag("--json", flags->json, "one JSON line for each");
   list->callback(
-      [flags, &action] { action = [flags] { return List(*flags); }; });
+      [flags, &action] { action = [flags] { return ListRegister(*flags); }; });
   CLI::App* show = command->add_subcommand("show", "one entry");
   show->add_option("KIND", flags->kind, kKindWords)->required();
   show->add_option("NAME", flags->name, "of the entry")->required();
@@ -320,7 +320,7 @@ void AddRegister(CLI::App& app, Action& action) {
   show->add_flag("--history", flags->history, "who changed what, when and why");
   show->add_flag("--json", flags->json, "one JSON line for each version");
   show->callback(
-      [flags, &action] { action = [flags] { return Show(*flags); }; });
+      [flags, &action] { action = [flags] { return ShowEntry(*flags); }; });
 }
 
 }  // namespace touchdown::cli

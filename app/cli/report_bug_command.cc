@@ -18,7 +18,7 @@
 namespace touchdown::cli {
 namespace {
 
-struct Flags {
+struct ReportBugFlags {
   std::string clip;
   AnalyzeFlags analyze;
   std::vector<std::string> typed;  // of the flags of `analyze`
@@ -40,7 +40,7 @@ std::vector<std::string> TypedOf(const std::vector<CLI::Option*>& options) {
   return typed;
 }
 
-bool IsWanted(const Flags& flags) {
+bool IsWanted(const ReportBugFlags& flags) {
   if (flags.yes) return true;
   Tell(fmt::format("write these into {}? [y/N]", flags.out));
   std::string answer;
@@ -51,7 +51,7 @@ bool IsWanted(const Flags& flags) {
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
-int Run(const Flags& flags) {
+int RunReportBug(const ReportBugFlags& flags) {
   ToOptions(flags.analyze);  // what is wrong is said before all else
   pipeline::BugOptions options;
   options.clip = flags.clip;
@@ -84,7 +84,7 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddReportBug(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ReportBugFlags>();
   CLI::App* command = app.add_subcommand(
       "report-bug",
       "analyse a recording and put the answer, the log, the options, the "
@@ -102,7 +102,7 @@ void AddReportBug(CLI::App& app, Action& action) {
   command->add_flag("--yes", flags->yes, "write it without asking");
   command->callback([flags, of_analyze, &action] {
     flags->typed = TypedOf(of_analyze);
-    action = [flags] { return Run(*flags); };
+    action = [flags] { return RunReportBug(*flags); };
   });
 }
 

@@ -35,7 +35,7 @@ struct ReviewFlags {
   std::string corner;
 };
 
-int Run(const ReviewFlags& flags) {
+int RunReview(const ReviewFlags& flags) {
   if (flags.port < 0 || flags.port > 65535) {
     throw std::invalid_argument(
         fmt::format("--port is {}, must be in 0 .. 65535", flags.port));
@@ -125,7 +125,7 @@ void AddReview(CLI::App& app, Action& action) {
                       "with --rig: corner that lands first, leading, trailing "
                       "or flush");
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunReview(*flags); }; });
 }
 
 }  // namespace touchdown::cli

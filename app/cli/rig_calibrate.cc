@@ -31,7 +31,7 @@ core::Estimate Measured(const CaseRow& row, const std::string& column) {
           std::nullopt};
 }
 
-void CalibrateStiffness(const CalibrateFlags& flags, OrderedJson& out) {
+void CalibrateStiffness(const CalibrateFlags& flags, Json& out) {
   const CaseTable table = ReadCases(flags.force, {});
   std::vector<rig::ForcePoint> points;
   for (const CaseRow& row : table.rows) {
@@ -43,16 +43,15 @@ void CalibrateStiffness(const CalibrateFlags& flags, OrderedJson& out) {
       flags.rig.u_compression_mm.value_or(0.0) * core::kMillimetre;
   const auto fit = rig::FitStiffness(points, options);
   if (flags.json) {
-    OrderedJson one{{"points", points.size()}, {"possible", !!fit}};
-    one["reason"] =
-        fit ? OrderedJson(nullptr) : OrderedJson(fit.error().reason);
+    Json one{{"points", points.size()}, {"possible", !!fit}};
+    one["reason"] = fit ? Json(nullptr) : Json(fit.error().reason);
     if (fit) {
-      one["stiffness_n_per_m"] = Json(fit->stiffness_n_per_m);
-      one["force_at_zero_n"] = Json(fit->force_at_zero_n);
+      one["stiffness_n_per_m"] = EstimateJson(fit->stiffness_n_per_m);
+      one["force_at_zero_n"] = EstimateJson(fit->force_at_zero_n);
       one["correlation"] = fit->correlation;
       one["residual_n"] = fit->residual_n;
       one["dof"] = fit->dof;
-      one["warnings"] = Json(fit->findings);
+      one["warnings"] = FindingsJson(fit->findings);
     }
     out["stiffness"] = std::move(one);
     return;
@@ -62,10 +61,11 @@ void CalibrateStiffness(const CalibrateFlags& flags, OrderedJson& out) {
     fmt::print("  absent: {}\n", fit.error().reason);
     return;
   }
-  fmt::print("{}{}{}{}", Line("stiffness", fit->stiffness_n_per_m, 1.0, "N/m"),
-             Line("force at zero", fit->force_at_zero_n, 1.0, "N"),
-             Line("scatter of force", fit->residual_n, "N"),
-             Text(fit->findings));
+  fmt::print("{}{}{}{}",
+             ValueLine("stiffness", fit->stiffness_n_per_m, 1.0, "N/m"),
+             ValueLine("force at zero", fit->force_at_zero_n, 1.0, "N"),
+             ValueLine("scatter of force", fit->residual_n, "N"),
+             FindingsText(fit->findings));
   fmt::print(
       "  for rig.toml, [springs]: stiffness_n_per_m = {{ value = {:.6g}, u = "
       "{:.2g} }}\n",
@@ -80,7 +80,7 @@ rig::LossModel LossesFrom(const std::string& word) {
       "--losses is \"{}\", must be none, per-shot or friction", word));
 }
 
-void CalibrateEfficiency(const CalibrateFlags& flags, OrderedJson& out) {
+void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
   rig::EfficiencyFitOptions options;
   options.losses = LossesFrom(flags.losses);
   const rig::Description rig = DescriptionFrom(flags.rig);
@@ -108,21 +108,20 @@ void CalibrateEfficiency(const CalibrateFlags& flags, OrderedJson& out) {
   }
   const auto fit = rig::FitEfficiency(points, launch, options);
   if (flags.json) {
-    OrderedJson one{{"points", points.size()},
-                    {"losses", flags.losses},
-                    {"possible", !!fit}};
-    one["reason"] =
-        fit ? OrderedJson(nullptr) : OrderedJson(fit.error().reason);
+    Json one{{"points", points.size()},
+             {"losses", flags.losses},
+             {"possible", !!fit}};
+    one["reason"] = fit ? Json(nullptr) : Json(fit.error().reason);
     if (fit) {
-      one["efficiency"] = Json(fit->efficiency);
+      one["efficiency"] = EstimateJson(fit->efficiency);
       one["effective_stiffness_n_per_m"] =
-          Json(fit->effective_stiffness_n_per_m);
-      one["loss_j"] = Json(fit->loss_j);
-      one["barrel_friction"] = Json(fit->barrel_friction);
+          EstimateJson(fit->effective_stiffness_n_per_m);
+      one["loss_j"] = EstimateJson(fit->loss_j);
+      one["barrel_friction"] = EstimateJson(fit->barrel_friction);
       one["slope_per_s2"] = fit->slope_per_s2;
       one["residual_m2_per_s2"] = fit->residual_m2_per_s2;
       one["dof"] = fit->dof;
-      one["warnings"] = Json(fit->findings);
+      one["warnings"] = FindingsJson(fit->findings);
     }
     out["efficiency"] = std::move(one);
     return;
@@ -133,16 +132,18 @@ void CalibrateEfficiency(const CalibrateFlags& flags, OrderedJson& out) {
     fmt::print("  absent: {}\n", fit.error().reason);
     return;
   }
-  fmt::print("{}{}", Line("efficiency", fit->efficiency, 1.0, ""),
-             Line("eta H", fit->effective_stiffness_n_per_m, 1.0, "N/m"));
+  fmt::print("{}{}", ValueLine("efficiency", fit->efficiency, 1.0, ""),
+             ValueLine("eta H", fit->effective_stiffness_n_per_m, 1.0, "N/m"));
   if (options.losses == rig::LossModel::kPerShot) {
-    fmt::print("{}", Line("loss per shot", fit->loss_j, 1.0, "J"));
+    fmt::print("{}", ValueLine("loss per shot", fit->loss_j, 1.0, "J"));
   }
   if (options.losses == rig::LossModel::kFriction) {
-    fmt::print("{}", Line("barrel friction", fit->barrel_friction, 1.0, ""));
+    fmt::print("{}",
+               ValueLine("barrel friction", fit->barrel_friction, 1.0, ""));
   }
-  fmt::print("{}{}", Line("scatter of v^2", fit->residual_m2_per_s2, "m2/s2"),
-             Text(fit->findings));
+  fmt::print("{}{}",
+             ValueLine("scatter of v^2", fit->residual_m2_per_s2, "m2/s2"),
+             FindingsText(fit->findings));
   fmt::print(
       "  for rig.toml, [ejector]: efficiency = {{ value = {:.6g}, u = {:.2g} "
       "}}\n",
@@ -155,7 +156,7 @@ int RunCalibrate(const CalibrateFlags& flags) {
         "give --force FORCES.csv (compression_mm, force_n[, u_force_n]) or "
         "--speeds SPEEDS.csv (compression_mm, speed_mps[, u_speed_mps])");
   }
-  OrderedJson out{{"schema", "touchdown.rig.calibrate/1"}};
+  Json out{{"schema", "touchdown.rig.calibrate/1"}};
   if (!flags.force.empty()) CalibrateStiffness(flags, out);
   if (!flags.speeds.empty()) CalibrateEfficiency(flags, out);
   if (flags.json) Print(out);

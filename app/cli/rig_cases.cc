@@ -75,7 +75,7 @@ Case ReadCase(const CaseRow& row) {
   return c;
 }
 
-void Add(Cells& cells, std::string_view name, double value) {
+void AddNumber(Cells& cells, std::string_view name, double value) {
   cells.emplace_back(name,
                      std::isnan(value) ? "nan" : fmt::format("{:.17g}", value));
 }
@@ -87,37 +87,38 @@ double SpeedOrNan(const rig::Launch& launch, double compression_m) {
 
 void AddSpring(const Case& c, const rig::SpringReport& report, Cells& cells) {
   const double whole_m = c.launch.preload_m + c.compression_m;
-  Add(cells, "H_outer_literal", report.stiffness_as_printed_n_per_m);
-  Add(cells, "H_mean", report.stiffness_n_per_m);
-  Add(cells, "ratio_H",
-      report.stiffness_n_per_m / report.stiffness_as_printed_n_per_m);
-  Add(cells, "spring_index_C", report.index);
-  Add(cells, "Wahl_Kw", report.wahl_factor);
-  Add(cells, "F_per_spring_N", report.force_of_one_n);
-  Add(cells, "tau_max_Pa", report.max_shear_pa);
-  Add(cells, "tau_uncorrected_Pa", report.uncorrected_shear_pa);
-  Add(cells, "solid_length_m", report.solid_length_m);
+  AddNumber(cells, "H_outer_literal", report.stiffness_as_printed_n_per_m);
+  AddNumber(cells, "H_mean", report.stiffness_n_per_m);
+  AddNumber(cells, "ratio_H",
+            report.stiffness_n_per_m / report.stiffness_as_printed_n_per_m);
+  AddNumber(cells, "spring_index_C", report.index);
+  AddNumber(cells, "Wahl_Kw", report.wahl_factor);
+  AddNumber(cells, "F_per_spring_N", report.force_of_one_n);
+  AddNumber(cells, "tau_max_Pa", report.max_shear_pa);
+  AddNumber(cells, "tau_uncorrected_Pa", report.uncorrected_shear_pa);
+  AddNumber(cells, "solid_length_m", report.solid_length_m);
   if (c.limits.free_length_m) {
-    Add(cells, "L0_m", *c.limits.free_length_m);
-    Add(cells, "coil_clearance_left_m",
-        *c.limits.free_length_m - whole_m - report.solid_length_m);
+    AddNumber(cells, "L0_m", *c.limits.free_length_m);
+    AddNumber(cells, "coil_clearance_left_m",
+              *c.limits.free_length_m - whole_m - report.solid_length_m);
   } else {
     cells.emplace_back("L0_m", "");
     cells.emplace_back("coil_clearance_left_m", "");
   }
-  Add(cells, "spring_mass_total_kg", report.mass_kg);
-  Add(cells, "surge_freq_Hz", report.surge_hz);
-  Add(cells, "spring_energy_J",
-      0.5 * report.stiffness_n_per_m * c.compression_m *
-          (c.compression_m + 2.0 * c.launch.preload_m));
+  AddNumber(cells, "spring_mass_total_kg", report.mass_kg);
+  AddNumber(cells, "surge_freq_Hz", report.surge_hz);
+  AddNumber(cells, "spring_energy_J",
+            0.5 * report.stiffness_n_per_m * c.compression_m *
+                (c.compression_m + 2.0 * c.launch.preload_m));
 }
 
 void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   const double x = c.compression_m;
-  Add(cells, "v_eq10_outer",
-      rig::IdealLaunchSpeed(x, report.stiffness_as_printed_n_per_m,
-                            c.launch.mass_kg));
-  Add(cells, "v_eq10_mean",
+  AddNumber(cells, "v_eq10_outer",
+            rig::IdealLaunchSpeed(x, report.stiffness_as_printed_n_per_m,
+                                  c.launch.mass_kg));
+  AddNumber(
+      cells, "v_eq10_mean",
       rig::IdealLaunchSpeed(x, report.stiffness_n_per_m, c.launch.mass_kg));
   // One correction of Eq. (10) at a time (with the preload), then all.
   rig::Launch one;
@@ -126,39 +127,40 @@ void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   one.preload_m = c.launch.preload_m;
   one.elevation_rad = c.launch.elevation_rad;
   one.gravity_mps2 = c.launch.gravity_mps2;
-  Add(cells, "v_gravity", SpeedOrNan(one, x));
+  AddNumber(cells, "v_gravity", SpeedOrNan(one, x));
   one.gravity_mps2 = 0.0;
   one.spring_mass_kg = c.launch.spring_mass_kg;
-  Add(cells, "v_spring_mass", SpeedOrNan(one, x));
+  AddNumber(cells, "v_spring_mass", SpeedOrNan(one, x));
   const double speed = SpeedOrNan(c.launch, x);
-  Add(cells, "v_full", speed);
+  AddNumber(cells, "v_full", speed);
   rig::Flight flight{kNan, kNan, kNan, kNan, kNan, kNan};
   if (!std::isnan(speed)) {
     flight = rig::Fly(speed, c.launch.elevation_rad, c.drop_m,
                       c.launch.gravity_mps2);
   }
-  Add(cells, "impact_speed", flight.impact_speed_mps);
-  Add(cells, "impact_angle_deg", flight.approach_angle_rad / core::kDegree);
-  Add(cells, "flight_time", flight.time_s);
-  Add(cells, "range", flight.range_m);
+  AddNumber(cells, "impact_speed", flight.impact_speed_mps);
+  AddNumber(cells, "impact_angle_deg",
+            flight.approach_angle_rad / core::kDegree);
+  AddNumber(cells, "flight_time", flight.time_s);
+  AddNumber(cells, "range", flight.range_m);
 }
 
 void AddUncertainty(const Case& c, const RigCasesOptions& options,
                     Cells& cells) {
   const rig::IdealSpeedU gum = rig::IdealSpeedUncertainty(c.spring, c.u);
-  Add(cells, "u_rel_GUM_mean", gum.u_rel);
-  Add(cells, "u_rel_GUM_outer", rig::PrintedSpeedUncertainty(c.u).u_rel);
-  Add(cells, "bias_rel_2nd_order", gum.bias_rel);
+  AddNumber(cells, "u_rel_GUM_mean", gum.u_rel);
+  AddNumber(cells, "u_rel_GUM_outer", rig::PrintedSpeedUncertainty(c.u).u_rel);
+  AddNumber(cells, "bias_rel_2nd_order", gum.bias_rel);
   std::mt19937_64 engine(options.seed);
   const rig::MonteCarloRun run =
       rig::IdealSpeedMonteCarlo(c.spring, c.u, options.draws, engine);
   rig::MonteCarlo mc{kNan, kNan, kNan, {kNan, kNan}};
   if (!run.outputs.empty()) mc = run.outputs.front();
-  Add(cells, "MC_mean_over_v", mc.mean);
-  Add(cells, "MC_u_rel", mc.u);
-  Add(cells, "MC_se_of_u", mc.u_of_u);
-  Add(cells, "MC_q2.5_over_v", mc.interval95.low);
-  Add(cells, "MC_q97.5_over_v", mc.interval95.high);
+  AddNumber(cells, "MC_mean_over_v", mc.mean);
+  AddNumber(cells, "MC_u_rel", mc.u);
+  AddNumber(cells, "MC_se_of_u", mc.u_of_u);
+  AddNumber(cells, "MC_q2.5_over_v", mc.interval95.low);
+  AddNumber(cells, "MC_q97.5_over_v", mc.interval95.high);
 }
 
 void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {

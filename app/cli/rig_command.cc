@@ -24,7 +24,7 @@ void RequireDraws(std::size_t draws) {
   }
 }
 
-void Print(const OrderedJson& json) { fmt::print("{}\n", json.dump(2)); }
+void Print(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 void AddRig(CLI::App& app, Action& action) {
   CLI::App* rig = app.add_subcommand(

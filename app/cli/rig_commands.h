@@ -6,11 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/command.h"
+#include "app/report/json.h"
 #include "touchdown/rig/predict.h"
 
 namespace touchdown::cli {
 
-using OrderedJson = nlohmann::ordered_json;
+using report::Json;
 
 void AddRigSpring(CLI::App& rig, Action& action);
 void AddRigLaunch(CLI::App& rig, Action& action);
@@ -29,6 +30,6 @@ void AddDrawFlags(CLI::App& app, DrawFlags& flags);
 // Throws std::invalid_argument unless 2 <= draws <= 1e8.
 void RequireDraws(std::size_t draws);
 
-void Print(const OrderedJson& json);
+void Print(const Json& json);
 
 }  // namespace touchdown::cli

@@ -19,7 +19,8 @@ constexpr double kMega = 1e6;
 
 // Overwrites `to` where the flag was given.
 template <class To>
-void Take(To& to, const char* flag, const std::string& text, double unit) {
+void TakeEstimate(To& to, const char* flag, const std::string& text,
+                  double unit) {
   if (!text.empty()) to = ParseEstimate(flag, text, unit);
 }
 
@@ -49,11 +50,14 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
   }
   const double dead =
       fresh ? 2.0 : geometry.total_coils - geometry.active_coils.value;
-  Take(geometry.shear_modulus_pa, "--shear-modulus-gpa",
-       flags.shear_modulus_gpa, kGiga);
-  Take(geometry.wire_diameter_m, "--wire-mm", flags.wire_mm, core::kMillimetre);
-  Take(geometry.coil_diameter_m, "--coil-mm", flags.coil_mm, core::kMillimetre);
-  Take(geometry.active_coils, "--active-coils", flags.active_coils, 1.0);
+  TakeEstimate(geometry.shear_modulus_pa, "--shear-modulus-gpa",
+               flags.shear_modulus_gpa, kGiga);
+  TakeEstimate(geometry.wire_diameter_m, "--wire-mm", flags.wire_mm,
+               core::kMillimetre);
+  TakeEstimate(geometry.coil_diameter_m, "--coil-mm", flags.coil_mm,
+               core::kMillimetre);
+  TakeEstimate(geometry.active_coils, "--active-coils", flags.active_coils,
+               1.0);
   if (!flags.coil_diameter.empty()) {
     const auto kind = rig::ParseCoilDiameter(flags.coil_diameter);
     if (!kind) {
@@ -115,8 +119,8 @@ rig::Description DescriptionFrom(const RigFlags& flags) {
   if (!flags.rig.empty()) out = rig::ReadDescription(flags.rig);
   rig::Springs& springs = out.springs;
   const bool typed_stiffness = !flags.stiffness_n_per_m.empty();
-  Take(springs.stiffness_n_per_m, "--stiffness-n-per-m",
-       flags.stiffness_n_per_m, 1.0);
+  TakeEstimate(springs.stiffness_n_per_m, "--stiffness-n-per-m",
+               flags.stiffness_n_per_m, 1.0);
   TakeGeometry(flags, springs);
   // Both typed: the measured one is used, as in rig.toml.
   if (typed_stiffness) {
@@ -137,13 +141,15 @@ rig::Description DescriptionFrom(const RigFlags& flags) {
   if (flags.allowable_shear_mpa) {
     springs.allowable_shear_pa = *flags.allowable_shear_mpa * kMega;
   }
-  Take(springs.mass_kg, "--spring-mass-g", flags.spring_mass_g, kGram);
-  Take(out.preload_m, "--preload-mm", flags.preload_mm, core::kMillimetre);
-  Take(out.mass_kg, "--mass-g", flags.mass_g, kGram);
-  Take(out.efficiency, "--efficiency", flags.efficiency, 1.0);
-  Take(out.barrel_friction, "--barrel-friction", flags.barrel_friction, 1.0);
-  Take(out.loss_j, "--loss-j", flags.loss_j, 1.0);
-  Take(out.gravity_mps2, "--gravity-mps2", flags.gravity_mps2, 1.0);
+  TakeEstimate(springs.mass_kg, "--spring-mass-g", flags.spring_mass_g, kGram);
+  TakeEstimate(out.preload_m, "--preload-mm", flags.preload_mm,
+               core::kMillimetre);
+  TakeEstimate(out.mass_kg, "--mass-g", flags.mass_g, kGram);
+  TakeEstimate(out.efficiency, "--efficiency", flags.efficiency, 1.0);
+  TakeEstimate(out.barrel_friction, "--barrel-friction", flags.barrel_friction,
+               1.0);
+  TakeEstimate(out.loss_j, "--loss-j", flags.loss_j, 1.0);
+  TakeEstimate(out.gravity_mps2, "--gravity-mps2", flags.gravity_mps2, 1.0);
   const auto take_u = [](const char* flag, const std::optional<double>& given,
                          double unit, double& to) {
     if (!given) return;

@@ -50,26 +50,24 @@ int RunLaunch(const LaunchFlags& flags) {
   const double ideal = rig::IdealLaunchSpeed(
       setting.compression_m, launch.stiffness_n_per_m, launch.mass_kg);
   if (flags.json) {
-    OrderedJson out{
-        {"schema", "touchdown.rig.launch/1"},
-        {"compression_mm", setting.compression_m / core::kMillimetre},
-        {"elevation_deg", flags.elevation_deg},
-        {"muzzle_height_mm", flags.height_mm ? OrderedJson(*flags.height_mm)
-                                             : OrderedJson(nullptr)},
-        {"ideal_speed_mps", ideal},
-        {"leaves_muzzle", muzzle.has_value()},
-        {"reason",
-         muzzle ? OrderedJson(nullptr) : OrderedJson(muzzle.error().reason)}};
+    Json out{{"schema", "touchdown.rig.launch/1"},
+             {"compression_mm", setting.compression_m / core::kMillimetre},
+             {"elevation_deg", flags.elevation_deg},
+             {"muzzle_height_mm",
+              flags.height_mm ? Json(*flags.height_mm) : Json(nullptr)},
+             {"ideal_speed_mps", ideal},
+             {"leaves_muzzle", muzzle.has_value()},
+             {"reason", muzzle ? Json(nullptr) : Json(muzzle.error().reason)}};
     out["energy_j"] =
-        muzzle ? OrderedJson{{"springs", muzzle->energy.spring_j},
-                             {"losses", muzzle->energy.losses_j},
-                             {"gravity", muzzle->energy.gravity_j},
-                             {"friction", muzzle->energy.friction_j},
-                             {"body", muzzle->energy.body_j},
-                             {"spring_motion", muzzle->energy.spring_motion_j}}
-               : OrderedJson(nullptr);
+        muzzle ? Json{{"springs", muzzle->energy.spring_j},
+                      {"losses", muzzle->energy.losses_j},
+                      {"gravity", muzzle->energy.gravity_j},
+                      {"friction", muzzle->energy.friction_j},
+                      {"body", muzzle->energy.body_j},
+                      {"spring_motion", muzzle->energy.spring_motion_j}}
+               : Json(nullptr);
     out["allowed"] = rig::Allowed(contact.findings);
-    OrderedJson predicted = Json(contact);
+    Json predicted = PredictionJson(contact);
     if (!flags.height_mm) {
       for (const char* name :
            {"impact_speed_mps", "approach_angle_deg", "flight_time_s",
@@ -90,8 +88,8 @@ int RunLaunch(const LaunchFlags& flags) {
   if (!muzzle) {
     fmt::print("  {}\n", muzzle.error().reason);
   } else {
-    fmt::print("{}", Text(contact, flags.height_mm.has_value()));
-    fmt::print("{}", Line("ideal speed, Eq. (10)", ideal, "m/s"));
+    fmt::print("{}", PredictionText(contact, flags.height_mm.has_value()));
+    fmt::print("{}", ValueLine("ideal speed, Eq. (10)", ideal, "m/s"));
     const rig::EnergyBalance& e = muzzle->energy;
     fmt::print(
         "  energy, J: springs {:.4g} = losses {:.4g} + gravity {:.4g} + "
@@ -99,7 +97,7 @@ int RunLaunch(const LaunchFlags& flags) {
         e.spring_j, e.losses_j, e.gravity_j, e.friction_j, e.body_j,
         e.spring_motion_j);
   }
-  fmt::print("{}", Text(contact.findings));
+  fmt::print("{}", FindingsText(contact.findings));
   return 0;
 }
 

@@ -77,7 +77,8 @@ std::string PlanText(double angle_deg, core::AngleKind kind,
         "; lands at {} deg",
         Rounded(core::Scaled(*angle.first_order, 1.0 / core::kDegree)));
   }
-  return out + '\n' + (all ? Text(contact, true) : "") + Text(contact.findings);
+  return out + '\n' + (all ? PredictionText(contact, true) : "") +
+         FindingsText(contact.findings);
 }
 
 int RunPlan(const PlanFlags& flags) {
@@ -86,11 +87,11 @@ int RunPlan(const PlanFlags& flags) {
   rig::ContactWish wish = WishFrom(flags, rig);
   const std::string kind(core::Name(wish.kind));
   std::mt19937_64 engine(flags.draw.seed);
-  OrderedJson out{{"schema", "touchdown.rig.plan/1"},
-                  {"rig", rig.name},
-                  {"angle_kind", kind},
-                  {"speed_mps", wish.speed_mps},
-                  {"set_points", OrderedJson::array()}};
+  Json out{{"schema", "touchdown.rig.plan/1"},
+           {"rig", rig.name},
+           {"angle_kind", kind},
+           {"speed_mps", wish.speed_mps},
+           {"set_points", Json::array()}};
   if (!flags.json) {
     fmt::print("plan for {}: {} angle, {:g} m/s at touchdown\n",
                rig.name.empty() ? "the rig" : rig.name, kind, wish.speed_mps);
@@ -99,16 +100,15 @@ int RunPlan(const PlanFlags& flags) {
     wish.angle_rad = angle_deg * core::kDegree;
     const auto point = rig::PlanContact(rig, wish, {flags.draw.draws}, engine);
     if (flags.json) {
-      OrderedJson one{{"angle_deg", angle_deg}, {"possible", !!point}};
-      one["reason"] =
-          point ? OrderedJson(nullptr) : OrderedJson(point.error().reason);
+      Json one{{"angle_deg", angle_deg}, {"possible", !!point}};
+      one["reason"] = point ? Json(nullptr) : Json(point.error().reason);
       if (point) {
         one["elevation_deg"] = point->setting.elevation_rad / core::kDegree;
         one["compression_mm"] =
             point->setting.compression_m / core::kMillimetre;
         one["muzzle_height_mm"] =
             point->setting.muzzle_height_m / core::kMillimetre;
-        one["contact"] = Json(point->contact);
+        one["contact"] = PredictionJson(point->contact);
       }
       out["set_points"].push_back(std::move(one));
       continue;

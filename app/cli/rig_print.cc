@@ -11,21 +11,19 @@
 namespace touchdown::cli {
 namespace {
 
-using Json_ = nlohmann::ordered_json;
-
 constexpr double kPerDegree = 180.0 / std::numbers::pi;  // deg in a rad
 constexpr double kPerMm = 1e3;
 constexpr double kPerMpa = 1e-6;
 constexpr double kPerGram = 1e3;
 
-void Put(Json_& to, Json_& absent, const char* name,
-         const rig::Predicted& value, double per_si) {
+void PutPredicted(Json& to, Json& absent, const char* name,
+                  const rig::Predicted& value, double per_si) {
   if (!value.first_order) {
     to[name] = nullptr;
     absent[name] = value.first_order.error().reason;
     return;
   }
-  Json_ out = Json(*value.first_order, per_si);
+  Json out = EstimateJson(*value.first_order, per_si);
   if (value.monte_carlo) {
     const rig::MonteCarlo& mc = *value.monte_carlo;
     out["monte_carlo"] = {
@@ -39,28 +37,28 @@ void Put(Json_& to, Json_& absent, const char* name,
     absent[std::string(name) + ".monte_carlo"] =
         value.monte_carlo.error().reason;
   }
-  out["budget"] = Json_::array();
+  out["budget"] = Json::array();
   for (const core::BudgetLine& line : value.budget) {
     out["budget"].push_back({{"source", line.source}, {"u", line.u * per_si}});
   }
   to[name] = std::move(out);
 }
 
-Json_ OrNull(const std::optional<double>& value, double per_si) {
-  return value ? Json_(*value * per_si) : Json_(nullptr);
+Json OrNull(const std::optional<double>& value, double per_si) {
+  return value ? Json(*value * per_si) : Json(nullptr);
 }
 
 }  // namespace
 
-Json_ Json(const core::Estimate& estimate, double per_si) {
+Json EstimateJson(const core::Estimate& estimate, double per_si) {
   const core::Estimate e = core::Scaled(estimate, per_si);
-  Json_ out{{"value", e.value}, {"u", e.u}};
+  Json out{{"value", e.value}, {"u", e.u}};
   if (e.interval95) out["interval95"] = {e.interval95->low, e.interval95->high};
   return out;
 }
 
-Json_ Json(const std::vector<rig::Finding>& findings) {
-  Json_ out = Json_::array();
+Json FindingsJson(const std::vector<rig::Finding>& findings) {
+  Json out = Json::array();
   for (const rig::Finding& f : findings) {
     out.push_back(
         (f.severity == rig::Severity::kRefusal ? "refused: " : "warning: ") +
@@ -69,7 +67,7 @@ Json_ Json(const std::vector<rig::Finding>& findings) {
   return out;
 }
 
-Json_ Json(const rig::SpringReport& r) {
+Json SpringJson(const rig::SpringReport& r) {
   return {{"stiffness_of_one_n_per_m", r.stiffness_of_one_n_per_m},
           {"stiffness_eq11_n_per_m", r.stiffness_n_per_m},
           {"stiffness_as_printed_n_per_m", r.stiffness_as_printed_n_per_m},
@@ -87,19 +85,20 @@ Json_ Json(const rig::SpringReport& r) {
           {"surge_hz", r.surge_hz}};
 }
 
-Json_ Json(const rig::ContactPrediction& c) {
-  Json_ out;
-  Json_ absent = Json_::object();
-  Put(out, absent, "stiffness_n_per_m", c.stiffness_n_per_m, 1.0);
-  Put(out, absent, "launch_speed_mps", c.launch_speed_mps, 1.0);
-  Put(out, absent, "impact_speed_mps", c.impact_speed_mps, 1.0);
-  Put(out, absent, "approach_angle_deg", c.approach_angle_rad, kPerDegree);
-  Put(out, absent, "radius_angle_deg", c.radius_angle_rad, kPerDegree);
-  Put(out, absent, "face_angle_deg", c.face_angle_rad, kPerDegree);
-  Put(out, absent, "flight_time_s", c.flight_time_s, 1.0);
-  Put(out, absent, "range_mm", c.range_m, kPerMm);
+Json PredictionJson(const rig::ContactPrediction& c) {
+  Json out;
+  Json absent = Json::object();
+  PutPredicted(out, absent, "stiffness_n_per_m", c.stiffness_n_per_m, 1.0);
+  PutPredicted(out, absent, "launch_speed_mps", c.launch_speed_mps, 1.0);
+  PutPredicted(out, absent, "impact_speed_mps", c.impact_speed_mps, 1.0);
+  PutPredicted(out, absent, "approach_angle_deg", c.approach_angle_rad,
+               kPerDegree);
+  PutPredicted(out, absent, "radius_angle_deg", c.radius_angle_rad, kPerDegree);
+  PutPredicted(out, absent, "face_angle_deg", c.face_angle_rad, kPerDegree);
+  PutPredicted(out, absent, "flight_time_s", c.flight_time_s, 1.0);
+  PutPredicted(out, absent, "range_mm", c.range_m, kPerMm);
   out["corner"] =
-      c.corner ? Json_(std::string(core::Name(*c.corner))) : Json_(nullptr);
+      c.corner ? Json(std::string(core::Name(*c.corner))) : Json(nullptr);
   if (!c.corner) {
     absent["corner"] = c.face_angle_rad.first_order
                            ? "a corner straight below the centre"
@@ -107,7 +106,7 @@ Json_ Json(const rig::ContactPrediction& c) {
   }
   out["p_no_contact"] = c.p_no_contact;
   out["draws"] = c.draws;
-  out["warnings"] = Json(c.findings);
+  out["warnings"] = FindingsJson(c.findings);
   out["absent"] = absent;
   return out;
 }
@@ -120,8 +119,8 @@ std::string Rounded(const core::Estimate& e) {
   return fmt::format("{:.{}f} +- {:.{}f}", e.value, decimals, e.u, decimals);
 }
 
-std::string Line(std::string_view name, const core::Estimate& value,
-                 double per_si, std::string_view unit) {
+std::string ValueLine(std::string_view name, const core::Estimate& value,
+                      double per_si, std::string_view unit) {
   std::string out = fmt::format("  {:<22}{} {}", name,
                                 Rounded(core::Scaled(value, per_si)), unit);
   if (value.interval95) {
@@ -131,8 +130,8 @@ std::string Line(std::string_view name, const core::Estimate& value,
   return out + '\n';
 }
 
-std::string Line(std::string_view name, const rig::Predicted& value,
-                 double per_si, std::string_view unit) {
+std::string ValueLine(std::string_view name, const rig::Predicted& value,
+                      double per_si, std::string_view unit) {
   if (!value.first_order) {
     return fmt::format("  {:<22}absent: {}\n", name,
                        value.first_order.error().reason);
@@ -153,13 +152,14 @@ std::string Line(std::string_view name, const rig::Predicted& value,
   return out + '\n';
 }
 
-std::string Line(std::string_view name, double value, std::string_view unit) {
+std::string ValueLine(std::string_view name, double value,
+                      std::string_view unit) {
   std::string out = fmt::format("  {:<22}{:.6g} {}", name, value, unit);
   while (out.back() == ' ') out.pop_back();
   return out + '\n';
 }
 
-std::string Text(const std::vector<rig::Finding>& findings) {
+std::string FindingsText(const std::vector<rig::Finding>& findings) {
   std::string out;
   for (const rig::Finding& f : findings) {
     out += fmt::format(
@@ -170,36 +170,38 @@ std::string Text(const std::vector<rig::Finding>& findings) {
   return out;
 }
 
-std::string Text(const rig::SpringReport& r) {
+std::string SpringText(const rig::SpringReport& r) {
   std::string out;
-  out += Line("of one spring", r.stiffness_of_one_n_per_m, "N/m");
-  out += Line("as the paper prints", r.stiffness_as_printed_n_per_m,
-              "N/m (outer diameter in the place of the mean)");
-  out += Line("mean coil diameter", r.mean_diameter_m * kPerMm, "mm");
-  out += Line("spring index", r.index, "");
-  out += Line("Wahl factor", r.wahl_factor, "");
-  out += Line("force of one spring", r.force_of_one_n, "N");
-  out += Line("greatest shear stress", r.max_shear_pa * kPerMpa, "MPa");
-  out += Line("solid length", r.solid_length_m * kPerMm, "mm");
-  if (r.clearance_m) out += Line("clearance", *r.clearance_m * kPerMm, "mm");
-  out += Line("mass of the springs", r.mass_kg * kPerGram, "g");
-  out += Line("surge frequency", r.surge_hz, "Hz");
+  out += ValueLine("of one spring", r.stiffness_of_one_n_per_m, "N/m");
+  out += ValueLine("as the paper prints", r.stiffness_as_printed_n_per_m,
+                   "N/m (outer diameter in the place of the mean)");
+  out += ValueLine("mean coil diameter", r.mean_diameter_m * kPerMm, "mm");
+  out += ValueLine("spring index", r.index, "");
+  out += ValueLine("Wahl factor", r.wahl_factor, "");
+  out += ValueLine("force of one spring", r.force_of_one_n, "N");
+  out += ValueLine("greatest shear stress", r.max_shear_pa * kPerMpa, "MPa");
+  out += ValueLine("solid length", r.solid_length_m * kPerMm, "mm");
+  if (r.clearance_m) {
+    out += ValueLine("clearance", *r.clearance_m * kPerMm, "mm");
+  }
+  out += ValueLine("mass of the springs", r.mass_kg * kPerGram, "g");
+  out += ValueLine("surge frequency", r.surge_hz, "Hz");
   return out;
 }
 
-std::string Text(const rig::ContactPrediction& c, bool with_flight) {
+std::string PredictionText(const rig::ContactPrediction& c, bool with_flight) {
   std::string out;
-  out += Line("stiffness", c.stiffness_n_per_m, 1.0, "N/m");
-  out += Line("launch speed", c.launch_speed_mps, 1.0, "m/s");
+  out += ValueLine("stiffness", c.stiffness_n_per_m, 1.0, "N/m");
+  out += ValueLine("launch speed", c.launch_speed_mps, 1.0, "m/s");
   if (!with_flight) return out;
-  out += Line("impact speed", c.impact_speed_mps, 1.0, "m/s");
-  out += Line("approach angle", c.approach_angle_rad, kPerDegree, "deg");
+  out += ValueLine("impact speed", c.impact_speed_mps, 1.0, "m/s");
+  out += ValueLine("approach angle", c.approach_angle_rad, kPerDegree, "deg");
   if (c.face_angle_rad.first_order) {
-    out += Line("radius angle", c.radius_angle_rad, kPerDegree, "deg");
-    out += Line("face angle", c.face_angle_rad, kPerDegree, "deg");
+    out += ValueLine("radius angle", c.radius_angle_rad, kPerDegree, "deg");
+    out += ValueLine("face angle", c.face_angle_rad, kPerDegree, "deg");
   }
-  out += Line("flight time", c.flight_time_s, 1e3, "ms");
-  out += Line("range", c.range_m, kPerMm, "mm");
+  out += ValueLine("flight time", c.flight_time_s, 1e3, "ms");
+  out += ValueLine("range", c.range_m, kPerMm, "mm");
   if (c.corner) {
     out += fmt::format("  {:<22}{}\n", "first to touch",
                        *c.corner == core::Corner::kFlush

@@ -6,38 +6,42 @@
 #include <string_view>
 #include <vector>
 
+#include "app/report/json.h"
 #include "touchdown/rig/predict.h"
 #include "touchdown/rig/spring.h"
 
 namespace touchdown::cli {
 
+using report::Json;
+
 // JSON of an estimate in another unit: {"value", "u"[, "interval95"]}.
-nlohmann::ordered_json Json(const core::Estimate& estimate,
-                            double per_si = 1.0);
+Json EstimateJson(const core::Estimate& estimate, double per_si = 1.0);
 
 // ["warning: ...", "refused: ..."].
-nlohmann::ordered_json Json(const std::vector<rig::Finding>& findings);
+Json FindingsJson(const std::vector<rig::Finding>& findings);
 
 // Everything of the report, in the units that the keys name.
-nlohmann::ordered_json Json(const rig::SpringReport& report);
+Json SpringJson(const rig::SpringReport& report);
 
 // Every predicted number with both uncertainties and budget; what is absent is
 // null, with its reason under "absent".
-nlohmann::ordered_json Json(const rig::ContactPrediction& contact);
+Json PredictionJson(const rig::ContactPrediction& contact);
 
 // "  name        value +- u unit   (Monte Carlo ...)".
-std::string Line(std::string_view name, const core::Estimate& value,
-                 double per_si, std::string_view unit);
-std::string Line(std::string_view name, const rig::Predicted& value,
-                 double per_si, std::string_view unit);
-std::string Line(std::string_view name, double value, std::string_view unit);
+std::string ValueLine(std::string_view name, const core::Estimate& value,
+                      double per_si, std::string_view unit);
+std::string ValueLine(std::string_view name, const rig::Predicted& value,
+                      double per_si, std::string_view unit);
+std::string ValueLine(std::string_view name, double value,
+                      std::string_view unit);
 
 // "value +- u" with u to two digits and the value to the same place; without a
 // u the value to six digits.
 std::string Rounded(const core::Estimate& estimate);
 
-std::string Text(const std::vector<rig::Finding>& findings);
-std::string Text(const rig::SpringReport& report);
-std::string Text(const rig::ContactPrediction& contact, bool with_flight);
+std::string FindingsText(const std::vector<rig::Finding>& findings);
+std::string SpringText(const rig::SpringReport& report);
+std::string PredictionText(const rig::ContactPrediction& contact,
+                           bool with_flight);
 
 }  // namespace touchdown::cli

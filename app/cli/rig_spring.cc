@@ -55,23 +55,22 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
   if (flags.json) {
     rig::ContactPrediction only;
     only.stiffness_n_per_m = stiffness;
-    OrderedJson out{
-        {"schema", "touchdown.rig.spring/1"},
-        {"source", rig.springs.stiffness_n_per_m ? "measured" : "eq11"},
-        {"compression_mm", whole_m / core::kMillimetre},
-        {"stiffness_n_per_m", Json(only)["stiffness_n_per_m"]}};
-    out["spring"] = report ? Json(*report) : OrderedJson(nullptr);
+    Json out{{"schema", "touchdown.rig.spring/1"},
+             {"source", rig.springs.stiffness_n_per_m ? "measured" : "eq11"},
+             {"compression_mm", whole_m / core::kMillimetre},
+             {"stiffness_n_per_m", PredictionJson(only)["stiffness_n_per_m"]}};
+    out["spring"] = report ? SpringJson(*report) : Json(nullptr);
     out["allowed"] = rig::Allowed(findings);
-    out["warnings"] = Json(findings);
+    out["warnings"] = FindingsJson(findings);
     Print(out);
     return 0;
   }
   fmt::print("springs: {} side by side, compressed by {:.4g} mm{}\n",
              rig.springs.count, whole_m / core::kMillimetre,
              rig.springs.stiffness_n_per_m ? ", measured stiffness" : "");
-  fmt::print("{}", Line("stiffness", stiffness, 1.0, "N/m"));
-  if (report) fmt::print("{}", Text(*report));
-  fmt::print("{}", Text(findings));
+  fmt::print("{}", ValueLine("stiffness", stiffness, 1.0, "N/m"));
+  if (report) fmt::print("{}", SpringText(*report));
+  fmt::print("{}", FindingsText(findings));
   return 0;
 }
 

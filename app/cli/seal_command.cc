@@ -82,7 +82,7 @@ Signer SignerOf(const std::string& key, const std::string& file) {
 }
 
 // The signer may ask for a passphrase; what it says goes to stderr.
-void Run(const std::vector<std::string>& command) {
+void RunSigner(const std::vector<std::string>& command) {
   std::vector<char*> words;
   for (const std::string& word : command) {
     words.push_back(const_cast<char*>(word.c_str()));
@@ -130,7 +130,7 @@ int MakeSeal(const SealFlags& flags) {
   if (!flags.out.empty()) {
     report::WriteTextFile(flags.out, db::SealText(seal));
     try {
-      if (signer) Run(signer->command);
+      if (signer) RunSigner(signer->command);
     } catch (...) {
       std::error_code ignored;
       fs::remove(flags.out, ignored);

@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Flags {
+struct SessionFlags {
   std::string db;
   std::string campaign;
   std::string rig;
@@ -57,36 +57,36 @@ struct Flags {
 };
 
 // For the handlers of signals.
-volatile std::sig_atomic_t ended = 0;
-volatile std::sig_atomic_t stopped = 0;  // the rig, and nobody was told
+volatile std::sig_atomic_t session_ended = 0;
+volatile std::sig_atomic_t rig_stopped = 0;  // and nobody was told
 // When it was, for the lines that were typed before.
-std::atomic<std::chrono::steady_clock::time_point> stopped_at;
-volatile std::sig_atomic_t analysing = 0;
-std::atomic<rig::Driver*> driven = nullptr;
+std::atomic<std::chrono::steady_clock::time_point> rig_stopped_at;
+volatile std::sig_atomic_t analysing_shot = 0;
+std::atomic<rig::Driver*> driven_rig = nullptr;
 static_assert(std::atomic<rig::Driver*>::is_always_lock_free &&
-              decltype(stopped_at)::is_always_lock_free);
+              decltype(rig_stopped_at)::is_always_lock_free);
 
 // Whatever the signal, a rig that moves is stopped first. Ctrl-C does no more
 // than that while there is something to stop; the next one ends the session,
 // and what it analyses with it: the recording is taken when it is started
 // again.
-void OnSignal(int signal) {
-  rig::Driver* const driver = driven.load();
+void OnSessionSignal(int signal) {
+  rig::Driver* const driver = driven_rig.load();
   const bool moves = driver != nullptr && !driver->is_stopped();
   if (moves) {
-    stopped_at = std::chrono::steady_clock::now();
+    rig_stopped_at = std::chrono::steady_clock::now();
     driver->Stop();
-    stopped = 1;
+    rig_stopped = 1;
   }
   if (moves && signal == SIGINT) return;
-  ended = 1;
-  if (analysing != 0) EndSoon(signal);
+  session_ended = 1;
+  if (analysing_shot != 0) EndSoon(signal);
 }
 
 // Of a defect, or from outside: the rig is stopped, then the signal does what
 // it does.
 void OnFault(int signal) {
-  if (rig::Driver* const driver = driven.load()) driver->Stop();
+  if (rig::Driver* const driver = driven_rig.load()) driver->Stop();
   struct sigaction action = {};
   action.sa_handler = SIG_DFL;
   sigaction(signal, &action, nullptr);
@@ -97,9 +97,9 @@ void OnFault(int signal) {
 constexpr std::size_t kFaultStack_bytes = 64 << 10;
 alignas(16) std::array<char, kFaultStack_bytes> fault_stack;
 
-void CatchSignals() {
+void CatchSessionSignals() {
   struct sigaction action = {};
-  action.sa_handler = OnSignal;
+  action.sa_handler = OnSessionSignal;
   // A write goes on, or a line would be lost; poll() ends all the same.
   action.sa_flags = SA_RESTART;
   // SIGPIPE: a lost terminal is found out when it is written to.
@@ -128,19 +128,20 @@ class Driving {
               state.stopped ? ", STOPPED: `reset` when all is well" : "");
           std::fflush(stdout);
         }) {}
-  ~Driving() { driven = nullptr; }
+  ~Driving() { driven_rig = nullptr; }
   Driving(const Driving&) = delete;
   Driving& operator=(const Driving&) = delete;
 
  private:
   static rig::Driver& Announced(rig::Driver& driver) {
-    driven = &driver;
+    driven_rig = &driver;
     return driver;
   }
   rig::DriverMonitor monitor_;
 };
 
-session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
+session::CheckShot CheckOf(const SessionFlags& flags,
+                           const core::Campaign& campaign,
                            const rig::Description& rig) {
   session::CheckShot check;
   check.body = flags.check_diameter.empty()
@@ -159,7 +160,7 @@ session::CheckShot CheckOf(const Flags& flags, const core::Campaign& campaign,
   return check;
 }
 
-std::unique_ptr<rig::Driver> ControllerOf(const Flags& flags) {
+std::unique_ptr<rig::Driver> ControllerOf(const SessionFlags& flags) {
   rig::SerialOptions options;
   options.baud = flags.baud;
   if (pipeline::JournalIsKept()) {
@@ -179,7 +180,7 @@ std::unique_ptr<rig::Driver> ControllerOf(const Flags& flags) {
 }
 
 // Hands over what comes, from the keyboard and from the folder, until the end.
-void Serve(const Flags& flags, session::Session& session,
+void Serve(const SessionFlags& flags, session::Session& session,
            TerminalLines& lines) {
   FolderWatch changes(flags.watch);
   pipeline::WatchOptions options;
@@ -188,40 +189,40 @@ void Serve(const Flags& flags, session::Session& session,
   options.now = [] { return std::chrono::steady_clock::now(); };
   // Of a signal: what was typed before it, and waits, is not done after it.
   const auto tell_stop = [&] {
-    if (stopped == 0) return;
-    stopped = 0;
-    lines.DropUntil(stopped_at);
+    if (rig_stopped == 0) return;
+    rig_stopped = 0;
+    lines.DropUntil(rig_stopped_at);
     fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
     std::fflush(stdout);
   };
   options.wait = [&](bool growing) {
     // Of a network drive nothing is heard: look now and then.
     constexpr std::chrono::milliseconds kNowAndThen{2000};
-    if (ended != 0) return false;
+    if (session_ended != 0) return false;
     changes.Wait(growing ? options.quiet : kNowAndThen, lines.descriptor());
     tell_stop();
-    while (const auto line = stopped != 0 ? std::nullopt : lines.Next()) {
+    while (const auto line = rig_stopped != 0 ? std::nullopt : lines.Next()) {
       pipeline::Journal("typed: " + line->text);
       if (!session.Obey(line->text, {line->began, line->is_alone})) {
         return false;
       }
-      if (ended != 0) return false;
+      if (session_ended != 0) return false;
     }
     tell_stop();
-    return ended == 0 && !lines.at_end();
+    return session_ended == 0 && !lines.at_end();
   };
   pipeline::Watch(flags.watch, options,
                   [&](const std::vector<fs::path>& complete) {
                     for (const fs::path& recording : complete) {
-                      if (ended != 0) return;
-                      analysing = 1;
+                      if (session_ended != 0) return;
+                      analysing_shot = 1;
                       session.Take(recording);
-                      analysing = 0;
+                      analysing_shot = 0;
                     }
                   });
 }
 
-int Run(const Flags& flags) {
+int RunSession(const SessionFlags& flags) {
   if (!fs::is_directory(flags.watch)) {
     throw core::InputError(fmt::format(
         "{}: there is no such folder; --watch expects the one that recordings "
@@ -263,9 +264,9 @@ int Run(const Flags& flags) {
     conditions.rig = pipeline::KeepRig(store, thrower, options.operator_name);
   }
   options.conditions = conditions;
-  CatchSignals();
+  CatchSessionSignals();
   TerminalLines lines([] {
-    if (rig::Driver* const driver = driven.load()) driver->Stop();
+    if (rig::Driver* const driver = driven_rig.load()) driver->Stop();
   });
   rig::ManualDriver hands(
       [&lines](const std::string& question) { return lines.Ask(question); });
@@ -305,7 +306,7 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddSession(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SessionFlags>();
   CLI::App* command = app.add_subcommand(
       "session",
       "at the rig: set-points, new recording, answer, next angle; can be "
@@ -355,7 +356,7 @@ void AddSession(CLI::App& app, Action& action) {
                     "take also recordings that failed twice");
   AddAnalyzeFlags(*command, flags->analyze);
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunSession(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -17,7 +17,7 @@
 namespace touchdown::cli {
 namespace {
 
-struct Flags {
+struct SimulateFlags {
   std::string scene;
   bool table1 = false;
   bool example = false;
@@ -27,7 +27,7 @@ struct Flags {
   bool json = false;
 };
 
-std::string Line(const pipeline::SimulatedClip& made) {
+std::string ClipLine(const pipeline::SimulatedClip& made) {
   const auto& truth = made.truth;
   if (!truth.touchdown) {
     return fmt::format("{}  no contact", made.clip.string());
@@ -48,7 +48,7 @@ std::string Line(const pipeline::SimulatedClip& made) {
       truth.bounce_height_m / core::kMillimetre);
 }
 
-int Run(const Flags& flags) {
+int RunSimulate(const SimulateFlags& flags) {
   if (flags.example) {
     fmt::print("{}", pipeline::SceneText(pipeline::ExampleShot()));
     return 0;
@@ -86,7 +86,7 @@ int Run(const Flags& flags) {
     const pipeline::SimulatedClip made = pipeline::WriteShot(shots[i], options);
     clips.push_back(
         {{"clip", made.clip.string()}, {"truth", made.truth_file.string()}});
-    lines += Line(made) + "\n";
+    lines += ClipLine(made) + "\n";
   }
   bar.Finish();
   if (flags.json) {
@@ -104,7 +104,7 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddSimulate(CLI::App& app, Action& action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SimulateFlags>();
   CLI::App* command =
       app.add_subcommand("simulate", "Footage with known truth");
   command->add_option("SCENE", flags->scene,
@@ -123,7 +123,7 @@ void AddSimulate(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--json", flags->json, "one JSON document on stdout");
   command->callback(
-      [flags, &action] { action = [flags] { return Run(*flags); }; });
+      [flags, &action] { action = [flags] { return RunSimulate(*flags); }; });
 }
 
 }  // namespace touchdown::cli

@@ -13,6 +13,7 @@
 #include "app/cli/store_text.h"
 #include "app/pipeline/statement.h"
 #include "app/pipeline/triage.h"
+#include "app/report/json.h"
 #include "app/report/trial_json.h"
 #include "app/report/trial_list.h"
 #include "touchdown/core/units.h"
@@ -23,9 +24,9 @@
 namespace touchdown::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using core::kDegree;
 using core::kMillimetre;
+using report::Json;
 
 constexpr double kPercent = 0.01;
 constexpr std::size_t kShownId = 8;  // characters of a UUID, enough for people
@@ -130,13 +131,11 @@ std::string ListText(const std::vector<core::Trial>& trials) {
 
 // --- show --------------------------------------------------------------------
 
-std::string Name(std::string_view name) { return std::string(name); }
-
 void ShowContact(const core::ContactRecord& record,
                  std::vector<std::vector<std::string>>& rows) {
   for (const auto& quantity : db::kContactQuantities) {
     const auto& measured = db::At(record, quantity);
-    std::string name = Name(quantity.name);
+    std::string name(quantity.name);
     double unit = 1.0;
     if (name.ends_with("_rad")) {
       name.replace(name.size() - 3, 3, "deg");
@@ -192,7 +191,7 @@ void ShowConditions(const core::Conditions& conditions,
   }
   rows.push_back(
       {"  anomaly", conditions.anomaly_note.empty()
-                        ? Name(core::Name(conditions.anomaly))
+                        ? std::string(core::Name(conditions.anomaly))
                         : fmt::format("{}: {}", core::Name(conditions.anomaly),
                                       Printable(conditions.anomaly_note))});
 }
@@ -205,7 +204,7 @@ std::string ShowText(const core::Trial& trial) {
   std::vector<std::vector<std::string>> rows = {
       {"trial", trial.id},
       {"campaign", trial.campaign.empty() ? "-" : Printable(trial.campaign)},
-      {"origin", Name(core::Name(trial.origin))},
+      {"origin", std::string(core::Name(trial.origin))},
       {"revision",
        fmt::format("{}, {} by {}{}{}", trial.revision, trial.recorded_at_utc,
                    Printable(trial.author), trial.reason.empty() ? "" : ": ",
@@ -218,21 +217,21 @@ std::string ShowText(const core::Trial& trial) {
       {"contact angle, deg",
        fmt::format("{} ({})", WithU(core::ContactAngle(trial), kDegree),
                    core::Name(trial.angle_kind))},
-      {"state", Name(core::Name(trial.first.state.label))},
+      {"state", std::string(core::Name(trial.first.state.label))},
       {"P(bounce)", Shown(trial.first.state.p_bounce, 4, 1.0)},
       {"because", Printable(trial.first.state.reason)}};
   if (trial.excluded) {
     rows.push_back({"excluded", Printable(trial.exclusion_reason)});
   }
   if (const auto corner = trial.first.contact.corner) {
-    rows.push_back({"corner", Name(core::Name(*corner))});
+    rows.push_back({"corner", std::string(core::Name(*corner))});
   }
   if (trial.conditions) ShowConditions(*trial.conditions, rows);
   rows.push_back({"measured", ""});
   ShowContact(trial.first, rows);
   for (std::size_t i = 0; i < trial.later.size(); ++i) {
     rows.push_back({fmt::format("contact {}", i + 2),
-                    Name(core::Name(trial.later[i].state.label))});
+                    std::string(core::Name(trial.later[i].state.label))});
     ShowContact(trial.later[i], rows);
   }
   return text + Aligned(rows);
@@ -251,7 +250,7 @@ std::string ProposalText(const core::Trial& trial,
   return text;
 }
 
-std::string HistoryText(const std::vector<db::Revision>& history) {
+std::string TrialHistoryText(const std::vector<db::Revision>& history) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < history.size(); ++i) {
     const core::Trial& trial = history[i].trial;
@@ -333,7 +332,7 @@ void AddShow(CLI::App& app, Action& action) {
       if (const db::Revision* proposal = db::OpenProposal(history)) {
         fmt::print("{}", ProposalText(trial, proposal->trial));
       }
-      if (flags->history) fmt::print("{}", HistoryText(history));
+      if (flags->history) fmt::print("{}", TrialHistoryText(history));
       return 0;
     };
   });

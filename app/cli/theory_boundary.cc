@@ -10,6 +10,7 @@
 #include "app/cli/case_file.h"
 #include "app/cli/theory_cases.h"
 #include "app/cli/theory_options.h"
+#include "app/report/json.h"
 #include "touchdown/analysis/theory/boundary_models.h"
 
 namespace touchdown::cli {
@@ -18,8 +19,8 @@ namespace {
 using analysis::BoundaryAnswer;
 using analysis::BoundaryInputs;
 using analysis::BoundaryModel;
-using Json = nlohmann::ordered_json;
 using core::kDegree;
+using report::Json;
 
 // In the paper's words its hoop is a sphere too.
 bool CountsAsSphere(const CornerFlags& f) {
@@ -94,11 +95,11 @@ BoundaryInputs InputsOf(const TheoryFlags& flags, bool sphere) {
   return in;
 }
 
-Json Degrees(const std::optional<double>& angle_rad) {
+Json DegreesJson(const std::optional<double>& angle_rad) {
   return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
 }
 
-Json Describe(const BoundaryAnswer& a) {
+Json AnswerJson(const BoundaryAnswer& a) {
   Json json;
   if (a.boundary_rad) {
     json["boundary_deg"] = *a.boundary_rad / kDegree;
@@ -125,15 +126,15 @@ Json Describe(const BoundaryAnswer& a) {
       {"first_order_is_valid", u.first_order_is_valid},
       {"draws", u.n_draws},
       {"p_none", u.n_draws > 0 ? Json(u.p_none) : Json(nullptr)},
-      {"mean_deg", Degrees(u.mean_rad)},
-      {"u_deg", Degrees(u.u_rad)},
-      {"low95_deg", Degrees(u.low_rad)},
-      {"high95_deg", Degrees(u.high_rad)}};
+      {"mean_deg", DegreesJson(u.mean_rad)},
+      {"u_deg", DegreesJson(u.u_rad)},
+      {"low95_deg", DegreesJson(u.low_rad)},
+      {"high95_deg", DegreesJson(u.high_rad)}};
   json["notes"] = a.notes;
   return json;
 }
 
-std::string Text(const BoundaryAnswer& a) {
+std::string AnswerText(const BoundaryAnswer& a) {
   std::string out;
   const auto& u = a.uncertainty;
   if (a.boundary_rad) {
@@ -221,8 +222,8 @@ int RunBoundary(const TheoryFlags& flags) {
       std::mt19937_64 engine(flags.boundary.seed);
       const BoundaryAnswer answer = analysis::EvaluateBoundary(
           card.model, inputs, engine, {.n_draws = flags.boundary.draws});
-      entry.update(Describe(answer));
-      text += Text(answer);
+      entry.update(AnswerJson(answer));
+      text += AnswerText(answer);
     }
     text +=
         fmt::format("  assumes      {}\n  holds for    {}\n  source       {}\n",

@@ -11,9 +11,10 @@
 namespace touchdown::cli {
 namespace {
 
-using Flags = std::shared_ptr<TheoryFlags>;
+using SharedFlags = std::shared_ptr<TheoryFlags>;
 
-void AddResult(CLI::App* command, const Flags& flags, const char* columns) {
+void AddResult(CLI::App* command, const SharedFlags& flags,
+               const char* columns) {
   command->add_flag("--json", flags->result.json, "one JSON document");
   command->add_option(
       "--cases", flags->result.cases,
@@ -57,7 +58,8 @@ void AddSpin(CLI::App* command, CornerFlags& f, const char* what) {
   command->add_option("--omega-rad-per-s", f.omega_rad_per_s, what);
 }
 
-void AddRegimeCommand(CLI::App& theory, const Flags& flags, Action& action) {
+void AddRegimeCommand(CLI::App& theory, const SharedFlags& flags,
+                      Action& action) {
   auto* command = theory.add_subcommand(
       "regime", "what a corner on the ground can do: every solution");
   CornerFlags& f = flags->corner;
@@ -73,7 +75,8 @@ void AddRegimeCommand(CLI::App& theory, const Flags& flags, Action& action) {
       [flags, &action] { action = [flags] { return RunRegime(*flags); }; });
 }
 
-void AddImpactCommand(CLI::App& theory, const Flags& flags, Action& action) {
+void AddImpactCommand(CLI::App& theory, const SharedFlags& flags,
+                      Action& action) {
   auto* command = theory.add_subcommand(
       "impact", "velocities and spin after one corner has hit the ground");
   CornerFlags& f = flags->corner;
@@ -100,7 +103,8 @@ void AddImpactCommand(CLI::App& theory, const Flags& flags, Action& action) {
       [flags, &action] { action = [flags] { return RunImpact(*flags); }; });
 }
 
-void AddFlatCommand(CLI::App& theory, const Flags& flags, Action& action) {
+void AddFlatCommand(CLI::App& theory, const SharedFlags& flags,
+                    Action& action) {
   auto* command = theory.add_subcommand(
       "flat", "a rectangle that slides on its side: forces on both edges");
   command->add_option("--length-m", flags->flat.length_m, "side on the ground");
@@ -114,7 +118,8 @@ void AddFlatCommand(CLI::App& theory, const Flags& flags, Action& action) {
       [flags, &action] { action = [flags] { return RunFlat(*flags); }; });
 }
 
-void AddBoundaryCommand(CLI::App& theory, const Flags& flags, Action& action) {
+void AddBoundaryCommand(CLI::App& theory, const SharedFlags& flags,
+                        Action& action) {
   auto* command = theory.add_subcommand(
       "boundary", "the boundary angle by each model, with its assumptions");
   CornerFlags& f = flags->corner;
@@ -159,7 +164,7 @@ void AddBoundaryCommand(CLI::App& theory, const Flags& flags, Action& action) {
       [flags, &action] { action = [flags] { return RunBoundary(*flags); }; });
 }
 
-void AddLcpCommand(CLI::App& theory, const Flags& flags, Action& action) {
+void AddLcpCommand(CLI::App& theory, const SharedFlags& flags, Action& action) {
   auto* command = theory.add_subcommand(
       "lcp", "every solution of a small linear complementarity problem");
   command->add_option("--matrix", flags->lcp.m,
@@ -170,7 +175,7 @@ void AddLcpCommand(CLI::App& theory, const Flags& flags, Action& action) {
       [flags, &action] { action = [flags] { return RunLcp(*flags); }; });
 }
 
-void AddMapCommand(CLI::App& theory, const Flags& flags, Action& action) {
+void AddMapCommand(CLI::App& theory, const SharedFlags& flags, Action& action) {
   auto* command = theory.add_subcommand(
       "map", "regimes over angle and friction or spin: CSV and drawings");
   CornerFlags& f = flags->corner;

@@ -11,6 +11,7 @@
 #include "app/cli/theory_cases.h"
 #include "app/cli/theory_options.h"
 #include "app/cli/theory_words.h"
+#include "app/report/json.h"
 #include "touchdown/analysis/theory/contact.h"
 #include "touchdown/analysis/theory/flat_contact.h"
 #include "touchdown/analysis/theory/impact.h"
@@ -19,15 +20,16 @@
 namespace touchdown::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using core::kDegree;
+using report::Json;
 
-int Put(const TheoryFlags& flags, const Json& json, const std::string& text) {
+int WriteAnswer(const TheoryFlags& flags, const Json& json,
+                const std::string& text) {
   WriteResult(flags.result.json ? json.dump(2) + "\n" : text, flags.result.out);
   return 0;
 }
 
-int PutCases(const TheoryFlags& flags, const std::string& csv) {
+int WriteCases(const TheoryFlags& flags, const std::string& csv) {
   if (flags.result.json) {
     throw std::invalid_argument(
         "--cases answers in CSV; leave --json away, or the other");
@@ -37,11 +39,11 @@ int PutCases(const TheoryFlags& flags, const std::string& csv) {
 }
 
 // Finite numbers as they are, others as null.
-Json Number(double value) {
+Json FiniteOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-std::string Change(double value, double per_unit, const char* unit) {
+std::string ChangeText(double value, double per_unit, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:+.4g}{}", value / per_unit, unit)
                               : std::string("never");
 }
@@ -50,7 +52,7 @@ std::string Change(double value, double per_unit, const char* unit) {
 
 int RunRegime(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return PutCases(flags, RegimeCases(flags.result.cases));
+    return WriteCases(flags, RegimeCases(flags.result.cases));
   }
   const CornerFlags& f = flags.corner;
   analysis::ContactProblem p;
@@ -78,12 +80,13 @@ int RunRegime(const TheoryFlags& flags) {
   std::string text = fmt::format("regime   {}, {} solution{}\n", Name(r.regime),
                                  r.n_solutions, r.n_solutions == 1 ? "" : "s");
   for (const analysis::ContactSolution& s : r.Solutions()) {
-    json["solutions"].push_back({{"kind", Name(s.kind)},
-                                 {"normal_n", Number(s.normal_n)},
-                                 {"tangential_n", Number(s.tangential_n)},
-                                 {"normal_mps2", Number(s.normal_mps2)},
-                                 {"tangential_mps2", Number(s.tangential_mps2)},
-                                 {"residual", Number(s.residual)}});
+    json["solutions"].push_back(
+        {{"kind", Name(s.kind)},
+         {"normal_n", FiniteOrNull(s.normal_n)},
+         {"tangential_n", FiniteOrNull(s.tangential_n)},
+         {"normal_mps2", FiniteOrNull(s.normal_mps2)},
+         {"tangential_mps2", FiniteOrNull(s.tangential_mps2)},
+         {"residual", FiniteOrNull(s.residual)}});
     text += fmt::format(
         "  {:<7}F_n = {:.6g} N   F_t = {:.6g} N   g_N'' = {:.6g} m/s^2   "
         "g_T'' = {:.6g} m/s^2\n",
@@ -106,43 +109,44 @@ int RunRegime(const TheoryFlags& flags) {
         Name(r.tolerant_regime));
   }
   const analysis::ContactMargins& m = r.margins;
-  json["b_mps2"] = Number(r.b_mps2);
-  json["b_tolerance_mps2"] = Number(r.b_tolerance_mps2);
-  json["b_condition"] = Number(r.b_condition);
-  Json margins = {{"b_alpha_deg", Number(m.b_alpha_rad / kDegree)},
-                  {"b_omega_rad_per_s", Number(m.b_omega_rad_per_s)},
-                  {"b_radius_m", Number(m.b_radius_m)},
-                  {"b_gravity_mps2", Number(m.b_gravity_mps2)}};
+  json["b_mps2"] = FiniteOrNull(r.b_mps2);
+  json["b_tolerance_mps2"] = FiniteOrNull(r.b_tolerance_mps2);
+  json["b_condition"] = FiniteOrNull(r.b_condition);
+  Json margins = {{"b_alpha_deg", FiniteOrNull(m.b_alpha_rad / kDegree)},
+                  {"b_omega_rad_per_s", FiniteOrNull(m.b_omega_rad_per_s)},
+                  {"b_radius_m", FiniteOrNull(m.b_radius_m)},
+                  {"b_gravity_mps2", FiniteOrNull(m.b_gravity_mps2)}};
   if (p.slip != analysis::Slip::kNone) {
-    json["a_hat"] = Number(r.a_hat);
-    json["a_hat_tolerance"] = Number(r.a_hat_tolerance);
-    json["a_hat_condition"] = Number(r.a_hat_condition);
-    margins["a_hat_alpha_deg"] = Number(m.a_hat_alpha_rad / kDegree);
-    margins["a_hat_mu"] = Number(m.a_hat_mu);
-    margins["a_hat_kappa"] = Number(m.a_hat_kappa);
+    json["a_hat"] = FiniteOrNull(r.a_hat);
+    json["a_hat_tolerance"] = FiniteOrNull(r.a_hat_tolerance);
+    json["a_hat_condition"] = FiniteOrNull(r.a_hat_condition);
+    margins["a_hat_alpha_deg"] = FiniteOrNull(m.a_hat_alpha_rad / kDegree);
+    margins["a_hat_mu"] = FiniteOrNull(m.a_hat_mu);
+    margins["a_hat_kappa"] = FiniteOrNull(m.a_hat_kappa);
     text += fmt::format(
         "A_hat    {:.6g} (condition {:.3g}); to its change of sign: alpha {}, "
         "mu {}, kappa {}\n",
-        r.a_hat, r.a_hat_condition, Change(m.a_hat_alpha_rad, kDegree, " deg"),
-        Change(m.a_hat_mu, 1.0, ""), Change(m.a_hat_kappa, 1.0, ""));
+        r.a_hat, r.a_hat_condition,
+        ChangeText(m.a_hat_alpha_rad, kDegree, " deg"),
+        ChangeText(m.a_hat_mu, 1.0, ""), ChangeText(m.a_hat_kappa, 1.0, ""));
   } else {
-    margins["cone_mu"] = Number(m.cone_mu);
+    margins["cone_mu"] = FiniteOrNull(m.cone_mu);
     text += fmt::format("cone     mu - |F_t/F_n| of sticking = {:.4g}\n",
                         m.cone_mu);
   }
   text += fmt::format(
       "b        {:.6g} m/s^2 (condition {:.3g}); to its change of sign: alpha "
       "{}, omega {}, R {}\n",
-      r.b_mps2, r.b_condition, Change(m.b_alpha_rad, kDegree, " deg"),
-      Change(m.b_omega_rad_per_s, 1.0, " rad/s"),
-      Change(m.b_radius_m, 1.0, " m"));
+      r.b_mps2, r.b_condition, ChangeText(m.b_alpha_rad, kDegree, " deg"),
+      ChangeText(m.b_omega_rad_per_s, 1.0, " rad/s"),
+      ChangeText(m.b_radius_m, 1.0, " m"));
   json["margins"] = margins;
-  return Put(flags, json, text);
+  return WriteAnswer(flags, json, text);
 }
 
 int RunImpact(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return PutCases(flags, ImpactCases(flags.result.cases));
+    return WriteCases(flags, ImpactCases(flags.result.cases));
   }
   const CornerFlags& f = flags.corner;
   const ImpactFlags& i = flags.impact;
@@ -203,12 +207,12 @@ int RunImpact(const TheoryFlags& flags) {
       Word(r.status), r.n_phases > 0 ? PhasesText(r) : "none", slip_before,
       p.normal_mps, omega, slip_after, r.normal_mps, omega_after,
       r.normal_impulse_mps, mirror * r.tangential_impulse_mps);
-  return Put(flags, json, text);
+  return WriteAnswer(flags, json, text);
 }
 
 int RunFlat(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return PutCases(flags, FlatCases(flags.result.cases));
+    return WriteCases(flags, FlatCases(flags.result.cases));
   }
   analysis::FlatProblem p;
   p.length_m = Need(flags.flat.length_m, "--length-m");
@@ -239,7 +243,7 @@ int RunFlat(const TheoryFlags& flags) {
         "no solution: M_ff = {:.6g} < 0, the front edge jams (Painleve)\n",
         r.m_ff);
   }
-  return Put(flags, json, text);
+  return WriteAnswer(flags, json, text);
 }
 
 namespace {
@@ -265,7 +269,7 @@ std::vector<double> ParseVector(const std::string& text, const char* flag) {
 
 int RunLcp(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return PutCases(flags, LcpCases(flags.result.cases));
+    return WriteCases(flags, LcpCases(flags.result.cases));
   }
   if (flags.lcp.m.empty() || flags.lcp.q.empty()) {
     throw std::invalid_argument(
@@ -305,7 +309,7 @@ int RunLcp(const TheoryFlags& flags) {
                         fmt::join(s.z, ", "), fmt::join(s.w, ", "), s.residual,
                         s.basic ? "" : "   corner of a continuum");
   }
-  return Put(flags, json, text);
+  return WriteAnswer(flags, json, text);
 }
 
 }  // namespace touchdown::cli

@@ -9,12 +9,13 @@
 #include "app/pipeline/judge.h"
 #include "app/pipeline/replay.h"
 #include "app/pipeline/version.h"
+#include "app/report/json.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::pipeline {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 constexpr double kToDegrees = 1.0 / core::kDegree;
 constexpr double kToMillimetres = 1.0 / core::kMillimetre;
@@ -44,7 +45,7 @@ class Writer {
   Json absent_ = Json::object();
 };
 
-Json BudgetOf(const core::Contact& contact, core::AngleKind kind) {
+Json BudgetField(const core::Contact& contact, core::AngleKind kind) {
   const core::Budget& budget = kind == core::AngleKind::kApproach
                                    ? contact.approach_budget
                                    : contact.attitude_budget;
@@ -55,8 +56,8 @@ Json BudgetOf(const core::Contact& contact, core::AngleKind kind) {
   return json;
 }
 
-Json ContactOf(Writer& writer, const std::string& at,
-               const core::Contact& contact, core::AngleKind kind) {
+Json ContactField(Writer& writer, const std::string& at,
+                  const core::Contact& contact, core::AngleKind kind) {
   Json json;
   json["found"] = contact.found;
   if (!contact.found) json["reason"] = contact.reason;
@@ -84,12 +85,12 @@ Json ContactOf(Writer& writer, const std::string& at,
                                     contact.found ? "sphere" : contact.reason);
   }
   json["duration_s"] = writer.Number(at + "duration_s", contact.duration_s);
-  json["budget"] = BudgetOf(contact, kind);
+  json["budget"] = BudgetField(contact, kind);
   return json;
 }
 
-Json StateOf(Writer& writer, const std::string& at,
-             const core::StateDecision& state) {
+Json StateField(Writer& writer, const std::string& at,
+                const core::StateDecision& state) {
   Json json;
   json["label"] = Name(state.label);
   if (state.p_bounce) {
@@ -118,7 +119,7 @@ Json StateOf(Writer& writer, const std::string& at,
   return json;
 }
 
-Json MotionOf(Writer& writer, const std::string& at, const core::Motion& m) {
+Json MotionField(Writer& writer, const std::string& at, const core::Motion& m) {
   const auto number = [&](const char* name, const core::Measured& value) {
     return writer.Number(at + name, value);
   };
@@ -146,7 +147,7 @@ Json MotionOf(Writer& writer, const std::string& at, const core::Motion& m) {
   return json;
 }
 
-Json ClipOf(Writer& writer, const Analysis& analysis) {
+Json ClipField(Writer& writer, const Analysis& analysis) {
   const vision::ClipInfo& clip = analysis.clip;
   Json json;
   json["path"] = clip.path.string();
@@ -169,7 +170,7 @@ Json ClipOf(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
-Json BodyOf(Writer& writer, const Analysis& analysis) {
+Json BodyField(Writer& writer, const Analysis& analysis) {
   if (!analysis.body) return writer.Missing("body", analysis.no_body_reason);
   const core::Body& body = *analysis.body;
   Json json;
@@ -191,7 +192,7 @@ Json BodyOf(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
-Json CalibrationOf(Writer& writer, const Analysis& analysis) {
+Json CalibrationField(Writer& writer, const Analysis& analysis) {
   if (!analysis.calibration) {
     return writer.Missing("calibration", "no --calibration");
   }
@@ -207,7 +208,7 @@ Json CalibrationOf(Writer& writer, const Analysis& analysis) {
 }
 
 // The check by synthesis (explained_change.h).
-Json ExplainedOf(Writer& writer, const Analysis& analysis) {
+Json ExplainedField(Writer& writer, const Analysis& analysis) {
   if (!analysis.explained) {
     return writer.Missing("explained", analysis.explained.error().reason);
   }
@@ -221,7 +222,7 @@ Json ExplainedOf(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
-Json ChecksJson(const Analysis& analysis) {
+Json ChecksField(const Analysis& analysis) {
   Json json = Json::array();
   for (const AnswerCheck& check : analysis.checks) {
     json.push_back({{"name", check.name},
@@ -241,7 +242,7 @@ calib::GroundLine InImage(const Analysis& analysis,
 
 // Where and how fast the body is over the whole track, in image coordinates: a
 // straight line through the centres.
-Json TrackOf(Writer& writer, const Analysis& analysis) {
+Json TrackField(Writer& writer, const Analysis& analysis) {
   if (!analysis.track || analysis.track->poses.size() < 2) {
     return writer.Missing("track", analysis.no_body_reason);
   }
@@ -271,7 +272,7 @@ Json TrackOf(Writer& writer, const Analysis& analysis) {
 
 // Where the body was, for people and other programs (the view v_tracks of the
 // store): a line of text for each frame.
-Json PathJson(const Analysis& analysis) {
+Json PathField(const Analysis& analysis) {
   const vision::PlaneTrack& plane = *analysis.plane;
   const double mm =
       1.0 / PxPerMetre(plane, *analysis.scale).value / core::kMillimetre;
@@ -295,7 +296,7 @@ std::string ToJson(const Analysis& analysis) {
   Writer writer;
   Json json;
   json["schema"] = "touchdown.analysis/1";
-  json["clip"] = ClipOf(writer, analysis);
+  json["clip"] = ClipField(writer, analysis);
   json["origin"] = Name(analysis.simulated ? core::Origin::kSimulated
                                            : core::Origin::kRecorded);
   if (analysis.scale) {
@@ -304,7 +305,7 @@ std::string ToJson(const Analysis& analysis) {
   } else {
     json["scale"] = writer.Missing("scale", analysis.no_scale_reason);
   }
-  json["calibration"] = CalibrationOf(writer, analysis);
+  json["calibration"] = CalibrationField(writer, analysis);
   if (analysis.ground) {
     const calib::GroundLine g = InImage(analysis, *analysis.ground);
     json["ground"] = {{"x1_px", g.p1.x_px},
@@ -322,31 +323,31 @@ std::string ToJson(const Analysis& analysis) {
   } else {
     json["ground"] = writer.Missing("ground", analysis.no_ground_reason);
   }
-  json["body"] = BodyOf(writer, analysis);
-  json["track"] = TrackOf(writer, analysis);
+  json["body"] = BodyField(writer, analysis);
+  json["track"] = TrackField(writer, analysis);
   const core::ContactRecord& first = analysis.contacts.first;
   json["contact"] =
-      ContactOf(writer, "contact.", first.contact, analysis.angle_kind);
-  json["state"] = StateOf(writer, "state.", first.state);
+      ContactField(writer, "contact.", first.contact, analysis.angle_kind);
+  json["state"] = StateField(writer, "state.", first.state);
   json["later_contacts"] = Json::array();
   for (std::size_t i = 0; i < analysis.contacts.later.size(); ++i) {
     const core::ContactRecord& later = analysis.contacts.later[i];
     const std::string at = "later_contacts[" + std::to_string(i) + "].";
     json["later_contacts"].push_back(
-        {{"contact", ContactOf(writer, at + "contact.", later.contact,
-                               analysis.angle_kind)},
-         {"state", StateOf(writer, at + "state.", later.state)},
-         {"motion", MotionOf(writer, at + "motion.", later.motion)}});
+        {{"contact", ContactField(writer, at + "contact.", later.contact,
+                                  analysis.angle_kind)},
+         {"state", StateField(writer, at + "state.", later.state)},
+         {"motion", MotionField(writer, at + "motion.", later.motion)}});
   }
-  json["motion"] = MotionOf(writer, "motion.", first.motion);
+  json["motion"] = MotionField(writer, "motion.", first.motion);
   const vision::RestitutionOfImpacts& e = analysis.contacts.restitution;
   json["restitution_of_impacts"] = {
       {"restitution",
        writer.Number("restitution_of_impacts.restitution", e.value)},
       {"resolved", e.resolved},
       {"unresolved", e.unresolved}};
-  json["explained"] = ExplainedOf(writer, analysis);
-  json["checks"] = ChecksJson(analysis);
+  json["explained"] = ExplainedField(writer, analysis);
+  json["checks"] = ChecksField(analysis);
   json["scene_model"] = {{"used", analysis.scene_model.used},
                          {"left_out", analysis.scene_model.left_out}};
   if (analysis.stopped_at) json["stopped_at_frame"] = *analysis.stopped_at;
@@ -363,7 +364,7 @@ std::string ToJson(const Analysis& analysis) {
   if (!analysis.corrections.empty()) {
     json["corrections"] = analysis.corrections;
   }
-  if (analysis.plane && analysis.scale) json["path"] = PathJson(analysis);
+  if (analysis.plane && analysis.scale) json["path"] = PathField(analysis);
   json["replay"] = ReplayJson(analysis);
   json["software"] = {{"version", std::string(Version())},
                       {"options_hash", analysis.options_hash}};

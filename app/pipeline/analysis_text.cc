@@ -10,7 +10,8 @@
 namespace touchdown::pipeline {
 namespace {
 
-std::string Number(const core::Measured& m, double factor, const char* unit) {
+std::string MeasuredText(const core::Measured& m, double factor,
+                         const char* unit) {
   if (!m) return fmt::format("absent: {}", m.error().reason);
   return report::InAscii(report::WithU(*m, 1.0 / factor)) + " " + unit;
 }
@@ -43,7 +44,7 @@ void AddGaps(std::string& out, const Analysis& a) {
   constexpr double kMm = 1.0 / core::kMillimetre;
   Line(out, "gap",
        fmt::format("greatest {}, bounce height {}, detectable from {}",
-                   Number(state.max_gap_m, kMm, "mm"),
+                   MeasuredText(state.max_gap_m, kMm, "mm"),
                    Convention(state.bounce_height_m, kMm, "mm"),
                    Convention(state.detectable_gap_m, kMm, "mm")));
   if (const std::string source = SourceOfHeight(a); !source.empty()) {
@@ -52,18 +53,19 @@ void AddGaps(std::string& out, const Analysis& a) {
   if (state.extrapolated_gap_m) {
     Line(out, "flight",
          fmt::format("would reach {} after the end of the film",
-                     Number(state.extrapolated_gap_m, kMm, "mm")));
+                     MeasuredText(state.extrapolated_gap_m, kMm, "mm")));
   }
 }
 
 void AddMotion(std::string& out, const core::Motion& motion) {
-  Line(out, "speed", Number(motion.before_speed_mps, 1.0, "m/s"));
+  Line(out, "speed", MeasuredText(motion.before_speed_mps, 1.0, "m/s"));
   const auto parts = [](const core::Measured& normal,
                         const core::Measured& tangential,
                         const core::Measured& omega) {
-    return fmt::format(
-        "normal {}, along the ground {}, spin {}", Number(normal, 1.0, "m/s"),
-        Number(tangential, 1.0, "m/s"), Number(omega, 1.0, "rad/s"));
+    return fmt::format("normal {}, along the ground {}, spin {}",
+                       MeasuredText(normal, 1.0, "m/s"),
+                       MeasuredText(tangential, 1.0, "m/s"),
+                       MeasuredText(omega, 1.0, "rad/s"));
   };
   Line(out, "before",
        parts(motion.before_normal_mps, motion.before_tangential_mps,
@@ -71,11 +73,12 @@ void AddMotion(std::string& out, const core::Motion& motion) {
   Line(out, "after",
        parts(motion.after_normal_mps, motion.after_tangential_mps,
              motion.after_omega_rad_per_s));
-  Line(out, "restitut.", Number(motion.restitution, 1.0, ""));
+  Line(out, "restitut.", MeasuredText(motion.restitution, 1.0, ""));
   Line(out, "centre",
-       Number(motion.centre_rebound_ratio, 1.0, "") + " (rebound ratio)");
-  Line(out, "impulses", Number(motion.impulse_ratio, 1.0, "") + " (ratio)");
-  Line(out, "gravity", Number(motion.gravity_check_mps2, 1.0, "m/s2"));
+       MeasuredText(motion.centre_rebound_ratio, 1.0, "") + " (rebound ratio)");
+  Line(out, "impulses",
+       MeasuredText(motion.impulse_ratio, 1.0, "") + " (ratio)");
+  Line(out, "gravity", MeasuredText(motion.gravity_check_mps2, 1.0, "m/s2"));
 }
 
 }  // namespace
@@ -96,17 +99,18 @@ std::string ToText(const Analysis& a) {
   if (a.body) {
     std::string text(core::Name(a.body->kind));
     if (a.body->kind == core::BodyKind::kSphere) {
-      text += ", diameter " + Number(a.body->diameter_m, kMm, "mm");
+      text += ", diameter " + MeasuredText(a.body->diameter_m, kMm, "mm");
     } else {
-      text += ", " + Number(a.body->long_m, kMm, "mm") + " by " +
-              Number(a.body->short_m, kMm, "mm");
+      text += ", " + MeasuredText(a.body->long_m, kMm, "mm") + " by " +
+              MeasuredText(a.body->short_m, kMm, "mm");
     }
     Line(out, "body", text);
   } else {
     Line(out, "body", "none: " + a.no_body_reason);
   }
   Line(out, "scale",
-       a.scale ? fmt::format("{} ({})", Number(a.scale->px_per_m, 1.0, "px/m"),
+       a.scale ? fmt::format("{} ({})",
+                             MeasuredText(a.scale->px_per_m, 1.0, "px/m"),
                              calib::Name(a.scale->source))
                : "none: " + a.no_scale_reason);
   if (a.ground) {
@@ -125,26 +129,28 @@ std::string ToText(const Analysis& a) {
     Line(out, "contact", "from the start");
   } else {
     Line(out, "contact",
-         fmt::format("at {}, frame {:.3f}", Number(contact.time_s, 1e3, "ms"),
+         fmt::format("at {}, frame {:.3f}",
+                     MeasuredText(contact.time_s, 1e3, "ms"),
                      contact.frame->value));
   }
   if (contact.found) {
     Line(out, "angle",
-         Number(core::ContactAngle(contact, a.angle_kind), kDeg, "deg") +
+         MeasuredText(core::ContactAngle(contact, a.angle_kind), kDeg, "deg") +
              fmt::format(" ({} angle)", core::Name(a.angle_kind)));
     // The other kinds, where the body has them; of a face also its sign.
     if (a.angle_kind != core::AngleKind::kApproach) {
-      Line(out, "approach", Number(contact.approach_angle_rad, kDeg, "deg"));
+      Line(out, "approach",
+           MeasuredText(contact.approach_angle_rad, kDeg, "deg"));
     }
     if (a.angle_kind != core::AngleKind::kRadius && contact.radius_angle_rad) {
-      Line(out, "radius", Number(contact.radius_angle_rad, kDeg, "deg"));
+      Line(out, "radius", MeasuredText(contact.radius_angle_rad, kDeg, "deg"));
     }
     const core::Measured& face = contact.face_angle_rad;
     if (face && (a.angle_kind != core::AngleKind::kFace || face->value < 0)) {
-      Line(out, "face", Number(face, kDeg, "deg"));
+      Line(out, "face", MeasuredText(face, kDeg, "deg"));
     }
     if (contact.corner) Line(out, "corner", std::string(Name(*contact.corner)));
-    Line(out, "duration", Number(contact.duration_s, 1e3, "ms"));
+    Line(out, "duration", MeasuredText(contact.duration_s, 1e3, "ms"));
   }
   std::string state(core::Name(first.state.label));
   if (first.state.p_bounce) {
@@ -161,7 +167,7 @@ std::string ToText(const Analysis& a) {
       Line(out, "impacts",
            fmt::format(
                "{} resolved, restitution {}; {}", e.resolved,
-               Number(e.value, 1.0, ""),
+               MeasuredText(e.value, 1.0, ""),
                e.unresolved > 0
                    ? fmt::format("at least {} not resolved", e.unresolved)
                    : "all that were seen"));
@@ -182,8 +188,8 @@ std::string ToText(const Analysis& a) {
         core::ContactAngle(later.contact, a.angle_kind);
     Line(out, "later",
          fmt::format("contact at {}, {} angle {}, {}",
-                     Number(later.contact.time_s, 1e3, "ms"),
-                     core::Name(a.angle_kind), Number(angle, kDeg, "deg"),
+                     MeasuredText(later.contact.time_s, 1e3, "ms"),
+                     core::Name(a.angle_kind), MeasuredText(angle, kDeg, "deg"),
                      core::Name(later.state.label)));
   }
   if (a.stopped_at) {

@@ -27,7 +27,6 @@ namespace touchdown::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 // Where a recording's evidence goes: its own path below `root`. What lies
 // elsewhere keeps its whole path.
@@ -76,7 +75,7 @@ class Batch {
   }
 
   std::vector<TriageEntry> Run() {
-    start_ = Clock::now();
+    start_ = std::chrono::steady_clock::now();
     {
       std::vector<std::jthread> threads;
       for (std::size_t i = 0; i < jobs_; ++i) {
@@ -265,8 +264,9 @@ class Batch {
     // What is known takes no time: only analyses tell how long the rest takes.
     const double analysed = static_cast<double>(analysed_) + begun;
     if (analysed > 0.0) {
-      const double gone =
-          std::chrono::duration<double>(Clock::now() - start_).count();
+      const double gone = std::chrono::duration<double>(
+                              std::chrono::steady_clock::now() - start_)
+                              .count();
       progress.seconds_left =
           gone / analysed * (static_cast<double>(clips_.size()) - work);
     }
@@ -281,7 +281,7 @@ class Batch {
   std::size_t jobs_ = 1;
   std::int32_t decoder_threads_ = 1;
   std::size_t window_ = 1;
-  Clock::time_point start_;
+  std::chrono::steady_clock::time_point start_;
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -13,7 +13,7 @@
 namespace touchdown::pipeline {
 namespace {
 
-std::string Degrees(const core::Estimate& e) {
+std::string AngleText(const core::Estimate& e) {
   return fmt::format("{:.2f} +- {:.2f} deg", e.value / core::kDegree,
                      e.u / core::kDegree);
 }
@@ -104,7 +104,7 @@ void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
   scene.left_out["yaw"] = "the calibration has no board on the ground";
   if (!calibration->ground) return;
   if (const auto& yaw = calibration->ground->yaw_rad) {
-    scene.used.push_back("yaw of the plane of travel, " + Degrees(*yaw));
+    scene.used.push_back("yaw of the plane of travel, " + AngleText(*yaw));
     scene.left_out.erase("yaw");
     if (calibration->lens) {
       scene.left_out["perspective"] = "but for the yaw: the camera is level";
@@ -115,7 +115,7 @@ void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
   }
   if (const auto& slope = calibration->ground->slope_rad) {
     scene.used.emplace_back("slope of the ground, in gravity along its normal");
-    scene.left_out["gravity along the ground"] = "slope " + Degrees(*slope);
+    scene.left_out["gravity along the ground"] = "slope " + AngleText(*slope);
   }
 }
 

@@ -38,7 +38,7 @@ core::Body Measured(const core::Body& made) {
 }
 
 // The campaign that a shot belongs to: one for each body.
-core::Campaign CampaignOf(const Shot& shot) {
+core::Campaign PaperCampaign(const Shot& shot) {
   const bool sphere = shot.thrown.body.kind == core::BodyKind::kSphere;
   core::Campaign campaign;
   campaign.name = sphere ? "table 1, sphere" : "table 1, rectangle";
@@ -124,7 +124,7 @@ DemoResult RunDemo(const DemoOptions& options) {
     simulate.folder = options.folder / "clips";
     simulate.seed = options.seed;
     const SimulatedClip made = WriteShot(shot, simulate);
-    AnalyzeOptions analyze = OptionsFor(CampaignOf(shot));
+    AnalyzeOptions analyze = OptionsFor(PaperCampaign(shot));
     analyze.limit_s = options.limit_s;
     analyses[at] = Analyze(made.clip, analyze);
     WriteEvidence(analyses[at], options.folder / "evidence" / shot.name);
@@ -148,7 +148,7 @@ DemoResult RunDemo(const DemoOptions& options) {
   result.store = options.folder / "demo.db";
   db::Store store = db::Store::Open(result.store, db::OpenMode::kCreate);
   for (std::size_t i = 0; i < shots.size(); ++i) {
-    const core::Campaign campaign = CampaignOf(shots[i]);
+    const core::Campaign campaign = PaperCampaign(shots[i]);
     if (!store.FindCampaign(campaign.name)) store.AddCampaign(campaign);
     core::Trial trial = LoggableTrial(analyses[i], &campaign);
     trial.set_angle_rad = shots[i].set_angle_rad;

@@ -35,7 +35,7 @@ bool IsOnNetwork(const fs::path& path) {
   return type == kNfs || type == kSmb || type == kSmb2;
 }
 
-Finding StoreItself(const DoctorOptions& options) {
+Finding StoreFinding(const DoctorOptions& options) {
   Finding finding{"store", Health::kGood, {}, {}};
   try {
     const auto store = db::Store::Open(options.store, db::OpenMode::kRead);
@@ -62,7 +62,7 @@ Finding StoreItself(const DoctorOptions& options) {
   return finding;
 }
 
-Finding Camera(const DoctorOptions& options) {
+Finding CameraFinding(const DoctorOptions& options) {
   Finding finding{"camera", Health::kGood, {}, {}};
   try {
     const auto camera = calib::ReadCalibration(options.calibration);
@@ -141,7 +141,7 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
   findings.push_back(finding);
 }
 
-Finding Disk(const fs::path& folder) {
+Finding DiskFinding(const fs::path& folder) {
   Finding finding{"disk", Health::kGood, {}, {}};
   std::error_code trouble;
   const fs::path there = fs::absolute(folder, trouble);
@@ -166,7 +166,7 @@ Finding Disk(const fs::path& folder) {
   return finding;
 }
 
-Finding Clock(const DoctorOptions& options) {
+Finding ClockFinding(const DoctorOptions& options) {
   const std::time_t now = std::chrono::system_clock::to_time_t(options.now);
   std::tm utc{};
   gmtime_r(&now, &utc);
@@ -204,11 +204,11 @@ std::string_view Name(Health health) {
 
 std::vector<Finding> Examine(const DoctorOptions& options) {
   std::vector<Finding> findings = ExamineMachine();
-  if (!options.store.empty()) findings.push_back(StoreItself(options));
-  if (!options.calibration.empty()) findings.push_back(Camera(options));
+  if (!options.store.empty()) findings.push_back(StoreFinding(options));
+  if (!options.calibration.empty()) findings.push_back(CameraFinding(options));
   if (!options.recordings.empty()) Recordings(options, findings);
-  findings.push_back(Disk(options.outputs));
-  findings.push_back(Clock(options));
+  findings.push_back(DiskFinding(options.outputs));
+  findings.push_back(ClockFinding(options));
   return findings;
 }
 

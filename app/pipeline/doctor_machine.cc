@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Finding Program() {
+Finding ProgramFinding() {
   return {"program",
           Health::kGood,
           fmt::format("{} ({})", Version(), Commit()),
@@ -48,7 +48,7 @@ std::string Distribution() {
   return "unknown distribution";
 }
 
-Finding System() {
+Finding SystemFinding() {
   utsname name{};
   uname(&name);
   constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
@@ -84,9 +84,11 @@ std::string Loaded(std::string_view beginning) {
 }
 
 // Before a video is opened: libav brings a hundred more.
-Finding Libraries() { return {"libraries", Health::kGood, Loaded("lib"), {}}; }
+Finding LibrariesFinding() {
+  return {"libraries", Health::kGood, Loaded("lib"), {}};
+}
 
-Finding Video() {
+Finding VideoFinding() {
   try {
     std::string there;
     std::string missing;
@@ -110,7 +112,7 @@ Finding Video() {
 }
 
 // A recording of one picture of our own is read as a stranger's would be.
-Finding Reader() {
+Finding ReaderFinding() {
   const auto trouble = [](const std::string& what) {
     return Finding{"reader", Health::kTrouble, what,
                    "no video and no picture can be read"};
@@ -156,8 +158,8 @@ bool IsOnPath(std::string_view program) {
   return false;
 }
 
-Finding Tool(std::string_view program, std::string_view package, Health without,
-             std::string_view what_for) {
+Finding ToolFinding(std::string_view program, std::string_view package,
+                    Health without, std::string_view what_for) {
   if (IsOnPath(program)) {
     return {std::string(program), Health::kGood, "is there", {}};
   }
@@ -166,7 +168,7 @@ Finding Tool(std::string_view program, std::string_view package, Health without,
           fmt::format("install the package {}", package)};
 }
 
-Finding Lapack() {
+Finding LapackFinding() {
   if (void* const library = dlopen("liblapack.so.3", RTLD_LAZY)) {
     dlclose(library);
     return {"lapack", Health::kGood, "is there", {}};
@@ -178,13 +180,15 @@ Finding Lapack() {
 }  // namespace
 
 std::vector<Finding> ExamineMachine() {
-  std::vector<Finding> findings{Program(), System(), Libraries(), Video(),
-                                Reader()};
-  findings.push_back(Lapack());
+  std::vector<Finding> findings{ProgramFinding(), SystemFinding(),
+                                LibrariesFinding(), VideoFinding(),
+                                ReaderFinding()};
+  findings.push_back(LapackFinding());
+  findings.push_back(ToolFinding("gnuplot", "gnuplot-nox", Health::kTrouble,
+                                 "no report has plots"));
   findings.push_back(
-      Tool("gnuplot", "gnuplot-nox", Health::kTrouble, "no report has plots"));
-  findings.push_back(Tool("xdg-open", "xdg-utils", Health::kNote,
-                          "`review` prints its address and opens no browser"));
+      ToolFinding("xdg-open", "xdg-utils", Health::kNote,
+                  "`review` prints its address and opens no browser"));
   return findings;
 }
 

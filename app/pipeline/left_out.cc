@@ -14,7 +14,7 @@ namespace {
 using core::kDegree;
 
 // What of an approach angle's neighbourhood the effects need.
-struct Seen {
+struct ApproachFacts {
   double angle_rad = 0.0;
   double u_rad = 0.0;
   double speed_mps = 0.0;
@@ -24,7 +24,7 @@ struct Seen {
   double flight_s = 0.0;
 };
 
-std::optional<Seen> SeenAtContact(const Analysis& a) {
+std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
   const core::ContactRecord& first = a.contacts.first;
   const auto& angle = first.contact.approach_angle_rad;
   const auto& speed = first.motion.before_speed_mps;
@@ -34,8 +34,8 @@ std::optional<Seen> SeenAtContact(const Analysis& a) {
       !(speed->value > 0.0) || !first.contact.frame) {
     return std::nullopt;
   }
-  Seen out{angle->value, angle->u, speed->value, std::abs(down->value),
-           a.scale->px_per_m.value};
+  ApproachFacts out{angle->value, angle->u, speed->value, std::abs(down->value),
+                    a.scale->px_per_m.value};
   const double frame = first.contact.frame->value;
   const auto& poses = a.track->poses;
   const auto at =
@@ -60,7 +60,7 @@ std::string Size(double error_rad, double u_rad) {
                      error_rad / kDegree, u_rad > 0 ? error_rad / u_rad : 0.0);
 }
 
-LeftOutEffect OutOfPlane(const Seen& s, const LeftOutSizes& sizes) {
+LeftOutEffect OutOfPlane(const ApproachFacts& s, const LeftOutSizes& sizes) {
   LeftOutEffect out{"path out of the plane"};
   const double psi = sizes.out_of_plane_rad;
   out.error_rad = s.lever * std::sin(psi) + (1.0 / std::cos(psi) - 1.0) *
@@ -75,7 +75,7 @@ LeftOutEffect OutOfPlane(const Seen& s, const LeftOutSizes& sizes) {
   return out;
 }
 
-LeftOutEffect Rolling(const Analysis& a, const Seen& s,
+LeftOutEffect Rolling(const Analysis& a, const ApproachFacts& s,
                       const LeftOutSizes& sizes) {
   LeftOutEffect out{"rolling shutter"};
   const double rows = s.down_mps * s.px_per_m / a.clip.time_base.fps;
@@ -89,7 +89,7 @@ LeftOutEffect Rolling(const Analysis& a, const Seen& s,
   return out;
 }
 
-LeftOutEffect Slope(const Seen& s, const LeftOutSizes& sizes) {
+LeftOutEffect Slope(const ApproachFacts& s, const LeftOutSizes& sizes) {
   LeftOutEffect out{"gravity along the ground"};
   out.error_rad = core::kStandardGravity_mps2 * std::sin(sizes.slope_rad) *
                   s.flight_s / (2.0 * s.speed_mps) * std::sin(s.angle_rad);
@@ -99,7 +99,7 @@ LeftOutEffect Slope(const Seen& s, const LeftOutSizes& sizes) {
   return out;
 }
 
-LeftOutEffect Outline(const Analysis& a, const Seen& s,
+LeftOutEffect Outline(const Analysis& a, const ApproachFacts& s,
                       const LeftOutSizes& sizes) {
   LeftOutEffect out{"light and gamma"};
   const double rows = s.down_mps * s.px_per_m / a.clip.time_base.fps;

@@ -21,10 +21,10 @@ namespace {
 constexpr std::size_t kMaxRows = 1'000'000;
 constexpr std::uintmax_t kMaxBytes = 1u << 28;
 
-class Reader {
+class ManifestReader {
  public:
-  Reader(const std::string& text, std::string name,
-         std::filesystem::path folder)
+  ManifestReader(const std::string& text, std::string name,
+                 std::filesystem::path folder)
       : in_(text), name_(std::move(name)), folder_(std::move(folder)) {}
 
   std::vector<ManifestRow> Read() {
@@ -171,7 +171,7 @@ const std::vector<ManifestColumn>& ManifestColumns() {
 std::vector<ManifestRow> ParseManifest(const std::string& text,
                                        const std::string& name,
                                        const std::filesystem::path& folder) {
-  return Reader(text, name, folder).Read();
+  return ManifestReader(text, name, folder).Read();
 }
 
 std::vector<ManifestRow> ReadManifest(const std::filesystem::path& path) {

@@ -9,7 +9,7 @@
 namespace touchdown::pipeline {
 namespace {
 
-core::Body BodyOf(core::BodyKind kind) {
+core::Body UnmeasuredBody(core::BodyKind kind) {
   core::Body body;
   body.kind = kind;
   const auto unknown = core::AbsentBecause("not in the paper");
@@ -30,7 +30,7 @@ PaperTrials PaperTable1Trials(double u_rad) {
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
     core::Campaign campaign;
     campaign.name = fmt::format("paper-table1-{}", core::Name(kind));
-    campaign.body = BodyOf(kind);
+    campaign.body = UnmeasuredBody(kind);
     campaign.surface = "not in the paper";
     campaign.angle_kind = core::DefaultAngleKind(kind);
     // A campaign must have one; the paper gives none, and its trials say so.

@@ -19,12 +19,12 @@ namespace touchdown::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 // Recording and options of an analysis.
 using Key = std::pair<std::string, std::string>;
 
-std::string TextAt(const Json& json, const char* object, const char* field) {
+std::string TextAt(const nlohmann::json& json, const char* object,
+                   const char* field) {
   const auto outer = json.find(object);
   if (outer == json.end() || !outer->is_object()) return "";
   const auto inner = outer->find(field);
@@ -34,7 +34,7 @@ std::string TextAt(const Json& json, const char* object, const char* field) {
 
 Key KeyOf(const fs::path& analysis) {
   std::ifstream file(analysis);
-  const Json json = Json::parse(file, nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
   if (!json.is_object()) return {};
   return {TextAt(json, "clip", "id"), TextAt(json, "software", "options_hash")};
 }

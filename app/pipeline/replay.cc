@@ -8,12 +8,13 @@
 #include "app/pipeline/judge.h"
 #include "app/pipeline/log_analysis.h"
 #include "app/pipeline/whole_number.h"
+#include "app/report/json.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::pipeline {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 constexpr const char* kColumns =
     "frame time_s x_px y_px u_x_px u_y_px correlation angle_rad u_angle_rad "
@@ -28,7 +29,7 @@ Json EstimateJson(const core::Estimate& e) {
   return json;
 }
 
-core::Estimate EstimateOf(const Json& json) {
+core::Estimate ReadEstimate(const Json& json) {
   core::Estimate e{json.at("value"), json.at("u"), std::nullopt};
   if (json.contains("interval95")) {
     e.interval95 =
@@ -48,7 +49,7 @@ void Put(Json& json, const char* name,
 std::optional<core::Estimate> OptionalEstimate(const Json& json,
                                                const char* name) {
   if (!json.contains(name)) return std::nullopt;
-  return EstimateOf(json.at(name));
+  return ReadEstimate(json.at(name));
 }
 template <class T>
 std::optional<T> Optional(const Json& json, const char* name) {
@@ -187,9 +188,9 @@ Json TrackJson(const vision::Track& track) {
 vision::Track TrackOf(const Json& json, core::BodyKind kind) {
   vision::Track track;
   track.body.kind = kind;
-  track.body.radius_px = EstimateOf(json.at("radius_px"));
-  track.body.half_long_px = EstimateOf(json.at("half_long_px"));
-  track.body.half_short_px = EstimateOf(json.at("half_short_px"));
+  track.body.radius_px = ReadEstimate(json.at("radius_px"));
+  track.body.half_long_px = ReadEstimate(json.at("half_long_px"));
+  track.body.half_short_px = ReadEstimate(json.at("half_short_px"));
   track.body.whole_px = json.at("whole_px");
   track.body.blur_px = json.at("blur_px");
   track.body.contrast_dn = json.at("contrast_dn");
@@ -277,7 +278,7 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
                              Int32(corner.at(1), "sensor_origin")};
   }
   if (const Json& scale = document.at("scale"); !scale.is_null()) {
-    a.scale = calib::Scale{EstimateOf(scale.at("px_per_m")),
+    a.scale = calib::Scale{ReadEstimate(scale.at("px_per_m")),
                            Named(scale.at("source").get<std::string>(),
                                  {kUser, kCalibration, kBodySize})};
   } else {

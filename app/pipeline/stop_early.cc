@@ -43,9 +43,9 @@ class Borrowed final : public vision::Clip {
 
 // What the windows that differ from the still picture tell before any outline
 // is fitted.
-class Seen {
+class ActivityTally {
  public:
-  explicit Seen(std::int64_t least_run) : least_run_(least_run) {}
+  explicit ActivityTally(std::int64_t least_run) : least_run_(least_run) {}
 
   // The next frames.
   void Add(const vision::Clip& clip, std::int64_t first, std::int64_t last) {
@@ -216,7 +216,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
 
   const std::int64_t range = keep.last - keep.first;
   const std::int64_t piece = std::max(rule.least_piece, range / rule.pieces);
-  Seen seen(rule.least_run);
+  ActivityTally seen(rule.least_run);
   std::int64_t looked_at = 0;  // of the frames that show anything
   std::optional<Analysis> decided;
   for (std::int64_t end = keep.first + piece; end < keep.last; end += piece) {

@@ -43,7 +43,7 @@ constexpr double kClearly = 3.0;
 // place never uncovers its background; these frames show it.
 constexpr std::int64_t kLeadInFrames = 40;
 
-vision::SceneCamera Camera() {
+vision::SceneCamera WindowedCamera() {
   vision::SceneCamera camera;
   camera.width_px = 640;
   camera.height_px = 200;  // a window, as fast cameras are read out
@@ -57,7 +57,7 @@ vision::SceneCamera Camera() {
   return camera;
 }
 
-vision::SceneLook Look() {
+vision::SceneLook TexturedLook() {
   vision::SceneLook look;
   look.gradient_x = 0.08;
   look.gradient_y = -0.05;
@@ -103,8 +103,8 @@ Shot SphereShot(double angle_deg, double phase) {
   Shot shot;
   shot.name = NameOf("sphere_approach", angle_deg);
   shot.angle_kind = core::AngleKind::kApproach;
-  shot.camera = Camera();
-  shot.look = Look();
+  shot.camera = WindowedCamera();
+  shot.look = TexturedLook();
   shot.noise = kNoise;
   const double angle = angle_deg * core::kDegree;
   shot.set_angle_rad = angle;
@@ -125,8 +125,8 @@ Shot RectangleShot(double angle_deg, double phase) {
   Shot shot;
   shot.name = NameOf("rectangle_face", angle_deg);
   shot.angle_kind = core::AngleKind::kFace;
-  shot.camera = Camera();
-  shot.look = Look();
+  shot.camera = WindowedCamera();
+  shot.look = TexturedLook();
   shot.noise = kNoise;
   const double angle = angle_deg * core::kDegree;
   shot.set_angle_rad = angle;

@@ -10,6 +10,7 @@
 
 #include "app/report/campaign_checks.h"
 #include "app/report/format.h"
+#include "app/report/stored_document.h"
 #include "app/report/text.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/records.h"
@@ -25,10 +26,8 @@ constexpr std::size_t kShownId = 8;  // of a trial's id: enough to find it by
 // The warnings of the analysis, from its document.
 std::vector<std::string> WarningsOf(const core::Trial& trial) {
   std::vector<std::string> warnings;
-  const auto document =
-      nlohmann::json::parse(trial.document_json, nullptr, false);
-  if (!document.is_object() || !document.contains("warnings")) return warnings;
-  for (const auto& warning : document["warnings"]) {
+  const auto document = report::StoredDocument(trial);
+  for (const auto& warning : report::ValueAt(document, {"warnings"})) {
     if (warning.is_string()) warnings.push_back(warning);
   }
   return warnings;

@@ -45,20 +45,20 @@ struct Place {
   int line = 0;
 };
 
-[[noreturn]] void Refuse(const Place& place, const std::string& what) {
+[[noreturn]] void RefuseLine(const Place& place, const std::string& what) {
   throw core::InputError(
       fmt::format("{}: line {}: {}", place.path.string(), place.line, what));
 }
 
-double Number(const Place& place, std::string_view column,
-              const std::string& cell, double low, double high,
-              std::string_view range) {
+double ReadCell(const Place& place, std::string_view column,
+                const std::string& cell, double low, double high,
+                std::string_view range) {
   double value = 0.0;
   const char* end = cell.data() + cell.size();
   const auto [stop, error] = std::from_chars(cell.data(), end, value);
   if (error != std::errc{} || stop != end || !(value >= low && value <= high)) {
-    Refuse(place, fmt::format("{} is '{}'; expected a number {}", column, cell,
-                              range));
+    RefuseLine(place, fmt::format("{} is '{}'; expected a number {}", column,
+                                  cell, range));
   }
   return value;
 }
@@ -128,22 +128,23 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
       header = cells;
       for (const char* column : {"angle_deg", "u_deg", "p_bounce"}) {
         if (!find(column)) {
-          Refuse(place, fmt::format("there is no column {}; expected the "
-                                    "columns angle_deg, u_deg, p_bounce and, "
-                                    "where there were set-points, "
-                                    "set_angle_deg",
-                                    column));
+          RefuseLine(place,
+                     fmt::format("there is no column {}; expected the "
+                                 "columns angle_deg, u_deg, p_bounce and, "
+                                 "where there were set-points, "
+                                 "set_angle_deg",
+                                 column));
         }
       }
       continue;
     }
     if (cells.size() != header.size()) {
-      Refuse(place, fmt::format("{} cells; expected {}, as in the heading",
-                                cells.size(), header.size()));
+      RefuseLine(place, fmt::format("{} cells; expected {}, as in the heading",
+                                    cells.size(), header.size()));
     }
     const auto number = [&](std::string_view column, double high,
                             std::string_view range) {
-      return Number(place, column, cells[*find(column)], 0.0, high, range);
+      return ReadCell(place, column, cells[*find(column)], 0.0, high, range);
     };
     const auto common = find("common_u_deg");
     trials.push_back(

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string_view Name(analysis::EventKind kind) {
+std::string_view EventName(analysis::EventKind kind) {
   switch (kind) {
     case analysis::EventKind::kImpact:
       return "impact";
@@ -28,7 +28,7 @@ std::string_view Name(analysis::EventKind kind) {
   return "?";
 }
 
-ordered_json Degrees(const std::optional<double>& angle_rad) {
+ordered_json DegreesJson(const std::optional<double>& angle_rad) {
   if (!angle_rad) return nullptr;
   return *angle_rad / core::kDegree;
 }
@@ -63,10 +63,10 @@ ordered_json ContactJson(const Shot& shot, const ShotTruth& truth) {
   contact["frame"] =
       t.from_start ? ordered_json() : ordered_json(t.time_s * shot.camera.fps);
   contact["angle_kind"] = std::string(core::Name(shot.angle_kind));
-  contact["angle_deg"] = Degrees(ContactAngle(shot, t));
-  contact["approach_angle_deg"] = Degrees(t.approach_angle_rad);
-  contact["radius_angle_deg"] = Degrees(t.radius_angle_rad);
-  contact["face_angle_deg"] = Degrees(t.face_angle_rad);
+  contact["angle_deg"] = DegreesJson(ContactAngle(shot, t));
+  contact["approach_angle_deg"] = DegreesJson(t.approach_angle_rad);
+  contact["radius_angle_deg"] = DegreesJson(t.radius_angle_rad);
+  contact["face_angle_deg"] = DegreesJson(t.face_angle_rad);
   contact["corner"] = t.corner
                           ? ordered_json(std::string(core::Name(*t.corner)))
                           : ordered_json();
@@ -134,7 +134,7 @@ ordered_json EventsJson(const Shot& shot, const ShotTruth& truth) {
               {"contact_normal_mps", contact_vy},
               {"contact_tangential_mps", contact_vx}};
     };
-    events.push_back({{"kind", std::string(Name(e.kind))},
+    events.push_back({{"kind", std::string(EventName(e.kind))},
                       {"time_s", e.before.time_s},
                       {"frame", e.before.time_s * shot.camera.fps},
                       {"x_mm", e.before.centre.x_m / core::kMillimetre},
@@ -174,7 +174,7 @@ std::string TruthText(const Shot& shot, const ShotTruth& truth,
                    {"x2_px", ground.p2.x_px},
                    {"y2_px", ground.p2.y_px}};
   out["body"] = BodyJson(shot.thrown.body);
-  out["set_angle_deg"] = Degrees(shot.set_angle_rad);
+  out["set_angle_deg"] = DegreesJson(shot.set_angle_rad);
   out["contact"] = ContactJson(shot, truth);
   out["state"] = StateJson(truth);
   out["motion"] = MotionJson(shot, truth);

@@ -16,8 +16,8 @@
 namespace touchdown::pipeline {
 namespace {
 
-[[noreturn]] void Refuse(const std::string& flag, const std::string& text,
-                         const std::string& form) {
+[[noreturn]] void RefuseText(const std::string& flag, const std::string& text,
+                             const std::string& form) {
   throw std::invalid_argument(
       fmt::format("{} is '{}', must be {}", flag, text, form));
 }
@@ -51,7 +51,7 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
       "a number, or one with its standard uncertainty as in 40+-0.02";
   const std::size_t sign = text.find("+-");
   const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
-  if (!value || !std::isfinite(*value)) Refuse(flag, text, form);
+  if (!value || !std::isfinite(*value)) RefuseText(flag, text, form);
   if (sign == std::string::npos) {
     return {
         *value * unit,
@@ -60,7 +60,7 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
         std::nullopt};
   }
   const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
-  if (!u || !std::isfinite(*u)) Refuse(flag, text, form);
+  if (!u || !std::isfinite(*u)) RefuseText(flag, text, form);
   if (*u < 0.0) {
     throw std::invalid_argument(fmt::format(
         "{} is '{}', its uncertainty must be at least 0", flag, text));
@@ -73,7 +73,7 @@ std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      double unit, DefaultU u) {
   const std::size_t times = text.find('x');
   if (times == std::string::npos) {
-    Refuse(flag, text, "two lengths as in 60x20");
+    RefuseText(flag, text, "two lengths as in 60x20");
   }
   return {ParseEstimate(flag, text.substr(0, times), unit, u),
           ParseEstimate(flag, text.substr(times + 1), unit, u)};
@@ -100,9 +100,9 @@ core::Measured ParseMeasured(const std::string& flag, const std::string& text,
     return core::AbsentBecause(text.substr(kAbsent.size()));
   }
   if (text.find("+-") == std::string::npos) {
-    Refuse(flag, text,
-           "a number with its standard uncertainty as in 40+-0.02, or "
-           "absent:REASON");
+    RefuseText(flag, text,
+               "a number with its standard uncertainty as in 40+-0.02, or "
+               "absent:REASON");
   }
   core::Estimate estimate = ParseEstimate(flag, text, unit);
   estimate.value += offset;

@@ -18,13 +18,12 @@ namespace {
 
 using core::kDegree;
 using core::kMillimetre;
-using Json = nlohmann::ordered_json;
 
-Json Degrees(const std::optional<double>& angle_rad) {
+Json DegreesJson(const std::optional<double>& angle_rad) {
   return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
 }
 
-Json Degrees(const core::Expected<Reach>& reach) {
+Json DegreesJson(const core::Expected<Reach>& reach) {
   if (!reach) return nullptr;
   return {reach->angle_rad.low / kDegree, reach->angle_rad.high / kDegree};
 }
@@ -97,8 +96,8 @@ Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
             {"slide_bounce", a.deciding.slide_bounce},
             {"bounce_slide", a.deciding.bounce_slide},
             {"bounce_bounce", a.deciding.bounce_bounce},
-            {"same_low_deg", Degrees(a.same_low_rad)},
-            {"same_high_deg", Degrees(a.same_high_rad)},
+            {"same_low_deg", DegreesJson(a.same_low_rad)},
+            {"same_high_deg", DegreesJson(a.same_high_rad)},
             {"wilson95", Pair(t.wilson95)},
             {"clopper_pearson95", Pair(t.clopper_pearson95)},
             {"kappa", t.kappa ? Json(t.kappa->kappa) : Json(nullptr)},
@@ -165,7 +164,7 @@ Json TrialJson(const core::Trial& trial, const std::string* left_out) {
       {"id", trial.id},
       {"revision", trial.revision},
       {"clip", trial.clip.path},
-      {"set_angle_deg", Degrees(trial.set_angle_rad)},
+      {"set_angle_deg", DegreesJson(trial.set_angle_rad)},
       {"angle_deg", Quantity(core::ContactAngle(trial), kDegree)},
       {"state", std::string(core::Name(state.label))},
       {"paper_word", PaperWord(state.label)},
@@ -231,8 +230,8 @@ Json BoundaryJson(const Group& group) {
               {"status_text", StatusSentence(study)},
               {"few_trials", study.posterior.few_trials},
               {"bracket",
-               {{"low_deg", Degrees(bracket.low_rad)},
-                {"high_deg", Degrees(bracket.high_rad)},
+               {{"low_deg", DegreesJson(bracket.low_rad)},
+                {"high_deg", DegreesJson(bracket.high_rad)},
                 {"separated", bracket.closed()}}},
               {"posterior", PosteriorJson(group)},
               {"likelihood",
@@ -256,7 +255,7 @@ Json BoundaryJson(const Group& group) {
                  {"half_width_deg", study.next.half_width_rad / kDegree},
                  {"clipped", study.next.clipped},
                  {"stop", StopWord(study.next.stop)},
-                 {"within_deg", Degrees(group.reach)}};
+                 {"within_deg", DegreesJson(group.reach)}};
   out["sentences"] = {{"boundary", BoundarySentence(study)},
                       {"bracket", BracketSentence(bracket)},
                       {"status", StatusSentence(study)},

@@ -2,10 +2,10 @@
 // added, never renamed.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 
 #include "app/report/group.h"
+#include "app/report/json.h"
 #include "app/report/report.h"
 #include "touchdown/core/trial.h"
 
@@ -13,15 +13,14 @@ namespace touchdown::report {
 
 // One group of trials: counts, bracket, posterior, likelihood, status, theory,
 // next. Degrees everywhere; what is absent is null.
-nlohmann::ordered_json BoundaryJson(const Group& group);
+Json BoundaryJson(const Group& group);
 
 // The whole answer of `touchdown boundary`: the fields of BoundaryJson() beside
 // `schema` where there is one group, else under `groups`.
-nlohmann::ordered_json BoundaryDocument(std::span<const Group> groups);
+Json BoundaryDocument(std::span<const Group> groups);
 
 // touchdown.report/1: every group with every trial.
-nlohmann::ordered_json ReportDocument(const ReportInput& input,
-                                      std::span<const Group> groups,
-                                      std::span<const core::Trial> trials);
+Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
+                    std::span<const core::Trial> trials);
 
 }  // namespace touchdown::report

@@ -29,14 +29,14 @@ double Spread(std::size_t i, std::size_t n) {
   return kSpread * (2.0 * static_cast<double>(i * 3 % kRows) / (kRows - 1) - 1);
 }
 
-struct Range {
+struct AxisRange {
   double low_deg = 0.0;
   double high_deg = 90.0;
 };
 
 // All of 0..90 where the trials need most of it, else what they, the lines and
 // the whole interval of the boundary occupy, to whole 5 degrees.
-Range RangeOf(const BoundaryPlot& plot) {
+AxisRange AxisRangeOf(const BoundaryPlot& plot) {
   double low = 90.0;
   double high = 0.0;
   const auto include = [&](double a, double b) {
@@ -53,14 +53,14 @@ Range RangeOf(const BoundaryPlot& plot) {
     include(plot.interval->angle_rad.low, plot.interval->angle_rad.high);
   }
   if (low > high) return {};
-  Range range{std::floor((low - 2) / 5) * 5, std::ceil((high + 2) / 5) * 5};
+  AxisRange range{std::floor((low - 2) / 5) * 5, std::ceil((high + 2) / 5) * 5};
   range.low_deg = std::max(range.low_deg, -2.0);
   range.high_deg = std::min(range.high_deg, 92.0);
   return range;
 }
 
-std::string DataBlock(const BoundaryPlot& plot, Outcome outcome,
-                      std::string_view name) {
+std::string OutcomeBlock(const BoundaryPlot& plot, Outcome outcome,
+                         std::string_view name) {
   std::string block = fmt::format("${} << EOD\n", name);
   for (std::size_t i = 0; i < plot.observations.size(); ++i) {
     const Observation& o = plot.observations[i];
@@ -83,7 +83,7 @@ bool Any(const BoundaryPlot& plot, Outcome outcome) {
 
 // The bar of the interval, its ends marked or open: below the slides, where no
 // mark is. The caption names it; the key has no room.
-void AddInterval(const PlotInterval& interval, const Range& range,
+void AddInterval(const PlotInterval& interval, const AxisRange& range,
                  std::string& script, std::vector<std::string>& parts) {
   constexpr double kLevel = -0.1;
   constexpr double kEnd = 0.04;  // half-height of a closed end
@@ -113,8 +113,8 @@ void AddInterval(const PlotInterval& interval, const Range& range,
       kColour));
 }
 
-std::string Script(const BoundaryPlot& plot) {
-  const Range range = RangeOf(plot);
+std::string BoundaryScript(const BoundaryPlot& plot) {
+  const AxisRange range = AxisRangeOf(plot);
   std::string s = fmt::format(
       "set terminal svg size 940,320 dynamic noenhanced "
       "font 'Arial,14' name '{}'\n"
@@ -150,9 +150,9 @@ std::string Script(const BoundaryPlot& plot) {
         (line.angle_rad - 2 * line.u_rad) / kDegree,
         (line.angle_rad + 2 * line.u_rad) / kDegree);
   }
-  s += DataBlock(plot, Outcome::kNotBounce, "slides");
-  s += DataBlock(plot, Outcome::kBounce, "bounces");
-  s += DataBlock(plot, Outcome::kUndecided, "undecided");
+  s += OutcomeBlock(plot, Outcome::kNotBounce, "slides");
+  s += OutcomeBlock(plot, Outcome::kBounce, "bounces");
+  s += OutcomeBlock(plot, Outcome::kUndecided, "undecided");
 
   std::vector<std::string> parts;
   if (!plot.density.angle_rad.empty()) {
@@ -221,7 +221,7 @@ std::string Script(const BoundaryPlot& plot) {
 }  // namespace
 
 std::string DrawBoundaryPlot(const BoundaryPlot& plot) {
-  return InlineSvg(RunGnuplot(Script(plot)), plot.id);
+  return InlineSvg(RunGnuplot(BoundaryScript(plot)), plot.id);
 }
 
 }  // namespace touchdown::report

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "app/report/format.h"
+#include "app/report/stored_document.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {
 namespace {
-
-using Json = nlohmann::json;
 
 // Gravity is known to this share without a survey of the site: 9.780 at the
 // equator, 9.832 at the poles.
@@ -23,37 +21,24 @@ constexpr double kLocalGravity = 0.002;
 // small, and blames light for it.
 constexpr double kOutline_px = 0.1;
 
-const Json* At(const Json& json, std::initializer_list<const char*> path) {
-  const Json* at = &json;
-  for (const char* name : path) {
-    if (!at->is_object()) return nullptr;
-    const auto found = at->find(name);
-    if (found == at->end()) return nullptr;
-    at = &*found;
-  }
-  return at;
-}
-
 std::optional<core::Estimate> EstimateAt(
-    const Json& json, std::initializer_list<const char*> path) {
-  const Json* at = At(json, path);
-  if (at == nullptr) return std::nullopt;
-  const Json* value = At(*at, {"value"});
-  const Json* u = At(*at, {"u"});
-  if (value == nullptr || u == nullptr || !value->is_number() ||
-      !u->is_number() || !(value->get<double>() > 0.0)) {
+    const nlohmann::json& json, std::initializer_list<const char*> path) {
+  const nlohmann::json& at = ValueAt(json, path);
+  const nlohmann::json& value = ValueAt(at, {"value"});
+  const nlohmann::json& u = ValueAt(at, {"u"});
+  if (!value.is_number() || !u.is_number() || !(value.get<double>() > 0.0)) {
     return std::nullopt;
   }
-  return core::Estimate{value->get<double>(), u->get<double>(), {}};
+  return core::Estimate{value.get<double>(), u.get<double>(), {}};
 }
 
-core::Measured SizeRatio(const Json& json, const core::Estimate& scale,
-                         bool scale_of_body, double& common_u) {
+core::Measured SizeRatio(const nlohmann::json& json,
+                         const core::Estimate& scale, bool scale_of_body,
+                         double& common_u) {
   if (scale_of_body) {
     return core::AbsentBecause("the scale is from the body's own size");
   }
-  const Json* lens = At(json, {"calibration", "lens_rms_px"});
-  if (lens != nullptr && !lens->is_null()) {
+  if (!ValueAt(json, {"calibration", "lens_rms_px"}).is_null()) {
     return core::AbsentBecause(
         "the size in the picture is not free of the lens");
   }
@@ -155,15 +140,12 @@ std::string Explain(const CampaignChecks& checks, double px_per_m, double fps,
 TrialRatios RatiosOf(const core::Trial& trial) {
   TrialRatios out{core::AbsentBecause("no document"),
                   core::AbsentBecause("no document")};
-  const Json json = trial.document_json.empty()
-                        ? Json()
-                        : Json::parse(trial.document_json, nullptr, false);
+  const nlohmann::json json = StoredDocument(trial);
   const auto scale = EstimateAt(json, {"scale", "px_per_m"});
-  const Json* source = At(json, {"scale", "source"});
-  out.scale_of_body = source != nullptr && *source == "body_size";
-  if (const Json* fps = At(json, {"clip", "time_base", "fps"});
-      fps != nullptr && fps->is_number()) {
-    out.fps = fps->get<double>();
+  out.scale_of_body = ValueAt(json, {"scale", "source"}) == "body_size";
+  if (const nlohmann::json& fps = ValueAt(json, {"clip", "time_base", "fps"});
+      fps.is_number()) {
+    out.fps = fps.get<double>();
   }
   const double scale_u = scale ? scale->u / scale->value : 0.0;
   out.common_gravity_u = std::hypot(kLocalGravity, scale_u);

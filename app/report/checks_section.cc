@@ -17,8 +17,8 @@ bool HasClips(const Group& group, std::span<const core::Trial> trials) {
       [&](std::size_t i) { return !trials[i].document_json.empty(); });
 }
 
-std::vector<Cell> Row(const char* what,
-                      const core::Expected<analysis::PooledCheck>& check) {
+std::vector<Cell> CheckRow(const char* what,
+                           const core::Expected<analysis::PooledCheck>& check) {
   if (!check) {
     return {{what}, {""}, {""}, {""}, {check.error().reason, Tone::kMuted}};
   }
@@ -42,8 +42,8 @@ std::vector<Block> MakeChecks(const Group& group,
                {"ratio, %", true},
                {"off by, u", true},
                {"result"}},
-              {Row("gravity from the flights", checks.gravity),
-               Row("size in the picture", checks.size)}};
+              {CheckRow("gravity from the flights", checks.gravity),
+               CheckRow("size in the picture", checks.size)}};
   std::vector<Block> out;
   out.push_back(std::move(table));
   out.push_back(Paragraph{

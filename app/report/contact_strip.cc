@@ -27,9 +27,9 @@ std::string Points(const std::vector<core::PixelPoint>& points) {
 }
 
 // A line with its rim; `element` is polyline or polygon.
-std::string Line(const char* element,
-                 const std::vector<core::PixelPoint>& points,
-                 const char* colour, const char* dashes) {
+std::string RimmedLine(const char* element,
+                       const std::vector<core::PixelPoint>& points,
+                       const char* colour, const char* dashes) {
   if (points.size() < 2) return "";
   const std::string at = Points(points);
   std::string out;
@@ -64,7 +64,7 @@ std::string ScaleBar(const core::PixelRect& piece,
   const double text = piece.width / 17.0;
   const double x = piece.x + 0.05 * piece.width;
   const double y = piece.y + piece.height - 0.07 * piece.height;
-  return Line("polyline", {{x, y}, {x + length, y}}, "#ffffff", "") +
+  return RimmedLine("polyline", {{x, y}, {x + length, y}}, "#ffffff", "") +
          fmt::format(
              "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\" "
              "fill=\"#ffffff\" stroke=\"#101418\" stroke-width=\"{:.2f}\" "
@@ -74,14 +74,14 @@ std::string ScaleBar(const core::PixelRect& piece,
 }
 
 std::string Cross(core::PixelPoint at, double reach) {
-  return Line("polyline",
-              {{at.x_px - reach, at.y_px - reach},
-               {at.x_px + reach, at.y_px + reach}},
-              "#ffffff", "") +
-         Line("polyline",
-              {{at.x_px - reach, at.y_px + reach},
-               {at.x_px + reach, at.y_px - reach}},
-              "#ffffff", "");
+  return RimmedLine("polyline",
+                    {{at.x_px - reach, at.y_px - reach},
+                     {at.x_px + reach, at.y_px + reach}},
+                    "#ffffff", "") +
+         RimmedLine("polyline",
+                    {{at.x_px - reach, at.y_px + reach},
+                     {at.x_px + reach, at.y_px - reach}},
+                    "#ffffff", "");
 }
 
 std::string DrawPicture(const StripPicture& picture, const ContactStrip& strip,
@@ -95,10 +95,10 @@ std::string DrawPicture(const StripPicture& picture, const ContactStrip& strip,
       "href=\"data:image/png;base64,{4}\"/>",
       piece.x - 0.5, piece.y - 0.5, piece.width, piece.height,
       Base64(picture.png));
-  out += Line("polyline", picture.ground, kGround, "6 3");
-  out += Line("polyline", picture.before, kBefore, "1.5 3");
-  out += Line("polyline", picture.after, kAfter, "7 2 1.5 2");
-  out += Line("polygon", picture.outline, kOutline, "");
+  out += RimmedLine("polyline", picture.ground, kGround, "6 3");
+  out += RimmedLine("polyline", picture.before, kBefore, "1.5 3");
+  out += RimmedLine("polyline", picture.after, kAfter, "7 2 1.5 2");
+  out += RimmedLine("polygon", picture.outline, kOutline, "");
   if (picture.touching) {
     out += Cross(*picture.touching, std::max(1.5, piece.width / 70.0));
   }

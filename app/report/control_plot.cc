@@ -9,11 +9,11 @@
 namespace touchdown::report {
 namespace {
 
-std::string Line(double y, const char* style, const char* title) {
+std::string LimitLine(double y, const char* style, const char* title) {
   return fmt::format("{:.9g} with lines {} title '{}'", y, style, title);
 }
 
-std::string Script(const ControlPlot& plot) {
+std::string ControlScript(const ControlPlot& plot) {
   const analysis::IndividualsChart& chart = plot.chart;
   double low = chart.lower;
   double high = chart.upper;
@@ -58,10 +58,10 @@ std::string Script(const ControlPlot& plot) {
   s += "EOD\n";
   block("within", false);
   block("beyond", true);
-  s += "plot " + Line(chart.centre, "lw 1.5 lc rgb '#1f6f3f'", "mean") +
+  s += "plot " + LimitLine(chart.centre, "lw 1.5 lc rgb '#1f6f3f'", "mean") +
        ", \\\n  " +
-       Line(chart.upper, "lw 1.5 dt (10,5) lc rgb '#7a4a00'",
-            "mean +- 3 sigma") +
+       LimitLine(chart.upper, "lw 1.5 dt (10,5) lc rgb '#7a4a00'",
+                 "mean +- 3 sigma") +
        ", \\\n  " +
        fmt::format(
            "{:.9g} with lines lw 1.5 dt (10,5) lc rgb '#7a4a00' "
@@ -82,7 +82,7 @@ std::string Script(const ControlPlot& plot) {
 }  // namespace
 
 std::string DrawControlPlot(const ControlPlot& plot) {
-  return InlineSvg(RunGnuplot(Script(plot)), plot.id);
+  return InlineSvg(RunGnuplot(ControlScript(plot)), plot.id);
 }
 
 }  // namespace touchdown::report

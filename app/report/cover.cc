@@ -154,47 +154,47 @@ std::string SoftwareText(const ReportInput& input) {
   return out;
 }
 
-std::string Text(const db::Entry& entry, std::string_view field) {
+std::string EntryText(const db::Entry& entry, std::string_view field) {
   const auto found = entry.texts.find(field);
   if (found == entry.texts.end() || found->second == "not recorded") return "";
   return found->second;
 }
 
-struct Row {
+struct EquipmentRow {
   std::string kind;
   Equipment what;
 };
 
 // What the register says of the versions that the trials name.
-std::vector<Row> RegisteredEquipment(const ReportInput& input) {
-  std::vector<Row> out;
+std::vector<EquipmentRow> RegisteredEquipment(const ReportInput& input) {
+  std::vector<EquipmentRow> out;
   for (const db::Entry& entry : input.register_entries) {
     if (entry.kind == db::RegisterKind::kBody ||
         entry.kind == db::RegisterKind::kSurface ||
         entry.kind == db::RegisterKind::kOperator) {
       continue;
     }
-    Row row{std::string(db::Name(entry.kind)), {}};
+    EquipmentRow row{std::string(db::Name(entry.kind)), {}};
     row.what.name = entry.name;
     for (const char* field : {"maker", "model", "serial", "lens"}) {
-      const std::string text = Text(entry, field);
+      const std::string text = EntryText(entry, field);
       if (text.empty()) continue;
       row.what.number +=
           (row.what.number.empty() ? "" : ", ") +
           std::string(field == std::string_view("serial") ? "no. " : "") + text;
     }
-    row.what.calibrated_on = Text(entry, "made_on");
+    row.what.calibrated_on = EntryText(entry, "made_on");
     out.push_back(std::move(row));
   }
   return out;
 }
 
-std::vector<Row> AllEquipment(const ReportInput& input) {
-  std::vector<Row> out = RegisteredEquipment(input);
+std::vector<EquipmentRow> AllEquipment(const ReportInput& input) {
+  std::vector<EquipmentRow> out = RegisteredEquipment(input);
   for (const Equipment& given : input.details.equipment) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const Row& row) {
-      return row.what.name == given.name;
-    });
+    const auto same = std::find_if(
+        out.begin(), out.end(),
+        [&](const EquipmentRow& row) { return row.what.name == given.name; });
     if (same == out.end()) {
       out.push_back({"", given});
       continue;
@@ -211,7 +211,7 @@ std::vector<Row> AllEquipment(const ReportInput& input) {
 }
 
 std::vector<Block> MakeEquipment(const ReportInput& input) {
-  const std::vector<Row> rows = AllEquipment(input);
+  const std::vector<EquipmentRow> rows = AllEquipment(input);
   if (rows.empty()) {
     return {
         Paragraph{"Equipment with calibration and due dates: absent (the "

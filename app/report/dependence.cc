@@ -76,7 +76,7 @@ auto OfEach(const Group& group, std::span<const core::Trial> trials,
   return out;
 }
 
-std::optional<double> Value(const core::Measured& measured) {
+std::optional<double> ValueIfMeasured(const core::Measured& measured) {
   if (!measured) return std::nullopt;
   return measured->value;
 }
@@ -139,11 +139,11 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
          Order(group, trials));
   number("speed at touchdown", "for 1 m/s more",
          OfEach(group, trials, [](const core::Trial& t) {
-           return Value(t.first.motion.before_speed_mps);
+           return ValueIfMeasured(t.first.motion.before_speed_mps);
          }));
   number("spin at touchdown", "for 1 rad/s more",
          OfEach(group, trials, [](const core::Trial& t) {
-           return Value(t.first.motion.before_omega_rad_per_s);
+           return ValueIfMeasured(t.first.motion.before_omega_rad_per_s);
          }));
   name("surface", OfEach(group, trials, [](const core::Trial& t) {
          return t.conditions ? t.conditions->surface.name : std::string();

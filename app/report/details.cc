@@ -14,7 +14,7 @@
 namespace touchdown::report {
 namespace {
 
-constexpr std::array kFields{
+constexpr std::array kDetailFields{
     DetailField{"report.number", "report number", "unique in the laboratory",
                 &Details::number},
     DetailField{"laboratory.name", "laboratory", "who made the trials",
@@ -119,7 +119,7 @@ void ForEach(const std::string& file, std::string_view section,
   for (const toml::node& one : *array) take(*one.as_table());
 }
 
-std::string Section(std::string_view key) {
+std::string SectionName(std::string_view key) {
   return std::string(key.substr(0, key.find('.')));
 }
 
@@ -150,8 +150,8 @@ void TakeSection(const std::string& file, std::string_view section,
     return;
   }
   Texts texts;
-  for (const DetailField& field : kFields) {
-    if (Section(field.key) != section) continue;
+  for (const DetailField& field : kDetailFields) {
+    if (SectionName(field.key) != section) continue;
     texts.emplace_back(field.key.substr(section.size() + 1),
                        &(out.*field.member));
   }
@@ -170,7 +170,7 @@ void TakeSection(const std::string& file, std::string_view section,
 
 }  // namespace
 
-std::span<const DetailField> DetailFields() { return kFields; }
+std::span<const DetailField> DetailFields() { return kDetailFields; }
 
 Details ReadDetails(const std::filesystem::path& path) {
   const std::string file = path.string();
@@ -199,8 +199,8 @@ std::string DetailsExample() {
       "entry\n"
       "# that is left out, or empty, is named as absent.\n";
   std::vector<std::string> sections;
-  for (const DetailField& field : kFields) {
-    const std::string section = Section(field.key);
+  for (const DetailField& field : kDetailFields) {
+    const std::string section = SectionName(field.key);
     if (std::find(sections.begin(), sections.end(), section) ==
         sections.end()) {
       sections.push_back(section);
@@ -208,8 +208,8 @@ std::string DetailsExample() {
   }
   for (const std::string& section : sections) {
     out += fmt::format("\n[{}]\n", section);
-    for (const DetailField& field : kFields) {
-      if (Section(field.key) != section) continue;
+    for (const DetailField& field : kDetailFields) {
+      if (SectionName(field.key) != section) continue;
       out += fmt::format("{} = \"\"  # {}\n",
                          field.key.substr(section.size() + 1), field.meaning);
     }

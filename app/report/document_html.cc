@@ -37,14 +37,16 @@ std::string_view ClassOf(Tone tone) {
 }
 
 // Text with its signs.
-std::string Escaped(std::string_view text) { return HtmlEscape(Typeset(text)); }
+std::string HtmlText(std::string_view text) {
+  return HtmlEscape(Typeset(text));
+}
 
 // A number whose uncertainty may stand in a line of its own, in one piece.
 std::string InTwoLines(const std::string& text) {
   const std::size_t at = text.find(kPlusMinus);
-  if (at == std::string::npos) return Escaped(text);
+  if (at == std::string::npos) return HtmlText(text);
   return fmt::format("{}<span class=\"u\">{}</span>",
-                     Escaped(text.substr(0, at)), Escaped(text.substr(at)));
+                     HtmlText(text.substr(0, at)), HtmlText(text.substr(at)));
 }
 
 // Where the contents lead to: the headings of level 2 are numbered through.
@@ -52,10 +54,10 @@ std::string Anchor(std::size_t heading) {
   return fmt::format("section-{}", heading + 1);
 }
 
-class Writer {
+class HtmlWriter {
  public:
   // `headings` counts those of level 2 written so far.
-  Writer(const Document& document, bool simulated, std::size_t& headings)
+  HtmlWriter(const Document& document, bool simulated, std::size_t& headings)
       : document_(document), simulated_(simulated), headings_(headings) {}
 
   void operator()(const Heading& heading) {
@@ -63,41 +65,41 @@ class Writer {
                                ? fmt::format(" id=\"{}\"", Anchor(headings_++))
                                : "";
     out_ += fmt::format("<h{0}{1}>{2}</h{0}>\n", heading.level, id,
-                        Escaped(heading.text));
+                        HtmlText(heading.text));
   }
   void operator()(const Contents&) {
     out_ += "<nav aria-label=\"Contents\">\n<ol>\n";
     std::size_t at = 0;
     for (const Heading& heading : HeadingsOf(document_)) {
       out_ += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", Anchor(at++),
-                          Escaped(heading.text));
+                          HtmlText(heading.text));
     }
     out_ += "</ol>\n</nav>\n";
   }
   void operator()(const Paragraph& paragraph) {
     out_ +=
         fmt::format("<p{}>{}</p>\n", paragraph.muted ? " class=\"muted\"" : "",
-                    Escaped(paragraph.text));
+                    HtmlText(paragraph.text));
   }
   void operator()(const List& list) {
     out_ += "<ul>\n";
     for (const std::string& item : list.items) {
-      out_ += "<li>" + Escaped(item) + "</li>\n";
+      out_ += "<li>" + HtmlText(item) + "</li>\n";
     }
     out_ += "</ul>\n";
   }
   void operator()(const Terms& terms) {
     out_ += terms.lead ? "<dl class=\"lead\">\n" : "<dl>\n";
     for (const auto& [term, text] : terms.items) {
-      out_ += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", Escaped(term),
-                          Escaped(text));
+      out_ += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", HtmlText(term),
+                          HtmlText(text));
     }
     out_ += "</dl>\n";
   }
   void operator()(const Callout& callout) {
     out_ += fmt::format("<div class=\"callout {}\"><b>{}</b> {}</div>\n",
-                        ClassOf(callout.tone), Escaped(callout.title),
-                        Escaped(callout.text));
+                        ClassOf(callout.tone), HtmlText(callout.title),
+                        HtmlText(callout.text));
   }
   void operator()(const Table& table) {
     // A group that the keyboard can scroll where the table is wider than the
@@ -109,7 +111,7 @@ class Writer {
         table.rows.size() <= kKeepTogether ? "keep" : "",
         table.row_headings ? " across" : "");
     if (!table.caption.empty()) {
-      out_ += fmt::format("<caption>{}{}</caption>\n", Escaped(table.caption),
+      out_ += fmt::format("<caption>{}{}</caption>\n", HtmlText(table.caption),
                           simulated_ ? " (simulated)" : "");
     }
     out_ += "<thead><tr>";
@@ -118,7 +120,7 @@ class Writer {
                   ? "<td></td>"
                   : fmt::format("<th scope=\"col\"{}>{}</th>",
                                 column.numeric ? " class=\"num\"" : "",
-                                Escaped(column.heading));
+                                HtmlText(column.heading));
     }
     out_ += "</tr></thead>\n<tbody>\n";
     for (const auto& row : table.rows) WriteRow(table, row);
@@ -128,7 +130,7 @@ class Writer {
     out_ += fmt::format(
         "<figure>\n<div class=\"plot\" role=\"img\" aria-label=\"{}\" "
         "tabindex=\"0\">\n{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
-        Escaped(figure.alt), figure.svg, Escaped(figure.caption));
+        HtmlText(figure.alt), figure.svg, HtmlText(figure.caption));
     if (!figure.data.rows.empty()) {
       out_ += "<details><summary>The numbers behind this plot</summary>\n";
       (*this)(figure.data);
@@ -139,15 +141,16 @@ class Writer {
     out_ += fmt::format(
         "<figure>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
         "<figcaption>{}</figcaption>\n</figure>\n",
-        Escaped(picture.alt), picture.png_base64, Escaped(picture.caption));
+        HtmlText(picture.alt), picture.png_base64, HtmlText(picture.caption));
   }
   void operator()(const Strip& strip) {
     out_ += fmt::format(
         "<figure class=\"strip\">\n<figcaption>{}</figcaption>\n<div "
         "class=\"panels\" role=\"img\" aria-label=\"{}\">\n",
-        Escaped(strip.caption), Escaped(strip.alt));
+        HtmlText(strip.caption), HtmlText(strip.alt));
     for (const Strip::Panel& panel : strip.panels) {
-      out_ += fmt::format("<div>{}{}</div>\n", panel.svg, Escaped(panel.label));
+      out_ +=
+          fmt::format("<div>{}{}</div>\n", panel.svg, HtmlText(panel.label));
     }
     out_ += "</div>\n</figure>\n";
   }
@@ -182,7 +185,7 @@ class Writer {
   }
 
   static std::string Linked(const std::string& to, const std::string& text) {
-    if (to.empty()) return Escaped(text);
+    if (to.empty()) return HtmlText(text);
     return fmt::format("<a href=\"{}\">{}</a>", HtmlEscape(to),
                        HtmlEscape(text));
   }
@@ -214,12 +217,12 @@ std::string ToHtml(const Document& document) {
       "'none'; style-src 'unsafe-inline'; img-src data:\">\n"
       "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<main>\n"
       "<h1>{0}</h1>\n",
-      Escaped(document.title), kPageStyle, PrintedFooter(document.footer));
+      HtmlText(document.title), kPageStyle, PrintedFooter(document.footer));
   std::size_t headings = 0;
   for (const Section& section : document.sections) {
     out +=
         section.simulated ? "<section class=\"simulated\">\n" : "<section>\n";
-    Writer writer(document, section.simulated, headings);
+    HtmlWriter writer(document, section.simulated, headings);
     // The banner follows a leading page break and heading.
     auto block = section.blocks.begin();
     while (block != section.blocks.end() &&
@@ -231,7 +234,7 @@ std::string ToHtml(const Document& document) {
     if (section.simulated) {
       out += fmt::format("<div class=\"banner\">{}</div>\n", kWatermark);
     }
-    Writer rest(document, section.simulated, headings);
+    HtmlWriter rest(document, section.simulated, headings);
     for (; block != section.blocks.end(); ++block) std::visit(rest, *block);
     out += rest.html() + "</section>\n";
   }

@@ -8,51 +8,52 @@
 namespace touchdown::report {
 namespace {
 
-std::string Escaped(const std::string& text) {
+std::string MarkdownText(const std::string& text) {
   return MarkdownEscape(Typeset(text));
 }
 
-class Writer {
+class MarkdownWriter {
  public:
-  Writer(const Document& document, bool simulated)
+  MarkdownWriter(const Document& document, bool simulated)
       : document_(document), simulated_(simulated) {}
 
   void operator()(const Heading& heading) {
     out_ += std::string(static_cast<std::size_t>(heading.level), '#') + " " +
-            Escaped(heading.text) + (simulated_ ? " (SIMULATED)" : "") + "\n\n";
+            MarkdownText(heading.text) + (simulated_ ? " (SIMULATED)" : "") +
+            "\n\n";
   }
   void operator()(const Contents&) {
     for (const Heading& heading : HeadingsOf(document_)) {
-      out_ += "- " + Escaped(heading.text) + "\n";
+      out_ += "- " + MarkdownText(heading.text) + "\n";
     }
     out_ += "\n";
   }
   void operator()(const Paragraph& paragraph) {
-    out_ += Escaped(paragraph.text) + "\n\n";
+    out_ += MarkdownText(paragraph.text) + "\n\n";
   }
   void operator()(const List& list) {
     for (const std::string& item : list.items) {
-      out_ += "- " + Escaped(item) + "\n";
+      out_ += "- " + MarkdownText(item) + "\n";
     }
     out_ += "\n";
   }
   void operator()(const Terms& terms) {
     for (const auto& [term, text] : terms.items) {
-      out_ += "- **" + Escaped(term) + "**: " + Escaped(text) + "\n";
+      out_ += "- **" + MarkdownText(term) + "**: " + MarkdownText(text) + "\n";
     }
     out_ += "\n";
   }
   void operator()(const Callout& callout) {
-    out_ += "> **" + Escaped(callout.title) + "** " + Escaped(callout.text) +
-            "\n\n";
+    out_ += "> **" + MarkdownText(callout.title) + "** " +
+            MarkdownText(callout.text) + "\n\n";
   }
   void operator()(const Table& table) {
     if (!table.caption.empty()) {
-      out_ += "**" + Escaped(table.caption) +
+      out_ += "**" + MarkdownText(table.caption) +
               (simulated_ ? " (SIMULATED)" : "") + "**\n\n";
     }
     for (const Column& column : table.columns) {
-      out_ += "| " + Escaped(column.heading) + " ";
+      out_ += "| " + MarkdownText(column.heading) + " ";
     }
     out_ += "|\n";
     for (const Column& column : table.columns) {
@@ -69,14 +70,16 @@ class Writer {
   }
   void operator()(const Figure& figure) {
     out_ += "*Figure" + std::string(simulated_ ? " (SIMULATED)" : "") + ": " +
-            Escaped(figure.caption) + "* " + Escaped(figure.alt) + "\n\n";
+            MarkdownText(figure.caption) + "* " + MarkdownText(figure.alt) +
+            "\n\n";
   }
   void operator()(const Picture& picture) {
-    out_ +=
-        "*" + Escaped(picture.caption) + "* " + Escaped(picture.alt) + "\n\n";
+    out_ += "*" + MarkdownText(picture.caption) + "* " +
+            MarkdownText(picture.alt) + "\n\n";
   }
   void operator()(const Strip& strip) {
-    out_ += "*" + Escaped(strip.caption) + "* " + Escaped(strip.alt) + "\n\n";
+    out_ += "*" + MarkdownText(strip.caption) + "* " + MarkdownText(strip.alt) +
+            "\n\n";
   }
   void operator()(const Link& link) {
     out_ += Linked(link.to, link.text) + "\n\n";
@@ -87,7 +90,7 @@ class Writer {
 
  private:
   static std::string Linked(const std::string& to, const std::string& text) {
-    if (to.empty()) return Escaped(text);
+    if (to.empty()) return MarkdownText(text);
     return "[" + MarkdownEscape(text) + "](" + to + ")";
   }
 
@@ -99,10 +102,10 @@ class Writer {
 }  // namespace
 
 std::string ToMarkdown(const Document& document) {
-  std::string out = "# " + Escaped(document.title) + "\n\n";
+  std::string out = "# " + MarkdownText(document.title) + "\n\n";
   for (const Section& section : document.sections) {
     if (section.simulated) out += fmt::format("> **{}**\n\n", kWatermark);
-    Writer writer(document, section.simulated);
+    MarkdownWriter writer(document, section.simulated);
     for (const Block& block : section.blocks) std::visit(writer, block);
     out += writer.text();
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/report/evidence_page.h"
+#include "app/report/json.h"
 #include "app/report/text_file.h"
 #include "app/report/zip_file.h"
 #include "touchdown/core/errors.h"
@@ -18,7 +19,6 @@ namespace touchdown::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 // The one folder in the archive bears its name.
 constexpr std::string_view kRoot = "table1";

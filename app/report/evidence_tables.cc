@@ -20,7 +20,7 @@ namespace {
 
 using core::kDegree;
 
-Cell Number(int n) { return {fmt::format("{}", n)}; }
+Cell CountCell(int n) { return {fmt::format("{}", n)}; }
 
 // Program against person, by [program][person] of slide and bounce.
 std::vector<Block> MakeLabels(const Group& group) {
@@ -39,8 +39,10 @@ std::vector<Block> MakeLabels(const Group& group) {
   Table table{"Two labels of the same trials: program, and person",
               {{"program"}, {"person: slide", true}, {"person: bounce", true}},
               {}};
-  table.rows.push_back({{"slide"}, Number(count[0][0]), Number(count[0][1])});
-  table.rows.push_back({{"bounce"}, Number(count[1][0]), Number(count[1][1])});
+  table.rows.push_back(
+      {{"slide"}, CountCell(count[0][0]), CountCell(count[0][1])});
+  table.rows.push_back(
+      {{"bounce"}, CountCell(count[1][0]), CountCell(count[1][1])});
   const analysis::McNemar test =
       analysis::McNemarTest(count[0][1], count[1][0]);
   // The interval first: with few trials it says more than a p.
@@ -76,7 +78,7 @@ double FromSource(const core::Budget& budget, const std::string& source) {
   return std::sqrt(square);
 }
 
-Cell Degrees(double u_rad) {
+Cell UncertaintyCell(double u_rad) {
   return {u_rad > 0.0 ? fmt::format("{:.2g}", u_rad / kDegree) : "0"};
 }
 
@@ -116,15 +118,17 @@ std::vector<Block> MakeBudget(const Group& group,
     if (budget.empty()) continue;
     std::vector<Cell> row{TrialCell(trials[t], input)};
     for (const auto& [rms, source] : sources) {
-      row.push_back(Degrees(FromSource(budget, source)));
+      row.push_back(UncertaintyCell(FromSource(budget, source)));
     }
     const core::Measured angle = core::ContactAngle(trials[t]);
-    row.push_back(angle ? Degrees(angle->u) : Cell{});
+    row.push_back(angle ? UncertaintyCell(angle->u) : Cell{});
     table.rows.push_back(std::move(row));
   }
   std::vector<Cell> last{{"root mean square of the trials that count"}};
-  for (const auto& [rms, source] : sources) last.push_back(Degrees(rms));
-  last.push_back(Degrees(std::sqrt(all)));
+  for (const auto& [rms, source] : sources) {
+    last.push_back(UncertaintyCell(rms));
+  }
+  last.push_back(UncertaintyCell(std::sqrt(all)));
   table.rows.push_back(std::move(last));
   std::vector<Block> out{std::move(table)};
   const auto total = static_cast<int>(group.trials.observations.size());

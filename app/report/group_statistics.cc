@@ -14,12 +14,12 @@ namespace {
 
 using core::kDegree;
 
-std::string Range(const core::Interval& interval, int decimals) {
+std::string IntervalText(const core::Interval& interval, int decimals) {
   return fmt::format("{:.{}f} to {:.{}f}", interval.low / kDegree, decimals,
                      interval.high / kDegree, decimals);
 }
 
-std::string Degrees(double angle_rad, int decimals) {
+std::string AngleText(double angle_rad, int decimals) {
   return fmt::format("{:.{}f}", angle_rad / kDegree, decimals);
 }
 
@@ -52,20 +52,21 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
     remark += fmt::format(
         ", alone {}; the 95 % interval holds under {}, too, as outcomes that "
         "do not overlap tell nothing of the scatter",
-        Range({analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)},
-              decimals),
+        IntervalText(
+            {analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)},
+            decimals),
         PriorName(*p.cautious_prior));
   }
   table.rows.push_back({{"posterior median"},
-                        {Degrees(p.median_rad, decimals)},
-                        {Range(p.interval95_rad, decimals)},
+                        {AngleText(p.median_rad, decimals)},
+                        {IntervalText(p.interval95_rad, decimals)},
                         {fmt::format("{}; 90 %: {} deg; sd {} deg", remark,
-                                     Range(p.interval90_rad, decimals),
-                                     Degrees(p.sd_rad, decimals))}});
+                                     IntervalText(p.interval90_rad, decimals),
+                                     AngleText(p.sd_rad, decimals))}});
   for (const auto& line : p.sensitivity) {
     table.rows.push_back({{"the same, other prior"},
-                          {Degrees(line.median_rad, decimals)},
-                          {Range(line.interval95_rad, decimals)},
+                          {AngleText(line.median_rad, decimals)},
+                          {IntervalText(line.interval95_rad, decimals)},
                           {PriorName(line.prior)}});
   }
   remark = l.has_estimate ? "no prior" : "no estimate, no prior";
@@ -76,13 +77,13 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
   }
   table.rows.push_back(
       {{"likelihood profile"},
-       {l.has_estimate ? Degrees(l.estimate_rad, decimals) : ""},
-       {Range(l.interval95_rad, decimals)},
+       {l.has_estimate ? AngleText(l.estimate_rad, decimals) : ""},
+       {IntervalText(l.interval95_rad, decimals)},
        {remark}});
   table.rows.push_back(
       {{"scatter of the boundary"},
-       {Degrees(p.scatter_median_rad, decimals)},
-       {Range(p.scatter95_rad, decimals)},
+       {AngleText(p.scatter_median_rad, decimals)},
+       {IntervalText(p.scatter95_rad, decimals)},
        {"posterior; what a boundary varies from trial to trial"}});
   return table;
 }

@@ -46,7 +46,7 @@ bool IsUtf8(std::string_view text) {
   return true;
 }
 
-double ToNumber(const Json& field, const std::string& name) {
+double NumberOrInfinity(const Json& field, const std::string& name) {
   if (field.is_number()) return field.get<double>();
   if (field == "inf") return std::numeric_limits<double>::infinity();
   if (field == "-inf") return -std::numeric_limits<double>::infinity();
@@ -130,14 +130,14 @@ std::int64_t IntegerOf(const Json& json, const std::string& name) {
 }
 
 double NumberOf(const Json& json, const std::string& name) {
-  return ToNumber(Field(json, name), name);
+  return NumberOrInfinity(Field(json, name), name);
 }
 
 std::optional<double> OptionalNumberOf(const Json& json,
                                        const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_null()) return std::nullopt;
-  return ToNumber(field, name);
+  return NumberOrInfinity(field, name);
 }
 
 core::Measured MeasuredOf(const Json& json, const std::string& name) {
@@ -147,14 +147,15 @@ core::Measured MeasuredOf(const Json& json, const std::string& name) {
   }
   if (!field.is_object()) WrongField(name, "a value with u, or absent");
   core::Estimate estimate;
-  estimate.value = ToNumber(Field(field, "value"), name + ".value");
-  estimate.u = ToNumber(Field(field, "u"), name + ".u");
+  estimate.value = NumberOrInfinity(Field(field, "value"), name + ".value");
+  estimate.u = NumberOrInfinity(Field(field, "u"), name + ".u");
   if (const auto interval = field.find("interval95"); interval != field.end()) {
     if (!interval->is_array() || interval->size() != 2) {
       WrongField(name + ".interval95", "[low, high]");
     }
-    estimate.interval95 = core::Interval{ToNumber((*interval)[0], name),
-                                         ToNumber((*interval)[1], name)};
+    estimate.interval95 =
+        core::Interval{NumberOrInfinity((*interval)[0], name),
+                       NumberOrInfinity((*interval)[1], name)};
   }
   return estimate;
 }

@@ -8,11 +8,10 @@
 #include <string>
 #include <string_view>
 
+#include "app/report/json.h"
 #include "touchdown/core/estimate.h"
 
 namespace touchdown::report {
-
-using Json = nlohmann::ordered_json;
 
 // Text that is not UTF-8 becomes {"bytes": hexadecimal}.
 Json TextJson(const std::string& text);

@@ -94,8 +94,8 @@ Cell AngleCell(const std::vector<std::size_t>& members,
                       Plain(high))};
 }
 
-Cell StateCell(const std::vector<std::size_t>& members,
-               std::span<const core::Trial> trials) {
+Cell StateCountsCell(const std::vector<std::size_t>& members,
+                     std::span<const core::Trial> trials) {
   int n[3] = {0, 0, 0};
   for (const std::size_t t : members) {
     const std::string word = PaperWord(trials[t].first.state.label);
@@ -194,7 +194,7 @@ std::vector<Table> MakeTable1(std::span<const Group> groups,
       std::vector<Cell> papers{{name + ": the paper's own"}};
       for (auto at = begin; at != column; ++at) {
         measured.push_back(AngleCell(at->second[g], trials));
-        states.push_back(StateCell(at->second[g], trials));
+        states.push_back(StateCountsCell(at->second[g], trials));
         const auto paper = PaperBounces(
             body, static_cast<double>(at->first) * angles.width_deg);
         papers.push_back(

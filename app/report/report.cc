@@ -39,9 +39,9 @@ Section MakeSummaries(std::span<const Group> groups,
   return section;
 }
 
-Section MakeTables(std::span<const Group> groups,
-                   std::span<const core::Trial> trials,
-                   const ReportInput& input, std::size_t& figures) {
+Section MakeTable1Section(std::span<const Group> groups,
+                          std::span<const core::Trial> trials,
+                          const ReportInput& input, std::size_t& figures) {
   Section section{groups.front().simulated(), {}};
   auto& out = section.blocks;
   out.push_back(PageBreak{});
@@ -159,7 +159,7 @@ Report MakeReport(const ReportInput& input) {
   sections.push_back({false, {Heading{3, "Contents"}, Contents{}}});
   std::size_t figures = 0;
   for (const auto& same : by_origin) {
-    sections.push_back(MakeTables(same, trials, input, figures));
+    sections.push_back(MakeTable1Section(same, trials, input, figures));
   }
   for (const Group& group : groups) {
     sections.push_back(MakeGroupSection(group, trials, input, figures));

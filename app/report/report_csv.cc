@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/report/content.h"
+#include "app/report/json.h"
 #include "app/report/text.h"
 #include "touchdown/core/units.h"
 
@@ -22,7 +23,7 @@ struct CsvField {
   const char* meaning;
 };
 // The order is that of the file; a column is added at the end.
-constexpr CsvField kFields[] = {
+constexpr CsvField kCsvFields[] = {
     {"campaign", "string", "", "name of the campaign"},
     {"origin", "string", "", "recorded, simulated or manual; never pooled"},
     {"watermark", "string", "", "SIMULATED, or empty"},
@@ -48,15 +49,15 @@ constexpr CsvField kFields[] = {
     {"u_extrapolated_gap_mm", "decimal", "mm", "its standard uncertainty"},
     {"state_because", "string", "", "the reason of the state"}};
 
-std::string Number(const std::optional<double>& value) {
+std::string NumberText(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "";
 }
 
-std::string Value(const core::Measured& m, double unit) {
+std::string ValueText(const core::Measured& m, double unit) {
   return m ? fmt::format("{:.6g}", m->value / unit) : "";
 }
 
-std::string U(const core::Measured& m, double unit) {
+std::string UncertaintyText(const core::Measured& m, double unit) {
   return m ? fmt::format("{:.3g}", m->u / unit) : "";
 }
 
@@ -73,7 +74,7 @@ std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group) {
 std::string MakeCsv(std::span<const Group> groups,
                     std::span<const core::Trial> trials) {
   std::string out;
-  for (const CsvField& field : kFields) {
+  for (const CsvField& field : kCsvFields) {
     out += (out.empty() ? "" : ",") + std::string(field.name);
   }
   out += "\r\n";
@@ -86,29 +87,30 @@ std::string MakeCsv(std::span<const Group> groups,
       const core::Measured angle = core::ContactAngle(trial);
       std::optional<double> set_deg;
       if (trial.set_angle_rad) set_deg = *trial.set_angle_rad / kDegree;
-      const std::string cells[] = {trial.campaign,
-                                   std::string(core::Name(trial.origin)),
-                                   group.simulated() ? "SIMULATED" : "",
-                                   std::string(core::Name(trial.body.kind)),
-                                   group.campaign.surface,
-                                   std::string(core::Name(trial.angle_kind)),
-                                   Number(set_deg),
-                                   Value(angle, kDegree),
-                                   U(angle, kDegree),
-                                   std::string(core::Name(state.label)),
-                                   PaperWord(state.label),
-                                   Number(state.p_bounce),
-                                   Value(state.max_gap_m, kMillimetre),
-                                   U(state.max_gap_m, kMillimetre),
-                                   Value(state.bounce_height_m, kMillimetre),
-                                   state.micro_bounce ? "1" : "0",
-                                   why == left_out.end() ? "" : why->second,
-                                   trial.clip.path,
-                                   trial.id,
-                                   fmt::format("{}", trial.revision),
-                                   Value(state.extrapolated_gap_m, kMillimetre),
-                                   U(state.extrapolated_gap_m, kMillimetre),
-                                   state.reason};
+      const std::string cells[] = {
+          trial.campaign,
+          std::string(core::Name(trial.origin)),
+          group.simulated() ? "SIMULATED" : "",
+          std::string(core::Name(trial.body.kind)),
+          group.campaign.surface,
+          std::string(core::Name(trial.angle_kind)),
+          NumberText(set_deg),
+          ValueText(angle, kDegree),
+          UncertaintyText(angle, kDegree),
+          std::string(core::Name(state.label)),
+          PaperWord(state.label),
+          NumberText(state.p_bounce),
+          ValueText(state.max_gap_m, kMillimetre),
+          UncertaintyText(state.max_gap_m, kMillimetre),
+          ValueText(state.bounce_height_m, kMillimetre),
+          state.micro_bounce ? "1" : "0",
+          why == left_out.end() ? "" : why->second,
+          trial.clip.path,
+          trial.id,
+          fmt::format("{}", trial.revision),
+          ValueText(state.extrapolated_gap_m, kMillimetre),
+          UncertaintyText(state.extrapolated_gap_m, kMillimetre),
+          state.reason};
       for (std::size_t i = 0; i < std::size(cells); ++i) {
         if (i > 0) out += ',';
         out += CsvCell(cells[i]);
@@ -122,9 +124,8 @@ std::string MakeCsv(std::span<const Group> groups,
 // The W3C's vocabulary for tabular data, so that a program can read the columns
 // without a person.
 std::string CsvSchema() {
-  using Json = nlohmann::ordered_json;
   Json columns = Json::array();
-  for (const CsvField& field : kFields) {
+  for (const CsvField& field : kCsvFields) {
     Json column = {{"name", field.name},
                    {"titles", field.name},
                    {"dc:description", field.meaning},

@@ -137,9 +137,9 @@ std::string WhyNotPredicted(Members members,
   return out;
 }
 
-std::vector<Block> MakeTables(Members members,
-                              std::span<const core::Trial> trials,
-                              const ReportInput& input) {
+std::vector<Block> MakeSetPointTables(Members members,
+                                      std::span<const core::Trial> trials,
+                                      const ReportInput& input) {
   std::vector<Block> out;
   Table set = MakeSetTable(members, trials, input);
   if (set.rows.empty()) return out;
@@ -199,7 +199,7 @@ Cell TrialCell(const core::Trial& trial, const ReportInput& input) {
 std::vector<Block> MakeSetPoints(const Group& group,
                                  std::span<const core::Trial> trials,
                                  const ReportInput& input) {
-  std::vector<Block> out = MakeTables(group.members, trials, input);
+  std::vector<Block> out = MakeSetPointTables(group.members, trials, input);
   if (out.empty()) return out;
   const std::string summary = SetPointText(group);
   if (!summary.empty()) out.emplace_back(Paragraph{summary, true});
@@ -219,7 +219,7 @@ std::vector<Block> MakeSetPoints(const Group& group,
 std::vector<Block> SetPointsOf(const core::Trial& trial,
                                const ReportInput& input) {
   const std::size_t only = 0;
-  return MakeTables({&only, 1}, {&trial, 1}, input);
+  return MakeSetPointTables({&only, 1}, {&trial, 1}, input);
 }
 
 }  // namespace touchdown::report

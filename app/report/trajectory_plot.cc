@@ -14,13 +14,13 @@ namespace {
 using core::kMillimetre;
 
 // What a state is drawn with; dashes differ, so that colour is not needed.
-struct Look {
+struct LineStyle {
   const char* name;
   const char* colour;
   const char* dash;
   bool (*is)(core::MotionState state);
 };
-constexpr Look kLooks[] = {
+constexpr LineStyle kLineStyles[] = {
     {"stayed down", "#17548f", "solid",
      [](core::MotionState s) {
        return s != core::MotionState::kBounce &&
@@ -34,12 +34,12 @@ constexpr Look kLooks[] = {
 // More samples than this of one line no eye tells apart.
 constexpr std::size_t kMostPoints = 160;
 
-std::string DataBlock(const TrajectoryPlot& plot, const Look& look,
-                      const std::string& name, double& top) {
+std::string PathsBlock(const TrajectoryPlot& plot, const LineStyle& style,
+                       const std::string& name, double& top) {
   std::string block = fmt::format("${} << EOD\n", name);
   bool any = false;
   for (const TrajectoryLine& line : plot.lines) {
-    if (!look.is(line.state)) continue;
+    if (!style.is(line.state)) continue;
     const Trajectory& path = *line.path;
     const std::size_t step =
         std::max<std::size_t>(1, path.centre.size() / kMostPoints);
@@ -69,14 +69,14 @@ std::string DrawTrajectoryPlot(const TrajectoryPlot& plot) {
   std::string data;
   std::vector<std::string> parts;
   double top = 0.0;
-  for (const Look& look : kLooks) {
+  for (const LineStyle& style : kLineStyles) {
     const std::string name = fmt::format("lines{}", parts.size());
-    const std::string block = DataBlock(plot, look, name, top);
+    const std::string block = PathsBlock(plot, style, name, top);
     if (block.empty()) continue;
     data += block;
     parts.push_back(fmt::format(
         "${} using 1:2 with lines lw 1.4 dt {} lc rgb '{}' title '{}'", name,
-        look.dash, look.colour, look.name));
+        style.dash, style.colour, style.name));
   }
   if (parts.empty()) parts.emplace_back("NaN notitle");
   std::string s = fmt::format(

@@ -8,7 +8,6 @@
 namespace touchdown::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using core::kDegree;
 using core::kMillimetre;
 

@@ -2,13 +2,12 @@
 // the review page's list.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "app/report/json.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::report {
 
 // Degrees and millimetres; what is absent is null. The document is not in it.
-nlohmann::ordered_json TrialRowJson(const core::Trial& trial);
+Json TrialRowJson(const core::Trial& trial);
 
 }  // namespace touchdown::report

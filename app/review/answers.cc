@@ -12,6 +12,22 @@ Reply JsonReply(const nlohmann::ordered_json& json) {
   return reply;
 }
 
+Reply PictureReply(const Picture& picture) {
+  Reply reply;
+  reply.type = picture.type;
+  reply.body = *picture.bytes;
+  reply.headers = {{"Cache-Control", "private, max-age=600"}};
+  return reply;
+}
+
+nlohmann::ordered_json ClipJson(const vision::ClipInfo& info) {
+  return {{"width_px", info.width_px},
+          {"height_px", info.height_px},
+          {"frames", info.frames},
+          {"format", info.format},
+          {"bit_depth", info.bit_depth}};
+}
+
 std::int64_t NumberIn(const std::string& text, const std::string& path) {
   std::int64_t n = 0;
   const char* const end = text.data() + text.size();

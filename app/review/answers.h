@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "app/review/clip_shelf.h"
 #include "app/review/message.h"
 
 namespace touchdown::review {
@@ -18,6 +19,12 @@ class NotThere : public std::runtime_error {
 };
 
 Reply JsonReply(const nlohmann::ordered_json& json);
+
+// A picture, which stays what it is as long as a person looks at it.
+Reply PictureReply(const Picture& picture);
+
+// Size, frames, format and depth of a recording.
+nlohmann::ordered_json ClipJson(const vision::ClipInfo& info);
 
 // A number from 0 on; throws NotThere naming `path` where `text` is none.
 std::int64_t NumberIn(const std::string& text, const std::string& path);

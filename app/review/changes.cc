@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/report/format.h"
+#include "app/report/json.h"
 #include "app/review/words.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
@@ -17,10 +18,10 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 constexpr std::string_view kOfConditions = "conditions: ";
-constexpr std::string_view kOfContact = "contact ";  // "contact 2: "
+constexpr std::string_view kContactPrefix = "contact ";  // "contact 2: "
 
 // "contact 2: state": which part of a trial, and its column.
 struct Field {
@@ -38,8 +39,8 @@ Field FieldOf(std::string_view change) {
 const core::ContactRecord* RecordOf(const core::Trial& trial,
                                     const Field& field) {
   if (field.prefix.empty()) return &trial.first;
-  if (!field.prefix.starts_with(kOfContact)) return nullptr;
-  const std::string_view digits = field.prefix.substr(kOfContact.size());
+  if (!field.prefix.starts_with(kContactPrefix)) return nullptr;
+  const std::string_view digits = field.prefix.substr(kContactPrefix.size());
   std::size_t number = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (number < 2 || number - 2 >= trial.later.size()) return nullptr;
@@ -52,8 +53,8 @@ core::Measured Exactly(const std::optional<double>& value) {
 }
 
 // Nothing where the field is no number of a unit.
-std::optional<core::Measured> NumberOf(const core::Trial& trial,
-                                       const Field& field) {
+std::optional<core::Measured> FieldNumber(const core::Trial& trial,
+                                          const Field& field) {
   if (field.prefix == kOfConditions) {
     for (const auto& quantity : db::kConditionQuantities) {
       if (field.column == quantity.name) {
@@ -86,9 +87,9 @@ std::string BudgetText(const core::Budget& budget) {
 }
 
 // The value of a field of `trial` for a person; `as_is` where it is a word.
-std::string TextOf(const core::Trial& trial, const Field& field,
-                   const Shown& shown, const std::string& as_is) {
-  if (auto number = NumberOf(trial, field)) {
+std::string FieldText(const core::Trial& trial, const Field& field,
+                      const Shown& shown, const std::string& as_is) {
+  if (auto number = FieldNumber(trial, field)) {
     if (*number) (*number)->value -= shown.offset;
     return report::WithUOrReason(*number, shown.factor);
   }
@@ -113,8 +114,8 @@ Json ChangesJson(const core::Trial& before, const core::Trial& after) {
   for (const db::Change& change : db::Changes(before, after)) {
     const Field field = FieldOf(change.field);
     const Shown shown = ShownAs(field.column);
-    const std::string from = TextOf(before, field, shown, change.from);
-    const std::string to = TextOf(after, field, shown, change.to);
+    const std::string from = FieldText(before, field, shown, change.from);
+    const std::string to = FieldText(after, field, shown, change.to);
     if (from == to) continue;  // less than the last digit shown
     Json one = {{"field", std::string(field.prefix) + shown.name},
                 {"words", std::string(field.prefix) + Label(shown)},

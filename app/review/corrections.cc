@@ -11,6 +11,7 @@
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
 #include "app/pipeline/whole_number.h"
+#include "app/report/json.h"
 #include "app/review/changes.h"
 #include "app/review/fields.h"
 #include "app/review/trial_view.h"
@@ -19,7 +20,7 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
   pipeline::Correction correction;
@@ -82,7 +83,7 @@ Corrected MakeCorrected(const core::Trial& seen, const nlohmann::json& asked) {
   return out;
 }
 
-std::string ReasonOf(const db::Revision& last) {
+std::string RevisionText(const db::Revision& last) {
   return fmt::format("{} by {}{}{}", db::Name(last.kind), last.trial.author,
                      last.trial.reason.empty() ? "" : ": ", last.trial.reason);
 }
@@ -116,7 +117,7 @@ db::Logged Revise(db::Store& store, const std::string& id,
     if (last.revision == expected) return;
     throw Conflict(fmt::format(
         "revision {} was made meanwhile ({}); look at it and correct again",
-        last.revision, ReasonOf(in_force)));
+        last.revision, RevisionText(in_force)));
   };
   require_last();
   if (asked.value("exclude", false)) {

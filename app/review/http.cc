@@ -109,7 +109,7 @@ std::optional<Reply> ReadTransfer(std::string_view name, std::string_view value,
   return std::nullopt;
 }
 
-std::string_view ReasonOf(int status) {
+std::string_view ReasonPhrase(int status) {
   switch (status) {
     case 200:
       return "OK";
@@ -207,7 +207,7 @@ std::string WriteReply(const Reply& reply, const ReplyForm& form) {
   std::string bytes = fmt::format(
       "HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n"
       "Connection: {}\r\n",
-      reply.status, ReasonOf(reply.status), reply.type, reply.body.size(),
+      reply.status, ReasonPhrase(reply.status), reply.type, reply.body.size(),
       form.keeps_alive ? "keep-alive" : "close");
   const auto add = [&bytes](std::string_view name, std::string_view value) {
     bytes += fmt::format("{}: {}\r\n", name, value);

@@ -39,17 +39,6 @@ constexpr int kLookEvery_ms = 500;
 // its answer before the connection is reset.
 constexpr std::chrono::milliseconds kDrainTime{2000};
 
-struct Task {
-  std::uint64_t connection = 0;
-  Request request;
-  ReplyForm form;
-};
-
-struct Finished {
-  std::uint64_t connection = 0;
-  std::string bytes;
-};
-
 std::size_t MostConnections(std::size_t asked) {
   rlimit files = {};
   if (getrlimit(RLIMIT_NOFILE, &files) != 0) return asked;
@@ -60,6 +49,15 @@ std::size_t MostConnections(std::size_t asked) {
 
 struct HttpServer::Impl {
   using Stage = Connection::Stage;
+  struct Task {
+    std::uint64_t connection = 0;
+    Request request;
+    ReplyForm form;
+  };
+  struct Finished {
+    std::uint64_t connection = 0;
+    std::string bytes;
+  };
 
   ~Impl() {
     for (const int descriptor : {listener, wake, events}) {

@@ -11,6 +11,7 @@
 #include "app/pipeline/open_recording.h"
 #include "app/pipeline/recordings.h"
 #include "app/report/format.h"
+#include "app/report/json.h"
 #include "app/review/answers.h"
 #include "app/review/fields.h"
 #include "app/review/logging.h"
@@ -20,7 +21,7 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 constexpr std::string_view kAnalyses = "/api/analyses/";
 
@@ -101,7 +102,7 @@ Json CameraText(const pipeline::AnalyzeOptions& camera) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-Json CampaignsJson(const db::Store& store) {
+Json CampaignCamerasJson(const db::Store& store) {
   Json campaigns = Json::array();
   for (const core::Campaign& campaign : store.Campaigns()) {
     const auto camera = LastCamera(store, campaign.name);
@@ -125,7 +126,7 @@ Json RecordingsJson(Desk& desk) {
           {"store", desk.store().string()},
           {"store_missing", !store.has_value()},
           {"folders", std::move(folders)},
-          {"campaigns", store ? CampaignsJson(*store) : Json::array()}};
+          {"campaigns", store ? CampaignCamerasJson(*store) : Json::array()}};
 }
 
 // --- one recording -----------------------------------------------------------
@@ -142,13 +143,8 @@ std::filesystem::path PathAsked(Desk& desk, const Request& request) {
   return desk.recordings().Require(recording);
 }
 
-Json ClipJson(Desk& desk, const std::filesystem::path& path) {
-  const vision::ClipInfo info = desk.shelf().Info(path);
-  Json json = {{"width_px", info.width_px},
-               {"height_px", info.height_px},
-               {"frames", info.frames},
-               {"format", info.format},
-               {"bit_depth", info.bit_depth}};
+Json RecordingJson(Desk& desk, const std::filesystem::path& path) {
+  Json json = ClipJson(desk.shelf().Info(path));
   try {
     const vision::TimeBase time =
         pipeline::OpenRecording(path)->info().time_base;
@@ -159,15 +155,10 @@ Json ClipJson(Desk& desk, const std::filesystem::path& path) {
   return json;
 }
 
-Reply FrameReply(Desk& desk, const Request& request) {
+Reply RecordingFrameReply(Desk& desk, const Request& request) {
   const auto path = PathAsked(desk, request);
-  const Picture picture =
-      desk.shelf().Frame(path, NumberIn(Asked(request, "frame"), request.path));
-  Reply reply;
-  reply.type = picture.type;
-  reply.body = *picture.bytes;
-  reply.headers = {{"Cache-Control", "private, max-age=600"}};
-  return reply;
+  return PictureReply(desk.shelf().Frame(
+      path, NumberIn(Asked(request, "frame"), request.path)));
 }
 
 // --- analyses ----------------------------------------------------------------
@@ -208,7 +199,7 @@ std::string Kept(Desk& desk, const AnalysisStatus& status,
   return id;
 }
 
-std::string Add(Desk& desk, AnalysisOrder order) {
+std::string QueueOrder(Desk& desk, AnalysisOrder order) {
   // What cannot be read is refused now, by whoever asked.
   order.frames = desk.shelf().Info(order.path).frames;
   return desk.analyses().Add(std::move(order));
@@ -220,9 +211,11 @@ std::optional<Reply> GetOfRecordings(Desk& desk, const Request& request) {
   const std::string& path = request.path;
   if (path == "/api/recordings") return JsonReply(RecordingsJson(desk));
   if (path == "/api/recordings/clip") {
-    return JsonReply(ClipJson(desk, PathAsked(desk, request)));
+    return JsonReply(RecordingJson(desk, PathAsked(desk, request)));
   }
-  if (path == "/api/recordings/frame") return FrameReply(desk, request);
+  if (path == "/api/recordings/frame") {
+    return RecordingFrameReply(desk, request);
+  }
   if (path == "/api/analyses") return JsonReply(AnalysesJson(desk));
   if (path.starts_with(kAnalyses)) {
     const auto status = desk.analyses().Find(path.substr(kAnalyses.size()));
@@ -238,11 +231,11 @@ std::optional<Reply> PostToRecordings(Desk& desk, const std::string& path,
                                       const nlohmann::json& asked) {
   if (path == "/api/analyses") {
     const std::string id =
-        Add(desk, OrderOf(desk.store(), desk.recordings(), asked));
+        QueueOrder(desk, OrderOf(desk.store(), desk.recordings(), asked));
     return JsonReply({{"id", id}});
   }
   if (path == "/api/tests") {
-    return JsonReply({{"id", Add(desk, TestOf(desk, asked))}});
+    return JsonReply({{"id", QueueOrder(desk, TestOf(desk, asked))}});
   }
   if (path == "/api/lens") {
     return JsonReply(LensJson(desk.recordings(), asked));

@@ -9,12 +9,11 @@ namespace touchdown::review {
 
 nlohmann::ordered_json RelinkedJson(const std::filesystem::path& store,
                                     const nlohmann::json& asked) {
-  using Json = nlohmann::ordered_json;
   const std::string folder =
       RequiredText(asked, "folder", "where recordings are");
   auto opened = db::Store::Open(store, db::OpenMode::kWrite);
   const pipeline::Relinked relinked = pipeline::Relink(opened, folder);
-  Json found = Json::array();
+  auto found = nlohmann::ordered_json::array();
   for (const auto& move : relinked.found) {
     found.push_back({{"from", move.from}, {"to", move.to}});
   }

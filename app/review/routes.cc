@@ -9,6 +9,7 @@
 
 #include "app/pipeline/replay.h"
 #include "app/pipeline/statement.h"
+#include "app/report/json.h"
 #include "app/report/report.h"
 #include "app/report/text_file.h"
 #include "app/report/trial_list.h"
@@ -27,7 +28,7 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 std::string TypeOf(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
@@ -78,15 +79,10 @@ core::Trial RevisionOf(const std::vector<db::Revision>& history,
   throw NotThere(request.path + "?revision=" + asked->second);
 }
 
-Json ClipJson(Desk& desk, const core::Trial& trial) {
+Json ClipOfTrialJson(Desk& desk, const core::Trial& trial) {
   if (trial.clip.path.empty()) return {{"absent", "logged by hand"}};
   try {
-    const vision::ClipInfo info = desk.shelf().Info(trial.clip.path);
-    return {{"width_px", info.width_px},
-            {"height_px", info.height_px},
-            {"frames", info.frames},
-            {"format", info.format},
-            {"bit_depth", info.bit_depth}};
+    return ClipJson(desk.shelf().Info(trial.clip.path));
   } catch (const core::InputError& error) {
     return {{"absent", error.what()}};
   }
@@ -107,7 +103,7 @@ Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
                {"simulated", trial.origin == core::Origin::kSimulated},
                {"numbers", NumbersJson(trial)},
                {"history", HistoryJson(history)},
-               {"clip", ClipJson(desk, trial)}};
+               {"clip", ClipOfTrialJson(desk, trial)}};
   const auto analysis = pipeline::Replay(trial);
   json["view"] = analysis ? ViewJson(*analysis)
                           : Json{{"absent", analysis.error().reason}};
@@ -119,13 +115,7 @@ Reply FrameReply(Desk& desk, const Request& request, const std::string& id,
   const std::int64_t n = NumberIn(number, request.path);
   const std::string clip = desk.ClipOf(id);
   if (clip.empty()) throw NotThere(request.path);
-  const Picture picture = desk.shelf().Frame(clip, n);
-  Reply reply;
-  reply.type = picture.type;
-  reply.body = *picture.bytes;
-  // A frame stays what it is as long as a person looks at it.
-  reply.headers = {{"Cache-Control", "private, max-age=600"}};
-  return reply;
+  return PictureReply(desk.shelf().Frame(clip, n));
 }
 
 // The trial as it stands, or the revision asked for.
@@ -140,12 +130,7 @@ Reply ThumbnailReply(Desk& desk, const Request& request,
                      const std::string& id) {
   const auto trial = desk.Open(db::OpenMode::kRead).Find(id);
   if (!trial || trial->clip.path.empty()) throw NotThere(request.path);
-  const Picture picture = ThumbnailOf(desk.shelf(), *trial);
-  Reply reply;
-  reply.type = picture.type;
-  reply.body = *picture.bytes;
-  reply.headers = {{"Cache-Control", "private, max-age=600"}};
-  return reply;
+  return PictureReply(ThumbnailOf(desk.shelf(), *trial));
 }
 
 Reply TrajectoryReply(Desk& desk, const Request& request,

@@ -17,6 +17,7 @@
 #include "app/pipeline/statement.h"
 #include "app/pipeline/typed_values.h"
 #include "app/report/format.h"
+#include "app/report/json.h"
 #include "app/review/fields.h"
 #include "app/review/trial_view.h"
 #include "touchdown/calib/references.h"
@@ -25,8 +26,8 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using pipeline::FieldError;
+using report::Json;
 
 const nlohmann::json& Part(const nlohmann::json& asked, const char* name) {
   const auto part = asked.find(name);
@@ -163,16 +164,6 @@ Json SettingsJson(const pipeline::Analysis& analysis) {
                : Json(nullptr)},
           {"scale_source", said(analysis.scale, analysis.no_scale_reason)},
           {"ground_source", said(analysis.ground, analysis.no_ground_reason)}};
-}
-
-Json ChecksJson(const pipeline::Analysis& analysis) {
-  Json out = Json::array();
-  for (const pipeline::AnswerCheck& check : analysis.checks) {
-    out.push_back({{"name", check.name},
-                   {"verdict", Name(check.verdict)},
-                   {"reason", check.reason}});
-  }
-  return out;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "app/report/check_shots.h"
 #include "app/report/content.h"
 #include "app/report/group.h"
+#include "app/report/json.h"
 #include "app/report/report.h"
 #include "app/report/sentences.h"
 #include "touchdown/core/units.h"
@@ -16,7 +17,7 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 std::string_view ToneName(report::Tone tone) {
   switch (tone) {

@@ -1,13 +1,12 @@
 #include "app/review/trajectory.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "app/report/stored_document.h"
 
 namespace touchdown::review {
 namespace {
-
-using Json = nlohmann::json;
 
 // "1 0.5 null" to "1,0.5,"
 std::string Line(const std::string& cells) {
@@ -27,18 +26,18 @@ core::Expected<std::string> TrajectoryCsv(const core::Trial& trial) {
   if (trial.document_json.empty()) {
     return core::AbsentBecause("the trial was logged by hand");
   }
-  const Json document = Json::parse(trial.document_json, nullptr, false);
-  if (!document.is_object() || !document.contains("path")) {
+  const auto document = report::StoredDocument(trial);
+  if (!document.contains("path")) {
     return core::AbsentBecause(
         "its analysis has no path in millimetres: no body, no ground or no "
         "scale was found, or an earlier program made it");
   }
   try {
-    const Json& path = document["path"];
+    const auto& path = document["path"];
     std::string csv = Line(path.at("columns").get<std::string>());
-    for (const Json& row : path.at("rows")) csv += Line(row.get<std::string>());
+    for (const auto& row : path.at("rows")) csv += Line(row.get<std::string>());
     return csv;
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     return core::AbsentBecause("the path in its document is damaged");
   }
 }

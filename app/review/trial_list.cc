@@ -5,14 +5,15 @@
 #include <numeric>
 #include <vector>
 
+#include "app/report/json.h"
 #include "app/report/trial_list.h"
 
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using pipeline::Attention;
 using pipeline::TriageEntry;
+using report::Json;
 
 // Beyond so many that are not known yet, all documents are read in one query.
 constexpr std::size_t kOneByOne = 20;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/report/format.h"
+#include "app/report/json.h"
 #include "app/review/words.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
@@ -17,8 +18,8 @@
 namespace touchdown::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using core::kDegree;
+using report::Json;
 
 // Pieces of a drawn curve: a flight is a parabola, a lens bends a line little.
 constexpr int kPieces = 40;
@@ -110,16 +111,6 @@ Json BudgetJson(const core::Budget& budget) {
   return out;
 }
 
-Json ChecksJson(const pipeline::Analysis& analysis) {
-  Json out = Json::array();
-  for (const pipeline::AnswerCheck& check : analysis.checks) {
-    out.push_back({{"name", check.name},
-                   {"verdict", pipeline::Name(check.verdict)},
-                   {"reason", check.reason}});
-  }
-  return out;
-}
-
 Json QuantitiesJson(const core::ContactRecord& record) {
   Json out = Json::array();
   for (const std::string_view column : ColumnsInOrder()) {
@@ -157,6 +148,16 @@ Json RecordJson(const core::ContactRecord& record) {
 }
 
 }  // namespace
+
+Json ChecksJson(const pipeline::Analysis& analysis) {
+  Json out = Json::array();
+  for (const pipeline::AnswerCheck& check : analysis.checks) {
+    out.push_back({{"name", check.name},
+                   {"verdict", pipeline::Name(check.verdict)},
+                   {"reason", check.reason}});
+  }
+  return out;
+}
 
 Json ViewJson(const pipeline::Analysis& analysis) {
   const vision::Track& track = *analysis.track;

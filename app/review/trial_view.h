@@ -14,6 +14,9 @@ namespace touchdown::review {
 // of the answer (pipeline/answer_check.h).
 nlohmann::ordered_json ViewJson(const pipeline::Analysis& analysis);
 
+// The checks alone.
+nlohmann::ordered_json ChecksJson(const pipeline::Analysis& analysis);
+
 // The measured numbers of a trial in words; budgets; state. What is absent says
 // why.
 nlohmann::ordered_json NumbersJson(const core::Trial& trial);

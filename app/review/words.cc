@@ -64,7 +64,7 @@ constexpr std::array kWords{
     Words{"anomaly_note", "what was not as it should be"},
     Words{"note", "the operator's note"},
 };
-constexpr std::size_t kOfContact = 21;  // the first are a contact's numbers
+constexpr std::size_t kContactWords = 21;  // the first are a contact's numbers
 
 constexpr std::array kUnits{
     Words{"_deg", "deg"},         Words{"_mm", "mm"}, Words{"_mps", "m/s"},
@@ -79,8 +79,8 @@ std::string_view In(std::span<const Words> table, std::string_view key,
 }
 
 constexpr auto kColumns = [] {
-  std::array<std::string_view, kOfContact> columns;
-  for (std::size_t i = 0; i < kOfContact; ++i) columns[i] = kWords[i].first;
+  std::array<std::string_view, kContactWords> columns;
+  for (std::size_t i = 0; i < kContactWords; ++i) columns[i] = kWords[i].first;
   return columns;
 }();
 
