@@ -257,7 +257,7 @@ TEST_F(TheoryCommand, AnUnwritableOutputLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "nowhere"));
 }
 
-// The worked examples of analysis/README.md.
+// The worked examples of docs/theory.md.
 TEST_F(TheoryCommand, SphereWithSpin) {
   const auto regime = TheoryJson(
       {"regime", "--body", "solid-sphere", "--mu", "0.4", "--corner", "leading",

@@ -40,7 +40,7 @@ constexpr std::array<BoundaryModelCard, 5> kCards = {{
      "sign contradicts Eq. (5), and above 84.0 (88.0) deg it says slide again",
      "found by search: of 35 readings of the theory the only one that gives "
      "both "
-     "digits (README.md)",
+     "digits (docs/theory.md)",
      false},
     {BoundaryModel::kDetectableBounce, "detectable-bounce",
      "Impact and detectable bounce",

@@ -1,6 +1,6 @@
 // Contact of one corner with the ground, sliding or at rest: Eqs. (1)-(9) of
 // the paper, corrected (frame, slip and the matrix G: corner.h; errata:
-// README.md).
+// docs/theory.md).
 //
 // With normal force F_n >= 0 and normal acceleration y = g_N'' >= 0 of P:
 //   sliding, v_N = 0:   y = A_hat F_n / m + b,   y F_n = 0,   F_t = -slip mu

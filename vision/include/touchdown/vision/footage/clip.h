@@ -11,7 +11,7 @@
 // .mraw with its .cih or .cihx beside it (8, 12 packed, 16 bit), TIFFs of
 // several pages, folders of PNG, TIFF or JPEG (8 and 16 bit) in natural order
 // of their names. What each does with depth, range, rotation and time:
-// vision/README.md, "Clips".
+// docs/formats.md.
 #pragma once
 
 #include <cstdint>

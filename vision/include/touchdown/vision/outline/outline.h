@@ -4,8 +4,9 @@
 //   c     coverage of the pixel by the body, blurred by a Gaussian of standard
 //         deviation w (optics, pixel, focus): for a disc of radius R at
 //         distance r from its centre  Phi(z) to third order in w/R
-//         (outline_model.h; to first order Phi((R - w^2/(2 R) - r)/w)); for a
-//         rectangle the product of two slabs, exact for a Gaussian blur
+//         (src/outline/outline_image.h; to first order
+//         Phi((R - w^2/(2 R) - r)/w)); for a rectangle the product of two
+//         slabs, exact for a Gaussian blur
 //   out   the known background, or a quadratic polynomial where the body never
 //         leaves it uncovered
 //   in    a quadratic polynomial over the body (shading)

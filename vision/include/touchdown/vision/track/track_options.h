@@ -34,8 +34,8 @@ struct TrackOptions {
   bool measured = false;
 
   // Given with `kind`: what is followed must be of this size. Where the track
-  // may be that of a ghost (the body covers a pixel in half of the frames or
-  // more, or the size found is another), the body is sought once more together
+  // may be that of a ghost (the body covers a pixel in three quarters of
+  // the frames, or the size found is another), the body is sought once more together
   // with the picture behind it (src/detection/layered_start.h). Nothing: not
   // asked.
   std::optional<BodySize> size;
