@@ -35,9 +35,9 @@ struct TrackOptions {
 
   // Given with `kind`: what is followed must be of this size. Where the track
   // may be that of a ghost (the body covers a pixel in three quarters of
-  // the frames, or the size found is another), the body is sought once more together
-  // with the picture behind it (src/detection/layered_start.h). Nothing: not
-  // asked.
+  // the frames, or the size found is another), the body is sought once more
+  // together with the picture behind it (src/detection/layered_start.h).
+  // Nothing: not asked.
   std::optional<BodySize> size;
 
   // Pixels below it are left out of the outline's fit.
