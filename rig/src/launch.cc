@@ -8,7 +8,7 @@
 namespace touchdown::rig {
 namespace {
 
-void Validate(const Launch& launch) {
+void ValidateLaunch(const Launch& launch) {
   RequirePositive("stiffness_n_per_m", launch.stiffness_n_per_m);
   RequirePositive("mass_kg", launch.mass_kg);
   RequireAtLeastZero("spring_mass_kg", launch.spring_mass_kg);
@@ -56,7 +56,7 @@ double IdealCompression(double speed_mps, double stiffness_n_per_m,
 }
 
 core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
-  Validate(launch);
+  ValidateLaunch(launch);
   RequireAtLeastZero("compression_m", compression_m);
   const double x = compression_m;
   Muzzle muzzle;
@@ -111,7 +111,7 @@ core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
 }
 
 double CompressionFor(const Launch& launch, double speed_mps) {
-  Validate(launch);
+  ValidateLaunch(launch);
   RequireAtLeastZero("speed_mps", speed_mps);
   // a X^2 + 2 b X - c = 0 with a, c >= 0: of the two forms of the positive root
   // we take the one that does not subtract.
