@@ -19,13 +19,6 @@ struct Strip {
   std::vector<double> level;  // by column: it may change along the edge
 };
 
-double At(const StillImage& image, std::int32_t x, std::int32_t y) {
-  return static_cast<double>(
-      image.level[static_cast<std::size_t>(y) *
-                      static_cast<std::size_t>(image.width_px) +
-                  static_cast<std::size_t>(x)]);
-}
-
 // Mean over columns within `half` of each.
 std::vector<double> Running(const std::vector<double>& values,
                             std::size_t half) {
@@ -59,8 +52,8 @@ std::optional<Strip> Look(const StillImage& image,
       if (end < 0 || end >= image.height_px) return std::nullopt;
     }
     for (std::int32_t k = 0; k < kRows; ++k) {
-      mean[x] += At(image, static_cast<std::int32_t>(x),
-                    strip.first_row[x] + strip.step * k) /
+      mean[x] += LevelAt(image, static_cast<std::int32_t>(x),
+                         strip.first_row[x] + strip.step * k) /
                  kRows;
     }
   }
@@ -78,8 +71,8 @@ double CovarianceAt(const StillImage& image, const Strip& strip,
     std::array<double, kRows> off{};
     for (std::int32_t k = 0; k < kRows; ++k) {
       off[static_cast<std::size_t>(k)] =
-          At(image, static_cast<std::int32_t>(x),
-             strip.first_row[x] + strip.step * k) -
+          LevelAt(image, static_cast<std::int32_t>(x),
+                  strip.first_row[x] + strip.step * k) -
           strip.level[x];
     }
     for (std::int32_t k = 0; k + lag < kRows; ++k) {
@@ -143,7 +136,7 @@ EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
       cover[i] = Phi(z);
       slope[i] = -side * std::exp(-0.5 * z * z) /
                  (blur_px * std::sqrt(2.0 * std::numbers::pi));
-      value[i] = At(image, x, from + static_cast<std::int32_t>(i));
+      value[i] = LevelAt(image, x, from + static_cast<std::int32_t>(i));
     }
     Eigen::MatrixXd covariance =
         texture.variance_dn2 * Eigen::MatrixXd::Identity(n, n);

@@ -9,6 +9,8 @@
 // of the step.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -16,6 +18,13 @@
 #include "touchdown/calib/ground_lines.h"
 
 namespace touchdown::calib {
+
+inline double LevelAt(const StillImage& image, std::int32_t x, std::int32_t y) {
+  return static_cast<double>(
+      image.level[static_cast<std::size_t>(y) *
+                      static_cast<std::size_t>(image.width_px) +
+                  static_cast<std::size_t>(x)]);
+}
 
 struct EdgeTexture {
   bool below = true;          // side of the edge that is textured

@@ -17,12 +17,12 @@ struct Residuals {
   std::vector<double> w;
 };
 
-struct Fit {
+struct WaveFit {
   Eigen::Vector4d terms = Eigen::Vector4d::Zero();  // 1, x / span, cos, sin
   double squares = 0.0;                             // weighted, that remain
 };
 
-Fit FitWave(const Residuals& points, double k, double span) {
+WaveFit FitWave(const Residuals& points, double k, double span) {
   Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
   Eigen::Vector4d b = Eigen::Vector4d::Zero();
   double all = 0.0;
@@ -34,7 +34,7 @@ Fit FitWave(const Residuals& points, double k, double span) {
     b.noalias() += points.w[i] * points.r[i] * row;
     all += points.w[i] * points.r[i] * points.r[i];
   }
-  Fit fit;
+  WaveFit fit;
   fit.terms = a.ldlt().solve(b);
   fit.squares = all - fit.terms.dot(b);
   return fit;
@@ -86,7 +86,7 @@ double TakeOutWave(const Line& line, double middle,
     look(centre + step);
   }
   const double k = 2.0 * std::numbers::pi * best;
-  const Fit fit = FitWave(off, k, span);
+  const WaveFit fit = FitWave(off, k, span);
   for (EdgePoint& p : points) {
     const double x = p.x - middle;
     p.y -= fit.terms[2] * std::cos(k * x) + fit.terms[3] * std::sin(k * x);

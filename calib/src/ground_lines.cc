@@ -15,19 +15,13 @@
 namespace touchdown::calib {
 namespace {
 
-float At(const StillImage& image, std::int32_t x, std::int32_t y) {
-  return image.level[static_cast<std::size_t>(y) *
-                         static_cast<std::size_t>(image.width_px) +
-                     static_cast<std::size_t>(x)];
-}
-
 // Step across y: mean of 3 rows below minus mean of 3 rows above.
 double StepAt(const StillImage& image, std::int32_t x, std::int32_t y) {
   double below = 0.0;
   double above = 0.0;
   for (std::int32_t k = 1; k <= 3; ++k) {
-    below += static_cast<double>(At(image, x, y + k));
-    above += static_cast<double>(At(image, x, y - k));
+    below += LevelAt(image, x, y + k);
+    above += LevelAt(image, x, y - k);
   }
   return (below - above) / 3.0;
 }
@@ -235,7 +229,7 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     for (std::int32_t y = from; y <= to; ++y) {
       const double p = NormalCdf((y - edge.y) / blur);
       phi.push_back(p);
-      const auto v = static_cast<double>(At(image, x, y));
+      const auto v = LevelAt(image, x, y);
       n += 1;
       sp += p;
       spp += p * p;
@@ -256,7 +250,7 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     residual2 = 0.0;
     for (std::int32_t y = from; y <= to; ++y) {
       const double z = (y - edge.y) / blur;
-      const double r = static_cast<double>(At(image, x, y)) - a -
+      const double r = LevelAt(image, x, y) - a -
                        b * phi[static_cast<std::size_t>(y - from)];
       const double slope =
           -b * 0.3989422804014327 * std::exp(-0.5 * z * z) / blur;

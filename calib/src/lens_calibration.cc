@@ -15,7 +15,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-struct Fit {
+struct LensFit {
   cv::Mat camera = cv::Mat::eye(3, 3, CV_64F);
   cv::Mat distortion = cv::Mat::zeros(5, 1, CV_64F);
   std::vector<cv::Mat> rotations;
@@ -44,10 +44,10 @@ std::vector<cv::Point3f> BoardPoints(const Board& board) {
   return points;
 }
 
-Fit RunFit(const std::vector<std::vector<cv::Point3f>>& board_points,
-           const std::vector<std::vector<cv::Point2f>>& image_points,
-           cv::Size size, int flags) {
-  Fit fit;
+LensFit RunFit(const std::vector<std::vector<cv::Point3f>>& board_points,
+               const std::vector<std::vector<cv::Point2f>>& image_points,
+               cv::Size size, int flags) {
+  LensFit fit;
   cv::calibrateCamera(
       board_points, image_points, size, fit.camera, fit.distortion,
       fit.rotations, fit.shifts, flags,
@@ -144,7 +144,7 @@ double StudentOverNormal(double dof) {
 }
 
 // Residuals, the lens's covariance and the views' own results.
-bool Judge(const Fit& fit, const std::vector<BoardView>& views,
+bool Judge(const LensFit& fit, const std::vector<BoardView>& views,
            const std::vector<cv::Point3f>& board,
            const std::vector<bool>& fixed, LensCalibration& out) {
   // OpenCV's Jacobian has rotation, shift, f, c, distortion.
@@ -336,7 +336,7 @@ core::Expected<LensCalibration> CalibrateLens(
                                                            points);
   std::vector<bool> fixed(kLensParameters, false);
   try {
-    Fit fit = RunFit(board_points, image_points, size, 0);
+    LensFit fit = RunFit(board_points, image_points, size, 0);
     // k3 is there for strong lenses; where little is seen of the picture's
     // corners it may bend the rest of them over.
     if (!IsInvertible(fit.lens(), width_px, height_px)) {

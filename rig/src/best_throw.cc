@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "angles.h"
+#include "infinity.h"
 #include "throw_search.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/launch.h"
@@ -22,13 +22,11 @@ using core::AbsentBecause;
 using core::AngleKind;
 using core::Expected;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kLengthSlack_m = 1e-9;
 constexpr double kSlowestLaunch_mps = 1e-6;  // slower is a drop from rest
 // How many standard uncertainties of its height a muzzle keeps the body off
 // the ground where it can: nearer, some shots begin in it.
 constexpr double kClearance_u = 3.0;
-constexpr int kBisections = 60;
 // How far the played throw may miss the wish: 1e-7 rad and 1e-7 of the speed,
 // a hundredth of the last digit that a plan prints. What misses by more does
 // not end in this contact (it touches earlier).

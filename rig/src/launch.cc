@@ -10,7 +10,7 @@
 namespace touchdown::rig {
 namespace {
 
-void Validate(const Launch& launch) {
+void ValidateLaunch(const Launch& launch) {
   core::RequirePositive("stiffness_n_per_m", launch.stiffness_n_per_m);
   core::RequirePositive("mass_kg", launch.mass_kg);
   core::RequireNotNegative("spring_mass_kg", launch.spring_mass_kg);
@@ -58,7 +58,7 @@ double IdealCompression(double speed_mps, double stiffness_n_per_m,
 }
 
 core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
-  Validate(launch);
+  ValidateLaunch(launch);
   core::RequireNotNegative("compression_m", compression_m);
   const double x = compression_m;
   Muzzle muzzle;
@@ -113,7 +113,7 @@ core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
 }
 
 double CompressionFor(const Launch& launch, double speed_mps) {
-  Validate(launch);
+  ValidateLaunch(launch);
   core::RequireNotNegative("speed_mps", speed_mps);
   // a X^2 + 2 b X - c = 0 with a, c >= 0: of the two forms of the positive root
   // we take the one that does not subtract.

@@ -5,19 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "angles.h"
+#include "infinity.h"
 #include "touchdown/core/require.h"
 #include "touchdown/rig/flight.h"
 #include "touchdown/rig/turning_flight.h"
 
 namespace touchdown::rig {
 namespace {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Everything that varies from draw to draw.
 struct State {

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <sstream>
 
+#include "infinity.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/description.h"
@@ -15,8 +16,6 @@ namespace touchdown::rig {
 namespace {
 
 using core::Estimate;
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // What a number may be; the words appear in errors.
 struct Range {
@@ -33,7 +32,7 @@ struct Range {
 constexpr Range kAny{};
 constexpr Range kPositive{0.0, kInf, true, "positive"};
 constexpr Range kAtLeastZero{0.0, kInf, false, "at least 0"};
-constexpr Range kQuarterTurn{-90.0, 90.0, false, "within -90 .. 90"};
+constexpr Range kWithinQuarterTurn{-90.0, 90.0, false, "within -90 .. 90"};
 constexpr Range kEfficiency{0.0, 2.0, true, "in (0, 2]"};
 
 // A table of the file, with the file's name for errors.
@@ -245,9 +244,9 @@ void ReadMuzzle(const Section& in, Description& out) {
   in.Allow({"elevation_min_deg", "elevation_max_deg", "u_elevation_deg",
             "height_min_mm", "height_max_mm", "u_height_mm"});
   out.elevation_min_rad =
-      in.Plain("elevation_min_deg", kQuarterTurn, core::kDegree);
+      in.Plain("elevation_min_deg", kWithinQuarterTurn, core::kDegree);
   out.elevation_max_rad =
-      in.Plain("elevation_max_deg", kQuarterTurn, core::kDegree);
+      in.Plain("elevation_max_deg", kWithinQuarterTurn, core::kDegree);
   if (out.elevation_max_rad < out.elevation_min_rad) {
     in.Fail(in.At("elevation_max_deg"),
             "muzzle.elevation_max_deg is less than elevation_min_deg");
@@ -289,7 +288,7 @@ void ReadBody(const Section& in, Description& out) {
       in.Fail(in.At("long_mm"), "body.long_mm is less than body.short_mm");
     }
     out.body = core::Rectangle(a, b);
-    out.seat_angle_rad = in.MeasuredOr("seat_angle_deg", kQuarterTurn,
+    out.seat_angle_rad = in.MeasuredOr("seat_angle_deg", kWithinQuarterTurn,
                                        core::kDegree, out.seat_angle_rad);
     out.spin_rad_per_s = in.MeasuredOr("spin_deg_per_s", kAny, core::kDegree,
                                        out.spin_rad_per_s);

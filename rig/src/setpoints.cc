@@ -18,7 +18,7 @@ using core::AbsentBecause;
 using core::AngleKind;
 using core::Expected;
 
-void Validate(const ContactWish& wish) {
+void ValidateWish(const ContactWish& wish) {
   core::RequirePositive("speed_mps", wish.speed_mps);
   const double low = wish.kind == AngleKind::kFace ? -kQuarterTurn : 0.0;
   if (!(wish.angle_rad >= low && wish.angle_rad <= kQuarterTurn)) {
@@ -73,7 +73,7 @@ Expected<Setting> FirstPossible(const Description& rig, const ContactWish& wish,
 
 core::Expected<Setting> SettingFor(const Description& rig,
                                    const ContactWish& wish) {
-  Validate(wish);
+  ValidateWish(wish);
   if (!ThrowsRectangle(rig)) {
     if (wish.kind != AngleKind::kApproach) {
       return AbsentBecause(fmt::format(

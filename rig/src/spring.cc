@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-void Validate(const Spring& spring) {
+void ValidateSpring(const Spring& spring) {
   core::RequirePositive("shear_modulus_pa", spring.shear_modulus_pa);
   core::RequirePositive("wire_diameter_m", spring.wire_diameter_m);
   core::RequirePositive("coil_diameter_m", spring.coil_diameter_m);
@@ -130,7 +130,7 @@ std::optional<CoilDiameter> ParseCoilDiameter(std::string_view word) {
 }
 
 double MeanDiameter(const Spring& spring) {
-  Validate(spring);
+  ValidateSpring(spring);
   const double mean = MeanOf(spring);
   // At index 1 the hole closes: no such coil can be wound.
   if (!(mean > spring.wire_diameter_m)) {
@@ -174,7 +174,7 @@ double MaxShearStress(const Spring& spring, double compression_m) {
 }
 
 double SolidLength(const Spring& spring) {
-  Validate(spring);
+  ValidateSpring(spring);
   return spring.total_coils * spring.wire_diameter_m;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "angles.h"
+#include "infinity.h"
 #include "touchdown/rig/launch.h"
 #include "touchdown/rig/predict.h"
 
@@ -15,8 +15,6 @@ namespace {
 
 using core::AngleKind;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr int kBisections = 60;   // to the last bit of a double
 constexpr int kGoldenSteps = 40;  // to 1e-8 of a cell
 
 class Search {

@@ -24,6 +24,9 @@ enum Limit : std::size_t {
 };
 using Slacks = std::array<double, kLimits>;
 
+// Halvings of an interval: to the last bit of a double.
+inline constexpr int kBisections = 60;
+
 struct Candidate {
   Throw t;
   Slacks slack{};

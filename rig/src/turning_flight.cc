@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "angles.h"
+#include "infinity.h"
 #include "touchdown/core/require.h"
 
 namespace touchdown::rig {
@@ -22,7 +22,7 @@ constexpr double kTouch_s = 1e-14;
 // Grazing touches are approached by halves: 200 steps are more than any needs.
 constexpr int kMostSteps = 100'000;
 
-void Validate(const TurningThrow& t) {
+void ValidateThrow(const TurningThrow& t) {
   core::RequirePositive("short_m", t.short_m);
   if (!(t.long_m >= t.short_m) || !std::isfinite(t.long_m)) {
     core::Refuse("long_m", t.long_m, "at least short_m and finite");
@@ -38,20 +38,20 @@ void Validate(const TurningThrow& t) {
 }
 
 // Height and its rate of the corner at (along, across) of the body's axes.
-struct Corner {
+struct CornerHeight {
   double height_m = 0.0;
   double rate_mps = 0.0;
 };
 
-std::array<Corner, 4> CornersAt(const TurningThrow& t, double time_s,
-                                double up_mps) {
+std::array<CornerHeight, 4> CornersAt(const TurningThrow& t, double time_s,
+                                      double up_mps) {
   const double y =
       t.height_m + time_s * (up_mps - 0.5 * t.gravity_mps2 * time_s);
   const double rise = up_mps - t.gravity_mps2 * time_s;
   const double face = t.face_rad + t.spin_rad_per_s * time_s;
   const double s = std::sin(face);
   const double c = std::cos(face);
-  std::array<Corner, 4> out;
+  std::array<CornerHeight, 4> out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double along = (i & 1U ? 0.5 : -0.5) * t.long_m;
     const double across = (i & 2U ? 0.5 : -0.5) * t.short_m;
@@ -64,7 +64,7 @@ std::array<Corner, 4> CornersAt(const TurningThrow& t, double time_s,
 }  // namespace
 
 core::Expected<TurningFlight> FlyTurning(const TurningThrow& t) {
-  Validate(t);
+  ValidateThrow(t);
   const double up = t.speed_mps * std::sin(t.elevation_rad);
   const double along = std::fmax(0.0, t.speed_mps * std::cos(t.elevation_rad));
   const double reach = 0.5 * std::hypot(t.long_m, t.short_m);
@@ -72,8 +72,8 @@ core::Expected<TurningFlight> FlyTurning(const TurningThrow& t) {
       t.gravity_mps2 + reach * t.spin_rad_per_s * t.spin_rad_per_s;
   double time = 0.0;
   for (int i = 0; i < kMostSteps; ++i) {
-    double step = std::numeric_limits<double>::infinity();
-    for (const Corner& corner : CornersAt(t, time, up)) {
+    double step = kInf;
+    for (const CornerHeight& corner : CornersAt(t, time, up)) {
       if (i == 0 && corner.height_m < -kOnGround_m) {
         return core::AbsentBecause(fmt::format(
             "the body would start {:.3g} mm deep in the ground: raise the "

@@ -12,7 +12,7 @@
 namespace touchdown::rig {
 namespace {
 
-void Validate(std::span<const UncertainInput> inputs) {
+void ValidateInputs(std::span<const UncertainInput> inputs) {
   for (const UncertainInput& input : inputs) {
     core::RequireFinite(input.name.c_str(), input.estimate.value);
     core::RequireNotNegative((input.name + ".u").c_str(), input.estimate.u);
@@ -116,7 +116,7 @@ IdealSpeedU PowerLaw(const IdealRelativeU& u, double wire_first,
 
 core::Expected<std::vector<FirstOrder>> PropagateFirstOrder(
     std::span<const UncertainInput> inputs, const Model& model) {
-  Validate(inputs);
+  ValidateInputs(inputs);
   const std::vector<double> at = Values(inputs);
   const auto centre = model(at);
   if (!centre) return core::AbsentBecause(centre.error().reason);
@@ -140,7 +140,7 @@ core::Expected<std::vector<FirstOrder>> PropagateFirstOrder(
 MonteCarloRun PropagateMonteCarlo(std::span<const UncertainInput> inputs,
                                   const Model& model, std::size_t draws,
                                   std::mt19937_64& engine) {
-  Validate(inputs);
+  ValidateInputs(inputs);
   if (draws < 2) {
     core::Refuse("draws", static_cast<double>(draws), "at least 2");
   }
