@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <optional>
+#include <stdexcept>
 
 #include "touchdown/core/require.h"
 #include "touchdown/rig/launch.h"
