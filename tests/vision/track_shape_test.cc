@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "vision/src/numbers/median.h"
+#include "vision/src/numbers/robust.h"
 
 namespace touchdown::vision {
 namespace {

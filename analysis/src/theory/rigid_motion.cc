@@ -265,7 +265,7 @@ class Simulator {
   RigidMotion motion_;
 };
 
-void Check(const RigidMotionProblem& p) {
+void CheckRigidMotionProblem(const RigidMotionProblem& p) {
   const RigidOutline outline(p.body);  // refuses an absent size
   core::RequireNotNegative("gyration radius", p.gyration_radius_m, "m");
   core::RequireNotNegative("mu", p.mu);
@@ -299,7 +299,7 @@ const Stretch& StretchAt(const RigidMotion& motion, double time_s) {
 }  // namespace
 
 RigidMotion SimulateRigidMotion(const RigidMotionProblem& problem) {
-  Check(problem);
+  CheckRigidMotionProblem(problem);
   return Simulator(problem).Run();
 }
 

@@ -13,7 +13,7 @@
 
 #include "background/mid_mean.h"
 #include "footage/read_apart.h"
-#include "numbers/median.h"
+#include "numbers/robust.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/parallel.h"
 
@@ -179,7 +179,7 @@ class Grid {
     if (off.empty()) return 0.0;
     // Half a level: what rounding alone leaves.
     constexpr double kSigmas = 4.0;
-    return kSigmas * std::max(0.5, 1.4826 * Median(std::move(off)));
+    return kSigmas * std::max(0.5, kSigmaPerMedian * Median(std::move(off)));
   }
 
   void AddRow(const core::Frame& frame, std::int32_t row,

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "numbers/median.h"
+#include "numbers/robust.h"
 
 namespace touchdown::vision {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "numbers/median.h"
+#include "numbers/robust.h"
 #include "numbers/moments.h"
 
 namespace touchdown::vision {

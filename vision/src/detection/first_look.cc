@@ -9,14 +9,12 @@
 
 #include "detection/watcher.h"
 #include "footage/read_apart.h"
-#include "numbers/median.h"
+#include "numbers/robust.h"
 #include "outline/outline_batch.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::vision {
 namespace {
-
-using Surround = OutlineOptions::Surround;
 
 struct Range {
   std::int64_t first = 0;
@@ -212,7 +210,7 @@ double Badness(const std::optional<Fitted>& fitted) {
 }
 
 // Badness of the outlines; dearer where the body was seen in few frames.
-double CostOf(const Look& look) {
+double LookCost(const Look& look) {
   if (look.found.chains.empty()) {
     return std::numeric_limits<double>::infinity();
   }
@@ -333,7 +331,7 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
     const Chain& chain = look.found.chains.front();
     look.choice =
         ChooseKind(clip, look.background, chain, options, look.surround);
-    if (CostOf(look) > most_cost) return look;
+    if (LookCost(look) > most_cost) return look;
     look.fits = FitChain(clip, look.background, chain, look.choice, options,
                          look.surround);
     DropStrangers(look.fits);
@@ -381,7 +379,7 @@ bool IsBetter(const Look& look, const Look& other) {
     if (kFew * falling.fits.size() >= resting.fits.size()) return falls(look);
   }
   return MuchSmoother(look, other) ||
-         (CostOf(look) < CostOf(other) && !MuchSmoother(other, look));
+         (LookCost(look) < LookCost(other) && !MuchSmoother(other, look));
 }
 
 namespace {
@@ -390,7 +388,7 @@ namespace {
 // background holds its ghost.
 constexpr double kWellFitted = 4.0;
 
-const char* ShapeOf(core::BodyKind kind) {
+const char* KindName(core::BodyKind kind) {
   return kind == core::BodyKind::kSphere ? "a sphere" : "a rectangle";
 }
 
@@ -422,8 +420,8 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
       "the body looks like {}, not like {} as was stated: in a few frames {} "
       "leaves residuals of {:.1f} times the noise, {} {:.1f}; state the kind "
       "that it is",
-      ShapeOf(other.kind), ShapeOf(*options.kind), ShapeOf(other.kind),
-      other.badness, ShapeOf(*options.kind), look.choice.badness);
+      KindName(other.kind), KindName(*options.kind), KindName(other.kind),
+      other.badness, KindName(*options.kind), look.choice.badness);
 }
 
 }  // namespace
@@ -470,7 +468,7 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
     }
     Look look = change
                     ? LookWith(clip, std::move(background), options, detector,
-                               best.found.last, least, CostOf(best))
+                               best.found.last, least, LookCost(best))
                     : LookWith(clip, std::move(background), options, detector,
                                best.found.last);
     look.found.warning = best.found.warning;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "numbers/median.h"
+#include "numbers/robust.h"
 #include "outline/outline_pixels.h"
 #include "touchdown/calib/plane.h"
 

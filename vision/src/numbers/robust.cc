@@ -1,4 +1,4 @@
-#include "numbers/median.h"
+#include "numbers/robust.h"
 
 #include <algorithm>
 #include <utility>

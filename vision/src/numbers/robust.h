@@ -1,5 +1,4 @@
-// The middle of many numbers, and where it lies from a sample of them: what is
-// not near need not be put in order.
+// Robust estimates: medians, and what their weights share.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +7,11 @@
 #include <vector>
 
 namespace touchdown::vision {
+
+// Standard deviation of normal values over the median of their sizes.
+inline constexpr double kSigmaPerMedian = 1.4826;
+// Standard deviations at which Tukey's weights end: 95 % efficient.
+inline constexpr double kTukeyCut = 4.685;
 
 // Of an even number the mean of the two in the middle: that of values which
 // change sign in a mirror does so, too.
@@ -28,6 +32,15 @@ std::pair<double, double> BracketOfMedian(std::size_t count, const At& at) {
   }
   std::sort(some.begin(), some.end());
   return {some[kSample / 2 - kSpare], some[kSample / 2 + kSpare]};
+}
+
+// Of at least one value, which lose their order; of an even number the greater
+// of the two in the middle.
+inline float MedianInPlace(std::vector<float>& values) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace touchdown::vision
