@@ -32,9 +32,9 @@ struct AnalyzeCommandFlags {
 };
 
 // The document, with what became of it in the store.
-std::string DocumentOf(const pipeline::Analysis& analysis,
-                       const std::optional<pipeline::Logged>& logged,
-                       const AnalyzeCommandFlags& flags) {
+std::string MakeDocument(const pipeline::Analysis& analysis,
+                         const std::optional<pipeline::Logged>& logged,
+                         const AnalyzeCommandFlags& flags) {
   const std::string document = pipeline::ToJson(analysis);
   if (!logged) return document;
   using nlohmann::ordered_json;
@@ -61,7 +61,7 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
         "digest; leave one of them out");
   }
   options.digest = !flags.no_digest;
-  const auto conditions = ConditionsOf(flags.conditions, flags.db);
+  const auto conditions = ReadConditions(flags.conditions, flags.db);
   if (!flags.campaign.empty()) {
     pipeline::FillFromCampaign(flags.db, flags.campaign, options);
   }
@@ -86,7 +86,7 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
         pipeline::LogAnalysis(analysis, flags.db, flags.campaign, conditions);
   }
   if (flags.json) {
-    fmt::print("{}\n", DocumentOf(analysis, logged, flags));
+    fmt::print("{}\n", MakeDocument(analysis, logged, flags));
   } else {
     fmt::print("{}", pipeline::ToText(analysis));
     if (logged) {

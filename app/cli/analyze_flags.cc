@@ -53,7 +53,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
     const auto n = ParseNumbers("--ground", flags.ground, 4,
                                 "two points X1,Y1,X2,Y2 in pixels");
     options.ground =
-        calib::GroundThrough({n[0], n[1]}, {n[2], n[3]}, flags.ground_u_px);
+        calib::MakeGroundLine({n[0], n[1]}, {n[2], n[3]}, flags.ground_u_px);
   }
   if (flags.contact_frame) {
     if (*flags.contact_frame < 0) {

@@ -171,8 +171,8 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   return 5;
 }
 
-pipeline::BatchOptions OptionsOf(const BatchFlags& flags,
-                                 const db::Store& store, ProgressBar& bar) {
+pipeline::BatchOptions MakeOptions(const BatchFlags& flags,
+                                   const db::Store& store, ProgressBar& bar) {
   pipeline::BatchOptions options;
   ApplyConditions(flags.conditions, options.conditions);
   if (options.conditions) {
@@ -199,10 +199,11 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
   const auto take = [&](const std::vector<fs::path>& complete) {
     ProgressBar bar("batch");
     analysing_batch = true;
-    const auto entries = pipeline::RunBatch(
-        store,
-        pipeline::ClipsOf(complete, flags.source, flags.campaign, analyze),
-        OptionsOf(flags, store, bar));
+    const auto entries =
+        pipeline::RunBatch(store,
+                           pipeline::ListBatchClips(complete, flags.source,
+                                                    flags.campaign, analyze),
+                           MakeOptions(flags, store, bar));
     analysing_batch = false;
     bar.Finish();
     for (const TriageEntry& entry : entries) {
@@ -237,8 +238,8 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
 std::vector<pipeline::BatchClip> ListClips(
     const BatchFlags& flags, const pipeline::AnalyzeOptions& analyze) {
   if (!fs::is_directory(flags.source)) {
-    return pipeline::ClipsOf(pipeline::ReadManifest(flags.source),
-                             flags.campaign, analyze);
+    return pipeline::ListBatchClips(pipeline::ReadManifest(flags.source),
+                                    flags.campaign, analyze);
   }
   const auto recordings = pipeline::FindRecordings(flags.source);
   if (recordings.empty()) {
@@ -247,7 +248,8 @@ std::vector<pipeline::BatchClip> ListClips(
         "were expected",
         flags.source));
   }
-  return pipeline::ClipsOf(recordings, flags.source, flags.campaign, analyze);
+  return pipeline::ListBatchClips(recordings, flags.source, flags.campaign,
+                                  analyze);
 }
 
 int RunBatch(const BatchFlags& flags) {
@@ -273,12 +275,13 @@ int RunBatch(const BatchFlags& flags) {
   }
   auto clips = ListClips(flags, analyze);
   if (!flags.shard.empty()) {
-    clips = pipeline::ShardOf(std::move(clips),
-                              pipeline::ParseShard("--shard", flags.shard));
+    clips = pipeline::SelectShard(std::move(clips),
+                                  pipeline::ParseShard("--shard", flags.shard));
   }
   auto store = OpenStore(flags);
   ProgressBar bar("batch");
-  auto entries = pipeline::RunBatch(store, clips, OptionsOf(flags, store, bar));
+  auto entries =
+      pipeline::RunBatch(store, clips, MakeOptions(flags, store, bar));
   bar.Finish();
   return FinishBatch(std::move(entries), flags);
 }

@@ -145,8 +145,9 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
   report::ReportInput input = MakeInput(flags, true);
   KeepLook(flags, "report", input);
   input.options = options;
-  input.details = flags.details.empty() ? pipeline::DetailsBeside(flags.store)
-                                        : report::ReadDetails(flags.details);
+  input.details = flags.details.empty()
+                      ? pipeline::ReadStoreDetails(flags.store)
+                      : report::ReadDetails(flags.details);
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();
   if (!flags.rig.empty()) {

@@ -77,7 +77,7 @@ core::Estimate ParseTheory(const std::string& text) {
   return {value * kDegree, u * kDegree, {}};
 }
 
-core::Estimate TheoryOf(const BoundaryFlags& flags) {
+core::Estimate ReadTheory(const BoundaryFlags& flags) {
   core::Estimate theory = ParseTheory(flags.theory);
   if (!flags.theory_u_deg) return theory;
   const double u_deg = *flags.theory_u_deg;
@@ -112,7 +112,7 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
   return range;
 }
 
-std::optional<core::Corner> CornerOf(const BoundaryFlags& flags) {
+std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags) {
   return OptionalWord("--corner", flags.corner, core::ParseCorner,
                       "leading, trailing or flush");
 }
@@ -175,7 +175,7 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
         "--margin-deg: {}; expected more than 0", flags.margin_deg));
   }
   if (!flags.csv.empty() && !flags.theory.empty()) {
-    const core::Estimate theory = TheoryOf(flags);
+    const core::Estimate theory = ReadTheory(flags);
     out.theory_name = flags.theory_name;
     out.theory_rad = theory.value;
     out.theory_u_rad = theory.u;
@@ -220,7 +220,7 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   pipeline::SelectionOptions options = MakeSelection(flags);
   options.with_evidence = with_evidence;
   report::ReportInput input =
-      pipeline::InputOf(pipeline::SelectTrials(options));
+      pipeline::MakeReportInput(pipeline::SelectTrials(options));
   input.study = MakeStudy(flags);
   if (!flags.feasible.empty()) {  // as the user says, whatever the rig can do
     const core::Interval asked = ParseRange("--feasible-deg", flags.feasible);
@@ -229,7 +229,7 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
     };
   } else if (!flags.rig.empty()) {
     input.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps,
-                                          CornerOf(flags), flags.store);
+                                          ReadCorner(flags), flags.store);
   }
   if (flags.support == kOfTheRig) {
     if (!input.reach_of) {
@@ -243,7 +243,7 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   // that it is said to be of.
   if (!flags.csv.empty() && flags.body.empty()) input.theories.clear();
   if (flags.csv.empty() && !flags.theory.empty()) {
-    const core::Estimate theory = TheoryOf(flags);
+    const core::Estimate theory = ReadTheory(flags);
     for (const auto body :
          {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
       input.theories.push_back(

@@ -66,7 +66,7 @@ struct BoundaryFlags {
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags);
 
 // The corner that lands first. Throws std::invalid_argument naming the flag.
-std::optional<core::Corner> CornerOf(const BoundaryFlags& flags);
+std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags);
 
 // Check shots have no boundary and no next angle. Throws std::invalid_argument
 // where `--campaign` names theirs.
@@ -96,7 +96,7 @@ core::Estimate ParseTheory(const std::string& text);
 
 // --theory-deg with the u of --theory-u-deg. Throws std::invalid_argument where
 // both give one.
-core::Estimate TheoryOf(const BoundaryFlags& flags);
+core::Estimate ReadTheory(const BoundaryFlags& flags);
 
 // "5:40", in degrees.
 core::Interval ParseRange(const char* flag, const std::string& text);

@@ -39,7 +39,7 @@ std::vector<std::filesystem::path> Expanded(
       images.emplace_back(argument);
       continue;
     }
-    const auto inside = pipeline::PicturesIn(argument);
+    const auto inside = pipeline::ListPictures(argument);
     images.insert(images.end(), inside.begin(), inside.end());
   }
   return images;
@@ -139,9 +139,10 @@ void PrintLens(const pipeline::BoardPictures& found,
 int RunLens(const LensFlags& flags) {
   const calib::Board board = calib::ParseBoard(flags.board);
   const pipeline::BoardPictures found = FindInPictures(flags, board);
-  const calib::LensCalibration lens = pipeline::LensOf(found, board);
+  const calib::LensCalibration lens =
+      pipeline::CalibrateBoardLens(found, board);
   calib::Calibration file = BeginCalibration(flags.file, found.picture);
-  file.lens = pipeline::RecordOf(lens, board);
+  file.lens = pipeline::MakeLensRecord(lens, board);
   calib::WriteCalibration(flags.file.out, file);
   if (flags.json) {
     fmt::print("{}\n", LensJson(found, lens, file)

@@ -58,8 +58,8 @@ calib::MarkedPair ParsePair(const std::string& flag, const std::string& text,
   return {{n[0], n[1]}, {n[2], n[3]}, u_point_px};
 }
 
-calib::Picture PictureOf(const CalibrationFileFlags& flags,
-                         const StillPicture& picture) {
+calib::Picture DescribePicture(const CalibrationFileFlags& flags,
+                               const StillPicture& picture) {
   calib::Picture out{picture.image.width_px, picture.image.height_px,
                      picture.corner};
   if (!flags.sensor_origin.empty()) {
@@ -73,7 +73,7 @@ calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
   calib::Calibration out;
   if (!flags.calibration.empty()) {
     const auto known = calib::ReadCalibration(flags.calibration);
-    auto fitted = calib::FittedTo(known, picture);
+    auto fitted = calib::AdaptToPicture(known, picture);
     if (!fitted) {
       throw core::InputError(
           fmt::format("{}: {}", flags.calibration, fitted.error().reason));

@@ -36,8 +36,8 @@ calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
                                     const calib::Picture& picture);
 
 // Of a picture that was read; --sensor-origin wins over the file's own.
-calib::Picture PictureOf(const CalibrationFileFlags& flags,
-                         const StillPicture& picture);
+calib::Picture DescribePicture(const CalibrationFileFlags& flags,
+                               const StillPicture& picture);
 
 // "X,Y", whole pixels, at least 0.
 calib::SensorCorner ParseCorner(const std::string& flag,

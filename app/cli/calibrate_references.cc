@@ -39,7 +39,8 @@ struct Begun {
 
 Begun Begin(const ReferenceFlags& flags) {
   Begun begun{ReadPicture(flags.picture, flags.frame), {}, std::nullopt};
-  begun.file = BeginCalibration(flags.file, PictureOf(flags.file, begun.still));
+  begun.file =
+      BeginCalibration(flags.file, DescribePicture(flags.file, begun.still));
   if (begun.file.lens) begun.lens = begun.file.lens->lens;
   return begun;
 }
@@ -64,7 +65,7 @@ int RunScale(const ReferenceFlags& flags) {
   const auto pair = ParsePair("--points", flags.points, flags.u_point_px);
   const auto length =
       ParseEstimate("--length-mm", flags.length, core::kMillimetre, kPlainSize);
-  calib::ScaleRecord scale = calib::ScaleFrom(pair, length, begun.lens);
+  calib::ScaleRecord scale = calib::MeasureScale(pair, length, begun.lens);
   std::vector<std::string> lines = {
       fmt::format("scale      {} px/m{}", Rounded(scale.px_per_m),
                   begun.lens ? ", lens undone" : "")};
@@ -148,7 +149,7 @@ calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
   ground.p1 = seen(line.p1);
   ground.p2 = seen(line.p2);
   // Of points of which both the height and the direction are at least as
-  // uncertain as the line's (calib::GroundThrough).
+  // uncertain as the line's (calib::MakeGroundLine).
   ground.u_point_px = std::max(std::sqrt(2.0) * line.u_offset_px,
                                length * line.u_angle_rad / std::sqrt(2.0));
   return ground;
@@ -211,7 +212,7 @@ int RunGround(const ReferenceFlags& flags) {
         "--points is '{}', must be two different points", flags.points));
   }
   if (!flags.plumb.empty()) {
-    ground.slope_rad = calib::SlopeFrom(
+    ground.slope_rad = calib::MeasureSlope(
         {ground.p1, ground.p2, ground.u_point_px},
         ParsePair("--plumb", flags.plumb, flags.u_point_px), begun.lens);
     lines.push_back(

@@ -35,7 +35,7 @@ struct CampaignFlags {
 };
 
 // What is not given stays as it is.
-db::Plan PlanOf(const CampaignFlags& flags, db::Plan plan) {
+db::Plan UpdatePlan(const CampaignFlags& flags, db::Plan plan) {
   for (const auto field :
        {&db::Plan::design, &db::Plan::stopping_rule, &db::Plan::error_rates}) {
     if (!(flags.plan.*field).empty()) plan.*field = flags.plan.*field;
@@ -55,7 +55,7 @@ void AddPlanFlags(CLI::App& command, CampaignFlags& flags) {
 }
 
 int NewCampaign(const CampaignFlags& flags) {
-  const core::Campaign campaign = pipeline::CampaignOf(flags.entry);
+  const core::Campaign campaign = pipeline::MakeCampaign(flags.entry);
   // A store is made only for what has been found right.
   db::RequireStorable(campaign);
   auto store = db::Store::Open(
@@ -65,7 +65,7 @@ int NewCampaign(const CampaignFlags& flags) {
   } else {
     store.AddCampaign(campaign);
   }
-  const db::Plan plan = PlanOf(flags, {});
+  const db::Plan plan = UpdatePlan(flags, {});
   if (plan != db::Plan{}) {
     db::SetPlan(store, campaign.name, plan,
                 flags.by.empty() ? "touchdown" : flags.by,
@@ -84,7 +84,7 @@ int ChangePlan(const CampaignFlags& flags) {
   for (const db::PlanEvent& event : db::PlanEvents(store, flags.entry.name)) {
     if (event.kind == db::PlanEventKind::kPlan) plan = event.plan;
   }
-  const db::Plan next = PlanOf(flags, plan);
+  const db::Plan next = UpdatePlan(flags, plan);
   if (next == plan) {
     throw std::invalid_argument(
         "--design, --stopping-rule and --error-rates say nothing new, must "

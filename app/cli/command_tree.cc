@@ -7,7 +7,8 @@
 namespace touchdown::cli {
 namespace {
 
-OptionText TextOf(const CLI::Option& option, const CLI::Formatter& formatter) {
+OptionText DescribeOption(const CLI::Option& option,
+                          const CLI::Formatter& formatter) {
   OptionText text;
   text.form = formatter.make_option_opts(&option);
   text.description = option.get_description();
@@ -32,7 +33,7 @@ void Describe(const CLI::App& app, const std::string& above,
   command.footer = app.get_footer();
   for (const CLI::Option* option : app.get_options()) {
     (option->nonpositional() ? command.options : command.positionals)
-        .push_back(TextOf(*option, formatter));
+        .push_back(DescribeOption(*option, formatter));
   }
   // What has no group is hidden: this program's own tools.
   const auto below = app.get_subcommands(
@@ -50,8 +51,8 @@ std::vector<CommandText> DescribeCommands(const CLI::App& app) {
   return tree;
 }
 
-const CommandText& CommandOf(const std::vector<CommandText>& tree,
-                             std::string_view path) {
+const CommandText& FindCommand(const std::vector<CommandText>& tree,
+                               std::string_view path) {
   const auto found = std::find_if(
       tree.begin(), tree.end(),
       [&](const CommandText& command) { return command.path == path; });

@@ -33,7 +33,7 @@ struct CommandText {
 std::vector<CommandText> DescribeCommands(const CLI::App& app);
 
 // Of `tree`, the one of that path.
-const CommandText& CommandOf(const std::vector<CommandText>& tree,
-                             std::string_view path);
+const CommandText& FindCommand(const std::vector<CommandText>& tree,
+                               std::string_view path);
 
 }  // namespace touchdown::cli

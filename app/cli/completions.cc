@@ -37,12 +37,12 @@ struct Completion {
   std::string name;
   std::string description;
 };
-std::vector<Completion> CompletionsOf(const CommandText& command,
-                                      const std::vector<CommandText>& tree) {
+std::vector<Completion> ListCompletions(const CommandText& command,
+                                        const std::vector<CommandText>& tree) {
   std::vector<Completion> words;
   for (const std::string& name : command.commands) {
     words.push_back(
-        {name, CommandOf(tree, command.path + " " + name).description});
+        {name, FindCommand(tree, command.path + " " + name).description});
   }
   for (const OptionText& option : command.options) {
     for (const std::string& name : {option.name, option.short_name}) {
@@ -86,7 +86,7 @@ std::string BashCompletion(const std::vector<CommandText>& tree) {
       Quoted(AllPaths(tree)), kFindPath);
   for (const CommandText& command : tree) {
     std::string names;
-    for (const Completion& word : CompletionsOf(command, tree)) {
+    for (const Completion& word : ListCompletions(command, tree)) {
       names += " " + word.name;
     }
     out += fmt::format("    {}) known={} ;;\n", Slashed(command.path),
@@ -110,7 +110,7 @@ std::string ZshCompletion(const std::vector<CommandText>& tree) {
       Quoted(AllPaths(tree)), kFindPath);
   for (const CommandText& command : tree) {
     out += fmt::format("    {}) known=(\n", Slashed(command.path));
-    for (const Completion& word : CompletionsOf(command, tree)) {
+    for (const Completion& word : ListCompletions(command, tree)) {
       out += fmt::format("      {}\n", Quoted(WithoutColons(word.name) + ":" +
                                               word.description));
     }
@@ -141,7 +141,7 @@ std::string FishCompletion(const std::vector<CommandText>& tree) {
     for (const std::string& name : command.commands) {
       out += fmt::format(
           "{} -a {} -d {}\n", here, name,
-          Quoted(CommandOf(tree, command.path + " " + name).description));
+          Quoted(FindCommand(tree, command.path + " " + name).description));
     }
     for (const OptionText& option : command.options) {
       out += here;

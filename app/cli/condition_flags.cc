@@ -55,8 +55,8 @@ void ApplyConditions(const ConditionFlags& flags,
   for (const std::string& flag : flags) ApplyCondition(flag, *conditions);
 }
 
-std::optional<core::Conditions> ConditionsOf(const ConditionFlags& flags,
-                                             const std::filesystem::path& db) {
+std::optional<core::Conditions> ReadConditions(
+    const ConditionFlags& flags, const std::filesystem::path& db) {
   std::optional<core::Conditions> conditions;
   ApplyConditions(flags, conditions);
   if (conditions && db::NameEntries(*conditions)) {

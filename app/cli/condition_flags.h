@@ -30,7 +30,7 @@ void ApplyConditions(const ConditionFlags& flags,
 
 // Nothing where none were given. Entries of the register are looked up in the
 // store at `db` at once, before a long analysis.
-std::optional<core::Conditions> ConditionsOf(const ConditionFlags& flags,
-                                             const std::filesystem::path& db);
+std::optional<core::Conditions> ReadConditions(const ConditionFlags& flags,
+                                               const std::filesystem::path& db);
 
 }  // namespace touchdown::cli

@@ -140,8 +140,8 @@ int Pictures(const DbFlags& flags) {
   }
   fmt::print("{} in {}: {} were there, {} drawn, {} not to be had\n",
              Plural(trials.size(), "trial"),
-             Printable(pipeline::PicturesOf(flags.db).string()), there.size(),
-             drawn, trials.size() - there.size() - drawn);
+             Printable(pipeline::PictureFolder(flags.db).string()),
+             there.size(), drawn, trials.size() - there.size() - drawn);
   return 0;
 }
 

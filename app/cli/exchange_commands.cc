@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 
 enum class Format { kCsv, kJsonLines, kTidy };
 
-Format FormatOf(const std::string& flag, const std::string& file) {
+Format ChooseFormat(const std::string& flag, const std::string& file) {
   const std::string kind =
       !flag.empty() ? flag : fs::path(file).extension().string();
   if (kind == "csv" || kind == ".csv") return Format::kCsv;
@@ -116,7 +116,7 @@ class FileBuffer : public std::streambuf {
 };
 
 int Export(const ExportFlags& flags) {
-  const Format format = FormatOf(flags.format, flags.out);
+  const Format format = ChooseFormat(flags.format, flags.out);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   if (!flags.campaign.empty()) db::RequireCampaign(store, flags.campaign);
   if (format == Format::kTidy) {
@@ -343,7 +343,7 @@ int Import(const ImportFlags& flags) {
         "--paper-table1)");
   }
   if (flags.db.empty()) throw std::invalid_argument("--db is missing");
-  const Format format = FormatOf(flags.format, flags.file);
+  const Format format = ChooseFormat(flags.format, flags.file);
   if (format == Format::kTidy) {
     throw std::invalid_argument("--format is 'tidy', must be csv or jsonl");
   }

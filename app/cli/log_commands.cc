@@ -26,8 +26,8 @@ struct StatementFlags {
 };
 
 // What was said of a trial whose conditions were known to be `before`.
-pipeline::Statement StatementOf(const StatementFlags& flags,
-                                std::optional<core::Conditions> before) {
+pipeline::Statement ReadStatement(const StatementFlags& flags,
+                                  std::optional<core::Conditions> before) {
   pipeline::Statement statement = flags.said;
   ApplyConditions(flags.conditions, before);
   statement.conditions = std::move(before);
@@ -75,8 +75,8 @@ struct LogByHandFlags {
 
 int Log(const LogByHandFlags& flags) {
   const pipeline::ManualEntry entry{
-      flags.campaign, pipeline::BodyOf(flags.body),
-      StatementOf(flags.statement, std::nullopt), flags.by};
+      flags.campaign, pipeline::ParseBody(flags.body),
+      ReadStatement(flags.statement, std::nullopt), flags.by};
   PrintLogged(pipeline::LogByHand(flags.db, entry), flags.json);
   return 0;
 }
@@ -102,7 +102,7 @@ int Correct(const CorrectFlags& flags) {
       flags.accept == 0 ? seen
                         : pipeline::Restated("accept", store.History(seen.id),
                                              seen, flags.accept);
-  pipeline::Apply(StatementOf(flags.statement, corrected.conditions),
+  pipeline::Apply(ReadStatement(flags.statement, corrected.conditions),
                   corrected);
   const bool changed = !db::Changes(seen, corrected).empty();
   if (!changed && !flags.exclude && !flags.include) {

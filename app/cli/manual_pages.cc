@@ -63,7 +63,7 @@ void AddCommandSection(std::string& page, const CommandText& command,
   if (command.commands.empty()) return;
   page += ".SH COMMANDS\n";
   for (const std::string& name : command.commands) {
-    const CommandText& below = CommandOf(tree, command.path + " " + name);
+    const CommandText& below = FindCommand(tree, command.path + " " + name);
     page += fmt::format(".TP\n\\fB{}\\fR(1)\n{}\n", Roff(Dashed(below.path)),
                         Roff(below.description));
   }

@@ -146,7 +146,7 @@ int RunNext(const BoundaryFlags& flags) {
   std::optional<pipeline::Thrower> thrower;
   if (!flags.rig.empty()) {
     thrower = pipeline::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
-                                    CornerOf(flags), flags.store);
+                                    ReadCorner(flags), flags.store);
     if (!group.reach) throw std::invalid_argument(group.reach.error().reason);
   }
   analysis::NextAngleOptions options = input.study.next;

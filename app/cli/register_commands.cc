@@ -45,7 +45,7 @@ bool IsOfFile(const RegisterField& field) {
 }
 
 bool HasFile(RegisterKind kind) {
-  return std::ranges::any_of(db::FieldsOf(kind), IsOfFile);
+  return std::ranges::any_of(db::ListFields(kind), IsOfFile);
 }
 
 std::string EdgeName(const RegisterField& field) {
@@ -105,7 +105,7 @@ void ApplyFile(const std::string& file, Entry& entry) {
 
 void Apply(const EntryFlags& flags, Entry& entry) {
   if (!flags.file.empty()) ApplyFile(flags.file, entry);
-  for (const RegisterField& field : db::FieldsOf(entry.kind)) {
+  for (const RegisterField& field : db::ListFields(entry.kind)) {
     const auto given = flags.fields.find(field.name);
     if (given == flags.fields.end() || !given->second) continue;
     const std::string& text = *given->second;
@@ -162,7 +162,7 @@ std::string EntryText(const Entry& entry) {
       {std::string(Name(entry.kind)), Printable(entry.name)},
       {"version", VersionText(entry)},
       {"id", entry.id}};
-  for (const RegisterField& field : db::FieldsOf(entry.kind)) {
+  for (const RegisterField& field : db::ListFields(entry.kind)) {
     const std::string text = FieldText(entry, field);
     if (!text.empty()) rows.push_back({EdgeName(field), text});
   }
@@ -222,7 +222,7 @@ struct LookFlags {
   bool json = false;
 };
 
-RegisterKind KindOf(const std::string& word) {
+RegisterKind DetermineKind(const std::string& word) {
   return ParseWord<RegisterKind>("KIND", word, db::ParseRegisterKind,
                                  kKindWords);
 }
@@ -230,7 +230,7 @@ RegisterKind KindOf(const std::string& word) {
 int ListRegister(const LookFlags& flags) {
   std::vector<RegisterKind> kinds(db::kRegisterKinds.begin(),
                                   db::kRegisterKinds.end());
-  if (!flags.kind.empty()) kinds = {KindOf(flags.kind)};
+  if (!flags.kind.empty()) kinds = {DetermineKind(flags.kind)};
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   std::vector<std::vector<std::string>> rows = {
       {"kind", "name", "version", "since", "by"}};
@@ -247,10 +247,10 @@ int ListRegister(const LookFlags& flags) {
 }
 
 int ShowEntry(const LookFlags& flags) {
-  const RegisterKind kind = KindOf(flags.kind);
+  const RegisterKind kind = DetermineKind(flags.kind);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   const Entry entry = db::RequireEntry(store, kind, flags.name);
-  const auto versions = db::VersionsOf(store, kind, flags.name);
+  const auto versions = db::ReadEntryVersions(store, kind, flags.name);
   if (flags.json && flags.history) {
     for (const Entry& version : versions) PrintEntry(version, true);
     return 0;
@@ -275,7 +275,7 @@ void AddEntryCommands(CLI::App& parent, const std::string& verb,
     one->add_option("--by", flags->by, "who states this")->required();
     one->add_option("--why", flags->why, "the reason")
         ->required(verb == "change");
-    for (const RegisterField& field : db::FieldsOf(kind)) {
+    for (const RegisterField& field : db::ListFields(kind)) {
       if (IsOfFile(field)) continue;
       one->add_option(FlagName(field), flags->fields[std::string(field.name)],
                       Help(field));

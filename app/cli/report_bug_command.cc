@@ -28,7 +28,7 @@ struct ReportBugFlags {
 };
 
 // The flags of `analyze` as they were typed.
-std::vector<std::string> TypedOf(const std::vector<CLI::Option*>& options) {
+std::vector<std::string> ListTyped(const std::vector<CLI::Option*>& options) {
   std::vector<std::string> typed;
   for (const CLI::Option* option : options) {
     if (option->count() == 0) continue;
@@ -101,7 +101,7 @@ void AddReportBug(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--yes", flags->yes, "write it without asking");
   command->callback([flags, of_analyze, &action] {
-    flags->typed = TypedOf(of_analyze);
+    flags->typed = ListTyped(of_analyze);
     action = [flags] { return RunReportBug(*flags); };
   });
 }

@@ -72,7 +72,7 @@ void CalibrateStiffness(const CalibrateFlags& flags, Json& out) {
       fit->stiffness_n_per_m.value, fit->stiffness_n_per_m.u);
 }
 
-rig::LossModel LossesFrom(const std::string& word) {
+rig::LossModel ParseLosses(const std::string& word) {
   if (word == "none") return rig::LossModel::kNone;
   if (word == "per-shot") return rig::LossModel::kPerShot;
   if (word == "friction") return rig::LossModel::kFriction;
@@ -82,13 +82,13 @@ rig::LossModel LossesFrom(const std::string& word) {
 
 void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
   rig::EfficiencyFitOptions options;
-  options.losses = LossesFrom(flags.losses);
-  const rig::Description rig = DescriptionFrom(flags.rig);
+  options.losses = ParseLosses(flags.losses);
+  const rig::Description rig = MakeDescription(flags.rig);
   if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
     throw std::invalid_argument("--mass-g is missing: the mass of the body");
   }
   const rig::Launch launch =
-      rig::LaunchOf(rig, flags.elevation_deg * core::kDegree);
+      rig::MakeLaunch(rig, flags.elevation_deg * core::kDegree);
   std::mt19937_64 engine(1);  // the first order needs no draws
   const rig::Predicted stiffness = rig::PredictStiffness(rig, {2}, engine);
   if (stiffness.first_order) {

@@ -114,7 +114,7 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags) {
   app.add_option("--u-height-mm", flags.u_height_mm, "[0]");
 }
 
-rig::Description DescriptionFrom(const RigFlags& flags) {
+rig::Description MakeDescription(const RigFlags& flags) {
   rig::Description out;
   if (!flags.rig.empty()) out = rig::ReadDescription(flags.rig);
   rig::Springs& springs = out.springs;

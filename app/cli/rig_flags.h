@@ -33,6 +33,6 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags);
 
 // The description that the flags make. Throws std::invalid_argument naming the
 // flag that is missing or impossible, core::InputError for the file.
-rig::Description DescriptionFrom(const RigFlags& flags);
+rig::Description MakeDescription(const RigFlags& flags);
 
 }  // namespace touchdown::cli

@@ -31,7 +31,7 @@ int RunLaunch(const LaunchFlags& flags) {
         "give either --compression-mm (what speed?) or --speed-mps (what "
         "compression?)");
   }
-  rig::Description rig = DescriptionFrom(flags.rig);
+  rig::Description rig = MakeDescription(flags.rig);
   if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
     throw std::invalid_argument("--mass-g is missing: the mass of the body");
   }
@@ -39,10 +39,10 @@ int RunLaunch(const LaunchFlags& flags) {
   rig::Setting setting;
   setting.elevation_rad = flags.elevation_deg * core::kDegree;
   setting.muzzle_height_m = flags.height_mm.value_or(0.0) * core::kMillimetre;
-  const rig::Launch launch = rig::LaunchOf(rig, setting.elevation_rad);
+  const rig::Launch launch = rig::MakeLaunch(rig, setting.elevation_rad);
   setting.compression_m = flags.compression_mm
                               ? *flags.compression_mm * core::kMillimetre
-                              : rig::CompressionFor(launch, *flags.speed_mps);
+                              : rig::SolveCompression(launch, *flags.speed_mps);
   std::mt19937_64 engine(flags.draw.seed);
   const auto muzzle = rig::LaunchSpeed(launch, setting.compression_m);
   const rig::ContactPrediction contact =

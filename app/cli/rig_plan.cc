@@ -28,7 +28,7 @@ struct PlanFlags {
   bool json = false;
 };
 
-rig::ContactWish WishFrom(const PlanFlags& flags, const rig::Description& rig) {
+rig::ContactWish MakeWish(const PlanFlags& flags, const rig::Description& rig) {
   rig::ContactWish wish;
   wish.kind = core::DefaultAngleKind(rig.body ? rig.body->kind
                                               : core::BodyKind::kSphere);
@@ -83,8 +83,8 @@ std::string PlanText(double angle_deg, core::AngleKind kind,
 
 int RunPlan(const PlanFlags& flags) {
   RequireDraws(flags.draw.draws);
-  const rig::Description rig = DescriptionFrom(flags.rig);
-  rig::ContactWish wish = WishFrom(flags, rig);
+  const rig::Description rig = MakeDescription(flags.rig);
+  rig::ContactWish wish = MakeWish(flags, rig);
   const std::string kind(core::Name(wish.kind));
   std::mt19937_64 engine(flags.draw.seed);
   Json out{{"schema", "touchdown.rig.plan/1"},

@@ -35,8 +35,8 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
     return 0;
   }
   RequireDraws(flags.draw.draws);
-  const rig::Description rig = DescriptionFrom(flags.rig);
-  const auto spring = rig::SpringOf(rig.springs);
+  const rig::Description rig = MakeDescription(flags.rig);
+  const auto spring = rig::MakeSpring(rig.springs);
   const double travel_m = flags.compression_mm
                               ? *flags.compression_mm * core::kMillimetre
                               : rig.compression_max_m.value_or(0.0);

@@ -54,7 +54,7 @@ struct Signer {
 };
 
 // By what the key's file begins with.
-Signer SignerOf(const std::string& key, const std::string& file) {
+Signer ChooseSigner(const std::string& key, const std::string& file) {
   const std::string text = Contents(key);
   if (text.starts_with("untrusted comment:")) {
     return {{"minisign", "-S", "-s", key, "-m", file, "-x", file + ".minisig"},
@@ -117,7 +117,7 @@ int MakeSeal(const SealFlags& flags) {
     throw std::invalid_argument("--key signs a file: give --out FILE, too");
   }
   std::optional<Signer> signer;
-  if (!flags.key.empty()) signer = SignerOf(flags.key, flags.out);
+  if (!flags.key.empty()) signer = ChooseSigner(flags.key, flags.out);
   for (const std::string& file :
        {flags.out, signer ? signer->signature : std::string()}) {
     if (!file.empty() && fs::exists(file)) {
@@ -163,7 +163,7 @@ void CheckSeal(const db::Store& store, const std::string& seal) {
         "the head that it printed",
         seal));
   }
-  const db::SealCheck check = db::CheckAgainst(store, sealed);
+  const db::SealCheck check = db::CheckStoreSeal(store, sealed);
   if (!check.problem.empty()) {
     throw core::StoreError(fmt::format(
         "{}: not what was sealed{}: {}", store.path().string(),

@@ -140,9 +140,9 @@ class Driving {
   rig::DriverMonitor monitor_;
 };
 
-session::CheckShot CheckOf(const SessionFlags& flags,
-                           const core::Campaign& campaign,
-                           const rig::Description& rig) {
+session::CheckShot MakeCheckShot(const SessionFlags& flags,
+                                 const core::Campaign& campaign,
+                                 const rig::Description& rig) {
   session::CheckShot check;
   check.body = flags.check_diameter.empty()
                    ? campaign.body
@@ -160,7 +160,7 @@ session::CheckShot CheckOf(const SessionFlags& flags,
   return check;
 }
 
-std::unique_ptr<rig::Driver> ControllerOf(const SessionFlags& flags) {
+std::unique_ptr<rig::Driver> OpenController(const SessionFlags& flags) {
   rig::SerialOptions options;
   options.baud = flags.baud;
   if (pipeline::JournalIsKept()) {
@@ -191,7 +191,7 @@ void Serve(const SessionFlags& flags, session::Session& session,
   const auto tell_stop = [&] {
     if (rig_stopped == 0) return;
     rig_stopped = 0;
-    lines.DropUntil(rig_stopped_at);
+    lines.DropOldLines(rig_stopped_at);
     fmt::print("STOPPED; `reset` when all is well, Ctrl-C to end\n");
     std::fflush(stdout);
   };
@@ -247,7 +247,8 @@ int RunSession(const SessionFlags& flags) {
       pipeline::RequireCampaign(store, flags.campaign);
   pipeline::Thrower thrower = pipeline::MakeThrower(
       flags.rig, campaign, flags.speed_mps, corner, flags.db);
-  if (!flags.no_check) options.check = CheckOf(flags, campaign, thrower.rig);
+  if (!flags.no_check)
+    options.check = MakeCheckShot(flags, campaign, thrower.rig);
   const session::SessionLock lock(flags.db);
   const auto before = session::ReadSession(flags.db);
   options.operator_name = flags.operator_name;
@@ -259,7 +260,7 @@ int RunSession(const SessionFlags& flags) {
         "--operator is missing, must name who is at the rig");
   }
   core::Conditions conditions =
-      ConditionsOf(flags.conditions, flags.db).value_or(core::Conditions{});
+      ReadConditions(flags.conditions, flags.db).value_or(core::Conditions{});
   if (conditions.rig.name.empty()) {
     conditions.rig = pipeline::KeepRig(store, thrower, options.operator_name);
   }
@@ -272,7 +273,7 @@ int RunSession(const SessionFlags& flags) {
       [&lines](const std::string& question) { return lines.Ask(question); });
   // Goes before the lines do, and stops and disarms what it drives.
   const auto controller =
-      flags.driver == "manual" ? nullptr : ControllerOf(flags);
+      flags.driver == "manual" ? nullptr : OpenController(flags);
   std::optional<Driving> driving;
   if (controller) driving.emplace(*controller);
   rig::Driver& driver = controller ? *controller : hands;

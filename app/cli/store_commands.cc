@@ -46,7 +46,7 @@ struct ListFlags {
   bool json = false;
 };
 
-db::TrialFilter FilterOf(const ListFlags& flags, bool campaign_given) {
+db::TrialFilter MakeFilter(const ListFlags& flags, bool campaign_given) {
   db::TrialFilter filter;
   if (campaign_given) filter.campaign = flags.campaign;
   if (!flags.origin.empty()) {
@@ -300,7 +300,7 @@ void AddList(CLI::App& app, Action& action) {
   command->callback([flags, campaign, &action] {
     const bool campaign_given = campaign->count() != 0;
     action = [flags, campaign_given] {
-      const auto filter = FilterOf(*flags, campaign_given);
+      const auto filter = MakeFilter(*flags, campaign_given);
       const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
       const auto trials = store.Trials(filter);
       fmt::print("{}",

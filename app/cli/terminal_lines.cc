@@ -126,7 +126,7 @@ void TerminalLines::Forget() {
   bytes_ = 0;
 }
 
-void TerminalLines::DropUntil(Clock::time_point last) {
+void TerminalLines::DropOldLines(Clock::time_point last) {
   const std::lock_guard lock(mutex_);
   while (!lines_.empty() && lines_.front().began <= last) {
     bytes_ -= lines_.front().text.size() + 1;

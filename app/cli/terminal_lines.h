@@ -41,7 +41,7 @@ class TerminalLines {
   std::optional<TypedLine> Next();
   // Drops the lines that wait and were begun until then: after a stop, nothing
   // that was typed before it is done.
-  void DropUntil(std::chrono::steady_clock::time_point last);
+  void DropOldLines(std::chrono::steady_clock::time_point last);
   // A question and its answer; nothing at the end of the input, or where a
   // signal came first.
   std::optional<std::string> Ask(const std::string& question);

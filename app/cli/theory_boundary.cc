@@ -63,7 +63,7 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
   return out;
 }
 
-BoundaryInputs InputsOf(const TheoryFlags& flags, bool sphere) {
+BoundaryInputs MakeBoundaryInputs(const TheoryFlags& flags, bool sphere) {
   const CornerFlags& f = flags.corner;
   const TheoryBoundaryFlags& b = flags.boundary;
   BoundaryInputs in;
@@ -189,7 +189,7 @@ int RunBoundary(const TheoryFlags& flags) {
     return 0;
   }
   const bool sphere = CountsAsSphere(flags.corner);
-  const BoundaryInputs inputs = InputsOf(flags, sphere);
+  const BoundaryInputs inputs = MakeBoundaryInputs(flags, sphere);
   Json json = {{"schema", "touchdown.theory.boundary/1"},
                {"seed", flags.boundary.seed},
                {"models", Json::array()}};

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path SchemaOf(const fs::path& csv) {
+fs::path SchemaPath(const fs::path& csv) {
   return csv.string() + "-metadata.json";
 }
 
@@ -88,7 +88,7 @@ void WriteTidy(const db::Store& store, std::string_view campaign,
     files.push_back(std::make_unique<core::OutputFile>(folder / name));
     WriteView(store, view, campaign, *files.back());
     files.push_back(
-        std::make_unique<core::OutputFile>(SchemaOf(folder / name)));
+        std::make_unique<core::OutputFile>(SchemaPath(folder / name)));
     files.back()->Write(
         SchemaText(name, "one row: " + view.one_row, view.columns));
   }
@@ -101,7 +101,7 @@ void WriteTrialsSchema(const fs::path& csv) {
   std::vector<db::ViewColumn> columns;
   for (const report::CsvColumn& column : report::TrialCsvColumns()) {
     const std::string unit =
-        column.is_number ? db::UnitOf(column.name) : std::string();
+        column.is_number ? db::FindUnit(column.name) : std::string();
     const bool is_count =
         column.name == "revision" || column.name == "clip_size_bytes";
     columns.push_back({column.name,
@@ -110,7 +110,7 @@ void WriteTrialsSchema(const fs::path& csv) {
                                           : db::ColumnType::kText,
                        unit, column.meaning});
   }
-  core::OutputFile file(SchemaOf(csv));
+  core::OutputFile file(SchemaPath(csv));
   file.Write(SchemaText(csv.filename().string(),
                         "one row: a trial, as the revision in force states it",
                         columns));

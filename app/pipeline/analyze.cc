@@ -68,7 +68,7 @@ class Analyzer {
 
  private:
   vision::Track Seen(const vision::Track& track) const {
-    return SeenThrough(camera_, track);
+    return ToIdealPicture(camera_, track);
   }
   // The scale, the body's size and what hangs on them, from a track.
   void TakeSize(const vision::Track& track);
@@ -81,7 +81,7 @@ class Analyzer {
   void FindGroundAndContacts(vision::Track track);
   void DescribeScene();
   // How what need not be waited for is done.
-  std::launch Beside() const {
+  std::launch AsyncPolicy() const {
     return options_.decoder_threads == 1 ? std::launch::deferred
                                          : std::launch::async;
   }
@@ -109,8 +109,8 @@ void Analyzer::TakeSize(const vision::Track& track) {
             : "give --calibration, --scale-px-per-m, --diameter-mm or "
               "--sides-mm";
   }
-  result_.body = BodyOf(options_, body, result_.scale);
-  contact_options_ = ContactOptionsOf(options_, camera_, result_.scale);
+  result_.body = DetermineBody(options_, body, result_.scale);
+  contact_options_ = MakeContactOptions(options_, camera_, result_.scale);
 }
 
 Judged Analyzer::Judge(const calib::GroundLine& ground,
@@ -120,18 +120,19 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
   judged.ground = ground;
   calib::GroundLine in_image = ground;
   if (camera_.lens) {
-    in_image =
-        SeenNear(SeenInPlane(camera_, Seen(track), ground), *camera_.lens);
+    in_image = SeenGroundLine(SeenInPlane(camera_, Seen(track), ground),
+                              *camera_.lens);
   }
   judged.track = vision::Refine(*clip_, background_, track,
                                 {in_image, aspect_, options_.decoder_threads});
   // To give a large mapped file's pages back takes milliseconds: beside the
   // rest. Mostly no other line is tried.
-  given_back_ = std::async(Beside(), [clip = clip_.get()] { clip->HasRead(); });
+  given_back_ =
+      std::async(AsyncPolicy(), [clip = clip_.get()] { clip->HasRead(); });
   TakeSize(judged.track);
   judged.plane = SeenInPlane(
       camera_, WithStatedSize(Seen(judged.track), options_), ground);
-  judged.contacts = ContactsIn(judged.plane, contact_options_);
+  judged.contacts = FindPlaneContacts(judged.plane, contact_options_);
   return judged;
 }
 
@@ -145,14 +146,14 @@ std::optional<Judged> Analyzer::JudgeBest(
   std::vector<std::pair<int, calib::GroundLine>> ranked;
   for (const calib::GroundLine& candidate : candidates) {
     if (!camera_.ideal_ground &&
-        PassesThrough(SeenInPlane(camera_, seen, candidate))) {
+        PassesThroughGround(SeenInPlane(camera_, seen, candidate))) {
       continue;
     }
     ranked.emplace_back(
         candidates.size() == 1
             ? 0
-            : Merit(ContactsIn(SeenInPlane(camera_, seen, candidate),
-                               contact_options_)),
+            : Merit(FindPlaneContacts(SeenInPlane(camera_, seen, candidate),
+                                      contact_options_)),
         candidate);
   }
   std::stable_sort(
@@ -345,7 +346,7 @@ void Analyzer::DescribeScene() {
 }
 
 Analysis Analyzer::Run() {
-  const std::optional<core::BodyKind> kind = KindOf(options_);
+  const std::optional<core::BodyKind> kind = DetermineKind(options_);
   result_.options_hash = OptionsHash(options_);
   result_.options = options_;
   result_.options.progress = nullptr;
@@ -357,7 +358,7 @@ Analysis Analyzer::Run() {
   if (options_.long_m) {
     const core::Body measured =
         core::Rectangle(*options_.long_m, *options_.short_m);
-    aspect_ = QuotientOf(*measured.short_m, *measured.long_m);
+    aspect_ = Divide(*measured.short_m, *measured.long_m);
   }
 
   result_.calibration = camera_.calibration;
@@ -412,7 +413,7 @@ Analysis Analyzer::Run() {
   DescribeScene();
   result_.timing.decode_s = clip_->reading_s();
   const auto closing = std::async(
-      Beside(),
+      AsyncPolicy(),
       [clip = std::move(clip_), given_back = std::move(given_back_)]() mutable {
         if (given_back.valid()) given_back.wait();
         clip.reset();
@@ -431,9 +432,9 @@ bool OneBody(const Analysis& analysis) {
   return analysis.body && !analysis.track->several_bodies;
 }
 
-Analysis AnalyzeUntil(std::unique_ptr<vision::Clip> clip,
-                      const AnalyzeOptions& options,
-                      const core::Cancellation& until) {
+Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
+                         const AnalyzeOptions& options,
+                         const core::Cancellation& until) {
   const vision::ClipInfo info = clip->info();
   CheckOptions(options, info);
   if (options.gamma) {
@@ -449,7 +450,7 @@ Analysis AnalyzeUntil(std::unique_ptr<vision::Clip> clip,
     Footage footage = InSteadyLight(std::move(clip), options);
     until.Enter("the clip is decoded");
     footage.clip = vision::KeepFrames(std::move(footage.clip),
-                                      KeepOptionsOf(options, info));
+                                      MakeKeepOptions(options, info));
     return AnalyzeFootage(std::move(footage), camera, options);
   } catch (const core::Cancelled& ended) {
     if (options.interrupted != nullptr && *options.interrupted) throw;
@@ -457,8 +458,8 @@ Analysis AnalyzeUntil(std::unique_ptr<vision::Clip> clip,
   }
 }
 
-core::Cancellation UntilOf(const std::filesystem::path& path,
-                           const AnalyzeOptions& options) {
+core::Cancellation MakeCancellation(const std::filesystem::path& path,
+                                    const AnalyzeOptions& options) {
   auto on_stage = StageJournal(path);
   if (!options.limit_s && options.interrupted == nullptr && !on_stage) {
     return {};
@@ -494,7 +495,7 @@ std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
        ++round) {
     *options.gamma *= more;
     Analysis light =
-        AnalyzeUntil(OpenRecording(path, clip_options), options, until);
+        AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
     if (!light.track || !light.track->layered || !light.explained ||
         light.explained->near <= explained) {
       break;
@@ -523,7 +524,7 @@ Unfinished::Unfinished(const std::string& what, Analysis so_far)
 Analysis Analyze(const std::filesystem::path& path,
                  const AnalyzeOptions& options) {
   const auto start = Clock::now();
-  const core::Cancellation until = UntilOf(path, options);
+  const core::Cancellation until = MakeCancellation(path, options);
   vision::ClipOptions clip_options;
   clip_options.fps = options.fps;
   clip_options.decoder_threads = options.decoder_threads;
@@ -553,13 +554,13 @@ Analysis Analyze(const std::filesystem::path& path,
     JournalAnalysis(analysis);
   };
   try {
-    Analysis analysis = AnalyzeUntil(std::move(clip), options, until);
+    Analysis analysis = AnalyzeOpenClip(std::move(clip), options, until);
     if (analysis.clip.has_colour && !OneBody(analysis)) {
       for (const vision::Channel channel : {vision::Channel::kRedDifference,
                                             vision::Channel::kBlueDifference}) {
         clip_options.channel = channel;
         Analysis other =
-            AnalyzeUntil(OpenRecording(path, clip_options), options, until);
+            AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
         if (!OneBody(other)) continue;
         other.channel = channel;
         other.scene_model.used.push_back(std::string(vision::Name(channel)));
@@ -590,8 +591,8 @@ Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,
 
 Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
                      const AnalyzeOptions& options) {
-  const core::Cancellation until = UntilOf(clip->info().path, options);
-  return AnalyzeUntil(std::move(clip), options, until);
+  const core::Cancellation until = MakeCancellation(clip->info().path, options);
+  return AnalyzeOpenClip(std::move(clip), options, until);
 }
 
 }  // namespace touchdown::pipeline

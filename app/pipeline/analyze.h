@@ -109,7 +109,7 @@ struct Analysis {
   std::string no_body_reason;
   core::AngleKind angle_kind = core::AngleKind::kApproach;
   vision::ContactResult contacts;
-  // As it fits this clip (FittedTo).
+  // As it fits this clip (AdaptToPicture).
   std::optional<calib::Calibration> calibration;
   std::optional<vision::Track> track;  // in the image as it was recorded
   std::optional<vision::PlaneTrack> plane;

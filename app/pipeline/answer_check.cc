@@ -182,15 +182,15 @@ std::string_view Name(Verdict verdict) {
   return "not made";
 }
 
-std::vector<AnswerCheck> ChecksOf(const Analysis& analysis,
-                                  const AnswerCheckLimits& limits) {
+std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
+                                         const AnswerCheckLimits& limits) {
   return {CheckExplained(analysis, limits), CheckSize(analysis, limits),
           CheckPath(analysis, limits), CheckRestitution(analysis, limits),
           CheckGravity(analysis, limits)};
 }
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {
-  analysis.checks = ChecksOf(analysis, limits);
+  analysis.checks = RunAnswerChecks(analysis, limits);
   const auto refused =
       std::find_if(analysis.checks.begin(), analysis.checks.end(),
                    [](const AnswerCheck& check) {

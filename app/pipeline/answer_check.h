@@ -1,6 +1,6 @@
 // Checks of an answer before it is given: does it explain the clip? Each check
 // says what it found and whether the answer stands. A further check is one more
-// function here and one more line in ChecksOf.
+// function here and one more line in RunAnswerChecks.
 #pragma once
 
 #include <string>
@@ -63,8 +63,8 @@ struct AnswerCheckLimits {
 
 // All checks of an analysis of which the track was measured, by what
 // `analysis.explained` holds. Reads no pixel.
-std::vector<AnswerCheck> ChecksOf(const Analysis& analysis,
-                                  const AnswerCheckLimits& limits = {});
+std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
+                                         const AnswerCheckLimits& limits = {});
 
 // Makes the checks and takes their consequences: where one refuses, contacts
 // and state are absent with its reason (track, ground and scale stay, so that a

@@ -94,7 +94,7 @@ class Batch {
   void Work() {
     while (const auto index = Claim()) {
       try {
-        Answer answer = AnswerOf(clips_[*index], *index);
+        Answer answer = AnswerClip(clips_[*index], *index);
         const std::lock_guard lock(mutex_);
         waiting_.emplace(*index, std::move(answer));
         Settle();
@@ -120,7 +120,7 @@ class Batch {
     return next_++;
   }
 
-  Answer AnswerOf(const BatchClip& clip, std::size_t index) {
+  Answer AnswerClip(const BatchClip& clip, std::size_t index) {
     Answer answer;
     SetAside::Key key;
     try {
@@ -145,7 +145,7 @@ class Batch {
           return answer;
         }
         if (const auto reason =
-                set_aside_.ReasonOf({answer.clip_id, OptionsHash(analyze)})) {
+                set_aside_.FindReason({answer.clip_id, OptionsHash(analyze)})) {
           answer.what = Failed{*reason};
           return answer;
         }
@@ -194,14 +194,14 @@ class Batch {
       const Answer answer = std::move(waiting_.begin()->second);
       waiting_.erase(waiting_.begin());
       const std::size_t index = entries_.size();
-      entries_.push_back(EntryOf(clips_[index], answer));
+      entries_.push_back(MakeEntry(clips_[index], answer));
       analysed_ += answer.analysed ? 1 : 0;
       failed_ += entries_.back().done == Done::kFailed ? 1 : 0;
       Report();
     }
   }
 
-  TriageEntry EntryOf(const BatchClip& clip, const Answer& answer) {
+  TriageEntry MakeEntry(const BatchClip& clip, const Answer& answer) {
     TriageEntry entry;
     entry.clip = clip.name;
     if (!answer.clip_id.empty()) {
@@ -236,8 +236,8 @@ class Batch {
   TriageEntry StoredEntry(const std::string& name, Done done,
                           const std::string& id) const {
     const auto proposals = store_.Proposals(id);
-    return TriageOf(name, done, RequireTrial(id),
-                    proposals.empty() ? nullptr : &proposals.front());
+    return MakeTriageEntry(name, done, RequireTrial(id),
+                           proposals.empty() ? nullptr : &proposals.front());
   }
 
   core::Trial RequireTrial(const std::string& id) const {
@@ -317,7 +317,7 @@ Shard ParseShard(const std::string& flag, const std::string& text) {
   return shard;
 }
 
-std::vector<BatchClip> ShardOf(std::vector<BatchClip> clips, Shard shard) {
+std::vector<BatchClip> SelectShard(std::vector<BatchClip> clips, Shard shard) {
   std::vector<BatchClip> part;
   for (std::size_t i = shard.k - 1; i < clips.size(); i += shard.n) {
     part.push_back(std::move(clips[i]));
@@ -325,10 +325,10 @@ std::vector<BatchClip> ShardOf(std::vector<BatchClip> clips, Shard shard) {
   return part;
 }
 
-std::vector<BatchClip> ClipsOf(std::span<const fs::path> recordings,
-                               const fs::path& folder,
-                               const std::string& campaign,
-                               const AnalyzeOptions& options) {
+std::vector<BatchClip> ListBatchClips(std::span<const fs::path> recordings,
+                                      const fs::path& folder,
+                                      const std::string& campaign,
+                                      const AnalyzeOptions& options) {
   std::vector<BatchClip> clips;
   for (const fs::path& recording : recordings) {
     BatchClip clip;
@@ -342,9 +342,9 @@ std::vector<BatchClip> ClipsOf(std::span<const fs::path> recordings,
   return clips;
 }
 
-std::vector<BatchClip> ClipsOf(std::span<const ManifestRow> rows,
-                               const std::string& campaign,
-                               const AnalyzeOptions& options) {
+std::vector<BatchClip> ListBatchClips(std::span<const ManifestRow> rows,
+                                      const std::string& campaign,
+                                      const AnalyzeOptions& options) {
   std::vector<BatchClip> clips;
   for (const ManifestRow& row : rows) {
     BatchClip clip;

@@ -35,17 +35,17 @@ struct Shard {
 };
 // "2/8". Throws std::invalid_argument naming `flag`.
 Shard ParseShard(const std::string& flag, const std::string& text);
-std::vector<BatchClip> ShardOf(std::vector<BatchClip> clips, Shard shard);
+std::vector<BatchClip> SelectShard(std::vector<BatchClip> clips, Shard shard);
 
 // The recordings of a folder or of a manifest. `options` holds for each, a
 // manifest's cells first; `campaign` where a manifest names none.
-std::vector<BatchClip> ClipsOf(
+std::vector<BatchClip> ListBatchClips(
     std::span<const std::filesystem::path> recordings,
     const std::filesystem::path& folder, const std::string& campaign,
     const AnalyzeOptions& options);
-std::vector<BatchClip> ClipsOf(std::span<const ManifestRow> rows,
-                               const std::string& campaign,
-                               const AnalyzeOptions& options);
+std::vector<BatchClip> ListBatchClips(std::span<const ManifestRow> rows,
+                                      const std::string& campaign,
+                                      const AnalyzeOptions& options);
 
 struct BatchProgress {
   std::size_t done = 0;  // logged, known, copies and failed

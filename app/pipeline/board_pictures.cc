@@ -48,7 +48,7 @@ StillPicture ReadPicture(const fs::path& path, std::int64_t frame) {
   return picture;
 }
 
-std::vector<fs::path> PicturesIn(const fs::path& folder) {
+std::vector<fs::path> ListPictures(const fs::path& folder) {
   std::vector<fs::path> inside;
   std::error_code trouble;
   fs::directory_iterator entry(folder, trouble);
@@ -96,8 +96,8 @@ BoardPictures FindBoards(std::span<const fs::path> images,
   return found;
 }
 
-calib::LensCalibration LensOf(const BoardPictures& pictures,
-                              const calib::Board& board) {
+calib::LensCalibration CalibrateBoardLens(const BoardPictures& pictures,
+                                          const calib::Board& board) {
   const auto lens =
       calib::CalibrateLens(pictures.views, board, pictures.picture.width_px,
                            pictures.picture.height_px);
@@ -112,8 +112,8 @@ calib::LensCalibration LensOf(const BoardPictures& pictures,
   throw core::InputError("calibrate lens: " + reason);
 }
 
-calib::LensRecord RecordOf(const calib::LensCalibration& lens,
-                           const calib::Board& board) {
+calib::LensRecord MakeLensRecord(const calib::LensCalibration& lens,
+                                 const calib::Board& board) {
   calib::LensRecord record;
   record.lens = lens.lens;
   record.covariance = lens.covariance;

@@ -26,7 +26,7 @@ struct StillPicture {
 StillPicture ReadPicture(const std::filesystem::path& path, std::int64_t frame);
 
 // The pictures of a folder, by their names.
-std::vector<std::filesystem::path> PicturesIn(
+std::vector<std::filesystem::path> ListPictures(
     const std::filesystem::path& folder);
 
 struct BoardPictures {
@@ -46,11 +46,11 @@ BoardPictures FindBoards(
 
 // The lens that these pictures tell. Throws core::InputError with the reason
 // where they tell none.
-calib::LensCalibration LensOf(const BoardPictures& pictures,
-                              const calib::Board& board);
+calib::LensCalibration CalibrateBoardLens(const BoardPictures& pictures,
+                                          const calib::Board& board);
 
 // As a calibration file keeps it.
-calib::LensRecord RecordOf(const calib::LensCalibration& lens,
-                           const calib::Board& board);
+calib::LensRecord MakeLensRecord(const calib::LensCalibration& lens,
+                                 const calib::Board& board);
 
 }  // namespace touchdown::pipeline

@@ -38,7 +38,7 @@ std::vector<SizePair> SizePairs(vision::BodyImage& seen,
 }
 
 // What one cause would explain all of the differences.
-std::string ExplanationOf(const std::vector<SizePair>& pairs) {
+std::string ExplainDifferences(const std::vector<SizePair>& pairs) {
   const SizePair& a = pairs.front();
   const SizePair& b = pairs.back();
   const auto ratio = [](const SizePair& p) {
@@ -95,11 +95,11 @@ std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
         2.0 * pair.seen->u, 2.0 * pair.stated.value, 2.0 * pair.stated.u);
   }
   if (conflict.reason.empty()) return std::nullopt;
-  conflict.reason += "; " + ExplanationOf(pairs);
+  conflict.reason += "; " + ExplainDifferences(pairs);
   return conflict;
 }
 
-core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b) {
+core::Estimate Divide(const core::Estimate& a, const core::Estimate& b) {
   const double value = a.value / b.value;
   return {value, value * std::hypot(a.u / a.value, b.u / b.value),
           std::nullopt};
@@ -118,15 +118,15 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
   if (image.whole_px > 0.0) return std::nullopt;
   if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
     return calib::Scale{
-        QuotientOf(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
+        Divide(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
         calib::ScaleSource::kBodySize};
   }
   if (options.long_m && image.kind == core::BodyKind::kRectangle) {
     // The long side is the better known one, relative to its length.
     const core::Estimate& a = *options.long_m;
     const core::Estimate& b = *options.short_m;
-    return calib::Scale{QuotientOf(core::Scaled(image.half_long_px, 2.0),
-                                   a.value >= b.value ? a : b),
+    return calib::Scale{Divide(core::Scaled(image.half_long_px, 2.0),
+                               a.value >= b.value ? a : b),
                         calib::ScaleSource::kBodySize};
   }
   return std::nullopt;
@@ -159,8 +159,9 @@ std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
   return vision::BodySize{in_px(*sides.long_m), in_px(*sides.short_m)};
 }
 
-core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,
-                  const std::optional<calib::Scale>& scale) {
+core::Body DetermineBody(const AnalyzeOptions& options,
+                         const vision::BodyImage& image,
+                         const std::optional<calib::Scale>& scale) {
   const auto metres = [&](const core::Estimate& half_px) -> core::Measured {
     if (!scale) return core::AbsentBecause("no scale");
     const core::Estimate& s = scale->px_per_m;

@@ -14,7 +14,7 @@
 namespace touchdown::pipeline {
 
 // a / b, with u of both to first order.
-core::Estimate QuotientOf(const core::Estimate& a, const core::Estimate& b);
+core::Estimate Divide(const core::Estimate& a, const core::Estimate& b);
 
 // What is stated is a measurement, too: the track with the size that image and
 // statement tell together (core::Combined), where a scale that does not come of
@@ -37,7 +37,8 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
 std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options);
 
 // The body's size: as given, or from the image and the scale.
-core::Body BodyOf(const AnalyzeOptions& options, const vision::BodyImage& image,
-                  const std::optional<calib::Scale>& scale);
+core::Body DetermineBody(const AnalyzeOptions& options,
+                         const vision::BodyImage& image,
+                         const std::optional<calib::Scale>& scale);
 
 }  // namespace touchdown::pipeline

@@ -70,7 +70,7 @@ class SpawnFiles {
   posix_spawn_file_actions_t actions_{};
 };
 
-std::string EndOf(pid_t child) {
+std::string DescribeExit(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -102,7 +102,7 @@ Run RunAnalyze(const BugOptions& options) {
   pid_t child = 0;
   const int refused = posix_spawn(&child, "/proc/self/exe", files.get(),
                                   nullptr, argv.data(), environ);
-  run.end = refused == 0 ? EndOf(child)
+  run.end = refused == 0 ? DescribeExit(child)
                          : std::string("not started: ") + strerror(refused);
   run.out = ReadHead(out, kMostBytes);
   run.err = ReadHead(err, kMostBytes);
@@ -111,7 +111,7 @@ Run RunAnalyze(const BugOptions& options) {
 }
 
 // Frame of the contact, where the document has one.
-std::optional<std::int64_t> ContactIn(const std::string& document) {
+std::optional<std::int64_t> ReadContactFrame(const std::string& document) {
   const auto json = nlohmann::json::parse(document, nullptr, false);
   if (!json.is_object() || !json.contains("contact")) return std::nullopt;
   const auto& frame = json["contact"].value("frame", nlohmann::json());
@@ -143,7 +143,7 @@ void AddFrames(const BugOptions& options, const std::string& document,
   try {
     const auto clip = OpenRecording(options.clip);
     for (const std::int64_t index : ChooseFrames(
-             clip->info().frames, options.frames, ContactIn(document))) {
+             clip->info().frames, options.frames, ReadContactFrame(document))) {
       files.push_back({fmt::format("frames/{:06}.png", index),
                        fmt::format("frame {}, whole", index),
                        vision::EncodePng(clip->Read(index))});

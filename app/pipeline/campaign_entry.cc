@@ -17,7 +17,7 @@ using core::kDegree;
 using core::kMillimetre;
 
 // "3.5:4.5"
-std::pair<double, double> BandOf(const std::string& text) {
+std::pair<double, double> ParseBand(const std::string& text) {
   std::pair<double, double> band;
   const char* const end = text.data() + text.size();
   const auto low = std::from_chars(text.data(), end, band.first);
@@ -31,7 +31,7 @@ std::pair<double, double> BandOf(const std::string& text) {
 
 }  // namespace
 
-std::optional<core::Body> BodyOf(const BodyEntry& entry) {
+std::optional<core::Body> ParseBody(const BodyEntry& entry) {
   if (entry.kind.empty() && entry.diameter_mm.empty() &&
       entry.sides_mm.empty()) {
     return std::nullopt;
@@ -57,8 +57,8 @@ std::optional<core::Body> BodyOf(const BodyEntry& entry) {
       body.diameter_m = core::AbsentBecause("not recorded");
       return body;
     }
-    return core::Sphere(
-        EstimateOf("diameter-mm", entry.diameter_mm, kMillimetre, kPlainSize));
+    return core::Sphere(ParseEstimateField("diameter-mm", entry.diameter_mm,
+                                           kMillimetre, kPlainSize));
   }
   if (!entry.diameter_mm.empty()) {
     throw FieldError("diameter-mm", "is given, but a rectangle has --sides-mm");
@@ -72,14 +72,14 @@ std::optional<core::Body> BodyOf(const BodyEntry& entry) {
     return body;
   }
   const auto [a, b] =
-      SidesOf("sides-mm", entry.sides_mm, kMillimetre, kPlainSize);
+      ParseSidesField("sides-mm", entry.sides_mm, kMillimetre, kPlainSize);
   return core::Rectangle(a, b);
 }
 
-core::Campaign CampaignOf(const CampaignEntry& entry) {
+core::Campaign MakeCampaign(const CampaignEntry& entry) {
   core::Campaign campaign;
   campaign.name = entry.name;
-  const auto body = BodyOf(entry.body);
+  const auto body = ParseBody(entry.body);
   if (!body) {
     throw FieldError("body",
                      "is missing, must be sphere (with --diameter-mm) or "
@@ -110,7 +110,7 @@ core::Campaign CampaignOf(const CampaignEntry& entry) {
   }
   if (!entry.speed_mps.empty()) {
     std::tie(campaign.speed_min_mps, campaign.speed_max_mps) =
-        BandOf(entry.speed_mps);
+        ParseBand(entry.speed_mps);
   }
   campaign.theory_name = entry.theory;
   if (entry.theory_boundary_deg) {

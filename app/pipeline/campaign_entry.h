@@ -20,7 +20,7 @@ struct BodyEntry {
 // Nothing if none of the three was given. Throws FieldError (statement.h)
 // naming body, diameter-mm or sides-mm; std::invalid_argument for sizes that no
 // body has.
-std::optional<core::Body> BodyOf(const BodyEntry& entry);
+std::optional<core::Body> ParseBody(const BodyEntry& entry);
 
 struct CampaignEntry {
   std::string name;
@@ -36,6 +36,6 @@ struct CampaignEntry {
 };
 
 // Throws FieldError naming the field as the flag of `campaign new` is.
-core::Campaign CampaignOf(const CampaignEntry& entry);
+core::Campaign MakeCampaign(const CampaignEntry& entry);
 
 }  // namespace touchdown::pipeline

@@ -22,7 +22,7 @@ void RequirePositive(const char* field,
 
 }  // namespace
 
-std::optional<core::BodyKind> KindOf(const AnalyzeOptions& options) {
+std::optional<core::BodyKind> DetermineKind(const AnalyzeOptions& options) {
   if (options.diameter_m && (options.long_m || options.short_m)) {
     throw std::invalid_argument(
         "both a diameter and sides are given; a body is a sphere or a "
@@ -51,7 +51,7 @@ void CheckOptions(const AnalyzeOptions& options, const vision::ClipInfo& clip) {
   RequirePositive("diameter", options.diameter_m);
   RequirePositive("first side", options.long_m);
   RequirePositive("second side", options.short_m);
-  KindOf(options);
+  DetermineKind(options);
   const std::int64_t frames = clip.frames;
   const std::int64_t last =
       options.last_frame < 0 ? frames : options.last_frame;

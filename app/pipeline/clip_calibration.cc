@@ -30,7 +30,7 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
       picture.corner = calib::SensorCorner{clip.sensor_origin->x_px,
                                            clip.sensor_origin->y_px};
     }
-    auto fitted = calib::FittedTo(*options.calibration, picture);
+    auto fitted = calib::AdaptToPicture(*options.calibration, picture);
     if (!fitted) {
       throw core::InputError(
           fmt::format("{}: {}", clip.path.string(), fitted.error().reason));
@@ -46,7 +46,7 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
     if (calibration.ground && !out.image_ground) {
       const calib::GroundRecord& ground = *calibration.ground;
       out.image_ground =
-          calib::GroundThrough(ground.p1, ground.p2, ground.u_point_px);
+          calib::MakeGroundLine(ground.p1, ground.p2, ground.u_point_px);
       out.image_ground->source = calib::GroundSource::kCalibration;
     }
     if (calibration.ground) out.yaw_rad = calibration.ground->yaw_rad;
@@ -70,8 +70,8 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
   return out;
 }
 
-vision::PlaneYaw YawThrough(double yaw_rad,
-                            const std::optional<calib::Lens>& lens) {
+vision::PlaneYaw MakePlaneYaw(double yaw_rad,
+                              const std::optional<calib::Lens>& lens) {
   vision::PlaneYaw yaw;
   yaw.yaw_rad = yaw_rad;
   if (lens) {
@@ -81,9 +81,9 @@ vision::PlaneYaw YawThrough(double yaw_rad,
   return yaw;
 }
 
-std::optional<vision::PlaneYaw> YawOf(const ClipCalibration& camera) {
+std::optional<vision::PlaneYaw> CalibratedYaw(const ClipCalibration& camera) {
   if (!camera.yaw_rad) return std::nullopt;
-  return YawThrough(camera.yaw_rad->value, camera.lens);
+  return MakePlaneYaw(camera.yaw_rad->value, camera.lens);
 }
 
 void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
@@ -119,8 +119,8 @@ void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
   }
 }
 
-calib::GroundLine SeenNear(const vision::PlaneTrack& plane,
-                           const calib::Lens& lens) {
+calib::GroundLine SeenGroundLine(const vision::PlaneTrack& plane,
+                                 const calib::Lens& lens) {
   double from = 0.0;
   double to = 0.0;
   bool any = false;

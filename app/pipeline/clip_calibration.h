@@ -39,11 +39,11 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
 
 // The yaw for vision::SeenFromGround; of `yaw_rad`, which need not be the
 // calibrated one, with this lens.
-vision::PlaneYaw YawThrough(double yaw_rad,
-                            const std::optional<calib::Lens>& lens);
+vision::PlaneYaw MakePlaneYaw(double yaw_rad,
+                              const std::optional<calib::Lens>& lens);
 
 // The same as calibrated; nothing where no calibration tells the yaw.
-std::optional<vision::PlaneYaw> YawOf(const ClipCalibration& camera);
+std::optional<vision::PlaneYaw> CalibratedYaw(const ClipCalibration& camera);
 
 // What the calibration adds to the scene model, or why something is left out.
 void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
@@ -52,8 +52,8 @@ void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
 // plane.ground as the camera sees it where the body is within half its size of
 // it: the lens bends the line, and a straight one can follow it over the part
 // that matters.
-calib::GroundLine SeenNear(const vision::PlaneTrack& plane,
-                           const calib::Lens& lens);
+calib::GroundLine SeenGroundLine(const vision::PlaneTrack& plane,
+                                 const calib::Lens& lens);
 
 // `count` points of the image at which an ideal line is seen, from p1 to p2.
 std::vector<core::PixelPoint> SeenPoints(const calib::GroundLine& ideal,

@@ -29,13 +29,13 @@ constexpr std::int32_t kLeastWidth_px = 48;
 // Wider pieces are averaged down: a page shows no more samples.
 constexpr std::int32_t kMostSamples = 320;
 
-double SizeOf(const vision::BodyImage& body) {
+double GreatestSize(const vision::BodyImage& body) {
   return body.kind == core::BodyKind::kSphere ? 2 * body.radius_px.value
                                               : 2 * body.half_long_px.value;
 }
 
-std::vector<PixelPoint> OutlineOf(const vision::BodyImage& body,
-                                  const vision::Pose& pose) {
+std::vector<PixelPoint> TraceOutline(const vision::BodyImage& body,
+                                     const vision::Pose& pose) {
   std::vector<PixelPoint> out;
   const double c = std::cos(pose.angle_rad);
   const double s = std::sin(pose.angle_rad);
@@ -77,7 +77,7 @@ std::vector<const vision::Pose*> PosesToShow(const vision::Track& track,
     at = found == poses.end() ? poses.size() - 1
                               : static_cast<std::size_t>(found - poses.begin());
   }
-  const double far = kTravel * SizeOf(track.body);
+  const double far = kTravel * GreatestSize(track.body);
   const auto away = [&](std::size_t i) {
     return std::hypot(poses[i].centre.x_px - poses[at].centre.x_px,
                       poses[i].centre.y_px - poses[at].centre.y_px);
@@ -96,7 +96,7 @@ std::vector<const vision::Pose*> PosesToShow(const vision::Track& track,
 }
 
 // One piece for all pictures, so that the ground lies at one height in them.
-PixelRect PieceAround(const std::vector<std::vector<PixelPoint>>& outlines,
+PixelRect ChoosePiece(const std::vector<std::vector<PixelPoint>>& outlines,
                       const std::optional<PixelPoint>& touching, double size,
                       const vision::ClipInfo& info) {
   double left = 1e300;
@@ -225,12 +225,12 @@ report::ContactStrip TakeStrip(const Analysis& analysis) {
   const std::vector<const vision::Pose*> poses = PosesToShow(track, analysis);
   std::vector<std::vector<PixelPoint>> outlines;
   for (const vision::Pose* pose : poses) {
-    outlines.push_back(OutlineOf(track.body, *pose));
+    outlines.push_back(TraceOutline(track.body, *pose));
   }
   std::optional<PixelPoint> touching;
   if (evidence != nullptr && evidence->before) touching = evidence->touching;
-  const PixelRect piece = PieceAround(outlines, touching, SizeOf(track.body),
-                                      drawable.clip->info());
+  const PixelRect piece = ChoosePiece(
+      outlines, touching, GreatestSize(track.body), drawable.clip->info());
   const std::int32_t step =
       std::max(1, (std::max(piece.width, piece.height) + kMostSamples - 1) /
                       kMostSamples);
@@ -245,7 +245,7 @@ report::ContactStrip TakeStrip(const Analysis& analysis) {
     return PixelPoint{plane.ground.reference.x_px + along * std::cos(angle),
                       plane.ground.reference.y_px + along * std::sin(angle)};
   };
-  const double middle = calib::PositionAlong(
+  const double middle = calib::PositionOnLine(
       plane.ground,
       {piece.x + 0.5 * piece.width, piece.y + 0.5 * piece.height});
   report::ContactStrip out;

@@ -19,8 +19,8 @@ std::string Today() {
                      local.tm_mon + 1, local.tm_mday);
 }
 
-std::string DaysAfter(const std::string& flag, const std::string& date,
-                      int days) {
+std::string AddDays(const std::string& flag, const std::string& date,
+                    int days) {
   if (!calib::IsDate(date)) {
     throw std::invalid_argument(
         fmt::format("{} is '{}', must be a day as in 2026-11-21", flag, date));

@@ -9,7 +9,6 @@ std::string Today();  // of the local clock
 
 // `days` after `date`. Throws std::invalid_argument naming `flag` where `date`
 // is no day.
-std::string DaysAfter(const std::string& flag, const std::string& date,
-                      int days);
+std::string AddDays(const std::string& flag, const std::string& date, int days);
 
 }  // namespace touchdown::pipeline

@@ -55,7 +55,7 @@ core::Campaign PaperCampaign(const Shot& shot) {
   return campaign;
 }
 
-AnalyzeOptions OptionsFor(const core::Campaign& campaign) {
+AnalyzeOptions MakeOptions(const core::Campaign& campaign) {
   AnalyzeOptions options;
   if (campaign.body.kind == core::BodyKind::kSphere) {
     options.diameter_m = *campaign.body.diameter_m;
@@ -124,7 +124,7 @@ DemoResult RunDemo(const DemoOptions& options) {
     simulate.folder = options.folder / "clips";
     simulate.seed = options.seed;
     const SimulatedClip made = WriteShot(shot, simulate);
-    AnalyzeOptions analyze = OptionsFor(PaperCampaign(shot));
+    AnalyzeOptions analyze = MakeOptions(PaperCampaign(shot));
     analyze.limit_s = options.limit_s;
     analyses[at] = Analyze(made.clip, analyze);
     WriteEvidence(analyses[at], options.folder / "evidence" / shot.name);
@@ -168,7 +168,7 @@ DemoResult RunDemo(const DemoOptions& options) {
   SelectionOptions select;
   select.store = result.store;
   select.with_evidence = true;
-  report::ReportInput input = InputOf(SelectTrials(select));
+  report::ReportInput input = MakeReportInput(SelectTrials(select));
   input.source =
       "the demo's store: rendered clips, whose speeds, friction and "
       "restitution "

@@ -93,7 +93,7 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
     Extent of_newest;
     const auto all = FindRecordings(options.recordings);
     for (const fs::path& recording : all) {
-      const Extent extent = ExtentOf(recording);
+      const Extent extent = MeasureExtent(recording);
       if (newest.empty() || extent.written > of_newest.written) {
         newest = recording;
         of_newest = extent;

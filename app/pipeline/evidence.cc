@@ -64,7 +64,7 @@ std::string Title(const Analysis& analysis) {
 
 }  // namespace
 
-std::optional<vision::ColourImage> ContactSheetOf(const Analysis& analysis) {
+std::optional<vision::ColourImage> MakeContactSheet(const Analysis& analysis) {
   if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
     return std::nullopt;
   }
@@ -82,7 +82,7 @@ void WriteEvidence(const Analysis& analysis,
   // files leaves none.
   const std::string track = TrackCsv(analysis);
   const std::string document = ToJson(analysis) + "\n";
-  const std::optional<vision::ColourImage> sheet = ContactSheetOf(analysis);
+  const std::optional<vision::ColourImage> sheet = MakeContactSheet(analysis);
   const core::AllOrNothing together;
   std::error_code trouble;
   std::filesystem::create_directories(folder, trouble);

@@ -12,7 +12,7 @@ namespace touchdown::pipeline {
 // The frames around contact with what was measured drawn in; nothing where no
 // body was followed over a ground. Throws core::InputError where the clip
 // cannot be read again.
-std::optional<vision::ColourImage> ContactSheetOf(const Analysis& analysis);
+std::optional<vision::ColourImage> MakeContactSheet(const Analysis& analysis);
 
 // Writes into `folder` (made where there is none):
 //   track.csv     one row a frame: image and plane coordinates with u

@@ -15,7 +15,7 @@ Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
       options.last_frame < 0 ? footage.info.frames : options.last_frame;
   vision::SteadyLightOptions light_options;
   light_options.threads = options.decoder_threads;
-  vision::SteadyLight light = vision::SteadyLightOf(
+  vision::SteadyLight light = vision::Deflicker(
       std::move(clip), options.first_frame, last, light_options);
   footage.clip = std::move(light.clip);
   footage.light_told = light.told;
@@ -23,8 +23,8 @@ Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
   return footage;
 }
 
-vision::FrameStoreOptions KeepOptionsOf(const AnalyzeOptions& options,
-                                        const vision::ClipInfo& clip) {
+vision::FrameStoreOptions MakeKeepOptions(const AnalyzeOptions& options,
+                                          const vision::ClipInfo& clip) {
   vision::FrameStoreOptions keep;
   keep.first = options.first_frame;
   keep.last = options.last_frame < 0 ? clip.frames : options.last_frame;

@@ -31,8 +31,8 @@ Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
                       const AnalyzeOptions& options);
 
 // How frames are kept for these options, which fit `clip` (check_options.h).
-vision::FrameStoreOptions KeepOptionsOf(const AnalyzeOptions& options,
-                                        const vision::ClipInfo& clip);
+vision::FrameStoreOptions MakeKeepOptions(const AnalyzeOptions& options,
+                                          const vision::ClipInfo& clip);
 
 // The analysis of frames that are ready to be looked at.
 Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,

@@ -18,7 +18,7 @@
 namespace touchdown::pipeline {
 namespace {
 
-std::vector<vision::Pose>::iterator PoseOf(vision::Track& track,
+std::vector<vision::Pose>::iterator ToPose(vision::Track& track,
                                            std::int64_t frame,
                                            const char* field) {
   const auto found = std::find_if(
@@ -38,7 +38,7 @@ void MoveOutlines(const Correction& correction, Analysis& analysis) {
       throw std::invalid_argument(fmt::format(
           "moved.{} is not finite, must be two numbers of pixels", frame));
     }
-    const auto pose = PoseOf(track, frame, "moved");
+    const auto pose = ToPose(track, frame, "moved");
     pose->centre.x_px += by.x_px;
     pose->centre.y_px += by.y_px;
     // The hand knows the place less well than the fit did.
@@ -49,7 +49,7 @@ void MoveOutlines(const Correction& correction, Analysis& analysis) {
                     by.x_px, by.y_px));
   }
   for (const std::int64_t frame : correction.left_out) {
-    track.poses.erase(PoseOf(track, frame, "left_out"));
+    track.poses.erase(ToPose(track, frame, "left_out"));
     analysis.corrections.push_back(
         fmt::format("outline of frame {} left out", frame));
   }
@@ -63,18 +63,18 @@ void MoveOutlines(const Correction& correction, Analysis& analysis) {
 
 }  // namespace
 
-vision::Track SeenThrough(const ClipCalibration& camera,
-                          const vision::Track& track) {
+vision::Track ToIdealPicture(const ClipCalibration& camera,
+                             const vision::Track& track) {
   return camera.lens ? vision::Undistorted(track, *camera.lens) : track;
 }
 
 vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
                                const vision::Track& seen,
                                const calib::GroundLine& ground) {
-  return vision::SeenFromGround(seen, ground, YawOf(camera));
+  return vision::SeenFromGround(seen, ground, CalibratedYaw(camera));
 }
 
-bool PassesThrough(const vision::PlaneTrack& plane) {
+bool PassesThroughGround(const vision::PlaneTrack& plane) {
   constexpr double kBelow_px = 2.0;
   return std::any_of(plane.samples.begin(), plane.samples.end(),
                      [](const vision::PlaneSample& sample) {
@@ -96,8 +96,8 @@ core::Estimate PxPerMetre(const vision::PlaneTrack& plane,
                           : plane.along_stretch);
 }
 
-vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
-                                 const vision::ContactOptions& options) {
+vision::ContactResult FindPlaneContacts(const vision::PlaneTrack& plane,
+                                        const vision::ContactOptions& options) {
   vision::ContactOptions in_plane = options;
   if (in_plane.scale) {
     in_plane.scale->px_per_m = PxPerMetre(plane, *options.scale);
@@ -105,7 +105,7 @@ vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
   return vision::FindContacts(plane, in_plane);
 }
 
-vision::ContactOptions ContactOptionsOf(
+vision::ContactOptions MakeContactOptions(
     const AnalyzeOptions& options, const ClipCalibration& camera,
     const std::optional<calib::Scale>& scale) {
   vision::ContactOptions out;
@@ -132,8 +132,8 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
         const auto ground = ThroughPoints(seen, lens, ideal);
         if (!ground) return vision::ContactResult{};
         std::optional<vision::PlaneYaw> yaw;
-        if (camera.yaw_rad) yaw = YawThrough(camera.yaw_rad->value, lens);
-        return ContactsIn(
+        if (camera.yaw_rad) yaw = MakePlaneYaw(camera.yaw_rad->value, lens);
+        return FindPlaneContacts(
             vision::SeenFromGround(
                 WithStatedSize(vision::Undistorted(*analysis.track, lens),
                                analysis.options),
@@ -149,17 +149,17 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
     return;
   }
   const vision::Track seen =
-      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options);
+      WithStatedSize(ToIdealPicture(camera, *analysis.track), analysis.options);
   std::vector<MovedContacts> moved;
   // On the axis the change is of second order: both sides count.
   for (const double side : {-1.0, 1.0}) {
     const double yaw_rad = camera.yaw_rad->value + side * camera.yaw_rad->u;
     constexpr double kHalf = 0.5;
-    moved.push_back(
-        {ContactsIn(vision::SeenFromGround(seen, analysis.plane->ground,
-                                           YawThrough(yaw_rad, camera.lens)),
-                    contact_options),
-         kHalf});
+    moved.push_back({FindPlaneContacts(vision::SeenFromGround(
+                                           seen, analysis.plane->ground,
+                                           MakePlaneYaw(yaw_rad, camera.lens)),
+                                       contact_options),
+                     kHalf});
   }
   AddShared(analysis.contacts, "yaw", moved);
 }
@@ -188,8 +188,8 @@ void DescribeBudget(Analysis& analysis,
   if (analysis.plane && angle && !analysis.contacts.first.contact.from_start) {
     // All speeds follow the rate; the angle feels it through gravity alone.
     constexpr double kPerCent = 0.01;
-    const auto faster =
-        ContactsIn(AtRate(*analysis.plane, 1.0 + kPerCent), contact_options);
+    const auto faster = FindPlaneContacts(
+        AtRate(*analysis.plane, 1.0 + kPerCent), contact_options);
     const auto& other = faster.first.contact.approach_angle_rad;
     if (other) {
       reason += fmt::format(
@@ -238,12 +238,12 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
     analysis.no_ground_reason.clear();
   }
   const vision::ContactOptions contact_options =
-      ContactOptionsOf(analysis.options, camera, analysis.scale);
+      MakeContactOptions(analysis.options, camera, analysis.scale);
   analysis.plane = SeenInPlane(
       camera,
-      WithStatedSize(SeenThrough(camera, *analysis.track), analysis.options),
+      WithStatedSize(ToIdealPicture(camera, *analysis.track), analysis.options),
       *analysis.ground);
-  analysis.contacts = ContactsIn(*analysis.plane, contact_options);
+  analysis.contacts = FindPlaneContacts(*analysis.plane, contact_options);
   AddLens(analysis, camera, contact_options);
   AddYaw(analysis, camera, contact_options);
   DescribeBudget(analysis, contact_options);
@@ -254,7 +254,7 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
     }
   }
   analysis.size_conflict = FindSizeConflict(
-      SeenThrough(camera, *analysis.track).body, analysis.options);
+      ToIdealPicture(camera, *analysis.track).body, analysis.options);
   CheckAnswer(analysis);
   analysis.options_hash = OptionsHash(analysis.options);
   return analysis;

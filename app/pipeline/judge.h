@@ -11,18 +11,18 @@
 namespace touchdown::pipeline {
 
 // The track in the lens's ideal picture; itself without a lens.
-vision::Track SeenThrough(const ClipCalibration& camera,
-                          const vision::Track& track);
+vision::Track ToIdealPicture(const ClipCalibration& camera,
+                             const vision::Track& track);
 
 // The track from the ground, in the plane of travel where the calibration tells
-// its yaw. `seen`: as SeenThrough gives it.
+// its yaw. `seen`: as ToIdealPicture gives it.
 vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
                                const vision::Track& seen,
                                const calib::GroundLine& ground);
 
 // Whether the body's very centre gets below the line: whatever its outline near
 // the line is worth, that is not the ground.
-bool PassesThrough(const vision::PlaneTrack& plane);
+bool PassesThroughGround(const vision::PlaneTrack& plane);
 
 // Whether the contact lies where the track ends: no frame has seen it, and a
 // line that the path happens to point at will have one.
@@ -34,11 +34,11 @@ core::Estimate PxPerMetre(const vision::PlaneTrack& plane,
 
 // FindContacts with `options` as of the ideal picture: a scale that was
 // measured along the ground, or by the body, is that of the plane.
-vision::ContactResult ContactsIn(const vision::PlaneTrack& plane,
-                                 const vision::ContactOptions& options);
+vision::ContactResult FindPlaneContacts(const vision::PlaneTrack& plane,
+                                        const vision::ContactOptions& options);
 
 // How contacts are found with these options and this scale.
-vision::ContactOptions ContactOptionsOf(
+vision::ContactOptions MakeContactOptions(
     const AnalyzeOptions& options, const ClipCalibration& camera,
     const std::optional<calib::Scale>& scale);
 

@@ -37,7 +37,7 @@ void AddLensUncertainty(vision::ContactResult& contacts,
                         const ContactsThrough& again) {
   std::vector<MovedContacts> moved;
   for (const calib::LensVector& direction : Directions(covariance)) {
-    moved.push_back({again(calib::LensOf(calib::VectorOf(lens) + direction))});
+    moved.push_back({again(calib::ToLens(calib::ToVector(lens) + direction))});
   }
   AddShared(contacts, "lens", moved);
 }

@@ -10,7 +10,7 @@ calib::Calibration NewCalibration(const std::string& camera,
   calib::Calibration out;
   out.camera = camera;
   out.date = date.empty() ? Today() : date;
-  out.expires = DaysAfter("--date", out.date, valid_days);
+  out.expires = AddDays("--date", out.date, valid_days);
   out.picture = picture;
   if (!out.picture.corner) out.picture.corner = calib::SensorCorner{};
   return out;

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 // Recording and options of an analysis.
 using Key = std::pair<std::string, std::string>;
 
-std::string TextAt(const nlohmann::json& json, const char* object,
-                   const char* field) {
+std::string FindText(const nlohmann::json& json, const char* object,
+                     const char* field) {
   const auto outer = json.find(object);
   if (outer == json.end() || !outer->is_object()) return "";
   const auto inner = outer->find(field);
@@ -32,43 +32,44 @@ std::string TextAt(const nlohmann::json& json, const char* object,
                                                      : "";
 }
 
-Key KeyOf(const fs::path& analysis) {
+Key ReadKey(const fs::path& analysis) {
   std::ifstream file(analysis);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
   if (!json.is_object()) return {};
-  return {TextAt(json, "clip", "id"), TextAt(json, "software", "options_hash")};
+  return {FindText(json, "clip", "id"),
+          FindText(json, "software", "options_hash")};
 }
 
 // Of the recording and the options of the analysis that the trial states;
 // nothing where a person or another program gave them a name that is none.
-std::optional<fs::path> PictureOf(const fs::path& store,
-                                  const core::Trial& trial) {
+std::optional<fs::path> FindPicture(const fs::path& store,
+                                    const core::Trial& trial) {
   const std::string name =
       fmt::format("{}-{}", trial.clip.id, trial.options_hash);
   const bool is_plain = std::ranges::all_of(name, [](char c) {
     return c == '-' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z');
   });
   if (trial.clip.id.empty() || !is_plain) return std::nullopt;
-  return PicturesOf(store) / (name + ".png");
+  return PictureFolder(store) / (name + ".png");
 }
 
 }  // namespace
 
-fs::path PicturesOf(const fs::path& store) {
+fs::path PictureFolder(const fs::path& store) {
   return store.string() + ".evidence";
 }
 
 bool KeepPicture(const fs::path& store, const core::Trial& trial) {
-  const auto picture = PictureOf(store, trial);
+  const auto picture = FindPicture(store, trial);
   if (!picture) return false;
   try {
     auto analysis = Replay(trial);
     if (!analysis) return false;
     analysis->clip.path = trial.clip.path;
-    const auto sheet = ContactSheetOf(*analysis);
+    const auto sheet = MakeContactSheet(*analysis);
     if (!sheet) return false;
     std::error_code ignored;
-    fs::create_directories(PicturesOf(store), ignored);
+    fs::create_directories(PictureFolder(store), ignored);
     vision::WritePngRgb(*picture, sheet->width_px, sheet->height_px,
                         sheet->rgb);
     return true;
@@ -83,7 +84,7 @@ std::map<std::string, fs::path> KeptPictures(
     const fs::path& store, std::span<const core::Trial> trials) {
   std::map<std::string, fs::path> out;
   for (const core::Trial& trial : trials) {
-    const auto picture = PictureOf(store, trial);
+    const auto picture = FindPicture(store, trial);
     std::error_code ignored;
     if (picture && fs::is_regular_file(*picture, ignored)) {
       out.emplace(trial.id, *picture);
@@ -103,7 +104,7 @@ std::map<std::string, fs::path> FindPictures(
     const fs::path picture = entry->path().parent_path() / "contact.png";
     std::error_code ignored;
     if (!fs::is_regular_file(picture, ignored)) continue;
-    const Key key = KeyOf(entry->path());
+    const Key key = ReadKey(entry->path());
     const auto [at, is_new] = found.emplace(key, picture);
     if (!is_new && picture < at->second) at->second = picture;
   }

@@ -11,7 +11,7 @@
 namespace touchdown::pipeline {
 
 // Where a store keeps the pictures of its trials' contacts: "lab.db.evidence".
-std::filesystem::path PicturesOf(const std::filesystem::path& store);
+std::filesystem::path PictureFolder(const std::filesystem::path& store);
 
 // Draws the contact of `trial` from its recording and what the trial holds of
 // the analysis, however it was logged, and keeps it beside the store. Nothing

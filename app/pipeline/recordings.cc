@@ -57,7 +57,7 @@ struct Inside {
   std::vector<fs::path> folders;  // to be looked through, too
 };
 
-Inside LookInto(const fs::path& folder, const Admit& admit) {
+Inside ListFolder(const fs::path& folder, const Admit& admit) {
   Inside inside;
   std::error_code trouble;
   std::vector<fs::path> files;
@@ -102,7 +102,7 @@ Inside LookInto(const fs::path& folder, const Admit& admit) {
 
 void Collect(const fs::path& folder, const Admit& admit,
              std::vector<fs::path>& recordings) {
-  const Inside inside = LookInto(folder, admit);
+  const Inside inside = ListFolder(folder, admit);
   recordings.insert(recordings.end(), inside.recordings.begin(),
                     inside.recordings.end());
   for (const fs::path& below : inside.folders) {
@@ -134,7 +134,7 @@ std::vector<fs::path> FindRecordings(const fs::path& folder,
 bool IsRecording(const fs::path& path) {
   std::error_code trouble;
   if (fs::is_directory(path, trouble)) {
-    const auto found = LookInto(path, {}).recordings;
+    const auto found = ListFolder(path, {}).recordings;
     return !found.empty() && found.front() == path;
   }
   return fs::is_regular_file(path, trouble) && !IsHidden(path) &&
@@ -142,7 +142,7 @@ bool IsRecording(const fs::path& path) {
           (vision::IsImageName(path) && IsStack(path)));
 }
 
-std::vector<fs::path> FilesOf(const fs::path& recording) {
+std::vector<fs::path> ListFiles(const fs::path& recording) {
   std::vector<fs::path> files;
   std::error_code trouble;
   if (fs::is_directory(recording, trouble)) {
@@ -164,9 +164,9 @@ std::vector<fs::path> FilesOf(const fs::path& recording) {
   return files;
 }
 
-Extent ExtentOf(const fs::path& recording) {
+Extent MeasureExtent(const fs::path& recording) {
   Extent extent;
-  for (const fs::path& file : FilesOf(recording)) AddFile(file, extent);
+  for (const fs::path& file : ListFiles(recording)) AddFile(file, extent);
   return extent;
 }
 
@@ -196,7 +196,7 @@ void Watch(const fs::path& folder, const WatchOptions& options,
   do {
     Settling::Extents there;
     for (const fs::path& recording : FindRecordings(folder)) {
-      there.emplace(recording, ExtentOf(recording));
+      there.emplace(recording, MeasureExtent(recording));
     }
     const auto complete = settling.Look(there, options.now());
     if (!complete.empty()) take(complete);

@@ -27,7 +27,7 @@ bool IsRecording(const std::filesystem::path& path);
 
 // The files that a recording is read from: itself, the header beside an .mraw
 // file, the images of a folder.
-std::vector<std::filesystem::path> FilesOf(
+std::vector<std::filesystem::path> ListFiles(
     const std::filesystem::path& recording);
 
 // How large a recording is (all its files together) and when it was last
@@ -44,7 +44,7 @@ struct Extent {
 
 // Of a recording that may be growing, or vanish, at this moment: what cannot be
 // seen counts nothing.
-Extent ExtentOf(const std::filesystem::path& recording);
+Extent MeasureExtent(const std::filesystem::path& recording);
 
 // Tells when recordings have stopped growing: a recording is complete when its
 // extent has stayed the same for `quiet`. One that changes after it was told is

@@ -41,7 +41,7 @@ ById ReadIds(const std::vector<fs::path>& recordings,
 }
 
 // Whether `path` is the clip, of which another one shares the id.
-bool HasDigestOf(const db::KnownClip& clip, const fs::path& path) {
+bool MatchesDigest(const db::KnownClip& clip, const fs::path& path) {
   try {
     return clip.sha256.empty() || vision::Sha256(path) == clip.sha256;
   } catch (const core::InputError&) {
@@ -83,7 +83,7 @@ Relinked Relink(db::Store& store, const fs::path& folder) {
     std::vector<fs::path> same;
     const auto [begin, end] = there.equal_range(clip.id);
     for (auto it = begin; it != end; ++it) {
-      if (sharing[clip.id] == 1 || HasDigestOf(clip, it->second)) {
+      if (sharing[clip.id] == 1 || MatchesDigest(clip, it->second)) {
         same.push_back(it->second);
       }
     }

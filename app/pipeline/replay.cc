@@ -72,7 +72,9 @@ Json GroundJson(const calib::GroundLine& g) {
           {"source", calib::Name(g.source)}};
 }
 
-core::PixelPoint PointOf(const Json& json) { return {json.at(0), json.at(1)}; }
+core::PixelPoint ReadPoint(const Json& json) {
+  return {json.at(0), json.at(1)};
+}
 
 // `name` is what Name() gives for one of `values`.
 template <class T, std::size_t N>
@@ -83,12 +85,12 @@ T Named(const std::string& name, const T (&values)[N]) {
   return values[0];
 }
 
-calib::GroundLine GroundOf(const Json& json) {
+calib::GroundLine ReadGroundLine(const Json& json) {
   using enum calib::GroundSource;
   calib::GroundLine g;
-  g.p1 = PointOf(json.at("p1_px"));
-  g.p2 = PointOf(json.at("p2_px"));
-  g.reference = PointOf(json.at("reference_px"));
+  g.p1 = ReadPoint(json.at("p1_px"));
+  g.p2 = ReadPoint(json.at("p2_px"));
+  g.reference = ReadPoint(json.at("reference_px"));
   g.u_offset_px = json.at("u_offset_px");
   g.u_angle_rad = json.at("u_angle_rad");
   g.source = Named(json.at("source").get<std::string>(),
@@ -119,7 +121,7 @@ Json OptionsJson(const AnalyzeOptions& o) {
   return json;
 }
 
-AnalyzeOptions OptionsOf(const Json& json) {
+AnalyzeOptions ReadOptions(const Json& json) {
   AnalyzeOptions o;
   o.fps = Optional<double>(json, "fps");
   o.gamma = Optional<double>(json, "gamma");
@@ -130,7 +132,7 @@ AnalyzeOptions OptionsOf(const Json& json) {
   o.diameter_m = OptionalEstimate(json, "diameter_m");
   o.long_m = OptionalEstimate(json, "long_m");
   o.short_m = OptionalEstimate(json, "short_m");
-  if (json.contains("ground")) o.ground = GroundOf(json["ground"]);
+  if (json.contains("ground")) o.ground = ReadGroundLine(json["ground"]);
   if (json.contains("contact_frame")) {
     o.contact_frame = WholeNumber(json["contact_frame"], "contact_frame");
   }
@@ -185,7 +187,7 @@ Json TrackJson(const vision::Track& track) {
   return json;
 }
 
-vision::Track TrackOf(const Json& json, core::BodyKind kind) {
+vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   vision::Track track;
   track.body.kind = kind;
   track.body.radius_px = ReadEstimate(json.at("radius_px"));
@@ -219,7 +221,7 @@ vision::Track TrackOf(const Json& json, core::BodyKind kind) {
 // --- the rest of an analysis, from the document's own fields
 // ------------------
 
-vision::ClipInfo ClipOf(const Json& json) {
+vision::ClipInfo ReadClipInfo(const Json& json) {
   using enum vision::FpsSource;
   vision::ClipInfo clip;
   clip.path = json.at("path").get<std::string>();
@@ -240,7 +242,7 @@ vision::ClipInfo ClipOf(const Json& json) {
 }
 
 // As it was stored: there are no pixels to measure it anew.
-core::Expected<vision::ExplainedChange> ExplainedOf(const Json& document) {
+core::Expected<vision::ExplainedChange> ReadExplained(const Json& document) {
   if (!document.contains("explained")) {
     return core::AbsentBecause("an earlier program did not compare the clip");
   }
@@ -260,17 +262,17 @@ core::Expected<vision::ExplainedChange> ExplainedOf(const Json& document) {
   return explained;
 }
 
-Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
+Analysis RestoreAnalysis(const core::Trial& trial, const Json& document) {
   using enum calib::ScaleSource;
   using enum vision::Channel;
   const Json& replay = document.at("replay");
   Analysis a;
-  a.clip = ClipOf(document.at("clip"));
+  a.clip = ReadClipInfo(document.at("clip"));
   a.channel = Named(document["clip"].at("channel").get<std::string>(),
                     {kLuma, kBlueDifference, kRedDifference});
   a.clip_id = trial.clip.id;
   a.simulated = trial.origin == core::Origin::kSimulated;
-  a.options = OptionsOf(replay.at("options"));
+  a.options = ReadOptions(replay.at("options"));
   if (replay.contains("sensor_origin")) {
     const Json& corner = replay["sensor_origin"];
     a.clip.sensor_origin =
@@ -284,10 +286,10 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
   } else {
     a.no_scale_reason = document.at("absent").at("scale");
   }
-  if (replay.contains("ground")) a.ground = GroundOf(replay["ground"]);
+  if (replay.contains("ground")) a.ground = ReadGroundLine(replay["ground"]);
   a.body = trial.body;
   a.angle_kind = trial.angle_kind;
-  a.track = TrackOf(replay.at("track"), trial.body.kind);
+  a.track = ReadTrack(replay.at("track"), trial.body.kind);
   a.scene_model.used =
       document.at("scene_model").at("used").get<std::vector<std::string>>();
   a.scene_model.left_out = document["scene_model"]
@@ -298,7 +300,7 @@ Analysis AnalysisOf(const core::Trial& trial, const Json& document) {
     a.stopped_at =
         WholeNumber(document["stopped_at_frame"], "stopped_at_frame");
   }
-  a.explained = ExplainedOf(document);
+  a.explained = ReadExplained(document);
   if (a.explained) {
     a.outlines_corrected =
         document["explained"].value("outlines_corrected", false);
@@ -335,7 +337,7 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
     if (!document["replay"].contains("track")) {
       return core::AbsentBecause("the analysis saw no body");
     }
-    Analysis analysis = AnalysisOf(trial, document);
+    Analysis analysis = RestoreAnalysis(trial, document);
     if (analysis.track->several_bodies) {
       return core::AbsentBecause("several bodies move in it");
     }
@@ -352,13 +354,13 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
   }
 }
 
-std::optional<AnalyzeOptions> CameraOf(const core::Trial& trial) {
+std::optional<AnalyzeOptions> ReadCameraOptions(const core::Trial& trial) {
   const Json document = Json::parse(trial.document_json, nullptr, false);
   if (!document.is_object() || !document.contains("replay")) {
     return std::nullopt;
   }
   try {
-    const AnalyzeOptions all = OptionsOf(document["replay"].at("options"));
+    const AnalyzeOptions all = ReadOptions(document["replay"].at("options"));
     AnalyzeOptions camera;
     camera.fps = all.fps;
     camera.gamma = all.gamma;

@@ -26,7 +26,7 @@ core::Expected<Analysis> Replay(const core::Trial& trial);
 // What the trial's analysis was told of the camera: frame rate, gamma, scale,
 // calibration and crop; nothing of the body or of this one clip. Nothing where
 // its document does not say.
-std::optional<AnalyzeOptions> CameraOf(const core::Trial& trial);
+std::optional<AnalyzeOptions> ReadCameraOptions(const core::Trial& trial);
 
 // The trial as it is to be stored after a correction: who, when and the clip
 // stay, what was measured is the analysis's.

@@ -11,7 +11,7 @@
 
 namespace touchdown::pipeline {
 
-report::ReportInput InputOf(Selection selection) {
+report::ReportInput MakeReportInput(Selection selection) {
   report::ReportInput input;
   input.trials = std::move(selection.trials);
   input.campaigns = std::move(selection.campaigns);
@@ -27,7 +27,7 @@ report::ReportInput InputOf(Selection selection) {
   return input;
 }
 
-report::Details DetailsBeside(const std::filesystem::path& store) {
+report::Details ReadStoreDetails(const std::filesystem::path& store) {
   const std::filesystem::path file = store.parent_path() / "report.toml";
   std::error_code ignored;
   if (store.empty() || !std::filesystem::exists(file, ignored)) return {};

@@ -10,10 +10,10 @@ namespace touchdown::pipeline {
 
 // With this program's version and the day (UTC); theories and study are the
 // defaults.
-report::ReportInput InputOf(Selection selection);
+report::ReportInput MakeReportInput(Selection selection);
 
 // What stands in report.toml beside the store; nothing where there is none.
 // Throws core::InputError as report::ReadDetails.
-report::Details DetailsBeside(const std::filesystem::path& store);
+report::Details ReadStoreDetails(const std::filesystem::path& store);
 
 }  // namespace touchdown::pipeline

@@ -16,7 +16,7 @@ namespace touchdown::pipeline {
 namespace {
 
 // The path from where the contact begins; nothing without a scale or a flight.
-std::optional<report::Trajectory> PathOf(const Analysis& analysis) {
+std::optional<report::Trajectory> MakeTrajectory(const Analysis& analysis) {
   const auto& evidence = analysis.contacts.evidence;
   if (!analysis.scale || !analysis.plane || evidence.empty() ||
       !evidence.front().before) {
@@ -77,7 +77,7 @@ void AddPictures(report::ReportInput& input, std::size_t most_strips) {
     if (!analysis) {
       why = analysis.error().reason;
     } else {
-      if (auto path = PathOf(*analysis)) {
+      if (auto path = MakeTrajectory(*analysis)) {
         input.trajectories.emplace(trial.id, std::move(*path));
       }
       why = with_strips ? AddStrip(trial, *analysis, input)

@@ -35,10 +35,10 @@ core::Expected<rig::Setting> SettingAtLaunch(const rig::Description& rig,
   constexpr double kClose = 1e-9;
   wish.speed_mps = launch_mps;
   for (int i = 0; i < kTurns; ++i) {
-    auto setting = rig::SettingFor(rig, wish);
+    auto setting = rig::FindSetting(rig, wish);
     if (!setting) return setting;
     const auto muzzle = rig::LaunchSpeed(
-        rig::LaunchOf(rig, setting->elevation_rad), setting->compression_m);
+        rig::MakeLaunch(rig, setting->elevation_rad), setting->compression_m);
     if (!muzzle) return core::AbsentBecause(muzzle.error().reason);
     const double v = muzzle->speed_mps;
     if (std::abs(v - launch_mps) <= kClose * launch_mps) return setting;

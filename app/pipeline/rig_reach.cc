@@ -19,7 +19,7 @@ core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
                                                rig::ContactWish wish) {
   const auto can = [&](double angle_rad) {
     wish.angle_rad = angle_rad;
-    return rig::SettingFor(rig, wish).has_value();
+    return rig::FindSetting(rig, wish).has_value();
   };
   // Between an angle that can be thrown and one that cannot.
   const auto edge = [&](double good, double bad) {
@@ -41,7 +41,7 @@ core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
   }
   if (best_count == 0) {
     wish.angle_rad = kMiddle_rad;
-    const auto refused = rig::SettingFor(rig, wish);
+    const auto refused = rig::FindSetting(rig, wish);
     return core::AbsentBecause(refused ? "no whole degree can be thrown"
                                        : refused.error().reason);
   }

@@ -389,10 +389,10 @@ Shot Parse(const std::string& text, const std::string& source,
   Shot shot = ReadShot(document, source, default_name);
   try {
     // What only the whole can tell: ranges of the renderer and of the physics.
-    analysis::RigidMotionProblem first_instant = ProblemOf(shot);
+    analysis::RigidMotionProblem first_instant = MakeProblem(shot);
     first_instant.end_s = first_instant.start.time_s + 1.0 / shot.camera.fps;
     vision::Validate(
-        SceneOf(shot, analysis::SimulateRigidMotion(first_instant)));
+        BuildScene(shot, analysis::SimulateRigidMotion(first_instant)));
   } catch (const std::invalid_argument& error) {
     throw core::InputError(fmt::format("{}: {}", source, error.what()));
   }

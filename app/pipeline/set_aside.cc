@@ -31,7 +31,7 @@ SetAside::SetAside(const std::filesystem::path& store)
   }
 }
 
-std::optional<std::string> SetAside::ReasonOf(const Key& key) const {
+std::optional<std::string> SetAside::FindReason(const Key& key) const {
   const auto found = failures_.find(key);
   if (found == failures_.end() || found->second.count < kMostFailures) {
     return std::nullopt;

@@ -33,7 +33,7 @@ class SetAside {
   };
 
   // Why it is set aside, for a person; nothing where it is to be tried.
-  std::optional<std::string> ReasonOf(const Key& key) const;
+  std::optional<std::string> FindReason(const Key& key) const;
 
   // Notes a failure. What cannot be written is not: the recording is then tried
   // once more than it would be.

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kQuantities = 19;
 
 // Every number of a contact that a shared input can move.
-std::array<core::Measured*, kQuantities> QuantitiesOf(
+std::array<core::Measured*, kQuantities> ListQuantities(
     core::ContactRecord& record) {
   core::Contact& c = record.contact;
   core::Motion& m = record.motion;
@@ -58,8 +58,8 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
     std::vector<core::ContactRecord*> others = {&other.first};
     for (core::ContactRecord& later : other.later) others.push_back(&later);
     for (std::size_t i = 0; i < records.size() && i < others.size(); ++i) {
-      const auto ours = QuantitiesOf(*records[i]);
-      const auto theirs = QuantitiesOf(*others[i]);
+      const auto ours = ListQuantities(*records[i]);
+      const auto theirs = ListQuantities(*others[i]);
       for (std::size_t q = 0; q < kQuantities; ++q) {
         if (!*ours[q] || !*theirs[q]) continue;
         const double change = (*theirs[q])->value - (*ours[q])->value;
@@ -68,7 +68,7 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
     }
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const auto ours = QuantitiesOf(*records[i]);
+    const auto ours = ListQuantities(*records[i]);
     for (std::size_t q = 0; q < kQuantities; ++q) {
       if (*ours[q]) Widen(**ours[q], std::sqrt(variances[i][q]));
     }

@@ -42,9 +42,9 @@ bool Filmed(const analysis::RigidMotion& motion, analysis::StretchKind kind,
                      });
 }
 
-core::MotionState StateOf(const analysis::RigidMotion& motion,
-                          const analysis::TouchdownTruth& touchdown,
-                          double end_s) {
+core::MotionState TrueState(const analysis::RigidMotion& motion,
+                            const analysis::TouchdownTruth& touchdown,
+                            double end_s) {
   using analysis::StretchKind;
   if (motion.body.kind == core::BodyKind::kSphere) {
     const bool slides = Filmed(motion, StretchKind::kSlide, end_s);
@@ -59,7 +59,7 @@ core::MotionState StateOf(const analysis::RigidMotion& motion,
   }
   // It slides if it travels on, however it wobbles.
   const double travelled =
-      std::abs(analysis::StateAt(motion, end_s).centre.x_m -
+      std::abs(analysis::ComputeState(motion, end_s).centre.x_m -
                touchdown.before.centre.x_m);
   constexpr double kTravelled_m = 1e-4;
   return travelled > kTravelled_m ? core::MotionState::kSlide
@@ -166,7 +166,7 @@ std::optional<ClipFormat> ParseClipFormat(std::string_view word) {
   return std::nullopt;
 }
 
-analysis::RigidMotionProblem ProblemOf(const Shot& shot) {
+analysis::RigidMotionProblem MakeProblem(const Shot& shot) {
   if (shot.frames < 1) {
     throw std::invalid_argument(
         fmt::format("frames is {}, must be at least 1", shot.frames));
@@ -184,9 +184,9 @@ analysis::RigidMotionProblem ProblemOf(const Shot& shot) {
   return thrown;
 }
 
-ShotTruth TruthOf(const Shot& shot) {
+ShotTruth ComputeTruth(const Shot& shot) {
   ShotTruth truth;
-  const analysis::RigidMotionProblem thrown = ProblemOf(shot);
+  const analysis::RigidMotionProblem thrown = MakeProblem(shot);
   const double last_s = LastFrame_s(shot);
   truth.motion = analysis::SimulateRigidMotion(thrown);
   if (!truth.motion.complete) {
@@ -202,17 +202,18 @@ ShotTruth TruthOf(const Shot& shot) {
   if (!touchdown || touchdown->time_s > last_s) return truth;
   truth.touchdown = touchdown;
   truth.greatest =
-      analysis::GreatestGapWithin(truth.motion, touchdown->time_s, last_s);
+      analysis::ComputeGreatestGap(truth.motion, touchdown->time_s, last_s);
   if (truth.greatest.gap_m > truth.bounce_height_m) {
     truth.state = core::MotionState::kBounce;
   } else {
-    truth.state = StateOf(truth.motion, *touchdown, last_s);
+    truth.state = TrueState(truth.motion, *touchdown, last_s);
     truth.micro_bounce = truth.greatest.gap_m > kLeft_m;
   }
   return truth;
 }
 
-vision::Scene SceneOf(const Shot& shot, const analysis::RigidMotion& motion) {
+vision::Scene BuildScene(const Shot& shot,
+                         const analysis::RigidMotion& motion) {
   vision::Scene scene;
   scene.body = shot.thrown.body;
   scene.frames = shot.frames;
@@ -227,7 +228,7 @@ vision::Scene SceneOf(const Shot& shot, const analysis::RigidMotion& motion) {
   scene.pose = [shared, appears_s](double time_s) {
     constexpr double kOutOfSight_m = 1e4;
     if (time_s < appears_s) return vision::ScenePose{{0.0, kOutOfSight_m}, 0.0};
-    const analysis::BodyState state = analysis::StateAt(*shared, time_s);
+    const analysis::BodyState state = analysis::ComputeState(*shared, time_s);
     return vision::ScenePose{state.centre, state.angle_rad};
   };
   return scene;
@@ -236,10 +237,10 @@ vision::Scene SceneOf(const Shot& shot, const analysis::RigidMotion& motion) {
 SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   CheckName(shot.name);
   SimulatedClip out;
-  out.truth = TruthOf(shot);
-  const vision::SceneRenderer renderer(SceneOf(shot, out.truth.motion));
+  out.truth = ComputeTruth(shot);
+  const vision::SceneRenderer renderer(BuildScene(shot, out.truth.motion));
   out.clip = ClipPath(shot, options);
-  out.truth_file = TruthFileOf(out.clip);
+  out.truth_file = TruthPath(out.clip);
 
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);

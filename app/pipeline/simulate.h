@@ -48,13 +48,13 @@ struct ShotTruth {
 };
 
 // thrown with its start and end times set from the frames.
-analysis::RigidMotionProblem ProblemOf(const Shot& shot);
+analysis::RigidMotionProblem MakeProblem(const Shot& shot);
 
 // Throws std::invalid_argument if the shot is impossible.
-ShotTruth TruthOf(const Shot& shot);
+ShotTruth ComputeTruth(const Shot& shot);
 
 // The shot as the renderer takes it; its pose function shares the motion.
-vision::Scene SceneOf(const Shot& shot, const analysis::RigidMotion& motion);
+vision::Scene BuildScene(const Shot& shot, const analysis::RigidMotion& motion);
 
 // The 18 shots of the paper's Table 1: 9 angles of approach of a sphere, 9 face
 // angles of a rectangle. Nine trials of a body share body, surface, friction,

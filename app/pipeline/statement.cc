@@ -18,8 +18,8 @@ namespace {
 using core::kDegree;
 
 template <class T>
-T WordOf(const char* field, const std::string& text,
-         std::optional<T> (*parse)(std::string_view), const char* words) {
+T RequireWord(const char* field, const std::string& text,
+              std::optional<T> (*parse)(std::string_view), const char* words) {
   if (const auto word = parse(text)) return *word;
   throw FieldError(field, fmt::format("is '{}', must be {}", text, words));
 }
@@ -54,7 +54,7 @@ void Apply(const Statement& statement, core::Trial& trial) {
         "protractor reads to 0.5 deg)");
   }
   if (!statement.angle_kind.empty()) {
-    trial.angle_kind = WordOf<core::AngleKind>(
+    trial.angle_kind = RequireWord<core::AngleKind>(
         "angle-kind", statement.angle_kind, core::ParseAngleKind,
         "approach, radius or face");
   }
@@ -67,7 +67,7 @@ void Apply(const Statement& statement, core::Trial& trial) {
                        *statement.angle_u_deg * kDegree, std::nullopt};
   }
   if (!statement.state.empty()) {
-    trial.first.state.label = WordOf<core::MotionState>(
+    trial.first.state.label = RequireWord<core::MotionState>(
         "state", statement.state, core::ParseMotionState, kStateWords);
     trial.first.state.p_bounce.reset();
     trial.first.state.reason = "stated by hand";
@@ -75,8 +75,8 @@ void Apply(const Statement& statement, core::Trial& trial) {
   if (!statement.note.empty()) trial.first.state.reason = statement.note;
   if (!statement.corner.empty()) {
     contact.corner =
-        WordOf<core::Corner>("corner", statement.corner, core::ParseCorner,
-                             "leading, trailing or flush");
+        RequireWord<core::Corner>("corner", statement.corner, core::ParseCorner,
+                                  "leading, trailing or flush");
   }
   if (statement.set_angle_deg) {
     RequireAngle("set-angle-deg", *statement.set_angle_deg, -90.0);

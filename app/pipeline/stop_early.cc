@@ -28,8 +28,8 @@ class Borrowed final : public vision::Clip {
   std::int64_t EntryFrame(std::int64_t index) const override {
     return clip_.EntryFrame(index);
   }
-  const vision::Changes* ChangesIn(std::int64_t index) const override {
-    return clip_.ChangesIn(index);
+  const vision::Changes* KnownChanges(std::int64_t index) const override {
+    return clip_.KnownChanges(index);
   }
 
  private:
@@ -50,7 +50,7 @@ class ActivityTally {
   // The next frames.
   void Add(const vision::Clip& clip, std::int64_t first, std::int64_t last) {
     for (std::int64_t i = first; i < last; ++i) {
-      const vision::Changes* changes = clip.ChangesIn(i);
+      const vision::Changes* changes = clip.KnownChanges(i);
       if (changes == nullptr || changes->where.empty()) {
         run_ = 0;
         continue;
@@ -87,7 +87,7 @@ class ActivityTally {
 
 // How far a rectangle's lowest face is from lying on the ground, px: what may
 // still fall, and be thrown up again. 0 for a sphere.
-double LiftOf(const vision::PlaneTrack& plane) {
+double FaceLift(const vision::PlaneTrack& plane) {
   if (plane.kind == core::BodyKind::kSphere) return 0.0;
   constexpr double kFace = 0.5 * std::numbers::pi;  // from one to the next
   const double tilt = std::remainder(plane.samples.back().face_rad, kFace);
@@ -116,7 +116,7 @@ std::string ReasonAgainstStay(const Analysis& analysis, double contact_s,
     return fmt::format("it was seen for {:.4f} s on the ground, needed {:.4f}",
                        seen_s, least_s);
   }
-  if (LiftOf(plane) > height_m * analysis.scale->px_per_m.value) {
+  if (FaceLift(plane) > height_m * analysis.scale->px_per_m.value) {
     return "it does not lie flat";
   }
   return {};
@@ -130,8 +130,8 @@ bool IsWithin(const core::Measured& fewer, const core::Measured& more,
 
 }  // namespace
 
-std::string ReasonToGoOn(const Analysis& analysis, std::int64_t end,
-                         std::size_t known_warnings, const StopRule& rule) {
+std::string ReasonToContinue(const Analysis& analysis, std::int64_t end,
+                             std::size_t known_warnings, const StopRule& rule) {
   const core::ContactRecord& first = analysis.contacts.first;
   const core::Contact& contact = first.contact;
   const core::StateDecision& state = first.state;
@@ -198,7 +198,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
   const std::size_t known_warnings =
       clip->info().warnings.size() + camera.warnings.size();
   Footage footage = InSteadyLight(std::move(clip), options);
-  vision::FrameStoreOptions keep = KeepOptionsOf(options, footage.info);
+  vision::FrameStoreOptions keep = MakeKeepOptions(options, footage.info);
   keep.most_bytes = most_bytes;
   const auto frames = vision::GrowFrames(std::move(footage.clip), keep);
   const auto analyze = [&](const AnalyzeOptions& of) {
@@ -222,7 +222,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
   for (std::int64_t end = keep.first + piece; end < keep.last; end += piece) {
     if (static_cast<double>(frames->DecodedAgain()) >
             rule.most_decoded_again * static_cast<double>(range) ||
-        !frames->GrowTo(end)) {
+        !frames->ExtendDecoding(end)) {
       break;
     }
     seen.Add(*frames, end - piece, end);
@@ -242,7 +242,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     so_far.last_frame = end;
     so_far.progress = nullptr;
     Analysis analysis = analyze(so_far);
-    if (!ReasonToGoOn(analysis, end, known_warnings, rule).empty()) {
+    if (!ReasonToContinue(analysis, end, known_warnings, rule).empty()) {
       decided.reset();
       continue;
     }
@@ -262,7 +262,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     }
     return analysis;
   }
-  frames->GrowTo(keep.last);
+  frames->ExtendDecoding(keep.last);
   return analyze(options);
 }
 

@@ -66,8 +66,9 @@ struct StopRule {
 // Why an analysis of the frames up to `end` is no reason to stop, in a
 // sentence; empty where it is one. `known_warnings`: so many of its warnings
 // are of the file and of the calibration, and no reason.
-std::string ReasonToGoOn(const Analysis& analysis, std::int64_t end,
-                         std::size_t known_warnings, const StopRule& rule = {});
+std::string ReasonToContinue(const Analysis& analysis, std::int64_t end,
+                             std::size_t known_warnings,
+                             const StopRule& rule = {});
 
 // Whether two analyses say the same of the first contact.
 bool SayTheSame(const Analysis& fewer, const Analysis& more,

@@ -69,7 +69,7 @@ vision::SceneLook TexturedLook() {
 // 1.1 % of full scale on the background.
 constexpr vision::SensorNoise kNoise{1.8, 0.03};
 
-std::string NameOf(const char* what, double angle_deg) {
+std::string ShotName(const char* what, double angle_deg) {
   const int tenths = static_cast<int>(std::lround(10.0 * angle_deg));
   return fmt::format("{}_{:02}_{}_deg", what, tenths / 10, tenths % 10);
 }
@@ -87,21 +87,21 @@ void Film(Shot& shot, double phase) {
   const double bounce_height =
       core::DefaultBounceHeight(core::Size(thrown.body)->value);
   double end = contact + kFramesAfter / kFps;
-  const auto soon = analysis::GreatestGapWithin(whole, contact, end);
-  const auto ever = analysis::GreatestGapWithin(whole, contact, thrown.end_s);
+  const auto soon = analysis::ComputeGreatestGap(whole, contact, end);
+  const auto ever = analysis::ComputeGreatestGap(whole, contact, thrown.end_s);
   if (ever.gap_m > bounce_height && soon.gap_m < kClearly * bounce_height) {
     end = std::max(end, ever.time_s + kFramesAfterGreatest / kFps);
   }
   const auto seen = static_cast<std::int64_t>(std::ceil((end - begin) * kFps));
   shot.lead_in_frames = kLeadInFrames;
   shot.frames = seen + kLeadInFrames;
-  thrown.start = analysis::StateAt(whole, begin);
+  thrown.start = analysis::ComputeState(whole, begin);
   thrown.start.centre.x_m -= touchdown->before.centre.x_m;
 }
 
 Shot SphereShot(double angle_deg, double phase) {
   Shot shot;
-  shot.name = NameOf("sphere_approach", angle_deg);
+  shot.name = ShotName("sphere_approach", angle_deg);
   shot.angle_kind = core::AngleKind::kApproach;
   shot.camera = WindowedCamera();
   shot.look = TexturedLook();
@@ -123,7 +123,7 @@ Shot SphereShot(double angle_deg, double phase) {
 
 Shot RectangleShot(double angle_deg, double phase) {
   Shot shot;
-  shot.name = NameOf("rectangle_face", angle_deg);
+  shot.name = ShotName("rectangle_face", angle_deg);
   shot.angle_kind = core::AngleKind::kFace;
   shot.camera = WindowedCamera();
   shot.look = TexturedLook();

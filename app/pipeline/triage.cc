@@ -24,10 +24,10 @@ using nlohmann::ordered_json;
 constexpr std::size_t kShownId = 8;  // of a trial's id: enough to find it by
 
 // The warnings of the analysis, from its document.
-std::vector<std::string> WarningsOf(const core::Trial& trial) {
+std::vector<std::string> ReadWarnings(const core::Trial& trial) {
   std::vector<std::string> warnings;
   const auto document = report::StoredDocument(trial);
-  for (const auto& warning : report::ValueAt(document, {"warnings"})) {
+  for (const auto& warning : report::EvaluateSpline(document, {"warnings"})) {
     if (warning.is_string()) warnings.push_back(warning);
   }
   return warnings;
@@ -89,8 +89,9 @@ std::string ProposalSentence(const core::Trial& trial,
       trial.id.substr(0, kShownId), proposal.revision);
 }
 
-TriageEntry TriageOf(const std::string& clip, Done done,
-                     const core::Trial& trial, const core::Trial* proposal) {
+TriageEntry MakeTriageEntry(const std::string& clip, Done done,
+                            const core::Trial& trial,
+                            const core::Trial* proposal) {
   TriageEntry entry;
   entry.clip = clip;
   entry.done = done;
@@ -100,7 +101,7 @@ TriageEntry TriageOf(const std::string& clip, Done done,
   entry.p_bounce = trial.first.state.p_bounce;
   entry.angle_kind = trial.angle_kind;
   entry.angle_rad = ContactAngle(trial);
-  const auto warnings = WarningsOf(trial);
+  const auto warnings = ReadWarnings(trial);
   if (!trial.first.contact.found) {
     entry.attention = Attention::kNoContact;
     entry.reason = trial.first.contact.reason;

@@ -56,9 +56,9 @@ struct TriageEntry {
 
 // The entry of a recording whose trial the store has. `proposal`: a new
 // analysis that waits for a person (db::Store::Proposals), or null.
-TriageEntry TriageOf(const std::string& clip, Done done,
-                     const core::Trial& trial,
-                     const core::Trial* proposal = nullptr);
+TriageEntry MakeTriageEntry(const std::string& clip, Done done,
+                            const core::Trial& trial,
+                            const core::Trial* proposal = nullptr);
 
 // What `proposal` would change, and how a person accepts it, in a sentence.
 std::string ProposalSentence(const core::Trial& trial,

@@ -31,8 +31,8 @@ bool IsReviewed(const db::Store& store, const std::string& id) {
 }
 
 // Nothing where the program never spoke, or no person after it.
-std::optional<TwoLabels> LabelsOf(const std::vector<db::Revision>& history,
-                                  const std::string& id) {
+std::optional<TwoLabels> FindLabels(const std::vector<db::Revision>& history,
+                                    const std::string& id) {
   TwoLabels out{id};
   bool program = false;
   bool person = false;
@@ -52,8 +52,8 @@ std::optional<TwoLabels> LabelsOf(const std::vector<db::Revision>& history,
 }
 
 // The versions of the register that the trials' conditions name.
-std::vector<db::Entry> EntriesOf(const db::Store& store,
-                                 const std::vector<core::Trial>& trials) {
+std::vector<db::Entry> CollectEntries(const db::Store& store,
+                                      const std::vector<core::Trial>& trials) {
   std::set<std::string> ids;
   for (const core::Trial& trial : trials) {
     if (!trial.conditions) continue;
@@ -99,12 +99,12 @@ Selection FromStore(const SelectionOptions& options) {
     for (const core::Trial& trial : out.trials) {
       if (trial.revision < 2) continue;
       const std::vector<db::Revision> history = store.History(trial.id);
-      if (auto labels = LabelsOf(history, trial.id)) {
+      if (auto labels = FindLabels(history, trial.id)) {
         out.labels.push_back(std::move(*labels));
       }
       out.first_logged_utc[trial.id] = history.front().trial.recorded_at_utc;
     }
-    out.register_entries = EntriesOf(store, out.trials);
+    out.register_entries = CollectEntries(store, out.trials);
   }
   out.source = fmt::format("store {} ({})", options.store.filename().string(),
                            store.uuid());

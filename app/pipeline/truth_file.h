@@ -6,7 +6,7 @@
 
 namespace touchdown::pipeline {
 
-inline std::filesystem::path TruthFileOf(const std::filesystem::path& clip) {
+inline std::filesystem::path TruthPath(const std::filesystem::path& clip) {
   std::filesystem::path base = clip;
   if (!base.has_filename()) base = base.parent_path();  // folder with a slash
   return base.replace_extension(".truth.json");
@@ -14,7 +14,7 @@ inline std::filesystem::path TruthFileOf(const std::filesystem::path& clip) {
 
 inline bool HasTruthFile(const std::filesystem::path& clip) {
   std::error_code ignored;
-  return std::filesystem::exists(TruthFileOf(clip), ignored);
+  return std::filesystem::exists(TruthPath(clip), ignored);
 }
 
 }  // namespace touchdown::pipeline

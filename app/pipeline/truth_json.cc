@@ -155,7 +155,7 @@ std::string TruthText(const Shot& shot, const ShotTruth& truth,
                       const std::string& clip_name, const std::string& format,
                       std::uint64_t seed) {
   const vision::SceneCamera& camera = shot.camera;
-  const calib::GroundLine ground = vision::GroundOf(camera);
+  const calib::GroundLine ground = vision::TrueGroundLine(camera);
   ordered_json out;
   out["schema"] = "touchdown.truth/1";
   out["origin"] = std::string(core::Name(core::Origin::kSimulated));
@@ -180,10 +180,10 @@ std::string TruthText(const Shot& shot, const ShotTruth& truth,
   out["motion"] = MotionJson(shot, truth);
   out["events"] = EventsJson(shot, truth);
 
-  const vision::Scene scene = SceneOf(shot, truth.motion);
+  const vision::Scene scene = BuildScene(shot, truth.motion);
   ordered_json rows = ordered_json::array();
   for (std::int64_t i = shot.lead_in_frames; i < shot.frames; ++i) {
-    const vision::SceneTruth frame = vision::TruthOf(scene, i);
+    const vision::SceneTruth frame = vision::ComputeTruth(scene, i);
     rows.push_back({i, frame.time_s, frame.centre.x_px, frame.centre.y_px,
                     frame.image_angle_rad / core::kDegree,
                     frame.pose.angle_rad / core::kDegree,

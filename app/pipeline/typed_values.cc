@@ -79,16 +79,17 @@ std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
           ParseEstimate(flag, text.substr(times + 1), unit, u)};
 }
 
-core::Estimate EstimateOf(const std::string& field, const std::string& text,
-                          double unit, DefaultU u) {
+core::Estimate ParseEstimateField(const std::string& field,
+                                  const std::string& text, double unit,
+                                  DefaultU u) {
   return OfField(field, [&](const char* flag) {
     return ParseEstimate(flag, text, unit, u);
   });
 }
 
-std::pair<core::Estimate, core::Estimate> SidesOf(const std::string& field,
-                                                  const std::string& text,
-                                                  double unit, DefaultU u) {
+std::pair<core::Estimate, core::Estimate> ParseSidesField(
+    const std::string& field, const std::string& text, double unit,
+    DefaultU u) {
   return OfField(
       field, [&](const char* flag) { return ParseSides(flag, text, unit, u); });
 }

@@ -36,11 +36,12 @@ std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
 
 // The two of a field that is named as the flag is, without dashes; they throw
 // FieldError (statement.h).
-core::Estimate EstimateOf(const std::string& field, const std::string& text,
-                          double unit, DefaultU u = {});
-std::pair<core::Estimate, core::Estimate> SidesOf(const std::string& field,
-                                                  const std::string& text,
-                                                  double unit, DefaultU u = {});
+core::Estimate ParseEstimateField(const std::string& field,
+                                  const std::string& text, double unit,
+                                  DefaultU u = {});
+std::pair<core::Estimate, core::Estimate> ParseSidesField(
+    const std::string& field, const std::string& text, double unit,
+    DefaultU u = {});
 
 // "40+-0.02", its standard uncertainty always given, or "absent:REASON"; in SI
 // as value * unit + offset.

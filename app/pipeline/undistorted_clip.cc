@@ -11,7 +11,7 @@
 namespace touchdown::pipeline {
 namespace {
 
-double LevelAt(const core::Frame& frame, core::PixelPoint p) {
+double InterpolateLevel(const core::Frame& frame, core::PixelPoint p) {
   const double x0 = std::floor(p.x_px);
   const double y0 = std::floor(p.y_px);
   if (!(x0 >= 0.0) || !(y0 >= 0.0) || !(x0 + 1.0 < frame.width_px) ||
@@ -45,9 +45,9 @@ class Straightened final : public vision::Clip {
     std::size_t i = 0;
     for (std::int32_t y = window.y; y < window.y + window.height; ++y) {
       for (std::int32_t x = window.x; x < window.x + window.width; ++x, ++i) {
-        const double level =
-            LevelAt(frame, calib::Distort(lens_, {static_cast<double>(x),
-                                                  static_cast<double>(y)}));
+        const double level = InterpolateLevel(
+            frame, calib::Distort(lens_, {static_cast<double>(x),
+                                          static_cast<double>(y)}));
         const auto sample = static_cast<std::uint16_t>(std::lround(level));
         if (bytes == 2) {
           reinterpret_cast<std::uint16_t*>(samples_.data())[i] = sample;

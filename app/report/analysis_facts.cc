@@ -17,8 +17,8 @@ std::string ScalarText(const nlohmann::json& json) {
 }
 
 std::string EstimateText(const nlohmann::json& json, const char* unit) {
-  const nlohmann::json& value = ValueAt(json, {"value"});
-  const nlohmann::json& u = ValueAt(json, {"u"});
+  const nlohmann::json& value = EvaluateSpline(json, {"value"});
+  const nlohmann::json& u = EvaluateSpline(json, {"u"});
   if (!value.is_number() || !u.is_number()) return "";
   return WithU({value.get<double>(), u.get<double>(), {}}, 1.0) + " " + unit;
 }
@@ -32,37 +32,39 @@ std::string Joined(std::initializer_list<std::string> parts) {
   return out;
 }
 
-std::string With(const char* before, const std::string& text,
-                 const char* after = "") {
+std::string Enclose(const char* before, const std::string& text,
+                    const char* after = "") {
   return text.empty() ? "" : before + text + after;
 }
 
 std::string FramesPerSecond(const nlohmann::json& json) {
-  const nlohmann::json& base = ValueAt(json, {"clip", "time_base"});
-  const nlohmann::json& fps = ValueAt(base, {"fps"});
+  const nlohmann::json& base = EvaluateSpline(json, {"clip", "time_base"});
+  const nlohmann::json& fps = EvaluateSpline(base, {"fps"});
   if (!fps.is_number()) return "";
-  const std::string source = ScalarText(ValueAt(base, {"source"}));
+  const std::string source = ScalarText(EvaluateSpline(base, {"source"}));
   return fmt::format("{:g} frames/s, from the {}", fps.get<double>(),
                      source.empty() ? "file" : source);
 }
 
 std::string CalibrationText(const nlohmann::json& json) {
-  const nlohmann::json& calibration = ValueAt(json, {"calibration"});
+  const nlohmann::json& calibration = EvaluateSpline(json, {"calibration"});
   if (calibration.is_object()) {
-    const std::string rms = ScalarText(ValueAt(calibration, {"lens_rms_px"}));
+    const std::string rms =
+        ScalarText(EvaluateSpline(calibration, {"lens_rms_px"}));
     return Joined(
-        {With("camera ", ScalarText(ValueAt(calibration, {"camera"}))),
-         With("of ", ScalarText(ValueAt(calibration, {"date"}))),
+        {Enclose("camera ",
+                 ScalarText(EvaluateSpline(calibration, {"camera"}))),
+         Enclose("of ", ScalarText(EvaluateSpline(calibration, {"date"}))),
          rms.empty() ? "no lens" : "lens to " + rms + " px rms"});
   }
-  return ValueAt(json, {"clip"}).is_object() ? "none" : "";
+  return EvaluateSpline(json, {"clip"}).is_object() ? "none" : "";
 }
 
 std::string ListText(const nlohmann::json& json) {
   std::string out;
   if (json.is_array()) {
     for (const nlohmann::json& item : json) {
-      out += With(out.empty() ? "" : "; ", ScalarText(item));
+      out += Enclose(out.empty() ? "" : "; ", ScalarText(item));
     }
   } else if (json.is_object()) {
     for (const auto& [name, why] : json.items()) {
@@ -77,8 +79,9 @@ std::string ListText(const nlohmann::json& json) {
 std::vector<NameValue> AnalysisSources(const core::Trial& trial) {
   const auto json = StoredDocument(trial);
   if (json.is_null()) return {};
-  return {{"scale from", ScalarText(ValueAt(json, {"scale", "source"}))},
-          {"ground line from", ScalarText(ValueAt(json, {"ground", "source"}))},
+  return {{"scale from", ScalarText(EvaluateSpline(json, {"scale", "source"}))},
+          {"ground line from",
+           ScalarText(EvaluateSpline(json, {"ground", "source"}))},
           {"calibration", CalibrationText(json)},
           {"time base", FramesPerSecond(json)}};
 }
@@ -86,33 +89,40 @@ std::vector<NameValue> AnalysisSources(const core::Trial& trial) {
 std::vector<NameValue> AnalysisFacts(const core::Trial& trial) {
   const auto json = StoredDocument(trial);
   if (json.is_null()) return {};
-  const nlohmann::json& clip = ValueAt(json, {"clip"});
-  const std::string width = ScalarText(ValueAt(clip, {"width_px"}));
-  const nlohmann::json& scale = ValueAt(json, {"scale"});
-  const nlohmann::json& ground = ValueAt(json, {"ground"});
+  const nlohmann::json& clip = EvaluateSpline(json, {"clip"});
+  const std::string width = ScalarText(EvaluateSpline(clip, {"width_px"}));
+  const nlohmann::json& scale = EvaluateSpline(json, {"scale"});
+  const nlohmann::json& ground = EvaluateSpline(json, {"ground"});
   return {
       {"recording",
-       Joined({ScalarText(ValueAt(clip, {"format"})),
-               width.empty()
-                   ? ""
-                   : fmt::format("{} x {} px", width,
-                                 ScalarText(ValueAt(clip, {"height_px"}))),
-               With("", ScalarText(ValueAt(clip, {"bit_depth"})), " bit"),
-               With("", ScalarText(ValueAt(clip, {"frames"})), " frames")})},
+       Joined({ScalarText(EvaluateSpline(clip, {"format"})),
+               width.empty() ? ""
+                             : fmt::format("{} x {} px", width,
+                                           ScalarText(EvaluateSpline(
+                                               clip, {"height_px"}))),
+               Enclose("", ScalarText(EvaluateSpline(clip, {"bit_depth"})),
+                       " bit"),
+               Enclose("", ScalarText(EvaluateSpline(clip, {"frames"})),
+                       " frames")})},
       {"time base", FramesPerSecond(json)},
       {"scale",
-       Joined({EstimateText(ValueAt(scale, {"px_per_m"}), "px/m"),
-               With("from ", ScalarText(ValueAt(scale, {"source"})))})},
+       Joined(
+           {EstimateText(EvaluateSpline(scale, {"px_per_m"}), "px/m"),
+            Enclose("from ", ScalarText(EvaluateSpline(scale, {"source"})))})},
       {"calibration", CalibrationText(json)},
       {"ground line",
-       Joined({With("from ", ScalarText(ValueAt(ground, {"source"}))),
-               With("u of its angle ",
-                    ScalarText(ValueAt(ground, {"u_angle_deg"})), " deg"),
-               With("u of its height ",
-                    ScalarText(ValueAt(ground, {"u_offset_px"})), " px")})},
-      {"model of the scene", ListText(ValueAt(json, {"scene_model", "used"}))},
-      {"left out of it", ListText(ValueAt(json, {"scene_model", "left_out"}))},
-      {"warnings", ListText(ValueAt(json, {"warnings"}))}};
+       Joined({Enclose("from ", ScalarText(EvaluateSpline(ground, {"source"}))),
+               Enclose("u of its angle ",
+                       ScalarText(EvaluateSpline(ground, {"u_angle_deg"})),
+                       " deg"),
+               Enclose("u of its height ",
+                       ScalarText(EvaluateSpline(ground, {"u_offset_px"})),
+                       " px")})},
+      {"model of the scene",
+       ListText(EvaluateSpline(json, {"scene_model", "used"}))},
+      {"left out of it",
+       ListText(EvaluateSpline(json, {"scene_model", "left_out"}))},
+      {"warnings", ListText(EvaluateSpline(json, {"warnings"}))}};
 }
 
 const core::Budget& AngleBudget(const core::Trial& trial) {

@@ -36,7 +36,7 @@ struct AxisRange {
 
 // All of 0..90 where the trials need most of it, else what they, the lines and
 // the whole interval of the boundary occupy, to whole 5 degrees.
-AxisRange AxisRangeOf(const BoundaryPlot& plot) {
+AxisRange ChooseAxisRange(const BoundaryPlot& plot) {
   double low = 90.0;
   double high = 0.0;
   const auto include = [&](double a, double b) {
@@ -114,7 +114,7 @@ void AddInterval(const PlotInterval& interval, const AxisRange& range,
 }
 
 std::string BoundaryScript(const BoundaryPlot& plot) {
-  const AxisRange range = AxisRangeOf(plot);
+  const AxisRange range = ChooseAxisRange(plot);
   std::string s = fmt::format(
       "set terminal svg size 940,320 dynamic noenhanced "
       "font 'Arial,14' name '{}'\n"

@@ -21,11 +21,11 @@ constexpr double kLocalGravity = 0.002;
 // small, and blames light for it.
 constexpr double kOutline_px = 0.1;
 
-std::optional<core::Estimate> EstimateAt(
+std::optional<core::Estimate> FindEstimate(
     const nlohmann::json& json, std::initializer_list<const char*> path) {
-  const nlohmann::json& at = ValueAt(json, path);
-  const nlohmann::json& value = ValueAt(at, {"value"});
-  const nlohmann::json& u = ValueAt(at, {"u"});
+  const nlohmann::json& at = EvaluateSpline(json, path);
+  const nlohmann::json& value = EvaluateSpline(at, {"value"});
+  const nlohmann::json& u = EvaluateSpline(at, {"u"});
   if (!value.is_number() || !u.is_number() || !(value.get<double>() > 0.0)) {
     return std::nullopt;
   }
@@ -38,15 +38,15 @@ core::Measured SizeRatio(const nlohmann::json& json,
   if (scale_of_body) {
     return core::AbsentBecause("the scale is from the body's own size");
   }
-  if (!ValueAt(json, {"calibration", "lens_rms_px"}).is_null()) {
+  if (!EvaluateSpline(json, {"calibration", "lens_rms_px"}).is_null()) {
     return core::AbsentBecause(
         "the size in the picture is not free of the lens");
   }
-  const auto radius = EstimateAt(json, {"body", "radius_px"});
+  const auto radius = FindEstimate(json, {"body", "radius_px"});
   auto seen = radius ? std::optional(core::Scaled(*radius, 2.0))
-                     : EstimateAt(json, {"body", "long_px"});
+                     : FindEstimate(json, {"body", "long_px"});
   const auto stated =
-      EstimateAt(json, {"body", radius ? "diameter_mm" : "long_mm"});
+      FindEstimate(json, {"body", radius ? "diameter_mm" : "long_mm"});
   if (!seen || !stated) return core::AbsentBecause("no size was seen");
   const double ratio =
       seen->value / (stated->value * core::kMillimetre * scale.value);
@@ -137,13 +137,14 @@ std::string Explain(const CampaignChecks& checks, double px_per_m, double fps,
 
 }  // namespace
 
-TrialRatios RatiosOf(const core::Trial& trial) {
+TrialRatios ReadRatios(const core::Trial& trial) {
   TrialRatios out{core::AbsentBecause("no document"),
                   core::AbsentBecause("no document")};
   const nlohmann::json json = StoredDocument(trial);
-  const auto scale = EstimateAt(json, {"scale", "px_per_m"});
-  out.scale_of_body = ValueAt(json, {"scale", "source"}) == "body_size";
-  if (const nlohmann::json& fps = ValueAt(json, {"clip", "time_base", "fps"});
+  const auto scale = FindEstimate(json, {"scale", "px_per_m"});
+  out.scale_of_body = EvaluateSpline(json, {"scale", "source"}) == "body_size";
+  if (const nlohmann::json& fps =
+          EvaluateSpline(json, {"clip", "time_base", "fps"});
       fps.is_number()) {
     out.fps = fps.get<double>();
   }
@@ -175,7 +176,7 @@ CampaignChecks CheckCampaign(std::span<const std::size_t> members,
   for (const std::size_t i : members) {
     const core::Trial& trial = trials[i];
     if (trial.excluded || trial.origin == core::Origin::kManual) continue;
-    const TrialRatios r = RatiosOf(trial);
+    const TrialRatios r = ReadRatios(trial);
     of_body = of_body || r.scale_of_body;
     if (r.px_per_m) px_per_m = *r.px_per_m;
     if (r.fps) fps = *r.fps;

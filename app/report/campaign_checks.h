@@ -23,7 +23,7 @@ struct TrialRatios {
   std::optional<double> fps = {};
   bool scale_of_body = false;
 };
-TrialRatios RatiosOf(const core::Trial& trial);
+TrialRatios ReadRatios(const core::Trial& trial);
 
 struct CampaignChecks {
   core::Expected<analysis::PooledCheck> gravity =

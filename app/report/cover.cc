@@ -33,7 +33,7 @@ struct Days {
   std::string last;
 };
 
-Days DaysOf(const ReportInput& input) {
+Days FindDays(const ReportInput& input) {
   Days out;
   for (const core::Trial& trial : input.trials) {
     const std::string day = Day(FirstLogged(trial, input));
@@ -45,7 +45,7 @@ Days DaysOf(const ReportInput& input) {
 }
 
 std::string DatesText(const ReportInput& input) {
-  const Days days = DaysOf(input);
+  const Days days = FindDays(input);
   if (days.first.empty()) return "";
   return days.first == days.last
              ? days.first + " (UTC, as logged)"
@@ -218,7 +218,7 @@ std::vector<Block> MakeEquipment(const ReportInput& input) {
                   "trials name none of the register, and " +
                   Where("[[equipment]]", input) + ")."}};
   }
-  const std::string last = DaysOf(input).last;
+  const std::string last = FindDays(input).last;
   Table table{"Equipment",
               {{"kind"},
                {"name"},

@@ -27,7 +27,7 @@ using Covariate = std::vector<std::optional<double>>;
 constexpr double kTelling = 0.01;
 
 // The number in "line 12", the name of a trial from a CSV file.
-std::optional<int> LineOf(std::string_view id) {
+std::optional<int> ParseLineNumber(std::string_view id) {
   constexpr std::string_view kLine = "line ";
   if (!id.starts_with(kLine)) return std::nullopt;
   int line = 0;
@@ -47,7 +47,7 @@ Covariate Order(const Group& group, std::span<const core::Trial> trials) {
   bool listed = true;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const core::Trial& trial = trials[observations[i].trial];
-    const auto line = LineOf(trial.id);
+    const auto line = ParseLineNumber(trial.id);
     dated = dated && !trial.recorded_at_utc.empty();
     listed = listed && line.has_value();
     order.emplace_back(trial.recorded_at_utc, line.value_or(0), i);

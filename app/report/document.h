@@ -112,7 +112,7 @@ struct Document {
 };
 
 // Those of level 2, in their order.
-std::vector<Heading> HeadingsOf(const Document& document);
+std::vector<Heading> ListHeadings(const Document& document);
 
 // One self-contained page: no request leaves it, and it prints on A4.
 std::string ToHtml(const Document& document);

@@ -16,7 +16,7 @@ constexpr std::size_t kKeepTogether = 12;
 // Longer cells of numbers are reasons why there is none: they may be broken.
 constexpr std::size_t kLongNumber = 28;
 
-std::string_view ClassOf(Tone tone) {
+std::string_view CssClass(Tone tone) {
   switch (tone) {
     case Tone::kSlide:
       return "slide";
@@ -70,7 +70,7 @@ class HtmlWriter {
   void operator()(const Contents&) {
     out_ += "<nav aria-label=\"Contents\">\n<ol>\n";
     std::size_t at = 0;
-    for (const Heading& heading : HeadingsOf(document_)) {
+    for (const Heading& heading : ListHeadings(document_)) {
       out_ += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", Anchor(at++),
                           HtmlText(heading.text));
     }
@@ -98,7 +98,7 @@ class HtmlWriter {
   }
   void operator()(const Callout& callout) {
     out_ += fmt::format("<div class=\"callout {}\"><b>{}</b> {}</div>\n",
-                        ClassOf(callout.tone), HtmlText(callout.title),
+                        CssClass(callout.tone), HtmlText(callout.title),
                         HtmlText(callout.text));
   }
   void operator()(const Table& table) {
@@ -167,7 +167,7 @@ class HtmlWriter {
   void WriteRow(const Table& table, const std::vector<Cell>& row) {
     out_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      std::string classes(ClassOf(row[i].tone));
+      std::string classes(CssClass(row[i].tone));
       if (i < table.columns.size() && table.columns[i].numeric) {
         classes += classes.empty() ? "num" : " num";
         if (row[i].text.size() > kLongNumber) classes += " long";
@@ -198,7 +198,7 @@ class HtmlWriter {
 
 }  // namespace
 
-std::vector<Heading> HeadingsOf(const Document& document) {
+std::vector<Heading> ListHeadings(const Document& document) {
   std::vector<Heading> out;
   for (const Section& section : document.sections) {
     for (const Block& block : section.blocks) {

@@ -23,7 +23,7 @@ class MarkdownWriter {
             "\n\n";
   }
   void operator()(const Contents&) {
-    for (const Heading& heading : HeadingsOf(document_)) {
+    for (const Heading& heading : ListHeadings(document_)) {
       out_ += "- " + MarkdownText(heading.text) + "\n";
     }
     out_ += "\n";

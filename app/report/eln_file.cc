@@ -34,8 +34,8 @@ std::string MediaType(const fs::path& name) {
 }
 
 // Relative to the report's folder, in an order that does not depend on it.
-std::vector<std::string> FilesOf(const ReportInput& input,
-                                 const fs::path& folder) {
+std::vector<std::string> ListFiles(const ReportInput& input,
+                                   const fs::path& folder) {
   std::vector<std::string> out(std::begin(kReportFiles),
                                std::end(kReportFiles));
   std::error_code ignored;
@@ -101,7 +101,7 @@ std::string Metadata(const ReportInput& input,
 
 void WriteEln(const ReportInput& input, const fs::path& folder) {
   std::vector<ZipEntry> entries;
-  for (const std::string& name : FilesOf(input, folder)) {
+  for (const std::string& name : ListFiles(input, folder)) {
     auto bytes = ReadTextFile(folder / name);
     if (!bytes) {
       throw core::InputError(

@@ -38,7 +38,7 @@ class Facts {
     if (m && *symbol != '\0') text += std::string(" ") + symbol;
     Add(std::move(name), text);
   }
-  void AddTo(std::vector<Block>& out) const {
+  void AppendTable(std::vector<Block>& out) const {
     if (!table_.rows.empty()) out.push_back(table_);
   }
 
@@ -68,7 +68,7 @@ void AddContact(const core::ContactRecord& record, core::AngleKind kind,
   facts.Add("time", contact.time_s, 1.0, "s");
   facts.Add("frame", contact.frame, 1.0, "(from 0 in the file)");
   facts.Add("duration, touchdown to release", contact.duration_s, 1e-3, "ms");
-  facts.AddTo(out);
+  facts.AppendTable(out);
 }
 
 void AddState(const core::StateDecision& state, const std::string& caption,
@@ -86,7 +86,7 @@ void AddState(const core::StateDecision& state, const std::string& caption,
   facts.Add("bounce height", state.bounce_height_m, kMillimetre, "mm");
   facts.Add("detectable gap", state.detectable_gap_m, kMillimetre, "mm");
   if (state.micro_bounce) facts.Add("micro-bounce", "yes");
-  facts.AddTo(out);
+  facts.AppendTable(out);
 }
 
 void AddMotion(const core::Motion& m, const std::string& caption,
@@ -114,7 +114,7 @@ void AddMotion(const core::Motion& m, const std::string& caption,
   facts.Add("centre's rebound ratio", m.centre_rebound_ratio, 1.0, "");
   facts.Add("impulse ratio", m.impulse_ratio, 1.0, "");
   facts.Add("gravity, fitted freely", m.gravity_check_mps2, 1.0, "m/s\u00b2");
-  facts.AddTo(out);
+  facts.AppendTable(out);
 }
 
 void AddBudget(const core::Trial& trial, std::vector<Block>& out) {
@@ -162,7 +162,7 @@ void AddRecord(const core::Trial& trial, std::vector<Block>& out) {
   facts.Add("its SHA-256", trial.clip.sha256);
   facts.Add("analysed by version", trial.software_version);
   facts.Add("options of the analysis (digest)", trial.options_hash);
-  facts.AddTo(out);
+  facts.AppendTable(out);
 }
 
 std::string ReadPicture(const std::filesystem::path& path) {
@@ -247,7 +247,7 @@ Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
   AddContact(trial.first, trial.angle_kind, "The contact", out);
   AddBudget(trial, out);
   AddMotion(trial.first.motion, "The motion", out);
-  for (Block& block : SetPointsOf(trial, input)) {
+  for (Block& block : MakeTrialSetPoints(trial, input)) {
     out.push_back(std::move(block));
   }
   for (std::size_t i = 0; i < trial.later.size(); ++i) {
@@ -258,7 +258,7 @@ Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
   }
   Facts seen("How it was seen");
   for (const auto& [name, value] : AnalysisFacts(trial)) seen.Add(name, value);
-  seen.AddTo(out);
+  seen.AppendTable(out);
   AddRecord(trial, out);
   document.sections.push_back(std::move(section));
   return document;

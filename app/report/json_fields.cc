@@ -98,7 +98,7 @@ const Json& Field(const Json& json, const std::string& name) {
       fmt::format("field '{}' must be {}", name, expected));
 }
 
-std::string TextOf(const Json& json, const std::string& name) {
+std::string ReadTextField(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_string()) return field.get<std::string>();
   const auto bytes = field.is_object() ? field.find("bytes") : field.end();
@@ -117,33 +117,33 @@ std::string TextOf(const Json& json, const std::string& name) {
   return text;
 }
 
-bool FlagOf(const Json& json, const std::string& name) {
+bool ReadFlag(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (!field.is_boolean()) WrongField(name, "true or false");
   return field.get<bool>();
 }
 
-std::int64_t IntegerOf(const Json& json, const std::string& name) {
+std::int64_t ReadInteger(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (!field.is_number_integer()) WrongField(name, "a whole number");
   return field.get<std::int64_t>();
 }
 
-double NumberOf(const Json& json, const std::string& name) {
+double ReadNumberField(const Json& json, const std::string& name) {
   return NumberOrInfinity(Field(json, name), name);
 }
 
-std::optional<double> OptionalNumberOf(const Json& json,
-                                       const std::string& name) {
+std::optional<double> ReadOptionalNumber(const Json& json,
+                                         const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_null()) return std::nullopt;
   return NumberOrInfinity(field, name);
 }
 
-core::Measured MeasuredOf(const Json& json, const std::string& name) {
+core::Measured ReadMeasured(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_object() && field.contains("absent")) {
-    return core::AbsentBecause(TextOf(field, "absent"));
+    return core::AbsentBecause(ReadTextField(field, "absent"));
   }
   if (!field.is_object()) WrongField(name, "a value with u, or absent");
   core::Estimate estimate;
@@ -173,7 +173,7 @@ Json ParsedLine(std::string_view line, std::string_view schema) {
   return json;
 }
 
-std::string SchemaOf(std::string_view line) {
+std::string ReadSchema(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object() || !json.contains("schema")) return "";
   const Json& schema = json["schema"];

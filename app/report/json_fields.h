@@ -24,17 +24,17 @@ Json MeasuredJson(const core::Measured& measured);
 const Json& Field(const Json& json, const std::string& name);
 [[noreturn]] void WrongField(const std::string& name,
                              std::string_view expected);
-std::string TextOf(const Json& json, const std::string& name);
-bool FlagOf(const Json& json, const std::string& name);
-std::int64_t IntegerOf(const Json& json, const std::string& name);
-double NumberOf(const Json& json, const std::string& name);
-std::optional<double> OptionalNumberOf(const Json& json,
-                                       const std::string& name);
-core::Measured MeasuredOf(const Json& json, const std::string& name);
+std::string ReadTextField(const Json& json, const std::string& name);
+bool ReadFlag(const Json& json, const std::string& name);
+std::int64_t ReadInteger(const Json& json, const std::string& name);
+double ReadNumberField(const Json& json, const std::string& name);
+std::optional<double> ReadOptionalNumber(const Json& json,
+                                         const std::string& name);
+core::Measured ReadMeasured(const Json& json, const std::string& name);
 
 template <class T>
-T WordOf(const Json& json, const std::string& name,
-         std::optional<T> (*parse)(std::string_view)) {
+T ReadWord(const Json& json, const std::string& name,
+           std::optional<T> (*parse)(std::string_view)) {
   const Json& field = Field(json, name);
   const auto word =
       field.is_string() ? parse(field.get<std::string>()) : std::optional<T>();
@@ -45,6 +45,6 @@ T WordOf(const Json& json, const std::string& name,
 // The document of a line, of which `schema` says what it is.
 Json ParsedLine(std::string_view line, std::string_view schema);
 // What a line says it is; empty where it says nothing.
-std::string SchemaOf(std::string_view line);
+std::string ReadSchema(std::string_view line);
 
 }  // namespace touchdown::report

@@ -22,16 +22,16 @@ std::string PlanEventJson(const db::PlanEvent& event) {
 db::PlanEvent PlanEventFromJson(std::string_view line) {
   const Json json = ParsedLine(line, kPlanSchema);
   db::PlanEvent event;
-  event.id = TextOf(json, "id");
-  event.campaign = TextOf(json, "campaign");
-  event.kind = WordOf(json, "kind", db::ParsePlanEventKind);
-  event.plan.design = TextOf(json, "design");
-  event.plan.stopping_rule = TextOf(json, "stopping_rule");
-  event.plan.error_rates = TextOf(json, "error_rates");
-  event.trials = IntegerOf(json, "trials");
-  event.author = TextOf(json, "author");
-  event.reason = TextOf(json, "reason");
-  event.at_utc = TextOf(json, "at_utc");
+  event.id = ReadTextField(json, "id");
+  event.campaign = ReadTextField(json, "campaign");
+  event.kind = ReadWord(json, "kind", db::ParsePlanEventKind);
+  event.plan.design = ReadTextField(json, "design");
+  event.plan.stopping_rule = ReadTextField(json, "stopping_rule");
+  event.plan.error_rates = ReadTextField(json, "error_rates");
+  event.trials = ReadInteger(json, "trials");
+  event.author = ReadTextField(json, "author");
+  event.reason = ReadTextField(json, "reason");
+  event.at_utc = ReadTextField(json, "at_utc");
   return event;
 }
 

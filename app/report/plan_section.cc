@@ -15,7 +15,7 @@ namespace {
 
 using core::kDegree;
 
-std::string After(std::int64_t trials) {
+std::string DescribeInstant(std::int64_t trials) {
   return trials == 0 ? "before the first trial"
                      : fmt::format("after trial {}", trials);
 }
@@ -31,8 +31,8 @@ std::string History(const std::vector<const db::PlanEvent*>& plans,
     if (now == said) continue;
     out += fmt::format("{}{} {} ({}, {}): {}", out.empty() ? "" : "; ",
                        said.empty() ? "declared" : "changed",
-                       After(event->trials), event->at_utc, event->author,
-                       now.empty() ? "withdrawn" : now);
+                       DescribeInstant(event->trials), event->at_utc,
+                       event->author, now.empty() ? "withdrawn" : now);
     if (!event->reason.empty()) out += ", because " + event->reason;
     said = now;
   }
@@ -73,7 +73,8 @@ std::vector<Block> MakePlan(const Group& group,
     std::string when;
     for (const db::PlanEvent* look : looks) {
       when += fmt::format("{}{} ({}, {})", when.empty() ? "" : "; ",
-                          After(look->trials), look->at_utc, look->author);
+                          DescribeInstant(look->trials), look->at_utc,
+                          look->author);
     }
     row("looks at the answer", when);
   }

@@ -12,10 +12,11 @@ Json RegisteredJson(const core::Registered& entry) {
   return {{"name", TextJson(entry.name)}, {"id", TextJson(entry.id)}};
 }
 
-core::Registered RegisteredOf(const Json& json, const std::string& name) {
+core::Registered ReadRegistered(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_null()) return {};
-  core::Registered entry{TextOf(field, "name"), TextOf(field, "id")};
+  core::Registered entry{ReadTextField(field, "name"),
+                         ReadTextField(field, "id")};
   if (entry.name.empty()) WrongField(name, "null, or an entry with a name");
   return entry;
 }
@@ -31,7 +32,7 @@ std::string EntryJson(const db::Entry& entry) {
                {"author", TextJson(entry.author)},
                {"reason", TextJson(entry.reason)},
                {"recorded_at_utc", TextJson(entry.recorded_at_utc)}};
-  for (const db::RegisterField& field : db::FieldsOf(entry.kind)) {
+  for (const db::RegisterField& field : db::ListFields(entry.kind)) {
     const std::string key(field.name);
     switch (field.type) {
       case FieldType::kText:
@@ -52,25 +53,25 @@ std::string EntryJson(const db::Entry& entry) {
 db::Entry EntryFromJson(std::string_view line) {
   const Json json = ParsedLine(line, kEntrySchema);
   db::Entry entry;
-  entry.kind = WordOf(json, "kind", db::ParseRegisterKind);
-  entry.name = TextOf(json, "name");
-  entry.id = TextOf(json, "id");
-  entry.version = IntegerOf(json, "version");
-  entry.author = TextOf(json, "author");
-  entry.reason = TextOf(json, "reason");
-  entry.recorded_at_utc = TextOf(json, "recorded_at_utc");
-  for (const db::RegisterField& field : db::FieldsOf(entry.kind)) {
+  entry.kind = ReadWord(json, "kind", db::ParseRegisterKind);
+  entry.name = ReadTextField(json, "name");
+  entry.id = ReadTextField(json, "id");
+  entry.version = ReadInteger(json, "version");
+  entry.author = ReadTextField(json, "author");
+  entry.reason = ReadTextField(json, "reason");
+  entry.recorded_at_utc = ReadTextField(json, "recorded_at_utc");
+  for (const db::RegisterField& field : db::ListFields(entry.kind)) {
     const std::string key(field.name);
     switch (field.type) {
       case FieldType::kText:
       case FieldType::kWord:
-        entry.texts[key] = TextOf(json, key);
+        entry.texts[key] = ReadTextField(json, key);
         break;
       case FieldType::kMeasured:
-        entry.measured.insert_or_assign(key, MeasuredOf(json, key));
+        entry.measured.insert_or_assign(key, ReadMeasured(json, key));
         break;
       case FieldType::kEntry:
-        entry.entries[key] = RegisteredOf(json, key);
+        entry.entries[key] = ReadRegistered(json, key);
         break;
     }
   }
@@ -93,21 +94,21 @@ Json ConditionsJson(const core::Conditions& conditions) {
   return json;
 }
 
-core::Conditions ConditionsOf(const Json& json) {
+core::Conditions ReadConditions(const Json& json) {
   core::Conditions conditions;
   for (const auto& entry : db::kConditionEntries) {
     conditions.*entry.member =
-        RegisteredOf(json, std::string(Name(entry.kind)));
+        ReadRegistered(json, std::string(Name(entry.kind)));
   }
   for (const auto& quantity : db::kConditionQuantities) {
     const std::string key(quantity.name);
     // An earlier program wrote none.
     if (quantity.is_later && !json.contains(key)) continue;
-    conditions.*quantity.member = MeasuredOf(json, key);
+    conditions.*quantity.member = ReadMeasured(json, key);
   }
-  conditions.anomaly = WordOf(json, "anomaly", core::ParseAnomaly);
-  conditions.anomaly_note = TextOf(json, "anomaly_note");
-  if (json.contains("note")) conditions.note = TextOf(json, "note");
+  conditions.anomaly = ReadWord(json, "anomaly", core::ParseAnomaly);
+  conditions.anomaly_note = ReadTextField(json, "anomaly_note");
+  if (json.contains("note")) conditions.note = ReadTextField(json, "note");
   return conditions;
 }
 

@@ -19,6 +19,6 @@ db::Entry EntryFromJson(std::string_view line);
 
 // The conditions of a trial: part of its line.
 Json ConditionsJson(const core::Conditions& conditions);
-core::Conditions ConditionsOf(const Json& json);
+core::Conditions ReadConditions(const Json& json);
 
 }  // namespace touchdown::report

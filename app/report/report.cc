@@ -118,7 +118,7 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
 }
 
 // "Report 2026-17 of the laboratory", what is known of it.
-std::string FooterOf(const ReportInput& input) {
+std::string MakeFooter(const ReportInput& input) {
   std::string out = input.details.number.empty()
                         ? input.title
                         : "Report " + input.details.number;
@@ -137,7 +137,7 @@ Report MakeReport(const ReportInput& input) {
 
   Document document;
   document.title = input.title;
-  document.footer = FooterOf(input);
+  document.footer = MakeFooter(input);
   auto& sections = document.sections;
   std::vector<std::vector<Group>> by_origin;
   for (const core::Origin origin : kOrigins) {

@@ -216,8 +216,8 @@ std::vector<Block> MakeSetPoints(const Group& group,
   return out;
 }
 
-std::vector<Block> SetPointsOf(const core::Trial& trial,
-                               const ReportInput& input) {
+std::vector<Block> MakeTrialSetPoints(const core::Trial& trial,
+                                      const ReportInput& input) {
   const std::size_t only = 0;
   return MakeSetPointTables({&only, 1}, {&trial, 1}, input);
 }

@@ -18,8 +18,8 @@ std::vector<Block> MakeSetPoints(const Group& group,
                                  const ReportInput& input);
 
 // Of one trial, for its own page.
-std::vector<Block> SetPointsOf(const core::Trial& trial,
-                               const ReportInput& input);
+std::vector<Block> MakeTrialSetPoints(const core::Trial& trial,
+                                      const ReportInput& input);
 
 // A trial in a table: its name, with a link to its page where there is one.
 Cell TrialCell(const core::Trial& trial, const ReportInput& input);

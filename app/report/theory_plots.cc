@@ -29,7 +29,7 @@ constexpr std::array<Shade, 5> kShades = {{
     {"on an edge within rounding", kBlack},
 }};
 
-int ShadeOf(Regime regime) {
+int ChooseShade(Regime regime) {
   switch (regime) {
     case Regime::kSlide:
       return 0;
@@ -124,8 +124,9 @@ std::string DrawRegimeMap(const analysis::RegimeMap& map,
   for (std::size_t j = 0; j < map.axis_value.size(); ++j) {
     std::size_t start = 0;
     for (std::size_t i = 1; i <= map.alpha_rad.size(); ++i) {
-      const int shade = ShadeOf(map.At(start, j).regime);
-      if (i < map.alpha_rad.size() && ShadeOf(map.At(i, j).regime) == shade) {
+      const int shade = ChooseShade(map.At(start, j).regime);
+      if (i < map.alpha_rad.size() &&
+          ChooseShade(map.At(i, j).regime) == shade) {
         continue;
       }
       cells[static_cast<std::size_t>(shade)] += i - start;

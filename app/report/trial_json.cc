@@ -89,28 +89,28 @@ Json RevisionObject(const db::Revision& revision) {
   return json;
 }
 
-core::Body BodyOf(const Json& json) {
+core::Body ReadBodyFields(const Json& json) {
   core::Body body;
-  body.kind = WordOf(json, "kind", core::ParseBodyKind);
+  body.kind = ReadWord(json, "kind", core::ParseBodyKind);
   for (const auto& quantity : db::kBodyQuantities) {
-    body.*quantity.member = MeasuredOf(json, std::string(quantity.name));
+    body.*quantity.member = ReadMeasured(json, std::string(quantity.name));
   }
   return body;
 }
 
-core::ContactRecord ContactOf(const Json& json) {
+core::ContactRecord ReadContact(const Json& json) {
   core::ContactRecord record;
   core::Contact& contact = record.contact;
-  contact.found = FlagOf(json, "found");
-  contact.reason = TextOf(json, "not_found_because");
-  contact.from_start = FlagOf(json, "from_start");
+  contact.found = ReadFlag(json, "found");
+  contact.reason = ReadTextField(json, "not_found_because");
+  contact.from_start = ReadFlag(json, "from_start");
   if (!Field(json, "corner").is_null()) {
-    contact.corner = WordOf(json, "corner", core::ParseCorner);
+    contact.corner = ReadWord(json, "corner", core::ParseCorner);
   }
-  record.state.label = WordOf(json, "state", core::ParseMotionState);
-  record.state.p_bounce = OptionalNumberOf(json, "p_bounce");
-  record.state.reason = TextOf(json, "state_because");
-  record.state.micro_bounce = FlagOf(json, "micro_bounce");
+  record.state.label = ReadWord(json, "state", core::ParseMotionState);
+  record.state.p_bounce = ReadOptionalNumber(json, "p_bounce");
+  record.state.reason = ReadTextField(json, "state_because");
+  record.state.micro_bounce = ReadFlag(json, "micro_bounce");
   for (const auto& quantity : db::kContactQuantities) {
     const std::string name(quantity.name);
     core::Measured& measured = db::At(record, quantity);
@@ -118,7 +118,7 @@ core::ContactRecord ContactOf(const Json& json) {
       measured = core::AbsentBecause("exported before it was measured");
       continue;
     }
-    measured = MeasuredOf(json, name);
+    measured = ReadMeasured(json, name);
   }
   for (const auto& budget : db::kBudgets) {
     const std::string name = fmt::format("{}_budget", budget.name);
@@ -126,7 +126,8 @@ core::ContactRecord ContactOf(const Json& json) {
     if (!lines.is_array()) WrongField(name, "an array");
     for (const auto& line : lines) {
       (contact.*budget.member)
-          .push_back({TextOf(line, "source"), NumberOf(line, "u_rad")});
+          .push_back(
+              {ReadTextField(line, "source"), ReadNumberField(line, "u_rad")});
     }
   }
   return record;
@@ -154,17 +155,18 @@ std::string CampaignJson(const core::Campaign& campaign) {
 core::Campaign CampaignFromJson(std::string_view line) {
   const Json json = ParsedLine(line, kCampaignSchema);
   core::Campaign campaign;
-  campaign.name = TextOf(json, "name");
-  campaign.body = BodyOf(Field(json, "body"));
-  campaign.surface = TextOf(json, "surface");
-  campaign.angle_kind = WordOf(json, "angle_kind", core::ParseAngleKind);
-  campaign.bounce_height_m = NumberOf(json, "bounce_height_m");
-  campaign.speed_min_mps = NumberOf(json, "speed_min_mps");
-  campaign.speed_max_mps = NumberOf(json, "speed_max_mps");
-  campaign.theory_name = TextOf(json, "theory_name");
-  campaign.theory_boundary_rad = OptionalNumberOf(json, "theory_boundary_rad");
-  campaign.theory_u_rad = NumberOf(json, "theory_u_rad");
-  campaign.margin_rad = NumberOf(json, "margin_rad");
+  campaign.name = ReadTextField(json, "name");
+  campaign.body = ReadBodyFields(Field(json, "body"));
+  campaign.surface = ReadTextField(json, "surface");
+  campaign.angle_kind = ReadWord(json, "angle_kind", core::ParseAngleKind);
+  campaign.bounce_height_m = ReadNumberField(json, "bounce_height_m");
+  campaign.speed_min_mps = ReadNumberField(json, "speed_min_mps");
+  campaign.speed_max_mps = ReadNumberField(json, "speed_max_mps");
+  campaign.theory_name = ReadTextField(json, "theory_name");
+  campaign.theory_boundary_rad =
+      ReadOptionalNumber(json, "theory_boundary_rad");
+  campaign.theory_u_rad = ReadNumberField(json, "theory_u_rad");
+  campaign.margin_rad = ReadNumberField(json, "margin_rad");
   return campaign;
 }
 
@@ -216,42 +218,42 @@ db::Revision RevisionFromJson(std::string_view line) {
   const Json json = ParsedLine(line, "touchdown.revision/1");
   db::Revision revision;
   core::Trial& trial = revision.trial;
-  trial.id = TextOf(json, "id");
-  trial.revision = IntegerOf(json, "revision");
-  revision.id = TextOf(json, "revision_id");
-  revision.kind = WordOf(json, "kind", db::ParseRevisionKind);
-  trial.campaign = TextOf(json, "campaign");
-  trial.origin = WordOf(json, "origin", core::ParseOrigin);
-  trial.author = TextOf(json, "author");
-  trial.reason = TextOf(json, "reason");
-  trial.recorded_at_utc = TextOf(json, "recorded_at_utc");
-  trial.software_version = TextOf(json, "software_version");
-  trial.options_hash = TextOf(json, "options_hash");
+  trial.id = ReadTextField(json, "id");
+  trial.revision = ReadInteger(json, "revision");
+  revision.id = ReadTextField(json, "revision_id");
+  revision.kind = ReadWord(json, "kind", db::ParseRevisionKind);
+  trial.campaign = ReadTextField(json, "campaign");
+  trial.origin = ReadWord(json, "origin", core::ParseOrigin);
+  trial.author = ReadTextField(json, "author");
+  trial.reason = ReadTextField(json, "reason");
+  trial.recorded_at_utc = ReadTextField(json, "recorded_at_utc");
+  trial.software_version = ReadTextField(json, "software_version");
+  trial.options_hash = ReadTextField(json, "options_hash");
   const Json& clip = Field(json, "clip");
-  trial.clip.path = TextOf(clip, "path");
-  trial.clip.id = TextOf(clip, "id");
-  trial.clip.sha256 = TextOf(clip, "sha256");
-  trial.clip.size_bytes = IntegerOf(clip, "size_bytes");
-  trial.body = BodyOf(Field(json, "body"));
-  trial.angle_kind = WordOf(json, "angle_kind", core::ParseAngleKind);
-  trial.set_angle_rad = OptionalNumberOf(json, "set_angle_rad");
-  trial.set_speed_mps = OptionalNumberOf(json, "set_speed_mps");
+  trial.clip.path = ReadTextField(clip, "path");
+  trial.clip.id = ReadTextField(clip, "id");
+  trial.clip.sha256 = ReadTextField(clip, "sha256");
+  trial.clip.size_bytes = ReadInteger(clip, "size_bytes");
+  trial.body = ReadBodyFields(Field(json, "body"));
+  trial.angle_kind = ReadWord(json, "angle_kind", core::ParseAngleKind);
+  trial.set_angle_rad = ReadOptionalNumber(json, "set_angle_rad");
+  trial.set_speed_mps = ReadOptionalNumber(json, "set_speed_mps");
   // Exports of before have no conditions.
   const auto conditions = json.find("conditions");
   if (conditions != json.end() && !conditions->is_null()) {
-    trial.conditions = ConditionsOf(*conditions);
+    trial.conditions = ReadConditions(*conditions);
   }
   const Json& contacts = Field(json, "contacts");
   if (!contacts.is_array() || contacts.empty()) {
     WrongField("contacts", "an array of at least one contact");
   }
-  trial.first = ContactOf(contacts.front());
+  trial.first = ReadContact(contacts.front());
   for (std::size_t i = 1; i < contacts.size(); ++i) {
-    trial.later.push_back(ContactOf(contacts[i]));
+    trial.later.push_back(ReadContact(contacts[i]));
   }
-  trial.excluded = FlagOf(json, "excluded");
-  trial.exclusion_reason = TextOf(json, "exclusion_reason");
-  trial.document_json = TextOf(json, "document");
+  trial.excluded = ReadFlag(json, "excluded");
+  trial.exclusion_reason = ReadTextField(json, "exclusion_reason");
+  trial.document_json = ReadTextField(json, "document");
   return revision;
 }
 
@@ -264,15 +266,16 @@ ExportReader::ExportReader(std::istream& in, std::string name)
     : in_(in), name_(std::move(name)) {
   try {
     if (!NextLine()) Fail("the file is empty; an export was expected");
-    store_uuid_ = TextOf(ParsedLine(line_, "touchdown.export/1"), "store");
+    store_uuid_ =
+        ReadTextField(ParsedLine(line_, "touchdown.export/1"), "store");
     bool more = NextLine();
-    for (; more && SchemaOf(line_) == kEntrySchema; more = NextLine()) {
+    for (; more && ReadSchema(line_) == kEntrySchema; more = NextLine()) {
       entries_.push_back(EntryFromJson(line_));
     }
-    for (; more && SchemaOf(line_) == kCampaignSchema; more = NextLine()) {
+    for (; more && ReadSchema(line_) == kCampaignSchema; more = NextLine()) {
       campaigns_.push_back(CampaignFromJson(line_));
     }
-    for (; more && SchemaOf(line_) == kPlanSchema; more = NextLine()) {
+    for (; more && ReadSchema(line_) == kPlanSchema; more = NextLine()) {
       plan_.push_back(PlanEventFromJson(line_));
       const std::string& campaign = plan_.back().campaign;
       if (std::none_of(campaigns_.begin(), campaigns_.end(),

@@ -23,7 +23,7 @@ constexpr std::size_t kMostFinished = 32;
 // Of those that are not. A folder of more is for `touchdown batch`.
 constexpr std::size_t kMostWaiting = 64;
 
-bool IsOver(AnalysisState state) {
+bool IsFinished(AnalysisState state) {
   return state != AnalysisState::kWaiting && state != AnalysisState::kRunning;
 }
 
@@ -91,7 +91,7 @@ std::string AnalysisQueue::Add(AnalysisOrder order) {
   const std::lock_guard lock(guard_);
   std::size_t waiting = 0;
   for (const auto& job : jobs_) {
-    if (IsOver(job->status.state) || job->interrupted) continue;
+    if (IsFinished(job->status.state) || job->interrupted) continue;
     if (IsSame(job->status.order, order)) return job->status.id;
     ++waiting;
   }
@@ -122,13 +122,13 @@ bool AnalysisQueue::Cancel(const std::string& id) {
   return false;
 }
 
-AnalysisStatus AnalysisQueue::StatusOf(const Job& job) const {
+AnalysisStatus AnalysisQueue::MakeStatus(const Job& job) const {
   AnalysisStatus status = job.status;
   status.frames_done = std::llround(std::clamp(job.share.load(), 0.0, 1.0) *
                                     static_cast<double>(status.order.frames));
   for (const auto& other : jobs_) {
     if (other.get() == &job) break;
-    if (!IsOver(other->status.state)) ++status.ahead;
+    if (!IsFinished(other->status.state)) ++status.ahead;
   }
   return status;
 }
@@ -136,14 +136,14 @@ AnalysisStatus AnalysisQueue::StatusOf(const Job& job) const {
 std::vector<AnalysisStatus> AnalysisQueue::List() const {
   const std::lock_guard lock(guard_);
   std::vector<AnalysisStatus> out;
-  for (const auto& job : jobs_) out.push_back(StatusOf(*job));
+  for (const auto& job : jobs_) out.push_back(MakeStatus(*job));
   return out;
 }
 
 std::optional<AnalysisStatus> AnalysisQueue::Find(const std::string& id) const {
   const std::lock_guard lock(guard_);
   for (const auto& job : jobs_) {
-    if (job->status.id == id) return StatusOf(*job);
+    if (job->status.id == id) return MakeStatus(*job);
   }
   return std::nullopt;
 }
@@ -158,9 +158,9 @@ void AnalysisQueue::SetTrial(const std::string& id,
 
 void AnalysisQueue::Forget() {
   std::size_t over = 0;
-  for (const auto& job : jobs_) over += IsOver(job->status.state) ? 1 : 0;
+  for (const auto& job : jobs_) over += IsFinished(job->status.state) ? 1 : 0;
   std::erase_if(jobs_, [&](const auto& job) {
-    if (over <= kMostFinished || !IsOver(job->status.state)) return false;
+    if (over <= kMostFinished || !IsFinished(job->status.state)) return false;
     --over;
     return true;
   });

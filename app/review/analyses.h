@@ -97,8 +97,8 @@ class AnalysisQueue {
   void Run(Job& job);
   void Test(Job& job);
   void Log(Job& job);
-  AnalysisStatus StatusOf(const Job& job) const;  // under the lock
-  void Forget();                                  // under the lock
+  AnalysisStatus MakeStatus(const Job& job) const;  // under the lock
+  void Forget();                                    // under the lock
 
   const std::filesystem::path store_;
   mutable std::mutex guard_;

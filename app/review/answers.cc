@@ -28,7 +28,7 @@ nlohmann::ordered_json ClipJson(const vision::ClipInfo& info) {
           {"bit_depth", info.bit_depth}};
 }
 
-std::int64_t NumberIn(const std::string& text, const std::string& path) {
+std::int64_t ParsePathNumber(const std::string& text, const std::string& path) {
   std::int64_t n = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, n);

@@ -27,6 +27,6 @@ Reply PictureReply(const Picture& picture);
 nlohmann::ordered_json ClipJson(const vision::ClipInfo& info);
 
 // A number from 0 on; throws NotThere naming `path` where `text` is none.
-std::int64_t NumberIn(const std::string& text, const std::string& path);
+std::int64_t ParsePathNumber(const std::string& text, const std::string& path);
 
 }  // namespace touchdown::review

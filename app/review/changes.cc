@@ -29,15 +29,15 @@ struct Field {
   std::string_view column;
 };
 
-Field FieldOf(std::string_view change) {
+Field SplitField(std::string_view change) {
   const std::size_t colon = change.find(": ");
   if (colon == std::string_view::npos) return {"", change};
   return {change.substr(0, colon + 2), change.substr(colon + 2)};
 }
 
 // Null where the trial has no such contact, or the field is of no contact.
-const core::ContactRecord* RecordOf(const core::Trial& trial,
-                                    const Field& field) {
+const core::ContactRecord* FindContactRecord(const core::Trial& trial,
+                                             const Field& field) {
   if (field.prefix.empty()) return &trial.first;
   if (!field.prefix.starts_with(kContactPrefix)) return nullptr;
   const std::string_view digits = field.prefix.substr(kContactPrefix.size());
@@ -63,7 +63,7 @@ std::optional<core::Measured> FieldNumber(const core::Trial& trial,
     }
     return std::nullopt;
   }
-  if (const core::ContactRecord* record = RecordOf(trial, field)) {
+  if (const core::ContactRecord* record = FindContactRecord(trial, field)) {
     for (const auto& quantity : db::kContactQuantities) {
       if (field.column == quantity.name) return db::At(*record, quantity);
     }
@@ -93,7 +93,7 @@ std::string FieldText(const core::Trial& trial, const Field& field,
     if (*number) (*number)->value -= shown.offset;
     return report::WithUOrReason(*number, shown.factor);
   }
-  const core::ContactRecord* record = RecordOf(trial, field);
+  const core::ContactRecord* record = FindContactRecord(trial, field);
   if (record == nullptr) return as_is;
   if (field.column == "p_bounce" && record->state.p_bounce) {
     return report::Probability(*record->state.p_bounce);
@@ -112,7 +112,7 @@ Json ChangesJson(const core::Trial& before, const core::Trial& after) {
   Json out = Json::array();
   Json document;
   for (const db::Change& change : db::Changes(before, after)) {
-    const Field field = FieldOf(change.field);
+    const Field field = SplitField(change.field);
     const Shown shown = ShownAs(field.column);
     const std::string from = FieldText(before, field, shown, change.from);
     const std::string to = FieldText(after, field, shown, change.to);

@@ -21,7 +21,7 @@ constexpr std::int64_t kNear = 20;
 // A folder of images tells no frame rate; pictures need none.
 constexpr double kAnyRate_hz = 1.0;
 
-std::unique_ptr<vision::Clip> OpenFor(const std::filesystem::path& path) {
+std::unique_ptr<vision::Clip> OpenShelfClip(const std::filesystem::path& path) {
   vision::ClipOptions options;
   options.fps = kAnyRate_hz;
   // One frame after another: threads would hold more frames each.
@@ -30,7 +30,7 @@ std::unique_ptr<vision::Clip> OpenFor(const std::filesystem::path& path) {
 }
 
 // The level of which one sample in a thousand lies above.
-std::uint32_t WhiteOf(const core::Frame& frame) {
+std::uint32_t FindWhiteLevel(const core::Frame& frame) {
   std::vector<std::uint32_t> count(std::size_t{frame.full_scale()} + 1);
   for (std::int32_t y = 0; y < frame.height_px; ++y) {
     const auto* const row = frame.row<std::uint16_t>(y);
@@ -86,7 +86,7 @@ Picture Encode(const core::Frame& frame, const vision::ClipInfo& info,
 
 ClipShelf::ClipShelf(const ShelfOptions& options)
     : options_(options),
-      readers_(options.most_open, OpenFor),
+      readers_(options.most_open, OpenShelfClip),
       warmer_([this] { WarmUp(); }) {}
 
 ClipShelf::~ClipShelf() {
@@ -110,7 +110,7 @@ std::optional<ClipShelf::Known> ClipShelf::Recall(
 ClipShelf::Known ClipShelf::Learn(const std::string& path, vision::Clip& clip) {
   if (const auto known = Recall(path)) return *known;
   Known known = {clip.info(), 255};
-  if (known.info.bit_depth > 8) known.white = WhiteOf(clip.Read(0));
+  if (known.info.bit_depth > 8) known.white = FindWhiteLevel(clip.Read(0));
   const std::lock_guard lock(guard_);
   return known_.emplace(path, std::move(known)).first->second;
 }
@@ -222,7 +222,7 @@ void ClipShelf::WarmUp() {
 // Makes the pictures of a recording as long as it is among those asked for.
 void ClipShelf::Decode(const Asked& asked) {
   // A reader of its own: the other one jumps to what is asked for.
-  const auto clip = OpenFor(asked.path);
+  const auto clip = OpenShelfClip(asked.path);
   const Known known = Learn(asked.path, *clip);
   // First what is near the frame that was asked for, then the rest.
   const std::int64_t frames = known.info.frames;

@@ -22,7 +22,7 @@ namespace {
 
 using report::Json;
 
-pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
+pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
   pipeline::Correction correction;
   if (const auto ground = asked.find("ground_px");
       ground != asked.end() && !ground->is_null()) {
@@ -33,7 +33,7 @@ pipeline::Correction CorrectionOf(const nlohmann::json& asked) {
           n.size()));
     }
     correction.ground =
-        calib::GroundThrough({n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px);
+        calib::MakeGroundLine({n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px);
   }
   if (const auto frame = asked.find("contact_frame");
       frame != asked.end() && !frame->is_null()) {
@@ -67,7 +67,7 @@ struct Corrected {
 
 Corrected MakeCorrected(const core::Trial& seen, const nlohmann::json& asked) {
   Corrected out{seen, pipeline::Replay(seen)};
-  const pipeline::Correction correction = CorrectionOf(asked);
+  const pipeline::Correction correction = ReadCorrection(asked);
   if (!correction.empty()) {
     if (!out.analysis) {
       throw std::invalid_argument("there is no track to correct: " +
@@ -77,8 +77,8 @@ Corrected MakeCorrected(const core::Trial& seen, const nlohmann::json& asked) {
     out.trial = pipeline::WithAnalysis(seen, *out.analysis);
   }
   pipeline::Statement statement;
-  statement.state = TextOf(asked, "state");
-  statement.note = TextOf(asked, "note");
+  statement.state = ReadTextField(asked, "state");
+  statement.note = ReadTextField(asked, "note");
   pipeline::Apply(statement, out.trial);
   return out;
 }

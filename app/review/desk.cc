@@ -58,7 +58,7 @@ std::shared_ptr<const Statistics> Desk::StatisticsNow() {
   return statistics_;
 }
 
-std::string Desk::ClipOf(const std::string& id) {
+std::string Desk::FindClipPath(const std::string& id) {
   const std::lock_guard lock(clips_guard_);
   if (std::string stamp = Stamp(); stamp != clips_stamp_) {
     clips_stamp_ = std::move(stamp);

@@ -47,7 +47,7 @@ class Desk {
 
   // Where the recording of a trial was last seen; empty where there is none.
   // Asked for with every frame, so it is remembered.
-  std::string ClipOf(const std::string& id);
+  std::string FindClipPath(const std::string& id);
 
  private:
   std::filesystem::path store_;

@@ -19,7 +19,7 @@ std::string Flag(std::string field) {
 
 }  // namespace
 
-std::string TextOf(const nlohmann::json& asked, const char* field) {
+std::string ReadTextField(const nlohmann::json& asked, const char* field) {
   const auto found = asked.find(field);
   if (found == asked.end() || found->is_null()) return "";
   if (!found->is_string()) throw FieldError(Flag(field), "must be text");
@@ -28,17 +28,18 @@ std::string TextOf(const nlohmann::json& asked, const char* field) {
 
 std::string RequiredText(const nlohmann::json& asked, const char* field,
                          const char* what) {
-  std::string text = TextOf(asked, field);
+  std::string text = ReadTextField(asked, field);
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw FieldError(Flag(field), fmt::format("is missing, must be {}", what));
   }
   return text;
 }
 
-std::optional<double> NumberOf(const nlohmann::json& asked, const char* field) {
+std::optional<double> ReadNumberField(const nlohmann::json& asked,
+                                      const char* field) {
   const auto found = asked.find(field);
   if (found != asked.end() && found->is_number()) return found->get<double>();
-  const std::string text = TextOf(asked, field);
+  const std::string text = ReadTextField(asked, field);
   if (text.empty()) return std::nullopt;
   double value = 0.0;
   const char* const end = text.data() + text.size();

@@ -10,7 +10,7 @@ namespace touchdown::review {
 
 // Text; empty where the field is missing. Throws pipeline::FieldError where it
 // is something else.
-std::string TextOf(const nlohmann::json& asked, const char* field);
+std::string ReadTextField(const nlohmann::json& asked, const char* field);
 
 // Text that must be there and not blank; `what` it must be, for the person.
 std::string RequiredText(const nlohmann::json& asked, const char* field,
@@ -18,6 +18,7 @@ std::string RequiredText(const nlohmann::json& asked, const char* field,
 
 // A number, or text that is one, as it was typed; nothing where it is missing
 // or empty.
-std::optional<double> NumberOf(const nlohmann::json& asked, const char* field);
+std::optional<double> ReadNumberField(const nlohmann::json& asked,
+                                      const char* field);
 
 }  // namespace touchdown::review

@@ -53,7 +53,7 @@ Reply KeyPage(std::string_view what) {
 }
 
 // The key in an address that holds it, or the key itself.
-std::string KeyIn(std::string_view text) {
+std::string ExtractKey(std::string_view text) {
   constexpr std::string_view kName = "token=";
   const std::size_t at = text.rfind(kName);
   if (at != std::string_view::npos) text.remove_prefix(at + kName.size());
@@ -150,7 +150,7 @@ std::optional<Reply> Guard::Welcome(const Request& request) const {
       given == request.query.end() || !IsOwnHost(request.host)) {
     return std::nullopt;
   }
-  if (!IsOurs(KeyIn(given->second))) {
+  if (!IsOurs(ExtractKey(given->second))) {
     return KeyPage("This address is of another session.");
   }
   // A page and no redirection: where another page or a file led here, as the

@@ -33,7 +33,7 @@ std::string_view Trimmed(std::string_view text) {
 
 // What stands before `end`, which is taken away with it; all where `end` is
 // not there.
-std::string_view TakeUntil(std::string_view& rest, std::string_view end) {
+std::string_view TakeToken(std::string_view& rest, std::string_view end) {
   const std::size_t at = rest.find(end);
   const std::string_view taken = rest.substr(0, at);
   rest = at == std::string_view::npos ? "" : rest.substr(at + end.size());
@@ -59,16 +59,16 @@ int HexDigit(char c) {
 
 void ReadTarget(std::string_view target, Request& request) {
   std::string_view rest = target;
-  request.path = Decoded(TakeUntil(rest, "?"), false);
+  request.path = Decoded(TakeToken(rest, "?"), false);
   while (!rest.empty()) {
-    std::string_view pair = TakeUntil(rest, "&");
-    const std::string name = Decoded(TakeUntil(pair, "="), true);
+    std::string_view pair = TakeToken(rest, "&");
+    const std::string name = Decoded(TakeToken(pair, "="), true);
     if (!name.empty()) request.query[name] = Decoded(pair, true);
   }
 }
 
 // Where a field of the head goes that the answer depends on.
-std::string* PlaceOf(std::string_view name, Request& request) {
+std::string* FindPlace(std::string_view name, Request& request) {
   const struct {
     std::string_view name;
     std::string* place;
@@ -164,9 +164,9 @@ std::string Decoded(std::string_view text, bool plus_is_space) {
 tl::expected<Head, Reply> ReadHead(std::string_view bytes) {
   Head head;
   std::string_view rest = bytes;
-  std::string_view line = TakeUntil(rest, kLineEnd);
-  head.request.method = TakeUntil(line, " ");
-  const std::string_view target = TakeUntil(line, " ");
+  std::string_view line = TakeToken(rest, kLineEnd);
+  head.request.method = TakeToken(line, " ");
+  const std::string_view target = TakeToken(line, " ");
   if (line != "HTTP/1.1" && line != "HTTP/1.0") {
     return NotUnderstood("its first line");
   }
@@ -179,21 +179,21 @@ tl::expected<Head, Reply> ReadHead(std::string_view bytes) {
   ReadTarget(target, head.request);
   std::optional<std::size_t> length;
   std::size_t fields = 0;
-  for (line = TakeUntil(rest, kLineEnd); !line.empty();
-       line = TakeUntil(rest, kLineEnd)) {
+  for (line = TakeToken(rest, kLineEnd); !line.empty();
+       line = TakeToken(rest, kLineEnd)) {
     if (++fields > kMostFields) {
       return tl::unexpected(Refusal(431, "the request has too many fields"));
     }
     if (line.find(':') == std::string_view::npos) {
       return NotUnderstood("a field without a colon");
     }
-    const std::string_view name = TakeUntil(line, ":");
+    const std::string_view name = TakeToken(line, ":");
     const std::string_view value = Trimmed(line);
     if (!IsName(name)) return NotUnderstood("the name of a field");
     if (auto refused = ReadTransfer(name, value, length, head)) {
       return tl::unexpected(*std::move(refused));
     }
-    if (std::string* const place = PlaceOf(name, head.request)) {
+    if (std::string* const place = FindPlace(name, head.request)) {
       // Of two, one could be for the guard and one for the rest.
       if (!place->empty()) return NotUnderstood("a field that stands twice");
       *place = value;

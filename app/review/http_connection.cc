@@ -63,7 +63,7 @@ int ListenLocally(int port) {
   return listener;
 }
 
-int PortOf(int socket) {
+int BoundPort(int socket) {
   sockaddr_in address = {};
   socklen_t size = sizeof address;
   getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);

@@ -53,6 +53,6 @@ Transfer WriteSome(Connection& connection);
 // A socket that listens on `port` of 127.0.0.1 (0: any), and does not share
 // it; -1 where it cannot be had.
 int ListenLocally(int port);
-int PortOf(int socket);
+int BoundPort(int socket);
 
 }  // namespace touchdown::review

@@ -147,7 +147,7 @@ struct HttpServer::Impl {
   }
 
   // How much of it may be read at once.
-  std::size_t MostOf(const Connection& c) const {
+  std::size_t ReadLimit(const Connection& c) const {
     if (c.stage == Stage::kHead) return options.most_head_bytes - c.in.size();
     if (c.stage == Stage::kBody) return c.head.body_bytes - c.in.size();
     return options.most_head_bytes;
@@ -158,7 +158,7 @@ struct HttpServer::Impl {
     if (c.stage == Stage::kWriting) return Write(c);
     if (c.stage == Stage::kAnswering) return;
     const bool begins = c.stage == Stage::kHead && c.in.empty();
-    switch (ReadSome(c, MostOf(c))) {
+    switch (ReadSome(c, ReadLimit(c))) {
       case Transfer::kLater:
         return;
       case Transfer::kClosed:
@@ -195,7 +195,7 @@ struct HttpServer::Impl {
       if (!Admit(c)) return;
     }
     if (c.stage == Stage::kBody && c.in.size() >= c.head.body_bytes) {
-      HandOver(c);
+      DispatchRequest(c);
     }
   }
 
@@ -230,13 +230,13 @@ struct HttpServer::Impl {
     return true;
   }
 
-  void HandOver(Connection& c) {
+  void DispatchRequest(Connection& c) {
     c.head.request.body = c.in.substr(0, c.head.body_bytes);
     c.in.erase(0, c.head.body_bytes);
     c.stage = Stage::kAnswering;
     c.closes = !c.head.keeps_alive;
     Watch(c, 0, EPOLL_CTL_MOD);
-    Task task{c.number, std::move(c.head.request), FormOf(c)};
+    Task task{c.number, std::move(c.head.request), MakeReplyForm(c)};
     {
       const std::lock_guard lock(mutex);
       tasks.push_back(std::move(task));
@@ -244,7 +244,7 @@ struct HttpServer::Impl {
     ready.notify_one();
   }
 
-  static ReplyForm FormOf(const Connection& c) {
+  static ReplyForm MakeReplyForm(const Connection& c) {
     return {!c.closes, c.head.request.method != "HEAD"};
   }
 
@@ -253,7 +253,7 @@ struct HttpServer::Impl {
   void Refuse(Connection& c, Reply reply) {
     c.closes =
         !c.head.keeps_alive || c.head.body_bytes > 0 || reply.status >= 400;
-    Begin(c, WriteReply(reply, FormOf(c)));
+    Begin(c, WriteReply(reply, MakeReplyForm(c)));
   }
 
   void Begin(Connection& c, std::string bytes) {
@@ -377,7 +377,7 @@ HttpServer::HttpServer(const HttpOptions& options, HttpAnswers answers)
                     "it: give another --port, or none",
                     options.port));
   }
-  impl_->port = PortOf(impl_->listener);
+  impl_->port = BoundPort(impl_->listener);
   impl_->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   impl_->events = epoll_create1(EPOLL_CLOEXEC);
   if (impl_->wake < 0 || impl_->events < 0) {

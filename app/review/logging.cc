@@ -22,12 +22,12 @@ namespace {
 using pipeline::FieldError;
 
 // Under "conditions": what was filled in, by the keys of --condition.
-std::optional<core::Conditions> ConditionsOf(const nlohmann::json& asked) {
+std::optional<core::Conditions> ReadConditions(const nlohmann::json& asked) {
   std::optional<core::Conditions> conditions;
   const auto given = asked.find("conditions");
   if (given == asked.end()) return conditions;
   for (const auto& [key, value] : given->items()) {
-    const std::string text = TextOf(*given, key.c_str());
+    const std::string text = ReadTextField(*given, key.c_str());
     if (text.empty()) continue;
     if (!conditions) conditions.emplace();
     if (!pipeline::SetCondition(key, text, *conditions)) {
@@ -37,16 +37,16 @@ std::optional<core::Conditions> ConditionsOf(const nlohmann::json& asked) {
   return conditions;
 }
 
-pipeline::Statement StatementOf(const nlohmann::json& asked) {
+pipeline::Statement ReadStatement(const nlohmann::json& asked) {
   pipeline::Statement out;
-  out.angle_deg = NumberOf(asked, "angle_deg");
-  out.angle_u_deg = NumberOf(asked, "angle_u_deg");
-  out.state = TextOf(asked, "state");
-  out.corner = TextOf(asked, "corner");
-  out.set_angle_deg = NumberOf(asked, "set_angle_deg");
-  out.set_speed_mps = NumberOf(asked, "set_speed_mps");
-  out.note = TextOf(asked, "note");
-  out.conditions = ConditionsOf(asked);
+  out.angle_deg = ReadNumberField(asked, "angle_deg");
+  out.angle_u_deg = ReadNumberField(asked, "angle_u_deg");
+  out.state = ReadTextField(asked, "state");
+  out.corner = ReadTextField(asked, "corner");
+  out.set_angle_deg = ReadNumberField(asked, "set_angle_deg");
+  out.set_speed_mps = ReadNumberField(asked, "set_speed_mps");
+  out.note = ReadTextField(asked, "note");
+  out.conditions = ReadConditions(asked);
   return out;
 }
 
@@ -57,20 +57,20 @@ db::Logged LogTyped(const std::filesystem::path& store,
   pipeline::ManualEntry entry;
   entry.campaign = RequiredText(asked, "campaign", "one of the campaigns");
   entry.by = RequiredText(asked, "who", "your name");
-  entry.statement = StatementOf(asked);
+  entry.statement = ReadStatement(asked);
   return pipeline::LogByHand(store, entry);
 }
 
-AnalysisOrder OrderOf(const std::filesystem::path& store,
-                      const RecordingFolders& folders,
-                      const nlohmann::json& asked) {
+AnalysisOrder ReadOrder(const std::filesystem::path& store,
+                        const RecordingFolders& folders,
+                        const nlohmann::json& asked) {
   AnalysisOrder order;
   order.campaign.name = RequiredText(asked, "campaign", "one of the campaigns");
   order.who = RequiredText(asked, "who", "your name");
   if (!asked.contains("recording")) {
     throw FieldError("recording", "is missing, must be one of the list");
   }
-  order.recording = RecordingOf(asked["recording"]);
+  order.recording = ReadRecording(asked["recording"]);
   order.path = folders.Require(order.recording);
   order.again = asked.value("again", false);
   const auto open = db::Store::Open(store, db::OpenMode::kRead);
@@ -80,13 +80,13 @@ AnalysisOrder OrderOf(const std::filesystem::path& store,
                        .value_or(pipeline::AnalyzeOptions{});
   }
   pipeline::Statement setting;
-  setting.set_angle_deg = NumberOf(asked, "set_angle_deg");
-  setting.set_speed_mps = NumberOf(asked, "set_speed_mps");
+  setting.set_angle_deg = ReadNumberField(asked, "set_angle_deg");
+  setting.set_speed_mps = ReadNumberField(asked, "set_speed_mps");
   core::Trial rehearsal;
   pipeline::Apply(setting, rehearsal);  // before the work, not after it
   order.set_angle_rad = rehearsal.set_angle_rad;
   order.set_speed_mps = rehearsal.set_speed_mps;
-  order.conditions = ConditionsOf(asked);
+  order.conditions = ReadConditions(asked);
   if (order.conditions) {
     order.conditions = db::Resolved(open, *order.conditions);
   }
@@ -105,7 +105,7 @@ std::optional<pipeline::AnalyzeOptions> LastCamera(
        ++trial) {
     if (trial->clip.path.empty()) continue;
     if (const auto whole = store.Find(trial->id)) {
-      camera = pipeline::CameraOf(*whole);
+      camera = pipeline::ReadCameraOptions(*whole);
     }
   }
   return camera;
@@ -118,9 +118,9 @@ std::size_t BuildReport(const std::filesystem::path& store,
   options.store = store;
   options.with_evidence = true;
   report::ReportInput input =
-      pipeline::InputOf(pipeline::SelectTrials(options));
+      pipeline::MakeReportInput(pipeline::SelectTrials(options));
   input.reach_of = reach_of;
-  input.details = pipeline::DetailsBeside(store);
+  input.details = pipeline::ReadStoreDetails(store);
   pipeline::AddPictures(input);
   report::WriteReport(report::MakeReport(input), folder);
   return input.trials.size();

@@ -24,12 +24,12 @@ db::Logged LogTyped(const std::filesystem::path& store,
 // campaign, who, set_angle_deg, set_speed_mps, conditions, again, and
 // other_camera: true where the settings of the campaign's last recording do not
 // hold. Throws pipeline::FieldError and core::StoreError.
-AnalysisOrder OrderOf(const std::filesystem::path& store,
-                      const RecordingFolders& folders,
-                      const nlohmann::json& asked);
+AnalysisOrder ReadOrder(const std::filesystem::path& store,
+                        const RecordingFolders& folders,
+                        const nlohmann::json& asked);
 
 // What the campaign's last recording that counts was analysed with
-// (pipeline::CameraOf); nothing where there is none.
+// (pipeline::ReadCameraOptions); nothing where there is none.
 std::optional<pipeline::AnalyzeOptions> LastCamera(const db::Store& store,
                                                    const std::string& campaign);
 

@@ -53,7 +53,7 @@ Json FolderJson(const RecordingFolders& folders, std::size_t place,
   try {
     for (const std::string& name : folders.Names(place)) {
       const std::filesystem::path path = (folder / name).lexically_normal();
-      const pipeline::Extent extent = pipeline::ExtentOf(path);
+      const pipeline::Extent extent = pipeline::MeasureExtent(path);
       Json known = Json::array();
       const auto [first, last] = trials.equal_range(path.string());
       for (auto trial = first; trial != last; ++trial) {
@@ -137,7 +137,7 @@ std::string Asked(const Request& request, const char* field) {
 }
 
 std::filesystem::path PathAsked(Desk& desk, const Request& request) {
-  const Recording recording{static_cast<std::size_t>(NumberIn(
+  const Recording recording{static_cast<std::size_t>(ParsePathNumber(
                                 Asked(request, "folder"), request.path)),
                             Asked(request, "name")};
   return desk.recordings().Require(recording);
@@ -158,7 +158,7 @@ Json RecordingJson(Desk& desk, const std::filesystem::path& path) {
 Reply RecordingFrameReply(Desk& desk, const Request& request) {
   const auto path = PathAsked(desk, request);
   return PictureReply(desk.shelf().Frame(
-      path, NumberIn(Asked(request, "frame"), request.path)));
+      path, ParsePathNumber(Asked(request, "frame"), request.path)));
 }
 
 // --- analyses ----------------------------------------------------------------
@@ -231,11 +231,11 @@ std::optional<Reply> PostToRecordings(Desk& desk, const std::string& path,
                                       const nlohmann::json& asked) {
   if (path == "/api/analyses") {
     const std::string id =
-        QueueOrder(desk, OrderOf(desk.store(), desk.recordings(), asked));
+        QueueOrder(desk, ReadOrder(desk.store(), desk.recordings(), asked));
     return JsonReply({{"id", id}});
   }
   if (path == "/api/tests") {
-    return JsonReply({{"id", QueueOrder(desk, TestOf(desk, asked))}});
+    return JsonReply({{"id", QueueOrder(desk, ReadTestOrder(desk, asked))}});
   }
   if (path == "/api/lens") {
     return JsonReply(LensJson(desk.recordings(), asked));

@@ -42,8 +42,8 @@ RecordingFolders::RecordingFolders(const std::vector<fs::path>& folders) {
   }
 }
 
-std::optional<fs::path> RecordingFolders::Inside(std::size_t folder,
-                                                 const fs::path& path) const {
+std::optional<fs::path> RecordingFolders::ResolvePath(
+    std::size_t folder, const fs::path& path) const {
   std::error_code trouble;
   fs::path canonical = fs::canonical(path, trouble);
   if (trouble || !IsBelow(canonical, folders_.at(folder))) return std::nullopt;
@@ -53,11 +53,11 @@ std::optional<fs::path> RecordingFolders::Inside(std::size_t folder,
 std::vector<std::string> RecordingFolders::Names(std::size_t folder) const {
   const fs::path& root = folders_.at(folder);
   const auto is_inside = [&](const fs::path& file) {
-    return Inside(folder, file).has_value();
+    return ResolvePath(folder, file).has_value();
   };
   std::vector<std::string> names;
   for (const fs::path& found : pipeline::FindRecordings(root, is_inside)) {
-    if (std::ranges::all_of(pipeline::FilesOf(found), is_inside)) {
+    if (std::ranges::all_of(pipeline::ListFiles(found), is_inside)) {
       names.push_back(found.lexically_relative(root).string());
     }
   }
@@ -71,13 +71,13 @@ fs::path RecordingFolders::Require(const Recording& recording) const {
                         recording.name)};
   };
   if (recording.folder >= folders_.size()) throw refuse();
-  const auto path =
-      Inside(recording.folder,
-             (folders_[recording.folder] / recording.name).lexically_normal());
+  const auto path = ResolvePath(
+      recording.folder,
+      (folders_[recording.folder] / recording.name).lexically_normal());
   // A name that ends outside of the folder is refused before it is looked at.
   if (!path || !pipeline::IsRecording(*path)) throw refuse();
-  for (const fs::path& file : pipeline::FilesOf(*path)) {
-    if (!Inside(recording.folder, file)) throw refuse();
+  for (const fs::path& file : pipeline::ListFiles(*path)) {
+    if (!ResolvePath(recording.folder, file)) throw refuse();
   }
   return *path;
 }
@@ -87,14 +87,14 @@ std::vector<fs::path> RecordingFolders::RequirePictures(
   std::vector<fs::path> pictures;
   std::optional<fs::path> path;
   if (folder.folder < folders_.size()) {
-    path = Inside(folder.folder, folders_[folder.folder] / folder.name);
+    path = ResolvePath(folder.folder, folders_[folder.folder] / folder.name);
   }
   std::error_code trouble;
   if (path && fs::is_directory(*path, trouble)) {
-    pictures = pipeline::PicturesIn(*path);
+    pictures = pipeline::ListPictures(*path);
   }
   const bool are_inside = std::ranges::all_of(pictures, [&](const auto& one) {
-    return Inside(folder.folder, one).has_value();
+    return ResolvePath(folder.folder, one).has_value();
   });
   if (!pictures.empty() && are_inside) return pictures;
   throw FieldError("pictures",
@@ -103,7 +103,7 @@ std::vector<fs::path> RecordingFolders::RequirePictures(
                                folder.name));
 }
 
-Recording RecordingOf(const nlohmann::json& asked) {
+Recording ReadRecording(const nlohmann::json& asked) {
   Recording recording;
   recording.name = RequiredText(asked, "name", "a recording of a folder");
   const auto folder = asked.find("folder");

@@ -43,7 +43,7 @@ class RecordingFolders {
 
  private:
   // Nothing where it is not there or leads outside.
-  std::optional<std::filesystem::path> Inside(
+  std::optional<std::filesystem::path> ResolvePath(
       std::size_t folder, const std::filesystem::path& path) const;
 
   std::vector<std::filesystem::path> folders_;  // canonical
@@ -51,6 +51,6 @@ class RecordingFolders {
 
 // {"folder": n, "name": text} of what the page sends. Throws
 // pipeline::FieldError.
-Recording RecordingOf(const nlohmann::json& asked);
+Recording ReadRecording(const nlohmann::json& asked);
 
 }  // namespace touchdown::review

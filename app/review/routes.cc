@@ -30,7 +30,7 @@ namespace {
 
 using report::Json;
 
-std::string TypeOf(std::string_view name) {
+std::string ContentType(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
   if (name.ends_with(".css")) return "text/css; charset=utf-8";
   if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
@@ -42,20 +42,20 @@ Reply PageReply(const std::string& name) {
   const auto file = PageFile(name);
   if (!file) throw NotThere("/page/" + name);
   Reply reply;
-  reply.type = TypeOf(name);
+  reply.type = ContentType(name);
   reply.body = *file;
   return reply;
 }
 
 // The part of `path` after `prefix`; nothing where it begins otherwise.
-std::optional<std::string> After(const std::string& path,
-                                 std::string_view prefix) {
+std::optional<std::string> StripPrefix(const std::string& path,
+                                       std::string_view prefix) {
   if (!path.starts_with(prefix)) return std::nullopt;
   return path.substr(prefix.size());
 }
 
 Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
-  const auto n = static_cast<std::size_t>(NumberIn(text, request.path));
+  const auto n = static_cast<std::size_t>(ParsePathNumber(text, request.path));
   const auto statistics = desk.StatisticsNow();
   if (n >= statistics->plots.size()) throw NotThere(request.path);
   Reply reply;
@@ -66,13 +66,13 @@ Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
 
 // --- one trial ---------------------------------------------------------------
 
-core::Trial RevisionOf(const std::vector<db::Revision>& history,
-                       const Request& request) {
+core::Trial FindRevision(const std::vector<db::Revision>& history,
+                         const Request& request) {
   const auto asked = request.query.find("revision");
   if (asked == request.query.end()) {
     return db::RevisionInForce(history).trial;
   }
-  const std::int64_t n = NumberIn(asked->second, request.path);
+  const std::int64_t n = ParsePathNumber(asked->second, request.path);
   for (const auto& revision : history) {
     if (revision.trial.revision == n) return revision.trial;
   }
@@ -92,7 +92,7 @@ Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
   const db::Store store = desk.Open(db::OpenMode::kRead);
   const auto history = store.History(id);
   if (history.empty()) throw NotThere(request.path);
-  const core::Trial trial = RevisionOf(history, request);
+  const core::Trial trial = FindRevision(history, request);
   const db::Revision* proposal = db::OpenProposal(history);
   Json json = {{"schema", "touchdown.review.trial/1"},
                {"store_id", store.uuid()},
@@ -112,8 +112,8 @@ Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
 
 Reply FrameReply(Desk& desk, const Request& request, const std::string& id,
                  const std::string& number) {
-  const std::int64_t n = NumberIn(number, request.path);
-  const std::string clip = desk.ClipOf(id);
+  const std::int64_t n = ParsePathNumber(number, request.path);
+  const std::string clip = desk.FindClipPath(id);
   if (clip.empty()) throw NotThere(request.path);
   return PictureReply(desk.shelf().Frame(clip, n));
 }
@@ -123,14 +123,14 @@ core::Trial AskedTrial(Desk& desk, const Request& request,
                        const std::string& id) {
   const auto history = desk.Open(db::OpenMode::kRead).History(id);
   if (history.empty()) throw NotThere(request.path);
-  return RevisionOf(history, request);
+  return FindRevision(history, request);
 }
 
 Reply ThumbnailReply(Desk& desk, const Request& request,
                      const std::string& id) {
   const auto trial = desk.Open(db::OpenMode::kRead).Find(id);
   if (!trial || trial->clip.path.empty()) throw NotThere(request.path);
-  return PictureReply(ThumbnailOf(desk.shelf(), *trial));
+  return PictureReply(RenderThumbnail(desk.shelf(), *trial));
 }
 
 Reply TrajectoryReply(Desk& desk, const Request& request,
@@ -161,8 +161,8 @@ struct TrialPath {
   std::string rest;  // after the next slash; empty: none
 };
 
-std::optional<TrialPath> TrialPathOf(const std::string& path) {
-  const auto rest = After(path, "/api/trials/");
+std::optional<TrialPath> ParseTrialPath(const std::string& path) {
+  const auto rest = StripPrefix(path, "/api/trials/");
   if (!rest) return std::nullopt;
   const std::size_t slash = rest->find('/');
   if (slash == std::string::npos) return TrialPath{*rest, ""};
@@ -181,7 +181,7 @@ Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
   const auto text = report::ReadTextFile(desk.reports() / name);
   if (!text) throw NotThere(request.path);
   Reply reply;
-  reply.type = TypeOf(name);
+  reply.type = ContentType(name);
   reply.body = *text;
   // As the report says of itself: styles stand in it, nothing is loaded.
   reply.headers = {{"Content-Security-Policy",
@@ -198,7 +198,7 @@ Reply Get(Desk& desk, const Request& request) {
   const std::string& path = request.path;
   if (auto reply = GetOfRecordings(desk, request)) return *std::move(reply);
   if (path == "/") return PageReply("index.html");
-  if (const auto name = After(path, "/page/")) return PageReply(*name);
+  if (const auto name = StripPrefix(path, "/page/")) return PageReply(*name);
   if (path == "/api/stamp") {
     return JsonReply(
         {{"stamp", desk.Stamp()},
@@ -217,10 +217,10 @@ Reply Get(Desk& desk, const Request& request) {
     reply.body = desk.StatisticsNow()->json;
     return reply;
   }
-  if (const auto n = After(path, "/api/plots/")) {
+  if (const auto n = StripPrefix(path, "/api/plots/")) {
     return PlotReply(desk, request, *n);
   }
-  if (const auto trial = TrialPathOf(path)) {
+  if (const auto trial = ParseTrialPath(path)) {
     if (trial->rest.empty()) return TrialReply(desk, request, trial->id);
     if (trial->rest == "thumbnail") {
       return ThumbnailReply(desk, request, trial->id);
@@ -228,11 +228,11 @@ Reply Get(Desk& desk, const Request& request) {
     if (trial->rest == "trajectory.csv") {
       return TrajectoryReply(desk, request, trial->id);
     }
-    if (const auto n = After(trial->rest, "frames/")) {
+    if (const auto n = StripPrefix(trial->rest, "frames/")) {
       return FrameReply(desk, request, trial->id, *n);
     }
   }
-  if (const auto name = After(path, "/report/")) {
+  if (const auto name = StripPrefix(path, "/report/")) {
     return ReportFile(desk, request, *name);
   }
   throw NotThere(path);
@@ -250,7 +250,7 @@ Reply Post(Desk& desk, const Request& request) {
   if (auto reply = PostToRecordings(desk, path, asked)) {
     return *std::move(reply);
   }
-  if (const auto trial = TrialPathOf(path)) {
+  if (const auto trial = ParseTrialPath(path)) {
     if (trial->rest == "preview") {
       const db::Store store = desk.Open(db::OpenMode::kRead);
       return JsonReply(

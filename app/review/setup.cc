@@ -37,35 +37,36 @@ const nlohmann::json& Part(const nlohmann::json& asked, const char* name) {
   return *part;
 }
 
-core::Campaign CampaignOf(const nlohmann::json& asked) {
+core::Campaign MakeCampaign(const nlohmann::json& asked) {
   pipeline::CampaignEntry entry;
   entry.name = RequiredText(asked, "name", "a name for the campaign");
-  entry.body.kind = TextOf(asked, "body");
+  entry.body.kind = ReadTextField(asked, "body");
   // Without the size there is no scale of it, and nothing to check it by.
-  entry.body.diameter_mm = TextOf(asked, "diameter_mm");
-  entry.body.sides_mm = TextOf(asked, "sides_mm");
+  entry.body.diameter_mm = ReadTextField(asked, "diameter_mm");
+  entry.body.sides_mm = ReadTextField(asked, "sides_mm");
   if (entry.body.diameter_mm.empty() && entry.body.sides_mm.empty()) {
     const bool is_block = entry.body.kind == "rectangle";
     throw FieldError(is_block ? "sides-mm" : "diameter-mm",
                      is_block ? "is missing, must be like 60x20"
                               : "is missing, must be like 40 or 40+-0.02");
   }
-  entry.surface = TextOf(asked, "surface");
-  entry.angle_kind = TextOf(asked, "angle_kind");
-  entry.bounce_height_mm = NumberOf(asked, "bounce_height_mm");
-  entry.speed_mps = TextOf(asked, "speed_mps");
-  entry.theory = TextOf(asked, "theory");
-  entry.theory_boundary_deg = NumberOf(asked, "theory_boundary_deg");
-  entry.theory_u_deg = NumberOf(asked, "theory_u_deg");
-  entry.margin_deg = NumberOf(asked, "margin_deg").value_or(entry.margin_deg);
-  core::Campaign campaign = pipeline::CampaignOf(entry);
+  entry.surface = ReadTextField(asked, "surface");
+  entry.angle_kind = ReadTextField(asked, "angle_kind");
+  entry.bounce_height_mm = ReadNumberField(asked, "bounce_height_mm");
+  entry.speed_mps = ReadTextField(asked, "speed_mps");
+  entry.theory = ReadTextField(asked, "theory");
+  entry.theory_boundary_deg = ReadNumberField(asked, "theory_boundary_deg");
+  entry.theory_u_deg = ReadNumberField(asked, "theory_u_deg");
+  entry.margin_deg =
+      ReadNumberField(asked, "margin_deg").value_or(entry.margin_deg);
+  core::Campaign campaign = pipeline::MakeCampaign(entry);
   db::RequireStorable(campaign);
   return campaign;
 }
 
 // Two points of the picture; nothing where they were not marked.
-std::optional<calib::MarkedPair> PairOf(const nlohmann::json& asked,
-                                        const char* field) {
+std::optional<calib::MarkedPair> ReadPair(const nlohmann::json& asked,
+                                          const char* field) {
   const auto given = asked.find(field);
   if (given == asked.end() || given->is_null()) return std::nullopt;
   const auto n = given->get<std::vector<double>>();
@@ -83,7 +84,7 @@ std::optional<calib::MarkedPair> PairOf(const nlohmann::json& asked,
   return pair;
 }
 
-calib::Picture PictureOf(const vision::ClipInfo& clip) {
+calib::Picture DescribePicture(const vision::ClipInfo& clip) {
   calib::Picture picture{clip.width_px, clip.height_px, std::nullopt};
   if (const auto& corner = clip.sensor_origin) {
     picture.corner = calib::SensorCorner{corner->x_px, corner->y_px};
@@ -91,18 +92,18 @@ calib::Picture PictureOf(const vision::ClipInfo& clip) {
   return picture;
 }
 
-pipeline::AnalyzeOptions CameraOf(const nlohmann::json& asked,
-                                  const vision::ClipInfo& clip) {
+pipeline::AnalyzeOptions ReadCameraOptions(const nlohmann::json& asked,
+                                           const vision::ClipInfo& clip) {
   pipeline::AnalyzeOptions options;
-  options.fps = NumberOf(asked, "fps");
-  const std::string camera = TextOf(asked, "camera");
+  options.fps = ReadNumberField(asked, "fps");
+  const std::string camera = ReadTextField(asked, "camera");
   calib::Calibration calibration =
-      pipeline::NewCalibration(camera, PictureOf(clip));
+      pipeline::NewCalibration(camera, DescribePicture(clip));
   if (const auto lens = asked.find("lens");
       lens != asked.end() && !lens->is_null()) {
-    auto fitted = calib::FittedTo(
+    auto fitted = calib::AdaptToPicture(
         calib::ParseCalibration(lens->dump(), "the lens of the page"),
-        PictureOf(clip));
+        DescribePicture(clip));
     if (!fitted) {
       throw FieldError("pictures", "gave a lens of other pictures: " +
                                        fitted.error().reason);
@@ -112,23 +113,23 @@ pipeline::AnalyzeOptions CameraOf(const nlohmann::json& asked,
   }
   std::optional<calib::Lens> lens;
   if (calibration.lens) lens = calibration.lens->lens;
-  const auto scale = PairOf(asked, "scale_px");
-  const std::string length = TextOf(asked, "length_mm");
+  const auto scale = ReadPair(asked, "scale_px");
+  const std::string length = ReadTextField(asked, "length_mm");
   if (scale) {
     if (length.empty()) {
       throw FieldError("length-mm",
                        "is missing, must be the distance of the two points");
     }
-    calibration.scale = calib::ScaleFrom(
+    calibration.scale = calib::MeasureScale(
         *scale,
-        pipeline::EstimateOf("length-mm", length, core::kMillimetre,
-                             pipeline::kPlainSize),
+        pipeline::ParseEstimateField("length-mm", length, core::kMillimetre,
+                                     pipeline::kPlainSize),
         lens);
   } else if (!length.empty()) {
     throw FieldError("length-mm",
                      "is given, but its two points are not marked");
   }
-  if (const auto ground = PairOf(asked, "ground_px")) {
+  if (const auto ground = ReadPair(asked, "ground_px")) {
     calibration.ground = calib::GroundRecord{
         ground->p1, ground->p2, ground->u_point_px, std::nullopt, std::nullopt};
   }
@@ -168,22 +169,23 @@ Json SettingsJson(const pipeline::Analysis& analysis) {
 
 }  // namespace
 
-AnalysisOrder TestOf(Desk& desk, const nlohmann::json& asked) {
+AnalysisOrder ReadTestOrder(Desk& desk, const nlohmann::json& asked) {
   AnalysisOrder order;
   order.is_test = true;
-  order.recording = RecordingOf(Part(asked, "recording"));
+  order.recording = ReadRecording(Part(asked, "recording"));
   order.path = desk.recordings().Require(order.recording);
-  order.campaign = CampaignOf(Part(asked, "campaign"));
+  order.campaign = MakeCampaign(Part(asked, "campaign"));
   if (desk.HasStore()) {
     RequireWithoutTrials(desk.Open(db::OpenMode::kRead), order.campaign.name);
   }
-  order.camera = CameraOf(Part(asked, "camera"), desk.shelf().Info(order.path));
+  order.camera =
+      ReadCameraOptions(Part(asked, "camera"), desk.shelf().Info(order.path));
   return order;
 }
 
 Json LensJson(const RecordingFolders& folders, const nlohmann::json& asked) {
   const auto pictures =
-      folders.RequirePictures(RecordingOf(Part(asked, "pictures")));
+      folders.RequirePictures(ReadRecording(Part(asked, "pictures")));
   const std::string typed =
       RequiredText(asked, "board", "like chessboard:9x6:25mm");
   calib::Board board;
@@ -194,10 +196,11 @@ Json LensJson(const RecordingFolders& folders, const nlohmann::json& asked) {
                      fmt::format("is not understood: {}", error.what()));
   }
   const pipeline::BoardPictures found = pipeline::FindBoards(pictures, board);
-  const calib::LensCalibration lens = pipeline::LensOf(found, board);
+  const calib::LensCalibration lens =
+      pipeline::CalibrateBoardLens(found, board);
   calib::Calibration file =
-      pipeline::NewCalibration(TextOf(asked, "camera"), found.picture);
-  file.lens = pipeline::RecordOf(lens, board);
+      pipeline::NewCalibration(ReadTextField(asked, "camera"), found.picture);
+  file.lens = pipeline::MakeLensRecord(lens, board);
   return {
       {"schema", "touchdown.review.lens/1"},
       {"views", found.views.size()},

@@ -22,11 +22,11 @@ namespace touchdown::review {
 // Points are of the recorded picture, each good to a careful click
 // (pipeline::kByHand_px); what is absent is found in the clip. Throws
 // pipeline::FieldError; also for a campaign that has trials already.
-AnalysisOrder TestOf(Desk& desk, const nlohmann::json& asked);
+AnalysisOrder ReadTestOrder(Desk& desk, const nlohmann::json& asked);
 
 // A lens from a folder of board pictures, as `touchdown calibrate lens` makes
 // it: {"pictures": {folder, name}, "board": text, "camera": name}. The answer
-// holds it as "calibration", for TestOf, with how good it is. Throws
+// holds it as "calibration", for ReadTestOrder, with how good it is. Throws
 // pipeline::FieldError, and core::InputError where the pictures tell none.
 nlohmann::ordered_json LensJson(const RecordingFolders& folders,
                                 const nlohmann::json& asked);
@@ -37,7 +37,7 @@ nlohmann::ordered_json TestJson(const AnalysisStatus& status);
 
 // Makes the store where there is none, the campaign, and logs the trial as
 // `touchdown analyze --db` does. `status` is of a test that is done. Throws
-// like TestOf and core::StoreError.
+// like ReadTestOrder and core::StoreError.
 db::Logged Keep(const std::filesystem::path& store,
                 const AnalysisStatus& status, const std::string& who);
 

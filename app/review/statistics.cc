@@ -88,7 +88,7 @@ Statistics MakeStatistics(const std::filesystem::path& store,
   pipeline::SelectionOptions options;
   options.store = store;
   report::ReportInput input =
-      pipeline::InputOf(pipeline::SelectTrials(options));
+      pipeline::MakeReportInput(pipeline::SelectTrials(options));
   input.reach_of = reach_of;
   std::vector<core::Trial> trials = std::move(input.trials);
   input.trials.clear();

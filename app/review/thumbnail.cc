@@ -17,7 +17,7 @@ constexpr double kBodySizes = 3.0;
 // Mean level of the samples in a box, which lies partly or wholly beyond the
 // frame; at least the sample nearest to its middle.
 template <class Sample>
-double MeanIn(const core::Frame& frame, double x0, double y0, double size) {
+double BoxMean(const core::Frame& frame, double x0, double y0, double size) {
   const auto first = [](double at) { return std::lround(at); };
   const long left = first(x0), top = first(y0);
   const long right = std::max(left + 1, first(x0 + size));
@@ -52,8 +52,8 @@ vision::Image Shrunk(const core::Frame& frame, core::PixelPoint centre,
     for (int x = 0; x < kThumbnailWidth_px; ++x) {
       const double at_x = left + x * step, at_y = top + y * step;
       const double level = frame.is_16_bit()
-                               ? MeanIn<std::uint16_t>(frame, at_x, at_y, step)
-                               : MeanIn<std::uint8_t>(frame, at_x, at_y, step);
+                               ? BoxMean<std::uint16_t>(frame, at_x, at_y, step)
+                               : BoxMean<std::uint8_t>(frame, at_x, at_y, step);
       image.pixels.push_back(
           static_cast<std::byte>(std::min(255.0, level * 255.0 / white)));
     }
@@ -61,7 +61,7 @@ vision::Image Shrunk(const core::Frame& frame, core::PixelPoint centre,
   return image;
 }
 
-Picture ThumbnailOf(ClipShelf& shelf, const core::Trial& trial) {
+Picture RenderThumbnail(ClipShelf& shelf, const core::Trial& trial) {
   const vision::ClipInfo info = shelf.Info(trial.clip.path);
   core::PixelPoint centre{info.width_px / 2.0, info.height_px / 2.0};
   double width_px = info.width_px;

@@ -22,6 +22,6 @@ vision::Image Shrunk(const core::Frame& frame, core::PixelPoint centre,
 
 // JPEG of the frame of touchdown about the contact point; where the trial has
 // none, of the middle of the recording. Throws like ClipShelf::Frame.
-Picture ThumbnailOf(ClipShelf& shelf, const core::Trial& trial);
+Picture RenderThumbnail(ClipShelf& shelf, const core::Trial& trial);
 
 }  // namespace touchdown::review

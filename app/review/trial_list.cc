@@ -49,7 +49,7 @@ Json ListJson(const std::filesystem::path& store, const std::string& id,
 
 }  // namespace
 
-std::vector<TriageEntry> TriageMemory::Of(
+std::vector<TriageEntry> TriageMemory::MakeEntries(
     const db::Store& store, const std::vector<core::Trial>& trials) {
   const std::lock_guard lock(guard_);
   std::map<std::string, core::Trial> proposals;
@@ -67,7 +67,7 @@ std::vector<TriageEntry> TriageMemory::Of(
                      proposal != nullptr ? proposal->revision : trial.revision);
   };
   const auto learn = [&](const core::Trial& trial) {
-    known_[key(trial)] = pipeline::TriageOf(
+    known_[key(trial)] = pipeline::MakeTriageEntry(
         trial.clip.path, pipeline::Done::kKnown, trial, proposal_of(trial));
   };
   std::vector<const core::Trial*> unknown;
@@ -88,9 +88,9 @@ std::vector<TriageEntry> TriageMemory::Of(
     const auto found = known_.find(key(trial));
     out.push_back(found != known_.end()
                       ? found->second
-                      : pipeline::TriageOf(trial.clip.path,
-                                           pipeline::Done::kKnown, trial,
-                                           proposal_of(trial)));
+                      : pipeline::MakeTriageEntry(trial.clip.path,
+                                                  pipeline::Done::kKnown, trial,
+                                                  proposal_of(trial)));
     if (trial.excluded) out.back().attention = Attention::kNone;
   }
   return out;
@@ -100,7 +100,7 @@ Json TrialListJson(const db::Store& store, TriageMemory& memory) {
   db::TrialFilter filter;
   filter.with_documents = false;
   const std::vector<core::Trial> trials = store.Trials(filter);
-  const std::vector<TriageEntry> triage = memory.Of(store, trials);
+  const std::vector<TriageEntry> triage = memory.MakeEntries(store, trials);
   // The order of SortByNeed, of positions.
   std::vector<std::size_t> order(trials.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -18,8 +18,8 @@ namespace touchdown::review {
 class TriageMemory {
  public:
   // Of trials read without their documents. An excluded trial needs no look.
-  std::vector<pipeline::TriageEntry> Of(const db::Store& store,
-                                        const std::vector<core::Trial>& trials);
+  std::vector<pipeline::TriageEntry> MakeEntries(
+      const db::Store& store, const std::vector<core::Trial>& trials);
 
  private:
   std::mutex guard_;

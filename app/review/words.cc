@@ -72,8 +72,8 @@ constexpr std::array kUnits{
     Words{"_deg_per_s", "deg/s"},
 };
 
-std::string_view In(std::span<const Words> table, std::string_view key,
-                    std::string_view otherwise) {
+std::string_view LookUpWord(std::span<const Words> table, std::string_view key,
+                            std::string_view otherwise) {
   const auto found = std::ranges::find(table, key, &Words::first);
   return found == table.end() ? otherwise : found->second;
 }
@@ -94,8 +94,10 @@ Shown ShownAs(std::string_view column) {
   }
   std::string stem = edge.stem;
   std::ranges::replace(stem, '_', ' ');
-  return {edge.stem + edge.suffix, std::string(In(kWords, column, stem)),
-          std::string(In(kUnits, edge.suffix, "")), edge.factor, edge.offset};
+  return {edge.stem + edge.suffix,
+          std::string(LookUpWord(kWords, column, stem)),
+          std::string(LookUpWord(kUnits, edge.suffix, "")), edge.factor,
+          edge.offset};
 }
 
 std::string Label(const Shown& shown) {

@@ -34,7 +34,7 @@ using core::kDegree;
 constexpr double kFileClock_s = 0.02;
 
 double WrittenAt_s(const fs::path& recording) {
-  const pipeline::Extent extent = pipeline::ExtentOf(recording);
+  const pipeline::Extent extent = pipeline::MeasureExtent(recording);
   if (extent.files == 0) return 0.0;  // it has gone
   const auto written = std::chrono::file_clock::to_sys(extent.written);
   return std::chrono::duration<double>(written.time_since_epoch()).count();
@@ -333,7 +333,7 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   pipeline::FillFromCampaign(campaign, analyze);
   pipeline::SetAside set_aside(store_.path());
   const pipeline::SetAside::Key key{clip_id, pipeline::OptionsHash(analyze)};
-  const auto why = set_aside.ReasonOf(key);
+  const auto why = set_aside.FindReason(key);
   if (why && !options_.again) {
     throw core::InputError(
         fmt::format("{}: {}", recording.filename().string(), *why));
@@ -422,15 +422,15 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
 
 double Session::LaunchSpeedOfPlan() const {
   const auto muzzle =
-      rig::LaunchSpeed(rig::LaunchOf(thrower_.rig, setting_->elevation_rad),
+      rig::LaunchSpeed(rig::MakeLaunch(thrower_.rig, setting_->elevation_rad),
                        setting_->compression_m);
   return muzzle ? muzzle->speed_mps : 0.0;
 }
 
 void Session::Answer(const core::Trial& trial, double seconds_since_written,
                      bool is_check) {
-  const auto entry =
-      pipeline::TriageOf(trial.clip.path, pipeline::Done::kLogged, trial);
+  const auto entry = pipeline::MakeTriageEntry(trial.clip.path,
+                                               pipeline::Done::kLogged, trial);
   std::string text(core::Name(trial.first.state.label));
   if (trial.first.state.p_bounce &&
       trial.first.state.label == core::MotionState::kUndecided) {

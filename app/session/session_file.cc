@@ -28,7 +28,7 @@ constexpr const char* kSchema = "touchdown.session/1";
 constexpr std::array kPhases = {Phase::kConventions, Phase::kCheck,
                                 Phase::kShot, Phase::kAnalysing, Phase::kEnded};
 
-fs::path Beside(const fs::path& store, const char* extension) {
+fs::path SiblingPath(const fs::path& store, const char* extension) {
   fs::path path = store;
   path += extension;
   return path;
@@ -53,7 +53,7 @@ std::string_view Name(Phase phase) {
 }
 
 fs::path SessionPath(const fs::path& store) {
-  return Beside(store, ".session.json");
+  return SiblingPath(store, ".session.json");
 }
 
 void WriteSession(const fs::path& store, const SessionFile& session) {
@@ -115,7 +115,7 @@ std::optional<SessionFile> ReadSession(const fs::path& store) {
 }
 
 SessionLock::SessionLock(const fs::path& store) {
-  const fs::path path = Beside(store, ".session.lock");
+  const fs::path path = SiblingPath(store, ".session.lock");
   file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) {
     throw core::StoreError(fmt::format("{}: cannot be made: {}", path.string(),

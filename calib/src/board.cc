@@ -56,7 +56,7 @@ struct Levels {
   cv::Mat eight;  // CV_8U
 };
 
-Levels LevelsOf(const core::Frame& picture) {
+Levels MeasureLevels(const core::Frame& picture) {
   const cv::Mat view(picture.height_px, picture.width_px,
                      picture.is_16_bit() ? CV_16UC1 : CV_8UC1,
                      // OpenCV has no view of constant pixels; it only reads.
@@ -70,7 +70,7 @@ Levels LevelsOf(const core::Frame& picture) {
 
 // Half the window around a corner: as large as its squares allow (more pixels,
 // less noise), a third of the shortest distance between neighbours, 2 to 10.
-int WindowFor(const std::vector<cv::Point2f>& corners, const Board& board) {
+int ChooseWindow(const std::vector<cv::Point2f>& corners, const Board& board) {
   double shortest = 1e9;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
@@ -103,7 +103,7 @@ core::Expected<std::vector<cv::Point2f>> FindChessboard(const Levels& levels,
         fmt::format("no chessboard of {}x{} inner corners is seen whole",
                     board.columns, board.rows));
   }
-  const int half = WindowFor(corners, board);
+  const int half = ChooseWindow(corners, board);
   cv::cornerSubPix(
       levels.exact, corners, cv::Size(half, half), cv::Size(-1, -1),
       cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60,
@@ -281,7 +281,7 @@ std::string Text(const Board& board) {
                      board.rows, board.pitch_m * 1e3);
 }
 
-std::vector<core::PlanePoint> PointsOf(const Board& board) {
+std::vector<core::PlanePoint> ListBoardPoints(const Board& board) {
   std::vector<core::PlanePoint> points;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
@@ -302,7 +302,7 @@ core::Expected<std::vector<core::PixelPoint>> FindBoard(
   if (picture.width_px < kLeastSide_px || picture.height_px < kLeastSide_px) {
     return core::AbsentBecause("the picture is smaller than 32 x 32 px");
   }
-  const Levels levels = LevelsOf(picture);
+  const Levels levels = MeasureLevels(picture);
   const auto found = board.kind == BoardKind::kChessboard
                          ? FindChessboard(levels, board)
                          : FindCircles(levels, board);

@@ -100,7 +100,7 @@ class Object {
   std::string path_;
 };
 
-Json JsonOf(const core::Estimate& e, double unit = 1.0) {
+Json MakeJson(const core::Estimate& e, double unit = 1.0) {
   return {{"value", e.value / unit}, {"u", e.u / unit}};
 }
 
@@ -114,7 +114,7 @@ LensRecord ReadLens(const Object& object, const Picture& picture) {
   for (int i = 0; i < kLensParameters; ++i) {
     vector[i] = object.Number(kLensNames[static_cast<std::size_t>(i)]);
   }
-  record.lens = LensOf(vector);
+  record.lens = ToLens(vector);
   if (!IsInvertible(record.lens, picture.width_px, picture.height_px)) {
     object.Fail("k1",
                 "and the others fold the picture back on itself: not a lens");
@@ -167,10 +167,10 @@ LensRecord ReadLens(const Object& object, const Picture& picture) {
   return record;
 }
 
-Json JsonOf(const LensRecord& record) {
+Json MakeJson(const LensRecord& record) {
   Json json;
   json["model"] = "brown";
-  const LensVector vector = VectorOf(record.lens);
+  const LensVector vector = ToVector(record.lens);
   for (int i = 0; i < kLensParameters; ++i) {
     json[kLensNames[static_cast<std::size_t>(i)]] = vector[i];
   }
@@ -322,14 +322,14 @@ std::string CalibrationText(const Calibration& c) {
   const auto& corner = c.picture.corner;
   json["picture"]["sensor_x_px"] = corner ? Json(corner->x_px) : Json(nullptr);
   json["picture"]["sensor_y_px"] = corner ? Json(corner->y_px) : Json(nullptr);
-  json["lens"] = c.lens ? JsonOf(*c.lens) : Json(nullptr);
+  json["lens"] = c.lens ? MakeJson(*c.lens) : Json(nullptr);
   json["scale"] = nullptr;
   if (c.scale) {
-    json["scale"] = {{"px_per_m", JsonOf(c.scale->px_per_m)},
+    json["scale"] = {{"px_per_m", MakeJson(c.scale->px_per_m)},
                      {"length_mm", c.scale->length_m / core::kMillimetre}};
     if (c.scale->check_error_m) {
       json["scale"]["check_error_mm"] =
-          JsonOf(*c.scale->check_error_m, core::kMillimetre);
+          MakeJson(*c.scale->check_error_m, core::kMillimetre);
     }
   }
   json["ground"] = nullptr;
@@ -341,10 +341,10 @@ std::string CalibrationText(const Calibration& c) {
                       {"y2_px", g.p2.y_px},
                       {"u_point_px", g.u_point_px}};
     if (g.slope_rad) {
-      json["ground"]["slope_deg"] = JsonOf(*g.slope_rad, core::kDegree);
+      json["ground"]["slope_deg"] = MakeJson(*g.slope_rad, core::kDegree);
     }
     if (g.yaw_rad) {
-      json["ground"]["yaw_deg"] = JsonOf(*g.yaw_rad, core::kDegree);
+      json["ground"]["yaw_deg"] = MakeJson(*g.yaw_rad, core::kDegree);
     }
   }
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -357,8 +357,8 @@ void WriteCalibration(const std::filesystem::path& path,
   file.Commit();
 }
 
-core::Expected<Calibration> FittedTo(const Calibration& calibration,
-                                     const Picture& picture) {
+core::Expected<Calibration> AdaptToPicture(const Calibration& calibration,
+                                           const Picture& picture) {
   const Picture& of = calibration.picture;
   const bool same_size =
       of.width_px == picture.width_px && of.height_px == picture.height_px;

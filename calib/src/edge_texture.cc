@@ -64,8 +64,8 @@ std::optional<Strip> Look(const StillImage& image,
 }
 
 // What its samples vary by about their level, at a distance of `lag` rows.
-double CovarianceAt(const StillImage& image, const Strip& strip,
-                    std::int32_t lag) {
+double LagCovariance(const StillImage& image, const Strip& strip,
+                     std::int32_t lag) {
   double sum = 0.0;
   for (std::size_t x = 0; x < strip.level.size(); ++x) {
     std::array<double, kRows> off{};
@@ -95,8 +95,8 @@ std::optional<EdgeTexture> LearnTexture(const StillImage& image,
   const auto above = Look(image, edge_px, reach_px, false);
   const auto below = Look(image, edge_px, reach_px, true);
   if (!above || !below) return std::nullopt;
-  const double above_dn2 = CovarianceAt(image, *above, 0);
-  const double below_dn2 = CovarianceAt(image, *below, 0);
+  const double above_dn2 = LagCovariance(image, *above, 0);
+  const double below_dn2 = LagCovariance(image, *below, 0);
   EdgeTexture texture;
   texture.below = below_dn2 > above_dn2;
   const Strip& rough = texture.below ? *below : *above;
@@ -108,7 +108,7 @@ std::optional<EdgeTexture> LearnTexture(const StillImage& image,
   if (rough_dn2 < kTwice * texture.variance_dn2) return std::nullopt;
   texture.covariance_dn2.push_back(rough_dn2 - texture.variance_dn2);
   for (std::int32_t lag = 1; lag < kRows; ++lag) {
-    texture.covariance_dn2.push_back(CovarianceAt(image, rough, lag));
+    texture.covariance_dn2.push_back(LagCovariance(image, rough, lag));
   }
   texture.ground_dn = rough.level;
   return texture;

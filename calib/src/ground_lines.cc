@@ -16,7 +16,7 @@ namespace touchdown::calib {
 namespace {
 
 // Step across y: mean of 3 rows below minus mean of 3 rows above.
-double StepAt(const StillImage& image, std::int32_t x, std::int32_t y) {
+double VerticalStep(const StillImage& image, std::int32_t x, std::int32_t y) {
   double below = 0.0;
   double above = 0.0;
   for (std::int32_t k = 1; k <= 3; ++k) {
@@ -37,8 +37,8 @@ bool ToIdeal(const std::optional<Lens>& lens, EdgePoint& p) {
 }
 
 // Where in column x of the picture the line is seen.
-double SeenAt(const std::optional<Lens>& lens, const Line& line, double middle,
-              double x) {
+double SeenRow(const std::optional<Lens>& lens, const Line& line, double middle,
+               double x) {
   if (!lens) return line.offset + line.slope * (x - middle);
   double along = x;
   core::PixelPoint seen;
@@ -64,14 +64,14 @@ std::vector<std::int32_t> FromBothSides(std::int32_t first, std::int32_t step,
 }
 
 // Columns from one to the next that votes: some hundred are enough.
-std::int32_t StepOf(const StillImage& image) {
+std::int32_t VoteStep(const StillImage& image) {
   return std::max<std::int32_t>(1, image.width_px / 640);
 }
 
 // Of some columns, row after row, as they lie in memory.
-void EdgePointsIn(const StillImage& image, double least,
-                  std::span<const std::int32_t> columns,
-                  std::span<std::vector<EdgePoint>> points) {
+void FindEdgePoints(const StillImage& image, double least,
+                    std::span<const std::int32_t> columns,
+                    std::span<std::vector<EdgePoint>> points) {
   // The steps of three rows.
   std::vector<double> above(columns.size());
   std::vector<double> here(columns.size());
@@ -80,7 +80,7 @@ void EdgePointsIn(const StillImage& image, double least,
     std::swap(above, here);
     std::swap(here, below);
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      below[k] = StepAt(image, columns[k], y);
+      below[k] = VerticalStep(image, columns[k], y);
     }
     if (y < 6) continue;
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -98,15 +98,15 @@ void EdgePointsIn(const StillImage& image, double least,
 std::vector<EdgePoint> EdgePoints(const StillImage& image, double least,
                                   int threads) {
   const std::vector<std::int32_t> columns =
-      FromBothSides(0, StepOf(image), image.width_px);
+      FromBothSides(0, VoteStep(image), image.width_px);
   std::vector<std::vector<EdgePoint>> in_column(columns.size());
   core::InParallel(static_cast<std::int64_t>(columns.size()), threads,
                    [&](std::int64_t begin, std::int64_t end) {
                      const auto from = static_cast<std::size_t>(begin);
                      const auto count = static_cast<std::size_t>(end - begin);
-                     EdgePointsIn(image, least,
-                                  std::span(columns).subspan(from, count),
-                                  std::span(in_column).subspan(from, count));
+                     FindEdgePoints(image, least,
+                                    std::span(columns).subspan(from, count),
+                                    std::span(in_column).subspan(from, count));
                    });
   std::vector<EdgePoint> points;
   for (const std::vector<EdgePoint>& some : in_column) {
@@ -121,8 +121,9 @@ struct Votes {
 };
 
 // Those that points of one sign give to lines of one slope.
-Votes VoteAt(double slope, const std::vector<EdgePoint>& points,
-             const std::vector<bool>& used, int sign, const StillImage& image) {
+Votes CountVotes(double slope, const std::vector<EdgePoint>& points,
+                 const std::vector<bool>& used, int sign,
+                 const StillImage& image) {
   constexpr double kBin_px = 2.0;
   const double middle = 0.5 * (image.width_px - 1);
   const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
@@ -165,7 +166,7 @@ Votes Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
               options.most_tilt_rad *
               (2.0 * static_cast<double>(k) / (kTilts - 1.0) - 1.0);
           of_tilt[static_cast<std::size_t>(k)] =
-              VoteAt(std::tan(tilt), points, used, sign, image);
+              CountVotes(std::tan(tilt), points, used, sign, image);
         }
       });
   return *std::max_element(
@@ -289,7 +290,7 @@ std::vector<ColumnFit> ColumnEdges(const StillImage& image,
                      for (auto k = static_cast<std::size_t>(begin);
                           k < static_cast<std::size_t>(end); ++k) {
                        const double y =
-                           SeenAt(options.lens, line, middle, columns[k]);
+                           SeenRow(options.lens, line, middle, columns[k]);
                        fits[k].edge = ColumnEdge(image, columns[k], y, blur,
                                                  reach, fits[k].residual2);
                      }
@@ -299,7 +300,7 @@ std::vector<ColumnFit> ColumnEdges(const StillImage& image,
 
 // How far beside the edge a column is looked at, px. Less does not tell both
 // levels from the blur; textures draw the edge along in proportion to more.
-double ReachOf(double blur) { return 3.0 * blur + 2.0; }
+double ComputeReach(double blur) { return 3.0 * blur + 2.0; }
 // The same, so much farther.
 constexpr double kFarther_px = 4.0;
 
@@ -316,7 +317,7 @@ double EstimateBlur(const StillImage& image, const GroundLineOptions& options,
   for (const double blur : kTried) {
     std::vector<double> residuals;
     for (const ColumnFit& fit : ColumnEdges(image, options, columns, line,
-                                            middle, blur, ReachOf(blur))) {
+                                            middle, blur, ComputeReach(blur))) {
       if (fit.edge.strength != 0.0) residuals.push_back(fit.residual2);
     }
     if (residuals.size() < 8) continue;
@@ -370,7 +371,7 @@ struct EdgeLine {
   double wave_px = 0.0;
 };
 
-std::optional<EdgeLine> LineThrough(std::vector<EdgePoint>& edge,
+std::optional<EdgeLine> FitEdgeLine(std::vector<EdgePoint>& edge,
                                     const Line& near, double middle) {
   EdgeLine out;
   out.line = near;
@@ -418,7 +419,7 @@ core::Estimate SlopeOfTexture(const StillImage& image,
                               double middle, const EdgeLine& plain) {
   std::vector<double> seen(static_cast<std::size_t>(image.width_px));
   for (std::size_t x = 0; x < seen.size(); ++x) {
-    seen[x] = SeenAt(lens, plain.line, middle, static_cast<double>(x));
+    seen[x] = SeenRow(lens, plain.line, middle, static_cast<double>(x));
   }
   constexpr double kBlurs = 3.0;
   const auto texture = LearnTexture(image, seen, kBlurs * blur);
@@ -429,7 +430,7 @@ core::Estimate SlopeOfTexture(const StillImage& image,
                                seen[static_cast<std::size_t>(x)], blur);
     if (p.strength != 0.0 && ToIdeal(lens, p)) edge.push_back(p);
   }
-  const auto better = LineThrough(edge, plain.line, middle);
+  const auto better = FitEdgeLine(edge, plain.line, middle);
   if (!better || better->slope.u >= plain.slope.u) return plain.slope;
   return Agreed(plain.slope, better->slope);
 }
@@ -454,7 +455,7 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
   std::vector<std::int32_t> all_columns(
       static_cast<std::size_t>(image.width_px));
   std::iota(all_columns.begin(), all_columns.end(), 0);
-  const double step = StepOf(image);
+  const double step = VoteStep(image);
   for (int found = 0; found < options.most_lines; ++found) {
     const Votes up = Vote(points, used, 1, image, options);
     const Votes down = Vote(points, used, -1, image, options);
@@ -483,13 +484,13 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
           options.least_share * image.width_px) {
         return std::nullopt;
       }
-      return LineThrough(edge, best, middle);
+      return FitEdgeLine(edge, best, middle);
     };
-    const std::optional<EdgeLine> seen = line_within(ReachOf(blur));
+    const std::optional<EdgeLine> seen = line_within(ComputeReach(blur));
     if (!seen) continue;
     EdgeLine at = *seen;
     // What more of the picture changes is not known to better than that.
-    if (const auto wider = line_within(ReachOf(blur) + kFarther_px)) {
+    if (const auto wider = line_within(ComputeReach(blur) + kFarther_px)) {
       at.slope.u = std::hypot(at.slope.u, wider->slope.value - at.slope.value);
       at.height_px.u =
           std::hypot(at.height_px.u,

@@ -52,14 +52,14 @@ void AlongBorder(std::int32_t width_px, std::int32_t height_px, Visit visit) {
 
 }  // namespace
 
-LensVector VectorOf(const Lens& lens) {
+LensVector ToVector(const Lens& lens) {
   LensVector v;
   v << lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.k1, lens.k2,
       lens.p1, lens.p2, lens.k3;
   return v;
 }
 
-Lens LensOf(const LensVector& v) {
+Lens ToLens(const LensVector& v) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
 }
 

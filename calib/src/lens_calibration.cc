@@ -37,7 +37,7 @@ struct LensFit {
 
 std::vector<cv::Point3f> BoardPoints(const Board& board) {
   std::vector<cv::Point3f> points;
-  for (const core::PlanePoint& p : PointsOf(board)) {
+  for (const core::PlanePoint& p : ListBoardPoints(board)) {
     points.emplace_back(static_cast<float>(p.x_m), static_cast<float>(p.y_m),
                         0.0f);
   }
@@ -274,7 +274,7 @@ void Warn(const LensCalibration& c, std::vector<std::string>& warnings) {
 }  // namespace
 
 core::Estimate LensCalibration::Parameter(int index) const {
-  return {VectorOf(lens)[index], std::sqrt(covariance(index, index)),
+  return {ToVector(lens)[index], std::sqrt(covariance(index, index)),
           std::nullopt};
 }
 

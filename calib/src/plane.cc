@@ -32,8 +32,8 @@ std::string_view Name(ScaleSource source) {
   return "?";
 }
 
-GroundLine GroundThrough(core::PixelPoint p1, core::PixelPoint p2,
-                         double u_point_px) {
+GroundLine MakeGroundLine(core::PixelPoint p1, core::PixelPoint p2,
+                          double u_point_px) {
   // Of two points one above the other the upper comes first: direction +90.
   if (p2.x_px < p1.x_px || (p2.x_px == p1.x_px && p2.y_px < p1.y_px)) {
     std::swap(p1, p2);
@@ -63,13 +63,13 @@ double ImageAngle(const GroundLine& ground) {
                     ground.p2.x_px - ground.p1.x_px);
 }
 
-double HeightAbove(const GroundLine& ground, core::PixelPoint p) {
+double HeightAboveLine(const GroundLine& ground, core::PixelPoint p) {
   const double angle = ImageAngle(ground);
   return (p.x_px - ground.p1.x_px) * std::sin(angle) -
          (p.y_px - ground.p1.y_px) * std::cos(angle);
 }
 
-double PositionAlong(const GroundLine& ground, core::PixelPoint p) {
+double PositionOnLine(const GroundLine& ground, core::PixelPoint p) {
   const double angle = ImageAngle(ground);
   return (p.x_px - ground.reference.x_px) * std::cos(angle) +
          (p.y_px - ground.reference.y_px) * std::sin(angle);
@@ -77,15 +77,15 @@ double PositionAlong(const GroundLine& ground, core::PixelPoint p) {
 
 double HeightUncertainty(const GroundLine& ground, core::PixelPoint p) {
   return std::hypot(ground.u_offset_px,
-                    ground.u_angle_rad * PositionAlong(ground, p));
+                    ground.u_angle_rad * PositionOnLine(ground, p));
 }
 
 namespace {
 
 // The line through p and q, known as well as `like`.
-GroundLine Through(core::PixelPoint p, core::PixelPoint q,
-                   const GroundLine& like) {
-  GroundLine line = GroundThrough(p, q, 0.0);
+GroundLine LineThroughPoints(core::PixelPoint p, core::PixelPoint q,
+                             const GroundLine& like) {
+  GroundLine line = MakeGroundLine(p, q, 0.0);
   line.u_offset_px = like.u_offset_px;
   line.u_angle_rad = like.u_angle_rad;
   line.source = like.source;
@@ -100,9 +100,9 @@ std::optional<GroundLine> Undistorted(const GroundLine& image,
   const auto q = Undistort(lens, image.p2);
   const auto at = Undistort(lens, image.reference);
   if (!p || !q || !at) return std::nullopt;
-  GroundLine line = Through(p->point, q->point, image);
+  GroundLine line = LineThroughPoints(p->point, q->point, image);
   // The same place along the line, on it.
-  const double along = PositionAlong(line, at->point);
+  const double along = PositionOnLine(line, at->point);
   const double angle = ImageAngle(line);
   line.reference.x_px += along * std::cos(angle);
   line.reference.y_px += along * std::sin(angle);
@@ -111,7 +111,7 @@ std::optional<GroundLine> Undistorted(const GroundLine& image,
 
 GroundLine Distorted(const GroundLine& ideal, const Lens& lens,
                      core::PixelPoint a, core::PixelPoint b) {
-  return Through(Distort(lens, a), Distort(lens, b), ideal);
+  return LineThroughPoints(Distort(lens, a), Distort(lens, b), ideal);
 }
 
 }  // namespace touchdown::calib

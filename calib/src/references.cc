@@ -33,7 +33,7 @@ struct Segment {
   double u_px = 0.0;       // of the length; over the length, of the angle
 };
 
-Segment SegmentOf(const MarkedPair& pair, const std::optional<Lens>& lens) {
+Segment MakeSegment(const MarkedPair& pair, const std::optional<Lens>& lens) {
   const core::PixelPoint a = Ideal(lens, pair.p1);
   const core::PixelPoint b = Ideal(lens, pair.p2);
   const double dx = b.x_px - a.x_px;
@@ -63,7 +63,7 @@ using Reading = Eigen::Matrix<double, 7, 1>;
 Reading Read(const Pose& pose, const Board& board, const Lens& lens) {
   cv::Mat turn;
   cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), turn);
-  const auto points = PointsOf(board);
+  const auto points = ListBoardPoints(board);
   double width_m = 0.0;
   double middle_m = 0.0;
   for (const core::PlanePoint& p : points) {
@@ -99,10 +99,10 @@ Reading Read(const Pose& pose, const Board& board, const Lens& lens) {
 
 }  // namespace
 
-ScaleRecord ScaleFrom(const MarkedPair& pair, const core::Estimate& length_m,
-                      const std::optional<Lens>& lens) {
+ScaleRecord MeasureScale(const MarkedPair& pair, const core::Estimate& length_m,
+                         const std::optional<Lens>& lens) {
   RequireLength(length_m);
-  const Segment segment = SegmentOf(pair, lens);
+  const Segment segment = MakeSegment(pair, lens);
   const double value = segment.length_px / length_m.value;
   ScaleRecord record;
   record.px_per_m = {value,
@@ -117,7 +117,7 @@ core::Estimate CheckError(const ScaleRecord& scale, const MarkedPair& pair,
                           const core::Estimate& length_m,
                           const std::optional<Lens>& lens) {
   RequireLength(length_m);
-  const Segment segment = SegmentOf(pair, lens);
+  const Segment segment = MakeSegment(pair, lens);
   const double measured_m = segment.length_px / scale.px_per_m.value;
   const double u_measured_m =
       measured_m * std::hypot(segment.u_px / segment.length_px,
@@ -126,10 +126,10 @@ core::Estimate CheckError(const ScaleRecord& scale, const MarkedPair& pair,
           std::nullopt};
 }
 
-core::Estimate SlopeFrom(const MarkedPair& ground, const MarkedPair& plumb,
-                         const std::optional<Lens>& lens) {
-  const Segment along = SegmentOf(ground, lens);
-  const Segment down = SegmentOf(plumb, lens);
+core::Estimate MeasureSlope(const MarkedPair& ground, const MarkedPair& plumb,
+                            const std::optional<Lens>& lens) {
+  const Segment along = MakeSegment(ground, lens);
+  const Segment down = MakeSegment(plumb, lens);
   // A level line is across the plumb line; both have no direction of their own.
   const double slope =
       std::remainder(down.angle_rad - 0.5 * std::numbers::pi - along.angle_rad,
@@ -142,7 +142,7 @@ core::Estimate SlopeFrom(const MarkedPair& ground, const MarkedPair& plumb,
 core::Expected<BoardOnGround> LocateBoard(
     const std::vector<core::PixelPoint>& points, const Board& board,
     const Lens& lens) {
-  const auto plane = PointsOf(board);
+  const auto plane = ListBoardPoints(board);
   if (points.size() != plane.size()) {
     throw std::invalid_argument(fmt::format(
         "points are {}, must be the board's {}", points.size(), plane.size()));

@@ -10,7 +10,7 @@ namespace touchdown::core {
 namespace {
 
 // The shortest digits that give the number again.
-std::string DigitsOf(double value) {
+std::string ShortestDigits(double value) {
   std::array<char, 32> digits;
   const auto end =
       std::to_chars(digits.data(), digits.data() + digits.size(), value);
@@ -22,7 +22,7 @@ std::string DigitsOf(double value) {
 void Refuse(std::string_view field, double value, std::string_view range,
             std::string_view unit) {
   std::string text(field);
-  text += " is " + DigitsOf(value);
+  text += " is " + ShortestDigits(value);
   if (!unit.empty()) text.append(" ").append(unit);
   text.append(", must be ").append(range);
   throw std::invalid_argument(text);
@@ -52,11 +52,11 @@ void RequireNotNegative(std::string_view field, double value,
   }
 }
 
-void RequireBetween(std::string_view field, double value, double low,
+void RequireInRange(std::string_view field, double value, double low,
                     double high, std::string_view unit) {
   if (!(value >= low && value <= high)) {
-    Refuse(field, value, "from " + DigitsOf(low) + " to " + DigitsOf(high),
-           unit);
+    Refuse(field, value,
+           "from " + ShortestDigits(low) + " to " + ShortestDigits(high), unit);
   }
 }
 

@@ -44,7 +44,7 @@ constexpr Table<Verdict, 3> kVerdicts{{
 }};
 
 template <class T, std::size_t N>
-std::string_view NameIn(const Table<T, N>& table, T value) {
+std::string_view FindName(const Table<T, N>& table, T value) {
   for (const auto& [key, name] : table) {
     if (key == value) return name;
   }
@@ -52,7 +52,7 @@ std::string_view NameIn(const Table<T, N>& table, T value) {
 }
 
 template <class T, std::size_t N>
-std::optional<T> ParseIn(const Table<T, N>& table, std::string_view word) {
+std::optional<T> FindValue(const Table<T, N>& table, std::string_view word) {
   for (const auto& [key, name] : table) {
     if (name == word) return key;
   }
@@ -61,30 +61,30 @@ std::optional<T> ParseIn(const Table<T, N>& table, std::string_view word) {
 
 }  // namespace
 
-std::string_view Name(BodyKind kind) { return NameIn(kBodyKinds, kind); }
-std::string_view Name(AngleKind kind) { return NameIn(kAngleKinds, kind); }
-std::string_view Name(Corner corner) { return NameIn(kCorners, corner); }
-std::string_view Name(MotionState s) { return NameIn(kMotionStates, s); }
-std::string_view Name(Origin origin) { return NameIn(kOrigins, origin); }
-std::string_view Name(Verdict verdict) { return NameIn(kVerdicts, verdict); }
+std::string_view Name(BodyKind kind) { return FindName(kBodyKinds, kind); }
+std::string_view Name(AngleKind kind) { return FindName(kAngleKinds, kind); }
+std::string_view Name(Corner corner) { return FindName(kCorners, corner); }
+std::string_view Name(MotionState s) { return FindName(kMotionStates, s); }
+std::string_view Name(Origin origin) { return FindName(kOrigins, origin); }
+std::string_view Name(Verdict verdict) { return FindName(kVerdicts, verdict); }
 
 std::optional<BodyKind> ParseBodyKind(std::string_view word) {
-  return ParseIn(kBodyKinds, word);
+  return FindValue(kBodyKinds, word);
 }
 std::optional<AngleKind> ParseAngleKind(std::string_view word) {
-  return ParseIn(kAngleKinds, word);
+  return FindValue(kAngleKinds, word);
 }
 std::optional<Corner> ParseCorner(std::string_view word) {
-  return ParseIn(kCorners, word);
+  return FindValue(kCorners, word);
 }
 std::optional<MotionState> ParseMotionState(std::string_view word) {
-  return ParseIn(kMotionStates, word);
+  return FindValue(kMotionStates, word);
 }
 std::optional<Origin> ParseOrigin(std::string_view word) {
-  return ParseIn(kOrigins, word);
+  return FindValue(kOrigins, word);
 }
 std::optional<Verdict> ParseVerdict(std::string_view word) {
-  return ParseIn(kVerdicts, word);
+  return FindValue(kVerdicts, word);
 }
 
 bool IsNotBounce(MotionState state) {

@@ -71,7 +71,8 @@ void RequireNew(const fs::path& to) {
 }
 
 // `name` is of the copy while it is made.
-void CopyTo(Connection& source, const fs::path& to, const std::string& name) {
+void CopyDatabase(Connection& source, const fs::path& to,
+                  const std::string& name) {
   RequireNew(to);
   const fs::path folder = fs::absolute(to).parent_path();
   const TemporaryFile temporary(fs::path(to.string() + "." + name + ".part"));
@@ -107,7 +108,7 @@ void CopyTo(Connection& source, const fs::path& to, const std::string& name) {
 }
 
 // Where the store as it was stays: "lab.db.version7"; the next free name.
-fs::path OldNameOf(const fs::path& path, std::int64_t version) {
+fs::path OldStorePath(const fs::path& path, std::int64_t version) {
   const std::string name = fmt::format("{}.version{}", path.string(), version);
   fs::path free = name;
   for (int i = 2; fs::exists(free); ++i) free = fmt::format("{}-{}", name, i);
@@ -144,7 +145,7 @@ std::int64_t UpgradeFile(Connection& connection) {
 }  // namespace
 
 void Backup(const Store& store, const fs::path& to) {
-  CopyTo(store.connection(), to, store.sources().new_uuid());
+  CopyDatabase(store.connection(), to, store.sources().new_uuid());
 }
 
 Migration Migrate(const fs::path& path, OpenOptions options) {
@@ -160,8 +161,8 @@ Migration Migrate(const fs::path& path, OpenOptions options) {
         connection.Integer("PRAGMA application_id") == kApplicationId;
     if (ours && version >= 1 && version < kSchemaVersion) {
       // Older programs cannot read the upgraded one: as it was, it stays.
-      migration.old_store = OldNameOf(path, version);
-      CopyTo(connection, migration.old_store, options.sources.new_uuid());
+      migration.old_store = OldStorePath(path, version);
+      CopyDatabase(connection, migration.old_store, options.sources.new_uuid());
       try {
         migration.from_version = UpgradeFile(connection);
       } catch (...) {

@@ -61,7 +61,7 @@ std::string ConventionNames() {
          "margin_rad";
 }
 
-std::string PlaceholdersFor(std::string_view names) {
+std::string MakePlaceholders(std::string_view names) {
   std::string text = "?";
   for (const char c : names) {
     if (c == ',') text += ", ?";
@@ -100,7 +100,7 @@ void InsertCampaign(Connection& connection, const Campaign& campaign,
       connection,
       fmt::format("INSERT INTO campaigns (uuid, name, created_at_utc, {}) "
                   "VALUES (?, ?, ?, {})",
-                  names, PlaceholdersFor(names)));
+                  names, MakePlaceholders(names)));
   insert.Add(uuid).Add(campaign.name).Add(now_utc);
   AddConventions(insert, campaign, surface);
   insert.Run();
@@ -163,7 +163,7 @@ void Store::ChangeCampaign(const Campaign& campaign) {
   const std::string names = ConventionNames();
   Statement update(
       c, fmt::format("UPDATE campaigns SET ({}) = ({}) WHERE id = ?", names,
-                     PlaceholdersFor(names)));
+                     MakePlaceholders(names)));
   AddConventions(update, campaign, surface);
   update.Add(row).Run();
   transaction.Commit();

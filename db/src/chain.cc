@@ -49,7 +49,7 @@ std::vector<Subject> MakeSubjects() {
                                "SELECT 'the store''s own row' WHERE ?1",
                                {{"store", "SELECT * FROM store"}}}};
   for (const RegisterKind kind : kRegisterKinds) {
-    const std::string_view table = TableOf(kind).table;
+    const std::string_view table = FindTable(kind).table;
     all.push_back(
         {std::string(Name(kind)),
          fmt::format("FROM {} WHERE true", table),

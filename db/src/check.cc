@@ -152,7 +152,7 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
     report.campaigns = connection.Integer("SELECT count(*) FROM campaigns");
     for (const RegisterKind kind : kRegisterKinds) {
       report.register_versions += connection.Integer(
-          fmt::format("SELECT count(*) FROM {}", TableOf(kind).table));
+          fmt::format("SELECT count(*) FROM {}", FindTable(kind).table));
     }
     report.trials = connection.Integer("SELECT count(*) FROM trials");
     report.revisions = connection.Integer("SELECT count(*) FROM revisions");

@@ -40,8 +40,8 @@ Rows Resolve(Connection& connection, Conditions& conditions) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ConditionEntry& entry = kConditionEntries.at(i);
     core::Registered& registered = conditions.*entry.member;
-    rows.at(i) = RowOf(connection, entry.kind, registered,
-                       fmt::format("conditions: {}", Name(entry.kind)));
+    rows.at(i) = FindRow(connection, entry.kind, registered,
+                         fmt::format("conditions: {}", Name(entry.kind)));
     registered = SelectRegistered(connection, entry.kind, rows.at(i));
   }
   return rows;

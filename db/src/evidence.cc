@@ -11,7 +11,7 @@
 
 namespace touchdown::db {
 
-std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row) {
+std::optional<Head> FindHead(Connection& connection, std::int64_t trial_row) {
   Statement row(connection,
                 "SELECT (SELECT max(number) FROM revisions WHERE trial_id = "
                 "?1), number, uuid, statement_id, exclusion_id, "
@@ -131,8 +131,8 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
   return row;
 }
 
-std::optional<std::int64_t> CampaignOf(Connection& connection,
-                                       const core::Trial& trial) {
+std::optional<std::int64_t> FindCampaignRow(Connection& connection,
+                                            const core::Trial& trial) {
   if (trial.campaign.empty()) return std::nullopt;
   Statement row(
       connection,
@@ -223,7 +223,8 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
   return number;
 }
 
-std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid) {
+std::vector<Revision> ReadHistory(Connection& connection,
+                                  std::string_view uuid) {
   static const std::string sql =
       SelectRevisions(true) + "WHERE t.uuid = ? ORDER BY r.number";
   Statement row(connection, sql);
@@ -243,7 +244,7 @@ void VisitHistories(
     Connection& connection,
     const std::function<void(const std::vector<Revision>&)>& visit) {
   Statement trials(connection, "SELECT uuid FROM trials ORDER BY id");
-  while (trials.Step()) visit(HistoryOf(connection, trials.TakeText()));
+  while (trials.Step()) visit(ReadHistory(connection, trials.TakeText()));
 }
 
 }  // namespace touchdown::db

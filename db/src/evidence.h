@@ -24,7 +24,7 @@ struct Head {
   std::optional<std::int64_t> exclusion_id;
   std::optional<std::int64_t> conditions_id;
 };
-std::optional<Head> HeadOf(Connection& connection, std::int64_t trial_row);
+std::optional<Head> FindHead(Connection& connection, std::int64_t trial_row);
 
 // True if a person corrected the trial to what is in force now.
 bool IsCorrected(Connection& connection, const Head& head);
@@ -52,8 +52,8 @@ std::optional<std::int64_t> KeepClip(Connection& connection,
 // Row of the campaign; nothing for no campaign. Throws core::StoreError if
 // there is none of that name, std::invalid_argument if the trial's body or
 // angle kind is not the campaign's.
-std::optional<std::int64_t> CampaignOf(Connection& connection,
-                                       const core::Trial& trial);
+std::optional<std::int64_t> FindCampaignRow(Connection& connection,
+                                            const core::Trial& trial);
 
 TrialRow AddTrial(Connection& connection, std::string_view uuid,
                   std::optional<std::int64_t> campaign_row, core::Origin origin,
@@ -79,7 +79,8 @@ std::int64_t AddRevision(Connection& connection, std::int64_t trial_row,
                          const NewRevision& revision, const core::Trial& trial);
 
 // Every revision of a trial, oldest first.
-std::vector<Revision> HistoryOf(Connection& connection, std::string_view uuid);
+std::vector<Revision> ReadHistory(Connection& connection,
+                                  std::string_view uuid);
 // The histories of all trials, in the order in which they were logged.
 void VisitHistories(
     Connection& connection,

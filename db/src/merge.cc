@@ -62,7 +62,7 @@ class Restorer {
     }
     if (unknown.empty()) return;
     const TrialRow row = KeepTrial(history);
-    const auto before = HeadOf(connection_, row.row);
+    const auto before = FindHead(connection_, row.row);
     // Theirs only goes on from ours: then theirs is in force, as it was there.
     // Proposals are never in force, and there is nothing to settle about them.
     const auto theirs =
@@ -174,7 +174,7 @@ class Restorer {
 
   TrialRow KeepTrial(const std::vector<Revision>& history) {
     const core::Trial first = Renamed(history.front().trial);
-    const auto campaign = CampaignOf(connection_, first);
+    const auto campaign = FindCampaignRow(connection_, first);
     const auto clip =
         KeepClip(connection_, first.clip, history.back().trial.recorded_at_utc,
                  Told::kElsewhere);
@@ -217,7 +217,7 @@ class Restorer {
   }
 
   void Append(const TrialRow& row, const Revision& revision) {
-    const auto head = HeadOf(connection_, row.row);
+    const auto head = FindHead(connection_, row.row);
     const core::Trial& trial = revision.trial;
     NewRevision added;
     added.uuid = revision.id;
@@ -243,7 +243,7 @@ class Restorer {
   // Both sides revised the trial: the statement recorded later is in force, and
   // a last revision says so, the same in whichever store it is made.
   void Settle(const TrialRow& row, const Head& ours, const Revision& theirs) {
-    const auto history = HistoryOf(connection_, row.uuid);
+    const auto history = ReadHistory(connection_, row.uuid);
     const Revision& mine =
         history.at(static_cast<std::size_t>(ours.number - 1));
     const auto age = [](const Revision& revision) {
@@ -299,12 +299,12 @@ MergeReport Merge(Store& into, const Store& from) {
   Transaction snapshot(from.connection(), Transaction::Kind::kRead);
   Transaction transaction(into.connection(), Transaction::Kind::kWrite);
   Restorer restorer(into, from.uuid());
-  restorer.AddRegister(VersionsIn(from.connection()));
+  restorer.AddRegister(ReadVersions(from.connection()));
   for (const auto& campaign : from.Campaigns()) restorer.AddCampaign(campaign);
   VisitHistories(from.connection(), [&](const std::vector<Revision>& history) {
     restorer.Add(history);
   });
-  for (PlanEvent& event : PlanEventsIn(from.connection(), "")) {
+  for (PlanEvent& event : ReadPlanEvents(from.connection(), "")) {
     restorer.AddPlan(std::move(event));
   }
   transaction.Commit();

@@ -40,7 +40,7 @@ std::string NameMeant(Connection& connection, RegisterKind kind,
                       std::string_view name) {
   std::vector<std::string> names;
   Statement row(connection, fmt::format("SELECT DISTINCT name FROM {}",
-                                        TableOf(kind).table));
+                                        FindTable(kind).table));
   while (row.Step()) names.push_back(row.TakeText());
   return core::DidYouMean(name, names, "see `touchdown register list`");
 }

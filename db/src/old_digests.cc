@@ -41,7 +41,7 @@ const std::vector<DigestPart>& Parts() {
       all.push_back({word, fmt::format("SELECT e.* FROM conditions c JOIN {} e "
                                        "ON e.id = c.{}_id "
                                        "WHERE c.revision_id = ?1",
-                                       TableOf(entry.kind).table, word)});
+                                       FindTable(entry.kind).table, word)});
     }
     return all;
   }();
@@ -62,7 +62,7 @@ std::string RevisionDigest(Connection& connection, std::string_view before,
   return Sha256(text);
 }
 
-std::string ClipDigestOf(Connection& connection, std::int64_t clip_row) {
+std::string ComputeClipDigest(Connection& connection, std::int64_t clip_row) {
   std::string text = "touchdown.clip/1\n";
   Statement row(connection,
                 "SELECT clip_id, size_bytes, sha256 FROM clips WHERE id = ?");
@@ -71,8 +71,8 @@ std::string ClipDigestOf(Connection& connection, std::int64_t clip_row) {
   return Sha256(text);
 }
 
-std::string PlanDigestOf(Connection& connection, std::string_view before,
-                         std::int64_t event_row) {
+std::string ComputePlanDigest(Connection& connection, std::string_view before,
+                              std::int64_t event_row) {
   std::string text = fmt::format("touchdown.plan/1\n{}\n", before);
   Statement row(connection, "SELECT * FROM plan_events WHERE id = ?");
   row.Add(event_row);
@@ -99,7 +99,7 @@ void CheckPlanDigests(Connection& connection,
                     "ORDER BY id");
     event.Add(id);
     for (; event.Step(); ++count) {
-      digest = PlanDigestOf(connection, digest, event.TakeInteger());
+      digest = ComputePlanDigest(connection, digest, event.TakeInteger());
     }
     if (events != count) {
       problems.push_back(fmt::format(
@@ -161,7 +161,7 @@ void CheckOldDigests(Connection& connection, std::int64_t version,
     const std::string name = clip.TakeText();
     const bool is_known = clip.TakeBool();
     const std::string kept = clip.TakeText();
-    if (is_known ? kept != ClipDigestOf(connection, id) : !kept.empty()) {
+    if (is_known ? kept != ComputeClipDigest(connection, id) : !kept.empty()) {
       problems.push_back(fmt::format(
           "clip {} is not what was recorded: its digest does not agree", name));
     }

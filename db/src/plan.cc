@@ -33,7 +33,8 @@ PlanEvent TakePlanEvent(Statement& row) {
   return event;
 }
 
-std::int64_t TrialsOf(Connection& connection, std::string_view campaign) {
+std::int64_t CountCampaignTrials(Connection& connection,
+                                 std::string_view campaign) {
   Statement row(connection,
                 "SELECT count(*) FROM trials t JOIN campaigns c ON c.id = "
                 "t.campaign_id WHERE c.name = ?");
@@ -55,8 +56,8 @@ std::optional<PlanEventKind> ParsePlanEventKind(std::string_view word) {
   return std::nullopt;
 }
 
-std::vector<PlanEvent> PlanEventsIn(Connection& connection,
-                                    std::string_view campaign) {
+std::vector<PlanEvent> ReadPlanEvents(Connection& connection,
+                                      std::string_view campaign) {
   Statement row(connection,
                 fmt::format("SELECT {} FROM plan_events e JOIN campaigns c ON "
                             "c.id = e.campaign_id WHERE ?1 = '' OR c.name = ?1 "
@@ -101,9 +102,9 @@ void SetPlan(Store& store, std::string_view campaign, const Plan& plan,
   Connection& c = store.connection();
   Transaction transaction(c, Transaction::Kind::kWrite);
   if (!store.FindCampaign(campaign)) throw NoCampaign(c, campaign);
-  const std::int64_t trials = TrialsOf(c, campaign);
+  const std::int64_t trials = CountCampaignTrials(c, campaign);
   bool first = true;
-  for (const PlanEvent& event : PlanEventsIn(c, campaign)) {
+  for (const PlanEvent& event : ReadPlanEvents(c, campaign)) {
     first = first && event.kind != PlanEventKind::kPlan;
   }
   if (author.empty()) {
@@ -126,9 +127,9 @@ bool RecordLook(Store& store, std::string_view campaign,
   Connection& c = store.connection();
   Transaction transaction(c, Transaction::Kind::kWrite);
   if (!store.FindCampaign(campaign)) return false;
-  const std::int64_t trials = TrialsOf(c, campaign);
+  const std::int64_t trials = CountCampaignTrials(c, campaign);
   if (trials == 0) return false;
-  for (const PlanEvent& event : PlanEventsIn(c, campaign)) {
+  for (const PlanEvent& event : ReadPlanEvents(c, campaign)) {
     if (event.kind == PlanEventKind::kLook && event.trials == trials) {
       return false;
     }
@@ -147,7 +148,7 @@ bool RecordLook(Store& store, std::string_view campaign,
 
 std::vector<PlanEvent> PlanEvents(const Store& store,
                                   std::string_view campaign) {
-  return PlanEventsIn(store.connection(), campaign);
+  return ReadPlanEvents(store.connection(), campaign);
 }
 
 }  // namespace touchdown::db

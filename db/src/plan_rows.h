@@ -9,8 +9,8 @@
 
 namespace touchdown::db {
 
-std::vector<PlanEvent> PlanEventsIn(Connection& connection,
-                                    std::string_view campaign);
+std::vector<PlanEvent> ReadPlanEvents(Connection& connection,
+                                      std::string_view campaign);
 
 // As it is, id and date too, with its link of the chain, but for one whose id
 // is there already or whose campaign is not; false then.

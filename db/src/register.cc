@@ -19,7 +19,7 @@ using core::StoreError;
 // Columns of a version, in the order in which InsertEntry and TakeEntry go.
 std::string EntryNames(RegisterKind kind) {
   std::string names = "uuid, name, version, author, reason, recorded_at_utc";
-  for (const RegisterField& field : FieldsOf(kind)) {
+  for (const RegisterField& field : ListFields(kind)) {
     switch (field.type) {
       case FieldType::kText:
       case FieldType::kWord:
@@ -45,7 +45,7 @@ Entry TakeEntry(Connection& connection, Statement& row, RegisterKind kind) {
   entry.author = row.TakeText();
   entry.reason = row.TakeText();
   entry.recorded_at_utc = row.TakeText();
-  for (const RegisterField& field : FieldsOf(kind)) {
+  for (const RegisterField& field : ListFields(kind)) {
     const std::string key(field.name);
     switch (field.type) {
       case FieldType::kText:
@@ -70,7 +70,7 @@ std::vector<Entry> SelectEntries(Connection& connection, RegisterKind kind,
                                  std::optional<std::string_view> name = {}) {
   Statement row(connection,
                 fmt::format("SELECT {} FROM {} {}", EntryNames(kind),
-                            TableOf(kind).table, tail));
+                            FindTable(kind).table, tail));
   if (name) row.Add(*name);
   std::vector<Entry> entries;
   while (row.Step()) entries.push_back(TakeEntry(connection, row, kind));
@@ -96,7 +96,7 @@ Registered SelectRegistered(Connection& connection, RegisterKind kind,
   if (!row) return {};
   Statement find(connection,
                  fmt::format("SELECT name, uuid FROM {} WHERE id = ?",
-                             TableOf(kind).table));
+                             FindTable(kind).table));
   find.Add(*row);
   Registered entry;
   if (find.Step()) {
@@ -106,7 +106,7 @@ Registered SelectRegistered(Connection& connection, RegisterKind kind,
   return entry;
 }
 
-std::vector<Entry> VersionsIn(Connection& connection) {
+std::vector<Entry> ReadVersions(Connection& connection) {
   std::vector<Entry> all;
   for (const RegisterKind kind : kRegisterKinds) {
     for (Entry& entry : SelectEntries(connection, kind, kOldestFirst)) {
@@ -125,11 +125,11 @@ std::optional<Entry> InForce(Connection& connection, RegisterKind kind,
   return std::move(found.front());
 }
 
-std::optional<std::int64_t> RowOf(Connection& connection, RegisterKind kind,
-                                  const Registered& entry,
-                                  std::string_view field) {
+std::optional<std::int64_t> FindRow(Connection& connection, RegisterKind kind,
+                                    const Registered& entry,
+                                    std::string_view field) {
   if (entry.name.empty() && entry.id.empty()) return std::nullopt;
-  const std::string_view table = TableOf(kind).table;
+  const std::string_view table = FindTable(kind).table;
   Statement row(connection,
                 entry.id.empty()
                     ? fmt::format("SELECT id FROM {} WHERE name = ? ORDER BY "
@@ -154,7 +154,7 @@ std::int64_t InsertEntry(Connection& connection, const Entry& entry) {
   const auto columns =
       1 + static_cast<std::size_t>(std::ranges::count(names, ','));
   Statement insert(connection, fmt::format("INSERT INTO {} ({}) VALUES ({})",
-                                           TableOf(entry.kind).table, names,
+                                           FindTable(entry.kind).table, names,
                                            Placeholders(columns)));
   insert.Add(entry.id)
       .Add(entry.name)
@@ -162,7 +162,7 @@ std::int64_t InsertEntry(Connection& connection, const Entry& entry) {
       .Add(entry.author)
       .Add(entry.reason)
       .Add(entry.recorded_at_utc);
-  for (const RegisterField& field : FieldsOf(entry.kind)) {
+  for (const RegisterField& field : ListFields(entry.kind)) {
     switch (field.type) {
       case FieldType::kText:
       case FieldType::kWord:
@@ -172,8 +172,8 @@ std::int64_t InsertEntry(Connection& connection, const Entry& entry) {
         AddMeasured(insert, entry.measured.find(field.name)->second);
         break;
       case FieldType::kEntry:
-        insert.Add(RowOf(connection, field.entry,
-                         entry.entries.find(field.name)->second, field.name));
+        insert.Add(FindRow(connection, field.entry,
+                           entry.entries.find(field.name)->second, field.name));
         break;
     }
   }
@@ -186,7 +186,7 @@ std::int64_t InsertEntry(Connection& connection, const Entry& entry) {
 bool HasVersion(Connection& connection, RegisterKind kind,
                 std::string_view uuid) {
   Statement row(connection, fmt::format("SELECT 1 FROM {} WHERE uuid = ?",
-                                        TableOf(kind).table));
+                                        FindTable(kind).table));
   row.Add(uuid);
   return row.Step();
 }
@@ -255,11 +255,11 @@ std::vector<Entry> Entries(const Store& store, RegisterKind kind) {
 
 std::vector<Entry> AllVersions(const Store& store) {
   Transaction snapshot(store.connection(), Transaction::Kind::kRead);
-  return VersionsIn(store.connection());
+  return ReadVersions(store.connection());
 }
 
-std::vector<Entry> VersionsOf(const Store& store, RegisterKind kind,
-                              std::string_view name) {
+std::vector<Entry> ReadEntryVersions(const Store& store, RegisterKind kind,
+                                     std::string_view name) {
   Transaction snapshot(store.connection(), Transaction::Kind::kRead);
   return SelectEntries(store.connection(), kind,
                        fmt::format("WHERE name = ? {}", kOldestFirst), name);

@@ -88,7 +88,7 @@ constexpr std::array kOperator{kNote};
 constexpr std::array<std::string_view, 3> kOpen{"other", "not applicable",
                                                 "not recorded"};
 
-bool IsWordOf(const RegisterField& field, std::string_view word) {
+bool IsFieldWord(const RegisterField& field, std::string_view word) {
   if (std::ranges::find(kOpen, word) != kOpen.end()) return true;
   std::string_view words = field.words;
   while (!words.empty()) {
@@ -128,7 +128,7 @@ void RequireField(const Entry& entry, const RegisterField& field) {
   }
   const std::string& text = Required(entry, entry.texts, field.name);
   if (field.type != kWord) return;
-  if (!IsWordOf(field, text)) {
+  if (!IsFieldWord(field, text)) {
     throw std::invalid_argument(
         fmt::format("{} is '{}', must be {}, other, not applicable or not "
                     "recorded",
@@ -142,11 +142,11 @@ void RequireField(const Entry& entry, const RegisterField& field) {
 
 }  // namespace
 
-const RegisterTable& TableOf(RegisterKind kind) {
+const RegisterTable& FindTable(RegisterKind kind) {
   return kTables.at(static_cast<std::size_t>(kind)).second;
 }
 
-std::string_view Name(RegisterKind kind) { return TableOf(kind).word; }
+std::string_view Name(RegisterKind kind) { return FindTable(kind).word; }
 
 std::optional<RegisterKind> ParseRegisterKind(std::string_view word) {
   for (const auto& [kind, table] : kTables) {
@@ -155,7 +155,7 @@ std::optional<RegisterKind> ParseRegisterKind(std::string_view word) {
   return std::nullopt;
 }
 
-std::span<const RegisterField> FieldsOf(RegisterKind kind) {
+std::span<const RegisterField> ListFields(RegisterKind kind) {
   switch (kind) {
     case Kind::kRig:
       return kRig;
@@ -179,7 +179,7 @@ Entry NewEntry(RegisterKind kind, std::string_view name) {
   Entry entry;
   entry.kind = kind;
   entry.name = name;
-  for (const RegisterField& field : FieldsOf(kind)) {
+  for (const RegisterField& field : ListFields(kind)) {
     const std::string key(field.name);
     switch (field.type) {
       case kText:
@@ -208,7 +208,7 @@ void RequireStorable(const Entry& entry) {
   if (entry.author.empty()) {
     throw std::invalid_argument("author is empty, must name the person");
   }
-  const auto fields = FieldsOf(entry.kind);
+  const auto fields = ListFields(entry.kind);
   for (const RegisterField& field : fields) RequireField(entry, field);
   if (entry.texts.size() + entry.measured.size() + entry.entries.size() !=
       fields.size()) {

@@ -16,7 +16,7 @@ struct RegisterTable {
   std::string_view word;   // of one entry, in commands and columns
   std::string_view table;  // of all
 };
-const RegisterTable& TableOf(RegisterKind kind);
+const RegisterTable& FindTable(RegisterKind kind);
 
 // The version in force comes first: the highest number; of two made apart from
 // each other, the one recorded later. All machines agree on it.
@@ -25,9 +25,9 @@ inline constexpr std::string_view kInForceFirst =
 
 // The row of the version that `entry` means; nothing where it names none.
 // Throws std::invalid_argument naming `field` if there is no such entry.
-std::optional<std::int64_t> RowOf(Connection& connection, RegisterKind kind,
-                                  const core::Registered& entry,
-                                  std::string_view field);
+std::optional<std::int64_t> FindRow(Connection& connection, RegisterKind kind,
+                                    const core::Registered& entry,
+                                    std::string_view field);
 
 // Name and id of the version in `row`; none for nothing.
 core::Registered SelectRegistered(Connection& connection, RegisterKind kind,
@@ -42,7 +42,7 @@ std::string NameMeant(Connection& connection, RegisterKind kind,
 std::optional<Entry> InForce(Connection& connection, RegisterKind kind,
                              std::string_view name);
 // Every version of every entry, as AllVersions gives them.
-std::vector<Entry> VersionsIn(Connection& connection);
+std::vector<Entry> ReadVersions(Connection& connection);
 
 // Adds a version as it is (id, number and date included); returns its row.
 std::int64_t InsertEntry(Connection& connection, const Entry& entry);

@@ -128,7 +128,7 @@ std::string Evidence() {
       "  PRIMARY KEY (revision_id, ordinal),\n"
       "{}\n) STRICT;\n",
       Flag("found"), Flag("from_start"),
-      OneOf("corner", "'leading', 'trailing', 'flush'"),
+      WordCondition("corner", "'leading', 'trailing', 'flush'"),
       Word("state",
            "'bounce', 'slide', 'roll-slide', 'roll', 'stick', 'stays-down', "
            "'undecided'"),

@@ -43,7 +43,7 @@ std::string Flag(std::string_view name) {
 // One of some words, "'dry', 'wet'". Compared one by one: for IN with more than
 // two, SQLite makes a temporary table for each row (a quarter of the time of a
 // bulk import).
-std::string OneOf(std::string_view name, std::string_view words) {
+std::string WordCondition(std::string_view name, std::string_view words) {
   std::string check;
   while (!words.empty()) {
     const std::size_t end = std::min(words.find(", "), words.size());
@@ -55,7 +55,8 @@ std::string OneOf(std::string_view name, std::string_view words) {
 }
 
 std::string Word(std::string_view name, std::string_view words) {
-  return fmt::format("{} TEXT NOT NULL CHECK ({})", name, OneOf(name, words));
+  return fmt::format("{} TEXT NOT NULL CHECK ({})", name,
+                     WordCondition(name, words));
 }
 
 std::string Stamp(std::string_view name) {

@@ -19,7 +19,7 @@ std::string OptionalReal(std::string_view name);
 // 0 or 1.
 std::string Flag(std::string_view name);
 // The condition that a column is one of "'dry', 'wet'"; a column with it.
-std::string OneOf(std::string_view name, std::string_view words);
+std::string WordCondition(std::string_view name, std::string_view words);
 std::string Word(std::string_view name, std::string_view words);
 // UTC with milliseconds (identity.h).
 std::string Stamp(std::string_view name);

@@ -18,7 +18,7 @@ std::string PlanSql();
 // What people and other programs read (views.h).
 std::string ViewsSql();
 // The query of one of them, by name.
-const std::string& QueryOf(std::string_view view);
+const std::string& ViewQuery(std::string_view view);
 
 // What keeps evidence from being changed or removed.
 std::string TriggersSql();

@@ -19,12 +19,12 @@ std::string QuotedWords(std::string_view words) {
 
 std::string Reference(RegisterKind kind, std::string_view field) {
   return fmt::format("{}_id INTEGER REFERENCES {} (id)", field,
-                     TableOf(kind).table);
+                     FindTable(kind).table);
 }
 
 // Each row is one version of an entry; none is ever changed.
 std::string RegisterTableSql(RegisterKind kind) {
-  const std::string_view table = TableOf(kind).table;
+  const std::string_view table = FindTable(kind).table;
   std::string sql = fmt::format(
       "CREATE TABLE {} (\n"
       "  id INTEGER PRIMARY KEY,\n"
@@ -36,7 +36,7 @@ std::string RegisterTableSql(RegisterKind kind) {
       "  {}",
       table, kUuid, Stamp("recorded_at_utc"));
   std::string checks;
-  for (const RegisterField& field : FieldsOf(kind)) {
+  for (const RegisterField& field : ListFields(kind)) {
     sql += ",\n  ";
     switch (field.type) {
       case FieldType::kText:

@@ -60,7 +60,7 @@ std::string RegisterTriggers() {
           "CREATE TRIGGER {0}_refuse_{1} BEFORE {1} ON {0} BEGIN\n"
           "  SELECT raise(ABORT, '{0} are kept: add a version');\n"
           "END;\n",
-          TableOf(kind).table, act);
+          FindTable(kind).table, act);
     }
     sql += fmt::format(
         "CREATE TRIGGER {0}_refuse_REPLACE BEFORE INSERT ON {0}\n"
@@ -68,7 +68,7 @@ std::string RegisterTriggers() {
         "  OR EXISTS (SELECT 1 FROM {0} WHERE uuid = NEW.uuid)\n"
         "BEGIN SELECT raise(ABORT, '{0} are kept: add a version');\n"
         "END;\n",
-        TableOf(kind).table);
+        FindTable(kind).table);
   }
   return sql;
 }

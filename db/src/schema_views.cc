@@ -103,7 +103,7 @@ class Maker {
            std::string meaning) {
     columns_ +=
         fmt::format("{}  {} AS {}", columns_.empty() ? "" : ",\n", sql, name);
-    const std::string unit = type == ColumnType::kReal ? UnitOf(name) : "";
+    const std::string unit = type == ColumnType::kReal ? FindUnit(name) : "";
     view_.columns.push_back({std::move(name), type, unit, std::move(meaning)});
   }
 
@@ -193,7 +193,7 @@ std::pair<View, std::string> Trials() {
   for (const auto& entry : kConditionEntries) {
     view.Text(std::string(Name(entry.kind)),
               fmt::format("(SELECT name FROM {} WHERE id = o.{}_id)",
-                          TableOf(entry.kind).table, Name(entry.kind)),
+                          FindTable(entry.kind).table, Name(entry.kind)),
               "name in the register");
   }
   for (const auto& quantity : kConditionQuantities) {
@@ -349,7 +349,7 @@ std::string_view Name(ColumnType type) {
   return "real";
 }
 
-std::string UnitOf(std::string_view edge_name) {
+std::string FindUnit(std::string_view edge_name) {
   static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
       {"_n_per_m", "N/m"}, {"_rad_per_s", "rad/s"},
       {"_mps2", "m/s2"},   {"_mps", "m/s"},
@@ -367,7 +367,7 @@ const std::vector<View>& Views() { return AllViews().views; }
 
 std::string ViewsSql() { return AllViews().sql; }
 
-const std::string& QueryOf(std::string_view view) {
+const std::string& ViewQuery(std::string_view view) {
   return AllViews().queries.find(view)->second;
 }
 

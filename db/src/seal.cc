@@ -20,7 +20,7 @@ bool IsSha256(std::string_view text) {
          text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-std::optional<std::int64_t> CountOf(std::string_view text) {
+std::optional<std::int64_t> ParseCount(std::string_view text) {
   std::int64_t count = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, count);
@@ -29,15 +29,15 @@ std::optional<std::int64_t> CountOf(std::string_view text) {
 }
 
 // Takes what stands before `until` (or all) away from `text`.
-std::string_view TakeUntil(std::string_view& text, char until) {
+std::string_view TakeToken(std::string_view& text, char until) {
   const std::size_t end = std::min(text.find(until), text.size());
   const std::string_view part = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return part;
 }
 
-std::string DigestAfter(std::string_view before, std::int64_t number,
-                        const SealLine& line) {
+std::string ExtendDigest(std::string_view before, std::int64_t number,
+                         const SealLine& line) {
   return LinkDigest(
       before, {number, line.subject, line.key, line.row_sha256, std::string()});
 }
@@ -64,8 +64,8 @@ std::string HeadText(const SealHead& head) {
 }
 
 std::optional<SealHead> ParseHead(std::string_view text) {
-  const std::string_view store = TakeUntil(text, ':');
-  const auto links = CountOf(TakeUntil(text, ':'));
+  const std::string_view store = TakeToken(text, ':');
+  const auto links = ParseCount(TakeToken(text, ':'));
   if (!IsUuid(store) || !links || !IsSha256(text)) return std::nullopt;
   return SealHead{std::string(store), *links, std::string(text)};
 }
@@ -108,17 +108,17 @@ Seal ParseSeal(std::string_view text, std::string_view name) {
   };
   const auto line = [&] {
     ++at;
-    return TakeUntil(text, '\n');
+    return TakeToken(text, '\n');
   };
   Seal seal;
   if (line() != kFirstLine) refuse(fmt::format("'{}'", kFirstLine));
   std::string_view head = line();
   const auto parsed =
-      TakeUntil(head, ' ') == "head" ? ParseHead(head) : std::nullopt;
+      TakeToken(head, ' ') == "head" ? ParseHead(head) : std::nullopt;
   if (!parsed) refuse("the head");
   seal.head = *parsed;
   std::string_view sealed = line();
-  if (TakeUntil(sealed, ' ') != "sealed" || !IsUtcStamp(sealed)) {
+  if (TakeToken(sealed, ' ') != "sealed" || !IsUtcStamp(sealed)) {
     refuse("the date of the seal");
   }
   seal.sealed_at_utc = sealed;
@@ -126,15 +126,15 @@ Seal ParseSeal(std::string_view text, std::string_view name) {
   while (!text.empty()) {
     std::string_view rest = line();
     SealLine one;
-    one.subject = TakeUntil(rest, ' ');
-    one.key = TakeUntil(rest, ' ');
+    one.subject = TakeToken(rest, ' ');
+    one.key = TakeToken(rest, ' ');
     one.row_sha256 = rest;
     if (one.subject.empty() || one.key.empty() || !IsSha256(rest)) {
       refuse("what a link is of, which, and its SHA-256");
     }
     seal.lines.push_back(std::move(one));
-    digest = DigestAfter(digest, static_cast<std::int64_t>(seal.lines.size()),
-                         seal.lines.back());
+    digest = ExtendDigest(digest, static_cast<std::int64_t>(seal.lines.size()),
+                          seal.lines.back());
   }
   if (static_cast<std::int64_t>(seal.lines.size()) != seal.head.links ||
       digest != seal.head.sha256 || seal.lines.front().subject != "store" ||
@@ -145,7 +145,7 @@ Seal ParseSeal(std::string_view text, std::string_view name) {
   return seal;
 }
 
-SealCheck CheckAgainst(const Store& store, const Seal& seal) {
+SealCheck CheckStoreSeal(const Store& store, const Seal& seal) {
   Connection& connection = store.connection();
   Transaction snapshot(connection, Transaction::Kind::kRead);
   SealCheck check;
@@ -163,7 +163,7 @@ SealCheck CheckAgainst(const Store& store, const Seal& seal) {
     if (++count > seal.head.links || !check.problem.empty()) return;
     const SealLine now{link.subject, link.key,
                        RowDigest(connection, link.subject, link.key)};
-    digest = DigestAfter(digest, count, now);
+    digest = ExtendDigest(digest, count, now);
     if (!seal.lines.empty()) {
       const SealLine& sealed =
           seal.lines.at(static_cast<std::size_t>(count - 1));

@@ -57,7 +57,7 @@ Connection::Connection(const std::filesystem::path& path, Access access,
   const std::filesystem::path absolute = std::filesystem::absolute(path);
   const int create = access == Access::kCreate ? SQLITE_OPEN_CREATE : 0;
   try {
-    int code = OpenAt(absolute.string(), SQLITE_OPEN_READWRITE | create);
+    int code = OpenFile(absolute.string(), SQLITE_OPEN_READWRITE | create);
     if (access == Access::kRead &&
         (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) &&
         !std::filesystem::exists(absolute.string() + "-wal")) {
@@ -65,8 +65,8 @@ Connection::Connection(const std::filesystem::path& path, Access access,
       // no log beside it the file is whole as it lies.
       sqlite3_close(handle_);
       handle_ = nullptr;
-      code = OpenAt(ImmutableUri(absolute),
-                    SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+      code = OpenFile(ImmutableUri(absolute),
+                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
     }
     if (code != SQLITE_OK) Fail(code);
     // Off for good: nobody needs them, and a damaged file could use them.
@@ -95,7 +95,7 @@ Connection::~Connection() {
   sqlite3_close(handle_);
 }
 
-int Connection::OpenAt(const std::string& name, int flags) {
+int Connection::OpenFile(const std::string& name, int flags) {
   // One thread uses a Store, so SQLite need not lock for others.
   int code = sqlite3_open_v2(name.c_str(), &handle_,
                              flags | SQLITE_OPEN_NOMUTEX, nullptr);

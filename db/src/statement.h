@@ -41,7 +41,7 @@ class Connection {
 
  private:
   friend class Statement;
-  int OpenAt(const std::string& name, int flags);
+  int OpenFile(const std::string& name, int flags);
 
   static int OnBusy(void* self, int tries);
 

@@ -19,7 +19,7 @@ namespace {
 using core::StoreError;
 namespace fs = std::filesystem;
 
-Connection::Access AccessOf(OpenMode mode) {
+Connection::Access ToAccess(OpenMode mode) {
   switch (mode) {
     case OpenMode::kRead:
       return Connection::Access::kRead;
@@ -131,7 +131,7 @@ void KeepSetPoints(Connection& connection, const Head& head,
 
 struct Store::Impl {
   Impl(const fs::path& path, OpenMode mode, OpenOptions options)
-      : connection(path, AccessOf(mode), options.patience_s),
+      : connection(path, ToAccess(mode), options.patience_s),
         sources(std::move(options.sources)) {}
 
   // Within a write transaction.
@@ -186,7 +186,7 @@ Logged Store::Impl::Log(const core::Trial& trial) {
         "trial id is '{}', must be empty or a UUID in lower case", trial.id));
   }
   const std::string now = sources.now_utc();
-  const auto campaign = CampaignOf(connection, trial);
+  const auto campaign = FindCampaignRow(connection, trial);
   const auto clip = KeepClip(connection, trial.clip, now);
   std::optional<TrialRow> row;
   if (!trial.id.empty()) {
@@ -218,7 +218,7 @@ Logged Store::Impl::Log(const core::Trial& trial) {
           row->uuid, row->origin, core::Name(trial.origin)));
     }
   }
-  const auto head = is_new ? std::nullopt : HeadOf(connection, row->row);
+  const auto head = is_new ? std::nullopt : FindHead(connection, row->row);
   NewRevision revision;
   revision.uuid = sources.new_uuid();
   revision.recorded_at_utc = now;
@@ -288,7 +288,7 @@ Logged Store::Correct(const core::Trial& seen, std::string_view who,
   Connection& connection = impl_->connection;
   Transaction transaction(connection, Transaction::Kind::kWrite);
   const auto row = FindTrial(connection, trial.id);
-  const auto head = row ? HeadOf(connection, row->row) : std::nullopt;
+  const auto head = row ? FindHead(connection, row->row) : std::nullopt;
   if (!head) {
     throw StoreError(
         fmt::format("{}: there is no trial {}; see `touchdown list`",
@@ -296,7 +296,7 @@ Logged Store::Correct(const core::Trial& seen, std::string_view who,
   }
   RequireLast(path(), trial.id, head->number, seen.revision);
   // The campaign's kinds bind a correction too.
-  CampaignOf(connection, trial);
+  FindCampaignRow(connection, trial);
   NewRevision revision;
   revision.uuid = impl_->sources.new_uuid();
   revision.kind = RevisionKind::kCorrected;
@@ -314,7 +314,7 @@ Logged Store::Impl::Mark(std::string_view id, std::string_view who,
   RequireStated(who, why);
   Transaction transaction(connection, Transaction::Kind::kWrite);
   const auto row = FindTrial(connection, id);
-  const auto head = row ? HeadOf(connection, row->row) : std::nullopt;
+  const auto head = row ? FindHead(connection, row->row) : std::nullopt;
   if (!head) {
     throw StoreError(
         fmt::format("{}: there is no trial {}; see `touchdown list`",
@@ -444,7 +444,7 @@ std::vector<core::Trial> Store::Proposals(std::string_view id) const {
 
 std::vector<Revision> Store::History(std::string_view id) const {
   Transaction snapshot(impl_->connection, Transaction::Kind::kRead);
-  return HistoryOf(impl_->connection, id);
+  return ReadHistory(impl_->connection, id);
 }
 
 void Store::ForEachHistory(

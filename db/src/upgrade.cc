@@ -93,7 +93,7 @@ std::vector<Table2> RegisterOf2() {
 void UpgradeFrom2(Connection& connection) {
   const std::string schema = RegisterSql();
   for (const Table2& old : RegisterOf2()) {
-    const std::string_view table = TableOf(old.kind).table;
+    const std::string_view table = FindTable(old.kind).table;
     const std::size_t begin =
         schema.find(fmt::format("CREATE TABLE {} (", table));
     const std::size_t end = schema.find("CREATE TABLE ", begin + 1);

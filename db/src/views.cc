@@ -14,7 +14,7 @@ void ForEachRow(const Store& store, const View& view, std::string_view campaign,
   // The program's own text of it: the one in the file could be anybody's.
   Statement row(connection,
                 fmt::format("SELECT * FROM ({}) WHERE ?1 = '' OR campaign = ?1",
-                            QueryOf(view.name)));
+                            ViewQuery(view.name)));
   row.Add(campaign);
   std::vector<Cell> cells(view.columns.size());
   while (row.Step()) {

@@ -34,7 +34,7 @@ constexpr double kMiss = 1e-7;
 
 double Mm(double m) { return m / core::kMillimetre; }
 
-Landing LandingAt(const Description& rig, double face_rad) {
+Landing ComputeLanding(const Description& rig, double face_rad) {
   return Land(rig.body->long_m->value, rig.body->short_m->value,
               std::remainder(face_rad, 2.0 * kQuarterTurn));
 }
@@ -72,7 +72,7 @@ class Choice {
   bool SpringsCan(const Candidate& c) const;
   std::string SpringsReason(const Candidate& c) const;
   std::string Way(const Candidate& c) const;  // empty: free
-  Setting SettingOf(const Candidate& c) const;
+  Setting MakeSetting(const Candidate& c) const;
   std::string HeightReason() const;
 
   const SearchInput& input_;
@@ -97,21 +97,21 @@ bool Choice::ElevationIsInRange(const Candidate& c) const {
 
 bool Choice::CornerIsRight(const Candidate& c) const {
   return !input_.wish.corner ||
-         LandingAt(input_.rig, c.t.face_rad).corner == *input_.wish.corner;
+         ComputeLanding(input_.rig, c.t.face_rad).corner == *input_.wish.corner;
 }
 
 bool Choice::SpringsCan(const Candidate& c) const {
   // At the limit itself rounding decides; the limit is allowed.
   constexpr double kRounding = 1e-12;
   if (!(c.t.launch_speed_mps >= kSlowestLaunch_mps)) return false;
-  const double compression = CompressionOf(input_.rig, c.t);
+  const double compression = RequiredCompression(input_.rig, c.t);
   return compression <= input_.greatest_m * (1.0 + kRounding) &&
-         LaunchSpeed(LaunchOf(input_.rig, c.t.elevation_rad),
+         LaunchSpeed(MakeLaunch(input_.rig, c.t.elevation_rad),
                      std::fmin(compression, input_.greatest_m));
 }
 
 std::string Choice::SpringsReason(const Candidate& c) const {
-  const double compression = CompressionOf(input_.rig, c.t);
+  const double compression = RequiredCompression(input_.rig, c.t);
   for (const Finding& f : CheckCompression(input_.rig, compression)) {
     if (f.severity != Severity::kRefusal) continue;
     return fmt::format("a launch at {:.3g} m/s: {}", c.t.launch_speed_mps,
@@ -151,7 +151,7 @@ std::string Choice::Way(const Candidate& c) const {
   return "";
 }
 
-Setting Choice::SettingOf(const Candidate& c) const {
+Setting Choice::MakeSetting(const Candidate& c) const {
   Setting out;
   out.elevation_rad =
       std::clamp(c.t.elevation_rad, -kQuarterTurn, kQuarterTurn);
@@ -161,7 +161,7 @@ Setting Choice::SettingOf(const Candidate& c) const {
           : std::clamp(c.t.muzzle_height_m, input_.rig.muzzle_height_min_m,
                        input_.rig.muzzle_height_max_m);
   out.compression_m =
-      std::fmin(CompressionOf(input_.rig, c.t), input_.greatest_m);
+      std::fmin(RequiredCompression(input_.rig, c.t), input_.greatest_m);
   return out;
 }
 
@@ -250,7 +250,7 @@ Expected<Setting> Choice::Best() const {
   nearest = keep([&](const Candidate& c) { return CornerIsRight(c); },
                  [](const Candidate& c) { return c.t.time_s; });
   if (left.empty()) {
-    const auto corner = LandingAt(input_.rig, nearest->t.face_rad).corner;
+    const auto corner = ComputeLanding(input_.rig, nearest->t.face_rad).corner;
     return AbsentBecause(fmt::format(
         "at an elevation of {:.2f} deg the {} lands first, not the {} corner",
         Deg(nearest->t.elevation_rad),
@@ -269,7 +269,7 @@ Expected<Setting> Choice::Best() const {
                                 : a->t.time_s < b->t.time_s;
                    });
   for (const Candidate* c : left) {
-    if (Way(*c).empty()) return SettingOf(*c);
+    if (Way(*c).empty()) return MakeSetting(*c);
   }
   nearest = *std::max_element(left.begin(), left.end(),
                               [](const Candidate* a, const Candidate* b) {

@@ -250,7 +250,7 @@ core::Expected<EfficiencyFit> FitEfficiency(
     core::RequirePositive("compression_m", p.compression_m);
     core::RequirePositive("speed_mps", p.speed_mps.value);
   }
-  (void)CompressionFor(launch, 0.0);  // refuses an impossible launch by name
+  (void)SolveCompression(launch, 0.0);  // refuses an impossible launch by name
   const std::size_t unknowns = options.losses == LossModel::kNone ? 1 : 2;
   if (points.size() <= unknowns) {
     return core::AbsentBecause(

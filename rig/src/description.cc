@@ -9,7 +9,7 @@
 
 namespace touchdown::rig {
 
-core::Expected<Spring> SpringOf(const Springs& springs) {
+core::Expected<Spring> MakeSpring(const Springs& springs) {
   if (!springs.geometry) {
     return core::AbsentBecause("the springs' geometry is not given");
   }
@@ -26,8 +26,8 @@ core::Expected<Spring> SpringOf(const Springs& springs) {
   return spring;
 }
 
-Launch LaunchOf(const Description& rig, double elevation_rad) {
-  const auto spring = SpringOf(rig.springs);
+Launch MakeLaunch(const Description& rig, double elevation_rad) {
+  const auto spring = MakeSpring(rig.springs);
   if (!spring && !rig.springs.stiffness_n_per_m) {
     throw std::invalid_argument(
         "springs: neither geometry nor stiffness is given");
@@ -60,7 +60,7 @@ std::vector<Finding> CheckCompression(const Description& rig,
                      compression_m * 1e3, *rig.compression_max_m * 1e3)});
   }
   const double whole_m = compression_m + rig.preload_m.value;
-  const auto spring = SpringOf(rig.springs);
+  const auto spring = MakeSpring(rig.springs);
   if (!spring) {
     findings.push_back(
         {Severity::kWarning,

@@ -78,7 +78,7 @@ core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
         "give {:.4g} J, but gravity takes {:.4g} J, friction {:.4g} J and "
         "losses {:.4g} J; compress by more than {:.4g} mm",
         x * 1e3, energy.spring_j, energy.gravity_j, energy.friction_j,
-        energy.losses_j, CompressionFor(launch, 0.0) * 1e3));
+        energy.losses_j, SolveCompression(launch, 0.0) * 1e3));
   }
   muzzle.speed_mps = std::sqrt(2.0 * left_j / MovingMass(launch));
   const double v2 = muzzle.speed_mps * muzzle.speed_mps;
@@ -112,7 +112,7 @@ core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
   return muzzle;
 }
 
-double CompressionFor(const Launch& launch, double speed_mps) {
+double SolveCompression(const Launch& launch, double speed_mps) {
   ValidateLaunch(launch);
   core::RequireNotNegative("speed_mps", speed_mps);
   // a X^2 + 2 b X - c = 0 with a, c >= 0: of the two forms of the positive root

@@ -30,7 +30,7 @@ struct Slot {
   double* (*place)(State&);
 };
 
-std::vector<Slot> SlotsOf(const State& s) {
+std::vector<Slot> ListSlots(const State& s) {
   std::vector<Slot> slots;
   const auto add = [&](const char* name, const core::Estimate& e, double low,
                        double high, double* (*place)(State&)) {
@@ -123,7 +123,7 @@ struct Release {
   double spin_rad_per_s = 0.0;
 };
 
-Release ReleaseOf(const State& s) {
+Release MakeRelease(const State& s) {
   const double elevation = s.setting.elevation_rad;
   const double seat = s.rig.seat_angle_rad.value;
   const double spin = s.rig.spin_rad_per_s.value;
@@ -132,9 +132,9 @@ Release ReleaseOf(const State& s) {
           -spin};
 }
 
-core::Expected<TurningFlight> FlyFrom(const Description& rig,
-                                      const Release& release, double speed_mps,
-                                      double height_m) {
+core::Expected<TurningFlight> FlyRelease(const Description& rig,
+                                         const Release& release,
+                                         double speed_mps, double height_m) {
   const double g = rig.gravity_mps2.value;
   if (ThrowsRectangle(rig)) {
     return FlyTurning({.long_m = rig.body->long_m->value,
@@ -157,16 +157,16 @@ core::Expected<TurningFlight> FlyFrom(const Description& rig,
 
 core::Expected<Outcome> Simulate(const State& s) {
   const Description& rig = s.rig;
-  const Release release = ReleaseOf(s);
+  const Release release = MakeRelease(s);
   const double elevation = release.elevation_rad;
-  Launch launch = LaunchOf(rig, elevation);
+  Launch launch = MakeLaunch(rig, elevation);
   launch.loss_j = std::fmax(0.0, launch.loss_j);
   launch.barrel_friction = std::fmax(0.0, launch.barrel_friction);
   const auto muzzle = LaunchSpeed(launch, s.setting.compression_m);
   if (!muzzle) return core::AbsentBecause(muzzle.error().reason);
   Outcome out;
   const auto flown =
-      FlyFrom(rig, release, muzzle->speed_mps, s.setting.muzzle_height_m);
+      FlyRelease(rig, release, muzzle->speed_mps, s.setting.muzzle_height_m);
   if (!flown) return core::AbsentBecause(flown.error().reason);
   const Flight& flight = flown->flight;
   out.values[kStiffness] = launch.stiffness_n_per_m;
@@ -189,9 +189,9 @@ core::Expected<Outcome> Simulate(const State& s) {
 }
 
 // The State with the inputs' values put in.
-core::Expected<Outcome> SimulateAt(State& scratch,
-                                   const std::vector<Slot>& slots,
-                                   std::span<const double> values) {
+core::Expected<Outcome> SimulateInputs(State& scratch,
+                                       const std::vector<Slot>& slots,
+                                       std::span<const double> values) {
   for (std::size_t i = 0; i < slots.size(); ++i) {
     *slots[i].place(scratch) = values[i];
   }
@@ -278,14 +278,14 @@ ContactPrediction Predict(const Description& rig, const Setting& setting,
     nominal.dead_coils = geometry->total_coils - geometry->active_coils.value;
   }
   const auto outcome = Simulate(nominal);
-  const std::vector<Slot> slots = SlotsOf(nominal);
+  const std::vector<Slot> slots = ListSlots(nominal);
   std::vector<UncertainInput> inputs;
   inputs.reserve(slots.size());
   for (const Slot& slot : slots) inputs.push_back(slot.input);
   State scratch = nominal;
   const Model model = [&](std::span<const double> values)
       -> core::Expected<std::vector<double>> {
-    const auto answer = SimulateAt(scratch, slots, values);
+    const auto answer = SimulateInputs(scratch, slots, values);
     if (!answer) return core::AbsentBecause(answer.error().reason);
     return std::vector<double>(answer->values.begin(), answer->values.end());
   };

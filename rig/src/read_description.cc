@@ -205,7 +205,7 @@ Springs ReadSprings(const Section& in) {
   if (any || !out.stiffness_n_per_m) {
     out.geometry = ReadGeometry(in);
     try {
-      (void)SpringIndex(*SpringOf(out));
+      (void)SpringIndex(*MakeSpring(out));
     } catch (const std::invalid_argument& error) {
       in.Fail(in.At("coil_diameter_mm"),
               fmt::format("springs: {}", error.what()));

@@ -34,7 +34,7 @@ void ValidateWish(const ContactWish& wish) {
 // The radius and face angles need a rectangle.
 // The attitudes in which a corner stands at a radius angle: tilts up to the
 // diagonal's, and beyond it. First those that land on the trailing corner.
-std::vector<double> AttitudesOf(double radius_rad, double least_rad) {
+std::vector<double> LandingAttitudes(double radius_rad, double least_rad) {
   const double tilt = std::fmax(0.0, radius_rad - least_rad);
   const double beyond = 2.0 * kQuarterTurn - least_rad - radius_rad;
   std::vector<double> out{tilt, -tilt};
@@ -71,8 +71,8 @@ Expected<Setting> FirstPossible(const Description& rig, const ContactWish& wish,
 
 }  // namespace
 
-core::Expected<Setting> SettingFor(const Description& rig,
-                                   const ContactWish& wish) {
+core::Expected<Setting> FindSetting(const Description& rig,
+                                    const ContactWish& wish) {
   ValidateWish(wish);
   if (!ThrowsRectangle(rig)) {
     if (wish.kind != AngleKind::kApproach) {
@@ -98,14 +98,14 @@ core::Expected<Setting> SettingFor(const Description& rig,
         "deg; {:.2f} deg needs short/long below {:.3g}",
         Deg(least), Deg(wish.angle_rad), std::tan(wish.angle_rad)));
   }
-  return FirstPossible(rig, wish, AttitudesOf(wish.angle_rad, least));
+  return FirstPossible(rig, wish, LandingAttitudes(wish.angle_rad, least));
 }
 
 core::Expected<SetPoint> PlanContact(const Description& rig,
                                      const ContactWish& wish,
                                      const PredictOptions& options,
                                      std::mt19937_64& engine) {
-  const auto setting = SettingFor(rig, wish);
+  const auto setting = FindSetting(rig, wish);
   if (!setting) return AbsentBecause(setting.error().reason);
   return SetPoint{*setting, Predict(rig, *setting, options, engine)};
 }

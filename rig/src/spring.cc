@@ -26,7 +26,7 @@ void ValidateSpring(const Spring& spring) {
   if (spring.count < 1) core::Refuse("count", spring.count, "at least 1");
 }
 
-double MeanOf(const Spring& spring) {
+double MeanCoilDiameter(const Spring& spring) {
   switch (spring.coil_diameter) {
     case CoilDiameter::kOuter:
       return spring.coil_diameter_m - spring.wire_diameter_m;
@@ -131,7 +131,7 @@ std::optional<CoilDiameter> ParseCoilDiameter(std::string_view word) {
 
 double MeanDiameter(const Spring& spring) {
   ValidateSpring(spring);
-  const double mean = MeanOf(spring);
+  const double mean = MeanCoilDiameter(spring);
   // At index 1 the hole closes: no such coil can be wound.
   if (!(mean > spring.wire_diameter_m)) {
     core::Refuse("mean coil diameter in m", mean,

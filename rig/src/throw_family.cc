@@ -31,15 +31,15 @@ double LongestFlight(const Description& rig, double speed_mps) {
   return (speed_mps + std::sqrt(speed_mps * speed_mps + 2.0 * g * reach)) / g;
 }
 
-int CellsOf(double spin_rad_per_s, double duration_s) {
+int CountCells(double spin_rad_per_s, double duration_s) {
   return kLeastCells + static_cast<int>(std::abs(spin_rad_per_s) * duration_s /
                                         kTurnOfCell_rad);
 }
 
 }  // namespace
 
-std::optional<Throw> ThrowAt(const Description& rig, const ThrowFamily& family,
-                             double time_s) {
+std::optional<Throw> ComputeThrow(const Description& rig,
+                                  const ThrowFamily& family, double time_s) {
   const double g = rig.gravity_mps2.value;
   const double seat = rig.seat_angle_rad.value;
   const double spin = rig.spin_rad_per_s.value;
@@ -81,7 +81,7 @@ std::vector<ThrowFamily> ApproachFamilies(const Description& rig,
   const double to = LongestFlight(rig, wish.speed_mps);
   const bool turns = rig.body && rig.body->kind == core::BodyKind::kRectangle;
   return {{AngleKind::kApproach, wish.angle_rad, false, wish.speed_mps, 0.0, to,
-           CellsOf(turns ? rig.spin_rad_per_s.value : 0.0, to)}};
+           CountCells(turns ? rig.spin_rad_per_s.value : 0.0, to)}};
 }
 
 std::vector<ThrowFamily> AttitudeFamilies(const Description& rig,
@@ -110,7 +110,7 @@ std::vector<ThrowFamily> AttitudeFamilies(const Description& rig,
     if (!(to > from)) continue;
     for (const bool steep : {false, true}) {
       out.push_back({AngleKind::kFace, angle, steep, wish.speed_mps, from, to,
-                     CellsOf(spin, to - from)});
+                     CountCells(spin, to - from)});
     }
   }
   return out;

@@ -45,8 +45,8 @@ struct ThrowFamily {
 
 // The throw that flies for `time_s` > 0; nothing where the contact cannot be
 // at the end of such a flight.
-std::optional<Throw> ThrowAt(const Description& rig, const ThrowFamily& family,
-                             double time_s);
+std::optional<Throw> ComputeThrow(const Description& rig,
+                                  const ThrowFamily& family, double time_s);
 
 // The families of a wanted approach angle (one), or of a wanted attitude (one
 // for each half turn that the spin can make, and each of the two beta).

@@ -27,16 +27,16 @@ class Search {
   }
 
  private:
-  Slacks SlacksOf(const Throw& t) const;
-  std::optional<Slacks> SlacksAt(const ThrowFamily& family,
-                                 double time_s) const;
+  Slacks ComputeSlacks(const Throw& t) const;
+  std::optional<Slacks> FindSlacks(const ThrowFamily& family,
+                                   double time_s) const;
   void Visit(const ThrowFamily& family);
   void Root(const ThrowFamily& family, std::size_t limit, double from,
             double to);
   void Extremum(const ThrowFamily& family, std::size_t limit, double from,
                 double to);
   void Add(const ThrowFamily& family, double time_s);
-  Candidate CandidateAt(const ThrowFamily& family, const Throw& t) const;
+  Candidate MakeCandidate(const ThrowFamily& family, const Throw& t) const;
   double SpareHeight(const Throw& t) const;
 
   const SearchInput& input_;
@@ -49,7 +49,7 @@ double Search::SpareHeight(const Throw& t) const {
   return t.muzzle_height_m - CentreHeightAtTouchdown(input_.rig, face);
 }
 
-Slacks Search::SlacksOf(const Throw& t) const {
+Slacks Search::ComputeSlacks(const Throw& t) const {
   Slacks s{};
   if (input_.wish.muzzle_height_m) {
     // Equality: its sign changes, and both are met there.
@@ -70,22 +70,23 @@ Slacks Search::SlacksOf(const Throw& t) const {
   }
   s[kTravel] = input_.greatest_m == kInf
                    ? 1.0
-                   : input_.greatest_m - CompressionOf(input_.rig, t);
+                   : input_.greatest_m - RequiredCompression(input_.rig, t);
   s[kClear] = SpareHeight(t) - input_.clearance_m;
   return s;
 }
 
-std::optional<Slacks> Search::SlacksAt(const ThrowFamily& family,
-                                       double time_s) const {
-  const auto t = ThrowAt(input_.rig, family, time_s);
+std::optional<Slacks> Search::FindSlacks(const ThrowFamily& family,
+                                         double time_s) const {
+  const auto t = ComputeThrow(input_.rig, family, time_s);
   if (!t) return std::nullopt;
-  return SlacksOf(*t);
+  return ComputeSlacks(*t);
 }
 
-Candidate Search::CandidateAt(const ThrowFamily& family, const Throw& t) const {
+Candidate Search::MakeCandidate(const ThrowFamily& family,
+                                const Throw& t) const {
   Candidate c;
   c.t = t;
-  c.slack = SlacksOf(t);
+  c.slack = ComputeSlacks(t);
   // The level shot, where the elevation drops out to first order, then the
   // slower launch; attitudes: the shortest flight.
   constexpr double kSame = 1e-7;  // rad and m/s: alike to every digit printed
@@ -100,19 +101,19 @@ Candidate Search::CandidateAt(const ThrowFamily& family, const Throw& t) const {
 
 void Search::Add(const ThrowFamily& family, double time_s) {
   if (!(time_s > 0.0)) return;
-  if (const auto t = ThrowAt(input_.rig, family, time_s)) {
-    candidates_.push_back(CandidateAt(family, *t));
+  if (const auto t = ComputeThrow(input_.rig, family, time_s)) {
+    candidates_.push_back(MakeCandidate(family, *t));
   }
 }
 
 void Search::Root(const ThrowFamily& family, std::size_t limit, double from,
                   double to) {
-  const auto first = SlacksAt(family, from);
+  const auto first = FindSlacks(family, from);
   if (!first) return;
   const bool positive = (*first)[limit] > 0.0;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (from + to);
-    const auto s = SlacksAt(family, middle);
+    const auto s = FindSlacks(family, middle);
     if (!s) return;
     (((*s)[limit] > 0.0) == positive ? from : to) = middle;
   }
@@ -125,13 +126,13 @@ void Search::Root(const ThrowFamily& family, std::size_t limit, double from,
 void Search::Extremum(const ThrowFamily& family, std::size_t limit, double from,
                       double to) {
   constexpr double kGolden = 0.6180339887498949;
-  const auto first = SlacksAt(family, from);
-  const auto last = SlacksAt(family, to);
+  const auto first = FindSlacks(family, from);
+  const auto last = FindSlacks(family, to);
   if (!first || !last) return;
   const bool negative = (*first)[limit] < 0.0;
   // Towards zero.
   const auto cost = [&](double time) {
-    const auto s = SlacksAt(family, time);
+    const auto s = FindSlacks(family, time);
     return s ? (negative ? -(*s)[limit] : (*s)[limit]) : kInf;
   };
   double low = from;
@@ -157,7 +158,7 @@ void Search::Visit(const ThrowFamily& family) {
       static_cast<std::size_t>(family.cells) + 1);
   for (int i = 0; i <= family.cells; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (at(i) > 0.0) grid[k] = SlacksAt(family, at(i));
+    if (at(i) > 0.0) grid[k] = FindSlacks(family, at(i));
     if (grid[k]) Add(family, at(i));
     if (k == 0 || !grid[k] || !grid[k - 1]) continue;
     for (std::size_t limit = 0; limit < kLimits; ++limit) {
@@ -183,8 +184,8 @@ void Search::Visit(const ThrowFamily& family) {
     double time = width;
     for (int i = 0; i < kHalvings; ++i) {
       const double half = 0.5 * time;
-      const auto now = SlacksAt(family, half);
-      const auto before = SlacksAt(family, time);
+      const auto now = FindSlacks(family, half);
+      const auto before = FindSlacks(family, time);
       Add(family, half);
       for (std::size_t limit = 0; now && before && limit < kLimits; ++limit) {
         if (((*now)[limit] > 0.0) != ((*before)[limit] > 0.0)) {
@@ -201,13 +202,14 @@ void Search::Visit(const ThrowFamily& family) {
     double absent = grid[k] ? at(i - 1) : at(i);
     for (int step = 0; step < kBisections; ++step) {
       const double middle = 0.5 * (there + absent);
-      (middle > 0.0 && ThrowAt(input_.rig, family, middle) ? there : absent) =
+      (middle > 0.0 && ComputeThrow(input_.rig, family, middle) ? there
+                                                                : absent) =
           middle;
     }
     Add(family, there);
     const double inner = grid[k] ? at(i) : at(i - 1);
-    const auto edge = SlacksAt(family, there);
-    const auto in = SlacksAt(family, inner);
+    const auto edge = FindSlacks(family, there);
+    const auto in = FindSlacks(family, inner);
     for (std::size_t limit = 0; edge && in && limit < kLimits; ++limit) {
       if (((*edge)[limit] > 0.0) != ((*in)[limit] > 0.0)) {
         Root(family, limit, there, inner);
@@ -222,10 +224,10 @@ void Search::Visit(const ThrowFamily& family) {
 
 }  // namespace
 
-double CompressionOf(const Description& rig, const Throw& t) {
+double RequiredCompression(const Description& rig, const Throw& t) {
   const double elevation =
       std::clamp(t.elevation_rad, -kQuarterTurn, kQuarterTurn);
-  return CompressionFor(LaunchOf(rig, elevation), t.launch_speed_mps);
+  return SolveCompression(MakeLaunch(rig, elevation), t.launch_speed_mps);
 }
 
 std::vector<Candidate> FindCandidates(

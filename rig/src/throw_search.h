@@ -43,7 +43,7 @@ struct SearchInput {
 };
 
 // The compression that launches the throw; the springs may not bear it.
-double CompressionOf(const Description& rig, const Throw& t);
+double RequiredCompression(const Description& rig, const Throw& t);
 
 std::vector<Candidate> FindCandidates(const SearchInput& input,
                                       const std::vector<ThrowFamily>& families);

@@ -43,8 +43,8 @@ struct CornerHeight {
   double rate_mps = 0.0;
 };
 
-std::array<CornerHeight, 4> CornersAt(const TurningThrow& t, double time_s,
-                                      double up_mps) {
+std::array<CornerHeight, 4> ComputeCorners(const TurningThrow& t, double time_s,
+                                           double up_mps) {
   const double y =
       t.height_m + time_s * (up_mps - 0.5 * t.gravity_mps2 * time_s);
   const double rise = up_mps - t.gravity_mps2 * time_s;
@@ -73,7 +73,7 @@ core::Expected<TurningFlight> FlyTurning(const TurningThrow& t) {
   double time = 0.0;
   for (int i = 0; i < kMostSteps; ++i) {
     double step = kInf;
-    for (const CornerHeight& corner : CornersAt(t, time, up)) {
+    for (const CornerHeight& corner : ComputeCorners(t, time, up)) {
       if (i == 0 && corner.height_m < -kOnGround_m) {
         return core::AbsentBecause(fmt::format(
             "the body would start {:.3g} mm deep in the ground: raise the "

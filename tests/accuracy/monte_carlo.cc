@@ -64,13 +64,13 @@ calib::Lens MovedLens(const calib::LensRecord& record,
                       std::mt19937_64& engine) {
   const Eigen::SelfAdjointEigenSolver<calib::LensCovariance> solver(
       record.covariance);
-  calib::LensVector lens = calib::VectorOf(record.lens);
+  calib::LensVector lens = calib::ToVector(record.lens);
   Normal normal(0.0, 1.0);
   for (int k = 0; k < calib::kLensParameters; ++k) {
     lens += normal(engine) * std::sqrt(std::max(0.0, solver.eigenvalues()[k])) *
             solver.eigenvectors().col(k);
   }
-  return calib::LensOf(lens);
+  return calib::ToLens(lens);
 }
 
 vision::ContactResult Draw(const BudgetTrial& trial, std::mt19937_64& engine) {
@@ -93,10 +93,10 @@ vision::ContactResult Draw(const BudgetTrial& trial, std::mt19937_64& engine) {
   calib::Scale scale = *trial.analysis.scale;
   scale.px_per_m.value = Move(scale.px_per_m, engine);
   vision::ContactOptions contacts =
-      pipeline::ContactOptionsOf(options, camera, scale);
+      pipeline::MakeContactOptions(options, camera, scale);
   contacts.gravity_mps2.value = Move(contacts.gravity_mps2, engine);
-  return pipeline::ContactsIn(
-      pipeline::SeenInPlane(camera, pipeline::SeenThrough(camera, track),
+  return pipeline::FindPlaneContacts(
+      pipeline::SeenInPlane(camera, pipeline::ToIdealPicture(camera, track),
                             *camera.ideal_ground),
       contacts);
 }
@@ -283,7 +283,7 @@ void TurnAndBend(BudgetTrial& trial, double yaw_rad, double u_yaw_rad) {
   // What was a straight look becomes the plane's own coordinates.
   const calib::GroundLine& line = *a.options.ground;
   const vision::YawedView view =
-      vision::ViewOf(line, pipeline::YawThrough(yaw_rad, lens.lens));
+      vision::MakeYawedView(line, pipeline::MakePlaneYaw(yaw_rad, lens.lens));
   const vision::PlaneTrack plane = vision::SeenFromGround(*a.track, line);
   for (std::size_t i = 0; i < a.track->poses.size(); ++i) {
     vision::Pose& pose = a.track->poses[i];

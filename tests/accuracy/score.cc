@@ -23,7 +23,7 @@ pipeline::AnalyzeOptions Told(const Case& c) {
 
 Outcome Analyse(const Case& c) {
   const pipeline::AnalyzeOptions options = Told(c);
-  auto clip = vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
+  auto clip = vision::OpenScene(pipeline::filmed::BuildScene(c.film), c.seed);
   const auto start = std::chrono::steady_clock::now();
   const pipeline::Analysis analysis =
       pipeline::AnalyzeClip(std::move(clip), options);

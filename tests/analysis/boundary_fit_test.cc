@@ -59,8 +59,8 @@ TEST(FitBoundary, PaperTable1) {
       FitBoundary(PaperTable1(BodyKind::kSphere, 0.5 * kDegree), NoLapse());
   ExpectPosterior(sphere, 20.051, 10.970, 32.016);
   EXPECT_NEAR(sphere.sd_rad / kDegree, 5.767, kTolerance_deg);
-  EXPECT_NEAR(ProbabilityBelow(sphere, 11.8 * kDegree), 0.043, 0.002);
-  EXPECT_NEAR(ProbabilityWithin(sphere, 11.8 * kDegree, 0.5 * kDegree), 0.030,
+  EXPECT_NEAR(CumulativeProbability(sphere, 11.8 * kDegree), 0.043, 0.002);
+  EXPECT_NEAR(MarginProbability(sphere, 11.8 * kDegree, 0.5 * kDegree), 0.030,
               0.002);
   EXPECT_NEAR(SmallestPassingMargin(sphere, 11.8 * kDegree) / kDegree, 17.2,
               0.05);
@@ -71,10 +71,10 @@ TEST(FitBoundary, PaperTable1) {
       FitBoundary(PaperTable1(BodyKind::kRectangle, 0.5 * kDegree), NoLapse());
   ExpectPosterior(rectangle, 10.142, 4.701, 22.103);
   EXPECT_NEAR(rectangle.sd_rad / kDegree, 4.184, kTolerance_deg);
-  EXPECT_NEAR(ProbabilityBelow(rectangle, 7.8 * kDegree), 0.145, 0.002);
-  EXPECT_NEAR(ProbabilityWithin(rectangle, 7.8 * kDegree, 0.5 * kDegree), 0.100,
+  EXPECT_NEAR(CumulativeProbability(rectangle, 7.8 * kDegree), 0.145, 0.002);
+  EXPECT_NEAR(MarginProbability(rectangle, 7.8 * kDegree, 0.5 * kDegree), 0.100,
               0.002);
-  EXPECT_NEAR(ProbabilityWithin(rectangle, 7.8 * kDegree, 2 * kDegree), 0.397,
+  EXPECT_NEAR(MarginProbability(rectangle, 7.8 * kDegree, 2 * kDegree), 0.397,
               0.002);
   EXPECT_NEAR(SmallestPassingMargin(rectangle, 7.8 * kDegree) / kDegree, 10.7,
               0.05);
@@ -350,7 +350,7 @@ TEST(FitBoundary, CoversABoundaryThatScatters) {
     }
     const auto p = FitBoundary(Trials(x, y, 0.3), options);
     const double truth = theta * kDegree;
-    const double below = ProbabilityBelow(p, truth);
+    const double below = CumulativeProbability(p, truth);
     const bool hit =
         p.interval95_rad.low <= truth && truth <= p.interval95_rad.high;
     hits += hit ? 1 : 0;
@@ -504,10 +504,10 @@ TEST(FitBoundary, ANarrowPosteriorIsNotSteppedOver) {
 TEST(FitBoundary, QuantileAndProbabilityAreInverse) {
   const auto p = FitBoundary(PaperTable1(BodyKind::kRectangle, 0.1 * kDegree));
   for (double q = 0.001; q < 1.0; q += 0.037) {
-    EXPECT_NEAR(ProbabilityBelow(p, Quantile(p, q)), q, 1e-9);
+    EXPECT_NEAR(CumulativeProbability(p, Quantile(p, q)), q, 1e-9);
   }
-  EXPECT_EQ(ProbabilityBelow(p, -1.0), 0.0);
-  EXPECT_EQ(ProbabilityBelow(p, 2.0), 1.0);
+  EXPECT_EQ(CumulativeProbability(p, -1.0), 0.0);
+  EXPECT_EQ(CumulativeProbability(p, 2.0), 1.0);
 }
 
 TEST(FitBoundary, RefusesImpossibleOptionsByName) {

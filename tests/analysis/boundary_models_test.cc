@@ -54,7 +54,7 @@ TEST(BoundaryAngle, PaperReplicationGivesBothDigits) {
       11.778, 5e-4);
   EXPECT_NEAR(*BoundaryAngle(BoundaryModel::kPaperReplication, {}) / kDegree,
               7.784, 5e-4);
-  EXPECT_FALSE(CardOf(BoundaryModel::kPaperReplication).is_physics);
+  EXPECT_FALSE(FindCard(BoundaryModel::kPaperReplication).is_physics);
   std::mt19937_64 engine(1);
   const auto answer =
       EvaluateBoundary(BoundaryModel::kPaperReplication, {}, engine);
@@ -217,7 +217,7 @@ TEST(BounceRatio, TellsWhatBouncesWhereBothAnglesAreKept) {
     }
     const double next =
         motion.events.size() > 1 ? motion.events[1].before.time_s : p.end_s;
-    const double gap = GreatestGapWithin(motion, truth->time_s, next).gap_m;
+    const double gap = ComputeGreatestGap(motion, truth->time_s, next).gap_m;
     BoundaryInputs in;
     in.slip = truth->corner == core::Corner::kLeading ? Slip::kLeading
                                                       : Slip::kTrailing;

@@ -32,7 +32,7 @@ void ExpectForce(double value, long double reference, double condition,
       << static_cast<double>(reference);
 }
 
-ContactProblem ProblemOf(const testing::Row& row) {
+ContactProblem MakeProblem(const testing::Row& row) {
   ContactProblem p;
   p.alpha = SinCosOfRadians(row.Number("alpha_rad"));
   p.mu = row.Number("mu");
@@ -48,7 +48,7 @@ ContactProblem ProblemOf(const testing::Row& row) {
 
 void ExpectMatches(const testing::Row& row) {
   const std::string& id = row.Text("id");
-  const ContactResult r = SolveContact(ProblemOf(row));
+  const ContactResult r = SolveContact(MakeProblem(row));
   const std::string& exact = row.Text("regime_exact");
   const std::string& tolerant = row.Text("regime_with_tolerance");
   EXPECT_EQ(Name(r.tolerant_regime), tolerant.substr(0, tolerant.find('(')))
@@ -103,7 +103,7 @@ TEST(SolveSlidingContact, HardCases) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
   for (const auto& row : testing::ReadCsv(path)) {
     const std::string& id = row.Text("id");
-    const ContactProblem p = ProblemOf(row);
+    const ContactProblem p = MakeProblem(row);
     if (p.slip == Slip::kNone) continue;
     const QuickContact quick = SolveSlidingContact(p);
     const ContactResult full = SolveContact(p);

@@ -42,7 +42,7 @@ void ExpectClose(double value, long double reference, double scale,
       << what;
 }
 
-ImpactProblem ProblemOf(const testing::Row& row) {
+ImpactProblem MakeProblem(const testing::Row& row) {
   ImpactProblem p;
   p.alpha = SinCosOfRadians(row.Number("alpha"));
   p.mu = row.Number("mu");
@@ -57,7 +57,7 @@ ImpactProblem ProblemOf(const testing::Row& row) {
 
 void ExpectMatches(const testing::Row& row) {
   const std::string& id = row.Text("id");
-  const ImpactResult r = Impact(ProblemOf(row));
+  const ImpactResult r = Impact(MakeProblem(row));
   const double speed =
       std::abs(row.Number("vT0")) + std::abs(row.Number("vN0"));
   ExpectClose(r.compression_impulse_mps, row.Long("P_compress_per_m"), speed,

@@ -43,7 +43,7 @@ TEST(RigidMotion, FreeFlightIsTheParabola) {
   EXPECT_FALSE(FirstTouchdown(motion).has_value());
   for (const double t : {0.2, 0.25, 0.4, 0.75, 0.76}) {
     const double s = t - 0.25;
-    const BodyState state = StateAt(motion, t);
+    const BodyState state = ComputeState(motion, t);
     EXPECT_NEAR(state.centre.x_m, 1.0 + 1.5 * s, 1e-15);
     EXPECT_NEAR(state.centre.y_m, 2.0 + 2.5 * s - 0.5 * kG * s * s, 1e-15);
     EXPECT_NEAR(state.angle_rad, 0.3 + 7.0 * s, 1e-15);
@@ -62,7 +62,7 @@ TEST(RigidMotion, SphereFallsAndReboundsAsTheTextbookSays) {
   EXPECT_NEAR(touchdown->time_s, fall, 1e-15);
   EXPECT_NEAR(touchdown->approach_angle_rad, 0.5 * kPi, 1e-15);
   EXPECT_FALSE(touchdown->radius_angle_rad.has_value());
-  const GreatestGap gap = GreatestGapWithin(motion, touchdown->time_s, 1.0);
+  const GreatestGap gap = ComputeGreatestGap(motion, touchdown->time_s, 1.0);
   EXPECT_NEAR(gap.gap_m, 0.25 * h, 1e-12);
   // At rest after the geometric series, sqrt(2h/g) (1 + e) / (1 - e), but for
   // the rebounds below the rest speed, 2 v / g / (1 - e) of time.
@@ -81,9 +81,10 @@ TEST(RigidMotion, ElasticFrictionlessSphereNeverTires) {
   EXPECT_GT(motion.events.size(), 350u);
   const double energy = EnergyPerMass(motion, p.start);
   for (const double t : {0.1, 1.0, 10.0, 99.9}) {
-    EXPECT_NEAR(EnergyPerMass(motion, StateAt(motion, t)) / energy, 1.0, 1e-12);
+    EXPECT_NEAR(EnergyPerMass(motion, ComputeState(motion, t)) / energy, 1.0,
+                1e-12);
   }
-  EXPECT_NEAR(GreatestGapWithin(motion, 99.0, 100.0).gap_m, 0.08, 1e-11);
+  EXPECT_NEAR(ComputeGreatestGap(motion, 99.0, 100.0).gap_m, 0.08, 1e-11);
 }
 
 TEST(RigidMotion, SlidingSphereRollsAtFiveSevenths) {
@@ -101,7 +102,7 @@ TEST(RigidMotion, SlidingSphereRollsAtFiveSevenths) {
   EXPECT_NEAR(rolls.vx_mps, 1.5 * 5.0 / 7.0, 1e-14);
   EXPECT_NEAR(rolls.omega_rad_per_s, -rolls.vx_mps / 0.02, 1e-12);
   EXPECT_NEAR(rolls.time_s, 2.0 * 1.5 / (7.0 * 0.3 * kG), 1e-14);
-  EXPECT_EQ(GapAt(motion, 0.7), 0.0);
+  EXPECT_EQ(ComputeGap(motion, 0.7), 0.0);
 }
 
 TEST(RigidMotion, FlushBlockLandsBouncesSlidesAndRests) {
@@ -121,7 +122,7 @@ TEST(RigidMotion, FlushBlockLandsBouncesSlidesAndRests) {
   EXPECT_NEAR(touchdown->after.vy_mps, 0.5 * kG * fall, 1e-14);
   EXPECT_NEAR(touchdown->after.vx_mps, 1.0 - 0.3 * 1.5 * kG * fall, 1e-14);
   EXPECT_EQ(touchdown->after.omega_rad_per_s, 0.0);
-  EXPECT_NEAR(GreatestGapWithin(motion, fall, 1.0).gap_m, 0.25 * 0.002, 1e-12);
+  EXPECT_NEAR(ComputeGreatestGap(motion, fall, 1.0).gap_m, 0.25 * 0.002, 1e-12);
   EXPECT_EQ(motion.stretches.back().kind, StretchKind::kRest);
   // All the tangential momentum is lost to mu times the normal impulse,
   // gravity's and the fall's together: x' = 1 - mu g t.
@@ -137,7 +138,7 @@ TEST(RigidMotion, BlockFallingOnItsShortSideIsFlush) {
   ASSERT_TRUE(touchdown.has_value());
   EXPECT_EQ(touchdown->corner, core::Corner::kFlush);
   EXPECT_NEAR(*touchdown->face_angle_rad, 0.5 * kPi, 1e-15);
-  EXPECT_NEAR(GreatestGapWithin(motion, touchdown->time_s, 1.0).gap_m,
+  EXPECT_NEAR(ComputeGreatestGap(motion, touchdown->time_s, 1.0).gap_m,
               0.25 * 0.08, 1e-12);
 }
 
@@ -161,7 +162,7 @@ TEST(RigidMotion, CornerAndAnglesOfATiltedBlock) {
     EXPECT_NEAR(*touchdown->radius_angle_rad, alpha, 1e-12);
     EXPECT_EQ(touchdown->corner,
               leading ? core::Corner::kLeading : core::Corner::kTrailing);
-    EXPECT_NEAR(GapAt(motion, touchdown->time_s), 0.0, 1e-15);
+    EXPECT_NEAR(ComputeGap(motion, touchdown->time_s), 0.0, 1e-15);
   }
 }
 
@@ -177,9 +178,12 @@ TEST(RigidMotion, MirroredBlocksMoveMirrored) {
   const RigidMotion a = SimulateRigidMotion(p);
   const RigidMotion b = SimulateRigidMotion(q);
   for (double t = 0.0; t < 0.3; t += 0.01) {
-    EXPECT_NEAR(StateAt(a, t).centre.x_m, -StateAt(b, t).centre.x_m, 1e-12);
-    EXPECT_NEAR(StateAt(a, t).centre.y_m, StateAt(b, t).centre.y_m, 1e-12);
-    EXPECT_NEAR(StateAt(a, t).angle_rad, -StateAt(b, t).angle_rad, 1e-10);
+    EXPECT_NEAR(ComputeState(a, t).centre.x_m, -ComputeState(b, t).centre.x_m,
+                1e-12);
+    EXPECT_NEAR(ComputeState(a, t).centre.y_m, ComputeState(b, t).centre.y_m,
+                1e-12);
+    EXPECT_NEAR(ComputeState(a, t).angle_rad, -ComputeState(b, t).angle_rad,
+                1e-10);
   }
 }
 
@@ -216,7 +220,7 @@ TEST(RigidMotion, LawsHoldOverAGridOfThrows) {
       ASSERT_LE(now, energy * (1.0 + 1e-12) + hop) << "throw " << n;
       gained += std::max(0.0, now - energy);
       energy = now;
-      ASSERT_GT(GapAt(motion, s.start.time_s), -1e-12) << "throw " << n;
+      ASSERT_GT(ComputeGap(motion, s.start.time_s), -1e-12) << "throw " << n;
       if (i == 0) continue;
       Stretch before = motion.stretches[i - 1];
       const double dt = s.start.time_s - before.start.time_s;
@@ -244,7 +248,7 @@ TEST(RigidMotion, LawsHoldOverAGridOfThrows) {
     }
     // Between any two instants too: nowhere below the ground.
     for (double t = 0.0; t <= p.end_s; t += 1e-3) {
-      ASSERT_GT(GapAt(motion, t), -1e-8) << "throw " << n << " at " << t;
+      ASSERT_GT(ComputeGap(motion, t), -1e-8) << "throw " << n << " at " << t;
     }
     settled += motion.stretches.back().kind != StretchKind::kFlight;
   }
@@ -262,9 +266,11 @@ TEST(RigidMotion, TheRestSpeedDoesNotMatter) {
   fine.rest_speed_mps = p.rest_speed_mps / 8.0;
   const RigidMotion a = SimulateRigidMotion(p);
   const RigidMotion b = SimulateRigidMotion(fine);
-  EXPECT_NEAR(StateAt(a, 0.9).centre.x_m, StateAt(b, 0.9).centre.x_m, 2e-5);
-  EXPECT_NEAR(GreatestGapWithin(a, FirstTouchdown(a)->time_s, 0.9).gap_m,
-              GreatestGapWithin(b, FirstTouchdown(b)->time_s, 0.9).gap_m, 1e-8);
+  EXPECT_NEAR(ComputeState(a, 0.9).centre.x_m, ComputeState(b, 0.9).centre.x_m,
+              2e-5);
+  EXPECT_NEAR(ComputeGreatestGap(a, FirstTouchdown(a)->time_s, 0.9).gap_m,
+              ComputeGreatestGap(b, FirstTouchdown(b)->time_s, 0.9).gap_m,
+              1e-8);
 }
 
 // A frictionless rod (thin block) released on its corner: it tilts down as the

@@ -313,9 +313,9 @@ struct Growth {
 
 constexpr std::size_t kPage = 4096;
 
-Growth GrowthOf(const std::map<std::string, std::string>& before,
-                const std::map<std::string, std::string>& after,
-                const std::string& store, std::size_t out_bytes) {
+Growth MeasureGrowth(const std::map<std::string, std::string>& before,
+                     const std::map<std::string, std::string>& after,
+                     const std::string& store, std::size_t out_bytes) {
   Growth growth{std::max<std::size_t>(out_bytes, 1), out_bytes / kPage + 1};
   for (const auto& [name, bytes] : after) {
     const auto old = before.find(name);
@@ -486,8 +486,8 @@ TEST_P(FullDiskRuns, AreRefusedAndLeaveNoHalfFile) {
       whole_out[index] = out;
     }
     if (!room.contains(index)) {
-      room[index] = GrowthOf(before, whole[index], command.store,
-                             whole_out[index].size());
+      room[index] = MeasureGrowth(before, whole[index], command.store,
+                                  whole_out[index].size());
     }
     Growth& enough = room[index];
     Limits limits;

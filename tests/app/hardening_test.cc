@@ -35,7 +35,7 @@ class Program : public ::testing::Test {
         dynamic_.push_back(
             At<Elf64_Dyn>(segment.p_offset + i * sizeof(Elf64_Dyn)));
         if (dynamic_.back().d_tag == DT_STRTAB) {
-          strings = OffsetOf(dynamic_.back().d_un.d_ptr);
+          strings = FindOffset(dynamic_.back().d_un.d_ptr);
         }
       }
     }
@@ -56,7 +56,7 @@ class Program : public ::testing::Test {
     std::memcpy(&value, file_.data() + offset, sizeof value);
     return value;
   }
-  std::size_t OffsetOf(std::size_t address) const {
+  std::size_t FindOffset(std::size_t address) const {
     for (const Elf64_Phdr& segment : segments_) {
       if (segment.p_type == PT_LOAD && address >= segment.p_vaddr &&
           address < segment.p_vaddr + segment.p_filesz) {
@@ -104,7 +104,7 @@ class Program : public ::testing::Test {
             ELF64_ST_BIND(symbol.st_info) == STB_GLOBAL && symbol.st_size > 0 &&
             name.starts_with("_ZN9touchdown")) {
           functions.push_back(
-              {name, std::string_view(file_).substr(OffsetOf(symbol.st_value),
+              {name, std::string_view(file_).substr(FindOffset(symbol.st_value),
                                                     symbol.st_size)});
         }
       }

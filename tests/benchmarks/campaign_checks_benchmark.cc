@@ -67,7 +67,7 @@ core::Trial TrialOf(const accuracy::Case& c, const Told& told) {
   const double scale = c.told_px_per_m * told.scale;
   options.scale_px_per_m = core::Estimate{scale, kPlainU * scale, {}};
   const pipeline::Analysis analysis = pipeline::AnalyzeClip(
-      vision::OpenScene(pipeline::filmed::SceneOf(AtRate(c.film, told.fps)),
+      vision::OpenScene(pipeline::filmed::BuildScene(AtRate(c.film, told.fps)),
                         c.seed),
       options);
   core::Trial trial;
@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
       trials.push_back(TrialOf(accuracy::Draw(static_cast<std::uint64_t>(i),
                                               accuracy::Hardship::kNone),
                                told));
-      const report::TrialRatios r = report::RatiosOf(trials.back());
+      const report::TrialRatios r = report::ReadRatios(trials.back());
       gravity += r.gravity ? 1 : 0;
       size += r.size ? 1 : 0;
     }

@@ -169,7 +169,7 @@ std::vector<Problem> Rests() {
     c.radius_m = 0.005 + 0.1 * unit(engine);
     c.omega_rad_per_s = 30.0 * unit(engine);
     c.gravity_mps2 = 1.0;
-    const Delassus g = DelassusOf(c.alpha, c.kappa);
+    const Delassus g = ComputeDelassus(c.alpha, c.kappa);
     const double lift = c.radius_m * c.omega_rad_per_s * c.omega_rad_per_s;
     p.m = {g.nn - c.mu * g.nt, g.nt, 0.0, g.nt - c.mu * g.tt, g.tt, 1.0,
            2 * c.mu,           -1.0, 0.0};

@@ -21,8 +21,8 @@ cv::Mat Coloured(vision::Clip& clip, std::int64_t index) {
 
 // The upright box around the body, which has the body's centre.
 cv::Rect2d TrueBox(const Case& c, std::int64_t frame) {
-  const vision::Scene scene = pipeline::filmed::SceneOf(c.film);
-  const vision::SceneTruth truth = vision::TruthOf(scene, frame);
+  const vision::Scene scene = pipeline::filmed::BuildScene(c.film);
+  const vision::SceneTruth truth = vision::ComputeTruth(scene, frame);
   double half_width = truth.radius_px;
   double half_height = truth.radius_px;
   if (c.levels.kind == core::BodyKind::kRectangle) {
@@ -45,7 +45,7 @@ cv::Rect2d TrueBox(const Case& c, std::int64_t frame) {
 std::vector<Point> FollowCsrt(vision::Clip& clip, const Case& c) {
   const std::int64_t first = c.film.lead_in;
   const vision::SceneTruth truth =
-      vision::TruthOf(pipeline::filmed::SceneOf(c.film), first);
+      vision::ComputeTruth(pipeline::filmed::BuildScene(c.film), first);
   cv::Rect2d box = TrueBox(c, first);
   const double dx = truth.centre.x_px - (box.x + 0.5 * box.width);
   const double dy = truth.centre.y_px - (box.y + 0.5 * box.height);

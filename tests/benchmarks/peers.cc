@@ -57,7 +57,7 @@ std::vector<Peer> Peers() {
 
 std::optional<PeerReading> Measure(const Case& c, Peer peer) {
   const auto clip =
-      vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
+      vision::OpenScene(pipeline::filmed::BuildScene(c.film), c.seed);
   return Measure(*clip, c, peer);
 }
 

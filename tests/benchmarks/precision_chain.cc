@@ -38,7 +38,7 @@ std::optional<double> ApproachOf(const core::ContactRecord& record) {
 // pixel stands for that, of which nothing comes through.
 calib::GroundLine TrueGround(const Case& c) {
   constexpr double kExact_px = 0.01;
-  calib::GroundLine ground = vision::GroundOf(c.film.camera);
+  calib::GroundLine ground = vision::TrueGroundLine(c.film.camera);
   ground.u_offset_px = kExact_px;
   ground.u_angle_rad = kExact_px / c.film.camera.width_px;
   return ground;
@@ -148,7 +148,7 @@ void MeasureChain(std::uint64_t clips) {
   for (std::uint64_t i = 0; i < clips; ++i) {
     const Case c = Draw(i, Hardship::kNone);
     const auto scene =
-        vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed);
+        vision::OpenScene(pipeline::filmed::BuildScene(c.film), c.seed);
     KeptClip clip(*scene);
     frames += static_cast<double>(clip.info().frames);
     const double bound_deg = BoundOf(c).approach_rad / core::kDegree;

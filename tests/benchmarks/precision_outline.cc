@@ -224,19 +224,20 @@ void MeasureOutline(std::uint64_t clips) {
   double bound2 = 0.0;
   for (std::uint64_t i = 0; i < clips; ++i) {
     const Case c = DrawAt(i, StandardLevels());
-    const vision::Scene scene = pipeline::filmed::SceneOf(c.film);
+    const vision::Scene scene = pipeline::filmed::BuildScene(c.film);
     const auto rendered = vision::OpenScene(scene, c.seed);
     KeptClip clip(*rendered);
     std::vector<std::int64_t> empty(kEmpty);
     std::iota(empty.begin(), empty.end(), 0);
-    const vision::Background background = vision::BackgroundOf(clip, empty);
+    const vision::Background background =
+        vision::EstimateBackgroundFromFrames(clip, empty);
     bound2 += BoundOf(c).centre_px * BoundOf(c).centre_px;
     std::mt19937_64 engine(c.seed);
     std::uniform_real_distribution<double> off_px(-1.5, 1.5);
     std::uniform_real_distribution<double> off_size(0.95, 1.05);
     const double full = background.full_scale_dn;
     for (std::int64_t f = c.film.lead_in; f < c.film.lead_in + kFitted; ++f) {
-      const vision::SceneTruth truth = vision::TruthOf(scene, f);
+      const vision::SceneTruth truth = vision::ComputeTruth(scene, f);
       Look look;
       look.frame = clip.Read(f);
       look.background = &background;

@@ -385,7 +385,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
             const auto& interval = posterior.interval95_rad;
             const double truth = campaign.boundary_deg * kDegree;
             const bool hit = interval.low <= truth && truth <= interval.high;
-            const double below = ProbabilityBelow(posterior, truth);
+            const double below = CumulativeProbability(posterior, truth);
             const bool hit_one_prior =
                 posterior.cautious_prior
                     ? kTail95 <= below && below <= 1.0 - kTail95

@@ -41,7 +41,7 @@ inline std::vector<core::PixelPoint> Seen(const Board& board,
                                           const Lens& lens) {
   std::vector<core::PixelPoint> points;
   const double f = IdealFocal(lens);
-  for (const core::PlanePoint& p : PointsOf(board)) {
+  for (const core::PlanePoint& p : ListBoardPoints(board)) {
     const Eigen::Vector3d c =
         pose.turn * Eigen::Vector3d(p.x_m, p.y_m, 0.0) + pose.shift;
     points.push_back(Distort(lens, {f * c.x() / c.z() + lens.cx_px,
@@ -62,7 +62,7 @@ inline BoardPose PoseAt(const Board& board, const Lens& lens, double where_x,
                   .toRotationMatrix();
   double wide_m = 0.0;
   double high_m = 0.0;
-  for (const core::PlanePoint& p : PointsOf(board)) {
+  for (const core::PlanePoint& p : ListBoardPoints(board)) {
     wide_m = std::max(wide_m, p.x_m);
     high_m = std::max(high_m, p.y_m);
   }

@@ -89,8 +89,8 @@ TEST(FindBoard, SaysWhatIsNotSeen) {
   EXPECT_FALSE(FindBoard(tiny.View(), board));
 }
 
-TEST(PointsOf, AsymmetricRowsAreShifted) {
-  const auto points = PointsOf(ParseBoard("acircles:4x11:40mm"));
+TEST(ListBoardPoints, AsymmetricRowsAreShifted) {
+  const auto points = ListBoardPoints(ParseBoard("acircles:4x11:40mm"));
   ASSERT_EQ(points.size(), 44u);
   EXPECT_DOUBLE_EQ(points[4].x_m, 0.02);
   EXPECT_DOUBLE_EQ(points[4].y_m, 0.02);

@@ -104,9 +104,9 @@ TEST(CalibrationFile, RefusesDamagedFilesByField) {
                core::InputError);
 }
 
-TEST(FittedTo, MovesWithTheCrop) {
+TEST(AdaptToPicture, MovesWithTheCrop) {
   const Calibration c = Whole();
-  const auto part = FittedTo(c, {320, 200, SensorCorner{100, 60}});
+  const auto part = AdaptToPicture(c, {320, 200, SensorCorner{100, 60}});
   ASSERT_TRUE(part) << part.error().reason;
   EXPECT_EQ(part->picture.width_px, 320);
   EXPECT_DOUBLE_EQ(part->lens->lens.cx_px, c.lens->lens.cx_px - 100.0);
@@ -115,13 +115,13 @@ TEST(FittedTo, MovesWithTheCrop) {
   EXPECT_DOUBLE_EQ(part->ground->p2.y_px, 276.9);
   EXPECT_EQ(part->scale->px_per_m, c.scale->px_per_m);
   // A file that does not say where it was cropped, of the same size.
-  EXPECT_TRUE(FittedTo(c, {640, 480, std::nullopt}));
+  EXPECT_TRUE(AdaptToPicture(c, {640, 480, std::nullopt}));
 }
 
-TEST(FittedTo, RefusesOtherPictures) {
+TEST(AdaptToPicture, RefusesOtherPictures) {
   const Calibration c = Whole();
   const auto reason = [&](const Picture& picture) {
-    const auto fitted = FittedTo(c, picture);
+    const auto fitted = AdaptToPicture(c, picture);
     return fitted ? "accepted" : fitted.error().reason;
   };
   EXPECT_THAT(reason({1280, 800, std::nullopt}), HasSubstr("--crop X,Y"));

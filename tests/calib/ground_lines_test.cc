@@ -88,16 +88,16 @@ Errors Measure(const StillOptions& options, int seeds) {
       ADD_FAILURE() << lines.size() << " lines with seed " << seed;
       continue;
     }
-    const GroundLine truth = vision::GroundOf(still.camera);
+    const GroundLine truth = vision::TrueGroundLine(still.camera);
     const GroundLine& line = lines.front();
     EXPECT_EQ(line.source, GroundSource::kDetected);
     EXPECT_GT(line.u_offset_px, 0.0);
     EXPECT_GT(line.u_angle_rad, 0.0);
-    EXPECT_NEAR(HeightAbove(line, line.reference), 0.0, 1e-9);
+    EXPECT_NEAR(HeightAboveLine(line, line.reference), 0.0, 1e-9);
     const double angle = ImageAngle(line) - ImageAngle(truth);
     errors.angle_rad.push_back(angle);
     errors.z_angle.push_back(angle / line.u_angle_rad);
-    errors.height_px.push_back(HeightAbove(truth, line.reference));
+    errors.height_px.push_back(HeightAboveLine(truth, line.reference));
     errors.z_height.push_back(errors.height_px.back() / line.u_offset_px);
   }
   return errors;
@@ -273,7 +273,7 @@ TEST(GroundLines, PartlyHiddenLine) {
     const auto lines = FindGroundLines(still.view());
     EXPECT_EQ(lines.size(), shown > 0.33 ? 1u : 0u) << shown;
     if (!lines.empty()) {
-      const GroundLine truth = vision::GroundOf(still.camera);
+      const GroundLine truth = vision::TrueGroundLine(still.camera);
       EXPECT_NEAR(ImageAngle(lines[0]), ImageAngle(truth),
                   4.0 * lines[0].u_angle_rad);
     }

@@ -44,7 +44,7 @@ TEST(CalibrateLens, ErrorsAreAsStated) {
     widened += lens->widened / kSets;
     for (int i = 0; i < kLensParameters; ++i) {
       const core::Estimate e = lens->Parameter(i);
-      const double error = (e.value - VectorOf(truth)[i]) / e.u;
+      const double error = (e.value - ToVector(truth)[i]) / e.u;
       z[static_cast<std::size_t>(i)].push_back(error);
       inside += std::abs(error) < core::kNormal975;
     }

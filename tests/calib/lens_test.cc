@@ -76,7 +76,7 @@ TEST(Lens, ACropSeesTheSame) {
 
 TEST(Lens, IsAVectorAndBack) {
   const Lens lens = board_picture::TestLens();
-  EXPECT_EQ(LensOf(VectorOf(lens)), lens);
+  EXPECT_EQ(ToLens(ToVector(lens)), lens);
 }
 
 TEST(Lens, LargestDisplacementIsAtACorner) {

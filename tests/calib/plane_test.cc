@@ -39,21 +39,21 @@ TEST(Plane, NamesAreThoseOfTheDocument) {
 
 // A 3-4-5 line, by hand: direction (4, 3)/5 in the image.
 TEST(Plane, HeightAndPositionOfAThreeFourFiveLine) {
-  const GroundLine line = GroundThrough({10.0, 20.0}, {50.0, 50.0});
+  const GroundLine line = MakeGroundLine({10.0, 20.0}, {50.0, 50.0});
   EXPECT_NEAR(ImageAngle(line), std::atan2(3.0, 4.0), 1e-15);
   EXPECT_EQ(line.reference, (PixelPoint{30.0, 35.0}));
   // 10 px along the normal, towards smaller y: (3, -4)/5 * 10.
   const PixelPoint above{30.0 + 6.0, 35.0 - 8.0};
-  EXPECT_NEAR(HeightAbove(line, above), 10.0, 1e-12);
-  EXPECT_NEAR(PositionAlong(line, above), 0.0, 1e-12);
+  EXPECT_NEAR(HeightAboveLine(line, above), 10.0, 1e-12);
+  EXPECT_NEAR(PositionOnLine(line, above), 0.0, 1e-12);
   const PixelPoint ahead{30.0 + 4.0, 35.0 + 3.0};
-  EXPECT_NEAR(HeightAbove(line, ahead), 0.0, 1e-12);
-  EXPECT_NEAR(PositionAlong(line, ahead), 5.0, 1e-12);
+  EXPECT_NEAR(HeightAboveLine(line, ahead), 0.0, 1e-12);
+  EXPECT_NEAR(PositionOnLine(line, ahead), 5.0, 1e-12);
 }
 
 TEST(Plane, PointsInEitherOrderGiveTheSameLine) {
-  const GroundLine a = GroundThrough({10.0, 20.0}, {50.0, 50.0});
-  const GroundLine b = GroundThrough({50.0, 50.0}, {10.0, 20.0});
+  const GroundLine a = MakeGroundLine({10.0, 20.0}, {50.0, 50.0});
+  const GroundLine b = MakeGroundLine({50.0, 50.0}, {10.0, 20.0});
   EXPECT_EQ(a.p1, b.p1);
   EXPECT_EQ(a.p2, b.p2);
   EXPECT_EQ(ImageAngle(a), ImageAngle(b));
@@ -66,20 +66,20 @@ TEST(Plane, DirectionLiesInItsHalfTurn) {
     const double phi = k * kPi / 180.0;
     const double x = 100.0 * std::cos(phi);
     const double y = 100.0 * std::sin(phi);
-    const double angle = ImageAngle(GroundThrough({5.0, 7.0}, {5 + x, 7 + y}));
+    const double angle = ImageAngle(MakeGroundLine({5.0, 7.0}, {5 + x, 7 + y}));
     EXPECT_GT(angle, -0.5 * kPi - 1e-15) << k;
     EXPECT_LE(angle, 0.5 * kPi) << k;
     EXPECT_NEAR(std::remainder(angle - phi, kPi), 0.0, 1e-12) << k;
   }
-  EXPECT_EQ(ImageAngle(GroundThrough({5.0, 0.0}, {5.0, 9.0})), 0.5 * kPi);
-  EXPECT_EQ(ImageAngle(GroundThrough({5.0, 9.0}, {5.0, 0.0})), 0.5 * kPi);
+  EXPECT_EQ(ImageAngle(MakeGroundLine({5.0, 0.0}, {5.0, 9.0})), 0.5 * kPi);
+  EXPECT_EQ(ImageAngle(MakeGroundLine({5.0, 9.0}, {5.0, 0.0})), 0.5 * kPi);
 }
 
 // Two points each good to u along the normal: the line is good to u at either
 // point, to u / sqrt(2) in the middle, and beyond them grows in proportion.
 TEST(Plane, UncertaintyOfTwoClicks) {
   for (const double u : {0.0, 0.2, 0.5, 3.0}) {
-    const GroundLine line = GroundThrough({40.0, 300.0}, {600.0, 330.0}, u);
+    const GroundLine line = MakeGroundLine({40.0, 300.0}, {600.0, 330.0}, u);
     const double length = std::hypot(560.0, 30.0);
     EXPECT_NEAR(HeightUncertainty(line, line.p1), u, 1e-12);
     EXPECT_NEAR(HeightUncertainty(line, line.p2), u, 1e-12);
@@ -89,21 +89,22 @@ TEST(Plane, UncertaintyOfTwoClicks) {
     EXPECT_EQ(line.source, GroundSource::kUser);
   }
   EXPECT_DOUBLE_EQ(
-      HeightUncertainty(GroundThrough({0, 0}, {10, 0}), {0.0, 0.0}), 0.5);
+      HeightUncertainty(MakeGroundLine({0, 0}, {10, 0}), {0.0, 0.0}), 0.5);
 }
 
 // Nothing depends on where the origin is: heights by 1e6 px keep ten digits.
 TEST(Plane, FarOriginChangesNothing) {
   for (const double far : {1e3, 1e6}) {
     for (const double slope : {-0.3, 0.0, 0.01, 0.2}) {
-      const GroundLine near = GroundThrough({0, 300}, {640, 300 + 640 * slope});
-      const GroundLine moved =
-          GroundThrough({far, 300 - far}, {640 + far, 300 + 640 * slope - far});
+      const GroundLine near =
+          MakeGroundLine({0, 300}, {640, 300 + 640 * slope});
+      const GroundLine moved = MakeGroundLine(
+          {far, 300 - far}, {640 + far, 300 + 640 * slope - far});
       for (const double x : {-50.0, 12.5, 639.0}) {
         const PixelPoint p{x, 123.0};
         const PixelPoint q{x + far, 123.0 - far};
-        EXPECT_NEAR(HeightAbove(near, p), HeightAbove(moved, q), 1e-7);
-        EXPECT_NEAR(PositionAlong(near, p), PositionAlong(moved, q), 1e-7);
+        EXPECT_NEAR(HeightAboveLine(near, p), HeightAboveLine(moved, q), 1e-7);
+        EXPECT_NEAR(PositionOnLine(near, p), PositionOnLine(moved, q), 1e-7);
         EXPECT_NEAR(HeightUncertainty(near, p), HeightUncertainty(moved, q),
                     1e-9);
       }
@@ -115,20 +116,20 @@ TEST(Plane, ImpossibleLinesAreRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   EXPECT_THAT(Refusal([] {
-                GroundThrough({3, 4}, {3, 4});
+                MakeGroundLine({3, 4}, {3, 4});
               }),
               HasSubstr("ground line"));
   EXPECT_THAT(Refusal([&] {
-                GroundThrough({nan, 4}, {3, 4});
+                MakeGroundLine({nan, 4}, {3, 4});
               }),
               HasSubstr("ground line"));
   EXPECT_THAT(Refusal([&] {
-                GroundThrough({3, 4}, {inf, 4});
+                MakeGroundLine({3, 4}, {inf, 4});
               }),
               HasSubstr("ground line"));
   for (const double u : {-0.1, nan, inf}) {
     EXPECT_THAT(Refusal([&] {
-                  GroundThrough({0, 4}, {3, 4}, u);
+                  MakeGroundLine({0, 4}, {3, 4}, u);
                 }),
                 HasSubstr("u_point_px"));
   }

@@ -16,9 +16,9 @@ namespace {
 
 using namespace core::literals;  // NOLINT
 
-TEST(ScaleFrom, IsLengthInPixelsOverLength) {
+TEST(MeasureScale, IsLengthInPixelsOverLength) {
   const ScaleRecord scale =
-      ScaleFrom({{100.0, 50.0}, {400.0, 450.0}, 0.5}, {0.25, 1e-4});
+      MeasureScale({{100.0, 50.0}, {400.0, 450.0}, 0.5}, {0.25, 1e-4});
   EXPECT_DOUBLE_EQ(scale.px_per_m.value, 2000.0);
   EXPECT_NEAR(scale.px_per_m.u,
               2000.0 * std::hypot(0.5 * std::sqrt(2.0) / 500.0, 4e-4), 1e-9);
@@ -33,27 +33,27 @@ TEST(ScaleFrom, IsLengthInPixelsOverLength) {
 
 // A rule near the picture's border, seen through a lens: without it the scale
 // is wrong by far more than its u, with it right.
-TEST(ScaleFrom, UndoesTheLens) {
+TEST(MeasureScale, UndoesTheLens) {
   const Lens lens = board_picture::TestLens();
   const core::PixelPoint a = Distort(lens, {20.0, 30.0});
   const core::PixelPoint b = Distort(lens, {620.0, 30.0});
   const core::Estimate length{0.6, 1e-6};
-  const auto plain = ScaleFrom({a, b, 0.1}, length);
-  const auto undone = ScaleFrom({a, b, 0.1}, length, lens);
+  const auto plain = MeasureScale({a, b, 0.1}, length);
+  const auto undone = MeasureScale({a, b, 0.1}, length, lens);
   EXPECT_GT(std::abs(plain.px_per_m.value - 1000.0), 20.0 * plain.px_per_m.u);
   EXPECT_NEAR(undone.px_per_m.value, 1000.0, 1e-6);
 }
 
-TEST(ScaleFrom, RefusesImpossibleArguments) {
-  EXPECT_THROW(ScaleFrom({{1.0, 1.0}, {1.0, 1.0}}, {1.0, 0.0}),
+TEST(MeasureScale, RefusesImpossibleArguments) {
+  EXPECT_THROW(MeasureScale({{1.0, 1.0}, {1.0, 1.0}}, {1.0, 0.0}),
                std::invalid_argument);
-  EXPECT_THROW(ScaleFrom({{1.0, 1.0}, {2.0, 1.0}}, {0.0, 0.0}),
+  EXPECT_THROW(MeasureScale({{1.0, 1.0}, {2.0, 1.0}}, {0.0, 0.0}),
                std::invalid_argument);
 }
 
 // A camera rolled by 2 degrees: a level ground and the plumb line turn alike; a
 // ground that rises by 1 degree to the right turns against the picture's y.
-TEST(SlopeFrom, IsOfTheGroundNotOfTheCamera) {
+TEST(MeasureSlope, IsOfTheGroundNotOfTheCamera) {
   const double roll = 2.0 * core::kDegree;
   const auto from = [](double angle) {
     return MarkedPair{
@@ -62,15 +62,15 @@ TEST(SlopeFrom, IsOfTheGroundNotOfTheCamera) {
         0.5};
   };
   const MarkedPair plumb = from(roll + 90.0 * core::kDegree);
-  const core::Estimate level = SlopeFrom(from(roll), plumb);
+  const core::Estimate level = MeasureSlope(from(roll), plumb);
   EXPECT_NEAR(level.value, 0.0, 1e-12);
   EXPECT_NEAR(level.u, 0.5 * std::sqrt(2.0) / 400.0 * std::sqrt(2.0), 1e-9);
   const core::Estimate rising =
-      SlopeFrom(from(roll - 1.0 * core::kDegree), plumb);
+      MeasureSlope(from(roll - 1.0 * core::kDegree), plumb);
   EXPECT_NEAR(rising.value, 1.0 * core::kDegree, 1e-12);
   // Whichever end is named first.
   const MarkedPair reversed{plumb.p2, plumb.p1, 0.5};
-  EXPECT_NEAR(SlopeFrom(from(roll - 1.0 * core::kDegree), reversed).value,
+  EXPECT_NEAR(MeasureSlope(from(roll - 1.0 * core::kDegree), reversed).value,
               1.0 * core::kDegree, 1e-12);
 }
 

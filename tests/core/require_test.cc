@@ -29,7 +29,7 @@ TEST(Require, SaysFieldValueUnitAndRange) {
             "diameter is -0.04 m, must be positive and finite");
   EXPECT_EQ(Said([] { RequireNotNegative("u", -1.0); }),
             "u is -1, must be at least 0 and finite");
-  EXPECT_EQ(Said([] { RequireBetween("p", 1.5, 0.0, 1.0); }),
+  EXPECT_EQ(Said([] { RequireInRange("p", 1.5, 0.0, 1.0); }),
             "p is 1.5, must be from 0 to 1");
   EXPECT_EQ(Said([] { Require(false, "levels", 3, "at least 4"); }),
             "levels is 3, must be at least 4");
@@ -39,8 +39,8 @@ TEST(Require, SaysFieldValueUnitAndRange) {
 }
 
 TEST(Require, TakesTheEndsOfARange) {
-  EXPECT_EQ(Said([] { RequireBetween("p", 0.0, 0.0, 1.0); }), "nothing");
-  EXPECT_EQ(Said([] { RequireBetween("p", 1.0, 0.0, 1.0); }), "nothing");
+  EXPECT_EQ(Said([] { RequireInRange("p", 0.0, 0.0, 1.0); }), "nothing");
+  EXPECT_EQ(Said([] { RequireInRange("p", 1.0, 0.0, 1.0); }), "nothing");
   EXPECT_EQ(Said([] { RequireNotNegative("u", 0.0); }), "nothing");
   EXPECT_NE(Said([] { RequirePositive("u", 0.0); }), "nothing");
 }
@@ -50,7 +50,7 @@ TEST(Require, RefusesWhatIsNoNumber) {
     EXPECT_NE(Said([&] { RequireFinite("x", value); }), "nothing");
     EXPECT_NE(Said([&] { RequirePositive("x", value); }), "nothing");
     EXPECT_NE(Said([&] { RequireNotNegative("x", value); }), "nothing");
-    EXPECT_NE(Said([&] { RequireBetween("x", value, 0.0, 1.0); }), "nothing");
+    EXPECT_NE(Said([&] { RequireInRange("x", value, 0.0, 1.0); }), "nothing");
   }
 }
 

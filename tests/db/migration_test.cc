@@ -93,7 +93,7 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
                                              : "not recorded by hand");
   if (GetParam() >= 3) {
     EXPECT_EQ(trials[0].conditions->spring.name, "S 3");
-    const auto springs = VersionsOf(store, RegisterKind::kSpring, "S 3");
+    const auto springs = ReadEntryVersions(store, RegisterKind::kSpring, "S 3");
     ASSERT_EQ(springs.size(), 2u);
     EXPECT_EQ(trials[0].conditions->spring.id, springs[0].id);
     EXPECT_EQ(springs[1].measured.at("stiffness_n_per_m")->value, 1150.0);
@@ -126,7 +126,7 @@ TEST_P(MigrateFrom, HoldsEveryTrialAndCanBeWritten) {
   const Seal seal = MakeSeal(store);
   store.LogTrial(SphereTrial(1));
   EXPECT_EQ(store.Trials().size(), 4u);
-  EXPECT_EQ(CheckAgainst(store, seal).problem, "");
+  EXPECT_EQ(CheckStoreSeal(store, seal).problem, "");
 }
 
 // The copy is the store as it was, and nothing else is left.

@@ -59,7 +59,7 @@ TEST(AddEntry, RoundTripsEveryField) {
       Entry entry = NewEntry(kind, random.Text() + std::to_string(all.size()));
       entry.author = "a" + random.Text();
       entry.reason = random.Text();
-      for (const RegisterField& field : FieldsOf(kind)) {
+      for (const RegisterField& field : ListFields(kind)) {
         const std::string key(field.name);
         if (field.type == FieldType::kText) {
           entry.texts[key] = random.Text() + "x";
@@ -104,7 +104,7 @@ TEST(ChangeEntry, IsAFurtherVersionWithFromWhatToWhat) {
   const Entry second = ChangeEntry(store, Stiffer(first, 1150, "Bob"));
   EXPECT_EQ(second.version, 2);
   EXPECT_EQ(FindEntry(store, RegisterKind::kSpring, "S 3"), second);
-  const auto versions = VersionsOf(store, RegisterKind::kSpring, "S 3");
+  const auto versions = ReadEntryVersions(store, RegisterKind::kSpring, "S 3");
   EXPECT_THAT(versions, ElementsAre(first, second));
   EXPECT_THAT(
       Changes(first, second),

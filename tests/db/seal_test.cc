@@ -121,10 +121,10 @@ TEST(Seal, AStoreThatOnlyGrewIsHonest) {
       EXPECT_THAT(Check(store).problems, IsEmpty());
       for (const std::string& text : seals) {
         const Seal seal = ParseSeal(text, "a seal");
-        const SealCheck check = CheckAgainst(store, seal);
+        const SealCheck check = CheckStoreSeal(store, seal);
         EXPECT_EQ(check.problem, "");
         grown += check.links_since;
-        EXPECT_EQ(CheckAgainst(store, {HeadOnly(seal), "", {}}).problem, "");
+        EXPECT_EQ(CheckStoreSeal(store, {HeadOnly(seal), "", {}}).problem, "");
       }
     }
     if (HasFailure()) return;
@@ -143,7 +143,8 @@ TEST(Seal, OutlivesColumnsThatAreAdded) {
     ASSERT_TRUE(Sqlite(path).Run(std::string("ALTER TABLE ") + table +
                                  " ADD COLUMN later TEXT"));
   }
-  EXPECT_EQ(CheckAgainst(Store::Open(path, OpenMode::kRead), seal).problem, "");
+  EXPECT_EQ(CheckStoreSeal(Store::Open(path, OpenMode::kRead), seal).problem,
+            "");
 }
 
 // --- forgeries ---------------------------------------------------------------
@@ -395,9 +396,9 @@ Verdict Look(const fs::path& path, const Seal& seal) {
   try {
     const Store store = Store::Open(path, OpenMode::kRead);
     verdict.is_found_without = !Check(store).problems.empty();
-    verdict.of_seal = CheckAgainst(store, seal).problem;
+    verdict.of_seal = CheckStoreSeal(store, seal).problem;
     const std::string of_head =
-        CheckAgainst(store, {seal.head, "", {}}).problem;
+        CheckStoreSeal(store, {seal.head, "", {}}).problem;
     EXPECT_EQ(of_head.empty(), verdict.of_seal.empty()) << verdict.of_seal;
     verdict.is_found = verdict.is_found_without || !verdict.of_seal.empty();
   } catch (const core::StoreError&) {
@@ -475,10 +476,10 @@ TEST(Seal, AStoreGoneBackIsFound) {
   }
   const Seal seal = MakeSeal(Store::Open(path, OpenMode::kRead));
   Store before = OpenFixed(folder / "before.db", 3, OpenMode::kWrite);
-  EXPECT_THAT(CheckAgainst(before, seal).problem, HasSubstr("was removed"));
+  EXPECT_THAT(CheckStoreSeal(before, seal).problem, HasSubstr("was removed"));
   before.LogTrial(SphereTrial(71));
-  EXPECT_THAT(CheckAgainst(before, seal).problem, HasSubstr("was removed"));
-  EXPECT_NE(CheckAgainst(before, {seal.head, "", {}}).problem, "");
+  EXPECT_THAT(CheckStoreSeal(before, seal).problem, HasSubstr("was removed"));
+  EXPECT_NE(CheckStoreSeal(before, {seal.head, "", {}}).problem, "");
 }
 
 TEST(Seal, OfAnotherStoreIsRefused) {
@@ -487,7 +488,8 @@ TEST(Seal, OfAnotherStoreIsRefused) {
   MakeStore(folder / "b.db", 2, 1);
   const Seal seal = MakeSeal(Store::Open(folder / "a.db", OpenMode::kRead));
   EXPECT_THAT(
-      CheckAgainst(Store::Open(folder / "b.db", OpenMode::kRead), seal).problem,
+      CheckStoreSeal(Store::Open(folder / "b.db", OpenMode::kRead), seal)
+          .problem,
       HasSubstr("another store"));
 }
 

@@ -82,7 +82,7 @@ TEST_F(ViewsTest, EveryColumnIsInTheDictionary) {
       columns += column.name + "|\n";
       EXPECT_FALSE(column.meaning.empty()) << column.name;
       // A number that has a unit bears it, too, in its name.
-      if (!column.unit.empty()) EXPECT_EQ(column.unit, UnitOf(column.name));
+      if (!column.unit.empty()) EXPECT_EQ(column.unit, FindUnit(column.name));
     }
     EXPECT_EQ(
         file.Text("SELECT name FROM pragma_table_info('" + view.name + "')"),

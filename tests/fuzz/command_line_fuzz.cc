@@ -56,7 +56,7 @@ void Parse(int kind, const std::string& text) {
       const std::size_t split = std::min(text.find('\n'), text.size());
       entry.diameter_mm = text.substr(0, split);
       entry.sides_mm = text.substr(std::min(split + 1, text.size()));
-      if (const auto body = pipeline::BodyOf(entry)) {
+      if (const auto body = pipeline::ParseBody(entry)) {
         for (const auto* size :
              {&body->diameter_m, &body->long_m, &body->short_m}) {
           if (*size) {

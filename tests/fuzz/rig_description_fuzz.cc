@@ -11,8 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
     const rig::Description description =
         rig::ParseDescription(fuzz::Text(data, size), "rig.toml");
     // What was accepted can be worked with.
-    rig::SpringOf(description.springs);
-    rig::LaunchOf(description, description.elevation_min_rad);
+    rig::MakeSpring(description.springs);
+    rig::MakeLaunch(description, description.elevation_min_rad);
     rig::CheckCompression(description, 0.01);
   });
   return 0;

@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 class Film {
  public:
   explicit Film(const Case& c)
-      : clip_(vision::OpenScene(pipeline::filmed::SceneOf(c.film), c.seed)) {}
+      : clip_(vision::OpenScene(pipeline::filmed::BuildScene(c.film), c.seed)) {
+  }
   std::optional<core::Frame> operator()() {
     if (frame_ == clip_->info().frames) return std::nullopt;
     return clip_->Read(frame_++);

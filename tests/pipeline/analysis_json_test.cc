@@ -82,7 +82,7 @@ TEST(AnalyzeDocument, OfABlockItsAngleIsTheRadiusAngleUnlessAskedOtherwise) {
            {core::AngleKind::kFace, "face"}}) {
     options.angle_kind = kind;
     const Analysis analysis =
-        AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 3), options);
+        AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 3), options);
     const json document = ExpectDocument(analysis);
     const json& contact = document["contact"];
     EXPECT_EQ(contact["angle_kind"], key);
@@ -114,8 +114,8 @@ TEST(AnalyzeDocument, TwoBodies) {
   other.thrown.after = {-1.5, 0.1, 0.0};
   other.thrown.x_m = 0.01;
   auto clip = std::make_unique<vision::synthetic::Darker>(
-      vision::OpenScene(filmed::SceneOf(film), 1), [&] {
-        vision::Scene scene = filmed::SceneOf(other);
+      vision::OpenScene(filmed::BuildScene(film), 1), [&] {
+        vision::Scene scene = filmed::BuildScene(other);
         const auto pose = scene.pose;
         scene.pose = [pose](double t) {
           vision::ScenePose p = pose(t);
@@ -179,7 +179,7 @@ TEST(AnalyzeDocument, ReboundNotFilmedToItsTop) {
 TEST(AnalyzeDocument, WithoutAScale) {
   const Film film = Default(BodyKind::kSphere);
   const Analysis analysis =
-      AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 1), {});
+      AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 1), {});
   const json document = ExpectDocument(analysis);
   EXPECT_TRUE(document["scale"].is_null());
   EXPECT_THAT(document["absent"]["scale"].get<std::string>(),

@@ -157,7 +157,7 @@ TEST(AnalyzeOptionsRefused, ByName) {
     AnalyzeOptions options;
     set(options);
     try {
-      AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 1), options);
+      AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 1), options);
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
     }
@@ -196,7 +196,7 @@ TEST(AnalyzeScale, FromTheBodysOwnSize) {
   AnalyzeOptions options;
   options.diameter_m = core::Estimate{0.024, 1e-5, std::nullopt};
   const Analysis analysis =
-      AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 1), options);
+      AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 1), options);
   ASSERT_TRUE(analysis.scale);
   EXPECT_EQ(analysis.scale->source, calib::ScaleSource::kBodySize);
   EXPECT_NEAR(analysis.scale->px_per_m.value, 1000.0,
@@ -207,7 +207,7 @@ TEST(AnalyzeScale, FromTheBodysOwnSize) {
   sides.long_m = core::Estimate{0.016, 1e-5, std::nullopt};  // either order
   sides.short_m = core::Estimate{0.040, 1e-5, std::nullopt};
   const Analysis blocks =
-      AnalyzeClip(vision::OpenScene(filmed::SceneOf(block), 1), sides);
+      AnalyzeClip(vision::OpenScene(filmed::BuildScene(block), 1), sides);
   ASSERT_TRUE(blocks.scale);
   EXPECT_NEAR(blocks.scale->px_per_m.value, 1000.0,
               4.0 * blocks.scale->px_per_m.u);
@@ -217,7 +217,7 @@ TEST(AnalyzeScale, FromTheBodysOwnSize) {
 
 std::filesystem::path WriteFilm(const Film& film,
                                 const std::filesystem::path& path) {
-  const auto clip = vision::OpenScene(filmed::SceneOf(film), 1);
+  const auto clip = vision::OpenScene(filmed::BuildScene(film), 1);
   std::int64_t next = 0;
   vision::MrawOptions options;
   options.fps = film.camera.fps;

@@ -21,7 +21,7 @@ inline AnalyzeOptions Known(const Film& film) {
 }
 
 inline Analysis AnalyzeFilm(const Film& film, std::uint64_t seed = 1) {
-  return AnalyzeClip(vision::OpenScene(SceneOf(film), seed), Known(film));
+  return AnalyzeClip(vision::OpenScene(BuildScene(film), seed), Known(film));
 }
 
 // |error| within 4 standard uncertainties.

@@ -72,7 +72,8 @@ TEST(AnswerCheck, RefusesWhatExplainsNothing) {
   EXPECT_THAT(analysis.contacts.first.state.reason, HasSubstr("explains none"));
   ASSERT_TRUE(analysis.track);  // a person can look at it
   EXPECT_TRUE(analysis.ground);
-  const TriageEntry entry = TriageOf("shot", Done::kLogged, Logged(analysis));
+  const TriageEntry entry =
+      MakeTriageEntry("shot", Done::kLogged, Logged(analysis));
   EXPECT_EQ(entry.attention, Attention::kNoContact);
   EXPECT_THAT(entry.reason, HasSubstr("Q = -0.69"));
 }
@@ -80,7 +81,8 @@ TEST(AnswerCheck, RefusesWhatExplainsNothing) {
 TEST(AnswerCheck, DoubtIsAWarning) {
   const Analysis analysis = WithNear(0.8);
   EXPECT_TRUE(analysis.contacts.first.contact.found);
-  const TriageEntry entry = TriageOf("shot", Done::kLogged, Logged(analysis));
+  const TriageEntry entry =
+      MakeTriageEntry("shot", Done::kLogged, Logged(analysis));
   EXPECT_EQ(entry.attention, Attention::kWarned);
   EXPECT_THAT(entry.reason, HasSubstr("Q = 0.80"));
 }
@@ -135,7 +137,7 @@ TEST(AnswerCheck, NamesTheKindThatWasSeen) {
     const bool sphere = seen == core::BodyKind::kSphere;
     const Film film = Default(seen);
     const Analysis wrong =
-        AnalyzeClip(vision::OpenScene(SceneOf(film), 1),
+        AnalyzeClip(vision::OpenScene(BuildScene(film), 1),
                     Stated(film, sphere ? core::BodyKind::kRectangle
                                         : core::BodyKind::kSphere));
     EXPECT_FALSE(wrong.contacts.first.contact.found);
@@ -144,7 +146,7 @@ TEST(AnswerCheck, NamesTheKindThatWasSeen) {
         HasSubstr(sphere ? "looks like a sphere, not like a rectangle"
                          : "looks like a rectangle, not like a sphere"));
     const Analysis right =
-        AnalyzeClip(vision::OpenScene(SceneOf(film), 1), Stated(film, seen));
+        AnalyzeClip(vision::OpenScene(BuildScene(film), 1), Stated(film, seen));
     EXPECT_TRUE(right.contacts.first.contact.found);
   }
 }

@@ -60,7 +60,7 @@ class RunBatchTest : public ::testing::Test {
   }
 
   std::vector<BatchClip> Clips(const AnalyzeOptions& options = {}) const {
-    return ClipsOf(FindRecordings(films()), films(), "asphalt", options);
+    return ListBatchClips(FindRecordings(films()), films(), "asphalt", options);
   }
 
   TemporaryFolder folder_;
@@ -297,7 +297,7 @@ TEST_F(RunBatchTest, ShardsMergeToTheWhole) {
   auto merged = Open("merged.db");
   for (const std::size_t k : {1u, 2u}) {
     auto part = Open("part" + std::to_string(k) + ".db");
-    RunBatch(part, ShardOf(Clips(), {k, 2}));
+    RunBatch(part, SelectShard(Clips(), {k, 2}));
     EXPECT_THAT(db::Merge(merged, part).conflicts, IsEmpty());
   }
   auto expected = Timeless(whole);
@@ -307,12 +307,12 @@ TEST_F(RunBatchTest, ShardsMergeToTheWhole) {
   EXPECT_EQ(got, expected);
 }
 
-TEST(ShardOf, EveryClipIsInOnePart) {
+TEST(SelectShard, EveryClipIsInOnePart) {
   std::vector<BatchClip> clips(10);
   for (std::size_t i = 0; i < 10; ++i) clips[i].name = std::to_string(i);
   std::multiset<std::string> names;
   for (std::size_t k = 1; k <= 3; ++k) {
-    const auto part = ShardOf(clips, {k, 3});
+    const auto part = SelectShard(clips, {k, 3});
     EXPECT_GE(part.size(), 3u);
     for (const auto& clip : part) names.insert(clip.name);
   }

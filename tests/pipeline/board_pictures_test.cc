@@ -29,7 +29,7 @@ class BoardPicturesTest : public ::testing::Test {
 };
 
 TEST_F(BoardPicturesTest, TellTheLensTheyWereTakenWith) {
-  const auto pictures = PicturesIn(folder.path());
+  const auto pictures = ListPictures(folder.path());
   ASSERT_EQ(pictures.size(), 6u);
   std::vector<double> shares;
   const BoardPictures found =
@@ -40,11 +40,11 @@ TEST_F(BoardPicturesTest, TellTheLensTheyWereTakenWith) {
   EXPECT_EQ(found.picture.corner, (calib::SensorCorner{2, 4}));
   ASSERT_EQ(shares.size(), 6u);
   EXPECT_DOUBLE_EQ(shares.back(), 1.0);
-  const calib::LensCalibration lens = LensOf(found, kBoard);
+  const calib::LensCalibration lens = CalibrateBoardLens(found, kBoard);
   const core::Estimate focal = lens.Parameter(0);
   EXPECT_NEAR(focal.value, touchdown::testing::SmallLens().fx_px,
               4.0 * focal.u);
-  const calib::LensRecord record = RecordOf(lens, kBoard);
+  const calib::LensRecord record = MakeLensRecord(lens, kBoard);
   EXPECT_EQ(record.board, "chessboard:7x5:20mm");
   EXPECT_EQ(record.views.size(), 6u);
   EXPECT_EQ(record.rms_px, lens.rms_px);
@@ -57,10 +57,10 @@ TEST_F(BoardPicturesTest, SayWhichShowNoBoard) {
   blank.bit_depth = 8;
   blank.pixels.assign(320 * 240, std::byte{128});
   vision::WritePng(folder / "blank.png", blank.View());
-  const BoardPictures found = FindBoards(PicturesIn(folder.path()), kBoard);
+  const BoardPictures found = FindBoards(ListPictures(folder.path()), kBoard);
   EXPECT_THAT(found.without, ElementsAre("blank.png"));
   const std::vector<std::filesystem::path> only = {folder / "blank.png"};
-  EXPECT_THAT([&] { LensOf(FindBoards(only, kBoard), kBoard); },
+  EXPECT_THAT([&] { CalibrateBoardLens(FindBoards(only, kBoard), kBoard); },
               ThrowsMessage<core::InputError>(
                   HasSubstr("no whole chessboard:7x5:20mm in 1 of 1 pictures, "
                             "blank.png first")));
@@ -73,10 +73,10 @@ TEST_F(BoardPicturesTest, AreOfOneSize) {
   other.bit_depth = 8;
   other.pixels.assign(64 * 64, std::byte{128});
   vision::WritePng(folder / "z.png", other.View());
-  EXPECT_THAT([&] { FindBoards(PicturesIn(folder.path()), kBoard); },
+  EXPECT_THAT([&] { FindBoards(ListPictures(folder.path()), kBoard); },
               ThrowsMessage<core::InputError>(
                   HasSubstr("all pictures must be of one camera")));
-  EXPECT_THROW(PicturesIn(folder / "none"), core::InputError);
+  EXPECT_THROW(ListPictures(folder / "none"), core::InputError);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST(Budget, ATurnedPlaneIsMeasuredRightWithItsCalibration) {
   options.calibration = calibration;
   const auto analyze = [&] {
     return pipeline::AnalyzeClip(
-        vision::OpenScene(pipeline::filmed::SceneOf(film), 4), options);
+        vision::OpenScene(pipeline::filmed::BuildScene(film), 4), options);
   };
   const pipeline::Analysis with = analyze();
   options.calibration->ground->yaw_rad.reset();

@@ -14,7 +14,7 @@ using core::kMillimetre;
 
 std::string FieldOf(const CampaignEntry& entry) {
   try {
-    CampaignOf(entry);
+    MakeCampaign(entry);
   } catch (const FieldError& error) {
     return error.field();
   }
@@ -28,24 +28,24 @@ CampaignEntry Sphere() {
   return entry;
 }
 
-TEST(BodyOf, TakesSizesWithAndWithoutTheirUncertainty) {
-  EXPECT_FALSE(BodyOf({}));
-  const auto sphere = BodyOf({"", "40", ""}).value();
+TEST(ParseBody, TakesSizesWithAndWithoutTheirUncertainty) {
+  EXPECT_FALSE(ParseBody({}));
+  const auto sphere = ParseBody({"", "40", ""}).value();
   EXPECT_EQ(sphere.kind, core::BodyKind::kSphere);
   EXPECT_DOUBLE_EQ(sphere.diameter_m->value, 0.04);
   EXPECT_DOUBLE_EQ(sphere.diameter_m->u, 0.04 * 1e-3);  // 0.1 %
-  const auto block = BodyOf({"", "", "20+-0.02x60+-0.05"}).value();
+  const auto block = ParseBody({"", "", "20+-0.02x60+-0.05"}).value();
   EXPECT_EQ(block.kind, core::BodyKind::kRectangle);
   EXPECT_DOUBLE_EQ(block.long_m->value, 0.06);  // whichever is first
   EXPECT_DOUBLE_EQ(block.long_m->u, 0.05 * kMillimetre);
-  EXPECT_FALSE(BodyOf({"sphere", "", ""})->diameter_m);
-  EXPECT_FALSE(BodyOf({"rectangle", "", ""})->long_m);
+  EXPECT_FALSE(ParseBody({"sphere", "", ""})->diameter_m);
+  EXPECT_FALSE(ParseBody({"rectangle", "", ""})->long_m);
 }
 
-TEST(BodyOf, NamesTheFieldThatDoesNotFit) {
+TEST(ParseBody, NamesTheFieldThatDoesNotFit) {
   const auto field_of = [](const BodyEntry& entry) -> std::string {
     try {
-      BodyOf(entry);
+      ParseBody(entry);
     } catch (const FieldError& error) {
       return error.field();
     }
@@ -57,11 +57,11 @@ TEST(BodyOf, NamesTheFieldThatDoesNotFit) {
   EXPECT_EQ(field_of({"", "4O", ""}), "diameter-mm");
   EXPECT_EQ(field_of({"", "", "60"}), "sides-mm");
   EXPECT_EQ(field_of({"", "", "60x2O"}), "sides-mm");
-  EXPECT_THROW(BodyOf({"", "-40", ""}), std::invalid_argument);
+  EXPECT_THROW(ParseBody({"", "-40", ""}), std::invalid_argument);
 }
 
-TEST(CampaignOf, TakesTheDefaultsOfItsBody) {
-  const core::Campaign sphere = CampaignOf(Sphere());
+TEST(MakeCampaign, TakesTheDefaultsOfItsBody) {
+  const core::Campaign sphere = MakeCampaign(Sphere());
   EXPECT_EQ(sphere.angle_kind, core::AngleKind::kApproach);
   EXPECT_DOUBLE_EQ(sphere.bounce_height_m, 0.8 * kMillimetre);  // 2 % of 40
   EXPECT_DOUBLE_EQ(sphere.margin_rad, 1.0 * kDegree);
@@ -69,10 +69,10 @@ TEST(CampaignOf, TakesTheDefaultsOfItsBody) {
   CampaignEntry block;
   block.name = "blocks";
   block.body.sides_mm = "60x20";
-  EXPECT_EQ(CampaignOf(block).angle_kind, core::AngleKind::kRadius);
+  EXPECT_EQ(MakeCampaign(block).angle_kind, core::AngleKind::kRadius);
 }
 
-TEST(CampaignOf, TakesWhatIsSaid) {
+TEST(MakeCampaign, TakesWhatIsSaid) {
   CampaignEntry entry = Sphere();
   entry.surface = "board";
   entry.angle_kind = "approach";
@@ -82,7 +82,7 @@ TEST(CampaignOf, TakesWhatIsSaid) {
   entry.theory_boundary_deg = 20.0;
   entry.theory_u_deg = 0.5;
   entry.margin_deg = 2.0;
-  const core::Campaign campaign = CampaignOf(entry);
+  const core::Campaign campaign = MakeCampaign(entry);
   EXPECT_EQ(campaign.surface, "board");
   EXPECT_DOUBLE_EQ(campaign.bounce_height_m, 1.5 * kMillimetre);
   EXPECT_EQ(campaign.speed_min_mps, 3.5);
@@ -93,7 +93,7 @@ TEST(CampaignOf, TakesWhatIsSaid) {
   EXPECT_DOUBLE_EQ(campaign.margin_rad, 2.0 * kDegree);
 }
 
-TEST(CampaignOf, NamesTheFieldThatDoesNotFit) {
+TEST(MakeCampaign, NamesTheFieldThatDoesNotFit) {
   CampaignEntry entry = Sphere();
   entry.body = {};
   EXPECT_EQ(FieldOf(entry), "body");

@@ -25,7 +25,7 @@ using touchdown::testing::TemporaryFolder;
 vision::CineFile Without(const Film& film,
                          const std::set<std::int64_t>& dropped,
                          bool with_stamps) {
-  const auto clip = vision::OpenScene(filmed::SceneOf(film), 1);
+  const auto clip = vision::OpenScene(filmed::BuildScene(film), 1);
   vision::CineFile file;
   file.stated_fps = static_cast<std::uint32_t>(film.camera.fps);
   for (std::int64_t i = 0; i < film.frames; ++i) {

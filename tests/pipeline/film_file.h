@@ -17,7 +17,7 @@ namespace touchdown::pipeline::filmed {
 // same throw.
 inline void WriteFilm(const std::filesystem::path& path, const Film& film,
                       std::uint64_t seed) {
-  const auto clip = vision::OpenScene(SceneOf(film), seed);
+  const auto clip = vision::OpenScene(BuildScene(film), seed);
   vision::MrawOptions options;
   options.fps = film.camera.fps;
   std::int64_t frame = 0;

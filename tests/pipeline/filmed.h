@@ -48,7 +48,7 @@ inline Film Default(core::BodyKind kind) {
   return film;
 }
 
-inline vision::Scene SceneOf(Film film) {
+inline vision::Scene BuildScene(Film film) {
   vision::Scene scene;
   film.thrown.contact_s = film.contact_frame / film.camera.fps;
   scene.camera = film.camera;

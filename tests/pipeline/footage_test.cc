@@ -53,7 +53,7 @@ AnalyzeOptions OfProjectile() {
   AnalyzeOptions options;
   options.fps = 30.0;
   options.scale_px_per_m = core::Estimate{318.3, 0.3};
-  options.ground = calib::GroundThrough({0, 440}, {640, 440});
+  options.ground = calib::MakeGroundLine({0, 440}, {640, 440});
   return options;
 }
 
@@ -120,7 +120,7 @@ TEST(Footage, ACartOnItsTrackNeverBounces) {
   SKIP_WITHOUT(path);
   AnalyzeOptions options;
   options.fps = 30.0;
-  options.ground = calib::GroundThrough({0, 336}, {640, 230.5});
+  options.ground = calib::MakeGroundLine({0, 336}, {640, 230.5});
   const Analysis a = Analyze(path, options);
   EXPECT_TRUE(a.contacts.first.contact.from_start);
   EXPECT_EQ(a.contacts.first.state.label, core::MotionState::kSlide)

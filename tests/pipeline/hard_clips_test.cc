@@ -47,7 +47,7 @@ Analysis AnalyzeChanged(const Film& film, std::uint64_t seed,
                         const Change& change) {
   return AnalyzeClip(
       std::make_unique<ChangedClip>(
-          vision::OpenScene(filmed::SceneOf(film), seed), change),
+          vision::OpenScene(filmed::BuildScene(film), seed), change),
       filmed::Known(film));
 }
 

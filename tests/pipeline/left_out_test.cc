@@ -96,7 +96,7 @@ TEST(LeftOut, StandsInTheDocumentAndTheText) {
   AnalyzeOptions options;
   options.scale_px_per_m = core::Estimate{1000.0, 1.0, {}};
   const Analysis a =
-      AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), 1), options);
+      AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 1), options);
   for (const char* name : {"path out of the plane", "rolling shutter",
                            "gravity along the ground", "light and gamma"}) {
     EXPECT_EQ(a.scene_model.left_out.count(name), 1U) << name;

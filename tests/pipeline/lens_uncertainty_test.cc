@@ -66,7 +66,8 @@ AnalyzeOptions Known(const Film& film) {
 
 Analysis AnalyzeFilm(const Film& film, const AnalyzeOptions& options,
                      std::uint64_t seed) {
-  return AnalyzeClip(vision::OpenScene(filmed::SceneOf(film), seed), options);
+  return AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), seed),
+                     options);
 }
 
 // Errors of the contact's angles, speeds and time over the u of `like`.
@@ -194,7 +195,7 @@ TEST(ThroughALens, AnMrawBringsItsOwnCrop) {
   options.calibration->lens->lens = calib::Cropped(*film.camera.lens, -kX, -kY);
   const testing::TemporaryFolder folder;
   const auto write = [&](const char* name, bool xml) {
-    const auto clip = vision::OpenScene(filmed::SceneOf(film), 5);
+    const auto clip = vision::OpenScene(filmed::BuildScene(film), 5);
     vision::MrawOptions mraw;
     mraw.fps = film.camera.fps;
     mraw.xml_header = xml;
@@ -242,7 +243,7 @@ TEST(ThroughALens, RefusesAClipThatDoesNotFitAndWarnsOfAge) {
 TEST(AddLensUncertainty, IsTheDerivativeTimesTheDeviation) {
   const Film film = Bent(BodyKind::kSphere);
   AnalyzeOptions options = Known(film);
-  options.ground = vision::GroundOf(film.camera);
+  options.ground = vision::TrueGroundLine(film.camera);
   options.calibration = Calibrated(film);
   const Analysis exact = AnalyzeFilm(film, options, 3);
   constexpr double kDeviation = 0.02;
@@ -275,7 +276,7 @@ TEST(AddLensUncertainty, IsTheDerivativeTimesTheDeviation) {
 TEST(ThroughALens, DocumentAndEvidence) {
   const testing::TemporaryFolder folder;
   const Film film = Bent(BodyKind::kSphere);
-  const auto clip = vision::OpenScene(filmed::SceneOf(film), 1);
+  const auto clip = vision::OpenScene(filmed::BuildScene(film), 1);
   std::int64_t next = 0;
   vision::MrawOptions raw;
   raw.fps = film.camera.fps;
@@ -289,7 +290,7 @@ TEST(ThroughALens, DocumentAndEvidence) {
   const Analysis analysis = Analyze(folder / "shot.mraw", options);
   const auto json = nlohmann::json::parse(ToJson(analysis));
   EXPECT_EQ(json["calibration"]["date"], "2026-01-31");
-  const auto truth = vision::GroundOf(film.camera);
+  const auto truth = vision::TrueGroundLine(film.camera);
   EXPECT_NEAR(json["ground"]["y1_px"].get<double>(), truth.p1.y_px, 0.3);
   EXPECT_NEAR(json["ground"]["y2_px"].get<double>(), truth.p2.y_px, 0.3);
   EXPECT_EQ(json["ground"]["ideal_px"].size(), 4u);

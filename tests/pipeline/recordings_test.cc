@@ -102,17 +102,17 @@ TEST(IsRecording, AsFindRecordingsFindsThem) {
   }
 }
 
-TEST(FilesOf, ARecordingIsReadFrom) {
+TEST(ListFiles, ARecordingIsReadFrom) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "img");
   for (const char* file :
        {"x.mraw", "x.cihx", "x.txt", "img/1.png", "img/notes.txt", "a.avi"}) {
     folder.Write(file, "x");
   }
-  EXPECT_THAT(FilesOf(folder / "x.mraw"),
+  EXPECT_THAT(ListFiles(folder / "x.mraw"),
               ElementsAre(folder / "x.mraw", folder / "x.cihx"));
-  EXPECT_THAT(FilesOf(folder / "img"), ElementsAre(folder / "img/1.png"));
-  EXPECT_THAT(FilesOf(folder / "a.avi"), ElementsAre(folder / "a.avi"));
+  EXPECT_THAT(ListFiles(folder / "img"), ElementsAre(folder / "img/1.png"));
+  EXPECT_THAT(ListFiles(folder / "a.avi"), ElementsAre(folder / "a.avi"));
 }
 
 TEST(Settling, TellsARecordingWhenItHasStoppedGrowing) {
@@ -176,16 +176,16 @@ TEST(Watch, TakesARecordingWhenAllOfItIsThere) {
   EXPECT_THAT(taken, ElementsAre("a.mraw at step 4", "b.avi at step 6"));
 }
 
-TEST(ExtentOf, TellsWhenItWasWritten) {
+TEST(MeasureExtent, TellsWhenItWasWritten) {
   const TemporaryFolder folder;
   const auto path = folder.Write("a.avi", "12345");
   const auto hour_ago =
       std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
   std::filesystem::last_write_time(path, hour_ago);
-  EXPECT_EQ(ExtentOf(path).written, hour_ago);
-  const Extent before = ExtentOf(path);
+  EXPECT_EQ(MeasureExtent(path).written, hour_ago);
+  const Extent before = MeasureExtent(path);
   folder.Write("a.avi", "54321");  // as long as before
-  EXPECT_NE(ExtentOf(path), before);
+  EXPECT_NE(MeasureExtent(path), before);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Shot {
       options.long_m = core::Estimate{0.040, 2e-5, std::nullopt};
       options.short_m = core::Estimate{0.016, 2e-5, std::nullopt};
     }
-    analysis = AnalyzeClip(vision::OpenScene(SceneOf(film), 1), options);
+    analysis = AnalyzeClip(vision::OpenScene(BuildScene(film), 1), options);
     analysis.clip.path = "shot.mraw";
     trial = ToTrial(analysis);
     trial.clip.id = "id";
@@ -91,7 +91,7 @@ TEST(Rejudge, TurnsTheAngleWithTheGroundLine) {
   const core::PixelPoint at = analysis->contacts.evidence.front().touching;
   const double angle = calib::ImageAngle(g) + 2.0 * core::kDegree;
   Correction correction;
-  correction.ground = calib::GroundThrough(
+  correction.ground = calib::MakeGroundLine(
       {at.x_px - 100 * std::cos(angle), at.y_px - 100 * std::sin(angle)},
       {at.x_px + 100 * std::cos(angle), at.y_px + 100 * std::sin(angle)},
       kByHand_px);
@@ -116,14 +116,15 @@ TEST(Rejudge, AgreesWithAnAnalysisThatIsGivenTheLine) {
   Shot shot;
   auto analysis = Replay(shot.trial);
   ASSERT_TRUE(analysis);
-  const auto line = calib::GroundThrough({10.0, 97.5}, {230.0, 98.9}, 0.5);
+  const auto line = calib::MakeGroundLine({10.0, 97.5}, {230.0, 98.9}, 0.5);
   Correction correction;
   correction.ground = line;
   const Analysis corrected = Rejudge(*analysis, correction);
   shot.options.ground = line;
-  const Analysis fresh = AnalyzeClip(
-      vision::OpenScene(SceneOf(filmed::Default(core::BodyKind::kSphere)), 1),
-      shot.options);
+  const Analysis fresh =
+      AnalyzeClip(vision::OpenScene(
+                      BuildScene(filmed::Default(core::BodyKind::kSphere)), 1),
+                  shot.options);
   const auto& a = corrected.contacts.first.contact;
   const auto& b = fresh.contacts.first.contact;
   ASSERT_TRUE(a.approach_angle_rad && b.approach_angle_rad);
@@ -187,7 +188,7 @@ TEST(Rejudge, RefusesFramesWithoutABody) {
 }
 
 // What was told of the camera holds for the next clip; the rest does not.
-TEST(CameraOf, IsWhatTheAnalysisWasTold) {
+TEST(ReadCameraOptions, IsWhatTheAnalysisWasTold) {
   Shot shot(core::BodyKind::kSphere);
   shot.analysis.options.fps = 1234.5;
   shot.analysis.options.gamma = 0.8;
@@ -202,7 +203,7 @@ TEST(CameraOf, IsWhatTheAnalysisWasTold) {
       calib::ScaleRecord{{1000.0, 1.0, {}}, 0.4, {}};
   shot.analysis.options.contact_frame = 7;
   shot.trial.document_json = ToJson(shot.analysis);
-  const auto camera = CameraOf(shot.trial).value();
+  const auto camera = ReadCameraOptions(shot.trial).value();
   EXPECT_EQ(camera.fps, 1234.5);
   EXPECT_EQ(camera.gamma, 0.8);
   EXPECT_EQ(camera.scale_px_per_m->value, 990.0);
@@ -211,9 +212,9 @@ TEST(CameraOf, IsWhatTheAnalysisWasTold) {
   EXPECT_FALSE(camera.contact_frame);
   EXPECT_FALSE(camera.diameter_m);
   shot.trial.document_json = "no document";
-  EXPECT_FALSE(CameraOf(shot.trial));
+  EXPECT_FALSE(ReadCameraOptions(shot.trial));
   shot.trial.document_json = "";
-  EXPECT_FALSE(CameraOf(shot.trial));
+  EXPECT_FALSE(ReadCameraOptions(shot.trial));
 }
 
 TEST(Replay, SaysWhyThereIsNothingToReplay) {

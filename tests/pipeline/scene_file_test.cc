@@ -43,7 +43,7 @@ std::string Complaint(const std::string& text) {
 
 TEST(SceneFile, TouchdownIsReachedAsWritten) {
   const Shot shot = ParseScene(With("{", "{"), "shot.json");
-  const ShotTruth truth = TruthOf(shot);
+  const ShotTruth truth = ComputeTruth(shot);
   ASSERT_TRUE(truth.touchdown.has_value());
   const analysis::TouchdownTruth& t = *truth.touchdown;
   EXPECT_NEAR(t.time_s, 0.07025, 1e-12);
@@ -67,8 +67,8 @@ TEST(SceneFile, WrittenAndReadBackItIsTheSameShot) {
     EXPECT_EQ(back.frames, shot.frames);
     EXPECT_EQ(back.lead_in_frames, shot.lead_in_frames);
     EXPECT_EQ(back.look.texture_seed, shot.look.texture_seed);
-    const ShotTruth a = TruthOf(shot);
-    const ShotTruth b = TruthOf(back);
+    const ShotTruth a = ComputeTruth(shot);
+    const ShotTruth b = ComputeTruth(back);
     EXPECT_EQ(a.state, b.state);
     EXPECT_NEAR(a.touchdown->time_s, b.touchdown->time_s, 1e-12);
     EXPECT_EQ(a.touchdown->from_start, b.touchdown->from_start);
@@ -80,7 +80,7 @@ TEST(SceneFile, WrittenAndReadBackItIsTheSameShot) {
 }
 
 TEST(SceneFile, ExampleIsTwentyDegreesAndABounce) {
-  const ShotTruth truth = TruthOf(ExampleShot());
+  const ShotTruth truth = ComputeTruth(ExampleShot());
   EXPECT_NEAR(truth.touchdown->approach_angle_rad, 20.0 * core::kDegree, 1e-12);
   EXPECT_EQ(truth.state, core::MotionState::kBounce);
   const double rise = std::pow(0.5 * 1.5 * std::sin(20.0 * core::kDegree), 2) /

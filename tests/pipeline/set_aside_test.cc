@@ -18,16 +18,16 @@ const SetAside::Key kKey{"clip", "options"};
 TEST(SetAside, HoldsWhatFailedTwiceInTheSameWay) {
   const testing::TemporaryFolder folder;
   SetAside(folder / "lab.db").Failed(kKey, "a.avi", "damaged");
-  EXPECT_FALSE(SetAside(folder / "lab.db").ReasonOf(kKey));
+  EXPECT_FALSE(SetAside(folder / "lab.db").FindReason(kKey));
   SetAside later(folder / "lab.db");
   later.Failed(kKey, "a.avi", "damaged\nbadly");
   for (const SetAside& each : {later, SetAside(folder / "lab.db")}) {
-    const auto reason = each.ReasonOf(kKey);
+    const auto reason = each.FindReason(kKey);
     ASSERT_TRUE(reason);
     EXPECT_NE(reason->find("damaged\nbadly"), std::string::npos);
     EXPECT_NE(reason->find("--again"), std::string::npos);
-    EXPECT_FALSE(each.ReasonOf({"clip", "other options"}));
-    EXPECT_FALSE(each.ReasonOf({"another", "options"}));
+    EXPECT_FALSE(each.FindReason({"clip", "other options"}));
+    EXPECT_FALSE(each.FindReason({"another", "options"}));
   }
 }
 
@@ -36,7 +36,7 @@ TEST(SetAside, PassesOverWhatItDoesNotUnderstand) {
   folder.Write("lab.db.failed.jsonl",
                "rubbish\n[]\n{\"clip_id\": 7}\n{\"clip_id\": \"clip\", "
                "\"options\": \"options\"}\n{\"clip_id\"");
-  EXPECT_FALSE(SetAside(folder / "lab.db").ReasonOf(kKey));
+  EXPECT_FALSE(SetAside(folder / "lab.db").FindReason(kKey));
 }
 
 TEST(SetAside, FollowsNoLinkAndWaitsForNoPipe) {
@@ -58,7 +58,8 @@ TEST(RunBatch, SetsAsideWhatFailedTwice) {
     analyze.fps = fps;
     BatchOptions options;
     options.again = again;
-    return RunBatch(store, ClipsOf(recordings, folder.path(), "", analyze),
+    return RunBatch(store,
+                    ListBatchClips(recordings, folder.path(), "", analyze),
                     options)
         .front()
         .reason;

@@ -37,7 +37,7 @@ TEST(Table1, SimulatedPhysicsGivesThePapersStatesAtItsAngles) {
     const double angle = kAngles_deg[i % 9] * core::kDegree;
     const bool bounces =
         sphere ? kSphereBounces[i % 9] : kRectangleBounces[i % 9];
-    const ShotTruth truth = TruthOf(shot);
+    const ShotTruth truth = ComputeTruth(shot);
     ASSERT_TRUE(truth.touchdown.has_value()) << shot.name;
     EXPECT_NEAR(*shot.set_angle_rad, angle, 1e-15) << shot.name;
     EXPECT_NEAR(sphere ? truth.touchdown->approach_angle_rad
@@ -55,10 +55,10 @@ TEST(Table1, SimulatedPhysicsGivesThePapersStatesAtItsAngles) {
       EXPECT_LT(factor, 1.0 / 1.5) << shot.name;
     }
   }
-  EXPECT_TRUE(TruthOf(shots[0]).touchdown->from_start);
-  EXPECT_EQ(TruthOf(shots[9]).touchdown->corner, core::Corner::kFlush);
-  EXPECT_EQ(TruthOf(shots[10]).touchdown->corner, core::Corner::kTrailing);
-  EXPECT_EQ(TruthOf(shots[17]).touchdown->corner, core::Corner::kFlush);
+  EXPECT_TRUE(ComputeTruth(shots[0]).touchdown->from_start);
+  EXPECT_EQ(ComputeTruth(shots[9]).touchdown->corner, core::Corner::kFlush);
+  EXPECT_EQ(ComputeTruth(shots[10]).touchdown->corner, core::Corner::kTrailing);
+  EXPECT_EQ(ComputeTruth(shots[17]).touchdown->corner, core::Corner::kFlush);
 }
 
 TEST(Table1, NineTrialsOfABodyShareTheirPhysics) {
@@ -70,8 +70,9 @@ TEST(Table1, NineTrialsOfABodyShareTheirPhysics) {
     EXPECT_EQ(shots[i].thrown.restitution, first.thrown.restitution);
     EXPECT_EQ(shots[i].angle_kind, first.angle_kind);
     EXPECT_FALSE(shots[i].bounce_height_m.has_value());
-    const double speed = std::hypot(TruthOf(shots[i]).touchdown->before.vx_mps,
-                                    TruthOf(shots[i]).touchdown->before.vy_mps);
+    const double speed =
+        std::hypot(ComputeTruth(shots[i]).touchdown->before.vx_mps,
+                   ComputeTruth(shots[i]).touchdown->before.vy_mps);
     EXPECT_GE(speed, 1.0) << shots[i].name;
     EXPECT_LE(speed, 2.0) << shots[i].name;
   }
@@ -79,8 +80,8 @@ TEST(Table1, NineTrialsOfABodyShareTheirPhysics) {
 
 TEST(Table1, EnoughOfEachShotIsFilmed) {
   for (const Shot& shot : Table1Shots()) {
-    const ShotTruth truth = TruthOf(shot);
-    const vision::Scene scene = SceneOf(shot, truth.motion);
+    const ShotTruth truth = ComputeTruth(shot);
+    const vision::Scene scene = BuildScene(shot, truth.motion);
     const double contact = truth.touchdown->time_s * shot.camera.fps;
     if (!truth.touchdown->from_start) {
       EXPECT_GE(contact - static_cast<double>(shot.lead_in_frames), 20.0)
@@ -90,7 +91,7 @@ TEST(Table1, EnoughOfEachShotIsFilmed) {
     }
     EXPECT_GE(static_cast<double>(shot.frames) - contact, 40.0) << shot.name;
     for (std::int64_t i = 0; i < shot.frames; ++i) {
-      const vision::SceneTruth frame = vision::TruthOf(scene, i);
+      const vision::SceneTruth frame = vision::ComputeTruth(scene, i);
       if (i < shot.lead_in_frames) {
         EXPECT_GT(frame.gap_px, 1e5);  // out of sight
         continue;
@@ -220,7 +221,7 @@ TEST(WriteShot, ImpossibleShotsAreRefused) {
 TEST(TruthOfShot, WithoutContactNothingIsDecided) {
   Shot shot = SmallShot();
   shot.frames = 30;  // it touches down in frame 44
-  const ShotTruth truth = TruthOf(shot);
+  const ShotTruth truth = ComputeTruth(shot);
   EXPECT_FALSE(truth.touchdown.has_value());
   EXPECT_EQ(truth.state, core::MotionState::kUndecided);
 }

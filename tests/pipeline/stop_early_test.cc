@@ -70,7 +70,7 @@ Pose Bouncing(const Thrown& thrown) {
 // It slides on at half the speed.
 constexpr Thrown kStays{.e = 0.0, .vx_after = 1.0};
 
-vision::Scene SceneOf(const Pose& pose, std::int32_t bit_depth = 8) {
+vision::Scene BuildScene(const Pose& pose, std::int32_t bit_depth = 8) {
   vision::Scene scene;
   scene.camera.width_px = 480;
   scene.camera.height_px = 160;
@@ -122,7 +122,7 @@ Both AnalyzeBoth(const vision::Scene& scene, const Keeping& keeping,
   const vision::ClipInfo info = clip->info();
   const ClipCalibration camera = FitToClip(options, info);
   Footage footage = InSteadyLight(std::move(clip), options);
-  vision::FrameStoreOptions keep = KeepOptionsOf(options, info);
+  vision::FrameStoreOptions keep = MakeKeepOptions(options, info);
   keep.most_bytes = keeping.most_bytes;
   footage.clip = vision::KeepFrames(std::move(footage.clip), keep);
   both.whole = AnalyzeFootage(std::move(footage), camera, options);
@@ -147,7 +147,8 @@ void ExpectNear(const core::Measured& early, const core::Measured& whole,
 // The same answer from [0, stop); of what follows only key frames were read.
 void ExpectStopped(const Both& both, std::int64_t latest,
                    const Keeping& keeping) {
-  ASSERT_TRUE(both.early.stopped_at) << ReasonToGoOn(both.whole, kFrames, 0);
+  ASSERT_TRUE(both.early.stopped_at)
+      << ReasonToContinue(both.whole, kFrames, 0);
   const std::int64_t stop = *both.early.stopped_at;
   EXPECT_LE(stop, latest);
   const core::ContactRecord& early = both.early.contacts.first;
@@ -207,8 +208,8 @@ TEST_P(StopEarly, ABounceIsTheSame) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
     const double contact_s = 0.2 + 0.0003 * static_cast<double>(seed);
-    const Both both = AnalyzeBoth(SceneOf(Bouncing({.contact_s = contact_s})),
-                                  GetParam(), seed);
+    const Both both = AnalyzeBoth(
+        BuildScene(Bouncing({.contact_s = contact_s})), GetParam(), seed);
     EXPECT_EQ(both.whole.contacts.first.state.label,
               core::MotionState::kBounce);
     ExpectStopped(both, 320, GetParam());
@@ -221,13 +222,14 @@ TEST_P(StopEarly, ABounceIsTheSame) {
 TEST_P(StopEarly, ASteepBounceIsTheSame) {
   const Pose pose = Bouncing(
       {.contact_s = 0.15037, .vx = 0.5, .vy = 2.0, .e = 0.3, .lead_s = 0.1});
-  ExpectStopped(AnalyzeBoth(SceneOf(pose), GetParam()), 270, GetParam());
+  ExpectStopped(AnalyzeBoth(BuildScene(pose), GetParam()), 270, GetParam());
 }
 
 TEST_P(StopEarly, WhatStaysDownIsTheSame) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
-    const Both both = AnalyzeBoth(SceneOf(Bouncing(kStays)), GetParam(), seed);
+    const Both both =
+        AnalyzeBoth(BuildScene(Bouncing(kStays)), GetParam(), seed);
     EXPECT_EQ(both.whole.contacts.first.state.label,
               core::MotionState::kStaysDown);
     ExpectStopped(both, 330, GetParam());
@@ -236,7 +238,7 @@ TEST_P(StopEarly, WhatStaysDownIsTheSame) {
 
 TEST_P(StopEarly, ALateBodyIsWaitedFor) {
   const Both both =
-      AnalyzeBoth(SceneOf(Bouncing({.contact_s = 0.45037})), GetParam());
+      AnalyzeBoth(BuildScene(Bouncing({.contact_s = 0.45037})), GetParam());
   ExpectStopped(both, 560, GetParam());
   // It comes in frame 330: of what was before that, little was decoded.
   constexpr std::int64_t kComes = 330;
@@ -261,14 +263,14 @@ TEST_P(StopEarly, WithoutAContactAllIsLookedAt) {
     return vision::ScenePose{
         {0.24 + 2.6 * since, 0.1 - 0.5 * kGravity * since * since}, 0.0};
   };
-  ExpectWhole(AnalyzeBoth(SceneOf(over), GetParam()));
+  ExpectWhole(AnalyzeBoth(BuildScene(over), GetParam()));
 }
 
 TEST_P(StopEarly, WhatNeverMovesIsLookedAtToTheEnd) {
   const Pose rests = [](double) {
     return vision::ScenePose{{0.2, kRadius_m}, 0.0};
   };
-  ExpectWhole(AnalyzeBoth(SceneOf(rests), GetParam()));
+  ExpectWhole(AnalyzeBoth(BuildScene(rests), GetParam()));
 }
 
 // A body that is held in the picture until frame 250 is part of the background
@@ -287,7 +289,7 @@ TEST_P(StopEarly, ABodyThatIsHeldAtFirstIsTheSame) {
                ? vision::ScenePose{{0.2, kRadius_m + kHeight_m}, 0.0}
                : falls.At(t);
   };
-  const Both both = AnalyzeBoth(SceneOf(held), GetParam());
+  const Both both = AnalyzeBoth(BuildScene(held), GetParam());
   ASSERT_TRUE(both.whole.contacts.first.contact.found);
   if (!both.early.stopped_at) {
     // Its windows do not fit beside what is kept whole: once more at the most.
@@ -301,12 +303,13 @@ TEST_P(StopEarly, ABodyThatIsHeldAtFirstIsTheSame) {
 TEST_P(StopEarly, WhatIsInDoubtIsLookedAtToTheEnd) {
   const double up = std::sqrt(2.0 * kGravity * 0.0005);  // h_c is 0.5 mm
   ExpectWhole(AnalyzeBoth(
-      SceneOf(Bouncing({.e = up / Thrown{}.vy, .vx_after = 1.0})), GetParam()));
+      BuildScene(Bouncing({.e = up / Thrown{}.vy, .vx_after = 1.0})),
+      GetParam()));
 }
 
 // Small enough to be kept whole: there is nothing to gain.
 TEST(StopEarlySmall, AllIsLookedAt) {
-  ExpectWhole(AnalyzeBoth(SceneOf(Bouncing({})), kWhole));
+  ExpectWhole(AnalyzeBoth(BuildScene(Bouncing({})), kWhole));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kept, StopEarly, ::testing::Values(kAlone, kGroups),
@@ -316,14 +319,14 @@ INSTANTIATE_TEST_SUITE_P(Kept, StopEarly, ::testing::Values(kAlone, kGroups),
 
 // Each line of the rule by itself, of an analysis that it stops at.
 TEST(StopRule, EachConditionCounts) {
-  const Analysis good = AnalyzeBoth(SceneOf(Bouncing({})), kGroups).early;
+  const Analysis good = AnalyzeBoth(BuildScene(Bouncing({})), kGroups).early;
   ASSERT_TRUE(good.stopped_at);
   const std::int64_t end = *good.stopped_at;
-  EXPECT_EQ(ReasonToGoOn(good, end, 0), "");
+  EXPECT_EQ(ReasonToContinue(good, end, 0), "");
   const auto expect = [&](const std::function<void(Analysis&)>& change) {
     Analysis changed = good;
     change(changed);
-    EXPECT_NE(ReasonToGoOn(changed, end, 0), "");
+    EXPECT_NE(ReasonToContinue(changed, end, 0), "");
   };
   expect([](Analysis& a) { a.track->several_bodies = true; });
   expect([](Analysis& a) { a.track->known_background = false; });
@@ -346,10 +349,10 @@ TEST(StopRule, EachConditionCounts) {
   expect([](Analysis& a) { a.contacts.first.contact.frame->value += 60.0; });
   Analysis warned = good;
   warned.warnings.emplace_back("of the file");
-  EXPECT_EQ(ReasonToGoOn(warned, end, 1), "");
+  EXPECT_EQ(ReasonToContinue(warned, end, 1), "");
   warned.warnings.emplace_back("the ground is off");
   warned.contacts.warnings.emplace_back("the ground is off");
-  EXPECT_EQ(ReasonToGoOn(warned, end, 1), "");
+  EXPECT_EQ(ReasonToContinue(warned, end, 1), "");
 
   const auto apart = [&](const std::function<void(Analysis&)>& change) {
     Analysis changed = good;
@@ -372,20 +375,21 @@ TEST(StopRule, EachConditionCounts) {
 
 // A block that stays down counts as decided only once it lies flat.
 TEST(StopRule, ABlockThatStandsOnItsCornerMayStillFall) {
-  Analysis good = AnalyzeBoth(SceneOf(Bouncing(kStays)), kGroups).early;
+  Analysis good = AnalyzeBoth(BuildScene(Bouncing(kStays)), kGroups).early;
   ASSERT_TRUE(good.stopped_at);
-  EXPECT_EQ(ReasonToGoOn(good, *good.stopped_at, 0), "");
+  EXPECT_EQ(ReasonToContinue(good, *good.stopped_at, 0), "");
   good.plane->kind = core::BodyKind::kRectangle;
   good.plane->samples.back().face_rad = 0.01;
-  EXPECT_EQ(ReasonToGoOn(good, *good.stopped_at, 0), "");
+  EXPECT_EQ(ReasonToContinue(good, *good.stopped_at, 0), "");
   good.plane->samples.back().face_rad = 0.1;
-  EXPECT_EQ(ReasonToGoOn(good, *good.stopped_at, 0), "it does not lie flat");
+  EXPECT_EQ(ReasonToContinue(good, *good.stopped_at, 0),
+            "it does not lie flat");
 }
 
 // The option is part of the document and of the digest, and a stored trial is
 // judged again as it was.
 TEST(StopEarlyTrial, IsJudgedAgainTheSameWay) {
-  Analysis early = AnalyzeBoth(SceneOf(Bouncing({})), kGroups).early;
+  Analysis early = AnalyzeBoth(BuildScene(Bouncing({})), kGroups).early;
   ASSERT_TRUE(early.stopped_at);
   AnalyzeOptions without = Known();
   without.stop_early = false;

@@ -35,7 +35,7 @@ core::Trial Undecided(std::optional<double> p_bounce) {
 
 std::vector<TriageEntry> OneOfEach() {
   const auto of = [](const char* name, const core::Trial& trial) {
-    return TriageOf(name, Done::kLogged, trial);
+    return MakeTriageEntry(name, Done::kLogged, trial);
   };
   std::vector<TriageEntry> entries;
   entries.push_back(of("sure", Bounce(0.001)));
@@ -106,12 +106,13 @@ TEST(TriageCsv, IsATableWithoutFormulas) {
 }
 
 // The document of a trial that came from elsewhere need not be JSON.
-TEST(TriageOf, ADocumentThatIsNone) {
+TEST(MakeTriageEntry, ADocumentThatIsNone) {
   for (const char* document :
        {"", "{", "[]", R"({"warnings": 3})", R"({"warnings": [3, null]})"}) {
     core::Trial trial = Bounce();
     trial.document_json = document;
-    EXPECT_EQ(TriageOf("a", Done::kKnown, trial).attention, Attention::kNone)
+    EXPECT_EQ(MakeTriageEntry("a", Done::kKnown, trial).attention,
+              Attention::kNone)
         << document;
   }
 }

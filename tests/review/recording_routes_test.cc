@@ -147,11 +147,11 @@ TEST_F(RecordingRoutes, TakeTheCameraOfTheLastRecording) {
   const Json json = Json::parse(Get("/api/recordings").body);
   EXPECT_EQ(json["campaigns"][0]["camera"], "1234 frames/s");
   const auto order = [&](bool other) {
-    return OrderOf(lab.store, desk.recordings(),
-                   {{"campaign", "board"},
-                    {"who", "Ada"},
-                    {"recording", kNew},
-                    {"other_camera", other}});
+    return ReadOrder(lab.store, desk.recordings(),
+                     {{"campaign", "board"},
+                      {"who", "Ada"},
+                      {"recording", kNew},
+                      {"other_camera", other}});
   };
   EXPECT_EQ(order(false).camera.fps, 1234.0);
   EXPECT_FALSE(order(true).camera.fps);

@@ -89,14 +89,14 @@ TEST_F(RecordingFoldersTest, RefusesFoldersThatAreNotThere) {
   EXPECT_THROW(RecordingFolders({folder / "given/a.mraw"}), core::InputError);
 }
 
-TEST(RecordingOf, NamesTheFieldThatIsWrong) {
+TEST(ReadRecording, NamesTheFieldThatIsWrong) {
   using Json = nlohmann::json;
-  EXPECT_EQ(RecordingOf(Json{{"folder", 1}, {"name", "a.mp4"}}),
+  EXPECT_EQ(ReadRecording(Json{{"folder", 1}, {"name", "a.mp4"}}),
             (Recording{1, "a.mp4"}));
-  EXPECT_THROW(RecordingOf(Json{{"folder", 1}}), FieldError);
-  EXPECT_THROW(RecordingOf(Json{{"name", "a.mp4"}}), FieldError);
-  EXPECT_THROW(RecordingOf(Json{{"folder", -1}, {"name", "a"}}), FieldError);
-  EXPECT_THROW(RecordingOf(Json{{"folder", 1.5}, {"name", "a"}}),
+  EXPECT_THROW(ReadRecording(Json{{"folder", 1}}), FieldError);
+  EXPECT_THROW(ReadRecording(Json{{"name", "a.mp4"}}), FieldError);
+  EXPECT_THROW(ReadRecording(Json{{"folder", -1}, {"name", "a"}}), FieldError);
+  EXPECT_THROW(ReadRecording(Json{{"folder", 1.5}, {"name", "a"}}),
                std::invalid_argument);
 }
 

@@ -31,7 +31,7 @@ class Setup : public ::testing::Test {
   Setup() { pipeline::filmed::WriteSphere(folder / "new.mraw", 25.0, 1); }
 
   AnalysisStatus Tested(const Json& asked) {
-    AnalysisOrder order = TestOf(desk, asked);
+    AnalysisOrder order = ReadTestOrder(desk, asked);
     const std::string id = desk.analyses().Add(std::move(order));
     while (true) {
       const auto status = desk.analyses().Find(id).value();
@@ -46,7 +46,7 @@ class Setup : public ::testing::Test {
     Json asked = good;
     change(asked);
     try {
-      TestOf(desk, asked);
+      ReadTestOrder(desk, asked);
     } catch (const FieldError& error) {
       return error.field();
     }
@@ -94,7 +94,7 @@ TEST_F(Setup, MarksBecomeACalibration) {
                      {"scale_px", {10.0, 20.0, 60.0, 20.0}},
                      {"length_mm", "50+-0.1"},
                      {"ground_px", {5.0, 100.0, 200.0, 101.0}}};
-  const AnalysisOrder order = TestOf(desk, asked);
+  const AnalysisOrder order = ReadTestOrder(desk, asked);
   ASSERT_TRUE(order.camera.calibration);
   const calib::Calibration& c = *order.camera.calibration;
   EXPECT_EQ(c.camera, "left");
@@ -104,7 +104,7 @@ TEST_F(Setup, MarksBecomeACalibration) {
               1000.0 * std::hypot(0.5 * std::sqrt(2) / 50, 0.1 / 50), 1e-6);
   EXPECT_EQ(c.ground->p2.y_px, 101.0);
   EXPECT_EQ(order.camera.fps, 1000.0);
-  EXPECT_FALSE(TestOf(desk, good).camera.calibration);
+  EXPECT_FALSE(ReadTestOrder(desk, good).camera.calibration);
 }
 
 TEST_F(Setup, NamesTheFieldThatIsWrong) {
@@ -133,9 +133,9 @@ TEST_F(Setup, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(FieldOf([](Json& j) { j.erase("camera"); }), "camera");
   Json same = good;
   same["camera"]["ground_px"] = {1, 2, 1, 2};
-  EXPECT_THROW(TestOf(desk, same), std::invalid_argument);
+  EXPECT_THROW(ReadTestOrder(desk, same), std::invalid_argument);
   same["camera"]["ground_px"] = {1, 2, 3};
-  EXPECT_THROW(TestOf(desk, same), std::invalid_argument);
+  EXPECT_THROW(ReadTestOrder(desk, same), std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(db));
 }
 

@@ -54,10 +54,10 @@ TEST(Shrunk, RefusesAWidthThatIsNone) {
   EXPECT_THROW(Shrunk(frame, {0, 0}, 0, 255), std::invalid_argument);
 }
 
-TEST(ThumbnailOf, ShowsTheContact) {
+TEST(RenderThumbnail, ShowsTheContact) {
   const Lab lab;
   ClipShelf shelf;
-  const Picture picture = ThumbnailOf(shelf, lab.Now());
+  const Picture picture = RenderThumbnail(shelf, lab.Now());
   EXPECT_EQ(picture.type, "image/jpeg");
   const auto file = lab.folder.Write("small.jpg", *picture.bytes);
   const vision::Image image = vision::ReadImage(file);

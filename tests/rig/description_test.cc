@@ -66,7 +66,7 @@ TEST(Description, ExampleIsSafeAndFeasible) {
     wish.kind = core::AngleKind::kRadius;
     wish.angle_rad = deg * core::kDegree;
     wish.speed_mps = 4.0;
-    EXPECT_TRUE(SettingFor(rig, wish)) << deg;
+    EXPECT_TRUE(FindSetting(rig, wish)) << deg;
   }
 }
 
@@ -77,7 +77,7 @@ TEST(Description, ExampleIsComplete) {
   EXPECT_NEAR(rig.springs.geometry->wire_diameter_m.value, 2e-3, 1e-18);
   EXPECT_NEAR(rig.springs.geometry->wire_diameter_m.u, 1e-5, 1e-20);
   EXPECT_EQ(rig.springs.geometry->coil_diameter, CoilDiameter::kOuter);
-  EXPECT_NEAR(Stiffness(*SpringOf(rig.springs)), 7744.140625, 1e-9);
+  EXPECT_NEAR(Stiffness(*MakeSpring(rig.springs)), 7744.140625, 1e-9);
   EXPECT_NEAR(rig.elevation_min_rad, -60.0 * core::kDegree, 1e-15);
   EXPECT_NEAR(rig.u_muzzle_height_m, 1e-3, 1e-18);
   ASSERT_TRUE(rig.body);
@@ -114,9 +114,9 @@ TEST(Description, MeasuredStiffnessNeedsNoGeometry) {
                "stiffness_n_per_m = { value = 7000, u = 20 }\n");
   const Description rig = ParseDescription(text, "rig.toml");
   EXPECT_FALSE(rig.springs.geometry);
-  EXPECT_FALSE(SpringOf(rig.springs));
-  EXPECT_EQ(LaunchOf(rig, 0.0).stiffness_n_per_m, 7000.0);
-  EXPECT_EQ(LaunchOf(rig, 0.0).spring_mass_kg, 0.0);
+  EXPECT_FALSE(MakeSpring(rig.springs));
+  EXPECT_EQ(MakeLaunch(rig, 0.0).stiffness_n_per_m, 7000.0);
+  EXPECT_EQ(MakeLaunch(rig, 0.0).spring_mass_kg, 0.0);
 }
 
 TEST(Description, MeasuredStiffnessThatDisagreesWarns) {
@@ -125,7 +125,7 @@ TEST(Description, MeasuredStiffnessThatDisagreesWarns) {
       ParseDescription(With("active_coils = 10\n",
                             "active_coils = 10\nstiffness_n_per_m = 5439\n"),
                        "rig.toml");
-  EXPECT_EQ(LaunchOf(rig, 0.0).stiffness_n_per_m, 5439.0);
+  EXPECT_EQ(MakeLaunch(rig, 0.0).stiffness_n_per_m, 5439.0);
   bool said = false;
   for (const Finding& f : CheckCompression(rig, 0.01)) {
     said = said || f.what.find("check coil_diameter_kind") != std::string::npos;
@@ -216,7 +216,7 @@ TEST(Description, TravelIsChecked) {
 TEST(Description, WithoutAnySpringThereIsNoLaunch) {
   Description rig;
   rig.mass_kg = {0.1, 0.0, {}};
-  EXPECT_THROW((void)LaunchOf(rig, 0.0), std::invalid_argument);
+  EXPECT_THROW((void)MakeLaunch(rig, 0.0), std::invalid_argument);
 }
 
 }  // namespace

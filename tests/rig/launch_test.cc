@@ -134,7 +134,7 @@ TEST(Launch, NotLeavingTheMuzzleIsAValue) {  // SP12
   EXPECT_THAT(muzzle.error().reason, HasSubstr("compress by more than 366.5"));
   EXPECT_FALSE(LaunchSpeed(Baseline(), 0.0));
   // At the compression that the reason names the body just leaves.
-  const double least = CompressionFor(launch, 0.0);
+  const double least = SolveCompression(launch, 0.0);
   EXPECT_FALSE(LaunchSpeed(launch, least * (1.0 - 1e-9)));
   EXPECT_TRUE(LaunchSpeed(launch, least * (1.0 + 1e-9)));
 }
@@ -174,7 +174,7 @@ TEST(Launch, BackwardsInvertsForwards) {
       const auto muzzle = LaunchSpeed(launch, x);
       if (!muzzle) continue;
       ++left;
-      const double back = CompressionFor(launch, muzzle->speed_mps);
+      const double back = SolveCompression(launch, muzzle->speed_mps);
       ASSERT_NEAR(back, x, 1e-14 * muzzle->cancellation * x) << i;
     }
   }
@@ -186,7 +186,7 @@ TEST(Launch, BackwardsIsStableAtSmallSpeedsUnderPreload) {
   // it.
   Launch launch = Baseline();
   launch.preload_m = 1.0;
-  const double x = CompressionFor(launch, 1e-7);
+  const double x = SolveCompression(launch, 1e-7);
   const double first = (0.1 + launch.spring_mass_kg / 3.0) * 1e-14 /
                        (2.0 * launch.stiffness_n_per_m);
   EXPECT_NEAR(x, first, 1e-14 * first);
@@ -257,7 +257,7 @@ TEST(Launch, ImpossibleInputIsRefusedByName) {
               HasSubstr("elevation_rad"));
   EXPECT_THAT(MessageOf(Baseline(), -0.01),
               HasSubstr("compression_m is -0.01"));
-  EXPECT_THROW((void)CompressionFor(Baseline(), -1.0), std::invalid_argument);
+  EXPECT_THROW((void)SolveCompression(Baseline(), -1.0), std::invalid_argument);
   EXPECT_THROW((void)IdealLaunchSpeed(-1.0, 1.0, 1.0), std::invalid_argument);
   EXPECT_THROW((void)IdealCompression(1.0, 0.0, 1.0), std::invalid_argument);
 }

@@ -146,11 +146,11 @@ TEST(Predict, BarelyLeavingIsAMixture) {
   // Where the least compression is the one that is set, half of the draws stay.
   Description rig = Exact();
   rig.u_compression_m = 0.1_mm;
-  const Launch launch = LaunchOf(rig, 90.0_deg);
+  const Launch launch = MakeLaunch(rig, 90.0_deg);
   std::mt19937_64 engine(1);
-  const auto c =
-      Predict(rig, {CompressionFor(launch, 0.0) * (1.0 + 1e-9), 90.0_deg, 0.3},
-              kFew, engine);
+  const auto c = Predict(
+      rig, {SolveCompression(launch, 0.0) * (1.0 + 1e-9), 90.0_deg, 0.3}, kFew,
+      engine);
   EXPECT_NEAR(c.p_no_contact, 0.5, 0.02);
   ASSERT_FALSE(c.findings.empty());
   EXPECT_THAT(c.findings.back().what, HasSubstr("give no contact"));

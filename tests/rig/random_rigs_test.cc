@@ -51,8 +51,8 @@ Description RandomRig(std::mt19937_64& engine) {
 // stays in the barrel, or strikes while its centre rises.
 std::optional<analysis::TouchdownTruth> Play(const Description& rig,
                                              const Setting& setting) {
-  const auto muzzle =
-      LaunchSpeed(LaunchOf(rig, setting.elevation_rad), setting.compression_m);
+  const auto muzzle = LaunchSpeed(MakeLaunch(rig, setting.elevation_rad),
+                                  setting.compression_m);
   if (!muzzle || !Allowed(CheckCompression(rig, setting.compression_m))) {
     return std::nullopt;
   }
@@ -210,7 +210,7 @@ TEST(RandomRigs, PlansArriveOrAreRefusedForTheTrueReason) {
         continue;
       }
       ++refused[limit];
-      const auto again = SettingFor(freed, freely);
+      const auto again = FindSetting(freed, freely);
       if (again) continue;
       EXPECT_EQ(again.error().reason.find(limit), std::string::npos)
           << i << ": " << reason << " -> " << again.error().reason;

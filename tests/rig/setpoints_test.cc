@@ -41,7 +41,7 @@ ContactWish Wish(AngleKind kind, double angle_rad, double speed_mps) {
 }
 
 std::string ReasonOf(const Description& rig, const ContactWish& wish) {
-  const auto setting = SettingFor(rig, wish);
+  const auto setting = FindSetting(rig, wish);
   return setting ? "possible" : setting.error().reason;
 }
 
@@ -70,7 +70,7 @@ TEST(SetPoints, ApproachPrefersTheLevelShot) {
   // 4 m/s at 20 deg: a fall of (4 sin 20)^2/(2 g) and half a diameter.
   const Description rig = Spheres();
   const auto setting =
-      SettingFor(rig, Wish(AngleKind::kApproach, 20.0_deg, 4.0));
+      FindSetting(rig, Wish(AngleKind::kApproach, 20.0_deg, 4.0));
   ASSERT_TRUE(setting);
   const double down = 4.0 * std::sin(20.0_deg);
   EXPECT_EQ(setting->elevation_rad, 0.0);
@@ -80,14 +80,14 @@ TEST(SetPoints, ApproachPrefersTheLevelShot) {
 
 TEST(SetPoints, ApproachBelowItsHeightIsAimedDownward) {
   const auto setting =
-      SettingFor(Spheres(), Wish(AngleKind::kApproach, 80.0_deg, 5.0));
+      FindSetting(Spheres(), Wish(AngleKind::kApproach, 80.0_deg, 5.0));
   ASSERT_TRUE(setting);  // the level shot would need 1.26 m; the rig has 0.8
   EXPECT_NEAR(setting->muzzle_height_m, 800.0_mm, 1e-12);
   EXPECT_LT(setting->elevation_rad, 0.0);
   // A rig that cannot aim downward throws it up.
   Description up = Spheres();
   up.elevation_min_rad = 0.0;
-  const auto lob = SettingFor(up, Wish(AngleKind::kApproach, 80.0_deg, 5.0));
+  const auto lob = FindSetting(up, Wish(AngleKind::kApproach, 80.0_deg, 5.0));
   ASSERT_TRUE(lob);
   EXPECT_NEAR(lob->elevation_rad, -setting->elevation_rad, 1e-12);
 }
@@ -158,11 +158,11 @@ TEST(SetPoints, RectanglesApproachCountsItsAttitude) {
 
 TEST(SetPoints, RadiusPrefersTheTrailingCorner) {
   Description rig = Blocks();
-  const auto up = SettingFor(rig, Wish(AngleKind::kRadius, 30.0_deg, 4.0));
+  const auto up = FindSetting(rig, Wish(AngleKind::kRadius, 30.0_deg, 4.0));
   ASSERT_TRUE(up);
   EXPECT_GT(up->elevation_rad, 0.0);
   rig.elevation_max_rad = 5.0_deg;
-  const auto down = SettingFor(rig, Wish(AngleKind::kRadius, 30.0_deg, 4.0));
+  const auto down = FindSetting(rig, Wish(AngleKind::kRadius, 30.0_deg, 4.0));
   ASSERT_TRUE(down);
   EXPECT_LT(down->elevation_rad, 0.0);
 }
@@ -214,7 +214,7 @@ TEST(SetPoints, RefusesWithTheReason) {
 TEST(SetPoints, DownwardFromLowMuzzlesIsPossible) {
   Description rig = Blocks();
   rig.muzzle_height_min_m = 0.0;
-  const auto setting = SettingFor(rig, Wish(AngleKind::kFace, -20.0_deg, 4.0));
+  const auto setting = FindSetting(rig, Wish(AngleKind::kFace, -20.0_deg, 4.0));
   ASSERT_TRUE(setting) << setting.error().reason;
   // Off the ground by three u of the height, and no higher than that needs.
   const double lowest = CentreHeightAtTouchdown(rig, setting->elevation_rad);
@@ -242,13 +242,13 @@ TEST(SetPoints, FastSpinsArePlanned) {
 
 TEST(SetPoints, ImpossibleWishThrows) {
   EXPECT_THROW(
-      (void)SettingFor(Spheres(), Wish(AngleKind::kApproach, -1.0_deg, 4.0)),
+      (void)FindSetting(Spheres(), Wish(AngleKind::kApproach, -1.0_deg, 4.0)),
       std::invalid_argument);
   EXPECT_THROW(
-      (void)SettingFor(Spheres(), Wish(AngleKind::kApproach, 91.0_deg, 4.0)),
+      (void)FindSetting(Spheres(), Wish(AngleKind::kApproach, 91.0_deg, 4.0)),
       std::invalid_argument);
   EXPECT_THROW(
-      (void)SettingFor(Spheres(), Wish(AngleKind::kApproach, 20.0_deg, 0.0)),
+      (void)FindSetting(Spheres(), Wish(AngleKind::kApproach, 20.0_deg, 0.0)),
       std::invalid_argument);
 }
 

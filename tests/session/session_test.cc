@@ -198,7 +198,8 @@ TEST_F(SessionTest, TheRigIsKeptInTheRegister) {
       store, pipeline::MakeThrower(bench_.rig(), Bench::campaign()), "Bob");
   EXPECT_EQ(changed.name, "bench");
   EXPECT_NE(changed.id, first.id);
-  EXPECT_EQ(db::VersionsOf(store, db::RegisterKind::kRig, "bench").size(), 2u);
+  EXPECT_EQ(
+      db::ReadEntryVersions(store, db::RegisterKind::kRig, "bench").size(), 2u);
 }
 
 TEST_F(SessionTest, TheDailyCheckShotIsAskedForComparedAndLogged) {

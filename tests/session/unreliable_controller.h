@@ -177,7 +177,7 @@ class UnreliableController {
     }
     if (Happens(trouble_.lost)) return;
     if (Happens(trouble_.empty)) answer.text.clear();
-    std::string bytes = LineOf(answer);
+    std::string bytes = ParseLineNumber(answer);
     if (Happens(trouble_.garbled)) {
       const std::size_t at = random_() % bytes.size();
       bytes[at] = static_cast<char>(random_());

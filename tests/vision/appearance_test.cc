@@ -50,7 +50,7 @@ std::optional<Found> Follow(const Scene& scene, std::uint64_t seed) {
   auto result = TrackBody(*clip, options);
   if (!result) return std::nullopt;
   Track refined = Refine(*clip, result->background, result->track,
-                         {GroundOf(scene.camera), std::nullopt});
+                         {TrueGroundLine(scene.camera), std::nullopt});
   return Found{std::move(*result), std::move(refined)};
 }
 
@@ -58,7 +58,7 @@ std::optional<Found> Follow(const Scene& scene, std::uint64_t seed) {
 std::vector<SeenOutline> TrueOutlines(const Scene& scene) {
   std::vector<SeenOutline> seen;
   for (std::int64_t i = 20; i < 50; ++i) {
-    const SceneTruth truth = TruthOf(scene, i);
+    const SceneTruth truth = ComputeTruth(scene, i);
     SeenOutline one;
     one.frame = i;
     one.fit.outline.kind = scene.body.kind;
@@ -144,7 +144,7 @@ TEST_P(Appearances, AHighlightDrawsNoOutlineAside) {
     double x = 0.0;
     double y = 0.0;
     for (const Pose& pose : found->refined.poses) {
-      const SceneTruth truth = TruthOf(scene, pose.frame);
+      const SceneTruth truth = ComputeTruth(scene, pose.frame);
       x += pose.centre.x_px - truth.centre.x_px;
       y += pose.centre.y_px - truth.centre.y_px;
     }
@@ -217,7 +217,7 @@ TEST(Rings, AWheelIsWhereItIs) {
   EXPECT_NEAR(found->refined.body.radius_px.value, 25.0, 0.05);
   double square = 0.0;
   for (const Pose& pose : found->refined.poses) {
-    const SceneTruth truth = TruthOf(scene, pose.frame);
+    const SceneTruth truth = ComputeTruth(scene, pose.frame);
     square += std::pow(pose.centre.x_px - truth.centre.x_px, 2) +
               std::pow(pose.centre.y_px - truth.centre.y_px, 2);
   }

@@ -157,7 +157,7 @@ TEST(Background, BehindASlowBody) {
       cover.known = false;
       return cover;
     }
-    const SceneTruth at = TruthOf(scene, frame);
+    const SceneTruth at = ComputeTruth(scene, frame);
     cover.box = {0, 0, 160, 80};
     for (int y = 0; y < 80; ++y) {
       for (int x = 0; x < 160; ++x) {
@@ -170,7 +170,7 @@ TEST(Background, BehindASlowBody) {
   EXPECT_EQ(asked, 33);
   EXPECT_EQ(covers.frames.size(), 32U);
   EXPECT_DOUBLE_EQ(covers.most, 1.0);
-  const Background behind = EstimateBackgroundBehind(*clip, covers, ghost);
+  const Background behind = EstimateMaskedBackground(*clip, covers, ghost);
   EXPECT_FALSE(behind.known_at(72, 35));
   EXPECT_TRUE(behind.known_at(40, 35));
   EXPECT_TRUE(behind.known_at(110, 35));

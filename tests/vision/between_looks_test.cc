@@ -145,7 +145,7 @@ TEST(BetweenLooks, OneFitAFrameMeasuresTheSame) {
   options.background_samples = 33;
   options.first_looks = 100;
   options.seen_whole_px = 0.0;
-  const RefineOptions refine{GroundOf(scene.camera), std::nullopt};
+  const RefineOptions refine{TrueGroundLine(scene.camera), std::nullopt};
   const auto twice = TrackBody(clip, options);
   options.every_frame = false;
   const auto once = TrackBody(clip, options);

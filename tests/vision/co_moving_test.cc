@@ -84,7 +84,7 @@ TEST(FindCoMoving, TellsTheBodyFromStripesAndNothingOfASmoothWall) {
 TEST(FindCoMoving, WhatIsBelowTheGroundDoesNotMoveAlong) {
   CoMovingOptions options;
   options.reach_px = 40.0;
-  options.ground = calib::GroundThrough({0.0, 65.0}, {100.0, 65.0});
+  options.ground = calib::MakeGroundLine({0.0, 65.0}, {100.0, 65.0});
   const CoMoving places = Look(options);
   EXPECT_EQ(SaysAt(places, 0, 0), 1);
   EXPECT_EQ(SaysAt(places, 0, 8), -1);

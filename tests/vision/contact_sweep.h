@@ -72,8 +72,8 @@ inline void ExpectFinite(const ContactResult& result) {
 }
 
 // What is true of a throw's first contact.
-inline std::map<std::string, double> TruthOf(const Throw& t,
-                                             const Filming& filming) {
+inline std::map<std::string, double> ComputeTruth(const Throw& t,
+                                                  const Filming& filming) {
   std::map<std::string, double> truth;
   truth["time"] = t.contact_s;
   truth["frame"] = t.contact_s * filming.camera.fps;
@@ -131,7 +131,7 @@ inline Sweep Shoot(Throw thrown, Filming filming, int seeds = 60) {
     ++sweep.states[result.first.state.label];
     sweep.later += static_cast<int>(result.later.size());
     auto measured = Numbers(result.first);
-    for (const auto& [name, truth] : TruthOf(thrown, filming)) {
+    for (const auto& [name, truth] : ComputeTruth(thrown, filming)) {
       if (!measured.contains(name)) {
         ++sweep.missing[name];
         continue;

@@ -204,7 +204,7 @@ TEST(ExplainedChange, SoftShadowAndFlickerLeaveItHigh) {
   film.shadow_dn = 30.0;
   EXPECT_GT(Measured(film, TrueTrack()).near, 0.7);
   film.shadow_dn = 0.0;
-  film.flicker = 0.01;  // what SteadyLightOf leaves at most
+  film.flicker = 0.01;  // what Deflicker leaves at most
   EXPECT_GT(Measured(film, TrueTrack()).near, 0.9);
 }
 

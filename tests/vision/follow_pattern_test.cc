@@ -312,7 +312,7 @@ TEST(FollowPattern, DoesNotDependOnThreads) {
 
 // Its outlines say where the pattern lies on the body, on the whole; how it
 // moves the pattern says.
-TEST(PutOn, ShiftsAllPosesAlike) {
+TEST(AlignToOutlines, ShiftsAllPosesAlike) {
   const Film film;
   Track outlines = Wandering(film, core::BodyKind::kSphere);
   Track patterned = outlines;
@@ -320,7 +320,7 @@ TEST(PutOn, ShiftsAllPosesAlike) {
     pose.centre = TrueAt(film, pose.frame).centre;
     pose.centre.y_px += 3.0;
   }
-  const Track put = PutOn(outlines, patterned);
+  const Track put = AlignToOutlines(outlines, patterned);
   const Errors errors = ErrorsOf(put, film);
   EXPECT_LT(Rms(errors.y), 1e-9);
   EXPECT_NEAR(put.poses[9].centre.y_px, TrueAt(film, 9).centre.y_px, 0.3);

@@ -170,8 +170,9 @@ TEST(FrameStore, LongClipsAreDecodedOnce) {
     EXPECT_LE(times, 600 + 33 + 3) << group;
     // What it hands out are the frames.
     for (const Pose& pose : result->track.poses) {
-      ASSERT_NE(clip->ChangesIn(pose.frame), nullptr);
-      for (const core::PixelRect& rect : clip->ChangesIn(pose.frame)->where) {
+      ASSERT_NE(clip->KnownChanges(pose.frame), nullptr);
+      for (const core::PixelRect& rect :
+           clip->KnownChanges(pose.frame)->where) {
         const core::Frame kept = clip->Read(pose.frame, rect);
         const core::Frame frame = same->Read(pose.frame, rect);
         for (int y = 0; y < rect.height; y += 5) {
@@ -202,9 +203,9 @@ TEST(FrameStore, GrowsWithoutDecodingTwice) {
       const auto kept = KeepFrames(open(once), options);
       const auto grown = GrowFrames(open(decoded), options);
       for (std::int64_t end = piece; end < 600; end += piece) {
-        ASSERT_TRUE(grown->GrowTo(end));
-        EXPECT_NE(grown->ChangesIn(end - 1), nullptr);
-        EXPECT_EQ(grown->ChangesIn(end), nullptr);
+        ASSERT_TRUE(grown->ExtendDecoding(end));
+        EXPECT_NE(grown->KnownChanges(end - 1), nullptr);
+        EXPECT_EQ(grown->KnownChanges(end), nullptr);
         // Key frames beyond the end and where nothing is (the sphere comes at
         // frame 100), and where frames are stored alone those after them.
         int beyond = 0;
@@ -222,16 +223,17 @@ TEST(FrameStore, GrowsWithoutDecodingTwice) {
         EXPECT_LE(still.size(), 33U);
         EXPECT_LT(still.back(), end);
       }
-      ASSERT_TRUE(grown->GrowTo(600));
+      ASSERT_TRUE(grown->ExtendDecoding(600));
       EXPECT_TRUE(grown->StillFrames().empty());
       int times = 0;
       for (const auto& [index, count] : decoded) times += count;
       // What was left out is decoded in the end; one group is entered twice.
       EXPECT_LE(times, 600 + 33 + 3 + group - 1);
       for (std::int64_t i = 0; i < 600; ++i) {
-        ASSERT_EQ(grown->ChangesIn(i)->where, kept->ChangesIn(i)->where) << i;
-        EXPECT_EQ(grown->ChangesIn(i)->noise, kept->ChangesIn(i)->noise);
-        for (const core::PixelRect& rect : kept->ChangesIn(i)->where) {
+        ASSERT_EQ(grown->KnownChanges(i)->where, kept->KnownChanges(i)->where)
+            << i;
+        EXPECT_EQ(grown->KnownChanges(i)->noise, kept->KnownChanges(i)->noise);
+        for (const core::PixelRect& rect : kept->KnownChanges(i)->where) {
           grown->Read(i, rect);
         }
       }
@@ -260,7 +262,7 @@ TEST(FrameStore, SaysThatTheStillPictureHasAGhost) {
   const auto clip = GrowFrames(
       std::make_unique<testing::InGroups>(OpenScene(scene, 1), 40, decoded),
       options);
-  ASSERT_TRUE(clip->GrowTo(120));
+  ASSERT_TRUE(clip->ExtendDecoding(120));
   EXPECT_FALSE(clip->HoldsAllChanges());
 }
 
@@ -282,9 +284,9 @@ TEST(FrameStore, WhatKeyFramesHideIsFoundInTheEnd) {
       options);
   int kept_whole = 0;
   for (std::int64_t i = 0; i < 600; ++i) {
-    ASSERT_NE(clip->ChangesIn(i), nullptr) << i;
-    const core::PixelPoint body = TruthOf(scene, 0).centre;
-    const auto& where = clip->ChangesIn(i)->where;
+    ASSERT_NE(clip->KnownChanges(i), nullptr) << i;
+    const core::PixelPoint body = ComputeTruth(scene, 0).centre;
+    const auto& where = clip->KnownChanges(i)->where;
     const bool seen = std::any_of(
         where.begin(), where.end(), [&](const core::PixelRect& rect) {
           return body.x_px > rect.x && body.x_px < rect.x + rect.width &&
@@ -307,9 +309,9 @@ TEST(FrameStore, GrowsOnlyWhereThereIsRoom) {
   const auto clip = GrowFrames(
       std::make_unique<testing::InGroups>(OpenScene(scene, 1), 40, decoded),
       options);
-  EXPECT_FALSE(clip->GrowTo(100));
+  EXPECT_FALSE(clip->ExtendDecoding(100));
   EXPECT_TRUE(decoded.empty());
-  EXPECT_TRUE(clip->GrowTo(600));
+  EXPECT_TRUE(clip->ExtendDecoding(600));
 }
 
 // The answer is that of a clip whose every pixel can be looked at.

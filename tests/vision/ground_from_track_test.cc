@@ -44,8 +44,8 @@ TEST(GroundFromPath, OfWhatIsCarried) {
     EXPECT_NEAR(calib::ImageAngle(*ground), filming.camera.roll_rad,
                 4.0 * ground->u_angle_rad);
     EXPECT_NEAR(
-        calib::HeightAbove(*ground, ToImage(filming.camera, {0.0, 0.0})), 0.0,
-        4.0 * std::hypot(ground->u_offset_px, 0.003));
+        calib::HeightAboveLine(*ground, ToImage(filming.camera, {0.0, 0.0})),
+        0.0, 4.0 * std::hypot(ground->u_offset_px, 0.003));
     EXPECT_LT(ground->u_angle_rad, 1e-3);
     EXPECT_FALSE(GroundFromPath(film(0.0, 1.0, 0.0))) << "steady";
     // Free flight, of which this slope takes its parts.

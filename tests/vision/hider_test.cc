@@ -159,7 +159,7 @@ TEST(Hider, PosesBehindAPostAreMeasuredWithoutIt) {
   const auto found = TrackBody(*clip);
   ASSERT_TRUE(found);
   RefineOptions options;
-  options.ground = calib::GroundThrough({0.0, 90.0}, {200.0, 90.0});
+  options.ground = calib::MakeGroundLine({0.0, 90.0}, {200.0, 90.0});
   const Track track = Refine(*clip, found->background, found->track, options);
   // Clear of the post from (70 + 12 - 40) / 1.5 = 28 on; half of it shows from
   // 20 on.

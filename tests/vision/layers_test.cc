@@ -150,7 +150,7 @@ TEST(PictureGrid, SpreadIsTheTransposeOfValueAt) {
   for (float& c : coefficients) c = level(engine);
   for (int i = 0; i < 20; ++i) {
     const SplinePlace place =
-        grid.PlaceOf(6.0F * level(engine), 3.0F * level(engine));
+        grid.LocatePlace(6.0F * level(engine), 3.0F * level(engine));
     std::vector<float> spread(grid.size());
     grid.Spread(2.0F, place, spread.data());
     double sum = 0.0;
@@ -158,7 +158,8 @@ TEST(PictureGrid, SpreadIsTheTransposeOfValueAt) {
       sum +=
           static_cast<double>(spread[c]) * static_cast<double>(coefficients[c]);
     }
-    EXPECT_NEAR(2.0 * grid.ValueAt(coefficients.data(), place), sum, 1e-5);
+    EXPECT_NEAR(2.0 * grid.EvaluateSpline(coefficients.data(), place), sum,
+                1e-5);
   }
 }
 
@@ -170,10 +171,10 @@ TEST(PictureGrid, TiltIsTheGradient) {
   for (float& c : coefficients) c = level(engine);
   constexpr float kStep = 0.02F;
   const auto value = [&](float x, float y) {
-    return grid.ValueAt(coefficients.data(), grid.PlaceOf(x, y));
+    return grid.EvaluateSpline(coefficients.data(), grid.LocatePlace(x, y));
   };
   const PictureGrid::Tilt tilt =
-      grid.TiltAt(coefficients.data(), grid.PlaceOf(1.3F, -0.6F));
+      grid.EvaluateTilt(coefficients.data(), grid.LocatePlace(1.3F, -0.6F));
   EXPECT_NEAR(tilt.value, value(1.3F, -0.6F), 1e-4);
   EXPECT_NEAR(tilt.by_x,
               (value(1.32F, -0.6F) - value(1.28F, -0.6F)) / (2.0F * kStep),
@@ -196,7 +197,8 @@ TEST(PictureGrid, AFlatBodyIsTheSameAsASpline) {
     const double u = static_cast<double>(x) / reach;
     const double v = static_cast<double>(y) / reach;
     EXPECT_NEAR(
-        layers.grid.ValueAt(layers.picture.data(), layers.grid.PlaceOf(x, y)),
+        layers.grid.EvaluateSpline(layers.picture.data(),
+                                   layers.grid.LocatePlace(x, y)),
         90.0 + 4.0 * u - 3.0 * v + 12.0 * u * u + 5.0 * u * v - 8.0 * v * v,
         1e-3);
   }
@@ -260,7 +262,8 @@ struct Errors {
 Errors ErrorsOf(const LayeredScene& scene, const PictureStack& stack,
                 const LayerFit& fit, bool turns) {
   Errors errors;
-  const std::vector<LayerPose> motions = MotionsOf(fit.poses, stack.frames);
+  const std::vector<LayerPose> motions =
+      EstimateMotions(fit.poses, stack.frames);
   for (std::size_t t = 0; t < fit.poses.size(); ++t) {
     const PoseFit at =
         AlignPose(stack, t, fit.layers, fit.poses[t], motions[t], turns);

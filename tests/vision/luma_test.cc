@@ -152,12 +152,12 @@ TEST(LumaReader, WhatIsNotRead) {
 }
 
 // libavutil/display.h: shown = (a x + c y, b x + d y).
-TEST(OrientationOf, QuarterTurnsAndMirrors) {
+TEST(ReadOrientation, QuarterTurnsAndMirrors) {
   constexpr std::int32_t k = 65536;
   const auto of = [](std::int32_t a, std::int32_t b, std::int32_t c,
                      std::int32_t d) {
     const std::int32_t matrix[9] = {a, b, 0, c, d, 0, 0, 0, 1 << 30};
-    return OrientationOf(matrix);
+    return ReadOrientation(matrix);
   };
   EXPECT_EQ(of(k, 0, 0, k), (Orientation{false, false, false}));
   EXPECT_EQ(of(-k, 0, 0, -k), (Orientation{false, true, true}));

@@ -39,7 +39,7 @@ Film Blurred(double half_short_px) {
 // all the same.
 TEST(NarrowBody, IsSeenToBeAway) {
   Film film = Blurred(3.0);
-  const auto clip = OpenScene(pipeline::filmed::SceneOf(film), 1);
+  const auto clip = OpenScene(pipeline::filmed::BuildScene(film), 1);
   synthetic::Filming filming;
   filming.camera = film.camera;
   filming.frames = static_cast<int>(film.frames);
@@ -53,18 +53,18 @@ TEST(NarrowBody, IsSeenToBeAway) {
                 [&](const Pose& pose) { return pose.frame < film.lead_in; });
   const BodyCover cover(*clip, track);
   for (std::int64_t frame = 0; frame < film.lead_in; ++frame) {
-    const Cover empty = cover.In(frame);
+    const Cover empty = cover.CoverInFrame(frame);
     EXPECT_TRUE(empty.known) << frame;
     EXPECT_EQ(empty.box.width, 0) << frame;
   }
-  EXPECT_GT(cover.In(film.lead_in).box.width, 0);
+  EXPECT_GT(cover.CoverInFrame(film.lead_in).box.width, 0);
 }
 
 // Its own ghost draws first fits far aside: with size, blur and shading all
 // free most of them would be lost, and with them the way to a clean background.
 TEST(NarrowBody, LeavesNoGhostInTheBackground) {
   Film film = Blurred(4.8);
-  const auto clip = OpenScene(pipeline::filmed::SceneOf(film), 1);
+  const auto clip = OpenScene(pipeline::filmed::BuildScene(film), 1);
   TrackOptions options;
   options.kind = core::BodyKind::kRectangle;
   const auto result = TrackBody(*clip, options);
@@ -72,7 +72,7 @@ TEST(NarrowBody, LeavesNoGhostInTheBackground) {
   EXPECT_GE(result->track.poses.size(), 22u);
 
   film.noise = 0.0;
-  const auto clean = OpenScene(pipeline::filmed::SceneOf(film), 1);
+  const auto clean = OpenScene(pipeline::filmed::BuildScene(film), 1);
   const core::Frame empty = clean->Read(0);
   const Background& background = result->background;
   int unknown = 0;

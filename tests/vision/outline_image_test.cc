@@ -59,7 +59,7 @@ std::array<Shape, 8> Shapes() {
            {"turning block", block, 1.1, 0.5, {4.0, 2.0}, 0.5}}};
 }
 
-CoverBlock CoverOf(const Shape& shape, const Points& points) {
+CoverBlock ComputeCover(const Shape& shape, const Points& points) {
   Smear smear(shape.travel_px, shape.turn_rad, 12.0);
   smear.Set(shape.blur_px, shape.open, shape.open > 0.0);
   CoverBlock cover;
@@ -111,7 +111,7 @@ double OverPixel(const Outline& o, double w, double x, double y) {
 TEST(OutlineImage, IsTheMeanOfTheBlurredBodyOverThePixelAndAlongItsWay) {
   const Points points = Around(18.0);
   for (const Shape& shape : Shapes()) {
-    const CoverBlock cover = CoverOf(shape, points);
+    const CoverBlock cover = ComputeCover(shape, points);
     for (std::size_t i = 0; i < kBlock; i += 3) {
       const int kPlaces = shape.open > 0.0 ? 40 : 1;
       double mean = 0.0;
@@ -135,15 +135,15 @@ TEST(OutlineImage, DerivativesAreThoseOfTheValue) {
   constexpr double kStep = 1e-4;
   const Points points = Around(18.0);
   for (const Shape& shape : Shapes()) {
-    const CoverBlock cover = CoverOf(shape, points);
+    const CoverBlock cover = ComputeCover(shape, points);
     const auto expect = [&](const std::string& by, const BlockColumn& d,
                             double tolerance, const auto& change) {
       Shape less = shape;
       Shape more = shape;
       change(less, -kStep);
       change(more, kStep);
-      const CoverBlock low = CoverOf(less, points);
-      const CoverBlock high = CoverOf(more, points);
+      const CoverBlock low = ComputeCover(less, points);
+      const CoverBlock high = ComputeCover(more, points);
       for (std::size_t i = 0; i < kBlock; ++i) {
         EXPECT_NEAR(d[i], (high.value[i] - low.value[i]) / (2.0 * kStep),
                     tolerance)

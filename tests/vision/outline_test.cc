@@ -299,7 +299,7 @@ TEST(Outline, BelowTheGroundsMarginPixelsAreLeftOut) {
     }
     OutlineOptions options;
     options.ground =
-        calib::GroundThrough({0.0, from - 0.5}, {79.0, from - 0.5});
+        calib::MakeGroundLine({0.0, from - 0.5}, {79.0, from - 0.5});
     const auto fit =
         FitOutline(shot.image.view(), shot.background, shot.truth, options);
     ASSERT_TRUE(fit) << fit.error().reason;
@@ -327,7 +327,7 @@ TEST(Outline, NearTheGroundTheBodyHidesWhatIsAboveIt) {
       const Shot shot = Take(seed + 1000, near);
       const double line = shot.truth.centre.y_px + 12.0 + gap_px;
       OutlineOptions options;
-      options.ground = calib::GroundThrough({0.0, line}, {79.0, line});
+      options.ground = calib::MakeGroundLine({0.0, line}, {79.0, line});
       const auto left_out =
           FitOutline(shot.image.view(), shot.background, shot.truth, options);
       ASSERT_TRUE(left_out) << left_out.error().reason;
@@ -365,7 +365,7 @@ TEST(Outline, AShadowNearTheGroundShowsAsExcess) {
     const Shot shot = Take(seed, shaded);
     const double line = shot.truth.centre.y_px + 12.5;
     OutlineOptions options;
-    options.ground = calib::GroundThrough({0.0, line}, {79.0, line});
+    options.ground = calib::MakeGroundLine({0.0, line}, {79.0, line});
     options.near_ground = OutlineOptions::NearGround::kModelled;
     const auto fit =
         FitOutline(shot.image.view(), shot.background, shot.truth, options);
@@ -430,19 +430,19 @@ TEST(Outline, DepthAndSupportByHand) {
   Outline disc;
   disc.centre = {10.0, 20.0};
   disc.radius_px = 5.0;
-  EXPECT_DOUBLE_EQ(DepthInside(disc, 10.0, 20.0), 5.0);
-  EXPECT_DOUBLE_EQ(DepthInside(disc, 13.0, 24.0), 0.0);
-  EXPECT_DOUBLE_EQ(DepthInside(disc, 10.0, 32.0), -7.0);
+  EXPECT_DOUBLE_EQ(SignedDepth(disc, 10.0, 20.0), 5.0);
+  EXPECT_DOUBLE_EQ(SignedDepth(disc, 13.0, 24.0), 0.0);
+  EXPECT_DOUBLE_EQ(SignedDepth(disc, 10.0, 32.0), -7.0);
   EXPECT_DOUBLE_EQ(SupportHeight(disc, 1.0), 5.0);
   Outline box;
   box.kind = core::BodyKind::kRectangle;
   box.half_long_px = 8.0;
   box.half_short_px = 3.0;
-  EXPECT_DOUBLE_EQ(DepthInside(box, 0.0, 0.0), 3.0);
-  EXPECT_DOUBLE_EQ(DepthInside(box, 7.0, 0.0), 1.0);
-  EXPECT_DOUBLE_EQ(DepthInside(box, 11.0, 7.0), -5.0);  // past the corner
+  EXPECT_DOUBLE_EQ(SignedDepth(box, 0.0, 0.0), 3.0);
+  EXPECT_DOUBLE_EQ(SignedDepth(box, 7.0, 0.0), 1.0);
+  EXPECT_DOUBLE_EQ(SignedDepth(box, 11.0, 7.0), -5.0);  // past the corner
   box.angle_rad = 0.5 * kPi;
-  EXPECT_NEAR(DepthInside(box, 0.0, 7.0), 1.0, 1e-12);
+  EXPECT_NEAR(SignedDepth(box, 0.0, 7.0), 1.0, 1e-12);
   EXPECT_NEAR(SupportHeight(box, 0.0), 8.0, 1e-12);
   EXPECT_NEAR(SupportHeight(box, 0.5 * kPi), 3.0, 1e-12);
   box.angle_rad = 30.0_deg;

@@ -101,14 +101,14 @@ TEST(PlaneTrack, SupportOfARectangleByItsCorners) {
       }
     }
     EXPECT_NEAR(SupportHeight(plane, face), -lowest, 1e-9) << face;
-    EXPECT_NEAR(LowestPointAlong(plane, face), along, 1e-9) << face;
+    EXPECT_NEAR(LowestPointOffset(plane, face), along, 1e-9) << face;
   }
   // Flush: no corner is the lowest.
-  EXPECT_EQ(LowestPointAlong(plane, 0.0), 0.0);
+  EXPECT_EQ(LowestPointOffset(plane, 0.0), 0.0);
   plane.kind = core::BodyKind::kSphere;
   plane.half_long_px = 20.0;
   EXPECT_EQ(SupportHeight(plane, 1.234), 20.0);
-  EXPECT_EQ(LowestPointAlong(plane, 1.234), 0.0);
+  EXPECT_EQ(LowestPointOffset(plane, 1.234), 0.0);
 }
 
 TEST(PlaneTrack, UncertaintyTurnsWithTheLine) {
@@ -127,7 +127,7 @@ TEST(PlaneTrack, UncertaintyTurnsWithTheLine) {
   EXPECT_NEAR(level.samples[0].u_height_px, 0.1, 1e-12);
   // At 45 degrees both are the root of the mean square, and with full
   // correlation one axis carries all of it: (u_x +- u_y)^2 / 2.
-  const auto steep = calib::GroundThrough({0, 0}, {400, 400});
+  const auto steep = calib::MakeGroundLine({0, 0}, {400, 400});
   PlaneTrack turned = SeenFromGround(track, steep);
   const double mean = std::sqrt((0.09 + 0.01) / 2.0);
   EXPECT_NEAR(turned.samples[0].u_along_px, mean, 1e-12);
@@ -143,7 +143,7 @@ TEST(PlaneTrack, GapOfATiltedBlockCarriesItsAngle) {
   filming.u_angle_rad = 1e-2;
   const PlaneTrack plane = synthetic::FilmPlane(Block(0.5), filming);
   const PlaneSample& s = plane.samples.front();
-  const double arm = LowestPointAlong(plane, s.face_rad);
+  const double arm = LowestPointOffset(plane, s.face_rad);
   EXPECT_NEAR(s.u_gap_px, std::hypot(0.02, arm * 1e-2), 1e-9);
 }
 
@@ -160,7 +160,7 @@ TEST(PlaneTrack, BodyThatGrowsLowersItsGap) {
 }
 
 TEST(PlaneTrack, EmptyTrackIsEmpty) {
-  EXPECT_TRUE(SeenFromGround(Track{}, calib::GroundThrough({0, 0}, {1, 0}))
+  EXPECT_TRUE(SeenFromGround(Track{}, calib::MakeGroundLine({0, 0}, {1, 0}))
                   .samples.empty());
 }
 

@@ -35,7 +35,7 @@ struct Pinhole {
   }
   calib::GroundLine Ground() const {
     calib::GroundLine line =
-        calib::GroundThrough(See(-0.2, 0.0), See(0.2, 0.0), 0.1);
+        calib::MakeGroundLine(See(-0.2, 0.0), See(0.2, 0.0), 0.1);
     line.reference = See(0.0, 0.0);
     return line;
   }
@@ -64,7 +64,7 @@ TEST(PlaneYaw, IsTheTextbooksChangeOfAngle) {
           std::cos(camera.yaw_rad) -
               camera.x_m / camera.z_m * std::sin(camera.yaw_rad));
       EXPECT_NEAR(SeenAngle(camera, a), seen, 1e-8);
-      const YawedView view = ViewOf(camera.Ground(), camera.Yaw());
+      const YawedView view = MakeYawedView(camera.Ground(), camera.Yaw());
       const InPlane at = ToPlane(view, camera.See(0.0, 0.0));
       const Eigen::Vector2d v =
           at.jacobian * Eigen::Vector2d(std::cos(seen), std::sin(seen));
@@ -89,7 +89,7 @@ TEST(PlaneYaw, UndoesThePinholeForRolledCameras) {
       Pinhole camera;
       camera.roll_rad = roll_deg * core::kDegree;
       camera.yaw_rad = yaw_deg * core::kDegree;
-      const YawedView view = ViewOf(camera.Ground(), camera.Yaw());
+      const YawedView view = MakeYawedView(camera.Ground(), camera.Yaw());
       const double px_per_m = camera.focal_px / camera.z_m;
       for (const double along : {-0.15, 0.0, 0.2}) {
         for (const double up : {0.0, 0.08}) {
@@ -191,14 +191,14 @@ TEST(PlaneYaw, RefusesTheImpossible) {
   const Pinhole camera;
   PlaneYaw yaw = camera.Yaw();
   yaw.yaw_rad = 1.2;
-  EXPECT_THAT([&] { ViewOf(camera.Ground(), yaw); },
+  EXPECT_THAT([&] { MakeYawedView(camera.Ground(), yaw); },
               ::testing::ThrowsMessage<std::invalid_argument>(
                   ::testing::HasSubstr("yaw is")));
   yaw = camera.Yaw();
   yaw.focal_px = 0.0;
-  EXPECT_THROW(ViewOf(camera.Ground(), yaw), std::invalid_argument);
+  EXPECT_THROW(MakeYawedView(camera.Ground(), yaw), std::invalid_argument);
   yaw.focal_px = 0.5;  // the plane vanishes 5.7 px to the right of the axis
-  EXPECT_THROW(ViewOf(camera.Ground(), yaw), std::invalid_argument);
+  EXPECT_THROW(MakeYawedView(camera.Ground(), yaw), std::invalid_argument);
 }
 
 }  // namespace

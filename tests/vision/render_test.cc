@@ -231,7 +231,7 @@ TEST(Render, RolledAndMirroredBodiesAreWhereTheTruthSays) {
       };
       const SceneRenderer renderer(scene);
       for (const std::int64_t index : {0, 30}) {
-        const SceneTruth truth = TruthOf(scene, index);
+        const SceneTruth truth = ComputeTruth(scene, index);
         const Moments m = BodyMoments(renderer, index);
         EXPECT_NEAR(m.x, truth.centre.x_px, 1e-4);
         EXPECT_NEAR(m.y, truth.centre.y_px, 1e-4);
@@ -252,7 +252,7 @@ TEST(Render, GroundEdgeLiesOnTheLine) {
       scene.body = Disc(5.0);
       scene.pose = [](double) { return ScenePose{{0.0, 50.0}, 0.0}; };
       const CleanImage image = SceneRenderer(scene).RenderClean(0);
-      const calib::GroundLine ground = GroundOf(scene.camera);
+      const calib::GroundLine ground = TrueGroundLine(scene.camera);
       // A column's sum tells where the edge crosses it.
       for (const int x : {250, 300, 347}) {
         double covered = 0.0;
@@ -260,7 +260,7 @@ TEST(Render, GroundEdgeLiesOnTheLine) {
           covered += (image.at(x, y) / 65535.0 - 0.65) / (0.40 - 0.65);
         }
         const double edge = image.height_px - 0.5 - covered;
-        EXPECT_NEAR(calib::HeightAbove(ground, {1.0 * x, edge}), 0.0, 1e-4);
+        EXPECT_NEAR(calib::HeightAboveLine(ground, {1.0 * x, edge}), 0.0, 1e-4);
       }
     }
   }

@@ -317,7 +317,7 @@ TEST(RenderCamera, YawIsAPinholes) {
     EXPECT_NEAR(disc.x, seen.x_px, 2e-3);
     EXPECT_NEAR(disc.y, seen.y_px, 2e-3);
     EXPECT_NEAR(disc.area, contrast * std::numbers::pi * radius * radius, 0.05);
-    EXPECT_NEAR(TruthOf(scene, 0).radius_px, radius, 1e-9);
+    EXPECT_NEAR(ComputeTruth(scene, 0).radius_px, radius, 1e-9);
     scene.body = core::Rectangle({0.04, 0.0}, {0.02, 0.0});
     // Its image's area by the shoelace formula over the pinhole's corners.
     double area = 0.0;
@@ -331,9 +331,9 @@ TEST(RenderCamera, YawIsAPinholes) {
     EXPECT_NEAR(MomentsOf(scene, Empty(scene)).area, contrast * std::abs(area),
                 0.05);
   }
-  const auto ground = GroundOf(Turned().camera);
+  const auto ground = TrueGroundLine(Turned().camera);
   for (const double x : {-0.05, 0.05}) {
-    EXPECT_NEAR(calib::HeightAbove(ground, PinholeOf(x, 0.0)), 0.0, 1e-9);
+    EXPECT_NEAR(calib::HeightAboveLine(ground, PinholeOf(x, 0.0)), 0.0, 1e-9);
   }
 }
 

@@ -46,11 +46,11 @@ TEST(Scene, GroundLineIsTheImageOfThePlanesZero) {
       SceneCamera camera;
       camera.travels_left = left;
       camera.roll_rad = roll;
-      const calib::GroundLine ground = GroundOf(camera);
+      const calib::GroundLine ground = TrueGroundLine(camera);
       EXPECT_NEAR(calib::ImageAngle(ground), roll, 1e-12);
       for (const double x : {-0.2, 0.0, 0.13}) {
         for (const double y : {0.0, 0.05}) {
-          EXPECT_NEAR(calib::HeightAbove(ground, ToImage(camera, {x, y})),
+          EXPECT_NEAR(calib::HeightAboveLine(ground, ToImage(camera, {x, y})),
                       1000.0 * y, 1e-9);
         }
       }
@@ -81,7 +81,7 @@ TEST(Scene, PositiveAngleLiftsTheLeadingEnd) {
 TEST(Scene, TruthIsTheMiddleOfTheExposure) {
   Scene scene = SphereScene();
   scene.pose = [](double t) { return ScenePose{{2.0 * t, 0.03}, 0.1 * t}; };
-  const SceneTruth truth = TruthOf(scene, 7);
+  const SceneTruth truth = ComputeTruth(scene, 7);
   EXPECT_DOUBLE_EQ(truth.time_s, 7.0 / 2000.0);
   EXPECT_NEAR(truth.centre.x_px, 320.0 + 7.0, 1e-12);
   EXPECT_NEAR(truth.centre.y_px, 300.0, 1e-12);
@@ -96,7 +96,7 @@ TEST(Scene, ImageAngleFollowsRollAndMirror) {
   for (const bool left : {false, true}) {
     scene.camera.travels_left = left;
     scene.camera.roll_rad = 3.0_deg;
-    const SceneTruth truth = TruthOf(scene, 0);
+    const SceneTruth truth = ComputeTruth(scene, 0);
     const auto corners = Corners(scene.body, truth.pose);
     const auto lead = ToImage(scene.camera, corners[0]);
     const auto trail = ToImage(scene.camera, corners[1]);

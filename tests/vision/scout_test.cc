@@ -37,7 +37,7 @@ TEST(Scout, PointsAtTheBodyAndAtNothingElse) {
       const Changes changes = scout.Look(clip->Read(index));
       EXPECT_LT(changes.noise, 1.3);  // the median of 229 sums: +- 9 %
       regions += static_cast<int>(changes.where.size());
-      const SceneTruth truth = TruthOf(scene, index);
+      const SceneTruth truth = ComputeTruth(scene, index);
       const double x = truth.centre.x_px;
       if (x < -11.0 || x > 330.0) continue;
       ASSERT_FALSE(changes.where.empty()) << index;

@@ -17,7 +17,7 @@ using pipeline::filmed::Default;
 using pipeline::filmed::Film;
 
 std::unique_ptr<Clip> Open(const Film& film) {
-  return OpenScene(pipeline::filmed::SceneOf(film), 1);
+  return OpenScene(pipeline::filmed::BuildScene(film), 1);
 }
 
 Film Flickering(double amplitude, std::int32_t bit_depth) {
@@ -61,7 +61,7 @@ TEST(SteadyLight, FlickerIsTakenOut) {
       auto raw = Open(film);
       EXPECT_NEAR(SpreadOfCorner(*raw), amplitude / std::sqrt(2.0),
                   0.1 * amplitude);
-      const SteadyLight light = SteadyLightOf(Open(film), 0, film.frames);
+      const SteadyLight light = Deflicker(Open(film), 0, film.frames);
       EXPECT_TRUE(light.corrected);
       EXPECT_NEAR(light.spread, amplitude / std::sqrt(2.0), 0.1 * amplitude);
       EXPECT_EQ(light.clip->info().bit_depth, 16);
@@ -81,7 +81,7 @@ TEST(SteadyLight, SteadyLightIsLeftAlone) {
     film.noise = noise;
     auto clip = Open(film);
     const Clip* const given = clip.get();
-    const SteadyLight light = SteadyLightOf(std::move(clip), 0, film.frames);
+    const SteadyLight light = Deflicker(std::move(clip), 0, film.frames);
     EXPECT_FALSE(light.corrected) << light.spread;
     EXPECT_EQ(light.clip.get(), given);
   }
@@ -102,7 +102,7 @@ constexpr std::int64_t kBeforeIt = 35;  // of the body's first frame, 50
 
 TEST(SteadyLight, ALargeBodyIsNoFlicker) {
   const Film film = FilledByTheBody();
-  const SteadyLight light = SteadyLightOf(Open(film), kBeforeIt, film.frames);
+  const SteadyLight light = Deflicker(Open(film), kBeforeIt, film.frames);
   EXPECT_TRUE(light.told);
   EXPECT_FALSE(light.corrected) << light.spread;
   EXPECT_LT(light.spread, 0.5 * SteadyLightOptions{}.least_spread);
@@ -113,7 +113,7 @@ TEST(SteadyLight, FlickerBesideALargeBodyIsTakenOut) {
   Film film = FilledByTheBody();
   film.trouble.flicker_amplitude = kAmplitude;
   film.trouble.flicker_hz = film.camera.fps / 17.3;
-  const SteadyLight light = SteadyLightOf(Open(film), kBeforeIt, film.frames);
+  const SteadyLight light = Deflicker(Open(film), kBeforeIt, film.frames);
   ASSERT_TRUE(light.corrected);
   // What is left: where the body passes, the median over the frames is of
   // those without it, which have a light of their own.
@@ -124,7 +124,7 @@ TEST(SteadyLight, FullScaleStaysFullScale) {
   Film film = Flickering(0.1, 8);
   film.look.background_level = 1.0;  // clipped half of the time
   film.noise = 0.0;
-  const SteadyLight light = SteadyLightOf(Open(film), 0, film.frames);
+  const SteadyLight light = Deflicker(Open(film), 0, film.frames);
   ASSERT_TRUE(light.corrected);
   auto raw = Open(film);
   for (std::int64_t i = 0; i < film.frames; i += 5) {
@@ -144,7 +144,7 @@ TEST(SteadyLight, CannotBeToldBehindABacklitBody) {
     film.look.background_level = film.look.ground_level = 1.0;
     film.look.gradient_x = film.look.gradient_y = 0.0;
     film.noise = 0.0;
-    const SteadyLight light = SteadyLightOf(Open(film), 0, frames);
+    const SteadyLight light = Deflicker(Open(film), 0, frames);
     EXPECT_FALSE(light.told);
     EXPECT_FALSE(light.corrected) << light.spread;
   }
@@ -152,7 +152,7 @@ TEST(SteadyLight, CannotBeToldBehindABacklitBody) {
 
 TEST(SteadyLight, WindowsAreCrops) {
   const Film film = Flickering(0.1, 8);
-  const SteadyLight light = SteadyLightOf(Open(film), 0, film.frames);
+  const SteadyLight light = Deflicker(Open(film), 0, film.frames);
   const core::Frame whole = light.clip->Read(60);
   const auto level = whole.at(33, 27);
   const core::Frame window = light.clip->Read(60, {30, 20, 10, 10});
@@ -162,9 +162,9 @@ TEST(SteadyLight, WindowsAreCrops) {
 
 TEST(SteadyLight, RangeIsChecked) {
   const Film film = Flickering(0.1, 8);
-  EXPECT_THROW(SteadyLightOf(Open(film), 0, film.frames + 1),
+  EXPECT_THROW(Deflicker(Open(film), 0, film.frames + 1),
                std::invalid_argument);
-  EXPECT_THROW(SteadyLightOf(Open(film), 5, 5), std::invalid_argument);
+  EXPECT_THROW(Deflicker(Open(film), 5, 5), std::invalid_argument);
 }
 
 }  // namespace

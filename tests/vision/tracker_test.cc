@@ -92,7 +92,7 @@ TEST_P(TrackerKinds, FollowsTheBodyWithinItsUncertainty) {
     for (const Pose& pose : track.poses) {
       EXPECT_GT(pose.frame, last);
       last = pose.frame;
-      const SceneTruth truth = TruthOf(scene, pose.frame);
+      const SceneTruth truth = ComputeTruth(scene, pose.frame);
       // Partly out of the picture a rectangle's length and place are one: that
       // is for Refine, which holds the size.
       if (std::abs(truth.centre.x_px - 129.5) > 129.5 - truth.radius_px - 3) {
@@ -162,7 +162,7 @@ TEST(Tracker, SparseLooksMeasureTheSame) {
   const auto coarsely = TrackBody(*clip, sparse);
   ASSERT_TRUE(closely && coarsely);
   RefineOptions refine;
-  refine.ground = calib::GroundThrough({0.0, 130.0}, {320.0, 130.0});
+  refine.ground = calib::MakeGroundLine({0.0, 130.0}, {320.0, 130.0});
   const Track close =
       Refine(*clip, closely->background, closely->track, refine);
   const Track coarse =
@@ -264,7 +264,8 @@ TEST(Tracker, RegionChoosesOneOfTwo) {
   ASSERT_TRUE(result) << result.error().reason;
   EXPECT_FALSE(result->track.several_bodies);
   for (const Pose& pose : result->track.poses) {
-    EXPECT_NEAR(pose.centre.y_px, TruthOf(high, pose.frame).centre.y_px, 0.3);
+    EXPECT_NEAR(pose.centre.y_px, ComputeTruth(high, pose.frame).centre.y_px,
+                0.3);
   }
 }
 
@@ -323,11 +324,12 @@ TEST(Tracker, RefinedAtTheBorder) {
       const auto clip = OpenScene(scene, seed);
       const auto result = TrackBody(*clip);
       ASSERT_TRUE(result) << result.error().reason;
-      const Track refined = Refine(*clip, result->background, result->track,
-                                   {GroundOf(scene.camera), std::nullopt});
+      const Track refined =
+          Refine(*clip, result->background, result->track,
+                 {TrueGroundLine(scene.camera), std::nullopt});
       EXPECT_GE(refined.poses.size() + 3, result->track.poses.size());
       for (const Pose& pose : refined.poses) {
-        const SceneTruth truth = TruthOf(scene, pose.frame);
+        const SceneTruth truth = ComputeTruth(scene, pose.frame);
         z.push_back((pose.centre.x_px - truth.centre.x_px) /
                     std::hypot(pose.u_x_px, 0.01));
         z.push_back((pose.centre.y_px - truth.centre.y_px) /
@@ -354,13 +356,13 @@ TEST_P(TrackerAtTheGround, IsRefined) {
     const auto result = TrackBody(*clip);
     ASSERT_TRUE(result) << result.error().reason;
     const Track refined = Refine(*clip, result->background, result->track,
-                                 {GroundOf(scene.camera), std::nullopt});
+                                 {TrueGroundLine(scene.camera), std::nullopt});
     EXPECT_EQ(refined.near_ground_modelled, GetParam() == 0.0);
     EXPECT_GE(refined.poses.size() + 2, result->track.poses.size());
     EXPECT_NEAR(refined.body.radius_px.value, 12.0,
                 4.5 * refined.body.radius_px.u);
     for (const Pose& pose : refined.poses) {
-      const SceneTruth truth = TruthOf(scene, pose.frame);
+      const SceneTruth truth = ComputeTruth(scene, pose.frame);
       zy.push_back((pose.centre.y_px - truth.centre.y_px) /
                    std::hypot(pose.u_y_px, refined.body.radius_px.u));
     }
@@ -376,7 +378,7 @@ TEST(Tracker, RefinedToASteadySize) {
   const auto clip = OpenScene(scene, 1);
   auto result = TrackBody(*clip);
   ASSERT_TRUE(result) << result.error().reason;
-  const RefineOptions options = {GroundOf(scene.camera), std::nullopt};
+  const RefineOptions options = {TrueGroundLine(scene.camera), std::nullopt};
   const Track steady =
       Refine(*clip, result->background, result->track, options);
   double size = 1.01;

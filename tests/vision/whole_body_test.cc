@@ -179,7 +179,7 @@ TEST(FindWhole, WhatTheGroundReflectsIsNoneOfIt) {
   Drawn clip(film, 4);
   TrackOptions options;
   options.ground =
-      calib::GroundThrough({0.0, RampAt(0.0)}, {kWidth_px, RampAt(kWidth_px)});
+      calib::MakeGroundLine({0.0, RampAt(0.0)}, {kWidth_px, RampAt(kWidth_px)});
   ExpectWhole(FindWhole(clip, Noise(), EndOf(film), options), film);
 }
 
@@ -197,7 +197,7 @@ TEST(FindWhole, APathOfBlobsWillDo) {
     link.blob.area_px2 = 190.0;
     chain.links.push_back(link);
   }
-  const Track path = PathOf(chain, end);
+  const Track path = MakePath(chain, end);
   EXPECT_EQ(path.poses.size(), end.poses.size());
   EXPECT_EQ(path.poses.front().misfit, 5.0);
   ExpectWhole(FindWhole(clip, Noise(), path, {}), film);

@@ -89,7 +89,7 @@ class Problem {
                         i, row.terms.size(), terms));
       }
       core::RequirePositive("n", row.n);
-      core::RequireBetween("yes", row.yes, 0.0, row.n);
+      core::RequireInRange("yes", row.yes, 0.0, row.n);
       n_[i] = row.n;
       yes_[i] = row.yes;
       for (std::size_t j = 0; j < terms; ++j) {
@@ -268,7 +268,7 @@ void RequireFound(const Regression& fit) {
 }
 
 double HalfChiSquare(double level) {
-  core::RequireBetween("level", level, 1e-12, 1.0 - 1e-12);
+  core::RequireInRange("level", level, 1e-12, 1.0 - 1e-12);
   const double z = NormalQuantile((1.0 + level) / 2);
   return z * z / 2;
 }

@@ -32,21 +32,23 @@ constexpr std::size_t kMaxAngles = 20000;
 void CheckFitOptions(const BoundaryFitOptions& o) {
   core::Require(std::isfinite(o.low_rad), "low_rad", o.low_rad, "finite");
   core::Require(std::isfinite(o.high_rad) && o.high_rad > o.low_rad, "high_rad",
-          o.high_rad, "finite and above low_rad");
+                o.high_rad, "finite and above low_rad");
   core::Require(o.scatter_low_rad > 0.0, "scatter_low_rad", o.scatter_low_rad,
-          "positive");
+                "positive");
   core::Require(o.scatter_high_rad > o.scatter_low_rad &&
-              std::isfinite(o.scatter_high_rad),
-          "scatter_high_rad", o.scatter_high_rad,
-          "finite and above scatter_low_rad");
+                    std::isfinite(o.scatter_high_rad),
+                "scatter_high_rad", o.scatter_high_rad,
+                "finite and above scatter_low_rad");
   core::Require(o.scatter_levels >= 4, "scatter_levels", o.scatter_levels,
-          "at least 4");
+                "at least 4");
   core::Require(o.start_steps >= 4, "start_steps", o.start_steps, "at least 4");
-  core::Require(o.max_cell_mass > 1e-4 && o.max_cell_mass <= 0.25, "max_cell_mass",
-          o.max_cell_mass, "above 0.0001 and at most 0.25");
+  core::Require(o.max_cell_mass > 1e-4 && o.max_cell_mass <= 0.25,
+                "max_cell_mass", o.max_cell_mass,
+                "above 0.0001 and at most 0.25");
   core::Require(o.lapse > 0.0 && o.lapse < 0.5, "lapse", o.lapse,
-          "between 0 and 0.5");
-  core::Require(o.bin_width_rad > 0.0, "bin_width_rad", o.bin_width_rad, "positive");
+                "between 0 and 0.5");
+  core::Require(o.bin_width_rad > 0.0, "bin_width_rad", o.bin_width_rad,
+                "positive");
   const auto check = [](const ScatterPrior& prior) {
     core::Require(prior.median_rad > 0.0, "scatter median_rad",
                   prior.median_rad, "positive");
@@ -461,9 +463,10 @@ std::vector<double> ProfileByAngle(const JointTable& table) {
 // staircase angles they held 3. There the interval goes to the end of the
 // support, and as far on the other side as the likelihood, whatever the
 // scatter, has not fallen by half of `fall`.
-core::Interval OpenTo(DataStatus status, const std::vector<double>& angles,
-                      const std::vector<double>& profile, double fall,
-                      core::Interval tails) {
+core::Interval OpenInterval(DataStatus status,
+                            const std::vector<double>& angles,
+                            const std::vector<double>& profile, double fall,
+                            core::Interval tails) {
   const double level =
       *std::max_element(profile.begin(), profile.end()) - fall / 2;
   const auto crossing = [&](std::size_t out, std::size_t in) {
@@ -495,10 +498,11 @@ void FillMarginal(const JointTable& table, const ScatterPrior& prior,
   out.cumulative = Cumulate(out.angle_rad, out.density_per_rad);
   out.median_rad = Quantile(out, 0.5);
   const std::vector<double> profile = ProfileByAngle(table);
-  out.interval90_rad = OpenTo(status, out.angle_rad, profile, kFall90,
-                              {Quantile(out, 0.05), Quantile(out, 0.95)});
-  out.interval95_rad = OpenTo(status, out.angle_rad, profile, kFall95,
-                              {Quantile(out, 0.025), Quantile(out, 0.975)});
+  out.interval90_rad = OpenInterval(status, out.angle_rad, profile, kFall90,
+                                    {Quantile(out, 0.05), Quantile(out, 0.95)});
+  out.interval95_rad =
+      OpenInterval(status, out.angle_rad, profile, kFall95,
+                   {Quantile(out, 0.025), Quantile(out, 0.975)});
 }
 
 // The 95 % interval together with that under the second prior, where outcomes
@@ -699,7 +703,8 @@ double Quantile(const BoundaryPosterior& posterior, double p) {
                 posterior.cumulative, p);
 }
 
-double ProbabilityBelow(const BoundaryPosterior& posterior, double angle_rad) {
+double CumulativeProbability(const BoundaryPosterior& posterior,
+                             double angle_rad) {
   const auto& angles = posterior.angle_rad;
   if (angle_rad <= angles.front()) return 0.0;
   if (angle_rad >= angles.back()) return 1.0;
@@ -712,10 +717,10 @@ double ProbabilityBelow(const BoundaryPosterior& posterior, double angle_rad) {
   return posterior.cumulative[i - 1] + t * (f0 + slope * t / 2);
 }
 
-double ProbabilityWithin(const BoundaryPosterior& posterior, double value_rad,
+double MarginProbability(const BoundaryPosterior& posterior, double value_rad,
                          double margin_rad) {
-  return ProbabilityBelow(posterior, value_rad + margin_rad) -
-         ProbabilityBelow(posterior, value_rad - margin_rad);
+  return CumulativeProbability(posterior, value_rad + margin_rad) -
+         CumulativeProbability(posterior, value_rad - margin_rad);
 }
 
 double SmallestPassingMargin(const BoundaryPosterior& posterior,

@@ -49,14 +49,14 @@ TheoryComparison Compare(std::span<const Observation> observations,
   const double value = theory.boundary_rad;
   const double margin = options.margin_rad;
   out.difference_rad = posterior.median_rad - value;
-  out.p_below = ProbabilityBelow(posterior, value);
-  out.p_within = ProbabilityWithin(posterior, value, margin);
+  out.p_below = CumulativeProbability(posterior, value);
+  out.p_within = MarginProbability(posterior, value, margin);
   out.e_n = NormalizedError(
       posterior.median_rad,
       (posterior.interval95_rad.high - posterior.interval95_rad.low) / 2, value,
       kTheoryCoverage * theory.u_rad);
-  out.p_too_low = ProbabilityBelow(posterior, value - margin);
-  out.p_too_high = 1.0 - ProbabilityBelow(posterior, value + margin);
+  out.p_too_low = CumulativeProbability(posterior, value - margin);
+  out.p_too_high = 1.0 - CumulativeProbability(posterior, value + margin);
   out.smallest_margin_rad = SmallestPassingMargin(posterior, value);
 
   if (!declared) {

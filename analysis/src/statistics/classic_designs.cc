@@ -88,7 +88,7 @@ struct TriedRange {
   double high = -std::numeric_limits<double>::infinity();
 };
 
-TriedRange TriedRangeOf(std::span<const Observation> trials) {
+TriedRange MeasureTriedRange(std::span<const Observation> trials) {
   TriedRange out;
   for (const Observation& o : trials) {
     out.low = std::min(out.low, o.angle_rad);
@@ -106,7 +106,7 @@ std::vector<double> TriedAngles(std::span<const Observation> trials) {
 // The level that adds most once outcomes overlap: about the greatest
 // likelihood, kept inside what was tried.
 double DOptimalAfterOverlap(std::span<const Observation> trials) {
-  const TriedRange all = TriedRangeOf(trials);
+  const TriedRange all = MeasureTriedRange(trials);
   const auto fit = FitProbit(trials);
   const Bracket bracket = FindBracket(trials);
   const double mean =
@@ -122,7 +122,7 @@ double NeyerLevel(std::span<const Observation> trials,
   if (trials.empty()) {
     return (options.guess_low_rad + options.guess_high_rad) / 2;
   }
-  const TriedRange all = TriedRangeOf(trials);
+  const TriedRange all = MeasureTriedRange(trials);
   const Counts counts = Count(trials);
   if (counts.bounce == 0) {
     return std::max({(options.guess_high_rad + all.high) / 2,

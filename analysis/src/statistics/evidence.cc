@@ -122,9 +122,9 @@ EvidenceTable::EvidenceTable(const TheoryBoundary& theory, double margin_rad,
   core::RequirePositive("scatter_low_rad", options.scatter_low_rad);
   core::RequirePositive("scatter_high_rad - scatter_low_rad",
                         options.scatter_high_rad - options.scatter_low_rad);
-  core::RequireBetween("scatter_levels", options.scatter_levels, 4, 1000);
-  core::RequireBetween("steps_per_margin", options.steps_per_margin, 2, 1000);
-  core::RequireBetween("lapse", options.lapse, 0.0, 0.5);
+  core::RequireInRange("scatter_levels", options.scatter_levels, 4, 1000);
+  core::RequireInRange("steps_per_margin", options.steps_per_margin, 2, 1000);
+  core::RequireInRange("lapse", options.lapse, 0.0, 0.5);
   const double value = theory.boundary_rad;
   const double far = margin_rad + kTheoryCoverage * theory.u_rad;
   margin_low_rad_ = value - margin_rad;

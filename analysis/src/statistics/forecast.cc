@@ -268,7 +268,7 @@ int ForecastTrials(const BoundaryPosterior& posterior,
   core::RequirePositive("target_half_width_rad", options.target_half_width_rad,
                         "rad");
   core::RequireNotNegative("set_u_rad", options.set_u_rad, "rad");
-  core::RequireBetween("futures", options.futures, 1, 10000);
+  core::RequireInRange("futures", options.futures, 1, 10000);
   const double half_width =
       (posterior.interval95_rad.high - posterior.interval95_rad.low) / 2;
   if (half_width <= options.target_half_width_rad) return 0;

@@ -16,7 +16,7 @@
 namespace touchdown::analysis {
 namespace {
 
-Outcome OutcomeOf(double p_bounce) {
+Outcome DecideOutcome(double p_bounce) {
   if (p_bounce >= kDecidedProbability) return Outcome::kBounce;
   if (p_bounce <= 1.0 - kDecidedProbability) return Outcome::kNotBounce;
   return Outcome::kUndecided;
@@ -37,7 +37,7 @@ double DecidedProbability(const core::StateDecision& state, bool bounced) {
 std::optional<double> UndecidedProbability(const core::StateDecision& state) {
   if (!state.p_bounce) return std::nullopt;
   const double p = std::clamp(*state.p_bounce, 0.0, 1.0);
-  if (OutcomeOf(p) != Outcome::kUndecided) return std::nullopt;
+  if (DecideOutcome(p) != Outcome::kUndecided) return std::nullopt;
   return p;
 }
 
@@ -113,7 +113,7 @@ Observation Observe(double angle_rad, double u_rad, double p_bounce) {
   out.angle_rad = angle_rad;
   out.u_rad = u_rad;
   out.p_bounce = p_bounce;
-  out.outcome = OutcomeOf(p_bounce);
+  out.outcome = DecideOutcome(p_bounce);
   return out;
 }
 

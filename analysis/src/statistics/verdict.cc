@@ -83,10 +83,10 @@ VerdictBasis MakeVerdictBasis(std::span<const Observation> observations,
   out.span_rad = greatest - least;
   const double value = theory.boundary_rad;
   const double far = margin_rad + kTheoryCoverage * theory.u_rad;
-  out.p_below = ProbabilityBelow(posterior, value - margin_rad);
-  out.p_above = 1.0 - ProbabilityBelow(posterior, value + margin_rad);
-  out.p_far_below = ProbabilityBelow(posterior, value - far);
-  out.p_far_above = 1.0 - ProbabilityBelow(posterior, value + far);
+  out.p_below = CumulativeProbability(posterior, value - margin_rad);
+  out.p_above = 1.0 - CumulativeProbability(posterior, value + margin_rad);
+  out.p_far_below = CumulativeProbability(posterior, value - far);
+  out.p_far_above = 1.0 - CumulativeProbability(posterior, value + far);
   return out;
 }
 

@@ -56,14 +56,14 @@ constexpr std::array<BoundaryModelCard, 5> kCards = {{
 
 std::span<const BoundaryModelCard> BoundaryModelCards() { return kCards; }
 
-const BoundaryModelCard& CardOf(BoundaryModel model) {
+const BoundaryModelCard& FindCard(BoundaryModel model) {
   for (const BoundaryModelCard& card : kCards) {
     if (card.model == model) return card;
   }
   return kCards[0];
 }
 
-std::string_view Name(BoundaryModel model) { return CardOf(model).name; }
+std::string_view Name(BoundaryModel model) { return FindCard(model).name; }
 
 std::optional<BoundaryModel> ParseBoundaryModel(std::string_view word) {
   for (const BoundaryModelCard& card : kCards) {

@@ -104,7 +104,7 @@ core::Expected<double> DetectableBounce(const BoundaryInputs& in) {
     if (ranges.front().state == "bounce") {
       return AbsentBecause(fmt::format(
           "it bounces from the flattest {} angle on, and never begins to",
-          core::Name(AngleKindOf(BoundaryModel::kDetectableBounce, in))));
+          core::Name(ModelAngleKind(BoundaryModel::kDetectableBounce, in))));
     }
   }
   return AbsentBecause(
@@ -118,7 +118,7 @@ void CheckBoundaryInputs(const BoundaryInputs& in) {
   core::RequireNotNegative("mu", in.mu.value);
   core::RequireFinite("omega", in.omega_rad_per_s.value, "rad/s");
   core::RequirePositive("gravity", in.gravity_mps2.value, "m/s^2");
-  core::RequireBetween("restitution", in.restitution.value, 0.0, 1.0);
+  core::RequireInRange("restitution", in.restitution.value, 0.0, 1.0);
   core::RequirePositive("speed", in.speed_mps.value, "m/s");
   core::RequirePositive("bounce height", in.bounce_height_m.value, "m");
   if (!IsSphere(in) && in.slip == Slip::kNone) {
@@ -130,7 +130,7 @@ void CheckBoundaryInputs(const BoundaryInputs& in) {
         "held angle is a face angle, must be an approach or a radius angle");
   }
   if (in.held_kind) {
-    core::RequireBetween("held angle in rad", in.held_angle_rad.value, 0.0,
+    core::RequireInRange("held angle in rad", in.held_angle_rad.value, 0.0,
                          kRightAngle);
   }
 }
@@ -176,8 +176,9 @@ std::vector<AngleRange> ContactRanges(const BoundaryInputs& in, double kappa,
   return out;
 }
 
-std::vector<AngleRange> RangesOf(BoundaryModel model, const BoundaryInputs& in,
-                                 const core::Expected<double>& boundary) {
+std::vector<AngleRange> ListRanges(BoundaryModel model,
+                                   const BoundaryInputs& in,
+                                   const core::Expected<double>& boundary) {
   switch (model) {
     case BoundaryModel::kPublished:
       return {{0.0, *boundary, "slide"}, {*boundary, kRightAngle, "bounce"}};
@@ -214,8 +215,8 @@ std::vector<AngleRange> RangesOf(BoundaryModel model, const BoundaryInputs& in,
   return BounceRanges(in, false);
 }
 
-std::vector<std::string> NotesOf(BoundaryModel model,
-                                 const BoundaryInputs& in) {
+std::vector<std::string> MakeNotes(BoundaryModel model,
+                                   const BoundaryInputs& in) {
   std::vector<std::string> out;
   const bool spins = in.omega_rad_per_s.value != 0.0;
   switch (model) {
@@ -337,10 +338,10 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
   }
   BoundaryAnswer out;
   out.model = model;
-  out.angle_kind = AngleKindOf(model, inputs);
+  out.angle_kind = ModelAngleKind(model, inputs);
   out.boundary_rad = BoundaryAngle(model, inputs);
-  out.ranges = RangesOf(model, inputs, out.boundary_rad);
-  out.notes = NotesOf(model, inputs);
+  out.ranges = ListRanges(model, inputs, out.boundary_rad);
+  out.notes = MakeNotes(model, inputs);
   if (model == BoundaryModel::kPublished) {
     // Rectangular within the last printed digit.
     out.uncertainty.first_order_u_rad = kPublishedGrain_rad / std::sqrt(12.0);
@@ -368,7 +369,8 @@ core::Measured BoundaryAnswer::Value() const {
   return out;
 }
 
-core::AngleKind AngleKindOf(BoundaryModel model, const BoundaryInputs& inputs) {
+core::AngleKind ModelAngleKind(BoundaryModel model,
+                               const BoundaryInputs& inputs) {
   // The contact problem speaks of the radius; for a sphere only the path's
   // angle can vary (errata E5).
   const bool sphere = IsSphere(inputs);

@@ -82,7 +82,8 @@ double Margin(T value, T slope) {
 }
 
 template <class T>
-ContactMargins MarginsOf(const ContactCore<T>& k, const ContactProblem& p) {
+ContactMargins ComputeMargins(const ContactCore<T>& k,
+                              const ContactProblem& p) {
   ContactMargins out;
   const T s = k.s_;
   const T c = k.c_;
@@ -127,7 +128,7 @@ ContactResult Report(const ContactCore<T>& core, const ContactProblem& p) {
         core.a_ == 0 ? kInfinity
                      : static_cast<double>(core.a_size_ / std::abs(core.a_));
   }
-  out.margins = MarginsOf(core, p);
+  out.margins = ComputeMargins(core, p);
   return out;
 }
 
@@ -197,9 +198,9 @@ QuickContact SolveSlidingContact(const ContactProblem& p) {
     const auto& last = wide.solution_[wide.n_ > 1 ? 1 : 0];
     return {wide.regime_, static_cast<double>(last.normal)};
   }
-  const int a_sign = ContactCore<double>::SignOutside(a, a_tolerance);
-  const int b_sign = ContactCore<double>::SignOutside(b, b_tolerance);
-  const Regime regime = ContactCore<double>::RegimeOf(a_sign, b_sign);
+  const int a_sign = ContactCore<double>::SignBeyondTolerance(a, a_tolerance);
+  const int b_sign = ContactCore<double>::SignBeyondTolerance(b, b_tolerance);
+  const Regime regime = ContactCore<double>::ClassifyRegime(a_sign, b_sign);
   if (a_sign == 0 || b_sign == 0) [[unlikely]]
     return {regime, 0.0};
   // Where the signs are equal nothing slides and -b/a is negative: a maximum

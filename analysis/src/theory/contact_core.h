@@ -38,7 +38,7 @@ class ContactCore {
   ContactCore(const ContactProblem& p, T ulp)
       : tolerance_(8 * ulp),
         mu_(static_cast<T>(p.mu)),
-        kappa_(KappaOf(p)),
+        kappa_(ComputeKappa(p)),
         g_(static_cast<T>(p.gravity_mps2)),
         sign_(Sign(p.slip)) {
     s_ = static_cast<T>(p.alpha.sin);
@@ -67,9 +67,9 @@ class ContactCore {
     const T a_tolerance = tolerance_ * a_size_;
     const T b_tolerance = tolerance_ * b_size_;
     within_ = IsWithin(a_, a_tolerance) || IsWithin(b_, b_tolerance);
-    const int a_sign = SignOutside(a_, a_tolerance);
-    const int b_sign = SignOutside(b_, b_tolerance);
-    regime_ = RegimeOf(a_sign, b_sign);
+    const int a_sign = SignBeyondTolerance(a_, a_tolerance);
+    const int b_sign = SignBeyondTolerance(b_, b_tolerance);
+    regime_ = ClassifyRegime(a_sign, b_sign);
     if (a_sign == 0 && b_sign < 0) return;
     if (b_sign >= 0) AddDetach(b_sign == 0 ? T(0) : b_);
     if (a_sign * b_sign < 0) AddSlip(SolutionKind::kSlide, sign_, a_);
@@ -77,7 +77,7 @@ class ContactCore {
 
   void Rest() {
     const T b_tolerance = tolerance_ * b_size_;
-    const int b_sign = SignOutside(b_, b_tolerance);
+    const int b_sign = SignBeyondTolerance(b_, b_tolerance);
     if (b_sign == 0) {
       within_ = b_tolerance > 0;
       regime_ = Regime::kGraze;
@@ -135,13 +135,13 @@ class ContactCore {
     return Regime::kSlide;
   }
 
-  static constexpr Regime RegimeOf(int a_sign, int b_sign) {
+  static constexpr Regime ClassifyRegime(int a_sign, int b_sign) {
     const int row = 3 * (a_sign + 1);
     return kSignTable[static_cast<std::size_t>(row) +
                       static_cast<std::size_t>(b_sign + 1)];
   }
 
-  static constexpr int SignOutside(T value, T tolerance) {
+  static constexpr int SignBeyondTolerance(T value, T tolerance) {
     return static_cast<int>(value > tolerance) -
            static_cast<int>(value < -tolerance);
   }
@@ -162,7 +162,7 @@ class ContactCore {
   bool within_ = false;
 
  private:
-  static T KappaOf(const ContactProblem& p) {
+  static T ComputeKappa(const ContactProblem& p) {
     if (p.gyration_radius_m <= 0.0) return static_cast<T>(p.kappa);
     const T quotient =
         static_cast<T>(p.radius_m) / static_cast<T>(p.gyration_radius_m);

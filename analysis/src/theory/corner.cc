@@ -57,7 +57,7 @@ SinCos RoundedSinCosOfRadians(double alpha_rad) {
   return out;
 }
 
-Delassus DelassusOf(const SinCos& alpha, double kappa) {
+Delassus ComputeDelassus(const SinCos& alpha, double kappa) {
   return {std::fma(kappa * alpha.cos, alpha.cos, 1.0),
           kappa * alpha.sin * alpha.cos,
           std::fma(kappa * alpha.sin, alpha.sin, 1.0)};

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "touchdown/core/require.h"
 #include "theory/wide.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -107,7 +107,7 @@ std::optional<FlatImpactSolution> SolveFlatImpact(const FlatProblem& problem,
                                                   double restitution) {
   CheckFlatProblem(problem);
   core::RequirePositive("approach speed", approach_mps, "m/s");
-  core::RequireBetween("restitution", restitution, 0.0, 1.0);
+  core::RequireInRange("restitution", restitution, 0.0, 1.0);
   const auto shares = Flush(problem).Solve();
   if (!shares) return std::nullopt;
   const Wide rebound = static_cast<Wide>(restitution) * approach_mps;

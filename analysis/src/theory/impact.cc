@@ -19,8 +19,8 @@ class Marcher {
  public:
   explicit Marcher(const ImpactProblem& problem)
       : p_(problem),
-        g_(DelassusOf(problem.alpha, problem.kappa)),
-        slip_(SlipOf(problem.tangential_mps)) {
+        g_(ComputeDelassus(problem.alpha, problem.kappa)),
+        slip_(ClassifySlip(problem.tangential_mps)) {
     result_.tangential_mps = p_.tangential_mps;
     result_.normal_mps = p_.normal_mps;
     result_.alpha_rate_rad_per_s = p_.alpha_rate_rad_per_s;
@@ -66,7 +66,7 @@ class Marcher {
   void LeaveSlip() {
     result_.tangential_mps = 0.0;
     sticks_ = std::abs(g_.nt) <= p_.mu * g_.tt;
-    slip_ = sticks_ ? Slip::kNone : SlipOf(g_.nt);
+    slip_ = sticks_ ? Slip::kNone : ClassifySlip(g_.nt);
   }
 
   // Normal impulse after which the present slip stops.
@@ -132,7 +132,7 @@ void CheckImpactProblem(const ImpactProblem& p) {
   core::RequirePositive("radius", p.radius_m, "m");
   core::RequireNotNegative("kappa", p.kappa);
   core::RequireNotNegative("mu", p.mu);
-  core::RequireBetween("restitution", p.restitution, 0.0, 1.0);
+  core::RequireInRange("restitution", p.restitution, 0.0, 1.0);
   core::RequireFinite("tangential velocity", p.tangential_mps, "m/s");
   core::RequireFinite("normal velocity", p.normal_mps, "m/s");
   core::RequireFinite("rate of alpha", p.alpha_rate_rad_per_s, "rad/s");

@@ -269,7 +269,7 @@ void CheckRigidMotionProblem(const RigidMotionProblem& p) {
   const RigidOutline outline(p.body);  // refuses an absent size
   core::RequireNotNegative("gyration radius", p.gyration_radius_m, "m");
   core::RequireNotNegative("mu", p.mu);
-  core::RequireBetween("restitution", p.restitution, 0.0, 1.0);
+  core::RequireInRange("restitution", p.restitution, 0.0, 1.0);
   core::RequirePositive("gravity", p.gravity_mps2, "m/s^2");
   core::RequirePositive("rest speed", p.rest_speed_mps, "m/s");
   core::RequireFinite("start time", p.start.time_s, "s");
@@ -289,7 +289,7 @@ void CheckRigidMotionProblem(const RigidMotionProblem& p) {
   }
 }
 
-const Stretch& StretchAt(const RigidMotion& motion, double time_s) {
+const Stretch& FindStretch(const RigidMotion& motion, double time_s) {
   const auto after = std::upper_bound(
       motion.stretches.begin(), motion.stretches.end(), time_s,
       [](double t, const Stretch& s) { return t < s.start.time_s; });
@@ -303,23 +303,23 @@ RigidMotion SimulateRigidMotion(const RigidMotionProblem& problem) {
   return Simulator(problem).Run();
 }
 
-BodyState StateAt(const RigidMotion& motion, double time_s) {
-  return Advance(StretchAt(motion, time_s), time_s);
+BodyState ComputeState(const RigidMotion& motion, double time_s) {
+  return Advance(FindStretch(motion, time_s), time_s);
 }
 
-double GapAt(const RigidMotion& motion, double time_s) {
-  return RigidOutline(motion.body).Gap(StateAt(motion, time_s));
+double ComputeGap(const RigidMotion& motion, double time_s) {
+  return RigidOutline(motion.body).Gap(ComputeState(motion, time_s));
 }
 
-GreatestGap GreatestGapWithin(const RigidMotion& motion, double from_s,
-                              double to_s) {
+GreatestGap ComputeGreatestGap(const RigidMotion& motion, double from_s,
+                               double to_s) {
   if (!(to_s >= from_s)) {
     throw std::invalid_argument(fmt::format(
         "interval of the greatest gap ends at {} s, before it begins ({} s)",
         to_s, from_s));
   }
   const RigidOutline outline(motion.body);
-  GreatestGap best{GapAt(motion, from_s), from_s};
+  GreatestGap best{ComputeGap(motion, from_s), from_s};
   const auto consider = [&](const Stretch& s, double t) {
     const double gap = outline.Gap(Advance(s, t));
     if (gap > best.gap_m) best = {gap, t};

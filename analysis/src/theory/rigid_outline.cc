@@ -12,7 +12,7 @@
 namespace touchdown::analysis {
 namespace {
 
-double SizeOf(const core::Measured& size, const char* name) {
+double RequireSize(const core::Measured& size, const char* name) {
   if (!size) {
     throw std::invalid_argument(fmt::format("{} is absent ({}), must be given",
                                             name, size.error().reason));
@@ -26,10 +26,10 @@ double SizeOf(const core::Measured& size, const char* name) {
 RigidOutline::RigidOutline(const core::Body& body)
     : is_sphere_(body.kind == core::BodyKind::kSphere) {
   if (is_sphere_) {
-    radius_m_ = 0.5 * SizeOf(body.diameter_m, "diameter");
+    radius_m_ = 0.5 * RequireSize(body.diameter_m, "diameter");
   } else {
-    half_long_m_ = 0.5 * SizeOf(body.long_m, "long side");
-    half_short_m_ = 0.5 * SizeOf(body.short_m, "short side");
+    half_long_m_ = 0.5 * RequireSize(body.long_m, "long side");
+    half_short_m_ = 0.5 * RequireSize(body.short_m, "short side");
     radius_m_ = std::hypot(half_long_m_, half_short_m_);
   }
 }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "touchdown/core/require.h"
 #include "theory/wide.h"
+#include "touchdown/core/require.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -21,7 +21,7 @@ Wide Excess(double radius_m, double omega_rad_per_s, double gravity_mps2) {
 }
 
 // alpha_b at a spin of x >= threshold.
-double AngleAt(double x, double threshold) {
+double SpinBoundaryAngle(double x, double threshold) {
   const double ratio = x / threshold;
   const double w = ratio * ratio;
   return std::atan2(
@@ -57,7 +57,7 @@ struct Moments {
           std::exp(-0.5 * z * z) / (u * std::sqrt(2.0 * std::numbers::pi));
       const double simpson = i == 0 || i == kPanels ? 1.0 : (i % 2 ? 4.0 : 2.0);
       const double weight = simpson * step / 3.0 * 2.0 * t * density;
-      const double alpha = AngleAt(omega, threshold);
+      const double alpha = SpinBoundaryAngle(omega, threshold);
       first += weight * alpha;
       second += weight * alpha * alpha;
     }
@@ -143,7 +143,7 @@ SpinBoundaryUncertainty SpinBoundaryOfUncertainOmega(double radius_m,
                             UpperTail(middle, -omega, u_omega);
       (beyond > p * p_exists ? low : high) = middle;
     }
-    return AngleAt(high, threshold);
+    return SpinBoundaryAngle(high, threshold);
   };
   out.low_rad = quantile(0.025);
   out.high_rad = quantile(0.975);

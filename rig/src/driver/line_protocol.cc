@@ -55,12 +55,12 @@ std::uint16_t Crc16(std::string_view bytes) {
   return static_cast<std::uint16_t>(crc & 0xFFFF);
 }
 
-std::string LineOf(const Request& request) {
+std::string FormatLine(const Request& request) {
   return Sealed(Joined(fmt::format("{} {}", request.number, request.verb),
                        request.argument));
 }
 
-std::string LineOf(const Answer& answer) {
+std::string FormatLine(const Answer& answer) {
   return Sealed(Joined(fmt::format("{} {} {}", answer.number,
                                    answer.ok ? "ok" : "no", answer.verb),
                        answer.text));
@@ -88,8 +88,8 @@ std::optional<Answer> ParseAnswer(std::string_view line) {
                 std::string(*rest)};
 }
 
-std::optional<std::int64_t> FieldOf(std::string_view text,
-                                    std::string_view name) {
+std::optional<std::int64_t> ReadField(std::string_view text,
+                                      std::string_view name) {
   while (!text.empty()) {
     const std::string_view word = TakeWord(text);
     const std::size_t sign = word.find('=');

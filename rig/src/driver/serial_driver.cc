@@ -30,7 +30,7 @@ SerialDriver::SerialDriver(const std::string& port, SerialOptions options,
       options_(options),
       // Each stop byte alone is enough.
       farewell_(std::string(3, kStopByte) +
-                LineOf(Request{kAlwaysNew, "disarm", ""})) {
+                FormatLine(Request{kAlwaysNew, "disarm", ""})) {
   const auto greeting = Ask("hello");
   const std::string text = greeting ? *greeting : greeting.error().reason;
   const std::string version = text.substr(0, text.find(' '));
@@ -72,7 +72,7 @@ core::Expected<std::string> SerialDriver::Ask(const std::string& verb,
   const int tries = patience == Patience::kOnce ? 1 : options_.tries;
   // One number for all tries: whichever is answered, the answer is good.
   const Request request{++number_, verb, argument};
-  const std::string bytes = LineOf(request);
+  const std::string bytes = FormatLine(request);
   for (int i = 0; i < tries; ++i) {
     if (is_stopped() && !even_stopped) return core::AbsentBecause("stopped");
     if (options_.overhear) options_.overhear(LineWay::kSent, bytes);
@@ -116,7 +116,7 @@ core::Expected<void> SerialDriver::Order(const std::string& verb,
 
 std::int64_t SerialDriver::RequireField(const std::string& text,
                                         const char* field) const {
-  if (const auto value = FieldOf(text, field)) return *value;
+  if (const auto value = ReadField(text, field)) return *value;
   throw core::InputError(
       fmt::format("{}: the status '{}' has no '{}'; see rig/README.md",
                   line_.port(), text, field));

@@ -24,7 +24,7 @@
 namespace touchdown::rig {
 namespace {
 
-speed_t SpeedOf(int baud) {
+speed_t BaudCode(int baud) {
   switch (baud) {
     case 9600:
       return B9600;
@@ -89,7 +89,7 @@ SerialTime SerialTime::Real() {
 
 SerialLine::SerialLine(const std::string& port, int baud, SerialTime time)
     : port_(port), time_(std::move(time)) {
-  const speed_t speed = SpeedOf(baud);
+  const speed_t speed = BaudCode(baud);
   port_fd_ = open(port.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (port_fd_ < 0) {
     Fail(port_, fmt::format("cannot be opened: {}", std::strerror(errno)));

@@ -67,7 +67,7 @@ class Sketch : public ::testing::Test {
   }
   Answer Ask(const std::string& verb, const std::string& argument = "") {
     const std::string said =
-        Exchange(LineOf(Request{++number_, verb, argument}));
+        Exchange(FormatLine(Request{++number_, verb, argument}));
     const auto answer =
         ParseAnswer(said.size() < 2 ? "" : said.substr(1, said.size() - 2));
     EXPECT_TRUE(answer) << said;
@@ -94,16 +94,16 @@ TEST_F(Sketch, SpeaksTheProtocol) {
   EXPECT_EQ(Ask("compress", "30250").text, "30250");
   EXPECT_EQ(Ask("interlock").text, "closed");
   const std::string status = Ask("status").text;
-  EXPECT_EQ(FieldOf(status, "angle"), -12500);
-  EXPECT_EQ(FieldOf(status, "compress"), 30250);
-  EXPECT_EQ(FieldOf(status, "armed"), 0);
-  const auto before = *FieldOf(status, "shots");
+  EXPECT_EQ(ReadField(status, "angle"), -12500);
+  EXPECT_EQ(ReadField(status, "compress"), 30250);
+  EXPECT_EQ(ReadField(status, "armed"), 0);
+  const auto before = *ReadField(status, "shots");
   const std::string token = Ask("arm").text;
   EXPECT_TRUE(IsLatched());
-  EXPECT_EQ(FieldOf(Ask("status").text, "armed"), 1);
+  EXPECT_EQ(ReadField(Ask("status").text, "armed"), 1);
   EXPECT_FALSE(Ask("fire", "T0").ok);
   EXPECT_TRUE(IsLatched());
-  EXPECT_EQ(FieldOf(Ask("fire", token).text, "shots"), before + 1);
+  EXPECT_EQ(ReadField(Ask("fire", token).text, "shots"), before + 1);
   EXPECT_FALSE(IsLatched());
   EXPECT_FALSE(Ask("fire", token).ok);
   EXPECT_FALSE(Ask("dance").ok);
@@ -120,7 +120,7 @@ TEST_F(Sketch, DisarmsWithinTwoSecondsOfSilence) {
   EXPECT_TRUE(IsLatched());
   Pass(static_cast<unsigned long>(kLongestSilence.count()) - 1700);
   EXPECT_FALSE(IsLatched());
-  EXPECT_EQ(FieldOf(Ask("status").text, "compress"), 0);
+  EXPECT_EQ(ReadField(Ask("status").text, "compress"), 0);
   // Noise, and damaged lines, are no sign of life.
   ASSERT_TRUE(Ask("arm").ok);
   for (int i = 0; i < 20; ++i) {
@@ -145,12 +145,12 @@ TEST_F(Sketch, StopsInTheMiddleOfALine) {
   EXPECT_FALSE(IsLatched());
   EXPECT_FALSE(Ask("arm").ok);
   EXPECT_TRUE(Ask("disarm").ok);
-  EXPECT_EQ(FieldOf(Ask("status").text, "stopped"), 1);
+  EXPECT_EQ(ReadField(Ask("status").text, "stopped"), 1);
   EXPECT_TRUE(Ask("reset").ok);
   EXPECT_TRUE(Ask("arm").ok);
   // The farewell of a program that ends.
   Exchange(std::string(3, kStopByte) +
-           LineOf(Request{kAlwaysNew, "disarm", ""}));
+           FormatLine(Request{kAlwaysNew, "disarm", ""}));
   EXPECT_FALSE(IsLatched());
   EXPECT_FALSE(Ask("arm").ok);
 }
@@ -172,12 +172,12 @@ TEST_F(Sketch, TheGuardAndTheButtonDisarm) {
 }
 
 TEST_F(Sketch, WhatComesTwiceIsDoneOnce) {
-  const std::string arm = LineOf(Request{++number_, "arm", ""});
+  const std::string arm = FormatLine(Request{++number_, "arm", ""});
   const std::string first = Exchange(arm);
   EXPECT_EQ(Exchange(arm), first);  // the same token
   Ask("disarm");
   EXPECT_FALSE(IsLatched());
-  const std::string always = LineOf(Request{kAlwaysNew, "disarm", ""});
+  const std::string always = FormatLine(Request{kAlwaysNew, "disarm", ""});
   Exchange(always);
   ASSERT_TRUE(Ask("arm").ok);
   Exchange(always);

@@ -21,12 +21,12 @@ std::string WithoutLineFeeds(const std::string& line) {
 }
 
 TEST(LineProtocol, LinesComeBack) {
-  EXPECT_EQ(LineOf(Request{7, "angle", "12500"}).substr(0, 15),
+  EXPECT_EQ(FormatLine(Request{7, "angle", "12500"}).substr(0, 15),
             "\n7 angle 12500*");
   for (const Request& request :
        {Request{7, "angle", "12500"}, Request{4294967295u, "arm", ""},
         Request{0, "fire", "T1 x"}}) {
-    const std::string line = LineOf(request);
+    const std::string line = FormatLine(request);
     const auto back = ParseRequest(WithoutLineFeeds(line));
     ASSERT_TRUE(back) << line;
     EXPECT_EQ(back->number, request.number);
@@ -34,7 +34,7 @@ TEST(LineProtocol, LinesComeBack) {
     EXPECT_EQ(back->argument, request.argument);
   }
   for (const bool ok : {true, false}) {
-    const std::string line = LineOf(Answer{7, ok, "angle", "out of range"});
+    const std::string line = FormatLine(Answer{7, ok, "angle", "out of range"});
     const auto back = ParseAnswer(WithoutLineFeeds(line));
     ASSERT_TRUE(back) << line;
     EXPECT_EQ(back->ok, ok);
@@ -46,7 +46,7 @@ TEST(LineProtocol, LinesComeBack) {
 // A CRC of 16 bits sees every error of one or two bits in a line so short.
 TEST(LineProtocol, DamagedLinesAreNoLines) {
   const std::string line =
-      WithoutLineFeeds(LineOf(Answer{7, true, "angle", "12500"}));
+      WithoutLineFeeds(FormatLine(Answer{7, true, "angle", "12500"}));
   for (std::size_t i = 0; i < line.size() * 8; ++i) {
     for (std::size_t j = i; j < line.size() * 8; ++j) {
       std::string bad = line;
@@ -64,11 +64,11 @@ TEST(LineProtocol, DamagedLinesAreNoLines) {
 }
 
 TEST(LineProtocol, FieldsAreWholeNumbers) {
-  EXPECT_EQ(FieldOf("angle=-5 moving=0", "angle"), -5);
-  EXPECT_EQ(FieldOf("angle=-5 moving=0", "moving"), 0);
-  EXPECT_FALSE(FieldOf("angle=-5 moving=0", "shots"));
-  EXPECT_FALSE(FieldOf("angle=5x", "angle"));
-  EXPECT_FALSE(FieldOf("angle", "angle"));
+  EXPECT_EQ(ReadField("angle=-5 moving=0", "angle"), -5);
+  EXPECT_EQ(ReadField("angle=-5 moving=0", "moving"), 0);
+  EXPECT_FALSE(ReadField("angle=-5 moving=0", "shots"));
+  EXPECT_FALSE(ReadField("angle=5x", "angle"));
+  EXPECT_FALSE(ReadField("angle", "angle"));
 }
 
 TEST(LineProtocol, NoiseIsNoLine) {

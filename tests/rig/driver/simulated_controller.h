@@ -262,7 +262,7 @@ class SimulatedController {
     last_ = answer;
     if (act == Act::kWrongEcho) answer.text = "99999";
     if (act == Act::kEmpty) answer.text.clear();
-    std::string bytes = LineOf(answer);
+    std::string bytes = FormatLine(answer);
     switch (act) {
       case Act::kSilence:
         return Silence();

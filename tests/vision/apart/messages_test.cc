@@ -80,14 +80,14 @@ TEST(FrameMemoryView, SeesWhatWasWrittenAndNothingElse) {
   std::byte* const piece = memory.Take(100);
   ASSERT_NE(piece, nullptr);
   piece[99] = std::byte{7};
-  const auto offset = memory.OffsetOf(piece);
+  const auto offset = memory.FindOffset(piece);
   ASSERT_TRUE(offset);
   ASSERT_NE(view.At(*offset, 100), nullptr);
   EXPECT_EQ(view.At(*offset, 100)[99], std::byte{7});
   EXPECT_EQ(view.At(*offset, std::size_t{1} << 30), nullptr);
   EXPECT_EQ(view.At(~std::size_t{0} - 1, 100), nullptr);
   std::byte elsewhere{};
-  EXPECT_FALSE(memory.OffsetOf(&elsewhere));
+  EXPECT_FALSE(memory.FindOffset(&elsewhere));
   EXPECT_EQ(view.beats(), 1u);
 }
 

@@ -54,8 +54,8 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
 }
 
 template <class Sample>
-void MidMeanOf(const FrameSamples& samples, int threads, Background& background,
-               NoisePairs& pairs) {
+void ComputeMidMean(const FrameSamples& samples, int threads,
+                    Background& background, NoisePairs& pairs) {
   const SortingNetwork network(samples.size(), SortingNetwork::Order::kMiddle);
   core::InParallel(background.height_px, samples.Threads(threads),
                    [&](std::int64_t begin, std::int64_t end) {
@@ -132,11 +132,13 @@ Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
         fmt::format("frames is {}:{}, must be a range within 0:{}", first, last,
                     info.frames));
   }
-  return BackgroundOf(clip, BackgroundFrames(first, last, options), options);
+  return EstimateBackgroundFromFrames(
+      clip, BackgroundFrames(first, last, options), options);
 }
 
-Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
-                        const BackgroundOptions& options) {
+Background EstimateBackgroundFromFrames(Clip& clip,
+                                        std::span<const std::int64_t> frames,
+                                        const BackgroundOptions& options) {
   const ClipInfo& info = clip.info();
   Background background;
   background.width_px = info.width_px;
@@ -147,9 +149,9 @@ Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
   const FrameSamples samples(clip, frames);
   NoisePairs pairs(info.width_px, info.height_px, samples);
   if (samples.is_16_bit()) {
-    MidMeanOf<std::uint16_t>(samples, options.threads, background, pairs);
+    ComputeMidMean<std::uint16_t>(samples, options.threads, background, pairs);
   } else {
-    MidMeanOf<std::uint8_t>(samples, options.threads, background, pairs);
+    ComputeMidMean<std::uint8_t>(samples, options.threads, background, pairs);
   }
   EstimateNoise(pairs, background);
   return background;

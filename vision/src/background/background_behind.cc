@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "footage/box_around.h"
 #include "background/frame_samples.h"
 #include "background/mid_mean.h"
 #include "background/noise_pairs.h"
+#include "footage/box_around.h"
 #include "touchdown/core/parallel.h"
 #include "touchdown/vision/background/background.h"
 
@@ -18,7 +18,7 @@ namespace touchdown::vision {
 namespace {
 
 // Where the body was in the samples.
-const std::uint16_t* CountsOf(const Covers& covers, std::int32_t y) {
+const std::uint16_t* RowCounts(const Covers& covers, std::int32_t y) {
   return covers.counts.data() +
          static_cast<std::ptrdiff_t>(y - covers.box.y) * covers.box.width;
 }
@@ -58,7 +58,7 @@ void Count(const Cover& cover, Covers& covers) {
 // Covered samples are moved alternately to the two ends of the order, where
 // they change nothing in the middle. Of the rows [top, bottom).
 template <class Sample>
-void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
+void MaskedMidMean(const FrameSamples& samples, const Covers& covers,
                    std::int64_t top, std::int64_t bottom,
                    Background& background) {
   // Fewer samples than this are no background: noise, or the body's rim.
@@ -76,7 +76,7 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
   std::array<std::size_t, kLanes> high{};  // above
   const auto is_touched = [](std::uint16_t count) { return count != 0; };
   for (auto y = static_cast<std::int32_t>(top); y < bottom; ++y) {
-    const std::uint16_t* const counts = CountsOf(covers, y);
+    const std::uint16_t* const counts = RowCounts(covers, y);
     const std::uint16_t* const end = counts + covers.box.width;
     const std::uint16_t* const first = std::find_if(counts, end, is_touched);
     if (first == end) continue;
@@ -135,8 +135,8 @@ void MidMeanBehind(const FrameSamples& samples, const Covers& covers,
 }
 
 // The noise of the samples themselves.
-void EstimateNoiseOf(const FrameSamples& samples, int threads,
-                     Background& background) {
+void EstimateSampleNoise(const FrameSamples& samples, int threads,
+                         Background& background) {
   NoisePairs pairs(background.width_px, background.height_px, samples);
   core::InParallel(
       background.height_px, samples.Threads(threads),
@@ -167,7 +167,7 @@ Covers FindCovers(std::int64_t first, std::int64_t last,
   std::vector<Cover> doubtful;
   for (const std::int64_t index : BackgroundFrames(first, last, options)) {
     Cover cover = covers(index);
-    all.box = BoxAround(all.box, cover.box);
+    all.box = UnionBox(all.box, cover.box);
     if (!cover.known) {
       doubtful.push_back(std::move(cover));
       continue;
@@ -187,7 +187,7 @@ Covers FindCovers(std::int64_t first, std::int64_t last,
   return all;
 }
 
-Background EstimateBackgroundBehind(Clip& clip, const Covers& covers,
+Background EstimateMaskedBackground(Clip& clip, const Covers& covers,
                                     Background fallback,
                                     const BackgroundOptions& options) {
   if (covers.frames.size() < 2) return fallback;
@@ -199,10 +199,10 @@ Background EstimateBackgroundBehind(Clip& clip, const Covers& covers,
       covers.box.height, samples.Threads(options.threads),
       [&](std::int64_t begin, std::int64_t end) {
         if (samples.is_16_bit()) {
-          MidMeanBehind<std::uint16_t>(samples, covers, covers.box.y + begin,
+          MaskedMidMean<std::uint16_t>(samples, covers, covers.box.y + begin,
                                        covers.box.y + end, background);
         } else {
-          MidMeanBehind<std::uint8_t>(samples, covers, covers.box.y + begin,
+          MaskedMidMean<std::uint8_t>(samples, covers, covers.box.y + begin,
                                       covers.box.y + end, background);
         }
       });
@@ -218,7 +218,7 @@ Background EstimateBackgroundBehind(Clip& clip, const Covers& covers,
   if (static_cast<double>(covers.counts.size()) -
           static_cast<double>(untouched) >
       kSmallPart * static_cast<double>(pixels)) {
-    EstimateNoiseOf(samples, options.threads, background);
+    EstimateSampleNoise(samples, options.threads, background);
   }
   return background;
 }

@@ -36,7 +36,7 @@ const std::vector<core::Frame>& FrameSamples::Reader::Read(
   samples_.clip_.cancellation().Check();
   windows_.clear();
   for (const core::Frame& frame : samples_.whole_) {
-    windows_.push_back(WindowOf(frame, window));
+    windows_.push_back(CutWindow(frame, window));
   }
   if (!windows_.empty()) return windows_;
   Clip& clip = own_ ? *own_ : samples_.clip_;

@@ -65,8 +65,8 @@ class Grid {
   }
 
   // Where most of the light is, by one point in four: with 2.5 times the noise
-  // of GainOf, which is far below what is taken out.
-  double MedianGainOf(const std::vector<float>& levels) const {
+  // of EstimateGain, which is far below what is taken out.
+  double EstimateMedianGain(const std::vector<float>& levels) const {
     constexpr std::size_t kStep = 4;
     return MedianGain(Usable(levels, kStep));
   }
@@ -74,7 +74,7 @@ class Grid {
   // Least squares of v = g r without points off by more than 4 sigma. It begins
   // where most of the light is: least squares of all points are drawn to a body
   // that hides a tenth of the picture, and leave it in.
-  double GainOf(const std::vector<float>& levels) const {
+  double EstimateGain(const std::vector<float>& levels) const {
     const Points points = Usable(levels);
     double gain = MedianGain(points);
     double most_off = MostOff(points, gain);
@@ -220,7 +220,7 @@ class CorrectedClip final : public Clip {
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
-    const double gain = GainOf(index);
+    const double gain = EstimateGain(index);
     const core::Frame raw = clip_->Read(index, window);
     samples_.resize(static_cast<std::size_t>(raw.width_px) *
                     static_cast<std::size_t>(raw.height_px));
@@ -242,10 +242,10 @@ class CorrectedClip final : public Clip {
   }
 
  private:
-  double GainOf(std::int64_t index) {
+  double EstimateGain(std::int64_t index) {
     const auto known = gains_.find(index);
     if (known != gains_.end()) return known->second;
-    const double gain = grid_.GainOf(grid_.Look(clip_->Read(index)));
+    const double gain = grid_.EstimateGain(grid_.Look(clip_->Read(index)));
     gains_[index] = gain;
     return gain;
   }
@@ -262,9 +262,9 @@ class CorrectedClip final : public Clip {
 };
 
 // Of these frames, up to the first that cannot be read.
-std::vector<std::vector<float>> LookAt(Clip& clip, const Grid& grid,
-                                       std::span<const std::int64_t> indices,
-                                       int threads) {
+std::vector<std::vector<float>> SampleGrid(
+    Clip& clip, const Grid& grid, std::span<const std::int64_t> indices,
+    int threads) {
   std::vector<std::vector<float>> looks;
   if (CanReadApart(clip)) {
     looks.resize(indices.size());
@@ -290,7 +290,8 @@ std::vector<std::vector<float>> LookAt(Clip& clip, const Grid& grid,
 }
 
 // Point by point. Levels are whole numbers of 16 bits.
-std::vector<float> MediansOf(const std::vector<std::vector<float>>& looks) {
+std::vector<float> PointwiseMedians(
+    const std::vector<std::vector<float>>& looks) {
   const SortingNetwork network(looks.size(), SortingNetwork::Order::kFull);
   std::vector<std::uint16_t> lanes(looks.size() * kLanes);
   std::vector<float> medians(looks.front().size());
@@ -310,7 +311,7 @@ std::vector<float> MediansOf(const std::vector<std::vector<float>>& looks) {
 }
 
 // Standard deviation.
-double SpreadOf(const std::vector<double>& gains) {
+double StandardDeviation(const std::vector<double>& gains) {
   double mean = 0.0;
   for (const double g : gains) mean += g / static_cast<double>(gains.size());
   double square = 0.0;
@@ -320,9 +321,8 @@ double SpreadOf(const std::vector<double>& gains) {
 
 }  // namespace
 
-SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
-                          std::int64_t last,
-                          const SteadyLightOptions& options) {
+SteadyLight Deflicker(std::unique_ptr<Clip> clip, std::int64_t first,
+                      std::int64_t last, const SteadyLightOptions& options) {
   const ClipInfo& info = clip->info();
   if (first < 0 || last > info.frames || first >= last) {
     throw std::invalid_argument(
@@ -342,9 +342,9 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
     indices.push_back(index);
   }
   const std::vector<std::vector<float>> looks =
-      LookAt(*clip, grid, indices, options.threads);
+      SampleGrid(*clip, grid, indices, options.threads);
   SteadyLight light;
-  grid.SetSteady(MediansOf(looks));
+  grid.SetSteady(PointwiseMedians(looks));
   light.told = grid.Tells();
   if (!light.told) {
     light.clip = std::move(clip);
@@ -360,12 +360,12 @@ SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
                          gains[k] = (grid.*gain_of)(looks[k]);
                        }
                      });
-    light.spread = SpreadOf(gains);
+    light.spread = StandardDeviation(gains);
   };
   // Mostly the light is steady, and far from any doubt.
   constexpr double kSure = 0.5;
-  measure(&Grid::MedianGainOf);
-  if (light.spread > kSure * options.least_spread) measure(&Grid::GainOf);
+  measure(&Grid::EstimateMedianGain);
+  if (light.spread > kSure * options.least_spread) measure(&Grid::EstimateGain);
   light.corrected = light.spread > options.least_spread;
   if (!light.corrected) {
     light.clip = std::move(clip);

@@ -21,14 +21,14 @@ double UncertaintyOfLine(const PlaneTrack& track, const PlaneSample& s) {
                     track.ground.u_angle_rad * s.along_px);
 }
 
-const PlaneSample& LowestOf(const PlaneTrack& track) {
+const PlaneSample& FindLowest(const PlaneTrack& track) {
   return *std::min_element(track.samples.begin(), track.samples.end(),
                            [](const PlaneSample& a, const PlaneSample& b) {
                              return a.gap_px < b.gap_px;
                            });
 }
 
-FlightOptions FlightFor(const ContactOptions& options) {
+FlightOptions MakeFlightOptions(const ContactOptions& options) {
   FlightOptions flight;
   if (options.scale) {
     const core::Estimate& scale = options.scale->px_per_m;
@@ -42,9 +42,9 @@ FlightOptions FlightFor(const ContactOptions& options) {
   return flight;
 }
 
-SegmentationOptions SegmentationFor(const PlaneTrack& track,
-                                    const ContactOptions& options,
-                                    const FlightOptions& flight) {
+SegmentationOptions MakeSegmentationOptions(const PlaneTrack& track,
+                                            const ContactOptions& options,
+                                            const FlightOptions& flight) {
   SegmentationOptions out;
   if (flight.gravity_px_per_s2) {
     out.gravity_px_per_s2 = flight.gravity_px_per_s2->value;
@@ -98,7 +98,7 @@ std::vector<Touch> FindTouches(const PlaneTrack& track,
       touch.event.down_frames = stretches[next];
     }
     const std::size_t last = stretches[k].end - 1;
-    const Flight before = FitFlight(SamplesIn(track, stretches[k]), flight);
+    const Flight before = FitFlight(SelectSamples(track, stretches[k]), flight);
     const double at = samples[last].gap_px;
     const double then =
         GapOfFlight(track, before, samples[last + 1].time_s).gap_px;
@@ -126,7 +126,7 @@ constexpr double kSeenEdge = 0.3;  // it may be off the contact
 // well above or below it. Empty where line and track agree.
 std::string RefuteGround(const PlaneTrack& track,
                          const std::vector<Touch>& touches) {
-  const PlaneSample& lowest = LowestOf(track);
+  const PlaneSample& lowest = FindLowest(track);
   if (-lowest.gap_px > NearLine(track, lowest, kSunk)) {
     return fmt::format(
         "the body passes {:.1f} px below the ground line at frame {}",
@@ -151,7 +151,8 @@ core::ContactRecord NoContact(const std::string& reason) {
   return record;
 }
 
-ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
+ContactEvidence MakeContactEvidence(const PlaneTrack& track,
+                                    const Event& event) {
   ContactEvidence e;
   e.before = event.before;
   e.after = event.after;
@@ -161,7 +162,7 @@ ContactEvidence EvidenceOf(const PlaneTrack& track, const Event& event) {
   e.u_ground_px = event.ground_px.u;
   const FlightState s = event.before->At(event.time_s.value);
   e.centre = ToImage(track, s.along_px, s.height_px);
-  e.touching = ToImage(track, s.along_px + LowestPointAlong(track, s.face_rad),
+  e.touching = ToImage(track, s.along_px + LowestPointOffset(track, s.face_rad),
                        s.height_px - SupportHeight(track, s.face_rad));
   return e;
 }
@@ -253,7 +254,7 @@ bool BeginsAtImpact(const PlaneTrack& track,
   if (first.kind != StretchKind::kFlight || first.size() < 2) {
     return false;
   }
-  const Flight flight = FitFlight(SamplesIn(track, first), options);
+  const Flight flight = FitFlight(SelectSamples(track, first), options);
   const PlaneSample& s = track.samples[first.begin];
   const FlightGap before =
       GapOfFlight(track, flight, s.time_s - track.frame_interval_s);
@@ -280,7 +281,7 @@ const Stretch* DownFromStart(const std::vector<Stretch>& stretches) {
 // something else carries the body; else 0.
 double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
   double sum = 0.0;
-  for (const PlaneSample& s : SamplesIn(track, stretch)) sum += s.gap_px;
+  for (const PlaneSample& s : SelectSamples(track, stretch)) sum += s.gap_px;
   const double gap = sum / static_cast<double>(stretch.size());
   const double near = NearLine(track, track.samples[stretch.begin], kSeenEdge);
   return std::abs(gap) > near ? gap : 0.0;
@@ -307,9 +308,9 @@ ContactResult FindContacts(const PlaneTrack& given,
   track.u_half_px =
       std::hypot(track.u_half_px, kOutline_px, kCommonSize * excess.height_px);
   track.ground.u_offset_px = std::hypot(track.ground.u_offset_px, u_common_px);
-  const FlightOptions flight = FlightFor(options);
+  const FlightOptions flight = MakeFlightOptions(options);
   const SegmentationOptions segmentation =
-      SegmentationFor(track, options, flight);
+      MakeSegmentationOptions(track, options, flight);
   std::vector<Stretch> stretches = SegmentMotion(track, segmentation);
   if (WidenToCorrelation(stretches, flight, track)) {
     stretches = SegmentMotion(track, segmentation);
@@ -339,8 +340,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   }
   std::string reason;
   const auto add = [&](const Event& event) {
-    core::ContactRecord record = RecordOf(context, event, result.warnings);
-    result.evidence.push_back(EvidenceOf(track, event));
+    core::ContactRecord record = MakeRecord(context, event, result.warnings);
+    result.evidence.push_back(MakeContactEvidence(track, event));
     if (first) {
       result.later.push_back(std::move(record));
     } else {
@@ -394,14 +395,14 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     right = std::max(right, pose.centre.x_px);
   }
   const auto level_at = [&](double y_px) {
-    calib::GroundLine level =
-        calib::GroundThrough({left, y_px}, {std::max(right, left + 1.0), y_px});
+    calib::GroundLine level = calib::MakeGroundLine(
+        {left, y_px}, {std::max(right, left + 1.0), y_px});
     level.u_angle_rad = u_level_rad;
     return level;
   };
   PlaneTrack plane = SeenFromGround(track, level_at(lowest));
   // Below it the body does not sink.
-  const double deepest = lowest - LowestOf(plane).gap_px;
+  const double deepest = lowest - FindLowest(plane).gap_px;
   plane = SeenFromGround(track, level_at(deepest));
   WidenToScatter(plane);
   constexpr double kUnknown_px = 1e3;  // nothing is known of the line yet
@@ -412,7 +413,7 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   for (Touch& touch : FindTouches(plane, SegmentMotion(plane), {})) {
     std::string reason;
     if (!MeasureEvent(plane, {}, touch.event, reason)) continue;
-    const ContactEvidence at = EvidenceOf(plane, touch.event);
+    const ContactEvidence at = MakeContactEvidence(plane, touch.event);
     if (deepest - at.touching.y_px > plane.size_px) continue;
     calib::GroundLine ground = level_at(at.touching.y_px);
     ground.reference = at.touching;

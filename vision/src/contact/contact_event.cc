@@ -68,8 +68,8 @@ void LeaveOutContact(const PlaneTrack& track, const FlightOptions& options,
   }
   event.before_frames = before;
   event.after_frames = after;
-  event.before = FitFlight(SamplesIn(track, before), options);
-  event.after = FitFlight(SamplesIn(track, after), options);
+  event.before = FitFlight(SelectSamples(track, before), options);
+  event.after = FitFlight(SelectSamples(track, after), options);
 }
 
 // A frame within half an interval of touchdown may have been exposed across
@@ -101,11 +101,11 @@ bool LeavesFlight(const PlaneSample& s, const Flight& flight) {
           off(s.face_rad - at.face_rad, at.u_face_rad, s.u_face_rad));
 }
 
-JointInput InputFor(const PlaneTrack& track, const Event& event,
-                    const FlightOptions& options) {
+JointInput MakeJointInput(const PlaneTrack& track, const Event& event,
+                          const FlightOptions& options) {
   JointInput input;
-  input.before = SamplesIn(track, event.before_frames);
-  if (event.after) input.after = SamplesIn(track, event.after_frames);
+  input.before = SelectSamples(track, event.before_frames);
+  if (event.after) input.after = SelectSamples(track, event.after_frames);
   input.u_slope_rad = track.ground.u_angle_rad;
   input.gravity_px_per_s2 = options.gravity_px_per_s2;
   input.ground_px = {0.0, std::max(track.ground.u_offset_px, 1e-6)};
@@ -125,8 +125,8 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   lasting.release_s = end_s;
   const std::optional<JointFit> soft = FitJointly(track, lasting);
   if (!soft) return;
-  const core::Estimate lasts =
-      soft->Of([](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
+  const core::Estimate lasts = soft->EstimateFunction(
+      [](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
   // No frame of either flight is in contact.
   if (instant && !input.after.empty() &&
       (lasts.value - lasts.u) * soft->interval_s >
@@ -174,7 +174,7 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   } else {
     LeaveOutStraddling(track, options, t1, event);
   }
-  JointInput input = InputFor(track, event, options);
+  JointInput input = MakeJointInput(track, event, options);
   input.touchdown_s = input.release_s = 0.5 * (t1 + t2);
 
   // The flights alone, without the line: do they meet on it?
@@ -185,7 +185,7 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   const double half_px = std::hypot(track.ground.u_offset_px, track.u_half_px);
   event.disagreement = 0.0;
   if (const auto free = FitJointly(track, without)) {
-    const core::Estimate d = free->Of(
+    const core::Estimate d = free->EstimateFunction(
         [&](const JointVector& p) { return free->GroundAtContact(p); });
     event.disagreement = d.value / std::hypot(d.u, half_px);
     const bool disagree = std::abs(event.disagreement) > kDisagree;
@@ -199,7 +199,7 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
       // No frame in contact: the flights know the ground better than the line.
       input.ground_px.u = std::abs(d.value);
     }
-    input.touchdown_s = input.release_s = free->TimeAt(free->p[kT]);
+    input.touchdown_s = input.release_s = free->ToSeconds(free->p[kT]);
   }
   std::optional<JointFit> fit = FitJointly(track, input);
   input.ground_px.u = on_line.u;
@@ -216,7 +216,8 @@ void LeaveOutHops(const PlaneTrack& track, std::size_t least,
   constexpr double kClear = 3.0;  // sigmas
   const std::size_t begin = down.begin;
   for (std::size_t i = begin; i + least < down.end; ++i) {
-    const core::Estimate rest = LevelOf(SamplesIn(track, {i + 1, down.end}));
+    const core::Estimate rest =
+        MeanRestingGap(SelectSamples(track, {i + 1, down.end}));
     const PlaneSample& s = track.samples[i];
     if (s.gap_px - rest.value > kClear * std::hypot(s.u_gap_px, rest.u)) {
       down.begin = i + 1;
@@ -228,7 +229,7 @@ void LeaveOutHops(const PlaneTrack& track, std::size_t least,
 bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
                  Event& event) {
   const auto& samples = track.samples;
-  JointInput input = InputFor(track, event, options);
+  JointInput input = MakeJointInput(track, event, options);
   // What is known of the ground's height: the line, and the body's size.
   core::Estimate ground{
       0.0,
@@ -241,7 +242,7 @@ bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
   constexpr std::size_t kEnough = 6;
   LeaveOutHops(track, kEnough, down);
   if (down.size() >= kEnough) {
-    const core::Estimate level = LevelOf(SamplesIn(track, down));
+    const core::Estimate level = MeanRestingGap(SelectSamples(track, down));
     event.disagreement = level.value / std::hypot(ground.u, level.u);
     if (std::abs(event.disagreement) > kDisagree) {
       ground = core::Combined(ground, level);
@@ -266,7 +267,7 @@ bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
 
 }  // namespace
 
-core::Estimate LevelOf(std::span<const PlaneSample> samples) {
+core::Estimate MeanRestingGap(std::span<const PlaneSample> samples) {
   double sw = 0.0;
   double swx = 0.0;
   for (const PlaneSample& s : samples) {
@@ -280,13 +281,13 @@ core::Estimate LevelOf(std::span<const PlaneSample> samples) {
     off.push_back((s.gap_px - mean) / s.u_gap_px);
   }
   const int degrees = static_cast<int>(samples.size()) - 1;
-  return {mean, InflationOf({off}, degrees) / std::sqrt(sw)};
+  return {mean, ComputeInflation({off}, degrees) / std::sqrt(sw)};
 }
 
 FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
                       double time_s) {
   const FlightState s = flight.At(time_s);
-  const double arm = LowestPointAlong(track, s.face_rad);
+  const double arm = LowestPointOffset(track, s.face_rad);
   FlightGap g;
   g.gap_px = s.height_px - SupportHeight(track, s.face_rad);
   g.rate = s.v_n + arm * s.omega;
@@ -300,10 +301,10 @@ bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
   reason = fmt::format(
       "too few frames show the body before its impact at frame {}", last.frame);
   if (event.before_frames.size() < LeastFrames(options)) return false;
-  event.before = FitFlight(SamplesIn(track, event.before_frames), options);
+  event.before = FitFlight(SelectSamples(track, event.before_frames), options);
   bool flies = event.after_frames.size() >= LeastFrames(options);
   if (flies) {
-    event.after = FitFlight(SamplesIn(track, event.after_frames), options);
+    event.after = FitFlight(SelectSamples(track, event.after_frames), options);
   }
   // With none to spare only a rebound tells where and when the flight ended,
   // and an impact one frame earlier looks alike unless the last frame is
@@ -326,16 +327,18 @@ bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
   }
   const JointFit& fit = *event.fit;
   const auto time_of = [&](JointParameter k) {
-    const core::Estimate t = fit.Of([k](const JointVector& p) { return p[k]; });
-    return core::Estimate{fit.TimeAt(t.value), t.u * fit.interval_s};
+    const core::Estimate t =
+        fit.EstimateFunction([k](const JointVector& p) { return p[k]; });
+    return core::Estimate{fit.ToSeconds(t.value), t.u * fit.interval_s};
   };
   event.time_s = time_of(kT);
   event.time_s.u = std::hypot(event.time_s.u, event.unresolved_s);
   event.release_s = fit.instant ? event.time_s : time_of(kT2);
-  event.ground_px =
-      fit.Of([&](const JointVector& p) { return fit.GroundAtContact(p); });
-  event.before = fit.Before(SamplesIn(track, event.before_frames));
-  if (flies) event.after = fit.After(SamplesIn(track, event.after_frames));
+  event.ground_px = fit.EstimateFunction(
+      [&](const JointVector& p) { return fit.GroundAtContact(p); });
+  event.before = fit.IncomingFlight(SelectSamples(track, event.before_frames));
+  if (flies)
+    event.after = fit.OutgoingFlight(SelectSamples(track, event.after_frames));
   return true;
 }
 

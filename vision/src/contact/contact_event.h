@@ -55,6 +55,6 @@ FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
 
 // Weighted mean gap of a body that is down, with the u that its scatter and the
 // correlation of its poses ask for.
-core::Estimate LevelOf(std::span<const PlaneSample> samples);
+core::Estimate MeanRestingGap(std::span<const PlaneSample> samples);
 
 }  // namespace touchdown::vision

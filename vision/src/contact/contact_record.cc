@@ -52,32 +52,34 @@ double TangentialSpeed(const JointVector& p, JointParameter vx,
 double NormalSpeed(const JointVector& p, JointParameter vx, JointParameter vy) {
   return p[vy] - p[kSlope] * p[vx];
 }
-double NormalBefore(const JointVector& p) { return NormalSpeed(p, kVx, kVy); }
-double NormalAfter(const JointVector& p) { return NormalSpeed(p, kVx2, kVy2); }
-double TangentialBefore(const JointVector& p) {
+double ApproachNormal(const JointVector& p) { return NormalSpeed(p, kVx, kVy); }
+double ReboundNormal(const JointVector& p) {
+  return NormalSpeed(p, kVx2, kVy2);
+}
+double ApproachTangential(const JointVector& p) {
   return TangentialSpeed(p, kVx, kVy);
 }
-double TangentialAfter(const JointVector& p) {
+double ReboundTangential(const JointVector& p) {
   return TangentialSpeed(p, kVx2, kVy2);
 }
 
 // The lowest point from the centre, along x', at touchdown.
-double ArmOf(const PlaneTrack& track, const JointVector& p) {
+double ContactArm(const PlaneTrack& track, const JointVector& p) {
   PlaneTrack sized;
   sized.kind = track.kind;
   sized.half_long_px = p[kHalfLong];
   sized.half_short_px = p[kHalfShort];
-  return LowestPointAlong(sized, p[kFace] - p[kSlope]);
+  return LowestPointOffset(sized, p[kFace] - p[kSlope]);
 }
 
 // What the uncertainty of `f` comes of; the squares add up to its own.
-core::Budget BudgetOf(const JointFit& fit, const JointFit::Function& f,
-                      double u) {
-  const double ground = fit.ShareOf(f, {kGround, kSlope});
+core::Budget ComputeBudget(const JointFit& fit, const JointFit::Function& f,
+                           double u) {
+  const double ground = fit.UncertaintyShare(f, {kGround, kSlope});
   const double with_size =
-      fit.ShareOf(f, {kGround, kSlope, kHalfLong, kHalfShort});
-  const double with_scale =
-      fit.ShareOf(f, {kGround, kSlope, kHalfLong, kHalfShort, kGravity});
+      fit.UncertaintyShare(f, {kGround, kSlope, kHalfLong, kHalfShort});
+  const double with_scale = fit.UncertaintyShare(
+      f, {kGround, kSlope, kHalfLong, kHalfShort, kGravity});
   const auto rest = [](double all, double part) {
     return std::sqrt(std::max(0.0, all * all - part * part));
   };
@@ -98,8 +100,8 @@ void FillAttitude(const PlaneTrack& track, const Estimate& measured,
   const double tilt = std::abs(std::remainder(face, 0.5 * pi));
   contact.corner =
       tilt < std::max(2.0 * measured.u, resolution_rad) ? core::Corner::kFlush
-      : LowestPointAlong(track, face) > 0.0             ? core::Corner::kLeading
-                                            : core::Corner::kTrailing;
+      : LowestPointOffset(track, face) > 0.0            ? core::Corner::kLeading
+                                             : core::Corner::kTrailing;
 }
 
 void FillAngles(const RecordContext& context, const Event& event,
@@ -107,19 +109,21 @@ void FillAngles(const RecordContext& context, const Event& event,
   const PlaneTrack& track = context.track;
   const JointFit& fit = *event.fit;
   const auto approach = [](const JointVector& p) {
-    return std::atan2(-NormalBefore(p), std::abs(TangentialBefore(p)));
+    return std::atan2(-ApproachNormal(p), std::abs(ApproachTangential(p)));
   };
-  Estimate angle = fit.Of(approach);
+  Estimate angle = fit.EstimateFunction(approach);
   const double localised_approach = angle.u;
   // What all poses are off in the body's own directions turns with it, as if
   // the centre moved; and it drifts.
-  const double paces = std::max(
-      std::hypot(fit.Of(NormalBefore).value, fit.Of(TangentialBefore).value),
-      kLeastPace);
+  const double paces =
+      std::max(std::hypot(fit.EstimateFunction(ApproachNormal).value,
+                          fit.EstimateFunction(ApproachTangential).value),
+               kLeastPace);
   const double turns =
       track.kind == core::BodyKind::kSphere
           ? 0.0
-          : fit.Of([](const JointVector& p) { return p[kOmega]; }).value;
+          : fit.EstimateFunction([](const JointVector& p) { return p[kOmega]; })
+                .value;
   const double picture =
       std::hypot(context.u_common_place_px * turns,
                  CommonDrift(context.u_common_place_px, event.before_frames)) /
@@ -133,7 +137,7 @@ void FillAngles(const RecordContext& context, const Event& event,
     flat.interval95 =
         core::Interval{0.0, flat.value + core::kNormal975 * angle.u};
   }
-  contact.approach_budget = BudgetOf(fit, approach, localised_approach);
+  contact.approach_budget = ComputeBudget(fit, approach, localised_approach);
   if (picture > 0.0) contact.approach_budget.push_back({"picture", picture});
   if (track.kind == core::BodyKind::kSphere) {
     contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
@@ -143,19 +147,19 @@ void FillAngles(const RecordContext& context, const Event& event,
   const auto to_ground = [](const JointVector& p) {
     return p[kFace] - p[kSlope];
   };
-  Estimate measured = fit.Of(to_ground);
+  Estimate measured = fit.EstimateFunction(to_ground);
   const double localised = measured.u;
   measured.u = std::hypot(measured.u, context.u_common_face_rad);
   constexpr double kResolution_px = 0.05;
   FillAttitude(track, measured, kResolution_px / (2.0 * track.half_long_px),
                contact);
-  contact.attitude_budget = BudgetOf(fit, to_ground, localised);
+  contact.attitude_budget = ComputeBudget(fit, to_ground, localised);
   contact.attitude_budget.push_back({"picture", context.u_common_face_rad});
-  contact.radius_angle_rad = fit.Of([&](const JointVector& p) {
+  contact.radius_angle_rad = fit.EstimateFunction([&](const JointVector& p) {
     const double at = p[kFace] - p[kSlope];
     const double reach = p[kHalfLong] * std::abs(std::sin(at)) +
                          p[kHalfShort] * std::abs(std::cos(at));
-    return std::atan2(reach, std::abs(ArmOf(track, p)));
+    return std::atan2(reach, std::abs(ContactArm(track, p)));
   });
   Estimate& radius = *contact.radius_angle_rad;
   radius.u = std::hypot(radius.u, context.u_common_face_rad);
@@ -167,18 +171,20 @@ void FillMotion(const RecordContext& context, const Event& event,
   const JointFit& fit = *event.fit;
   core::Motion& m = record.motion;
   const auto speed = [&](const JointFit::Function& f) {
-    return InMetres(context, core::Scaled(fit.Of(f), 1.0 / fit.interval_s));
+    return InMetres(
+        context, core::Scaled(fit.EstimateFunction(f), 1.0 / fit.interval_s));
   };
   m.before_speed_mps =
       speed([](const JointVector& p) { return std::hypot(p[kVx], p[kVy]); });
-  m.before_normal_mps = speed(NormalBefore);
-  m.before_tangential_mps = speed(TangentialBefore);
+  m.before_normal_mps = speed(ApproachNormal);
+  m.before_tangential_mps = speed(ApproachTangential);
   const bool turns = track.kind == core::BodyKind::kRectangle;
   const auto omega = [&](JointParameter k,
                          const SampleRange& flight) -> Measured {
     if (!turns) return AbsentBecause("no mark on the sphere");
     // face grows as the leading end rises: counter-clockwise with x' ahead.
-    Estimate rate = fit.Of([k](const JointVector& p) { return p[k]; });
+    Estimate rate =
+        fit.EstimateFunction([k](const JointVector& p) { return p[k]; });
     rate.u = std::hypot(rate.u, CommonDrift(context.u_common_face_rad, flight));
     return core::Scaled(rate, 1.0 / fit.interval_s);
   };
@@ -189,25 +195,26 @@ void FillMotion(const RecordContext& context, const Event& event,
          &m.restitution, &m.centre_rebound_ratio, &m.impulse_ratio},
         "no release from the ground was seen");
   } else {
-    m.after_normal_mps = speed(NormalAfter);
-    m.after_tangential_mps = speed(TangentialAfter);
+    m.after_normal_mps = speed(ReboundNormal);
+    m.after_tangential_mps = speed(ReboundTangential);
     m.after_omega_rad_per_s = omega(kOmega2, event.after_frames);
     const auto point_before = [&](const JointVector& p) {
-      return NormalBefore(p) + p[kOmega] * ArmOf(track, p);
+      return ApproachNormal(p) + p[kOmega] * ContactArm(track, p);
     };
     const auto point_after = [&](const JointVector& p) {
-      return NormalAfter(p) + p[kOmega2] * ArmOf(track, p);
+      return ReboundNormal(p) + p[kOmega2] * ContactArm(track, p);
     };
     // A quotient, where its denominator stands out of its uncertainty.
     const auto quotient = [&](const JointFit::Function& above,
                               const JointFit::Function& below,
                               const char* what) -> Measured {
-      const Estimate denominator = fit.Of(below);
+      const Estimate denominator = fit.EstimateFunction(below);
       if (!(std::abs(denominator.value) > kMeasurable * denominator.u)) {
         return AbsentBecause(
             fmt::format("the {} is below five times its uncertainty", what));
       }
-      return fit.Of([&](const JointVector& p) { return above(p) / below(p); });
+      return fit.EstimateFunction(
+          [&](const JointVector& p) { return above(p) / below(p); });
     };
     m.restitution =
         quotient([&](const JointVector& p) { return -point_after(p); },
@@ -217,13 +224,15 @@ void FillMotion(const RecordContext& context, const Event& event,
       m.unresolved_impacts = 2;
     }
     m.centre_rebound_ratio =
-        quotient([](const JointVector& p) { return -NormalAfter(p); },
-                 NormalBefore, "normal velocity before");
+        quotient([](const JointVector& p) { return -ReboundNormal(p); },
+                 ApproachNormal, "normal velocity before");
     m.impulse_ratio = quotient(
         [](const JointVector& p) {
-          return std::abs(TangentialAfter(p) - TangentialBefore(p));
+          return std::abs(ReboundTangential(p) - ApproachTangential(p));
         },
-        [](const JointVector& p) { return NormalAfter(p) - NormalBefore(p); },
+        [](const JointVector& p) {
+          return ReboundNormal(p) - ApproachNormal(p);
+        },
         "change of normal velocity");
   }
 
@@ -236,7 +245,7 @@ void FillMotion(const RecordContext& context, const Event& event,
     double swx = 0.0;
     const auto add = [&](const SampleRange& range) {
       if (range.size() < 6) return;
-      const Flight free = FitFlight(SamplesIn(track, range));
+      const Flight free = FitFlight(SelectSamples(track, range));
       const double w = 1.0 / free.height_cov(2, 2);
       sw += w;
       swx += w * free.height[2];
@@ -374,8 +383,8 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
 
 }  // namespace
 
-core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
-                             std::vector<std::string>& warnings) {
+core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
+                               std::vector<std::string>& warnings) {
   const PlaneTrack& track = context.track;
   core::ContactRecord record;
   core::Contact& contact = record.contact;
@@ -389,8 +398,8 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
   // clips in H.264 (crf 23), of which 61 of 76 lay within 1.96 u without it; on
   // 113 others 108 lie with it.
   constexpr double kOfPlace = 0.5;
-  const double pace =
-      std::max(std::abs(event.fit->Of(NormalBefore).value), kLeastPace);
+  const double pace = std::max(
+      std::abs(event.fit->EstimateFunction(ApproachNormal).value), kLeastPace);
   if (track.is_predicted) {
     contact.time_s->u = std::hypot(
         contact.time_s->u, kOfPlace * context.u_common_place_px / pace * dt);
@@ -477,12 +486,13 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
                                {"ground", track.ground.u_angle_rad}};
     contact.radius_angle_rad =
         Estimate{std::atan2(SupportHeight(track, face.value),
-                            std::abs(LowestPointAlong(track, face.value))),
+                            std::abs(LowestPointOffset(track, face.value))),
                  face.u};
   }
   // Its own path is the line: its direction has no u of its own here.
   FillState(context, 0,
-            {samples.front().along_px, LevelOf(SamplesIn(track, down)), 0.0},
+            {samples.front().along_px,
+             MeanRestingGap(SelectSamples(track, down)), 0.0},
             nullptr, record.state);
   record.state.reason = "on the ground from the start; " + record.state.reason;
   NameWhatStaysDown(context, 0, record.state);

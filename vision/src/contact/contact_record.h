@@ -21,8 +21,8 @@ struct RecordContext {
   double u_common_face_rad = 0.0;
 };
 
-core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
-                             std::vector<std::string>& warnings);
+core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
+                               std::vector<std::string>& warnings);
 
 // A body that is on the ground from the first frame, `down`: approach angle 0.
 // `slope` is the inclination of its path to the ground line that was taken out.

@@ -16,10 +16,10 @@ struct Finder {
   const Event* event;
   std::optional<GreatestGap> greatest = std::nullopt;
 
-  void LookAt(const Stretch& stretch);
+  void SearchStretch(const Stretch& stretch);
   void LookAtFlight(const SampleRange& range);
   void LookAtFrames(const SampleRange& range);
-  void LookBetween(const PlaneSample& a, const PlaneSample& b);
+  void SearchInterval(const PlaneSample& a, const PlaneSample& b);
   void LookAfterTouchdown();
   void Offer(const core::Estimate& gap, std::int64_t frame);
   double UncertaintyOfGround(double along_px) const {
@@ -45,14 +45,14 @@ void Finder::LookAtFlight(const SampleRange& range) {
                      event->after_frames.begin >= begin &&
                      event->after_frames.end == end;
   const Flight flight =
-      first ? *event->after : FitFlight(SamplesIn(track, range), options);
+      first ? *event->after : FitFlight(SelectSamples(track, range), options);
   // With its u: of the joint fit where ground and flight are one.
   const auto gap_at = [&](double t) {
     if (first) {
       const JointFit& fit = *event->fit;
       const double frames = (t - fit.origin_s) / fit.interval_s;
-      return fit.Of(
-          [&](const JointVector& p) { return fit.GapAfter(p, frames); });
+      return fit.EstimateFunction(
+          [&](const JointVector& p) { return fit.ReboundGap(p, frames); });
     }
     const FlightGap g = GapOfFlight(track, flight, t);
     return core::Estimate{
@@ -91,7 +91,7 @@ void Finder::LookAtFlight(const SampleRange& range) {
   };
   const double at =
       highest(std::max(start, first ? event->release_s.value : start), stop);
-  const auto seen = SamplesIn(track, range);
+  const auto seen = SelectSamples(track, range);
   const auto near = std::min_element(
       seen.begin(), seen.end(),
       [&](const PlaneSample& a, const PlaneSample& b) {
@@ -138,7 +138,7 @@ void Finder::LookAtFrames(const SampleRange& range) {
     Offer({local.gap_px - ground.height_px.value,
            std::hypot(local.u_px, UncertaintyOfGround(s.along_px))},
           s.frame);
-    if (i > since) LookBetween(track.samples[i - 1], track.samples[i]);
+    if (i > since) SearchInterval(track.samples[i - 1], track.samples[i]);
   }
 }
 
@@ -146,7 +146,7 @@ void Finder::LookAtFrames(const SampleRange& range) {
 // the way, which no frame need show. Its poses in between are those of a steady
 // motion; how much more they show than both frames is known to nothing better
 // than that: a rectangular distribution of that half-width.
-void Finder::LookBetween(const PlaneSample& a, const PlaneSample& b) {
+void Finder::SearchInterval(const PlaneSample& a, const PlaneSample& b) {
   if (track.kind != core::BodyKind::kRectangle) return;
   constexpr int kSteps = 16;  // misses a 32nd of what the motion shows
   double most = 0.0;
@@ -180,7 +180,7 @@ void Finder::LookAfterTouchdown() {
   touchdown.height_px =
       ground.height_px.value + SupportHeight(track, at.face_rad);
   constexpr double kLeastU_px = 1e-3;
-  const double arm = LowestPointAlong(track, at.face_rad);
+  const double arm = LowestPointOffset(track, at.face_rad);
   touchdown.u_along_px = std::max(at.u_along_px, kLeastU_px);
   touchdown.u_face_rad = at.u_face_rad;
   touchdown.u_height_px = std::hypot(arm * at.u_face_rad, kLeastU_px);
@@ -194,7 +194,7 @@ void Finder::LookAfterTouchdown() {
   // It still stands on the corner that it landed on, so that no other impact
   // lies between.
   if (first == samples.size() ||
-      arm * LowestPointAlong(track, samples[first].face_rad) < 0.0) {
+      arm * LowestPointOffset(track, samples[first].face_rad) < 0.0) {
     return;
   }
   struct Hop {
@@ -235,7 +235,7 @@ void Finder::LookAfterTouchdown() {
   }
 }
 
-void Finder::LookAt(const Stretch& stretch) {
+void Finder::SearchStretch(const Stretch& stretch) {
   const SampleRange range{std::max(stretch.begin, since), stretch.end};
   if (range.begin >= range.end) return;
   if (stretch.kind == StretchKind::kFlight &&
@@ -255,7 +255,7 @@ std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
                                            const FlightOptions& options,
                                            const Event* event) {
   Finder finder{track, from, ground, options, event};
-  for (const Stretch& stretch : stretches) finder.LookAt(stretch);
+  for (const Stretch& stretch : stretches) finder.SearchStretch(stretch);
   if (event && !event->after) finder.LookAfterTouchdown();
   return finder.greatest;
 }

@@ -23,7 +23,7 @@ struct LowestCorners {
   double depth = 0.0;
 };
 
-LowestCorners LowestCornersOf(const JointVector& p) {
+LowestCorners FindLowestCorners(const JointVector& p) {
   const double face = p[kFace] - p[kSlope];
   const double s = std::sin(face);
   const double c = std::cos(face);
@@ -43,7 +43,7 @@ double NormalChange(const JointVector& p) {
 }
 
 double Share(const JointVector& p) {
-  const LowestCorners corners = LowestCornersOf(p);
+  const LowestCorners corners = FindLowestCorners(p);
   constexpr double kThird = 1.0 / 3.0;
   const double k2 =
       kThird * (p[kHalfLong] * p[kHalfLong] + p[kHalfShort] * p[kHalfShort]);
@@ -60,11 +60,11 @@ core::Measured ShareOfSecondCorner(const PlaneTrack& track,
   if (track.kind != core::BodyKind::kRectangle) {
     return core::AbsentBecause("no corners");
   }
-  const core::Estimate change = fit.Of(NormalChange);
+  const core::Estimate change = fit.EstimateFunction(NormalChange);
   if (!(std::abs(change.value) > kMeasurable * change.u)) {
     return core::AbsentBecause("the normal velocity hardly changes");
   }
-  return fit.Of(Share);
+  return fit.EstimateFunction(Share);
 }
 
 std::string WhySeveralImpacts(const PlaneTrack& track, const JointFit& fit) {

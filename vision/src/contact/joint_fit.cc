@@ -18,7 +18,7 @@ struct Support {
   double d_face = 0.0;
 };
 
-Support SupportOf(bool turns, const JointVector& p, double face) {
+Support ComputeSupport(bool turns, const JointVector& p, double face) {
   Support s;
   if (!turns) {
     s.value = p[kHalfLong];
@@ -40,7 +40,7 @@ struct Side {
   JointParameter t, x, vx, vy, face, omega, gravity;
 };
 
-Side SideOf(const JointFit& fit, bool after) {
+Side SideParameters(const JointFit& fit, bool after) {
   if (!after) return {kT, kX, kVx, kVy, kFace, kOmega, kGravity};
   const JointParameter gravity = fit.active[kGravity2] ? kGravity2 : kGravity;
   if (fit.instant) return {kT, kX, kVx2, kVy2, kFace, kOmega2, gravity};
@@ -68,7 +68,7 @@ PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
   pose.along.d[side.t] = -p[side.vx];
 
   const Support support =
-      SupportOf(fit.turns, p, fit.turns ? p[side.face] - p[kSlope] : 0.0);
+      ComputeSupport(fit.turns, p, fit.turns ? p[side.face] - p[kSlope] : 0.0);
   const double reach = p[side.x] - fit.reference_px;
   Predicted& h = pose.height;
   h.value = p[kGround] + p[kSlope] * reach + support.value + p[side.vy] * s -
@@ -182,7 +182,7 @@ void Solver::Accumulate() {
   fit_.degrees = 0;
   const double dt = fit_.interval_s;
   const auto add = [&](std::span<const PlaneSample> samples, bool after) {
-    const Side side = SideOf(fit_, after);
+    const Side side = SideParameters(fit_, after);
     for (const PlaneSample& s : samples) {
       const PredictedPose pose =
           PredictPose(fit_, side, (s.time_s - fit_.origin_s) / dt);
@@ -293,12 +293,12 @@ JointVector Gradient(const JointFit& fit, const JointFit::Function& f) {
 }
 
 // One side as a Flight about the instant of contact.
-Flight FlightOf(const JointFit& fit, const Side& side,
-                std::span<const PlaneSample> samples) {
+Flight MakeFlight(const JointFit& fit, const Side& side,
+                  std::span<const PlaneSample> samples) {
   Flight flight;
   const double fps = 1.0 / fit.interval_s;
   const double t = fit.p[side.t];
-  flight.t0_s = fit.TimeAt(t);
+  flight.t0_s = fit.ToSeconds(t);
   flight.frames = static_cast<int>(samples.size());
   flight.first_frame = samples.front().frame;
   flight.last_frame = samples.back().frame;
@@ -348,14 +348,14 @@ Flight FlightOf(const JointFit& fit, const Side& side,
 
 }  // namespace
 
-core::Estimate JointFit::Of(const Function& f) const {
+core::Estimate JointFit::EstimateFunction(const Function& f) const {
   const JointVector gradient = Gradient(*this, f);
   return {f(p), std::sqrt(std::max(0.0, gradient.dot(covariance * gradient))),
           std::nullopt};
 }
 
-double JointFit::ShareOf(const Function& f,
-                         std::initializer_list<JointParameter> known) const {
+double JointFit::UncertaintyShare(
+    const Function& f, std::initializer_list<JointParameter> known) const {
   const JointVector gradient = Gradient(*this, f);
   const double all = gradient.dot(covariance * gradient);
   // With `known` fixed: the covariance less its regression on them.
@@ -375,25 +375,25 @@ double JointFit::ShareOf(const Function& f,
   return std::sqrt(std::clamp(share, 0.0, all));
 }
 
-double JointFit::GapAfter(const JointVector& q, double t) const {
-  const Side side = SideOf(*this, true);
+double JointFit::ReboundGap(const JointVector& q, double t) const {
+  const Side side = SideParameters(*this, true);
   const double s = t - q[side.t];
   const double at_release =
-      SupportOf(turns, q, turns ? q[side.face] - q[kSlope] : 0.0).value;
+      ComputeSupport(turns, q, turns ? q[side.face] - q[kSlope] : 0.0).value;
   const double then =
-      SupportOf(turns, q,
-                turns ? q[side.face] + q[side.omega] * s - q[kSlope] : 0.0)
+      ComputeSupport(turns, q,
+                     turns ? q[side.face] + q[side.omega] * s - q[kSlope] : 0.0)
           .value;
   return at_release - then + (q[side.vy] - q[kSlope] * q[side.vx]) * s -
          0.5 * q[side.gravity] * s * s;
 }
 
-Flight JointFit::Before(std::span<const PlaneSample> samples) const {
-  return FlightOf(*this, SideOf(*this, false), samples);
+Flight JointFit::IncomingFlight(std::span<const PlaneSample> samples) const {
+  return MakeFlight(*this, SideParameters(*this, false), samples);
 }
 
-Flight JointFit::After(std::span<const PlaneSample> samples) const {
-  return FlightOf(*this, SideOf(*this, true), samples);
+Flight JointFit::OutgoingFlight(std::span<const PlaneSample> samples) const {
+  return MakeFlight(*this, SideParameters(*this, true), samples);
 }
 
 std::optional<JointFit> FitJointly(const PlaneTrack& track,

@@ -79,22 +79,22 @@ struct JointFit {
 
   using Function = std::function<double(const JointVector&)>;
   // A function of the parameters with its uncertainty, first order.
-  core::Estimate Of(const Function& f) const;
+  core::Estimate EstimateFunction(const Function& f) const;
   // The part of the uncertainty of `f` that would vanish if these were known.
-  double ShareOf(const Function& f,
-                 std::initializer_list<JointParameter> known) const;
+  double UncertaintyShare(const Function& f,
+                          std::initializer_list<JointParameter> known) const;
 
-  double TimeAt(double t) const { return origin_s + t * interval_s; }
+  double ToSeconds(double t) const { return origin_s + t * interval_s; }
   // Of the ground above the line, where parameters `q` put the contact.
   double GroundAtContact(const JointVector& q) const {
     return q[kGround] + q[kSlope] * (q[kX] - reference_px);
   }
   // Of the lowest point above the ground, t frames after the origin, in the
   // flight after release; 0 at the release itself.
-  double GapAfter(const JointVector& q, double t) const;
+  double ReboundGap(const JointVector& q, double t) const;
   // The flights as the rest of vision knows them; covariances included.
-  Flight Before(std::span<const PlaneSample> samples) const;
-  Flight After(std::span<const PlaneSample> samples) const;
+  Flight IncomingFlight(std::span<const PlaneSample> samples) const;
+  Flight OutgoingFlight(std::span<const PlaneSample> samples) const;
 };
 
 // A quotient by less than so many u of the denominator means nothing.

@@ -24,7 +24,7 @@ struct RimPoint {
 };
 
 // Points spread evenly along the outline, with outward normals.
-std::vector<RimPoint> PointsOf(core::BodyKind kind, const ShapeVector& s) {
+std::vector<RimPoint> SpreadPoints(core::BodyKind kind, const ShapeVector& s) {
   std::vector<RimPoint> points;
   const double c = std::cos(s[2]);
   const double n = std::sin(s[2]);
@@ -67,7 +67,7 @@ std::optional<ShapeVector> DistortedOffset(core::BodyKind kind,
   const double n = std::sin(seen[2]);
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
   ShapeVector right = ShapeVector::Zero();
-  for (const RimPoint& p : PointsOf(kind, ideal)) {
+  for (const RimPoint& p : SpreadPoints(kind, ideal)) {
     const core::PixelPoint q = calib::Distort(lens, p.at);
     const Eigen::Vector2d d(q.x_px - seen[0], q.y_px - seen[1]);
     ShapeVector row = ShapeVector::Zero();
@@ -107,9 +107,10 @@ std::optional<ShapeVector> DistortedOffset(core::BodyKind kind,
 }
 
 // The ideal outline whose image is `seen`.
-std::optional<ShapeVector> IdealOf(core::BodyKind kind, const ShapeVector& seen,
-                                   const calib::Lens& lens,
-                                   Eigen::Matrix2d& jacobian) {
+std::optional<ShapeVector> FindIdealShape(core::BodyKind kind,
+                                          const ShapeVector& seen,
+                                          const calib::Lens& lens,
+                                          Eigen::Matrix2d& jacobian) {
   const auto centre = calib::Undistort(lens, {seen[0], seen[1]});
   if (!centre) return std::nullopt;
   jacobian = centre->jacobian;
@@ -164,7 +165,7 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
   for (const Pose& pose : track.poses) {
     const ShapeVector seen = SeenShape(track, pose);
     Eigen::Matrix2d j;
-    const auto ideal = IdealOf(track.body.kind, seen, lens, j);
+    const auto ideal = FindIdealShape(track.body.kind, seen, lens, j);
     if (!ideal) {
       ++lost;
       continue;

@@ -80,8 +80,8 @@ class Segmenter {
  private:
   struct Fits;
   std::vector<Stretch> BestPath();
-  double CostOf(const Stretch& stretch, bool touches_at_end) const;
-  void GrowFrom(std::size_t begin);
+  double ComputeCost(const Stretch& stretch, bool touches_at_end) const;
+  void GrowStretches(std::size_t begin);
   void OfferFlight(const Fits& fits);
   void OfferSupport(const Fits& fits);
   void OfferAnyMotion(const Fits& fits);
@@ -129,9 +129,9 @@ struct Segmenter::Fits {
   std::size_t end() const { return begin + frames; }
   void Add(const Segmenter& of);
   void Fit();
-  double RssOf(StretchKind kind, const Segmenter& of) const;
+  double ComputeRss(StretchKind kind, const Segmenter& of) const;
   MotionFit As(StretchKind kind, int parameters, const Segmenter& of) const {
-    return {kind, parameters, RssOf(kind, of)};
+    return {kind, parameters, ComputeRss(kind, of)};
   }
 };
 
@@ -144,13 +144,14 @@ void Segmenter::Fits::Add(const Segmenter& of) {
 }
 
 void Segmenter::Fits::Fit() {
-  x = Polynomial(sums.Of(kAlong));
-  y = Polynomial(sums.Of(kHeight));
-  f = Polynomial(sums.Of(kFaceAngle));
-  gaps = sums.Of(kGap);
+  x = Polynomial(sums.SelectSeries(kAlong));
+  y = Polynomial(sums.SelectSeries(kHeight));
+  f = Polynomial(sums.SelectSeries(kFaceAngle));
+  gaps = sums.SelectSeries(kGap);
 }
 
-double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
+double Segmenter::Fits::ComputeRss(StretchKind kind,
+                                   const Segmenter& of) const {
   if (kind == StretchKind::kFlight) {
     const bool known = of.options_.gravity_px_per_s2.has_value();
     return x.rss1 + (known ? y.rss1 : y.rss2) + f.rss1;
@@ -333,7 +334,7 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   if (told) offer_other(kEnded, kEnded, after);
 }
 
-void Segmenter::GrowFrom(std::size_t begin) {
+void Segmenter::GrowStretches(std::size_t begin) {
   double least = kInfinity;
   for (const PathStep& step : best_[begin]) least = std::min(least, step.cost);
   if (!(least < kInfinity)) return;
@@ -361,11 +362,12 @@ void Segmenter::GrowFrom(std::size_t begin) {
 }
 
 // Of one stretch, for the choice of its ends.
-double Segmenter::CostOf(const Stretch& stretch, bool touches_at_end) const {
+double Segmenter::ComputeCost(const Stretch& stretch,
+                              bool touches_at_end) const {
   Fits fits(*this, stretch.begin);
   while (fits.frames < stretch.size()) fits.Add(*this);
   fits.Fit();
-  double cost = 0.5 * fits.RssOf(stretch.kind, *this);
+  double cost = 0.5 * fits.ComputeRss(stretch.kind, *this);
   if (stretch.kind != StretchKind::kFlight) return cost;
   cost += StartCost(fits);
   if (touches_at_end) cost += EndCost(fits);
@@ -396,7 +398,7 @@ void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
       Stretch right = b;
       left.end = right.begin = cut;
       const bool ends = k + 2 < stretches.size();
-      const double cost = CostOf(left, true) + CostOf(right, ends);
+      const double cost = ComputeCost(left, true) + ComputeCost(right, ends);
       if (cost < best_cost) {
         best_cost = cost;
         best = cut;
@@ -440,7 +442,7 @@ std::vector<Stretch> Segmenter::BestPath() {
   best_.assign(n + 1, {});
   best_[0][kAtStart].cost = 0.0;
   for (std::size_t begin = 0; begin < n; ++begin) {
-    if (allowed_[begin]) GrowFrom(begin);
+    if (allowed_[begin]) GrowStretches(begin);
   }
   State state = kTouched;
   for (const State other : {kOnGround, kLeft, kEnded}) {

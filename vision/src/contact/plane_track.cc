@@ -106,8 +106,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
 
   const double ground_angle = calib::ImageAngle(ground);
   const double displacement =
-      calib::PositionAlong(ground, track.poses.back().centre) -
-      calib::PositionAlong(ground, track.poses.front().centre);
+      calib::PositionOnLine(ground, track.poses.back().centre) -
+      calib::PositionOnLine(ground, track.poses.front().centre);
   plane.direction = displacement < 0.0 ? -1 : 1;
   const double cosine = std::cos(ground_angle);
   const double sine = std::sin(ground_angle);
@@ -117,8 +117,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
     PlaneSample s;
     s.frame = pose.frame;
     s.time_s = pose.time_s;
-    s.along_px = plane.direction * calib::PositionAlong(ground, pose.centre);
-    s.height_px = calib::HeightAbove(ground, pose.centre);
+    s.along_px = plane.direction * calib::PositionOnLine(ground, pose.centre);
+    s.height_px = calib::HeightAboveLine(ground, pose.centre);
     const double xx = pose.u_x_px * pose.u_x_px;
     const double yy = pose.u_y_px * pose.u_y_px;
     const double xy = pose.correlation_xy * pose.u_x_px * pose.u_y_px;
@@ -147,7 +147,7 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
                                std::fmax(plane.half_long_px, 1.0);
       support = SupportHeight(plane, s.face_rad);
       // d(support)/d(face) is where the lowest point is along x'.
-      u_support = std::abs(LowestPointAlong(plane, s.face_rad)) * s.u_face_rad;
+      u_support = std::abs(LowestPointOffset(plane, s.face_rad)) * s.u_face_rad;
     }
     s.gap_px = s.height_px - support * pose.relative_size;
     s.u_gap_px = std::hypot(s.u_height_px, u_support);
@@ -161,7 +161,7 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
 PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
                           const std::optional<PlaneYaw>& yaw) {
   if (!yaw || track.poses.empty()) return SeenStraight(track, ground);
-  const YawedView view = ViewOf(ground, *yaw);
+  const YawedView view = MakeYawedView(ground, *yaw);
   const Turned turned = TurnedTrack(track, ground, view);
   PlaneTrack plane = SeenStraight(turned.track, turned.ground);
   plane.ground = ground;
@@ -175,7 +175,7 @@ PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
 core::PixelPoint ToImage(const PlaneTrack& track, double along_px,
                          double height_px) {
   if (track.yaw) {
-    return FromPlane(ViewOf(track.ground, *track.yaw),
+    return FromPlane(MakeYawedView(track.ground, *track.yaw),
                      track.direction * along_px, height_px);
   }
   const double angle = calib::ImageAngle(track.ground);
@@ -192,7 +192,7 @@ double SupportHeight(const PlaneTrack& track, double face_rad) {
          track.half_short_px * std::abs(std::cos(face_rad));
 }
 
-double LowestPointAlong(const PlaneTrack& track, double face_rad) {
+double LowestPointOffset(const PlaneTrack& track, double face_rad) {
   if (track.kind == core::BodyKind::kSphere) return 0.0;
   const double s = std::sin(face_rad);
   const double c = std::cos(face_rad);

@@ -17,7 +17,7 @@ Eigen::Vector2d FromAxis(const YawedView& view, core::PixelPoint p) {
 
 }  // namespace
 
-YawedView ViewOf(const calib::GroundLine& ground, const PlaneYaw& yaw) {
+YawedView MakeYawedView(const calib::GroundLine& ground, const PlaneYaw& yaw) {
   constexpr double kMost_rad = 60.0 * core::kDegree;
   if (!(std::abs(yaw.yaw_rad) < kMost_rad)) {
     throw std::invalid_argument(fmt::format(

@@ -124,7 +124,7 @@ bool AsksForBend(const PlaneTrack& track, const Path& path,
 }
 
 // The middle of some poses.
-core::PixelPoint MiddleOf(std::span<const Pose> poses) {
+core::PixelPoint MeanCentre(std::span<const Pose> poses) {
   core::PixelPoint middle;
   for (const Pose& pose : poses) {
     middle.x_px += pose.centre.x_px / static_cast<double>(poses.size());
@@ -141,8 +141,8 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
   if (n < kLeast) return std::nullopt;
   // Roughly: from the middle of the first third to that of the last.
   const std::span<const Pose> poses(track.poses);
-  core::PixelPoint from = MiddleOf(poses.first(n / 3));
-  core::PixelPoint to = MiddleOf(poses.last(n / 3));
+  core::PixelPoint from = MeanCentre(poses.first(n / 3));
+  core::PixelPoint to = MeanCentre(poses.last(n / 3));
   if (to.x_px < from.x_px) std::swap(from, to);
   const double run_px = to.x_px - from.x_px;
   const double rise_px = std::abs(to.y_px - from.y_px);
@@ -155,7 +155,7 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
   const double to_vertical = std::atan2(run_px, rise_px);
   if (to_vertical < kRolled_rad) return std::nullopt;
   const PlaneTrack plane =
-      SeenFromGround(track, calib::GroundThrough(from, to));
+      SeenFromGround(track, calib::MakeGroundLine(from, to));
   const Path path(plane);
   if (!path.line.good() || !path.IsCarried()) return std::nullopt;
   // As flight, an acceleration along the path would show as much across it as
@@ -173,8 +173,8 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
                    path.line.At(place));
   };
   calib::GroundLine line = plane.direction > 0
-                               ? calib::GroundThrough(at(-1.0), at(1.0), 0.0)
-                               : calib::GroundThrough(at(1.0), at(-1.0), 0.0);
+                               ? calib::MakeGroundLine(at(-1.0), at(1.0), 0.0)
+                               : calib::MakeGroundLine(at(1.0), at(-1.0), 0.0);
   line.reference = at(0.0);
   line.source = calib::GroundSource::kContactPoints;
   constexpr double kCounting = 0.25;

@@ -82,7 +82,8 @@ double WidenToNoise(std::vector<PlaneSample>& samples,
 
 }  // namespace
 
-double InflationOf(const std::vector<std::vector<double>>& runs, int degrees) {
+double ComputeInflation(const std::vector<std::vector<double>>& runs,
+                        int degrees) {
   double square = 0.0;
   std::size_t n = 0;
   for (const auto& run : runs) {
@@ -123,7 +124,7 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
   for (const Stretch& stretch : stretches) {
     const std::size_t n = stretch.size();
     if (stretch.kind != StretchKind::kFlight || n < kLeast) continue;
-    const auto samples = SamplesIn(track, stretch);
+    const auto samples = SelectSamples(track, stretch);
     const Flight flight = FitFlight(samples, options);
     std::vector<double> x, y, f;
     for (const PlaneSample& s : samples) {
@@ -139,11 +140,11 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
     flat_degrees += degrees;
     bent_degrees += degrees - (options.gravity_px_per_s2 ? 0 : 1);
   }
-  const double by_along = InflationOf(along, flat_degrees);
-  const double by_height = InflationOf(height, bent_degrees);
-  const double by_face = turns ? InflationOf(face, flat_degrees) : 1.0;
+  const double by_along = ComputeInflation(along, flat_degrees);
+  const double by_height = ComputeInflation(height, bent_degrees);
+  const double by_face = turns ? ComputeInflation(face, flat_degrees) : 1.0;
   for (PlaneSample& s : track.samples) {
-    const double arm = s.u_face_rad * LowestPointAlong(track, s.face_rad);
+    const double arm = s.u_face_rad * LowestPointOffset(track, s.face_rad);
     s.u_along_px *= by_along;
     s.u_height_px *= by_height;
     s.u_face_rad *= by_face;

@@ -31,11 +31,12 @@ inline constexpr double kExcessVariance = 2.2;
 //   max(1, chi^2 / (degrees of freedom) (1 + 2 sum_k rho_k))
 // rho_k: the correlation k frames apart within a run of frames, summed as long
 // as it is positive (Geyer, Statist. Sci. 7, 1992, 473).
-double InflationOf(const std::vector<std::vector<double>>& runs, int degrees);
+double ComputeInflation(const std::vector<std::vector<double>>& runs,
+                        int degrees);
 
 // Widens the claims of poses whose errors go together, so that fits of many
-// frames do not gain by their number: of each coordinate by the InflationOf the
-// residuals of all flights. Whether any was widened.
+// frames do not gain by their number: of each coordinate by the
+// ComputeInflation the residuals of all flights. Whether any was widened.
 bool WidenToCorrelation(const std::vector<Stretch>& stretches,
                         const FlightOptions& options, PlaneTrack& track);
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "numbers/robust.h"
 #include "numbers/moments.h"
+#include "numbers/robust.h"
 
 namespace touchdown::vision {
 namespace {
 
 template <class Get>
-double MedianOf(const Chain& chain, Get get) {
+double ComputeMedian(const Chain& chain, Get get) {
   std::vector<double> values;
   values.reserve(chain.links.size());
   for (const Link& link : chain.links) values.push_back(get(link));
@@ -109,10 +109,10 @@ double Chain::Strength() const {
   return sum;
 }
 double Chain::Area() const {
-  return MedianOf(*this, [](const Link& l) { return l.blob.area_px2; });
+  return ComputeMedian(*this, [](const Link& l) { return l.blob.area_px2; });
 }
 double Chain::Contrast() const {
-  return MedianOf(*this, [](const Link& l) { return l.blob.contrast_dn; });
+  return ComputeMedian(*this, [](const Link& l) { return l.blob.contrast_dn; });
 }
 double Chain::Extent() const {
   double extent = 0.0;
@@ -301,7 +301,8 @@ double LengthTogether(const Chain& best, const Chain& other) {
     distance.push_back(Distance(link.blob.centre, other.links[j].blob.centre));
   }
   const auto half = [](const Chain& chain) {
-    return 0.5 * MedianOf(chain, [](const Link& l) { return l.blob.long_px; });
+    return 0.5 *
+           ComputeMedian(chain, [](const Link& l) { return l.blob.long_px; });
   };
   return Median(std::move(distance)) + half(best) + half(other);
 }

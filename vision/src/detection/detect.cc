@@ -47,7 +47,7 @@ struct ContourRegion {
 
 // A contour runs through pixel centres: the region reaches half a pixel
 // further.
-double AreaWithin(const std::vector<cv::Point>& contour) {
+double RegionArea(const std::vector<cv::Point>& contour) {
   return cv::contourArea(contour) + 0.5 * cv::arcLength(contour, true) + 1.0;
 }
 
@@ -56,7 +56,7 @@ void AddRegions(std::vector<std::vector<cv::Point>> contours,
                 const cv::Mat& difference, const DetectOptions& options,
                 std::vector<ContourRegion>& regions) {
   for (std::vector<cv::Point>& contour : contours) {
-    const double area = AreaWithin(contour);
+    const double area = RegionArea(contour);
     if (area < options.least_area_px2) continue;
     // Mean difference over the filled contour.
     const cv::Rect box = cv::boundingRect(contour);
@@ -68,8 +68,8 @@ void AddRegions(std::vector<std::vector<cv::Point>> contours,
   }
 }
 
-Blob BlobOf(const ContourRegion& part, const cv::Size& searched,
-            const core::PixelPoint& origin) {
+Blob MakeBlob(const ContourRegion& part, const cv::Size& searched,
+              const core::PixelPoint& origin) {
   Blob blob;
   blob.area_px2 = part.area_px2;
   blob.contrast_dn = part.contrast_dn;
@@ -98,16 +98,16 @@ Blob BlobOf(const ContourRegion& part, const cv::Size& searched,
 }
 
 // Those of the strongest regions, which alone are worth a closer look.
-std::vector<Blob> BlobsOf(std::vector<ContourRegion> regions,
-                          const cv::Rect& searched, const core::Frame& frame,
-                          const DetectOptions& options) {
+std::vector<Blob> MakeBlobs(std::vector<ContourRegion> regions,
+                            const cv::Rect& searched, const core::Frame& frame,
+                            const DetectOptions& options) {
   KeepStrongest(regions, options);
   const core::PixelPoint origin{
       static_cast<double>(searched.x + frame.origin_x_px),
       static_cast<double>(searched.y + frame.origin_y_px)};
   std::vector<Blob> blobs;
   for (const ContourRegion& part : regions) {
-    blobs.push_back(BlobOf(part, searched.size(), origin));
+    blobs.push_back(MakeBlob(part, searched.size(), origin));
   }
   return blobs;
 }
@@ -145,13 +145,13 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
     cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc);
     cv::findContours(mask, changed, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
     AddRegions(std::move(changed), magnitude, options, found);
-    return BlobsOf(std::move(found), region, frame, options);
+    return MakeBlobs(std::move(found), region, frame, options);
   }
   std::vector<std::vector<cv::Point>> regions;
   cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
                    cv::CHAIN_APPROX_NONE);
   for (const auto& outer : regions) {
-    if (AreaWithin(outer) < options.least_area_px2) continue;
+    if (RegionArea(outer) < options.least_area_px2) continue;
     const cv::Rect box = cv::boundingRect(outer);
     cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
     cv::drawContours(own, std::vector<std::vector<cv::Point>>{outer}, 0, 255,
@@ -177,7 +177,7 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
                      box.tl());
     AddRegions(std::move(parts), difference, options, found);
   }
-  return BlobsOf(std::move(found), region, frame, options);
+  return MakeBlobs(std::move(found), region, frame, options);
 }
 
 std::vector<Blob> FromLevels(const core::Frame& frame,
@@ -207,12 +207,12 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
     // What spans most of the picture is background.
     constexpr double kMostOfPicture = 0.5;
     std::erase_if(regions, [&](const auto& outer) {
-      return AreaWithin(outer) >=
+      return RegionArea(outer) >=
              kMostOfPicture * static_cast<double>(region.area());
     });
     AddRegions(std::move(regions), difference, options, found);
   }
-  return BlobsOf(std::move(found), region, frame, options);
+  return MakeBlobs(std::move(found), region, frame, options);
 }
 
 }  // namespace
@@ -229,7 +229,7 @@ std::vector<Blob> DetectBlobs(const core::Frame& frame,
              : FromDifference(frame, background, options);
 }
 
-Outline StartFrom(const Blob& blob, core::BodyKind kind) {
+Outline MakeStart(const Blob& blob, core::BodyKind kind) {
   Outline start;
   start.kind = kind;
   start.centre = blob.centre;

@@ -61,6 +61,6 @@ std::vector<Blob> DetectBlobs(const core::Frame& frame,
 void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options);
 
 // Start of the outline's fit for a body of `kind`.
-Outline StartFrom(const Blob& blob, core::BodyKind kind);
+Outline MakeStart(const Blob& blob, core::BodyKind kind);
 
 }  // namespace touchdown::vision

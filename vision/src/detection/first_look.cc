@@ -89,10 +89,10 @@ std::vector<std::string> BoundsMet(std::size_t more, std::size_t looks,
 
 // Every `step`-th frame of the range, and its last one. `seen` receives the
 // range in which anything was seen. `first`: nothing is known of it yet.
-Detections DetectIn(Clip& clip, const Background& background,
-                    const TrackOptions& options, Detector detector,
-                    const Range& range, std::int64_t step, bool first,
-                    Range& seen) {
+Detections DetectRange(Clip& clip, const Background& background,
+                       const TrackOptions& options, Detector detector,
+                       const Range& range, std::int64_t step, bool first,
+                       Range& seen) {
   Watcher watcher(clip, background, options, detector);
   LinkOptions link;
   link.most_missing *= static_cast<int>(step);
@@ -182,7 +182,7 @@ Detections Detect(Clip& clip, const Background& background,
   Range range{options.first, last};
   Range seen;
   Detections found =
-      DetectIn(clip, background, options, detector, range, step, true, seen);
+      DetectRange(clip, background, options, detector, range, step, true, seen);
   while (step > 1 &&
          (found.chains.empty() || TooCoarse(found.chains.front()))) {
     if (seen.last > seen.first) {
@@ -190,8 +190,8 @@ Detections Detect(Clip& clip, const Background& background,
                std::min(range.last, seen.last + step)};
     }
     step /= 2;
-    Detections closer =
-        DetectIn(clip, background, options, detector, range, step, false, seen);
+    Detections closer = DetectRange(clip, background, options, detector, range,
+                                    step, false, seen);
     closer.last = std::min(
         found.last, closer.last == range.last ? found.last : closer.last);
     if (closer.warning.empty()) closer.warning = found.warning;
@@ -262,7 +262,7 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
     std::vector<OutlineJob> jobs;
     jobs.reserve(probes.size());
     for (const Link* link : probes) {
-      jobs.push_back({link->frame, StartFrom(link->blob, kind)});
+      jobs.push_back({link->frame, MakeStart(link->blob, kind)});
     }
     OutlineOptions fit_options;
     fit_options.surround = surround;
@@ -297,13 +297,14 @@ std::vector<Fitted> FitChain(Clip& clip, const Background& background,
   fit_options.blur_px = choice.blur_px;
   std::vector<OutlineJob> jobs;
   for (const Link& link : chain.links) {
-    jobs.push_back({link.frame, StartFrom(link.blob, choice.kind)});
+    jobs.push_back({link.frame, MakeStart(link.blob, choice.kind)});
   }
   return Found(
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
-BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options) {
+BackgroundOptions ChooseBackgroundOptions(const Clip& clip,
+                                          const TrackOptions& options) {
   constexpr int kOfShort = 64;  // frames
   BackgroundOptions background;
   if (options.background_samples > 0) {
@@ -316,9 +317,9 @@ BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options) {
   return background;
 }
 
-Look LookWith(Clip& clip, Background background, const TrackOptions& options,
-              Detector detector, std::int64_t last, double least_links,
-              double most_cost) {
+Look TryHypothesis(Clip& clip, Background background,
+                   const TrackOptions& options, Detector detector,
+                   std::int64_t last, double least_links, double most_cost) {
   Look look;
   look.background = std::move(background);
   look.surround = detector == Detector::kLevels ? Surround::kPolynomial
@@ -357,8 +358,8 @@ bool IsWithin(const Look& look, const Look& other) {
     ++both;
     const core::PixelPoint& a = f.fit.outline.centre;
     const core::PixelPoint& b = same->fit.outline.centre;
-    const double size = SizeOf(same->fit);
-    within += SizeOf(f.fit) < kSmaller * size &&
+    const double size = OutlineSize(same->fit);
+    within += OutlineSize(f.fit) < kSmaller * size &&
               std::hypot(a.x_px - b.x_px, a.y_px - b.y_px) < kConcentric * size;
   }
   return within > 0 &&
@@ -432,10 +433,10 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
 // do.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                std::int64_t last) {
-  const BackgroundOptions still = BackgroundFor(clip, options);
+  const BackgroundOptions still = ChooseBackgroundOptions(clip, options);
   Look best =
-      LookWith(clip, EstimateBackground(clip, options.first, last, still),
-               options, Detector::kDifference, last);
+      TryHypothesis(clip, EstimateBackground(clip, options.first, last, still),
+                    options, Detector::kDifference, last);
   // A body of another kind fits badly by every background: that is told before
   // any other is tried.
   if (auto reason = ReasonAgainstKind(clip, best, options); !reason.empty()) {
@@ -466,10 +467,10 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
           clip, std::max(options.first, best.found.last - part),
           best.found.last, still);
     }
-    Look look = change
-                    ? LookWith(clip, std::move(background), options, detector,
+    Look look =
+        change ? TryHypothesis(clip, std::move(background), options, detector,
                                best.found.last, least, LookCost(best))
-                    : LookWith(clip, std::move(background), options, detector,
+               : TryHypothesis(clip, std::move(background), options, detector,
                                best.found.last);
     look.found.warning = best.found.warning;
     if (change && static_cast<double>(look.fits.size()) < least) continue;

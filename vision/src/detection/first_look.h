@@ -49,14 +49,16 @@ struct Look {
 std::int64_t EndPart(std::int64_t first, std::int64_t last);
 
 // What the still background is made of.
-BackgroundOptions BackgroundFor(const Clip& clip, const TrackOptions& options);
+BackgroundOptions ChooseBackgroundOptions(const Clip& clip,
+                                          const TrackOptions& options);
 
 // A look against this background. It is less good than another (by IsBetter)
 // where the background holds the body's ghost. No outline is fitted where there
 // are fewer links than `least_links`, or no cost below `most_cost`.
-Look LookWith(Clip& clip, Background background, const TrackOptions& options,
-              Detector detector, std::int64_t last, double least_links = 0.0,
-              double most_cost = std::numeric_limits<double>::infinity());
+Look TryHypothesis(Clip& clip, Background background,
+                   const TrackOptions& options, Detector detector,
+                   std::int64_t last, double least_links = 0.0,
+                   double most_cost = std::numeric_limits<double>::infinity());
 bool IsBetter(const Look& look, const Look& other);
 
 // Absent where nothing moves, or nothing with an outline.

@@ -17,8 +17,8 @@ bool AreStoredAlone(const Clip& clip, std::int64_t first, std::int64_t last) {
   return true;
 }
 
-std::vector<std::int64_t> KeyFramesIn(const Clip& clip, std::int64_t first,
-                                      std::int64_t last) {
+std::vector<std::int64_t> ChooseKeyFrames(const Clip& clip, std::int64_t first,
+                                          std::int64_t last) {
   std::set<std::int64_t> keys;
   for (const std::int64_t frame :
        BackgroundFrames(first, last, BackgroundOptions{}.samples)) {

@@ -16,8 +16,8 @@ bool AreStoredAlone(const Clip& clip, std::int64_t first, std::int64_t last);
 
 // Frames of [first, last) that can be read without others, near those that its
 // background is made of; ascending, at least `first`.
-std::vector<std::int64_t> KeyFramesIn(const Clip& clip, std::int64_t first,
-                                      std::int64_t last);
+std::vector<std::int64_t> ChooseKeyFrames(const Clip& clip, std::int64_t first,
+                                          std::int64_t last);
 
 // Those of the backgrounds that first_look.h may ask for: of the whole range,
 // and, where three fifths of options.most_bytes are enough, of its first and

@@ -25,7 +25,7 @@ class FrameStore final : public GrowingClip {
 
   const ClipInfo& info() const override { return clip_->info(); }
   // It decodes when it is asked for a frame.
-  bool GrowTo(std::int64_t last) override { return last >= last_; }
+  bool ExtendDecoding(std::int64_t last) override { return last >= last_; }
   std::vector<std::int64_t> StillFrames() const override { return {}; }
   bool HoldsAllChanges() override { return true; }
   std::vector<std::pair<std::int64_t, std::int64_t>> LeftOut() const override {
@@ -34,13 +34,13 @@ class FrameStore final : public GrowingClip {
   std::int64_t DecodedAgain() const override { return decoded_again_; }
 
  private:
-  KeptPixels& KeptOf(std::int64_t index) {
+  KeptPixels& KeptFrame(std::int64_t index) {
     return kept_[static_cast<std::size_t>(index)];
   }
 
   // True if frame `index` is kept now.
   bool Keep(std::int64_t index) {
-    KeptPixels& kept = KeptOf(index);
+    KeptPixels& kept = KeptFrame(index);
     const core::PixelRect whole = Whole(info());
     if (kept.Holds(whole)) return true;
     const std::size_t bytes = FrameBytes(info());
@@ -52,7 +52,7 @@ class FrameStore final : public GrowingClip {
 
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
-    if (KeptOf(index).Holds(window)) return KeptOf(index).View(window);
+    if (KeptFrame(index).Holds(window)) return KeptFrame(index).View(window);
     for (std::int64_t on_way = clip_->EntryFrame(index); on_way < index;
          ++on_way) {
       try {
@@ -65,7 +65,7 @@ class FrameStore final : public GrowingClip {
       ++decoded_again_;
       return clip_->Read(index, window);
     }
-    return KeptOf(index).View(window);
+    return KeptFrame(index).View(window);
   }
 
   std::unique_ptr<Clip> clip_;
@@ -95,7 +95,7 @@ std::unique_ptr<Clip> KeepFrames(std::unique_ptr<Clip> clip,
                                  const FrameStoreOptions& options) {
   if (clip->info().format == "mraw") return clip;
   auto kept = GrowFrames(std::move(clip), options);
-  kept->GrowTo(kept->info().frames);
+  kept->ExtendDecoding(kept->info().frames);
   return kept;
 }
 

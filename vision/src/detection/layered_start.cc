@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "detection/path_linking.h"
-#include "numbers/robust.h"
 #include "detection/still_layer.h"
+#include "numbers/robust.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision {
@@ -25,8 +25,8 @@ constexpr std::int32_t kMostReduction = 4;  // px a cell
 constexpr double kSearchedAcross = 5.0;
 
 // Cells inside of the shape, grown by `grow`.
-cv::Mat MaskOf(const PlacedShape& at, const KnownShape& shape, double grow,
-               const cv::Size& size) {
+cv::Mat MakeMask(const PlacedShape& at, const KnownShape& shape, double grow,
+                 const cv::Size& size) {
   cv::Mat mask(size, CV_8U, cv::Scalar(0));
   const double half_long = 0.5 * shape.long_side + grow;
   const double half_short = 0.5 * shape.short_side + grow;
@@ -74,7 +74,7 @@ cv::Rect RegionOfChange(const ReducedFrames& sampled, const StillLayer& still,
   constexpr double kChanged = 0.5;
   cv::Mat most(still.level.size(), CV_32F, cv::Scalar(0));
   for (const cv::Mat& picture : sampled.pictures) {
-    cv::max(most, ChangeFrom(still, picture, scale), most);
+    cv::max(most, ComputeChange(still, picture, scale), most);
   }
   const cv::Mat changed = most > kChanged;
   const cv::Rect box = cv::boundingRect(changed);
@@ -115,8 +115,8 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
         for (auto t = static_cast<std::size_t>(begin);
              t < static_cast<std::size_t>(end); ++t) {
           candidates[t] = search.FindMaxima(
-              Coarsen(ChangeFrom(still, sampled.pictures[t], scale), searched,
-                      by),
+              Coarsen(ComputeChange(still, sampled.pictures[t], scale),
+                      searched, by),
               kMaxima, every);
           for (PlacedShape& candidate : candidates[t]) {
             const auto to_px = [by](double cell, int corner) {
@@ -158,7 +158,7 @@ double UnexplainedShare(const ReducedFrames& sampled, const StillLayer& still,
   double outside = 0.0;
   double inside = 0.0;
   for (std::size_t t = 0; t < masks.size(); ++t) {
-    const cv::Mat change = ChangeFrom(still, sampled.pictures[t], scale);
+    const cv::Mat change = ComputeChange(still, sampled.pictures[t], scale);
     const double within =
         cv::mean(change, masks[t])[0] * cv::countNonZero(masks[t]);
     inside += within;
@@ -220,7 +220,7 @@ core::Expected<LayeredStart> FindLayeredStart(
                     options.threads);
     masks.clear();
     for (const PlacedShape& at : path) {
-      masks.push_back(MaskOf(at, reduced, grow, size));
+      masks.push_back(MakeMask(at, reduced, grow, size));
     }
     still = LearnStill(sampled, masks, median, noise_dn, options.threads);
   }

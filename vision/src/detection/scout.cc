@@ -21,7 +21,7 @@ constexpr std::int32_t kFirstRow_px = 2;  // rows 2, 6, 10, ...
 
 // Mostly none is.
 TOUCHDOWN_WIDEST
-bool AnyBeyond(const float* values, std::size_t count, float most) {
+bool AnyExceeds(const float* values, std::size_t count, float most) {
   int beyond = 0;
   for (std::size_t i = 0; i < count; ++i) beyond |= values[i] > most ? 1 : 0;
   return beyond != 0;
@@ -78,7 +78,7 @@ void Join(std::vector<ChangedRegion>& regions) {
       ++i;
       continue;
     }
-    regions[i].rect = BoxAround(regions[i].rect, meets->rect);
+    regions[i].rect = UnionBox(regions[i].rect, meets->rect);
     regions[i].strength += meets->strength;
     regions.erase(meets);
     // It has grown: all are asked again.
@@ -124,7 +124,7 @@ Scout::Scout(const Background& still, const ScoutOptions& options)
 // the median, and the median over parts of the picture of the 98 % point, which
 // a body in a few of the parts does not change. Less than a tenth more is not
 // told from 1, so that counting is mostly enough.
-Scout::Noise Scout::NoiseOf(const std::vector<float>& off) const {
+Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
   constexpr std::size_t kStep = 7;
   constexpr std::size_t kParts = 4;  // across and down
   constexpr double kMedianOfNormal = 0.6745;
@@ -203,7 +203,7 @@ std::vector<float> Scout::Off(const core::Frame& frame,
     if (y + ahead < height_px_) {
       Prefetch(frame.row<std::byte>(y + ahead), RowBytes(frame));
     }
-    return WindowOf(frame, {0, y, width_px_, 1});
+    return CutWindow(frame, {0, y, width_px_, 1});
   });
 }
 
@@ -226,15 +226,15 @@ std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
   return Off(clip.Read(index), rows);
 }
 
-Changes Scout::ChangesOf(const std::vector<float>& off) const {
-  const Noise noise = NoiseOf(off);
+Changes Scout::FindChanges(const std::vector<float>& off) const {
+  const Noise noise = MeasureNoise(off);
   const auto most = static_cast<float>(options_.threshold_sigmas * noise.tail);
   std::vector<float> cells(At(columns_) * At(rows_), 0.0F);
   const std::size_t segments = At(segments_);
   for (std::size_t row = 0; row * segments < off.size(); ++row) {
     const std::size_t y = At(kFirstRow_px) + row * At(kRowStep_px);
     float* const flags = &cells[y / At(kCell_px) * At(columns_)];
-    if (!AnyBeyond(&off[row * segments], segments, most)) continue;
+    if (!AnyExceeds(&off[row * segments], segments, most)) continue;
     for (std::size_t s = 0; s < segments; ++s) {
       const float value = off[row * segments + s];
       if (value > most) flags[s * At(kSegment_px) / At(kCell_px)] += value;
@@ -244,11 +244,11 @@ Changes Scout::ChangesOf(const std::vector<float>& off) const {
 }
 
 Changes Scout::Look(const core::Frame& frame) const {
-  return ChangesOf(Off(frame, Rows{}));
+  return FindChanges(Off(frame, Rows{}));
 }
 
 Changes Scout::Look(Clip& clip, std::int64_t index) const {
-  return ChangesOf(Off(clip, index, Rows{}));
+  return FindChanges(Off(clip, index, Rows{}));
 }
 
 bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
@@ -256,8 +256,8 @@ bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
   const std::vector<float> off =
       Off(clip, index, {static_cast<std::size_t>(phase) % kPhases, kPhases});
   const auto most =
-      static_cast<float>(options_.threshold_sigmas * NoiseOf(off).tail);
-  return AnyBeyond(off.data(), off.size(), most);
+      static_cast<float>(options_.threshold_sigmas * MeasureNoise(off).tail);
+  return AnyExceeds(off.data(), off.size(), most);
 }
 
 // The boxes of connected cells, with their margin, joined where they meet.
@@ -324,7 +324,7 @@ bool Scout::Differs(const Scout& other) const {
   for (std::size_t k = 0; k < sum_.size(); ++k) {
     off.push_back(std::abs(sum_[k] - other.sum_[k]) * per_u_[k]);
   }
-  const double most = options_.threshold_sigmas * NoiseOf(off).tail;
+  const double most = options_.threshold_sigmas * MeasureNoise(off).tail;
   std::vector<int> cells(At(columns_) * At(rows_), 0);
   for (std::size_t k = 0; k < sum_.size(); ++k) {
     if (static_cast<double>(off[k]) <= most) continue;

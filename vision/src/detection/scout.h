@@ -64,8 +64,8 @@ class Scout {
   };
   std::size_t rows_looked_at() const { return sum_.size() / At(segments_); }
   static std::size_t At(std::int32_t i) { return static_cast<std::size_t>(i); }
-  Noise NoiseOf(const std::vector<float>& off) const;
-  Changes ChangesOf(const std::vector<float>& off) const;
+  Noise MeasureNoise(const std::vector<float>& off) const;
+  Changes FindChanges(const std::vector<float>& off) const;
   template <class RowOf>
   std::vector<float> Off(const Rows& rows, const RowOf& row_of) const;
   std::vector<float> Off(const core::Frame& frame, const Rows& rows) const;

@@ -27,7 +27,7 @@ double CoverOfShape(const KnownShape& shape, double x, double y, double cosine,
 }
 
 // Cells from a shape's centre to its farthest one.
-std::int32_t ReachOf(const KnownShape& shape) {
+std::int32_t ComputeReach(const KnownShape& shape) {
   const double half = shape.kind == core::BodyKind::kSphere
                           ? 0.5 * shape.long_side
                           : 0.5 * std::hypot(shape.long_side, shape.short_side);
@@ -85,7 +85,7 @@ ShapeSearch::ShapeSearch(const KnownShape& shape, std::int32_t width,
         "ShapeSearch: picture of " + std::to_string(width) + " x " +
         std::to_string(height) + " cells; it must have at least one");
   }
-  const std::int32_t reach = ReachOf(shape);
+  const std::int32_t reach = ComputeReach(shape);
   // Beyond the border nothing has changed: what a transform wraps around must
   // meet zeros.
   padded_width_ = cv::getOptimalDFTSize(width + 2 * reach);
@@ -121,8 +121,8 @@ ShapeSearch::ShapeSearch(const KnownShape& shape, std::int32_t width,
 }
 
 // The scores of all places of the picture at one angle.
-std::vector<float> ShapeSearch::ScoresAt(const std::vector<float>& spectrum,
-                                         std::size_t angle) const {
+std::vector<float> ShapeSearch::ScoreAngle(const std::vector<float>& spectrum,
+                                           std::size_t angle) const {
   std::vector<float> product(spectrum.size());
   cv::Mat out = WrapInMat(product, padded_width_, padded_height_);
   constexpr bool kConjugate = true;  // correlation, not convolution
@@ -165,7 +165,7 @@ std::vector<PlacedShape> ShapeSearch::FindMaxima(
   std::vector<std::vector<float>> scores;
   std::vector<double> angles;
   for (std::size_t k = 0; k < spectra_.size(); k += every) {
-    scores.push_back(ScoresAt(padded, k));
+    scores.push_back(ScoreAngle(padded, k));
     angles.push_back(static_cast<double>(k) * step_rad_);
   }
   std::vector<float> best = scores.front();

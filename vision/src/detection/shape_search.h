@@ -56,8 +56,8 @@ class ShapeSearch {
   double angle_step_rad() const { return step_rad_; }
 
  private:
-  std::vector<float> ScoresAt(const std::vector<float>& spectrum,
-                              std::size_t angle) const;
+  std::vector<float> ScoreAngle(const std::vector<float>& spectrum,
+                                std::size_t angle) const;
 
   KnownShape shape_;
   std::int32_t width_;

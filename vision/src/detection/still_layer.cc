@@ -135,8 +135,8 @@ ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn) {
           kClear * noise_dn + kUnsteady * full_scale_dn};
 }
 
-cv::Mat ChangeFrom(const StillLayer& still, const cv::Mat& picture,
-                   const ChangeScale& scale) {
+cv::Mat ComputeChange(const StillLayer& still, const cv::Mat& picture,
+                      const ChangeScale& scale) {
   constexpr float kUnknown = 0.5F;
   cv::Mat change;
   cv::absdiff(picture, still.level, change);

@@ -55,7 +55,7 @@ struct ChangeScale {
 // beyond what flicker, compression and an uneven exposure leave of a still
 // picture.
 ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn);
-cv::Mat ChangeFrom(const StillLayer& still, const cv::Mat& picture,
-                   const ChangeScale& scale);
+cv::Mat ComputeChange(const StillLayer& still, const cv::Mat& picture,
+                      const ChangeScale& scale);
 
 }  // namespace touchdown::vision

@@ -34,7 +34,7 @@ void KeepStrongestBlobs(const DetectOptions& detect, Seen& seen) {
 bool IsLong(const Clip& clip, const TrackOptions& options) {
   const ClipInfo& info = clip.info();
   const std::int64_t last = options.last < 0 ? info.frames : options.last;
-  return clip.ChangesIn(options.first) != nullptr ||
+  return clip.KnownChanges(options.first) != nullptr ||
          static_cast<double>(last - options.first) *
                  static_cast<double>(info.width_px) *
                  static_cast<double>(info.height_px) >
@@ -63,7 +63,7 @@ Seen Watcher::Look(Clip& clip, std::int64_t index) const {
     return seen;
   }
   Changes changes;
-  if (const Changes* known = clip.ChangesIn(index)) {
+  if (const Changes* known = clip.KnownChanges(index)) {
     changes = *known;
   } else {
     changes = scout_->Look(clip, index);

@@ -37,7 +37,7 @@ class WindowStore final : public GrowingClip {
     scout_.margin_cells = kMargin;
   }
 
-  bool GrowTo(std::int64_t last) override {
+  bool ExtendDecoding(std::int64_t last) override {
     last = std::min(last, options_.last);
     const bool in_pieces = last < options_.last;
     if (last <= end_ || damaged_) return !damaged_;
@@ -47,7 +47,7 @@ class WindowStore final : public GrowingClip {
       if (in_pieces) {
         if (end_ == options_.first) ChooseByKeys();
         WidenGrid(last);
-        DecodeUpTo(last);
+        AdvanceDecoder(last);
       } else {
         DecodeAll();
         Finish();
@@ -80,7 +80,7 @@ class WindowStore final : public GrowingClip {
   std::vector<std::pair<std::int64_t, std::int64_t>> LeftOut() const override {
     std::vector<std::pair<std::int64_t, std::int64_t>> ranges;
     for (std::int64_t i = options_.first; i < end_; ++i) {
-      if (KeptOf(i).state != State::kLeftOut) continue;
+      if (KeptFrame(i).state != State::kLeftOut) continue;
       // What was glimpsed at within a range is part of it.
       constexpr std::int64_t kGlimpse = 2;  // frames
       if (ranges.empty() || ranges.back().second + kGlimpse < i) {
@@ -97,8 +97,8 @@ class WindowStore final : public GrowingClip {
   std::int64_t EntryFrame(std::int64_t index) const override {
     return clip_->EntryFrame(index);
   }
-  const Changes* ChangesIn(std::int64_t index) const override {
-    const Kept& kept = KeptOf(index);
+  const Changes* KnownChanges(std::int64_t index) const override {
+    const Kept& kept = KeptFrame(index);
     // What was glimpsed at is not among them yet.
     const bool grown = index < end_ || damaged_;
     return grown && kept.state != State::kUnknown ? &kept.changes : nullptr;
@@ -117,16 +117,16 @@ class WindowStore final : public GrowingClip {
     std::vector<KeptPixels> windows;  // the whole picture, or one a change
   };
 
-  Kept& KeptOf(std::int64_t index) {
+  Kept& KeptFrame(std::int64_t index) {
     return frames_[static_cast<std::size_t>(index)];
   }
-  const Kept& KeptOf(std::int64_t index) const {
+  const Kept& KeptFrame(std::int64_t index) const {
     return frames_[static_cast<std::size_t>(index)];
   }
 
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
-    for (const KeptPixels& kept : KeptOf(index).windows) {
+    for (const KeptPixels& kept : KeptFrame(index).windows) {
       if (kept.Holds(window)) return kept.View(window);
     }
     if (index < end_) ++decoded_again_;
@@ -135,15 +135,15 @@ class WindowStore final : public GrowingClip {
 
   // Sets still_ by the key frames, and which of them show anything beside it.
   void LookAtKeyFrames() {
-    keys_ = KeyFramesIn(*clip_, options_.first, options_.last);
+    keys_ = ChooseKeyFrames(*clip_, options_.first, options_.last);
     const bool fit = keys_.size() * FrameBytes(info()) <= options_.most_bytes;
     for (const std::int64_t frame : keys_) {
       if (!fit && !whole_.contains(frame)) continue;
-      KeptOf(frame).windows.emplace_back(clip_->Read(frame));
+      KeptFrame(frame).windows.emplace_back(clip_->Read(frame));
     }
     BackgroundOptions background;
     background.threads = options_.threads;
-    still_ = BackgroundOf(*this, keys_, background);
+    still_ = EstimateBackgroundFromFrames(*this, keys_, background);
     // A mid-mean of up to three is a mean: where they differ, any of them may
     // show the body, and all frames are kept there.
     constexpr std::size_t kRobust = 4;
@@ -156,7 +156,7 @@ class WindowStore final : public GrowingClip {
                            changes.where.end());
     }
     for (const std::int64_t frame : keys_) {
-      if (!whole_.contains(frame)) KeptOf(frame).windows.clear();
+      if (!whole_.contains(frame)) KeptFrame(frame).windows.clear();
     }
   }
 
@@ -201,10 +201,10 @@ class WindowStore final : public GrowingClip {
 
   // Every step-th of the frames that are decoded.
   void WidenGrid(std::int64_t last) {
-    const std::size_t frames = Before(last);
+    const std::size_t frames = CountEarlierFrames(last);
     while ((frames + grid_.step - 1) / grid_.step > grid_.most) grid_.step *= 2;
     std::erase_if(grid_.frames, [this](std::int64_t index) {
-      const bool drop = Before(index) % grid_.step != 0;
+      const bool drop = CountEarlierFrames(index) % grid_.step != 0;
       if (drop) CutDown(index);
       return drop;
     });
@@ -215,7 +215,7 @@ class WindowStore final : public GrowingClip {
   }
 
   // How many of those to decode lie before frame `index`.
-  std::size_t Before(std::int64_t index) const {
+  std::size_t CountEarlierFrames(std::int64_t index) const {
     return static_cast<std::size_t>(
         std::lower_bound(todo_.begin(), todo_.end(), index) - todo_.begin());
   }
@@ -223,7 +223,7 @@ class WindowStore final : public GrowingClip {
   // To its windows, unless it stays whole all the same.
   void CutDown(std::int64_t index) {
     if (whole_.contains(index)) return;
-    Kept& kept = KeptOf(index);
+    Kept& kept = KeptFrame(index);
     const std::vector<KeptPixels> whole = std::move(kept.windows);
     kept.windows.clear();
     std::size_t bytes = left_bytes_;
@@ -238,7 +238,7 @@ class WindowStore final : public GrowingClip {
     rule.most_between = options_.most_between_keys;
     rule.reach = 0;
     for (std::size_t k = 0; k < keys_.size(); ++k) {
-      KeptOf(keys_[k]).changes = std::move(keys_changes_[k]);
+      KeptFrame(keys_[k]).changes = std::move(keys_changes_[k]);
     }
     keys_changes_.clear();
     const std::vector<bool> show =
@@ -279,7 +279,7 @@ class WindowStore final : public GrowingClip {
     done_ = range - static_cast<std::int64_t>(rest.size());
     Decode(rest, rest.size());
     end_ = options_.first;
-    LeaveOutUpTo(options_.last);
+    LeaveOutFrames(options_.last);
   }
 
   // Which of the glimpsed frames, whose changes are known, show something.
@@ -290,7 +290,7 @@ class WindowStore final : public GrowingClip {
                           std::size_t range) {
     std::vector<std::int64_t> next;
     for (const std::int64_t index : glimpsed) {
-      const bool differs = !KeptOf(index).changes.where.empty();
+      const bool differs = !KeptFrame(index).changes.where.empty();
       if (alone_ && differs && index + 1 < options_.last) {
         next.push_back(index + 1);
       }
@@ -299,18 +299,18 @@ class WindowStore final : public GrowingClip {
     std::vector<bool> shows;
     shows.reserve(glimpsed.size());
     for (const std::int64_t index : glimpsed) {
-      const Changes& changes = KeptOf(index).changes;
+      const Changes& changes = KeptFrame(index).changes;
       shows.push_back(
           !alone_ || index + 1 == options_.last
               ? !changes.where.empty()
-              : AreInBoth(changes, KeptOf(index + 1).changes, kMargin));
+              : AreInBoth(changes, KeptFrame(index + 1).changes, kMargin));
     }
     return shows;
   }
 
   std::vector<std::int64_t> NotSeen(std::vector<std::int64_t> frames) const {
     std::erase_if(frames, [this](std::int64_t index) {
-      return KeptOf(index).state == State::kSeen;
+      return KeptFrame(index).state == State::kSeen;
     });
     return frames;
   }
@@ -322,9 +322,9 @@ class WindowStore final : public GrowingClip {
   }
 
   // What was not decoded up to there will not be.
-  void LeaveOutUpTo(std::int64_t last) {
+  void LeaveOutFrames(std::int64_t last) {
     for (; end_ < last; ++end_) {
-      Kept& kept = KeptOf(end_);
+      Kept& kept = KeptFrame(end_);
       if (kept.state != State::kUnknown) continue;
       kept.state = State::kLeftOut;
       kept.changes = {};
@@ -361,13 +361,13 @@ class WindowStore final : public GrowingClip {
   }
 
   // On from end_.
-  void DecodeUpTo(std::int64_t last) {
-    const std::size_t end = Before(last);
+  void AdvanceDecoder(std::int64_t last) {
+    const std::size_t end = CountEarlierFrames(last);
     Decode({todo_.begin() + static_cast<std::ptrdiff_t>(next_),
             todo_.begin() + static_cast<std::ptrdiff_t>(end)},
            todo_.size() - next_);
     next_ = end;
-    LeaveOutUpTo(last);
+    LeaveOutFrames(last);
     done_ = end_ - options_.first;
   }
 
@@ -382,7 +382,7 @@ class WindowStore final : public GrowingClip {
     if (alone_) {
       parts = 16;  // enough for the cores of a workstation
       const auto readers =
-          std::min<std::int64_t>(core::ThreadsOf(options_.threads), parts);
+          std::min<std::int64_t>(core::CountThreads(options_.threads), parts);
       while (static_cast<std::int64_t>(others_.size()) + 1 < readers) {
         auto other = clip_->OpenAnother();
         if (!other) break;
@@ -412,7 +412,7 @@ class WindowStore final : public GrowingClip {
                   std::span<const std::int64_t> frames, std::size_t bytes) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const std::int64_t index = frames[i];
-      Kept& kept = KeptOf(index);
+      Kept& kept = KeptFrame(index);
       const bool is_here =
           !kept.windows.empty() && kept.windows.front().Holds(Whole(info()));
       const core::Frame frame =
@@ -442,7 +442,7 @@ class WindowStore final : public GrowingClip {
     std::vector<core::PixelRect>& where = kept.changes.where;
     std::vector<core::PixelRect> held;
     for (const core::PixelRect& rect : where) {
-      const core::Frame window = WindowOf(frame, rect);
+      const core::Frame window = CutWindow(frame, rect);
       const std::size_t bytes = PixelBytes(window);
       if (!held.empty() && bytes > share) continue;
       held.push_back(rect);

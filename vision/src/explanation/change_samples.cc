@@ -13,8 +13,8 @@
 namespace touchdown::vision {
 namespace {
 
-core::PixelRect RegionOf(const Clip& clip,
-                         const ExplainedChangeOptions& options) {
+core::PixelRect ChooseRegion(const Clip& clip,
+                             const ExplainedChangeOptions& options) {
   if (options.region.width > 0) return options.region;
   return {0, 0, clip.info().width_px, clip.info().height_px};
 }
@@ -27,7 +27,7 @@ constexpr std::size_t kPaceOver = 4;  // poses that the pace is of
 
 bool Expect(const Track& track, SampledFrame& frame) {
   const std::vector<Pose>& poses = track.poses;
-  if (const auto pose = PoseIn(track, frame.index)) {
+  if (const auto pose = InterpolatePose(track, frame.index)) {
     frame.pose = *pose;
     return true;
   }
@@ -47,7 +47,7 @@ bool Expect(const Track& track, SampledFrame& frame) {
 // How far from the outline a pixel counts as near: half the body's size, so
 // that what was followed at a wrong place still has the body near it, and what
 // the blur adds.
-double MarginOf(const BodyImage& body) {
+double NearMargin(const BodyImage& body) {
   const double size = body.kind == core::BodyKind::kSphere
                           ? 2.0 * body.radius_px.value
                           : 2.0 * body.half_long_px.value;
@@ -81,15 +81,15 @@ core::PixelRect OutlineBox(const Outline& outline, double margin) {
 }
 
 // Marks of the lattice: 1 where the body is near in any of the frames.
-std::vector<std::uint8_t> MarkNear(const Track& track,
-                                   const std::vector<SampledFrame>& frames,
-                                   const LatticePoints& lattice) {
+std::vector<std::uint8_t> MarkNearPoints(
+    const Track& track, const std::vector<SampledFrame>& frames,
+    const LatticePoints& lattice) {
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(lattice.columns) *
                                   static_cast<std::size_t>(lattice.rows));
-  const double margin = MarginOf(track.body);
+  const double margin = NearMargin(track.body);
   for (const SampledFrame& frame : frames) {
     if (!frame.is_expected) continue;
-    const Outline outline = OutlineAt(track.body, frame.pose);
+    const Outline outline = PlaceOutline(track.body, frame.pose);
     const double cosine = std::cos(outline.angle_rad);
     const double sine = std::sin(outline.angle_rad);
     const core::PixelRect box =
@@ -111,7 +111,7 @@ std::vector<std::uint8_t> MarkNear(const Track& track,
         if (x >= box.x + box.width) break;
         if (marked[column] != 0) continue;
         marked[column] =
-            DepthInside(outline, x, y, cosine, sine) > -margin ? 1 : 0;
+            SignedDepth(outline, x, y, cosine, sine) > -margin ? 1 : 0;
       }
     }
   }
@@ -141,7 +141,7 @@ void TakePoints(const std::vector<std::uint8_t>& marks, std::uint8_t wanted,
   }
 }
 
-std::int32_t StepFor(double area, int points) {
+std::int32_t ChooseStep(double area, int points) {
   return std::max(
       1, static_cast<std::int32_t>(std::ceil(std::sqrt(area / points))));
 }
@@ -167,7 +167,7 @@ std::vector<SampledFrame> ChooseFrames(const Clip& clip, const Track& track,
   const std::int64_t from = std::max(track.first_frame, first_pose - spare);
   const std::int64_t to = std::min(track.last_frame, last_pose + spare + 1);
   std::set<std::int64_t> indices;
-  if (clip.ChangesIn(track.first_frame) != nullptr) {
+  if (clip.KnownChanges(track.first_frame) != nullptr) {
     BackgroundOptions background;
     background.among = options.still_frames;
     for (const std::int64_t index :
@@ -208,16 +208,16 @@ std::vector<SampledFrame> ChooseFrames(const Clip& clip, const Track& track,
   return frames;
 }
 
-LatticePoints PointsNear(const Clip& clip, const Track& track,
-                         const std::vector<SampledFrame>& frames,
-                         const ExplainedChangeOptions& options) {
-  const core::PixelRect region = RegionOf(clip, options);
-  const double margin = MarginOf(track.body);
+LatticePoints FindNearPoints(const Clip& clip, const Track& track,
+                             const std::vector<SampledFrame>& frames,
+                             const ExplainedChangeOptions& options) {
+  const core::PixelRect region = ChooseRegion(clip, options);
+  const double margin = NearMargin(track.body);
   core::PixelRect box;
   for (const SampledFrame& frame : frames) {
     if (!frame.is_expected) continue;
     const core::PixelRect one = Intersection(
-        OutlineBox(OutlineAt(track.body, frame.pose), margin), region);
+        OutlineBox(PlaceOutline(track.body, frame.pose), margin), region);
     if (one.width == 0 || one.height == 0) continue;
     if (box.width == 0) {
       box = one;
@@ -235,15 +235,16 @@ LatticePoints PointsNear(const Clip& clip, const Track& track,
   if (box.width == 0) return lattice;
   // A coarse lattice first: it tells the area.
   constexpr int kCoarse = 4000;
-  SetLattice(box, StepFor(static_cast<double>(box.width) * box.height, kCoarse),
+  SetLattice(box,
+             ChooseStep(static_cast<double>(box.width) * box.height, kCoarse),
              lattice);
-  std::vector<std::uint8_t> marks = MarkNear(track, frames, lattice);
+  std::vector<std::uint8_t> marks = MarkNearPoints(track, frames, lattice);
   const auto marked = std::count(marks.begin(), marks.end(), 1);
   const double area = static_cast<double>(marked) * lattice.step * lattice.step;
-  const std::int32_t step = StepFor(area, options.points_near);
+  const std::int32_t step = ChooseStep(area, options.points_near);
   if (step != lattice.step) {
     SetLattice(box, step, lattice);
-    marks = MarkNear(track, frames, lattice);
+    marks = MarkNearPoints(track, frames, lattice);
   }
   TakePoints(marks, 1, lattice);
   return lattice;
@@ -252,13 +253,13 @@ LatticePoints PointsNear(const Clip& clip, const Track& track,
 LatticePoints PointsElsewhere(const Clip& clip, const Track& track,
                               const std::vector<SampledFrame>& frames,
                               const ExplainedChangeOptions& options) {
-  const core::PixelRect region = RegionOf(clip, options);
+  const core::PixelRect region = ChooseRegion(clip, options);
   LatticePoints lattice;
   SetLattice(region,
-             StepFor(static_cast<double>(region.width) * region.height,
-                     options.points_elsewhere),
+             ChooseStep(static_cast<double>(region.width) * region.height,
+                        options.points_elsewhere),
              lattice);
-  TakePoints(MarkNear(track, frames, lattice), 0, lattice);
+  TakePoints(MarkNearPoints(track, frames, lattice), 0, lattice);
   return lattice;
 }
 

@@ -40,9 +40,9 @@ struct LatticePoints {
 };
 
 // The pixels within half the body's size of its outline in any of the frames.
-LatticePoints PointsNear(const Clip& clip, const Track& track,
-                         const std::vector<SampledFrame>& frames,
-                         const ExplainedChangeOptions& options);
+LatticePoints FindNearPoints(const Clip& clip, const Track& track,
+                             const std::vector<SampledFrame>& frames,
+                             const ExplainedChangeOptions& options);
 
 // Those of the rest of the picture.
 LatticePoints PointsElsewhere(const Clip& clip, const Track& track,

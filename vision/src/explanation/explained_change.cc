@@ -75,7 +75,8 @@ double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
 }
 
 // Change beyond noise of the points whose own variance stands out of it.
-double ChangeOf(const OverTime& over, double variance, std::size_t frames) {
+double ChangeBeyondNoise(const OverTime& over, double variance,
+                         std::size_t frames) {
   const double freedom = static_cast<double>(frames) - 1.0;
   // Meant to leave out noise of other levels, of compression and of light that
   // is not quite steady: three times the usual standard deviation (a choice,
@@ -154,7 +155,7 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
         fmt::format("of {} sampled frames fewer than {} have a pose",
                     frames.size(), kLeastPoses));
   }
-  const LatticePoints near = PointsNear(clip, track, frames, options);
+  const LatticePoints near = FindNearPoints(clip, track, frames, options);
   const LatticePoints rest = PointsElsewhere(clip, track, frames, options);
   if (near.size() == 0) {
     return core::AbsentBecause("the body's path lies outside the picture");
@@ -196,9 +197,9 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
         "what changes near the body's path does not stand out of the noise");
   }
   out.near = 1.0 - (sums.square - noise) / (all - noise);
-  const double change_near =
-      ChangeOf(over, variance, n) * static_cast<double>(near.step) * near.step;
-  const double change_rest = ChangeOf(over_rest, variance, n) *
+  const double change_near = ChangeBeyondNoise(over, variance, n) *
+                             static_cast<double>(near.step) * near.step;
+  const double change_rest = ChangeBeyondNoise(over_rest, variance, n) *
                              static_cast<double>(rest.step) * rest.step;
   out.elsewhere = change_near + change_rest > 0.0
                       ? change_rest / (change_near + change_rest)

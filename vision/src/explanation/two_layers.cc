@@ -28,7 +28,7 @@ struct BodyGrid {
 
 // Cells as wide as the lattice's step: each frame then fills each cell about
 // once. The rim holds the blurred edge.
-BodyGrid GridOf(const BodyImage& body, std::int32_t step) {
+BodyGrid MakePictureGrid(const BodyImage& body, std::int32_t step) {
   constexpr double kBlurs = 4.0;
   BodyGrid grid;
   grid.cell_px = step;
@@ -52,7 +52,7 @@ struct FrameMotion {
   core::PixelPoint travel_px{0.0, 0.0};
   double turn_rad = 0.0;
 };
-FrameMotion MotionAt(const Track& track, std::int64_t frame) {
+FrameMotion MeasureFrameMotion(const Track& track, std::int64_t frame) {
   const auto& poses = track.poses;
   const auto at = std::lower_bound(
       poses.begin(), poses.end(), frame,
@@ -73,8 +73,8 @@ FrameMotion MotionAt(const Track& track, std::int64_t frame) {
 CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
                          const LatticePoints& lattice, const BodyGrid& grid) {
   CoveredPoints covered;
-  const Outline outline = OutlineAt(track.body, frame.pose);
-  const FrameMotion step = MotionAt(track, frame.index);
+  const Outline outline = PlaceOutline(track.body, frame.pose);
+  const FrameMotion step = MeasureFrameMotion(track, frame.index);
   const double extent = Extent(outline);
   const double blur = std::max(track.body.blur_px, 0.3);
   Smear smear(step.travel_px, step.turn_rad, extent);
@@ -152,7 +152,7 @@ std::vector<CoveredPoints> CoverPoints(const Track& track,
                                        const std::vector<SampledFrame>& frames,
                                        const LatticePoints& lattice,
                                        int threads) {
-  const BodyGrid grid = GridOf(track.body, lattice.step);
+  const BodyGrid grid = MakePictureGrid(track.body, lattice.step);
   std::vector<CoveredPoints> covered(frames.size());
   core::InParallel(static_cast<std::int64_t>(frames.size()), threads,
                    [&](std::int64_t from, std::int64_t to) {
@@ -170,7 +170,7 @@ TwoLayers::TwoLayers(const Track& track,
                      const LatticePoints& lattice, const LatticeLevels& levels,
                      const std::vector<CoveredPoints>& covered)
     : points_(lattice.size()) {
-  const BodyGrid grid = GridOf(track.body, lattice.step);
+  const BodyGrid grid = MakePictureGrid(track.body, lattice.step);
   columns_ = grid.columns;
   picture_.assign(static_cast<std::size_t>(grid.columns) *
                       static_cast<std::size_t>(grid.rows),

@@ -10,8 +10,8 @@
 namespace touchdown::vision {
 
 // All within `reach_px` of `centre`, at least one pixel.
-inline core::PixelRect BoxAround(const core::PixelPoint& centre,
-                                 double reach_px, const ClipInfo& info) {
+inline core::PixelRect ClippedBox(const core::PixelPoint& centre,
+                                  double reach_px, const ClipInfo& info) {
   const auto within = [](double at, std::int32_t end) {
     return static_cast<std::int32_t>(std::clamp(at, 0.0, end - 1.0));
   };
@@ -25,8 +25,8 @@ inline core::PixelRect BoxAround(const core::PixelPoint& centre,
 }
 
 // An empty one counts for nothing.
-inline core::PixelRect BoxAround(const core::PixelRect& a,
-                                 const core::PixelRect& b) {
+inline core::PixelRect UnionBox(const core::PixelRect& a,
+                                const core::PixelRect& b) {
   if (a.width == 0 || a.height == 0) return b;
   if (b.width == 0 || b.height == 0) return a;
   const std::int32_t x = std::min(a.x, b.x);

@@ -93,12 +93,12 @@ bool IsForeign(const std::filesystem::path& path) {
 
 std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
                                const ClipOptions& options) {
-  return OpenClipWith(path, options, nullptr);
+  return OpenClipInMemory(path, options, nullptr);
 }
 
-std::unique_ptr<Clip> OpenClipWith(const std::filesystem::path& path,
-                                   const ClipOptions& options,
-                                   FrameMemory* memory) {
+std::unique_ptr<Clip> OpenClipInMemory(const std::filesystem::path& path,
+                                       const ClipOptions& options,
+                                       FrameMemory* memory) {
   if (options.fps && !(std::isfinite(*options.fps) && *options.fps > 0.0)) {
     throw std::invalid_argument(fmt::format(
         "fps is {}, must be positive and finite (frames per second)",

@@ -86,7 +86,7 @@ class ApartClip final : public Clip {
     frame.bit_depth = shared.bit_depth;
     frame.stride_bytes = shared.stride_bytes;
     frame.time_s = shared.time_s;
-    frame.data = DataOf(shared, window);
+    frame.data = FindWindowData(shared, window);
     if (frame.data == nullptr) {
       line_.process()->Lose(
           fmt::format("gave frame {} wrongly and was ended", index));
@@ -101,8 +101,8 @@ class ApartClip final : public Clip {
   }
 
   // Null where the samples of the window do not lie in the memory.
-  const std::byte* DataOf(const SharedFrame& shared,
-                          const core::PixelRect& window) {
+  const std::byte* FindWindowData(const SharedFrame& shared,
+                                  const core::PixelRect& window) {
     const std::int64_t sample = shared.bit_depth > 8 ? 2 : 1;
     const std::int64_t row = sample * window.width;
     constexpr std::int64_t kMostStride = std::int64_t{1} << 32;

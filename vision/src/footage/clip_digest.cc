@@ -78,7 +78,7 @@ class Input {
   std::int64_t size_bytes() const { return size_bytes_; }
 
   // Adds bytes [begin, begin + count) of the file.
-  void AddTo(Sha& sha, std::int64_t begin, std::int64_t count) const {
+  void HashBytes(Sha& sha, std::int64_t begin, std::int64_t count) const {
     std::vector<std::uint8_t> buffer(
         static_cast<std::size_t>(std::min(count, kBlockBytes)));
     while (count > 0) {
@@ -108,7 +108,8 @@ class Input {
   std::int64_t size_bytes_ = 0;
 };
 
-std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> ListFiles(
+    const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return ListImages(path);
   if (IsMrawOrHeader(path)) {
@@ -126,7 +127,7 @@ bool IsFolder(const std::filesystem::path& path) {
 }  // namespace
 
 std::string ClipId(const std::filesystem::path& path) {
-  const auto files = FilesOf(path);
+  const auto files = ListFiles(path);
   Sha sha;
   sha.Add("touchdown.clip/1\n");
   std::vector<std::int64_t> ends;  // of each file, laid end to end
@@ -146,7 +147,7 @@ std::string ClipId(const std::filesystem::path& path) {
     while (begin < end) {
       const std::int64_t start = k == 0 ? 0 : ends[k - 1];
       const std::int64_t stop = std::min(end, ends[k]);
-      Input(files[k]).AddTo(sha, begin - start, stop - begin);
+      Input(files[k]).HashBytes(sha, begin - start, stop - begin);
       begin = stop;
       ++k;
     }
@@ -167,21 +168,21 @@ std::string ClipId(const std::filesystem::path& path) {
 
 std::int64_t SizeBytes(const std::filesystem::path& path) {
   std::int64_t total = 0;
-  for (const auto& file : FilesOf(path)) total += Input(file).size_bytes();
+  for (const auto& file : ListFiles(path)) total += Input(file).size_bytes();
   return total;
 }
 
 std::string Sha256(const std::filesystem::path& path) {
-  const auto files = FilesOf(path);
+  const auto files = ListFiles(path);
   Sha whole;
   for (const auto& file : files) {
     const Input input(file);
     if (IsFolder(path)) {
       Sha sha;
-      input.AddTo(sha, 0, input.size_bytes());
+      input.HashBytes(sha, 0, input.size_bytes());
       whole.Add(fmt::format("{}  {}\n", sha.Hex(), file.filename().string()));
     } else {
-      input.AddTo(whole, 0, input.size_bytes());
+      input.HashBytes(whole, 0, input.size_bytes());
     }
   }
   return whole.Hex();

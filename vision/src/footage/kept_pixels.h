@@ -30,8 +30,8 @@ inline std::size_t PixelBytes(const core::Frame& frame) {
 }
 
 // A window, in coordinates of the recorded picture, of a frame that holds it.
-inline core::Frame WindowOf(const core::Frame& frame,
-                            const core::PixelRect& window) {
+inline core::Frame CutWindow(const core::Frame& frame,
+                             const core::PixelRect& window) {
   core::Frame view = frame;
   view.data += (window.y - frame.origin_y_px) * frame.stride_bytes +
                std::ptrdiff_t{window.x - frame.origin_x_px} *
@@ -71,7 +71,7 @@ class KeptPixels {
   core::Frame View(const core::PixelRect& window) const {
     core::Frame whole = frame_;
     whole.data = pixels_.data();
-    return WindowOf(whole, window);
+    return CutWindow(whole, window);
   }
   core::Frame View() const {
     return View({frame_.origin_x_px, frame_.origin_y_px, frame_.width_px,

@@ -13,7 +13,8 @@ std::int32_t LinearDepth(std::int32_t bit_depth) {
   return bit_depth <= 8 ? 12 : 16;
 }
 
-std::vector<std::uint16_t> TableOf(std::int32_t bit_depth, double gamma) {
+std::vector<std::uint16_t> MakeGammaTable(std::int32_t bit_depth,
+                                          double gamma) {
   const auto levels = std::size_t{1} << static_cast<unsigned>(bit_depth);
   const double full = static_cast<double>(levels - 1);
   const double full_out =
@@ -30,7 +31,7 @@ class LinearClip final : public Clip {
  public:
   LinearClip(std::unique_ptr<Clip> clip, double gamma)
       : clip_(std::move(clip)), gamma_(gamma), info_(clip_->info()) {
-    table_ = TableOf(info_.bit_depth, gamma);
+    table_ = MakeGammaTable(info_.bit_depth, gamma);
     info_.bit_depth = LinearDepth(info_.bit_depth);
     set_cancellation(clip_->cancellation());
   }

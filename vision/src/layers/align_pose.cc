@@ -43,7 +43,7 @@ void WeighByLayers(const Layers& layers, const LayerPose& motion,
         std::clamp(edge * steep / std::max(pace, 1e-6F), 1.0F, kMostFrames);
     float unknown = open * open * frames / std::max(seen, kLeastStill);
     if (!layers.flat) {
-      const float picture = layers.grid.ValueAt(
+      const float picture = layers.grid.EvaluateSpline(
           layers.picture_weight.data(),
           samples.place[i * samples.nodes + samples.nodes / 2]);
       unknown += cover * cover / (std::max(picture, 0.0F) + prior);
@@ -72,8 +72,8 @@ double SumOfProducts(const float* a, const float* b, std::size_t count) {
 
 // Sum over pairs of pixels: c(lag) g(x) g(x + lag)', g = w J, of the first
 // `free` coordinates of a pose.
-PoseMatrix SandwichOf(const FrameSamples& samples, std::int32_t width,
-                      double variance, int free) {
+PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
+                           double variance, int free) {
   constexpr std::int32_t kLags = 4;  // px
   // The samples on a grid of their own, with so many zeros beside and below it
   // that a shifted grid ends in them.
@@ -188,7 +188,7 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   }
   const double variance = layers.noise_dn * layers.noise_dn;
   const PoseMatrix sandwich =
-      SandwichOf(samples, stack.width, variance, turns ? 3 : 2);
+      ComputeSandwich(samples, stack.width, variance, turns ? 3 : 2);
   const PoseMatrix inverse = normal.inverse();
   const PoseMatrix covariance = inverse * sandwich * inverse;
   constexpr double kMostSquare = 16.0;  // of the noise: four deviations
@@ -243,7 +243,7 @@ std::size_t LeaveLocalMinima(const PictureStack& stack, const Layers& layers,
   constexpr double kBetter = 0.85;  // of the chi^2 before: no noise does that
   // As far around as a step reaches from both sides.
   const double reach = std::max(1.0, 2.0 * layers.blur);  // px
-  const std::vector<LayerPose> motions = MotionsOf(poses, stack.frames);
+  const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
   std::vector<double> chi2(poses.size());
   const auto each = [&](const auto& align) {
     core::InParallel(static_cast<std::int64_t>(poses.size()), threads,

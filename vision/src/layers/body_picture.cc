@@ -16,7 +16,7 @@ PictureGrid::PictureGrid(const Shape& shape, double rim) {
   origin_y_ = static_cast<float>(half_rows);
 }
 
-SplinePlace PictureGrid::PlaceOf(float x, float y) const {
+SplinePlace PictureGrid::LocatePlace(float x, float y) const {
   const float column =
       std::clamp(x + origin_x_, 1.0F, static_cast<float>(columns_) - 2.001F);
   const float row =
@@ -28,8 +28,8 @@ SplinePlace PictureGrid::PlaceOf(float x, float y) const {
           row - static_cast<float>(whole_row)};
 }
 
-float PictureGrid::ValueAt(const float* coefficients,
-                           const SplinePlace& place) const {
+float PictureGrid::EvaluateSpline(const float* coefficients,
+                                  const SplinePlace& place) const {
   const SplineWeights across(place.right);
   const SplineWeights down(place.below);
   const float* row = coefficients + place.first;
@@ -41,8 +41,8 @@ float PictureGrid::ValueAt(const float* coefficients,
   return sum;
 }
 
-PictureGrid::Tilt PictureGrid::TiltAt(const float* coefficients,
-                                      const SplinePlace& place) const {
+PictureGrid::Tilt PictureGrid::EvaluateTilt(const float* coefficients,
+                                            const SplinePlace& place) const {
   const SplineWeights across(place.right);
   const SplineWeights down(place.below);
   const SplineSlopes across_slope(place.right);

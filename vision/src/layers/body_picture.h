@@ -58,7 +58,7 @@ class PictureGrid {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   }
   // Places beyond the rim are those of its border.
-  SplinePlace PlaceOf(float x, float y) const;
+  SplinePlace LocatePlace(float x, float y) const;
   // The place of coefficient (column, row).
   float x_of(std::int32_t column) const {
     return static_cast<float>(column) - origin_x_;
@@ -67,14 +67,15 @@ class PictureGrid {
     return static_cast<float>(row) - origin_y_;
   }
 
-  float ValueAt(const float* coefficients, const SplinePlace& place) const;
+  float EvaluateSpline(const float* coefficients,
+                       const SplinePlace& place) const;
   struct Tilt {
     float value = 0.0F;
     float by_x = 0.0F;
     float by_y = 0.0F;
   };
-  Tilt TiltAt(const float* coefficients, const SplinePlace& place) const;
-  // The transpose of ValueAt: adds `amount` times each weight.
+  Tilt EvaluateTilt(const float* coefficients, const SplinePlace& place) const;
+  // The transpose of EvaluateSpline: adds `amount` times each weight.
   void Spread(float amount, const SplinePlace& place,
               float* coefficients) const;
 

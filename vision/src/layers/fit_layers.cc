@@ -17,7 +17,7 @@ constexpr double kRimBlurs = 3.5;
 void LinearizeAll(const PictureStack& stack, const Layers& layers,
                   const std::vector<LayerPose>& poses, int threads,
                   std::vector<FrameSamples>& frames) {
-  const std::vector<LayerPose> motions = MotionsOf(poses, stack.frames);
+  const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
   frames.resize(poses.size());
   core::InParallel(static_cast<std::int64_t>(poses.size()), threads,
                    [&](std::int64_t begin, std::int64_t end) {
@@ -31,7 +31,7 @@ void LinearizeAll(const PictureStack& stack, const Layers& layers,
 
 // Root mean square of the residuals, those beyond four standard deviations
 // counted as that.
-double NoiseOf(const std::vector<FrameSamples>& frames, double before) {
+double MeasureNoise(const std::vector<FrameSamples>& frames, double before) {
   constexpr double kCut = 4.0;
   double sum = 0.0;
   double count = 0.0;
@@ -86,12 +86,14 @@ void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
   Layers& layers = fit.layers;
   // At first residuals are those of rough poses: as if all were noise.
   constexpr double kAnything = 1e4;  // DN
-  layers.noise_dn = NoiseOf(frames, step == 0 ? kAnything : layers.noise_dn);
+  layers.noise_dn =
+      MeasureNoise(frames, step == 0 ? kAnything : layers.noise_dn);
   if (step == 0) {
     layers.texture_dn = kFirstTexture * layers.noise_dn;
     Reweigh(layers.noise_dn, frames);
   } else if (layers.flat) {
-    const double texture = CommonTextureOf(stack, layers, fit.poses, frames);
+    const double texture =
+        MeasureCommonTexture(stack, layers, fit.poses, frames);
     // So much texture draws outlines by hundredths of a pixel.
     constexpr double kMatters = 0.5;  // of the noise
     if (step >= kFlatSteps && texture > kMatters * layers.noise_dn) {
@@ -101,7 +103,7 @@ void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
     }
   } else {
     layers.picture_weight = WeighPicture(layers, frames);
-    layers.texture_dn = TextureOf(layers, layers.picture_weight);
+    layers.texture_dn = MeasureTexture(layers, layers.picture_weight);
   }
 }
 
@@ -226,10 +228,10 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
     fit.converged = moved < kStill_px && step > kFlatSteps;
   }
   LinearizeAll(stack, layers, fit.poses, options.threads, frames);
-  layers.noise_dn = NoiseOf(frames, layers.noise_dn);
+  layers.noise_dn = MeasureNoise(frames, layers.noise_dn);
   if (!layers.flat) {
     layers.picture_weight = WeighPicture(layers, frames);
-    layers.texture_dn = TextureOf(layers, layers.picture_weight);
+    layers.texture_dn = MeasureTexture(layers, layers.picture_weight);
   }
   const StillEvidence evidence =
       WeighStill(stack, layers, frames, options.threads);

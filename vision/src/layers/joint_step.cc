@@ -138,7 +138,7 @@ class NormalEquations {
 
   // work(samples, frame, part) over all frames, part by part.
   template <class Work>
-  void Over(const Work& work);
+  void AccumulateParts(const Work& work);
   void Collect(Unknowns& out);
 
   const Layers& layers_;
@@ -161,7 +161,7 @@ class NormalEquations {
 };
 
 template <class Work>
-void NormalEquations::Over(const Work& work) {
+void NormalEquations::AccumulateParts(const Work& work) {
   core::InParallel(static_cast<std::int64_t>(kParts), options_.threads,
                    [&](std::int64_t begin, std::int64_t end) {
                      for (auto part = static_cast<std::size_t>(begin);
@@ -202,7 +202,8 @@ void NormalEquations::Fill(Unknowns& right) {
   std::vector<std::vector<float>> picture(kParts, std::vector<float>(cells_));
   std::vector<std::vector<float>> still(
       kParts, std::vector<float>(layers_.still.size()));
-  Over([&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
+  AccumulateParts([&](const FrameSamples& samples, std::size_t t,
+                      Unknowns& sums) {
     const auto part = static_cast<std::size_t>(&sums - parts_.data());
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
     for (std::size_t a = 0; a < kPose; ++a) {
@@ -265,7 +266,7 @@ void NormalEquations::Fill(Unknowns& right) {
   shared_inverse_ = all.inverse();
   picture_inverse_.assign(cells_, 0.0F);
   if (cells_ > 0) {
-    free_.RemoveFrom(layers_.picture.data(), outside_.data());
+    free_.RemoveComponent(layers_.picture.data(), outside_.data());
   }
   for (std::size_t c = 0; c < cells_; ++c) {
     float sum = 0.0F;
@@ -283,7 +284,8 @@ void NormalEquations::Fill(Unknowns& right) {
 }
 
 void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
-  Over([&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
+  AccumulateParts([&](const FrameSamples& samples, std::size_t t,
+                      Unknowns& sums) {
     // Column by column, so that the loops become vector instructions.
     const std::size_t n = samples.size();
     std::vector<float>& change = sums.change;
@@ -300,8 +302,9 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
     }
     for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
       for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
-        change[i] += samples.share[at] *
-                     layers_.grid.ValueAt(in.picture.data(), samples.place[at]);
+        change[i] +=
+            samples.share[at] *
+            layers_.grid.EvaluateSpline(in.picture.data(), samples.place[at]);
       }
     }
     for (std::size_t a = 0; a < kPose; ++a) {
@@ -330,7 +333,7 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
   for (std::size_t a = 0; a < kShared; ++a) {
     out.shared[a] += (prior_[a] + 1e-9) * in.shared[a];
   }
-  if (cells_ > 0) free_.RemoveFrom(in.picture.data(), outside_.data());
+  if (cells_ > 0) free_.RemoveComponent(in.picture.data(), outside_.data());
   for (std::size_t c = 0; c < cells_; ++c) {
     out.picture[c] += stiffness_ * outside_[c] + 1e-3F * in.picture[c];
   }
@@ -424,7 +427,7 @@ FreePart::FreePart(const PictureGrid& grid) {
   }
 }
 
-void FreePart::RemoveFrom(const float* from, float* to) const {
+void FreePart::RemoveComponent(const float* from, float* to) const {
   const std::size_t cells = basis_.front().size();
   std::copy(from, from + cells, to);
   for (const std::vector<float>& column : basis_) {

@@ -40,7 +40,7 @@ class FreePart {
  public:
   explicit FreePart(const PictureGrid& grid);
   // x - Pi x.
-  void RemoveFrom(const float* from, float* to) const;
+  void RemoveComponent(const float* from, float* to) const;
 
  private:
   std::vector<std::vector<float>> basis_;

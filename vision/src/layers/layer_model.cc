@@ -15,7 +15,7 @@ struct Node {
 };
 
 // More nodes where the body's farthest point moves more px in the exposure.
-std::span<const Node> NodesFor(double way) {
+std::span<const Node> ChooseNodes(double way) {
   static constexpr std::array<Node, 1> kOne = {{{0.0, 1.0}}};
   static constexpr std::array<Node, 2> kTwo = {
       {{-0.28867513459481287, 0.5}, {0.28867513459481287, 0.5}}};
@@ -42,8 +42,9 @@ struct SampleWindow {
   std::int32_t bottom = 0;
 };
 
-SampleWindow SampleWindowOf(const PictureStack& stack, const Layers& layers,
-                            const LayerPose& pose, const LayerPose& motion) {
+SampleWindow ComputeSampleWindow(const PictureStack& stack,
+                                 const Layers& layers, const LayerPose& pose,
+                                 const LayerPose& motion) {
   constexpr double kBlurs = 3.5;  // coverage is below 3e-4 beyond
   const double rim = kBlurs * layers.blur + 1.0;
   double reach_x = layers.shape.half_long;
@@ -80,10 +81,12 @@ struct Placed {
 };
 
 using Terms = std::array<float, kTerms>;
-Terms TermsAt(float x, float y) { return {1.0F, x, y, x * x, x * y, y * y}; }
+Terms EvaluateTerms(float x, float y) {
+  return {1.0F, x, y, x * x, x * y, y * y};
+}
 
-PictureGrid::Tilt TiltOf(const Terms& quadratic, const Terms& terms,
-                         float per_reach) {
+PictureGrid::Tilt ComputeTilt(const Terms& quadratic, const Terms& terms,
+                              float per_reach) {
   PictureGrid::Tilt tilt;
   for (std::size_t j = 0; j < kTerms; ++j) {
     tilt.value += quadratic[j] * terms[j];
@@ -114,16 +117,16 @@ double Apart(const LayerPose& a, const LayerPose& b) {
 }
 
 template <Derivatives kDerivatives>
-void LinearizeBy(const PictureStack& stack, std::size_t picture,
-                 const Layers& layers, const LayerPose& pose,
-                 const LayerPose& motion, FrameSamples& samples) {
+void LinearizeModel(const PictureStack& stack, std::size_t picture,
+                    const Layers& layers, const LayerPose& pose,
+                    const LayerPose& motion, FrameSamples& samples) {
   constexpr bool kAll = kDerivatives == Derivatives::kAll;
   // Below it a pixel shows nothing of the body.
   constexpr float kLeastCover = 2e-4F;
   constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
 
   samples.Resize(0, kDerivatives);
-  const SampleWindow window = SampleWindowOf(stack, layers, pose, motion);
+  const SampleWindow window = ComputeSampleWindow(stack, layers, pose, motion);
   if (window.right <= window.left || window.bottom <= window.top) {
     return;
   }
@@ -131,7 +134,7 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
   const double way = layers.exposure * (std::hypot(motion.x, motion.y) +
                                         std::abs(motion.angle_rad) * reach);
   std::vector<Placed> placed;
-  for (const Node& node : NodesFor(way)) {
+  for (const Node& node : ChooseNodes(way)) {
     const double shift = node.tau * layers.exposure;
     const double angle = pose.angle_rad + motion.angle_rad * shift;
     placed.push_back({static_cast<float>(pose.x + motion.x * shift),
@@ -192,17 +195,17 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
         const float y = node.cosine * dy - node.sine * dx;
         const CoverAt m = cover.At(x, y);
         shares[k] = node.weight * m.value;
-        if (!layers.flat) places[k] = layers.grid.PlaceOf(x, y);
+        if (!layers.flat) places[k] = layers.grid.LocatePlace(x, y);
         if (m.value < kLeastCover && m.by_blur == 0.0F) continue;
         PictureGrid::Tilt tilt;
         if (layers.flat) {
-          const Terms terms = TermsAt(x * per_reach, y * per_reach);
-          tilt = TiltOf(quadratic, terms, per_reach);
+          const Terms terms = EvaluateTerms(x * per_reach, y * per_reach);
+          tilt = ComputeTilt(quadratic, terms, per_reach);
           for (std::size_t j = 0; kAll && j < kTerms; ++j) {
             by_shared[kQuadratic + j] += shares[k] * terms[j];
           }
         } else {
-          tilt = layers.grid.TiltAt(layers.picture.data(), places[k]);
+          tilt = layers.grid.EvaluateTilt(layers.picture.data(), places[k]);
         }
         const float over = tilt.value + slope_x * dx + slope_y * dy - behind;
         // What the blur makes of products: of a smooth picture to first order,
@@ -307,11 +310,11 @@ void Linearize(const PictureStack& stack, std::size_t picture,
                const LayerPose& motion, Derivatives derivatives,
                FrameSamples& samples) {
   if (derivatives == Derivatives::kAll) {
-    LinearizeBy<Derivatives::kAll>(stack, picture, layers, pose, motion,
-                                   samples);
-  } else {
-    LinearizeBy<Derivatives::kByPose>(stack, picture, layers, pose, motion,
+    LinearizeModel<Derivatives::kAll>(stack, picture, layers, pose, motion,
                                       samples);
+  } else {
+    LinearizeModel<Derivatives::kByPose>(stack, picture, layers, pose, motion,
+                                         samples);
   }
 }
 
@@ -322,8 +325,8 @@ void LearnTexture(Layers& layers) {
   const float above = per_reach * per_reach / 3.0F;
   for (std::int32_t j = 0; j < layers.grid.rows(); ++j) {
     for (std::int32_t i = 0; i < layers.grid.columns(); ++i) {
-      Terms terms = TermsAt(layers.grid.x_of(i) * per_reach,
-                            layers.grid.y_of(j) * per_reach);
+      Terms terms = EvaluateTerms(layers.grid.x_of(i) * per_reach,
+                                  layers.grid.y_of(j) * per_reach);
       terms[3] -= above;
       terms[5] -= above;
       float level = 0.0F;
@@ -336,8 +339,9 @@ void LearnTexture(Layers& layers) {
   }
 }
 
-std::vector<LayerPose> MotionsOf(const std::vector<LayerPose>& poses,
-                                 const std::vector<std::int64_t>& frames) {
+std::vector<LayerPose> EstimateMotions(
+    const std::vector<LayerPose>& poses,
+    const std::vector<std::int64_t>& frames) {
   const std::size_t n = poses.size();
   std::vector<LayerPose> motions(n);
   if (n < 2) return motions;

@@ -131,7 +131,7 @@ void Linearize(const PictureStack& stack, std::size_t picture,
 
 // The pose's change in one frame interval, from the poses beside it: of both
 // sides, or of the steadier one where a blow lies between.
-std::vector<LayerPose> MotionsOf(const std::vector<LayerPose>& poses,
-                                 const std::vector<std::int64_t>& frames);
+std::vector<LayerPose> EstimateMotions(const std::vector<LayerPose>& poses,
+                                       const std::vector<std::int64_t>& frames);
 
 }  // namespace touchdown::vision::layers

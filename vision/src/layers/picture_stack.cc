@@ -5,8 +5,8 @@
 namespace touchdown::vision::layers {
 namespace {
 
-void HalveInto(const float* from, std::int32_t width, std::int32_t height,
-               float* to) {
+void HalvePicture(const float* from, std::int32_t width, std::int32_t height,
+                  float* to) {
   for (std::int32_t y = 0; y + 1 < height; y += 2) {
     const float* const upper = from + static_cast<std::ptrdiff_t>(y) * width;
     const float* const lower = upper + width;
@@ -42,8 +42,8 @@ PictureStack Halve(const PictureStack& full, int threads) {
                    [&](std::int64_t begin, std::int64_t end) {
                      for (auto t = static_cast<std::size_t>(begin);
                           t < static_cast<std::size_t>(end); ++t) {
-                       HalveInto(full.of(t), full.width, full.height,
-                                 half.levels.data() + t * half.pixels());
+                       HalvePicture(full.of(t), full.width, full.height,
+                                    half.levels.data() + t * half.pixels());
                      }
                    });
   return half;
@@ -53,7 +53,7 @@ std::vector<float> Halve(const std::vector<float>& picture, std::int32_t width,
                          std::int32_t height) {
   std::vector<float> half(static_cast<std::size_t>(width / 2) *
                           static_cast<std::size_t>(height / 2));
-  HalveInto(picture.data(), width, height, half.data());
+  HalvePicture(picture.data(), width, height, half.data());
   return half;
 }
 

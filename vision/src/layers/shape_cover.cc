@@ -19,7 +19,7 @@ struct Span {
   float by_blur = 0.0F;
 };
 
-Span SpanAt(const NormalTable& table, float u, float half, float per_blur) {
+Span CoverSpan(const NormalTable& table, float u, float half, float per_blur) {
   const float right = (half - u) * per_blur;
   const float left = (half + u) * per_blur;
   float phi_right = 0.0F;
@@ -79,8 +79,8 @@ CoverAt ShapeCover::At(float x, float y) const {
     at.by_blur = -slope * (z + 2.0F * bend_);
     return at;
   }
-  const Span along = SpanAt(table_, x, half_long_, per_blur_);
-  const Span across = SpanAt(table_, y, half_short_, per_blur_);
+  const Span along = CoverSpan(table_, x, half_long_, per_blur_);
+  const Span across = CoverSpan(table_, y, half_short_, per_blur_);
   at.value = along.value * across.value;
   at.by_x = along.by_u * across.value;
   at.by_y = along.value * across.by_u;
@@ -111,8 +111,8 @@ Product ShapeCover::WithEdge(float x, float y, const StillEdge& edge,
     return product;
   }
   // Each side by itself, as far as the other two let it be seen.
-  const float along = SpanAt(table_, x, half_long_, per_blur_).value;
-  const float across = SpanAt(table_, y, half_short_, per_blur_).value;
+  const float along = CoverSpan(table_, x, half_long_, per_blur_).value;
+  const float across = CoverSpan(table_, y, half_short_, per_blur_).value;
   const auto add = [&](float half, float at, float seen, float normal,
                        float& slope) {
     if (seen <= 1e-3F) return;

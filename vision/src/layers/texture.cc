@@ -9,9 +9,9 @@ namespace touchdown::vision::layers {
 
 // Standard deviation of what a flat body's residuals have in common, cell by
 // cell of its own picture: means over the frames, less the noise of a mean.
-double CommonTextureOf(const PictureStack& stack, const Layers& layers,
-                       const std::vector<LayerPose>& poses,
-                       const std::vector<FrameSamples>& frames) {
+double MeasureCommonTexture(const PictureStack& stack, const Layers& layers,
+                            const std::vector<LayerPose>& poses,
+                            const std::vector<FrameSamples>& frames) {
   constexpr float kWhole = 0.97F;
   std::vector<double> sums(layers.grid.size());
   std::vector<double> counts(layers.grid.size());
@@ -23,7 +23,7 @@ double CommonTextureOf(const PictureStack& stack, const Layers& layers,
       if (samples.cover[i] < kWhole) continue;
       const double dx = samples.pixel[i] % stack.width - poses[t].x;
       const double dy = samples.pixel[i] / stack.width - poses[t].y;
-      const SplinePlace place = layers.grid.PlaceOf(
+      const SplinePlace place = layers.grid.LocatePlace(
           static_cast<float>(cosine * dx + sine * dy + 0.5),
           static_cast<float>(cosine * dy - sine * dx + 0.5));
       const auto cell = static_cast<std::size_t>(place.first);
@@ -64,7 +64,7 @@ std::vector<float> WeighPicture(const Layers& layers,
 // Empirical Bayes: the variance of T about its own quadratic, over the cells
 // inside of the blurred edge, where T is not to be mistaken for the outline's
 // place.
-double TextureOf(const Layers& layers, const std::vector<float>& weight) {
+double MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
   constexpr double kBlurs = 1.5;
   constexpr double kLeastHalf = 0.3;  // of a thin body's half side
   using TermVector = Eigen::Matrix<double, 6, 1>;

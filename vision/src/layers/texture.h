@@ -11,9 +11,9 @@ namespace touchdown::vision::layers {
 // Of a flat body: standard deviation of what its residuals have in common, cell
 // by cell of its own picture, DN: means over the frames, less the noise of a
 // mean.
-double CommonTextureOf(const PictureStack& stack, const Layers& layers,
-                       const std::vector<LayerPose>& poses,
-                       const std::vector<FrameSamples>& frames);
+double MeasureCommonTexture(const PictureStack& stack, const Layers& layers,
+                            const std::vector<LayerPose>& poses,
+                            const std::vector<FrameSamples>& frames);
 
 // How often each coefficient of a spline T is seen: the sum of squared
 // coverage.
@@ -23,6 +23,6 @@ std::vector<float> WeighPicture(const Layers& layers,
 // Empirical Bayes: the standard deviation of a spline T about its own
 // quadratic, DN, over the cells inside of the blurred edge, where T is not to
 // be mistaken for the outline's place. `weight`: WeighPicture.
-double TextureOf(const Layers& layers, const std::vector<float>& weight);
+double MeasureTexture(const Layers& layers, const std::vector<float>& weight);
 
 }  // namespace touchdown::vision::layers

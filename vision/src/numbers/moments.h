@@ -27,7 +27,7 @@ struct MomentsOf {
     tty += wtt * value;
     yy += wy * value;
   }
-  MomentsOf<double> Of(int k) const {
+  MomentsOf<double> SelectSeries(int k) const {
     return {w[k], t[k], tt[k], ttt[k], tttt[k], y[k], ty[k], tty[k], yy[k]};
   }
 };

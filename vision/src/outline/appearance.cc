@@ -37,7 +37,7 @@ struct Common {
   bool shaded = true;
 };
 
-Common CommonOf(std::span<const SeenOutline> frames) {
+Common ComputeCommon(std::span<const SeenOutline> frames) {
   Common common;
   const auto n = static_cast<double>(frames.size());
   for (const SeenOutline& seen : frames) {
@@ -49,7 +49,7 @@ Common CommonOf(std::span<const SeenOutline> frames) {
   return common;
 }
 
-double ShadingAt(const Shading& shading, double xi, double eta) {
+double EvaluateShading(const Shading& shading, double xi, double eta) {
   const auto& k = shading.level;
   return k[0] + xi * (k[1] + xi * k[3] + eta * k[4]) +
          eta * (k[2] + eta * k[5]);
@@ -110,7 +110,7 @@ void Collection::Add(const SeenOutline& seen) {
   band.known_background = true;
   band.every = true;
   const core::Frame frame = clip_.Read(
-      seen.frame, BoxAround(outline.centre, Extent(outline), clip_.info()));
+      seen.frame, ClippedBox(outline.centre, Extent(outline), clip_.info()));
   CollectOutlinePixels(frame, behind_, outline, cosine, sine, usable_, band,
                        pixels_);
   if (pixels_.size == 0) return;
@@ -144,8 +144,8 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
       in.y_px = pixels_.y[i] - centre.y_px;
       in.level_dn = out + (pixels_.value[i] - out) / covered;
       if (seen.fit.shading) {
-        in.level_dn -= ShadingAt(*seen.fit.shading, cover.xi[i - begin],
-                                 cover.eta[i - begin]);
+        in.level_dn -= EvaluateShading(*seen.fit.shading, cover.xi[i - begin],
+                                       cover.eta[i - begin]);
       }
       in.variance_dn2 =
           background_.Variance(pixels_.value[i]) / (covered * covered);
@@ -158,7 +158,7 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
   }
 }
 
-SpotSample SampleOf(const InsidePixel& in, bool turns) {
+SpotSample MakeSample(const InsidePixel& in, bool turns) {
   return {turns ? in.x_px * in.cosine + in.y_px * in.sine : in.x_px,
           turns ? in.y_px * in.cosine - in.x_px * in.sine : in.y_px,
           in.level_dn, in.variance_dn2};
@@ -166,8 +166,8 @@ SpotSample SampleOf(const InsidePixel& in, bool turns) {
 
 // Means of samples in squares of this side, as many on either side of the
 // middle.
-std::vector<SpotSample> CellsOf(const std::vector<SpotSample>& samples,
-                                double side_px, double reach_px) {
+std::vector<SpotSample> AverageCells(const std::vector<SpotSample>& samples,
+                                     double side_px, double reach_px) {
   const double half = std::ceil(reach_px / side_px) + 1.0;
   const double first = -half * side_px;
   const auto count = static_cast<std::size_t>(2.0 * half);
@@ -235,7 +235,7 @@ std::optional<Appearance> Described(const std::vector<InsidePixel>& all,
                                     const Common& common) {
   std::vector<SpotSample> samples;
   samples.reserve(all.size());
-  for (const InsidePixel& in : all) samples.push_back(SampleOf(in, turns));
+  for (const InsidePixel& in : all) samples.push_back(MakeSample(in, turns));
   // Some 400 cells, none smaller than half a pixel, and a few samples in each.
   constexpr double kCells = 400.0;
   constexpr double kInCell = 5.0;
@@ -245,7 +245,7 @@ std::optional<Appearance> Described(const std::vector<InsidePixel>& all,
   const double side = std::max(
       {kLeastSide_px, std::sqrt(per_frame / kCells), std::sqrt(kInCell / n)});
   const std::vector<SpotSample> cells =
-      CellsOf(samples, side, common.extent_px);
+      AverageCells(samples, side, common.extent_px);
   // Enough for a spot's place to a hundredth of a pixel.
   constexpr std::size_t kSamples = 12000;
   const std::size_t step = (samples.size() + kSamples - 1) / kSamples;
@@ -255,7 +255,7 @@ std::optional<Appearance> Described(const std::vector<InsidePixel>& all,
     left_out =
         static_cast<double>(all.size()) / static_cast<double>(some.size());
     samples.clear();
-    for (const InsidePixel& in : some) samples.push_back(SampleOf(in, turns));
+    for (const InsidePixel& in : some) samples.push_back(MakeSample(in, turns));
   }
   SpotOptions options;
   options.size_px = common.size_px;
@@ -332,7 +332,7 @@ std::optional<Appearance> LearnRings(Clip& clip, const Background& background,
                                      const OutlineOptions& options) {
   constexpr std::size_t kLeast = 8;
   if (frames.size() < kLeast) return std::nullopt;
-  const Common common = CommonOf(frames);
+  const Common common = ComputeCommon(frames);
   Collection collection(clip, background, options, common.extent_px,
                         frames.size());
   for (const SeenOutline& seen : frames) collection.Add(seen);
@@ -370,7 +370,7 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
   if (frames.size() < kLeast) return std::nullopt;
   const std::size_t step = (frames.size() + kEnough - 1) / kEnough;
   const std::vector<std::size_t> some = FromBothSides(frames.size(), step);
-  const Common common = CommonOf(frames);
+  const Common common = ComputeCommon(frames);
   // First what the fits saw: of most bodies there is nothing to learn. Then the
   // whole face, as a spot's middle tells more of it than its rim.
   const double fitted = std::max(12.0, 6.0 * common.blur_px);  // outline.cc

@@ -14,7 +14,7 @@ namespace {
 
 // Calls use(x, y) for each pixel inside the outline, clear of its edge.
 template <class Use>
-void ForEachInside(const Outline& outline, const Use& use) {
+void ForEachInnerPixel(const Outline& outline, const Use& use) {
   const double reach = outline.kind == core::BodyKind::kSphere
                            ? outline.radius_px
                            : outline.half_long_px;
@@ -27,19 +27,19 @@ void ForEachInside(const Outline& outline, const Use& use) {
        y <= static_cast<int>(outline.centre.y_px + reach); ++y) {
     for (int x = static_cast<int>(outline.centre.x_px - reach);
          x <= static_cast<int>(outline.centre.x_px + reach); ++x) {
-      if (DepthInside(outline, x, y, cosine, sine) < depth) continue;
+      if (SignedDepth(outline, x, y, cosine, sine) < depth) continue;
       use(x, y);
     }
   }
 }
 
 // Mean level of a frame there.
-double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
+double MeanInnerLevel(Clip& clip, std::int64_t index, const Outline& outline) {
   const core::Frame frame =
-      clip.Read(index, WindowFor(outline, {}, clip.info()));
+      clip.Read(index, ChooseWindow(outline, {}, clip.info()));
   double sum = 0.0;
   double count = 0.0;
-  ForEachInside(outline, [&](int x, int y) {
+  ForEachInnerPixel(outline, [&](int x, int y) {
     const int u = x - frame.origin_x_px;
     const int v = y - frame.origin_y_px;
     if (u < 0 || v < 0 || u >= frame.width_px || v >= frame.height_px) return;
@@ -51,7 +51,7 @@ double LevelInside(Clip& clip, std::int64_t index, const Outline& outline) {
 
 // Mean coverage there: less than 1 where the body is not much wider than its
 // blur.
-double CoverInside(const Outline& outline, double blur_px) {
+double MeanCoverage(const Outline& outline, double blur_px) {
   Smear still({0.0, 0.0}, 0.0, 0.0);
   still.Set(blur_px, 0.0, false);
   const OutlineImage image(outline, still);
@@ -68,7 +68,7 @@ double CoverInside(const Outline& outline, double blur_px) {
     count += static_cast<double>(filled);
     filled = 0;
   };
-  ForEachInside(outline, [&](int x, int y) {
+  ForEachInnerPixel(outline, [&](int x, int y) {
     xs[filled] = x;
     ys[filled] = y;
     if (++filled == kBlock) flush();
@@ -90,7 +90,7 @@ Pose OnTheWay(const Pose& a, const Pose& b, std::int64_t frame) {
   return pose;
 }
 
-std::optional<Pose> PoseIn(const Track& track, std::int64_t frame) {
+std::optional<Pose> InterpolatePose(const Track& track, std::int64_t frame) {
   const auto after = std::lower_bound(
       track.poses.begin(), track.poses.end(), frame,
       [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
@@ -104,24 +104,28 @@ BodyCover::BodyCover(Clip& clip, const Track& track)
     : clip_(clip), track_(track) {
   const Pose& first = track.poses.front();
   const Pose& last = track.poses.back();
-  level_first_ = LevelInside(clip, first.frame, OutlineAt(track.body, first));
-  level_last_ = LevelInside(clip, last.frame, OutlineAt(track.body, last));
-  cover_inside_ = CoverInside(OutlineAt(track.body, first), track.body.blur_px);
+  level_first_ =
+      MeanInnerLevel(clip, first.frame, PlaceOutline(track.body, first));
+  level_last_ =
+      MeanInnerLevel(clip, last.frame, PlaceOutline(track.body, last));
+  cover_inside_ =
+      MeanCoverage(PlaceOutline(track.body, first), track.body.blur_px);
 }
 
 // Empty frames are the best background there is.
 bool BodyCover::IsAbsent(std::int64_t frame) const {
   const bool before = frame < track_.poses.front().frame;
   const Pose& end = before ? track_.poses.front() : track_.poses.back();
-  const double level = LevelInside(clip_, frame, OutlineAt(track_.body, end));
+  const double level =
+      MeanInnerLevel(clip_, frame, PlaceOutline(track_.body, end));
   return std::abs(level - (before ? level_first_ : level_last_)) >
          0.5 * cover_inside_ * std::abs(track_.body.contrast_dn);
 }
 
 // With a margin for blur, for the error of a first look and for the shadow's
 // rim.
-Cover BodyCover::CoverOf(const Pose& pose) const {
-  const Outline outline = OutlineAt(track_.body, pose);
+Cover BodyCover::ComputeCover(const Pose& pose) const {
+  const Outline outline = PlaceOutline(track_.body, pose);
   const double margin = 3.0 * track_.body.blur_px + 3.0;
   const double reach =
       margin + (outline.kind == core::BodyKind::kSphere
@@ -149,20 +153,21 @@ Cover BodyCover::CoverOf(const Pose& pose) const {
   const double sine = std::sin(outline.angle_rad);
   for (int y = box.y; y < box.y + box.height; ++y) {
     for (int x = box.x; x < box.x + box.width; ++x) {
-      const double depth = DepthInside(outline, x, y, cosine, sine);
+      const double depth = SignedDepth(outline, x, y, cosine, sine);
       cover.mask.push_back(depth > -margin ? 1 : 0);
     }
   }
   return cover;
 }
 
-Cover BodyCover::In(std::int64_t frame) const {
-  if (const std::optional<Pose> pose = PoseIn(track_, frame)) {
-    return CoverOf(*pose);
+Cover BodyCover::CoverInFrame(std::int64_t frame) const {
+  if (const std::optional<Pose> pose = InterpolatePose(track_, frame)) {
+    return ComputeCover(*pose);
   }
   if (IsAbsent(frame)) return {};
   const bool before = frame < track_.poses.front().frame;
-  Cover cover = CoverOf(before ? track_.poses.front() : track_.poses.back());
+  Cover cover =
+      ComputeCover(before ? track_.poses.front() : track_.poses.back());
   cover.known = false;
   return cover;
 }

@@ -16,7 +16,7 @@ Pose OnTheWay(const Pose& a, const Pose& b, std::int64_t frame);
 
 // The pose in a frame: measured, or between two measured ones; nothing outside
 // the track.
-std::optional<Pose> PoseIn(const Track& track, std::int64_t frame);
+std::optional<Pose> InterpolatePose(const Track& track, std::int64_t frame);
 
 // What the body covers, frame by frame. Before the track begins and after it
 // ends the picture may be empty, or the body may rest where the track begins or
@@ -25,11 +25,11 @@ class BodyCover {
  public:
   BodyCover(Clip& clip, const Track& track);
 
-  Cover In(std::int64_t frame) const;
+  Cover CoverInFrame(std::int64_t frame) const;
 
  private:
   bool IsAbsent(std::int64_t frame) const;
-  Cover CoverOf(const Pose& pose) const;
+  Cover ComputeCover(const Pose& pose) const;
 
   Clip& clip_;
   const Track& track_;

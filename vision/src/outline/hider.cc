@@ -55,7 +55,7 @@ void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
   OutlineOptions window;
   window.blur_px = options.blur_px;
   const core::Frame frame =
-      clip.Read(job.frame, WindowFor(job.start, window, clip.info()));
+      clip.Read(job.frame, ChooseWindow(job.start, window, clip.info()));
   const double clear =
       kClearOfBlur * options.blur_px + 0.5 +
       0.5 * options.open * std::hypot(job.travel_px.x_px, job.travel_px.y_px);
@@ -67,7 +67,7 @@ void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
     for (std::int32_t u = 0; u < frame.width_px; ++u) {
       const std::int32_t x = frame.origin_x_px + u;
       if (x < sums.box.x || x >= sums.box.x + sums.box.width) continue;
-      if (DepthInside(job.start, x, y) < clear) continue;
+      if (SignedDepth(job.start, x, y) < clear) continue;
       const double still = static_cast<double>(background.at(x, y));
       const double rise = options.body_dn - still;
       const double noise = std::sqrt(background.Variance(still));

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "numbers/robust.h"
 #include "outline/outline_image.h"
 #include "outline/outline_inside.h"
 #include "outline/outline_pixels.h"
 #include "outline/outline_sums.h"
-#include "numbers/robust.h"
 #include "outline/shared_fit.h"
 #include "outline/track_shape.h"
 
@@ -87,7 +87,7 @@ class Fitter {
   OutlineRound Round() const;
   NormalMatrix Regular() const;
   bool Step(double longer, double& geometric_step);
-  int OpenAt() const { return geometry_ + 1; }
+  int OpenIndex() const { return geometry_ + 1; }
   int LevelsBegin() const { return geometry_ + 2; }
   int Parameters() const { return LevelsBegin() + interior_ + outer_; }
   bool Free(int k) const;
@@ -152,7 +152,7 @@ std::string Fitter::Gather() {
 
 bool Fitter::Free(int k) const {
   if (k == geometry_) return options_.fit_blur || telling_;
-  if (k == OpenAt()) {
+  if (k == OpenIndex()) {
     return options_.fit_open || (telling_ && smear_.IsResolved());
   }
   if (options_.fit_size || telling_) return true;
@@ -162,12 +162,12 @@ bool Fitter::Free(int k) const {
 // Adds up the pixels and spreads the sums over all parameters: what is held has
 // no row.
 void Fitter::Sum(const OutlineRound& round) {
-  sums_.Of(pixels_, OutlineImage(outline_, smear_), round, residuals_);
+  sums_.SumPixels(pixels_, OutlineImage(outline_, smear_), round, residuals_);
   std::array<int, kMostTerms> at{};
   for (std::size_t k = 0; k < round.shapes; ++k) {
     at[k] = round.shape[k] == OutlineRound::kBlur ? geometry_
             : round.shape[k] == OutlineRound::kOpen
-                ? OpenAt()
+                ? OpenIndex()
                 : static_cast<int>(round.shape[k]);
   }
   for (std::size_t k = round.shapes; k < round.terms(); ++k) {
@@ -226,7 +226,7 @@ void Fitter::Accumulate(bool robust) {
     if (Free(k)) round.shape[round.shapes++] = At(k);
   }
   if (Free(geometry_)) round.shape[round.shapes++] = OutlineRound::kBlur;
-  if (Free(OpenAt())) round.shape[round.shapes++] = OutlineRound::kOpen;
+  if (Free(OpenIndex())) round.shape[round.shapes++] = OutlineRound::kOpen;
   std::copy(levels_.begin(), levels_.end(), round.levels.begin());
   if (robust) round.cut = kTukeyCut * robust_scale_;
   Sum(round);
@@ -284,7 +284,7 @@ bool Fitter::Step(double longer, double& geometric_step) {
   constexpr double kSharpest_px = 0.25;
   blur_ = std::clamp(blur_ + step[geometry_], kSharpest_px,
                      std::max(2.0 * options_.blur_px, 0.5 * size));
-  open_ = std::clamp(open_ + step[OpenAt()], 0.0, 1.0);
+  open_ = std::clamp(open_ + step[OpenIndex()], 0.0, 1.0);
   levels_ += step.tail(interior_ + outer_);
   SetSmear();
   return true;
@@ -385,7 +385,7 @@ bool Fitter::SetAsideUnexplained() {
                   cosine_, sine_, kClear * blur_ + 0.5 * smear_.way_px());
   if (unexplained.empty()) return false;
   before_aside_ = Visible();
-  usable_.Without(unexplained, kReach * blur_ + 1.0);
+  usable_.ExcludePixels(unexplained, kReach * blur_ + 1.0);
   return true;
 }
 
@@ -443,12 +443,12 @@ core::Expected<OutlineFit> Fitter::Run() {
     const auto row = [&](int k) { return Free(k) ? k : -1; };
     fit.shared =
         WithoutOwn(Regular() / (widen * widen), gradient_ / (widen * widen),
-                   {2, geometry_ == 5 ? 3 : -1, geometry_, row(OpenAt())});
+                   {2, geometry_ == 5 ? 3 : -1, geometry_, row(OpenIndex())});
   }
   fit.blur_px = blur_;
   fit.u_blur_px = u(geometry_);
   fit.open = open_;
-  fit.u_open = u(OpenAt());
+  fit.u_open = u(OpenIndex());
   if (interior_ == 6) {
     Shading shading;
     for (int k = 0; k < interior_; ++k) {
@@ -489,11 +489,11 @@ core::Expected<OutlineFit> Fitter::Run() {
 
 }  // namespace
 
-core::Expected<OutlineFit> FitOutlineWith(Inside inside,
-                                          const core::Frame& frame,
-                                          const Background& background,
-                                          const Outline& start,
-                                          const OutlineOptions& options) {
+core::Expected<OutlineFit> FitOutlineModel(Inside inside,
+                                           const core::Frame& frame,
+                                           const Background& background,
+                                           const Outline& start,
+                                           const OutlineOptions& options) {
   return Fitter(frame, background, start, options, inside).Run();
 }
 

@@ -59,7 +59,7 @@ core::PixelRect FirstSeen(const Outline& start, const OutlineOptions& options,
 }
 
 Window Take(Clip& clip, const OutlineJob& job, const OutlineOptions& options) {
-  const core::PixelRect rect = WindowFor(job.start, options, clip.info());
+  const core::PixelRect rect = ChooseWindow(job.start, options, clip.info());
   const std::int64_t index = job.frame;
   Window window;
   window.first = FirstSeen(job.start, options, clip.info());
@@ -74,7 +74,7 @@ Window Take(Clip& clip, const OutlineJob& job, const OutlineOptions& options) {
 }
 
 void PrefetchRows(const Window& window) {
-  const core::Frame frame = WindowOf(window.frame, window.first);
+  const core::Frame frame = CutWindow(window.frame, window.first);
   const std::size_t bytes = RowBytes(frame);
   for (std::int32_t y = 0; y < frame.height_px; ++y) {
     Prefetch(frame.data + y * frame.stride_bytes, bytes);
@@ -122,11 +122,11 @@ void FitApart(Clip& clip, const Background& background,
   constexpr std::size_t kTurns = 4;  // of each thread, at least
   const std::size_t at_once = std::clamp<std::size_t>(
       jobs.size() /
-          (kTurns * static_cast<std::size_t>(core::ThreadsOf(threads))),
+          (kTurns * static_cast<std::size_t>(core::CountThreads(threads))),
       1, kMostAtOnce);
   std::atomic<std::size_t> next = 0;
   core::InParallel(
-      core::ThreadsOf(threads), threads, [&](std::int64_t, std::int64_t) {
+      core::CountThreads(threads), threads, [&](std::int64_t, std::int64_t) {
         const std::unique_ptr<Clip> own = clip.OpenAnother();
         std::vector<Window> windows;
         for (std::size_t begin = next.fetch_add(at_once); begin < jobs.size();
@@ -142,8 +142,9 @@ void FitApart(Clip& clip, const Background& background,
 
 }  // namespace
 
-core::PixelRect WindowFor(const Outline& start, const OutlineOptions& options,
-                          const ClipInfo& info) {
+core::PixelRect ChooseWindow(const Outline& start,
+                             const OutlineOptions& options,
+                             const ClipInfo& info) {
   // The fit may move by a quarter of the size and double its blur, and looks
   // three blurs and half the way beyond the edge (outline.cc).
   constexpr double kMayMove = 0.5;

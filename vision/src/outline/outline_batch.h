@@ -32,7 +32,8 @@ std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,
 std::vector<Fitted> Found(const std::vector<std::optional<Fitted>>& fits);
 
 // What a fit from `start` may look at of a clip's picture.
-core::PixelRect WindowFor(const Outline& start, const OutlineOptions& options,
-                          const ClipInfo& info);
+core::PixelRect ChooseWindow(const Outline& start,
+                             const OutlineOptions& options,
+                             const ClipInfo& info);
 
 }  // namespace touchdown::vision

@@ -31,7 +31,7 @@ core::Expected<OutlineFit> FitNarrow(const core::Frame& frame,
   OutlineOptions blurred = options;
   blurred.blur_px = std::max(options.blur_px, kLikely * SmallestHalf(start));
   auto fit =
-      FitOutlineWith(Inside::kOneLevel, frame, background, start, blurred);
+      FitOutlineModel(Inside::kOneLevel, frame, background, start, blurred);
   if (fit && fit->misfit < kWellModelled && fit->inliers > kNearlyAll &&
       SmallestHalf(fit->outline) < kNarrow * fit->blur_px) {
     return fit;
@@ -45,7 +45,8 @@ core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
                                       const Background& background,
                                       const Outline& start,
                                       const OutlineOptions& options) {
-  auto fit = FitOutlineWith(Inside::kShaded, frame, background, start, options);
+  auto fit =
+      FitOutlineModel(Inside::kShaded, frame, background, start, options);
   if (fit || !IsAllFree(options)) return fit;
   auto narrow = FitNarrow(frame, background, start, options);
   return narrow ? narrow : fit;

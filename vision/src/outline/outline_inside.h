@@ -9,10 +9,10 @@ namespace touchdown::vision {
 enum class Inside { kShaded, kOneLevel };
 
 // FitOutline with one of them.
-core::Expected<OutlineFit> FitOutlineWith(Inside inside,
-                                          const core::Frame& frame,
-                                          const Background& background,
-                                          const Outline& start,
-                                          const OutlineOptions& options);
+core::Expected<OutlineFit> FitOutlineModel(Inside inside,
+                                           const core::Frame& frame,
+                                           const Background& background,
+                                           const Outline& start,
+                                           const OutlineOptions& options);
 
 }  // namespace touchdown::vision

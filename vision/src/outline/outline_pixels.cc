@@ -14,7 +14,7 @@ bool UsablePart::IsHidden(double x_px, double y_px) const {
   return hider_->Hides(x_px, y_px);
 }
 
-double DepthInside(const Outline& outline, double x_px, double y_px,
+double SignedDepth(const Outline& outline, double x_px, double y_px,
                    double cosine, double sine) {
   const double dx = x_px - outline.centre.x_px;
   const double dy = y_px - outline.centre.y_px;
@@ -30,16 +30,16 @@ double DepthInside(const Outline& outline, double x_px, double y_px,
 
 Height::Height(const std::optional<calib::GroundLine>& ground) {
   if (!ground) return;
-  offset_ = calib::HeightAbove(*ground, {0.0, 0.0});
-  x_ = calib::HeightAbove(*ground, {1.0, 0.0}) - offset_;
-  y_ = calib::HeightAbove(*ground, {0.0, 1.0}) - offset_;
+  offset_ = calib::HeightAboveLine(*ground, {0.0, 0.0});
+  x_ = calib::HeightAboveLine(*ground, {1.0, 0.0}) - offset_;
+  y_ = calib::HeightAboveLine(*ground, {0.0, 1.0}) - offset_;
 }
 
-double Behind::Above(std::int32_t x, std::int32_t y, double px) const {
+double Behind::Raised(std::int32_t x, std::int32_t y, double px) const {
   if (std::min(background_.width_px, background_.height_px) < 3) {
     return static_cast<double>(background_.at(x, y));
   }
-  const core::PixelPoint from = height_.Above(x, y, px);
+  const core::PixelPoint from = height_.Raised(x, y, px);
   const auto inside = [](double at, std::int32_t end) {
     return std::clamp(static_cast<std::int32_t>(std::lround(at)), 1, end - 2);
   };
@@ -54,8 +54,8 @@ double Behind::Above(std::int32_t x, std::int32_t y, double px) const {
   return sum / 9.0;
 }
 
-void UsablePart::Without(const std::vector<core::PixelPoint>& pixels,
-                         double reach_px) {
+void UsablePart::ExcludePixels(const std::vector<core::PixelPoint>& pixels,
+                               double reach_px) {
   if (pixels.empty()) return;
   const auto reach = static_cast<std::int32_t>(std::ceil(reach_px));
   double left = pixels[0].x_px, right = left;
@@ -133,7 +133,7 @@ bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
   double outside = 0.0;
   double full = 0.0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
-    if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) >
+    if (SignedDepth(outline, pixels.x[i], pixels.y[i], cosine, sine) >
         -kClear_px) {
       continue;
     }
@@ -197,7 +197,7 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
   std::size_t inside = 0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const core::PixelPoint p = {pixels.x[i], pixels.y[i]};
-    if (DepthInside(outline, p.x_px, p.y_px, cosine, sine) < clear_px) continue;
+    if (SignedDepth(outline, p.x_px, p.y_px, cosine, sine) < clear_px) continue;
     ++inside;
     if (std::abs(residuals[i]) > cut) unexplained.push_back(p);
   }
@@ -232,9 +232,9 @@ class Collector {
 
   // All pixels that follow lie within `reach_px` of a point. Where each of them
   // is usable and hides what is seen beside it, none need be asked.
-  void StayAround(const core::PixelPoint& centre, double reach_px) {
-    ask_ = ask_known_ || !usable_.HoldsAround(centre, reach_px) ||
-           !behind_.IsSeenAround(centre, reach_px);
+  void StayNearPoint(const core::PixelPoint& centre, double reach_px) {
+    ask_ = ask_known_ || !usable_.HoldsDisc(centre, reach_px) ||
+           !behind_.IsClearOfGround(centre, reach_px);
   }
 
   // The pixels of row y from x to `end`.
@@ -300,7 +300,7 @@ void AddAppearance(const Appearance& appearance, const Outline& outline,
       pixels.slope_y[i] = static_cast<float>(value.slope_y_dn_per_px);
     }
     constexpr double kEdge_px = 1.0;
-    if (DepthInside(outline, pixels.x[i], pixels.y[i], cosine, sine) <
+    if (SignedDepth(outline, pixels.x[i], pixels.y[i], cosine, sine) <
         -kEdge_px) {
       continue;
     }
@@ -360,7 +360,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
                static_cast<std::size_t>(std::max(0, y1 - y0 + 1)));
   const Background& background = behind.background();
   Collector collector(frame, behind, usable, band.known_background, pixels);
-  collector.StayAround(centre, std::numbers::sqrt2 * reach);
+  collector.StayNearPoint(centre, std::numbers::sqrt2 * reach);
   for (std::int32_t y = y0; y <= y1; ++y) {
     if (outline.kind == core::BodyKind::kSphere) {
       const double dy = y - centre.y_px;
@@ -389,7 +389,7 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
       continue;
     }
     for (std::int32_t x = x0; x <= x1; ++x) {
-      const double depth = DepthInside(outline, x, y, cosine, sine);
+      const double depth = SignedDepth(outline, x, y, cosine, sine);
       if (depth < -margin || depth > band.inner_px) continue;
       if (large && depth > margin && sparse.LeavesOut(x, y)) continue;
       collector.Take(x, y);
@@ -428,7 +428,7 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
       centre.y_px - reach >= frame.origin_y_px &&
       centre.x_px + reach <= frame.origin_x_px + frame.width_px - 1 &&
       centre.y_px + reach <= frame.origin_y_px + frame.height_px - 1 &&
-      usable.HoldsAround(centre, reach)) {
+      usable.HoldsDisc(centre, reach)) {
     return 1.0;
   }
   constexpr int kProbes = 72;
@@ -443,8 +443,8 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
   return static_cast<double>(seen) / kProbes;
 }
 
-double DepthInside(const Outline& outline, double x_px, double y_px) {
-  return DepthInside(outline, x_px, y_px, std::cos(outline.angle_rad),
+double SignedDepth(const Outline& outline, double x_px, double y_px) {
+  return SignedDepth(outline, x_px, y_px, std::cos(outline.angle_rad),
                      std::sin(outline.angle_rad));
 }
 

@@ -24,7 +24,7 @@ class Height {
     return x_ * x_px + y_ * y_px + offset_;
   }
   // `px` farther up.
-  core::PixelPoint Above(double x_px, double y_px, double px) const {
+  core::PixelPoint Raised(double x_px, double y_px, double px) const {
     return {x_px + px * x_, y_px + px * y_};
   }
 
@@ -43,17 +43,17 @@ class Behind {
       : background_(background), height_(height), zone_px_(zone_px) {}
   double At(std::int32_t x, std::int32_t y) const {
     const double height = height_.Of(x, y);
-    return height < zone_px_ ? Above(x, y, zone_px_ - height)
+    return height < zone_px_ ? Raised(x, y, zone_px_ - height)
                              : static_cast<double>(background_.at(x, y));
   }
   // Whether nothing within `reach_px` of a point is near the ground's edge.
-  bool IsSeenAround(const core::PixelPoint& point, double reach_px) const {
+  bool IsClearOfGround(const core::PixelPoint& point, double reach_px) const {
     return height_.Of(point.x_px, point.y_px) - reach_px >= zone_px_;
   }
   const Background& background() const { return background_; }
 
  private:
-  double Above(std::int32_t x, std::int32_t y, double px) const;
+  double Raised(std::int32_t x, std::int32_t y, double px) const;
 
   const Background& background_;
   Height height_;
@@ -72,12 +72,13 @@ class UsablePart {
            (aside_.empty() || !IsAside(x_px, y_px));
   }
   // All within `reach_px` of a point.
-  bool HoldsAround(const core::PixelPoint& point, double reach_px) const {
+  bool HoldsDisc(const core::PixelPoint& point, double reach_px) const {
     return height_.Of(point.x_px, point.y_px) - reach_px >= margin_px_ &&
            hider_ == nullptr && aside_.empty();
   }
   // Sets these pixels aside, and all within `reach_px` of any of them.
-  void Without(const std::vector<core::PixelPoint>& pixels, double reach_px);
+  void ExcludePixels(const std::vector<core::PixelPoint>& pixels,
+                     double reach_px);
 
  private:
   bool IsAside(double x_px, double y_px) const;
@@ -147,8 +148,8 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
                                           double cosine, double sine,
                                           double clear_px);
 
-// DepthInside of outline.h with the cosine and sine of the angle at hand.
-double DepthInside(const Outline& outline, double x_px, double y_px,
+// SignedDepth of outline.h with the cosine and sine of the angle at hand.
+double SignedDepth(const Outline& outline, double x_px, double y_px,
                    double cosine, double sine);
 
 // The radius or half the long side by `size_px`, half the other by `other_px`.

@@ -12,7 +12,7 @@ namespace touchdown::vision {
 namespace {
 
 template <std::size_t kCount>
-double SumOf(const std::array<float, kCount>& lanes) {
+double SumLanes(const std::array<float, kCount>& lanes) {
   double sum = 0.0;
   for (const float lane : lanes) sum += static_cast<double>(lane);
   return sum;
@@ -150,12 +150,14 @@ struct OutlineBlock {
     }
   }
 
-  TOUCHDOWN_WIDEST void AddTo(const OutlineRound& round,
-                              const CoverBlock& cover, Totals& totals) const;
+  TOUCHDOWN_WIDEST void AccumulateBlock(const OutlineRound& round,
+                                        const CoverBlock& cover,
+                                        Totals& totals) const;
 };
 
-void OutlineBlock::AddTo(const OutlineRound& round, const CoverBlock& cover,
-                         Totals& totals) const {
+void OutlineBlock::AccumulateBlock(const OutlineRound& round,
+                                   const CoverBlock& cover,
+                                   Totals& totals) const {
   struct alignas(64) Work {
     std::array<std::array<BlockColumn, 4>, kPadded / 4> rows;
     BlockColumn in, out, behind, step, inside, outside, residual, weight,
@@ -250,24 +252,25 @@ void OutlineSums::Begin(std::size_t terms) {
   totals_.square = totals_.contrast = totals_.contrast_weight = {};
 }
 
-void OutlineSums::TakeIn(std::size_t terms) {
+void OutlineSums::AddTotals(std::size_t terms) {
   for (std::size_t i = 0; i < terms; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      normal_[i * kPadded + j] += SumOf(totals_.normal[i * kPadded + j]);
+      normal_[i * kPadded + j] += SumLanes(totals_.normal[i * kPadded + j]);
     }
-    gradient_[i] += SumOf(totals_.gradient[i]);
+    gradient_[i] += SumLanes(totals_.gradient[i]);
   }
-  cost += SumOf(totals_.cost);
-  weights += SumOf(totals_.weights);
-  inliers += SumOf(totals_.inliers);
-  square += SumOf(totals_.square);
-  contrast_ += SumOf(totals_.contrast);
-  contrast_weight_ += SumOf(totals_.contrast_weight);
+  cost += SumLanes(totals_.cost);
+  weights += SumLanes(totals_.weights);
+  inliers += SumLanes(totals_.inliers);
+  square += SumLanes(totals_.square);
+  contrast_ += SumLanes(totals_.contrast);
+  contrast_weight_ += SumLanes(totals_.contrast_weight);
 }
 
-void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
-                     const OutlineRound& round,
-                     std::vector<double>& residuals) {
+void OutlineSums::SumPixels(const OutlinePixels& pixels,
+                            const OutlineImage& image,
+                            const OutlineRound& round,
+                            std::vector<double>& residuals) {
   const std::size_t n = round.terms();
   normal_.fill(0.0);
   gradient_.fill(0.0);
@@ -285,12 +288,12 @@ void OutlineSums::Of(const OutlinePixels& pixels, const OutlineImage& image,
         pixels.sloped ? &pixels.slope_x[begin] : nullptr,
         pixels.sloped ? &pixels.slope_y[begin] : nullptr,
         &residuals[begin]};
-    block.AddTo(round, cover, totals_);
+    block.AccumulateBlock(round, cover, totals_);
     // So many short numbers still add up to 1e-6 of their sum.
     constexpr std::size_t kTogether = 16 * kBlock;
     if ((begin + kBlock) % kTogether == 0 ||
         begin + kBlock >= pixels.padded()) {
-      TakeIn(n);
+      AddTotals(n);
       Begin(n);
     }
   }

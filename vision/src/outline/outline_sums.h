@@ -108,8 +108,8 @@ struct OutlineRound {
 class OutlineSums {
  public:
   // Adds up all pixels; `residuals` (in noise) has as many as they have.
-  void Of(const OutlinePixels& pixels, const OutlineImage& image,
-          const OutlineRound& round, std::vector<double>& residuals);
+  void SumPixels(const OutlinePixels& pixels, const OutlineImage& image,
+                 const OutlineRound& round, std::vector<double>& residuals);
 
   double normal(std::size_t i, std::size_t j) const;  // j <= i
   double gradient(std::size_t i) const;
@@ -133,7 +133,7 @@ class OutlineSums {
     Lanes cost, weights, inliers, square, contrast, contrast_weight;
   };
   void Begin(std::size_t terms);
-  void TakeIn(std::size_t terms);
+  void AddTotals(std::size_t terms);
 
   Totals totals_;
   std::array<double, kMostTerms * kPadded> normal_;

@@ -40,7 +40,7 @@ bool AreSpots(const SpotModel& model, double reach_px) {
 }
 
 // Over their noise.
-std::vector<double> ResidualsOf(Samples samples, const SpotModel& model) {
+std::vector<double> ComputeResiduals(Samples samples, const SpotModel& model) {
   std::vector<double> residuals;
   residuals.reserve(samples.size());
   for (const SpotSample& s : samples) {
@@ -51,7 +51,7 @@ std::vector<double> ResidualsOf(Samples samples, const SpotModel& model) {
 }
 
 // Where Huber's squares end.
-double CutOf(const std::vector<double>& residuals) {
+double HuberCut(const std::vector<double>& residuals) {
   std::vector<double> sizes;
   sizes.reserve(residuals.size());
   for (const double r : residuals) sizes.push_back(std::abs(r));
@@ -73,9 +73,9 @@ struct SpotEquations {
   SpotModel::Vector gradient;
 };
 
-SpotEquations EquationsOf(Samples samples, const SpotModel& model,
-                          const std::vector<double>& residuals, double cut,
-                          bool curved) {
+SpotEquations MakeNormalEquations(Samples samples, const SpotModel& model,
+                                  const std::vector<double>& residuals,
+                                  double cut, bool curved) {
   const Eigen::Index n = model.parameters.size();
   SpotEquations sums = {SpotModel::Matrix::Zero(n, n),
                         SpotModel::Vector::Zero(n)};
@@ -101,12 +101,12 @@ SpotEquations EquationsOf(Samples samples, const SpotModel& model,
 // By how much the squares' sum is less with `after` than with `before`, in
 // units of what is left; what is in front of the body in some frames counts
 // little.
-double FallOf(Samples samples, const SpotModel& before,
-              const SpotModel& after) {
-  const std::vector<double> old = ResidualsOf(samples, before);
-  const std::vector<double> now = ResidualsOf(samples, after);
+double CostReduction(Samples samples, const SpotModel& before,
+                     const SpotModel& after) {
+  const std::vector<double> old = ComputeResiduals(samples, before);
+  const std::vector<double> now = ComputeResiduals(samples, after);
   constexpr double kFarOut = 2.5;  // of Huber's cut: five standard deviations
-  const double cut = kFarOut * CutOf(now);
+  const double cut = kFarOut * HuberCut(now);
   double fall = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     fall += std::min(old[i] * old[i], cut * cut) -
@@ -122,12 +122,12 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
   constexpr double kSettled = 1e-4;  // of the cost
   constexpr double kRidge = 1e-12;
   double damping = 1e-3;
-  std::vector<double> residuals = ResidualsOf(samples, model);
+  std::vector<double> residuals = ComputeResiduals(samples, model);
   SpotEquations sums;
   for (int round = 0; round < kRounds; ++round) {
-    const double cut = CutOf(residuals);
+    const double cut = HuberCut(residuals);
     const double cost = HuberCost(residuals, cut);
-    sums = EquationsOf(samples, model, residuals, cut, options.curved);
+    sums = MakeNormalEquations(samples, model, residuals, cut, options.curved);
     double gain = 0.0;
     while (gain <= 0.0 && damping < kMostDamping) {
       SpotModel::Matrix a = sums.normal;
@@ -136,7 +136,7 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
       SpotModel next = model;
       next.parameters += a.ldlt().solve(sums.gradient);
       if (AreSpots(next, options.reach_px)) {
-        std::vector<double> again = ResidualsOf(samples, next);
+        std::vector<double> again = ComputeResiduals(samples, next);
         gain = cost - HuberCost(again, cut);
         if (gain > 0.0) {
           model.parameters = next.parameters;
@@ -147,12 +147,13 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
     }
     if (!(gain > kSettled * (1.0 + cost))) break;
   }
-  const double cut = CutOf(residuals);
+  const double cut = HuberCut(residuals);
   double square = 0.0;
   for (const double r : residuals) square += std::min(r * r, cut * cut);
   model.chi2 = square / static_cast<double>(samples.size());
   SpotModel::Matrix a =
-      EquationsOf(samples, model, residuals, cut, options.curved).normal;
+      MakeNormalEquations(samples, model, residuals, cut, options.curved)
+          .normal;
   a.diagonal().array() += kRidge * a.diagonal().maxCoeff();
   const Eigen::Index n = model.parameters.size();
   model.covariance = std::max(1.0, model.chi2) *
@@ -168,8 +169,8 @@ struct Patch {
 };
 
 // About one of the cells that stand out the most.
-Patch PatchOf(Samples cells, const std::vector<double>& residuals,
-              double sigma_px) {
+Patch FindPatch(Samples cells, const std::vector<double>& residuals,
+                double sigma_px) {
   constexpr std::size_t kTried = 24;
   std::vector<std::size_t> order(cells.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -207,13 +208,13 @@ Patch PatchOf(Samples cells, const std::vector<double>& residuals,
 std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
                                   const SpotOptions& options,
                                   const SpotModel& model) {
-  const std::vector<double> residuals = ResidualsOf(cells, model);
+  const std::vector<double> residuals = ComputeResiduals(cells, model);
   constexpr std::array<double, 3> kWidths = {0.12, 0.25, 0.5};  // of the size
   SpotModel best;
   best.chi2 = std::numeric_limits<double>::infinity();
   for (const double width : kWidths) {
     const double sigma = std::max(width * options.size_px, options.least_px);
-    const Patch patch = PatchOf(cells, residuals, sigma);
+    const Patch patch = FindPatch(cells, residuals, sigma);
     if (patch.gain < kSureFall) continue;
     SpotModel tried = model;
     ++tried.spots;
@@ -229,7 +230,7 @@ std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
   FitSpots(samples, options, best);
   SpotModel without = model;
   FitSpots(samples, options, without);
-  if (!(FallOf(samples, without, best) > kSureFall)) return std::nullopt;
+  if (!(CostReduction(samples, without, best) > kSureFall)) return std::nullopt;
   return best;
 }
 

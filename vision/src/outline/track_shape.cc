@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "track/image_size.h"
 #include "numbers/robust.h"
+#include "track/image_size.h"
 
 namespace touchdown::vision {
 namespace {
@@ -21,7 +21,7 @@ double Period(const BodyImage& body) {
 
 }  // namespace
 
-double SizeOf(const OutlineFit& fit) {
+double OutlineSize(const OutlineFit& fit) {
   return fit.outline.kind == core::BodyKind::kSphere ? fit.outline.radius_px
                                                      : fit.outline.half_long_px;
 }
@@ -72,7 +72,7 @@ void DropStrangers(std::vector<Fitted>& all) {
   std::vector<double> sizes;
   std::vector<double> misfits;
   for (const Fitted& f : all) {
-    sizes.push_back(SizeOf(f.fit));
+    sizes.push_back(OutlineSize(f.fit));
     misfits.push_back(f.fit.misfit);
   }
   const double size = Median(sizes);
@@ -80,8 +80,8 @@ void DropStrangers(std::vector<Fitted>& all) {
   constexpr double kSizeRatio = 1.35;
   constexpr double kMisfitRatio = 4.0;
   std::erase_if(all, [&](const Fitted& f) {
-    return SizeOf(f.fit) > kSizeRatio * size ||
-           SizeOf(f.fit) * kSizeRatio < size ||
+    return OutlineSize(f.fit) > kSizeRatio * size ||
+           OutlineSize(f.fit) * kSizeRatio < size ||
            f.fit.misfit > kMisfitRatio * std::max(1.0, misfit);
   });
   constexpr std::size_t kLeast = 8;
@@ -131,7 +131,7 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
           probably[i] || lack > std::max(kProbably * u, kMayMatter * whole);
     }
   };
-  compare(SizeOf, &OutlineFit::u_size_px);
+  compare(OutlineSize, &OutlineFit::u_size_px);
   if (all.front().fit.outline.kind == core::BodyKind::kRectangle) {
     compare([](const OutlineFit& fit) { return fit.outline.half_short_px; },
             &OutlineFit::u_size_short_px);
@@ -152,7 +152,7 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
   return hidden;
 }
 
-Pose PoseOf(const Fitted& f) {
+Pose ToPose(const Fitted& f) {
   Pose pose;
   pose.frame = f.frame;
   pose.time_s = f.time_s;
@@ -237,7 +237,7 @@ void Unwrap(Track& track) {
   }
 }
 
-Outline OutlineAt(const BodyImage& body, const Pose& pose) {
+Outline PlaceOutline(const BodyImage& body, const Pose& pose) {
   Outline outline;
   outline.kind = body.kind;
   outline.centre = pose.centre;
@@ -248,13 +248,13 @@ Outline OutlineAt(const BodyImage& body, const Pose& pose) {
   return outline;
 }
 
-BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind) {
+BodyImage EstimateShape(const std::vector<Fitted>& all, core::BodyKind kind) {
   std::vector<double> size, size_u, shorter, shorter_u, blur, contrast;
   // Only outlines that are wholly seen tell the size.
   for (const bool strict : {true, false}) {
     for (const Fitted& f : all) {
       if (strict && f.fit.visible < 0.98) continue;
-      size.push_back(SizeOf(f.fit));
+      size.push_back(OutlineSize(f.fit));
       size_u.push_back(f.fit.u_size_px);
       shorter.push_back(f.fit.outline.half_short_px);
       shorter_u.push_back(f.fit.u_size_short_px);
@@ -322,9 +322,9 @@ bool Moves(const std::vector<Fitted>& all) {
 
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
                Track& track) {
-  track.body = ShapeOf(all, kind);
+  track.body = EstimateShape(all, kind);
   track.poses.clear();
-  for (const Fitted& f : all) track.poses.push_back(PoseOf(f));
+  for (const Fitted& f : all) track.poses.push_back(ToPose(f));
   Unwrap(track);
   FollowSize(all, track);
 }

@@ -24,7 +24,7 @@ inline constexpr double kWellModelled = 1.5;
 inline constexpr double kCrude = 3.0;
 
 // Radius, or half the long side, px.
-double SizeOf(const OutlineFit& fit);
+double OutlineSize(const OutlineFit& fit);
 
 // Whether the picture tells all of a fit's pose: no u is 0, which stands for
 // what nothing was seen of, such as both ends of a block before a background
@@ -71,7 +71,7 @@ bool Moves(const std::vector<Fitted>& all);
 
 // The shape common to all frames, from those in which the outline is wholly
 // seen where there are enough of them.
-BodyImage ShapeOf(const std::vector<Fitted>& all, core::BodyKind kind);
+BodyImage EstimateShape(const std::vector<Fitted>& all, core::BodyKind kind);
 
 // Shape and poses; `all` by frame, at least one.
 void FillTrack(const std::vector<Fitted>& all, core::BodyKind kind,
@@ -84,9 +84,9 @@ void FollowSize(const std::vector<Fitted>& all, Track& track);
 // Directions of a side are known up to a half turn: makes them continuous.
 void Unwrap(Track& track);
 
-Pose PoseOf(const Fitted& fitted);
+Pose ToPose(const Fitted& fitted);
 
 // The outline that a pose stands for.
-Outline OutlineAt(const BodyImage& body, const Pose& pose);
+Outline PlaceOutline(const BodyImage& body, const Pose& pose);
 
 }  // namespace touchdown::vision

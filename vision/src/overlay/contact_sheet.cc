@@ -222,7 +222,7 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
     } else {
       for (const Pose& p : track.poses) panel.Dot(p.centre, kPathColour);
     }
-    if (pose != nullptr) DrawOutline(panel, OutlineAt(track.body, *pose));
+    if (pose != nullptr) DrawOutline(panel, PlaceOutline(track.body, *pose));
     panel.Text(fmt::format("frame {}", frames[k]), 0);
     for (const PlaneSample& s : plane.samples) {
       if (s.frame == frames[k]) {

@@ -70,7 +70,7 @@ const NormalIntegrals& Integrals() {
   return table;
 }
 
-core::PixelPoint PointAt(const OutlinePiece& piece, double t) {
+core::PixelPoint EvaluatePoint(const OutlinePiece& piece, double t) {
   if (!piece.is_arc) {
     return {piece.from.x_px + t * (piece.to.x_px - piece.from.x_px),
             piece.from.y_px + t * (piece.to.y_px - piece.from.y_px)};
@@ -112,8 +112,8 @@ void Crossings(const OutlinePiece& piece, bool of_x, std::vector<double>& out) {
 
 // Integral of x dy over the piece from t0 to t1.
 double IntegralXdY(const OutlinePiece& piece, double t0, double t1) {
-  const core::PixelPoint p = PointAt(piece, t0);
-  const core::PixelPoint q = PointAt(piece, t1);
+  const core::PixelPoint p = EvaluatePoint(piece, t0);
+  const core::PixelPoint q = EvaluatePoint(piece, t1);
   if (!piece.is_arc) return 0.5 * (p.x_px + q.x_px) * (q.y_px - p.y_px);
   const double a = piece.begin_rad + t0 * (piece.end_rad - piece.begin_rad);
   const double b = piece.begin_rad + t1 * (piece.end_rad - piece.begin_rad);
@@ -203,7 +203,8 @@ ShapeOutline ClipCircle(core::PixelPoint centre, double radius_px,
   const double spread = std::acos(height / radius_px);
   const OutlinePiece arc =
       Arc(centre, radius_px, middle - spread, middle + spread);
-  return {{arc, Straight(PointAt(arc, 1.0), PointAt(arc, 0.0))}, false};
+  return {{arc, Straight(EvaluatePoint(arc, 1.0), EvaluatePoint(arc, 0.0))},
+          false};
 }
 
 CoverageMap::CoverageMap(core::PixelRect window, double psf_sigma_px)
@@ -317,7 +318,7 @@ void CoverageMap::AddSmooth(const OutlinePiece& piece, bool periodic,
   for (int panel = 0; panel < panels; ++panel) {
     for (std::size_t k = 0; k < kNode.size(); ++k) {
       const double t = (panel + kNode[k]) * width;
-      const core::PixelPoint p = PointAt(piece, t);
+      const core::PixelPoint p = EvaluatePoint(piece, t);
       const double slope =
           piece.is_arc ? span * (p.x_px - piece.centre.x_px) : dy;
       AddNode(p.x_px, p.y_px, weight * kWeight[k] * width * slope);
@@ -334,12 +335,12 @@ void CoverageMap::AddExact(const OutlinePiece& piece, double weight) {
   const std::int32_t last_y = window_.y + window_.height - 1;
   for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
     const core::PixelPoint middle =
-        PointAt(piece, 0.5 * (cuts[k] + cuts[k + 1]));
+        EvaluatePoint(piece, 0.5 * (cuts[k] + cuts[k + 1]));
     const double column = std::floor(middle.x_px + 0.5);
     const double line = std::floor(middle.y_px + 0.5);
     if (line < window_.y || line > last_y || column < window_.x) continue;
-    const double dy =
-        PointAt(piece, cuts[k + 1]).y_px - PointAt(piece, cuts[k]).y_px;
+    const double dy = EvaluatePoint(piece, cuts[k + 1]).y_px -
+                      EvaluatePoint(piece, cuts[k]).y_px;
     double* row = mutable_row(static_cast<std::int32_t>(line));
     if (column > last_x) {
       row[window_.width - 1] += weight * dy;

@@ -11,7 +11,7 @@ namespace {
 // The image, through the lens, of an outline in the ideal picture: sides no
 // longer than a pixel (a side of L px on a curve of radius R is off by
 // L^2 / (8 R); lenses bend lines to R of hundreds of px at least).
-ShapeOutline SeenThrough(const calib::Lens& lens,
+ShapeOutline BendOutline(const calib::Lens& lens,
                          const std::vector<core::PixelPoint>& corners) {
   std::vector<core::PixelPoint> bent;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -30,8 +30,8 @@ ShapeOutline SeenThrough(const calib::Lens& lens,
 
 // A body that would be seen far outside the picture, where the lens model may
 // fold back, is not seen.
-bool IsFarOutside(const SceneCamera& camera, core::PixelPoint centre,
-                  double reach_px) {
+bool IsFarOutOfView(const SceneCamera& camera, core::PixelPoint centre,
+                    double reach_px) {
   const double margin = reach_px + 0.25 * (camera.width_px + camera.height_px);
   return centre.x_px < -margin || centre.x_px > camera.width_px + margin ||
          centre.y_px < -margin || centre.y_px > camera.height_px + margin;
@@ -51,7 +51,7 @@ std::vector<core::PixelPoint> IdealOutline(const Scene& scene,
   const core::PixelPoint c = ToIdealImage(scene.camera, pose.centre);
   // With a yaw it is drawn as a sphere, which is seen round, at its depth.
   const double r = 0.5 * scene.body.diameter_m->value * scene.camera.px_per_m /
-                   DepthOf(scene.camera, pose.centre);
+                   RelativeDepth(scene.camera, pose.centre);
   constexpr double kSide_px = 0.25;
   const int sides =
       std::max(64, static_cast<int>(2.0 * std::numbers::pi * r / kSide_px));
@@ -77,11 +77,11 @@ Silhouette DrawThroughLens(const Scene& scene, const ScenePose& pose,
         std::max(reach, std::hypot(p.x_px - centre.x_px, p.y_px - centre.y_px));
   }
   // No outline; its box lies outside the picture.
-  if (IsFarOutside(camera, centre, reach)) return {{}, {}, -9, -9, -9, -9};
+  if (IsFarOutOfView(camera, centre, reach)) return {{}, {}, -9, -9, -9, -9};
   const auto below = ClipPolygon(corners, ground);
   Silhouette out{
-      SeenThrough(*camera.lens, corners),
-      below.empty() ? ShapeOutline{} : SeenThrough(*camera.lens, below),
+      BendOutline(*camera.lens, corners),
+      below.empty() ? ShapeOutline{} : BendOutline(*camera.lens, below),
       1e9,
       -1e9,
       1e9,

@@ -57,7 +57,7 @@ Silhouette Draw(const Scene& scene, const ScenePose& pose) {
           bottom->y_px};
 }
 
-ScenePose PoseAt(const Scene& scene, double time_s) {
+ScenePose EvaluatePose(const Scene& scene, double time_s) {
   const ScenePose pose = scene.pose(time_s);
   if (!std::isfinite(pose.centre.x_m) || !std::isfinite(pose.centre.y_m) ||
       !std::isfinite(pose.angle_rad)) {
@@ -99,9 +99,9 @@ Silhouette DrawDisc(const Scene& scene, const ScenePose& pose, double distance,
 // 0.01 (m/sigma)^2, two 1.3e-4 (m/sigma)^4, three 1.2e-6 (m/sigma)^6 a panel.
 std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
   const double exposure = scene.camera.exposure_s;
-  const ScenePose first = PoseAt(scene, middle_s - 0.5 * exposure);
-  const ScenePose middle = PoseAt(scene, middle_s);
-  const ScenePose last = PoseAt(scene, middle_s + 0.5 * exposure);
+  const ScenePose first = EvaluatePose(scene, middle_s - 0.5 * exposure);
+  const ScenePose middle = EvaluatePose(scene, middle_s);
+  const ScenePose last = EvaluatePose(scene, middle_s + 0.5 * exposure);
   // A turning disc looks the same.
   double turning_radius =
       scene.body.kind == core::BodyKind::kSphere
@@ -144,9 +144,9 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
 }
 
 // Whole pixels within `margin` of the given box, inside the picture.
-core::PixelRect WindowAround(double min_x, double max_x, double min_y,
-                             double max_y, double margin,
-                             const SceneCamera& camera) {
+core::PixelRect ClippedWindow(double min_x, double max_x, double min_y,
+                              double max_y, double margin,
+                              const SceneCamera& camera) {
   const auto clip = [](double value, double high) {
     return static_cast<std::int32_t>(std::clamp(value, 0.0, high));
   };
@@ -304,7 +304,7 @@ Exposed Expose(const Scene& scene, double middle_s) {
   e.min_x = e.min_y = std::numeric_limits<double>::max();
   e.max_x = e.max_y = std::numeric_limits<double>::lowest();
   for (const SubExposure& sub : SubExposures(scene, middle_s)) {
-    const ScenePose pose = PoseAt(scene, sub.time_s);
+    const ScenePose pose = EvaluatePose(scene, sub.time_s);
     Exposed::Part part{Draw(scene, pose), std::nullopt, std::nullopt,
                        sub.weight};
     const SceneLook& look = scene.look;
@@ -394,7 +394,7 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
       const Exposed exposed = Expose(scene_, middle_s + y * camera.row_delay_s);
       if (y < exposed.min_y - margin || y > exposed.max_y + margin) continue;
       core::PixelRect row =
-          WindowAround(exposed.min_x, exposed.max_x, y, y, margin, camera);
+          ClippedWindow(exposed.min_x, exposed.max_x, y, y, margin, camera);
       row.y = y;
       row.height = 1;
       DrawBody(Covers(exposed, row, camera.psf_sigma_px), exposed.dips, image);
@@ -403,8 +403,8 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
   }
   const Exposed exposed = Expose(scene_, middle_s);
   const Covers covers(exposed,
-                      WindowAround(exposed.min_x, exposed.max_x, exposed.min_y,
-                                   exposed.max_y, margin, camera),
+                      ClippedWindow(exposed.min_x, exposed.max_x, exposed.min_y,
+                                    exposed.max_y, margin, camera),
                       camera.psf_sigma_px);
   DrawBody(covers, exposed.dips, image);
   if (trouble_) {

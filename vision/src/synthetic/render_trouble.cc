@@ -21,7 +21,7 @@ struct Halves {
   double greatest;
   double smallest;
 };
-Halves HalvesOf(const Scene& scene) {
+Halves HalfSizes(const Scene& scene) {
   const double half = 0.5 * scene.camera.px_per_m;
   if (scene.body.kind == core::BodyKind::kSphere) {
     const double radius = half * scene.body.diameter_m->value;
@@ -104,7 +104,7 @@ void TroubleRenderer::DrawShadow(const Scene& scene, const ScenePose& pose,
   const SceneCamera& camera = scene.camera;
   constexpr double kUnderBody = 0.8;  // standard deviation, of half the body
   constexpr double kFlat = 0.35;      // the ground is seen at a slant
-  const double touching = kUnderBody * HalvesOf(scene).greatest;
+  const double touching = kUnderBody * HalfSizes(scene).greatest;
   const double gap_px = std::max(0.0, camera.px_per_m * Gap(scene.body, pose));
   const double along = touching + 0.5 * gap_px;
   const double below = kFlat * along;
@@ -172,7 +172,7 @@ void TroubleRenderer::DrawShading(const Scene& scene, const ScenePose& pose,
                                   CleanImage& image) const {
   const SceneTrouble& trouble = scene.trouble;
   const core::PixelPoint centre = ToImage(scene.camera, pose.centre);
-  const Halves half = HalvesOf(scene);
+  const Halves half = HalfSizes(scene);
   const core::PixelRect& w = layers.body.window();
   for (std::int32_t y = w.y; y < w.y + w.height; ++y) {
     for (std::int32_t x = w.x; x < w.x + w.width; ++x) {

@@ -187,14 +187,14 @@ core::PixelPoint ToIdealImage(const SceneCamera& camera,
   // A pinhole: of the ground point from the axis, and the depth over its.
   const double gx = camera.ground_point.x_px - camera.lens->cx_px;
   const double gy = camera.ground_point.y_px - camera.lens->cy_px;
-  const double depth = DepthOf(camera, point);
+  const double depth = RelativeDepth(camera, point);
   const double right = (c * gx + s * gy + x * std::cos(camera.yaw_rad)) / depth;
   const double up = (s * gx - c * gy + y) / depth;
   return {camera.lens->cx_px + right * c + up * s,
           camera.lens->cy_px + right * s - up * c};
 }
 
-double DepthOf(const SceneCamera& camera, core::PlanePoint point) {
+double RelativeDepth(const SceneCamera& camera, core::PlanePoint point) {
   if (camera.yaw_rad == 0.0) return 1.0;
   const double right = camera.travels_left ? -point.x_m : point.x_m;
   return 1.0 + right * camera.px_per_m * std::sin(camera.yaw_rad) /
@@ -233,7 +233,7 @@ double Gap(const core::Body& body, const ScenePose& pose) {
       ->y_m;
 }
 
-SceneTruth TruthOf(const Scene& scene, std::int64_t index) {
+SceneTruth ComputeTruth(const Scene& scene, std::int64_t index) {
   SceneTruth truth;
   truth.index = index;
   truth.time_s = static_cast<double>(index) / scene.camera.fps;
@@ -261,7 +261,7 @@ SceneTruth TruthOf(const Scene& scene, std::int64_t index) {
         std::remainder(seen - truth.image_angle_rad, std::numbers::pi);
   }
   truth.radius_px = scene.camera.px_per_m * radius_m /
-                    DepthOf(scene.camera, truth.pose.centre);
+                    RelativeDepth(scene.camera, truth.pose.centre);
   truth.gap_px = scene.camera.px_per_m * Gap(scene.body, truth.pose);
   return truth;
 }
@@ -275,7 +275,7 @@ double IdealGroundAngle(const SceneCamera& camera) {
                     p.x_px - camera.ground_point.x_px);
 }
 
-calib::GroundLine GroundOf(const SceneCamera& camera) {
+calib::GroundLine TrueGroundLine(const SceneCamera& camera) {
   const double slope = std::tan(IdealGroundAngle(camera));
   const auto at = [&](double x) {
     const core::PixelPoint ideal{
@@ -283,8 +283,8 @@ calib::GroundLine GroundOf(const SceneCamera& camera) {
     return camera.lens ? calib::Distort(*camera.lens, ideal) : ideal;
   };
   // Two points even of a picture one pixel wide.
-  return calib::GroundThrough(at(0.0), at(std::max(1, camera.width_px - 1)),
-                              0.0);
+  return calib::MakeGroundLine(at(0.0), at(std::max(1, camera.width_px - 1)),
+                               0.0);
 }
 
 }  // namespace touchdown::vision

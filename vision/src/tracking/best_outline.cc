@@ -22,7 +22,7 @@ struct TellingPlace {
 // like the wall between two ends is taken in.
 constexpr double kOfAll = 0.1;
 
-std::vector<TellingPlace> ToldOf(const CoMoving& places) {
+std::vector<TellingPlace> CollectTold(const CoMoving& places) {
   std::vector<TellingPlace> told;
   const int n = places.size();
   const auto at = [&](int column, int row) {
@@ -75,22 +75,23 @@ void LeaveOutFar(std::vector<TellingPlace>& told) {
 }
 
 // How much of a place lies within an edge so deep.
-double ShareInside(double depth) { return std::clamp(depth + 0.5, 0.0, 1.0); }
+double InsideShare(double depth) { return std::clamp(depth + 0.5, 0.0, 1.0); }
 
-double MeritOf(const std::vector<TellingPlace>& told, const Outline& outline) {
+double ComputeMerit(const std::vector<TellingPlace>& told,
+                    const Outline& outline) {
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
   double merit = -kOfAll * Area(outline);
   for (const TellingPlace& t : told) {
-    const double depth = DepthInside(outline, t.x, t.y, cosine, sine);
-    if (depth > -0.5) merit += ShareInside(depth) * t.says;
+    const double depth = SignedDepth(outline, t.x, t.y, cosine, sine);
+    if (depth > -0.5) merit += InsideShare(depth) * t.says;
   }
   return merit;
 }
 
 // By the moments of what moves along.
-std::optional<Outline> StartOf(const std::vector<TellingPlace>& told,
-                               core::BodyKind kind) {
+std::optional<Outline> EstimateStart(const std::vector<TellingPlace>& told,
+                                     core::BodyKind kind) {
   constexpr double kLeast = 30.0;  // places
   double n = 0.0;
   double x = 0.0;
@@ -130,7 +131,7 @@ std::optional<Outline> StartOf(const std::vector<TellingPlace>& told,
 }
 
 // Outlines next to one, a step away: each side, and turned.
-std::vector<Outline> NextTo(const Outline& outline, double step) {
+std::vector<Outline> Neighbours(const Outline& outline, double step) {
   std::vector<Outline> next;
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
@@ -170,12 +171,12 @@ std::vector<Outline> NextTo(const Outline& outline, double step) {
 bool Climb(const std::vector<TellingPlace>& told, double step,
            const core::Cancellation& until, Outline& outline) {
   constexpr int kMostTurns = 60;
-  double best = MeritOf(told, outline);
+  double best = ComputeMerit(told, outline);
   for (int turn = 0; turn < kMostTurns; ++turn) {
     const double before = best;
-    for (const Outline& other : NextTo(outline, step)) {
+    for (const Outline& other : Neighbours(outline, step)) {
       until.Check();
-      const double merit = MeritOf(told, other);
+      const double merit = ComputeMerit(told, other);
       if (merit > best) {
         best = merit;
         outline = other;
@@ -203,9 +204,9 @@ std::vector<TellingPlace> ThinnedPlaces(const std::vector<TellingPlace>& told,
 std::optional<BestOutline> FindBestOutline(const CoMoving& places,
                                            core::BodyKind kind, bool finely,
                                            const core::Cancellation& until) {
-  std::vector<TellingPlace> told = ToldOf(places);
+  std::vector<TellingPlace> told = CollectTold(places);
   LeaveOutFar(told);
-  const auto start = StartOf(told, kind);
+  const auto start = EstimateStart(told, kind);
   if (!start) return std::nullopt;
   // Few places do to come near.
   constexpr std::size_t kFew = 4000;
@@ -223,7 +224,7 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
     for (const double step : {16.0, 8.0, 4.0, 2.0, 1.0}) {
       settled = Climb(few, step, until, outline);
     }
-    if (const double merit = MeritOf(few, outline); merit > best.merit) {
+    if (const double merit = ComputeMerit(few, outline); merit > best.merit) {
       best.merit = merit;
       best.outline = outline;
       best.settled = settled;
@@ -234,7 +235,7 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
       best.settled = Climb(told, step, until, best.outline);
     }
   }
-  best.merit = MeritOf(told, best.outline);
+  best.merit = ComputeMerit(told, best.outline);
   const double cosine = std::cos(best.outline.angle_rad);
   const double sine = std::sin(best.outline.angle_rad);
   double moving = 0.0;
@@ -242,7 +243,7 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
   double within = 0.0;
   for (const TellingPlace& t : told) {
     const double share =
-        ShareInside(DepthInside(best.outline, t.x, t.y, cosine, sine));
+        InsideShare(SignedDepth(best.outline, t.x, t.y, cosine, sine));
     within += share;
     if (t.says < 0.0) continue;
     moving += 1.0;

@@ -13,7 +13,7 @@ namespace touchdown::vision {
 namespace {
 
 // Of four values at -3, -1, 1 and 3 half steps the cubic's at `s`.
-double CubicAt(const std::array<double, 4>& v, double s) {
+double EvaluateCubic(const std::array<double, 4>& v, double s) {
   constexpr double kOuter = 48.0;  // products of the nodes' distances
   constexpr double kInner = 16.0;
   return -(s + 1) * (s - 1) * (s - 3) / kOuter * v[0] +
@@ -82,7 +82,7 @@ std::vector<bool> CanBeBridged(const std::vector<Fitted>& fits,
     if (!(is_step(i - 2) && is_step(i - 1) && is_step(i) && is_step(i + 1))) {
       continue;
     }
-    const double reach_px = SizeOf(fits[i].fit);
+    const double reach_px = OutlineSize(fits[i].fit);
     on_cubic[i] = IsOnCubic(poses, i, reach_px) ? 1 : 0;
   }
   for (std::size_t i = 1; i + 2 < n; ++i) {
@@ -101,8 +101,8 @@ bool MayChangeSize(const std::vector<Fitted>& fits) {
   std::vector<double> early;
   std::vector<double> late;
   for (std::size_t i = 0; i < third; ++i) {
-    early.push_back(SizeOf(fits[i].fit));
-    late.push_back(SizeOf(fits[fits.size() - 1 - i].fit));
+    early.push_back(OutlineSize(fits[i].fit));
+    late.push_back(OutlineSize(fits[fits.size() - 1 - i].fit));
   }
   const double before = Median(std::move(early));
   return std::abs(Median(std::move(late)) - before) > kMost * before;
@@ -135,9 +135,9 @@ Track Bridged(const Track& track) {
       pose.time_s = std::lerp(poses[i].time_s, poses[i + 1].time_s, share);
       if (before != nullptr && after != nullptr) {
         const auto on_cubic = [&](const auto& value) {
-          return CubicAt({value(*before), value(poses[i]), value(poses[i + 1]),
-                          value(*after)},
-                         2.0 * share - 1.0);
+          return EvaluateCubic({value(*before), value(poses[i]),
+                                value(poses[i + 1]), value(*after)},
+                               2.0 * share - 1.0);
         };
         pose.centre.x_px =
             on_cubic([](const Pose& p) { return p.centre.x_px; });

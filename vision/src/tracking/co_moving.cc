@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "numbers/both_sides.h"
-#include "outline/outline_pixels.h"
 #include "numbers/robust.h"
+#include "outline/outline_pixels.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision {
@@ -36,7 +36,7 @@ struct Stack {
     const double middle = 0.5 * (bin - 1);
     return {rect.x + middle + bin * p.x_px, rect.y + middle + bin * p.y_px};
   }
-  core::PixelPoint In(const core::PixelPoint& p) const {
+  core::PixelPoint ToStack(const core::PixelPoint& p) const {
     const double middle = 0.5 * (bin - 1);
     return {(p.x_px - rect.x - middle) / bin, (p.y_px - rect.y - middle) / bin};
   }
@@ -65,7 +65,7 @@ core::PixelRect PathBox(const std::vector<Pose>& poses, double reach_px,
   return rect;
 }
 
-Stack StackOf(Clip& clip, const Track& path, double reach_px) {
+Stack ReadStack(Clip& clip, const Track& path, double reach_px) {
   // 8 million samples are 32 MB; so many places are looked at in a second.
   constexpr double kMostSamples = 8e6;
   constexpr double kMostPlaces = 300.0;  // across
@@ -128,21 +128,21 @@ class MotionLayers {
 
   // The still picture without what covers it, then what moves before it.
   void Round(const std::vector<unsigned char>& covered, double least_share) {
-    LookBehind(covered);
+    EstimateUncovered(covered);
     Judge(least_share);
   }
 
  private:
   // Place (column, row) of frame k, in the stack.
   core::PixelPoint At(std::size_t k, int column, int row) const {
-    const core::PixelPoint c = stack_.In(stack_.poses[k].centre);
+    const core::PixelPoint c = stack_.ToStack(stack_.poses[k].centre);
     const double x = column - places_.half;
     const double y = row - places_.half;
     return {c.x_px + x * cosine_[k] - y * sine_[k],
             c.y_px + x * sine_[k] + y * cosine_[k]};
   }
-  float Between(const std::vector<float>& picture,
-                const core::PixelPoint& p) const {
+  float Interpolate(const std::vector<float>& picture,
+                    const core::PixelPoint& p) const {
     const double left = std::floor(p.x_px);
     const double top = std::floor(p.y_px);
     if (!(left >= 0.0 && top >= 0.0 && left + 1.0 < stack_.width &&
@@ -165,7 +165,7 @@ class MotionLayers {
 
   bool IsCovered(const std::vector<unsigned char>& covered, std::size_t k,
                  int x, int y) const;
-  void LookBehind(const std::vector<unsigned char>& covered);
+  void EstimateUncovered(const std::vector<unsigned char>& covered);
   void Judge(double least_share);
   signed char Say(std::size_t place, std::vector<float>& values,
                   double least_share, float& differs) const;
@@ -184,7 +184,7 @@ class MotionLayers {
 
 bool MotionLayers::IsCovered(const std::vector<unsigned char>& covered,
                              std::size_t k, int x, int y) const {
-  const core::PixelPoint c = stack_.In(stack_.poses[k].centre);
+  const core::PixelPoint c = stack_.ToStack(stack_.poses[k].centre);
   const double dx = x - c.x_px;
   const double dy = y - c.y_px;
   const auto column = static_cast<int>(
@@ -197,7 +197,8 @@ bool MotionLayers::IsCovered(const std::vector<unsigned char>& covered,
                  static_cast<std::size_t>(column)] != 0;
 }
 
-void MotionLayers::LookBehind(const std::vector<unsigned char>& covered) {
+void MotionLayers::EstimateUncovered(
+    const std::vector<unsigned char>& covered) {
   constexpr std::size_t kLeastSeen = 3;  // frames
   const std::size_t count = stack_.Index(0, stack_.height);
   still_.assign(count, kUnseen);
@@ -234,7 +235,8 @@ signed char MotionLayers::Say(std::size_t place, std::vector<float>& values,
     const core::PixelPoint p = At(k, column, row);
     if (IsBelow(p)) {
       below += 1.0;
-    } else if (const float v = Between(stack_.frames[k], p); std::isfinite(v)) {
+    } else if (const float v = Interpolate(stack_.frames[k], p);
+               std::isfinite(v)) {
       values.push_back(v);
     }
   }
@@ -248,8 +250,8 @@ signed char MotionLayers::Say(std::size_t place, std::vector<float>& values,
   for (std::size_t k = 0; k < stack_.frames.size(); ++k) {
     const core::PixelPoint p = At(k, column, row);
     if (IsBelow(p)) continue;
-    const float value = Between(stack_.frames[k], p);
-    const float still = Between(still_, p);
+    const float value = Interpolate(stack_.frames[k], p);
+    const float still = Interpolate(still_, p);
     if (!std::isfinite(value) || !std::isfinite(still)) continue;
     if (std::abs(static_cast<double>(moving - still)) < kClear * noise)
       continue;
@@ -308,7 +310,7 @@ CoMoving FindCoMoving(Clip& clip, const Background& noise, const Track& path,
                       const CoverOfPlaces& cover,
                       const CoMovingOptions& options) {
   if (path.poses.size() < kLeastStacked) return {};
-  MotionLayers layers(StackOf(clip, path, options.reach_px), noise, options,
+  MotionLayers layers(ReadStack(clip, path, options.reach_px), noise, options,
                       clip.cancellation());
   constexpr int kRounds = 4;
   // At first much of what is behind is not known.

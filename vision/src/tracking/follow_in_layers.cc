@@ -62,8 +62,8 @@ Shape LayerShape(const BodyImage& body, const std::optional<BodySize>& size) {
   return shape;
 }
 
-FitLayersOptions LayerOptionsFor(const Track& track, const Shape& shape,
-                                 const std::optional<BodySize>& size) {
+FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
+                                  const std::optional<BodySize>& size) {
   FitLayersOptions options;
   auto& value = options.prior.value;
   auto& u = options.prior.u;
@@ -117,7 +117,7 @@ FitLayersOptions HalvedOptions(const FitLayersOptions& options) {
   return half;
 }
 
-Pose PoseFrom(const PoseFit& at, const core::PixelRect& box,
+Pose MakePose(const PoseFit& at, const core::PixelRect& box,
               double noise_ratio) {
   Pose pose;
   pose.centre = {at.pose.x + box.x, at.pose.y + box.y};
@@ -144,7 +144,7 @@ double CodecDrift(const PoseFit& at, double noise_dn) {
 }
 
 // By which share the body's image changes its size over the track.
-double GrowthOf(const Track& track) {
+double MeasureGrowth(const Track& track) {
   const auto [least, most] = std::minmax_element(
       track.poses.begin(), track.poses.end(), [](const Pose& a, const Pose& b) {
         return a.relative_size < b.relative_size;
@@ -175,7 +175,7 @@ Evidence GatherEvidence(Clip& clip, const Background& background,
                         const FitLayersOptions& options) {
   Evidence evidence;
   evidence.box =
-      BoxAround(background, track, shape, options.prior.value[layers::kBlur]);
+      SweptBox(background, track, shape, options.prior.value[layers::kBlur]);
   evidence.noise_dn = std::sqrt(background.UsualVariance());
   evidence.still = CropBackground(background, evidence.box);
   // So many samples are kept: 256 MiB.
@@ -187,7 +187,7 @@ Evidence GatherEvidence(Clip& clip, const Background& background,
   evidence.path =
       Choose(all, SpreadEvenly(all.frames.size(), evidence.most_frames));
   evidence.stack =
-      ReadAlong(clip, evidence.still, evidence.path, shape, evidence.box);
+      ReadPath(clip, evidence.still, evidence.path, shape, evidence.box);
   return evidence;
 }
 
@@ -210,7 +210,7 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
                            fit.poses);
   path.poses = fit.poses;
   const std::size_t found = path.frames.size();
-  if (clip.ChangesIn(path.frames.front()) == nullptr) {
+  if (clip.KnownChanges(path.frames.front()) == nullptr) {
     const LayerExtension extension(clip, evidence.box, fit, options.turns);
     extension.Extend(1, track.last_frame, path);
     extension.Extend(-1, track.first_frame - 1, path);
@@ -220,7 +220,7 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
     path = PathInBox(TrackInPicture(track, path, evidence.box), evidence.box,
                      options.turns);
     path = Choose(path, SpreadEvenly(path.frames.size(), evidence.most_frames));
-    evidence.stack = ReadAlong(clip, evidence.still, path, shape, evidence.box);
+    evidence.stack = ReadPath(clip, evidence.still, path, shape, evidence.box);
   }
   return !fit.layers.flat;
 }
@@ -286,7 +286,7 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
                  const LayerPath& path, const FitLayersOptions& options,
                  Track& out) {
   const std::vector<LayerPose> motions =
-      layers::MotionsOf(path.poses, path.frames);
+      layers::EstimateMotions(path.poses, path.frames);
   const double noise_ratio = fit.layers.noise_dn / evidence.noise_dn;
   std::vector<double> drifts;
   // As many at a time as stay near the processor.
@@ -315,7 +315,7 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
     for (std::size_t t = 0; t < aligned.size(); ++t) {
       if (!aligned[t].found) continue;
       drifts.push_back(CodecDrift(aligned[t], fit.layers.noise_dn));
-      Pose pose = PoseFrom(aligned[t], evidence.box, noise_ratio);
+      Pose pose = MakePose(aligned[t], evidence.box, noise_ratio);
       pose.frame = part.frames[t];
       pose.time_s = pictures.times_s[t];
       out.poses.push_back(pose);
@@ -349,7 +349,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   if (given.poses.size() < kLeastLayerPoses) {
     return core::AbsentBecause("fewer than five poses");
   }
-  if (GrowthOf(given) > kMostGrowth) {
+  if (MeasureGrowth(given) > kMostGrowth) {
     return core::AbsentBecause("the body's image does not keep its size");
   }
   Track track = given;
@@ -357,7 +357,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const core::Cancellation& until = clip.cancellation();
   until.Enter("the body's picture is learned");
   const Shape shape = LayerShape(track.body, size);
-  FitLayersOptions options = LayerOptionsFor(track, shape, size);
+  FitLayersOptions options = MakeLayerOptions(track, shape, size);
   options.threads = threads;
   Evidence evidence = GatherEvidence(clip, background, track, shape, options);
   until.Check();

@@ -35,7 +35,7 @@ Outline MiddleOutline(const Track& track) {
   angles.reserve(track.poses.size());
   for (const Pose& p : track.poses) angles.push_back(p.angle_rad);
   pose.angle_rad = Median(std::move(angles));
-  return OutlineAt(track.body, pose);
+  return PlaceOutline(track.body, pose);
 }
 
 // Of what moves as one it is known whether it turns.
@@ -76,9 +76,11 @@ void TakeOutCommonMove(const std::vector<PatternPose>& before,
 }
 
 // In turns, the pattern of the frames and where it lies in each.
-std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
-                                std::vector<PatternPose> poses, Pattern pattern,
-                                const core::Cancellation& until, int threads) {
+std::optional<Learnt> LearnPattern(std::vector<PatternView> views,
+                                   std::vector<PatternPose> poses,
+                                   Pattern pattern,
+                                   const core::Cancellation& until,
+                                   int threads) {
   constexpr double kStill_px = 0.01;
   bool settled = false;
   for (int round = 0; round < kLearningRounds; ++round) {
@@ -136,7 +138,7 @@ Pose Ahead(const Pose& end, const Pose& next, const Pose& third,
 }
 
 // The scatter of third differences is that of the poses (Roughness).
-double RoughnessOf(const std::vector<Pose>& poses) {
+double PathRoughness(const std::vector<Pose>& poses) {
   std::vector<Fitted> all(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     all[i].frame = poses[i].frame;
@@ -147,7 +149,7 @@ double RoughnessOf(const std::vector<Pose>& poses) {
 
 // What poses tell of the path: frames over the square of their scatter.
 double Telling(const std::vector<Pose>& poses) {
-  const double rough = RoughnessOf(poses);
+  const double rough = PathRoughness(poses);
   return static_cast<double>(poses.size()) / (rough * rough);
 }
 
@@ -182,8 +184,8 @@ std::vector<std::optional<PatternPose>> Follower::At(
     std::vector<PatternView> views;
     for (std::size_t i = begin; i < end; ++i) {
       views.push_back(
-          ViewAround(clip_, starts[i].frame, starts[i].centre,
-                     learnt_.pattern.reach_px() + within_px + kSlack_px));
+          ReadView(clip_, starts[i].frame, starts[i].centre,
+                   learnt_.pattern.reach_px() + within_px + kSlack_px));
     }
     core::InParallel(static_cast<std::int64_t>(views.size()), threads_,
                      [&](std::int64_t from, std::int64_t to) {
@@ -222,7 +224,7 @@ std::vector<Pose> Follower::All() const {
   for (std::int64_t f = poses.front().frame + 1; f < poses.back().frame; ++f) {
     const bool has = std::any_of(poses.begin(), poses.end(),
                                  [&](const Pose& p) { return p.frame == f; });
-    if (!has) starts.push_back(*PoseIn(now, f));
+    if (!has) starts.push_back(*InterpolatePose(now, f));
   }
   const auto is_near = [&](const Pose& start, const Pose& found) {
     return std::hypot(found.centre.x_px - start.centre.x_px,
@@ -303,11 +305,12 @@ Track FollowPattern(Clip& clip, const Background& background,
     for (const std::size_t i : FromBothSides(track.poses.size(), step)) {
       const Pose& pose = track.poses[i];
       starts.push_back({pose, {}});
-      views.push_back(ViewAround(clip, pose.frame, pose.centre,
-                                 pattern.reach_px() + kSlack_px));
+      views.push_back(ReadView(clip, pose.frame, pose.centre,
+                               pattern.reach_px() + kSlack_px));
     }
-    auto learnt = LearnFrom(std::move(views), std::move(starts),
-                            std::move(pattern), clip.cancellation(), threads);
+    auto learnt =
+        LearnPattern(std::move(views), std::move(starts), std::move(pattern),
+                     clip.cancellation(), threads);
     if (!learnt) continue;
     std::vector<Pose> all = Follower(clip, track, *learnt, threads).All();
     if (!best || Telling(all) > Telling(poses)) {
@@ -328,7 +331,7 @@ Track FollowPattern(Clip& clip, const Background& background,
   Track patterned = track;
   patterned.poses = std::move(poses);
   patterned.patterned = true;
-  Track put = PutOn(track, patterned);
+  Track put = AlignToOutlines(track, patterned);
   if (!best->settled) {
     put.warnings.push_back(fmt::format(
         "the body's own picture had not come to rest after {} rounds of "
@@ -338,7 +341,7 @@ Track FollowPattern(Clip& clip, const Background& background,
   return put;
 }
 
-Track PutOn(const Track& outlines, const Track& patterned) {
+Track AlignToOutlines(const Track& outlines, const Track& patterned) {
   Track put = outlines;
   put.patterned = true;
   put.poses = patterned.poses;

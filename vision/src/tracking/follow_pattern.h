@@ -18,6 +18,6 @@ Track FollowPattern(Clip& clip, const Background& background,
 
 // `outlines`, fits of the same body, say where a patterned track's pattern lies
 // on it; poses are those of the pattern.
-Track PutOn(const Track& outlines, const Track& patterned);
+Track AlignToOutlines(const Track& outlines, const Track& patterned);
 
 }  // namespace touchdown::vision

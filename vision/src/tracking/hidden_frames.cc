@@ -34,7 +34,7 @@ void HiddenFrames::LeaveOut(std::vector<Fitted>& sized) {
   sized = std::move(whole);
 }
 
-std::vector<std::int64_t> HiddenFrames::FramesBeyond(
+std::vector<std::int64_t> HiddenFrames::FindPartialFrames(
     const std::vector<Fitted>& whole, std::int64_t most) const {
   std::vector<std::int64_t> frames;
   for (const Pose& pose : track_.poses) {
@@ -74,7 +74,7 @@ std::optional<OutlineJob> HiddenFrames::Expect(const BodyImage& body,
   Pose pose;
   pose.centre = job->start.centre;
   pose.angle_rad = job->start.angle_rad;
-  job->start = OutlineAt(body, pose);
+  job->start = PlaceOutline(body, pose);
   const ClipInfo& info = clip_.info();
   if (pose.centre.x_px < 0.0 || pose.centre.x_px > info.width_px - 1.0 ||
       pose.centre.y_px < 0.0 || pose.centre.y_px > info.height_px - 1.0) {
@@ -89,7 +89,8 @@ bool HiddenFrames::LookForHider(const std::vector<Fitted>& whole,
                                 const OutlineOptions& options) {
   if (!track_.known_background || whole.empty()) return false;
   constexpr std::int64_t kMostBeyond = 12;
-  const std::vector<std::int64_t> beyond = FramesBeyond(whole, kMostBeyond);
+  const std::vector<std::int64_t> beyond =
+      FindPartialFrames(whole, kMostBeyond);
   if (beyond.empty()) return false;  // it comes and goes by the border
   std::vector<OutlineJob> jobs;
   const auto expect = [&](std::int64_t frame) {
@@ -118,11 +119,11 @@ bool HiddenFrames::LookForHider(const std::vector<Fitted>& whole,
   return true;
 }
 
-void HiddenFrames::AddTo(std::vector<Fitted>& fits, const BodyImage& body,
-                         const OutlineOptions& options) const {
+void HiddenFrames::AddFits(std::vector<Fitted>& fits, const BodyImage& body,
+                           const OutlineOptions& options) const {
   if (fits.empty()) return;
   constexpr std::int64_t kMostBeyond = 60;
-  std::vector<std::int64_t> frames = FramesBeyond(fits, kMostBeyond);
+  std::vector<std::int64_t> frames = FindPartialFrames(fits, kMostBeyond);
   const auto from_whole = [&](std::int64_t frame) {
     const auto next = std::lower_bound(
         fits.begin(), fits.end(), frame,

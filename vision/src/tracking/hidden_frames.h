@@ -41,12 +41,12 @@ class HiddenFrames {
   // Fits, with the hider left out, frames that show the body in part: beside
   // the whole ones in `fits` (by frame), to which they are added, and as far
   // beyond the track as the body can be followed.
-  void AddTo(std::vector<Fitted>& fits, const BodyImage& body,
-             const OutlineOptions& options) const;
+  void AddFits(std::vector<Fitted>& fits, const BodyImage& body,
+               const OutlineOptions& options) const;
 
  private:
-  std::vector<std::int64_t> FramesBeyond(const std::vector<Fitted>& whole,
-                                         std::int64_t most) const;
+  std::vector<std::int64_t> FindPartialFrames(const std::vector<Fitted>& whole,
+                                              std::int64_t most) const;
   std::optional<OutlineJob> Expect(const BodyImage& body,
                                    std::span<const Fitted> fits,
                                    const OutlineOptions& options,

@@ -35,7 +35,8 @@ void LayerExtension::Extend(std::int64_t by, std::int64_t end,
   constexpr double kWorst = 4.0;  // mean squared residual over that of others
   constexpr double kLeastSeen = 0.35;  // of the body
   constexpr double kFarthest = 0.5;    // of the body's reach, beside the way
-  std::vector<LayerPose> motions = layers::MotionsOf(path.poses, path.frames);
+  std::vector<LayerPose> motions =
+      layers::EstimateMotions(path.poses, path.frames);
   LayerPose from = by > 0 ? path.poses.back() : path.poses.front();
   LayerPose motion = by > 0 ? motions.back() : motions.front();
   const auto sign = static_cast<double>(by);

@@ -24,8 +24,9 @@ void CopyRows(const core::Frame& window, const core::PixelRect& size,
 
 // Reads `window` of a frame into rows that begin `stride` apart. The frame's
 // time.
-double ReadInto(Clip& clip, std::int64_t frame, const core::PixelRect& window,
-                float* out, std::int32_t stride) {
+double ReadWindowRows(Clip& clip, std::int64_t frame,
+                      const core::PixelRect& window, float* out,
+                      std::int32_t stride) {
   const core::Frame seen = clip.Read(frame, window);
   if (seen.is_16_bit()) {
     CopyRows<std::uint16_t>(seen, window, out, stride);
@@ -37,8 +38,8 @@ double ReadInto(Clip& clip, std::int64_t frame, const core::PixelRect& window,
 
 }  // namespace
 
-core::PixelRect BoxAround(const Background& background, const Track& track,
-                          const Shape& shape, double blur_px) {
+core::PixelRect SweptBox(const Background& background, const Track& track,
+                         const Shape& shape, double blur_px) {
   double left = 1e9;
   double top = 1e9;
   double right = -1e9;
@@ -93,7 +94,7 @@ LayerPath PathInBox(const Track& track, const core::PixelRect& box,
   LayerPath path;
   for (std::int64_t f = track.poses.front().frame;
        f <= track.poses.back().frame; ++f) {
-    const auto pose = PoseIn(track, f);
+    const auto pose = InterpolatePose(track, f);
     if (!pose) continue;
     path.frames.push_back(f);
     path.poses.push_back({pose->centre.x_px - box.x, pose->centre.y_px - box.y,
@@ -142,9 +143,9 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
   stack.frames.assign(frames.begin(), frames.end());
   stack.levels.resize(stack.pixels() * frames.size());
   for (std::size_t t = 0; t < frames.size(); ++t) {
-    stack.times_s.push_back(ReadInto(clip, frames[t], box,
-                                     stack.levels.data() + t * stack.pixels(),
-                                     stack.width));
+    stack.times_s.push_back(
+        ReadWindowRows(clip, frames[t], box,
+                       stack.levels.data() + t * stack.pixels(), stack.width));
   }
   return stack;
 }
@@ -158,7 +159,7 @@ PictureReader::PictureReader(Clip& clip, const std::vector<float>& still,
   stack_.height = box.height;
 }
 
-core::PixelRect PictureReader::WindowAround(const LayerPose& pose) const {
+core::PixelRect PictureReader::ClippedWindow(const LayerPose& pose) const {
   const auto from = [this](double at, std::int32_t end) {
     return std::clamp(static_cast<std::int32_t>(std::floor(at - reach_)), 0,
                       end - 1);
@@ -177,7 +178,7 @@ core::PixelRect PictureReader::WindowAround(const LayerPose& pose) const {
 
 const PictureStack& PictureReader::Read(const LayerPath& path) {
   const bool whole =
-      path.frames.empty() || clip_.ChangesIn(path.frames.front()) == nullptr;
+      path.frames.empty() || clip_.KnownChanges(path.frames.front()) == nullptr;
   const std::size_t pixels = stack_.pixels();
   stack_.frames = path.frames;
   stack_.times_s.clear();
@@ -198,8 +199,8 @@ const PictureStack& PictureReader::Read(const LayerPath& path) {
     }
     const core::PixelRect window =
         whole ? core::PixelRect{0, 0, box_.width, box_.height}
-              : WindowAround(path.poses[t]);
-    stack_.times_s.push_back(ReadInto(
+              : ClippedWindow(path.poses[t]);
+    stack_.times_s.push_back(ReadWindowRows(
         clip_, path.frames[t],
         {box_.x + window.x, box_.y + window.y, window.width, window.height},
         levels + std::ptrdiff_t{window.y} * box_.width + window.x, box_.width));
@@ -209,9 +210,9 @@ const PictureStack& PictureReader::Read(const LayerPath& path) {
   return stack_;
 }
 
-PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
-                       const LayerPath& path, const Shape& shape,
-                       const core::PixelRect& box) {
+PictureStack ReadPath(Clip& clip, const std::vector<float>& still,
+                      const LayerPath& path, const Shape& shape,
+                      const core::PixelRect& box) {
   PictureReader reader(clip, still, shape, box);
   reader.Read(path);
   return std::move(reader).Take();

@@ -18,8 +18,8 @@ namespace touchdown::vision {
 
 // All that the body of a track passes, and passes on beyond both ends if it
 // goes straight on, with room for its blur.
-core::PixelRect BoxAround(const Background& background, const Track& track,
-                          const layers::Shape& shape, double blur_px);
+core::PixelRect SweptBox(const Background& background, const Track& track,
+                         const layers::Shape& shape, double blur_px);
 
 std::vector<float> CropBackground(const Background& background,
                                   const core::PixelRect& box);
@@ -35,7 +35,7 @@ struct LayerPath {
 LayerPath PathInBox(const Track& track, const core::PixelRect& box, bool turns);
 
 // Poses of the whole picture, so that frames between can be asked for
-// (PoseIn); all else is as in `like`.
+// (InterpolatePose); all else is as in `like`.
 Track TrackInPicture(const Track& like, const LayerPath& path,
                      const core::PixelRect& box);
 
@@ -50,7 +50,7 @@ layers::PictureStack ReadPictures(Clip& clip,
                                   const core::PixelRect& box);
 
 // Those of a path's frames, again and again in the same memory. Of a clip that
-// keeps only what changes (Clip::ChangesIn) the surroundings of the body,
+// keeps only what changes (Clip::KnownChanges) the surroundings of the body,
 // before `still`. `clip` and `still` must outlive it.
 class PictureReader {
  public:
@@ -63,7 +63,7 @@ class PictureReader {
   layers::PictureStack Take() && { return std::move(stack_); }
 
  private:
-  core::PixelRect WindowAround(const layers::LayerPose& pose) const;
+  core::PixelRect ClippedWindow(const layers::LayerPose& pose) const;
 
   Clip& clip_;
   const std::vector<float>& still_;
@@ -74,9 +74,8 @@ class PictureReader {
 };
 
 // Those of one path.
-layers::PictureStack ReadAlong(Clip& clip, const std::vector<float>& still,
-                               const LayerPath& path,
-                               const layers::Shape& shape,
-                               const core::PixelRect& box);
+layers::PictureStack ReadPath(Clip& clip, const std::vector<float>& still,
+                              const LayerPath& path, const layers::Shape& shape,
+                              const core::PixelRect& box);
 
 }  // namespace touchdown::vision

@@ -24,7 +24,7 @@ bool IsStatedLength(double found_px, const core::Estimate& stated) {
          std::max(kStandardUncertainties * stated.u, kSameSize * stated.value);
 }
 
-KnownShape KnownShapeOf(core::BodyKind kind, const BodySize& size) {
+KnownShape MakeKnownShape(core::BodyKind kind, const BodySize& size) {
   return {kind, size.long_px.value,
           kind == core::BodyKind::kSphere ? size.long_px.value
                                           : size.short_px.value};
@@ -48,7 +48,7 @@ Track TrackOfStart(const Clip& clip, const TrackOptions& options,
     body.half_long_px = core::Scaled(size.long_px, 0.5);
     body.half_short_px = core::Scaled(size.short_px, 0.5);
   }
-  body.blur_px = kOff * KnownShapeOf(body.kind, size).short_side;
+  body.blur_px = kOff * MakeKnownShape(body.kind, size).short_side;
   for (const StartPose& at : start.poses) {
     if (!at.seen) continue;
     Pose pose;
@@ -61,24 +61,26 @@ Track TrackOfStart(const Clip& clip, const TrackOptions& options,
 }
 
 // What a track's body leaves uncovered.
-Background LookBehind(Clip& clip, const TrackOptions& options,
-                      const Track& track, const Background& fallback) {
+Background EstimateUncovered(Clip& clip, const TrackOptions& options,
+                             const Track& track, const Background& fallback) {
   const BodyCover cover(clip, track);
-  const BackgroundOptions still = BackgroundFor(clip, options);
+  const BackgroundOptions still = ChooseBackgroundOptions(clip, options);
   const Covers covers = FindCovers(
       track.first_frame, track.last_frame,
-      [&cover](std::int64_t frame) { return cover.In(frame); }, still);
-  return EstimateBackgroundBehind(clip, covers, fallback, still);
+      [&cover](std::int64_t frame) { return cover.CoverInFrame(frame); },
+      still);
+  return EstimateMaskedBackground(clip, covers, fallback, still);
 }
 
 // Outlines of all frames that the track reaches, from its own poses.
-std::vector<Fitted> FitAlong(Clip& clip, const Background& background,
-                             const TrackOptions& options, const Track& track,
-                             const OutlineOptions& fit_options) {
+std::vector<Fitted> FitTrackOutlines(Clip& clip, const Background& background,
+                                     const TrackOptions& options,
+                                     const Track& track,
+                                     const OutlineOptions& fit_options) {
   std::vector<OutlineJob> jobs;
   for (std::int64_t f = track.poses.front().frame;
        f <= track.poses.back().frame; ++f) {
-    jobs.push_back({f, OutlineAt(track.body, *PoseIn(track, f))});
+    jobs.push_back({f, PlaceOutline(track.body, *InterpolatePose(track, f))});
   }
   return Found(
       FitOutlines(clip, background, jobs, fit_options, options.threads));
@@ -102,7 +104,7 @@ bool CanStartFromLayers(const Clip& clip, const TrackOptions& options) {
       options.last < 0 ? clip.info().frames : options.last;
   return options.size && options.kind && options.region.width == 0 &&
          last - options.first <= kMostFrames &&
-         clip.ChangesIn(options.first) == nullptr;
+         clip.KnownChanges(options.first) == nullptr;
 }
 
 bool IsTheBackground(double most_covered) {
@@ -146,7 +148,7 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
   LayeredStartOptions start_options;
   start_options.first = options.first;
   start_options.last = last;
-  start_options.shape = KnownShapeOf(*options.kind, *options.size);
+  start_options.shape = MakeKnownShape(*options.kind, *options.size);
   start_options.threads = options.threads;
   const auto start = FindLayeredStart(clip, start_options);
   if (!start) return tl::unexpected(start.error());
@@ -164,20 +166,20 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
   // draws the place along: at last the size of all frames is held.
   enum class Size { kStated, kFree, kCommon };
   for (const Size held : {Size::kStated, Size::kFree, Size::kCommon}) {
-    result.background = LookBehind(clip, options, track, fallback);
+    result.background = EstimateUncovered(clip, options, track, fallback);
     OutlineOptions fit_options;
     fit_options.ground = options.ground;
     fit_options.fit_size = held == Size::kFree;
     if (held != Size::kStated) fit_options.blur_px = track.body.blur_px;
     std::vector<Fitted> fits =
-        FitAlong(clip, result.background, options, track, fit_options);
+        FitTrackOutlines(clip, result.background, options, track, fit_options);
     std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
     DropStrangers(fits);
     // One frame tells its size less well than all of them.
     std::erase_if(fits, [&](const Fitted& f) {
       core::Estimate stated = options.size->long_px;
       stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
-      return !IsStatedLength(2.0 * SizeOf(f.fit), stated);
+      return !IsStatedLength(2.0 * OutlineSize(f.fit), stated);
     });
     // What is lost by holding the size was better known without.
     constexpr double kMostLost = 0.2;

@@ -21,7 +21,7 @@ bool IsTheBackground(double most_covered);
 // time: the body is the background somewhere, or the stated body is not seen
 // well modelled in nine of ten frames. `most_covered`: the largest share of the
 // frames in which the track covers one and the same pixel. False where no size
-// is stated, and of clips that are not at hand whole (Clip::ChangesIn) or
+// is stated, and of clips that are not at hand whole (Clip::KnownChanges) or
 // longer than 400 frames.
 bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                     const Track& track, double most_covered);

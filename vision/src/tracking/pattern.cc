@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "footage/box_around.h"
-#include "outline/outline_pixels.h"
 #include "numbers/robust.h"
+#include "outline/outline_pixels.h"
 
 namespace touchdown::vision {
 namespace {
@@ -33,19 +33,20 @@ struct Axes {
   double cosine = 1.0;
   double sine = 0.0;
 };
-Axes AxesOf(const Pose& pose, bool turns) {
+Axes BodyAxes(const Pose& pose, bool turns) {
   if (!turns) return {};
   return {std::cos(pose.angle_rad), std::sin(pose.angle_rad)};
 }
 
-core::PixelPoint PlaceOf(const Pose& pose, const Axes& axes, double x,
-                         double y) {
+core::PixelPoint LocatePlace(const Pose& pose, const Axes& axes, double x,
+                             double y) {
   return {pose.centre.x_px + x * axes.cosine - y * axes.sine,
           pose.centre.y_px + x * axes.sine + y * axes.cosine};
 }
 
 // How much the still picture changes in a pixel.
-double SlopeAt(const Background& background, std::int32_t x, std::int32_t y) {
+double LocalSlope(const Background& background, std::int32_t x,
+                  std::int32_t y) {
   const auto at = [&](std::int32_t column, std::int32_t row) {
     return static_cast<double>(
         background.at(std::clamp(column, 0, background.width_px - 1),
@@ -61,7 +62,7 @@ struct Usual {
   double level = 0.0;
   double scatter = 0.0;
 };
-Usual UsualOf(const std::vector<double>& values) {
+Usual ComputeUsual(const std::vector<double>& values) {
   Usual usual;
   usual.level = Median(values);
   std::vector<double> off;
@@ -107,10 +108,10 @@ double PatternView::At(double x_px, double y_px) const {
   return sum;
 }
 
-PatternView ViewAround(Clip& clip, std::int64_t frame,
-                       const core::PixelPoint& centre, double reach_px) {
+PatternView ReadView(Clip& clip, std::int64_t frame,
+                     const core::PixelPoint& centre, double reach_px) {
   PatternView view;
-  view.rect = BoxAround(centre, reach_px, clip.info());
+  view.rect = ClippedBox(centre, reach_px, clip.info());
   const core::Frame pixels = clip.Read(frame, view.rect);
   view.time_s = pixels.time_s;
   view.value.reserve(static_cast<std::size_t>(view.rect.width) *
@@ -155,7 +156,7 @@ Pattern::Pattern(const Outline& outline, bool turns,
       Node node;
       node.x_px = column * spacing_px_;
       node.y_px = row * spacing_px_;
-      const double depth = DepthInside(own, node.x_px, node.y_px, cosine, sine);
+      const double depth = SignedDepth(own, node.x_px, node.y_px, cosine, sine);
       node.inside = depth > -kBeyond_px;
       node.at_rim = depth < kBeyond_px;
       nodes_.push_back(node);
@@ -195,7 +196,7 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
   std::vector<double> slopes;  // of what is behind
   std::vector<Axes> axes;
   axes.reserve(poses.size());
-  for (const PatternPose& p : poses) axes.push_back(AxesOf(p.pose, turns_));
+  for (const PatternPose& p : poses) axes.push_back(BodyAxes(p.pose, turns_));
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& node = nodes_[i];
     values.clear();
@@ -203,7 +204,8 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
     slopes.clear();
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Pose& pose = poses[k].pose;
-      const core::PixelPoint at = PlaceOf(pose, axes[k], node.x_px, node.y_px);
+      const core::PixelPoint at =
+          LocatePlace(pose, axes[k], node.x_px, node.y_px);
       const double value = views[k].At(at.x_px, at.y_px);
       if (!std::isfinite(value)) continue;
       values.push_back(poses[k].light.Undone(value, node.x_px, node.y_px));
@@ -212,14 +214,14 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
       if (background_->known_at(x, y)) {
         changes.push_back(
             std::abs(value - static_cast<double>(background_->at(x, y))));
-        if (node.at_rim) slopes.push_back(SlopeAt(*background_, x, y));
+        if (node.at_rim) slopes.push_back(LocalSlope(*background_, x, y));
       }
     }
     if (static_cast<double>(values.size()) <
         std::max(3.0, kMostSeen * static_cast<double>(views.size()))) {
       continue;
     }
-    const Usual usual = UsualOf(values);
+    const Usual usual = ComputeUsual(values);
     node.level = usual.level;
     if (!node.inside || changes.size() * 2 < values.size()) continue;
     const double noise = std::sqrt(background_->Variance(usual.level));
@@ -239,7 +241,8 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
   return own_.size() >= kLeast;
 }
 
-double Pattern::MisfitOf(const std::vector<double>& rest, double scale) const {
+double Pattern::ComputeMisfit(const std::vector<double>& rest,
+                              double scale) const {
   double sw = 0.0;
   double sum = 0.0;
   for (std::size_t k = 0; k < own_.size(); ++k) {
@@ -256,7 +259,7 @@ double Pattern::MisfitOf(const std::vector<double>& rest, double scale) const {
 double Pattern::Mismatch(const PatternView& view, const Pose& at,
                          double least) const {
   // Medians are slow: the mean of what is cut off does to choose a start.
-  const Axes axes = AxesOf(at, turns_);
+  const Axes axes = BodyAxes(at, turns_);
   double sum = 0.0;
   double seen = 0.0;
   // Were all nodes seen and the others without any mismatch, it would still be
@@ -266,7 +269,7 @@ double Pattern::Mismatch(const PatternView& view, const Pose& at,
       kRounding * least * static_cast<double>((own_.size() + 2) / 3);
   for (std::size_t k = 0; k < own_.size() && sum < enough; k += 3) {
     const Node& node = nodes_[own_[k]];
-    const core::PixelPoint p = PlaceOf(at, axes, node.x_px, node.y_px);
+    const core::PixelPoint p = LocatePlace(at, axes, node.x_px, node.y_px);
     const double value = view.At(p.x_px, p.y_px);
     if (!std::isfinite(value)) continue;
     const double r = (value - node.level) / node.u;
@@ -315,10 +318,10 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
   constexpr double kMostSeen = 0.5;
   double scale = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const Axes axes = AxesOf(pose, turns_);
+    const Axes axes = BodyAxes(pose, turns_);
     for (std::size_t k = 0; k < n; ++k) {
       const Node& node = nodes_[own_[k]];
-      const core::PixelPoint p = PlaceOf(pose, axes, node.x_px, node.y_px);
+      const core::PixelPoint p = LocatePlace(pose, axes, node.x_px, node.y_px);
       value[k] = view.At(p.x_px, p.y_px);
     }
     Matrix normal;
@@ -380,7 +383,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         turns_ ? std::clamp(p[kTurn] / light.gain, -kMostStep_px / reach,
                             kMostStep_px / reach)
                : 0.0;
-    pose.centre = PlaceOf(pose, axes, dx, dy);
+    pose.centre = LocatePlace(pose, axes, dx, dy);
     pose.angle_rad += turn;
     if (std::max({std::abs(dx), std::abs(dy), std::abs(turn) * reach}) <
         (2 * round < kRounds ? kFine_px : kToAndFro_px)) {
@@ -403,7 +406,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       pose.correlation_xy =
           (c * s * (xx - yy) + (c * c - s * s) * xy) / std::sqrt(vx * vy);
       pose.u_angle_rad = turns_ ? std::sqrt(covariance(kTurn, kTurn)) : 0.0;
-      pose.misfit = MisfitOf(rest, scale);
+      pose.misfit = ComputeMisfit(rest, scale);
       pose.time_s = view.time_s;
       return PatternPose{pose, light};
     }

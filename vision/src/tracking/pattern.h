@@ -34,8 +34,8 @@ struct PatternView {
 };
 
 // `reach_px`: how far from the centre all is held.
-PatternView ViewAround(Clip& clip, std::int64_t frame,
-                       const core::PixelPoint& centre, double reach_px);
+PatternView ReadView(Clip& clip, std::int64_t frame,
+                     const core::PixelPoint& centre, double reach_px);
 
 // What the light makes of a pattern in a frame.
 struct PatternLight {
@@ -91,7 +91,7 @@ class Pattern {
   };
 
   // Root mean square of what is left, over the noise, without outliers.
-  double MisfitOf(const std::vector<double>& rest, double scale) const;
+  double ComputeMisfit(const std::vector<double>& rest, double scale) const;
   // Any value not below `least` where it is not below it: no more is asked.
   double Mismatch(const PatternView& view, const Pose& at, double least) const;
   void SetSlopes();

@@ -23,7 +23,7 @@ std::vector<Motion> MotionAtPoses(const std::vector<Pose>& poses) {
     frames.push_back(pose.frame);
   }
   std::vector<Motion> motions;
-  for (const layers::LayerPose& step : layers::MotionsOf(path, frames)) {
+  for (const layers::LayerPose& step : layers::EstimateMotions(path, frames)) {
     motions.push_back({step.x, step.y, step.angle_rad});
   }
   return motions;
@@ -66,16 +66,16 @@ void Refiner::LookNearGround(Track& refined) {
   std::vector<std::size_t> low;
   for (std::size_t i = 0; i < track_.poses.size(); ++i) {
     const Pose& pose = track_.poses[i];
-    const Outline outline = OutlineAt(track_.body, pose);
+    const Outline outline = PlaceOutline(track_.body, pose);
     const double gap =
-        calib::HeightAbove(*options_.ground, pose.centre) -
+        calib::HeightAboveLine(*options_.ground, pose.centre) -
         SupportHeight(outline, calib::ImageAngle(*options_.ground));
     if (gap < options_.ground_margin_px) low.push_back(i);
   }
   const std::size_t step = (low.size() + kEnough - 1) / kEnough;
   std::vector<OutlineJob> jobs;
   for (const std::size_t i : FromBothSides(low.size(), step)) {
-    jobs.push_back(JobAt(track_.body, low[i]));
+    jobs.push_back(MakeJob(track_.body, low[i]));
   }
   options_.near_ground = OutlineOptions::NearGround::kModelled;
   double pixels = 0.0;
@@ -101,10 +101,10 @@ void Refiner::LookNearGround(Track& refined) {
   refined.near_ground_modelled = true;
 }
 
-OutlineJob Refiner::JobAt(const BodyImage& body, std::size_t i) const {
+OutlineJob Refiner::MakeJob(const BodyImage& body, std::size_t i) const {
   const Pose& pose = track_.poses[i];
   const Motion& motion = motion_[i];
-  return {pose.frame, OutlineAt(body, pose),
+  return {pose.frame, PlaceOutline(body, pose),
           core::PixelPoint{motion.x_px, motion.y_px}, motion.turn_rad};
 }
 
@@ -112,7 +112,7 @@ std::vector<std::optional<Fitted>> Refiner::FitPoses(const BodyImage& body,
                                                      std::size_t step) {
   std::vector<OutlineJob> jobs;
   for (const std::size_t i : FromBothSides(track_.poses.size(), step)) {
-    jobs.push_back(JobAt(body, i));
+    jobs.push_back(MakeJob(body, i));
   }
   return FitOutlines(clip_, background_, jobs, options_, threads_);
 }
@@ -138,12 +138,12 @@ void Refiner::MeasurePoses(Track& refined) {
   std::erase_if(fits, [&](const Fitted& f) { return hidden_.Has(f.frame); });
   options_.starts_near = false;
   if (hidden_.hider() != nullptr) {
-    hidden_.AddTo(fits, refined.body, options_);
+    hidden_.AddFits(fits, refined.body, options_);
   }
   refined.step = 1;
   for (const Fitted& fit : fits) {
-    Pose better = PoseOf(fit);
-    if (const auto pose = PoseIn(track_, fit.frame)) {
+    Pose better = ToPose(fit);
+    if (const auto pose = InterpolatePose(track_, fit.frame)) {
       better.relative_size = pose->relative_size;
     }
     refined.poses.push_back(better);
@@ -181,7 +181,7 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
   }
   refiner.MeasurePoses(refined);
   Unwrap(refined);
-  if (track.patterned) refined = PutOn(refined, track);
+  if (track.patterned) refined = AlignToOutlines(refined, track);
   return refined;
 }
 

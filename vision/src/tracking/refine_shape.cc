@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "tracking/refiner.h"
 #include "numbers/robust.h"
+#include "tracking/refiner.h"
 
 namespace touchdown::vision {
 namespace {
@@ -13,8 +13,8 @@ constexpr std::size_t kLeastSized = 3;  // frames that tell a size
 
 // One coefficient over the frames: its median, and how far a frame's own may
 // lie from it beyond the fits' noise.
-void PriorOf(const std::vector<double>& values, const std::vector<double>& us,
-             double& level, double& u) {
+void EstimatePrior(const std::vector<double>& values,
+                   const std::vector<double>& us, double& level, double& u) {
   level = Median(values);
   std::vector<double> off;
   off.reserve(values.size());
@@ -28,7 +28,7 @@ void PriorOf(const std::vector<double>& values, const std::vector<double>& us,
 }
 
 // The body's shading as the frames that show it whole agree on.
-std::optional<Shading> ShadingOf(const std::vector<Fitted>& all) {
+std::optional<Shading> AverageShading(const std::vector<Fitted>& all) {
   constexpr double kWhole = 0.98;
   constexpr std::size_t kLeast = 8;
   std::vector<const OutlineFit*> whole;
@@ -44,7 +44,7 @@ std::optional<Shading> ShadingOf(const std::vector<Fitted>& all) {
       values.push_back(fit->shading->level[k]);
       us.push_back(fit->shading->u[k]);
     }
-    PriorOf(values, us, shading.level[k], shading.u[k]);
+    EstimatePrior(values, us, shading.level[k], shading.u[k]);
     if (!(shading.u[k] > 0.0)) return std::nullopt;
   }
   return shading;
@@ -98,7 +98,7 @@ void Refiner::LearnShape(Track& refined) {
       sized.size() < kLeastSized || MedianMisfit(sized) > kWellModelled;
   if (!crude) {
     // From where the frames' own sizes are: a step is short then.
-    const BodyImage shape = ShapeOf(sized, body.kind);
+    const BodyImage shape = EstimateShape(sized, body.kind);
     if (IsSameSize(shape, track_.body)) TakeSize(shape, body);
   }
   sized = crude ? SizeByFrames(body) : SizeTogether(body);
@@ -112,7 +112,7 @@ void Refiner::LearnShape(Track& refined) {
   }
   // Not with the shading held: its error is common to all frames, and what it
   // does to the size would not show in their scatter.
-  if (sized.size() >= kLeastSized) options_.shading = ShadingOf(sized);
+  if (sized.size() >= kLeastSized) options_.shading = AverageShading(sized);
   if (sized.size() >= kLeastSized && IsSameSize(body, track_.body)) {
     refined.body = body;
   } else {
@@ -138,7 +138,7 @@ std::vector<Fitted> Refiner::LearnBlur(Track& refined) {
       1.0);
   options_.open = 0.0;
   if (sized.size() >= kLeastSized &&
-      IsSameSize(ShapeOf(sized, track_.body.kind), track_.body)) {
+      IsSameSize(EstimateShape(sized, track_.body.kind), track_.body)) {
     if (options_.fit_open) options_.open = open;
     refined.body.blur_px =
         Shared(sized, &OutlineFit::blur_px, &OutlineFit::u_blur_px)
@@ -153,7 +153,7 @@ std::vector<Fitted> Refiner::LearnBlur(Track& refined) {
 std::vector<Fitted> Refiner::SizeByFrames(BodyImage& body) {
   std::vector<Fitted> sized = Sample(body);
   if (sized.empty()) return sized;
-  TakeSize(ShapeOf(sized, body.kind), body);
+  TakeSize(EstimateShape(sized, body.kind), body);
   return sized;
 }
 
@@ -201,7 +201,7 @@ bool Refiner::LookForHider(const std::vector<Fitted>& whole,
                            const BodyImage& body) {
   std::vector<OutlineJob> own;
   for (std::size_t i = 0; i < track_.poses.size(); ++i) {
-    if (hidden_.Has(track_.poses[i].frame)) own.push_back(JobAt(body, i));
+    if (hidden_.Has(track_.poses[i].frame)) own.push_back(MakeJob(body, i));
   }
   OutlineOptions held = options_;
   held.fit_size = false;

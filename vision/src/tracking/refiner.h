@@ -45,7 +45,7 @@ class Refiner {
   bool LearnSpots(const BodyImage& body, std::vector<Fitted>& sized);
   bool LearnRim(const BodyImage& body, std::vector<Fitted>& sized);
   std::vector<SeenOutline> Seen(const std::vector<Fitted>& fits) const;
-  OutlineJob JobAt(const BodyImage& body, std::size_t i) const;
+  OutlineJob MakeJob(const BodyImage& body, std::size_t i) const;
   // Blur and exposure, from fits of each frame, which it returns.
   std::vector<Fitted> LearnBlur(Track& refined);
   // The mean of the sizes that frames show; or one size, blur and exposure for

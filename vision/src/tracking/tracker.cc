@@ -23,7 +23,7 @@ namespace {
 // Where the body should be: between two measured poses, or straight on from the
 // ends of the track.
 Pose ExpectedPose(const Track& track, std::int64_t frame) {
-  if (const auto pose = PoseIn(track, frame)) return *pose;
+  if (const auto pose = InterpolatePose(track, frame)) return *pose;
   const auto& poses = track.poses;
   const bool before = frame < poses.front().frame;
   const Pose& end = before ? poses.front() : poses.back();
@@ -41,7 +41,7 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
   std::vector<OutlineJob> jobs;
   jobs.reserve(frames.size());
   for (const std::int64_t f : frames) {
-    jobs.push_back({f, OutlineAt(track.body, ExpectedPose(track, f))});
+    jobs.push_back({f, PlaceOutline(track.body, ExpectedPose(track, f))});
   }
   return Found(
       FitOutlines(clip, background, jobs, fit_options, options.threads));
@@ -53,22 +53,23 @@ void DropOtherSizes(std::vector<Fitted>& all) {
   constexpr double kRatio = 1.05;
   std::vector<double> sizes;
   sizes.reserve(all.size());
-  for (const Fitted& f : all) sizes.push_back(SizeOf(f.fit));
+  for (const Fitted& f : all) sizes.push_back(OutlineSize(f.fit));
   const double size = Median(std::move(sizes));
   std::erase_if(all, [&](const Fitted& f) {
-    return SizeOf(f.fit) > kRatio * size || kRatio * SizeOf(f.fit) < size;
+    return OutlineSize(f.fit) > kRatio * size ||
+           kRatio * OutlineSize(f.fit) < size;
   });
 }
 
 // Every `step`-th frame.
-std::vector<std::int64_t> FramesFrom(std::int64_t first, std::int64_t last,
+std::vector<std::int64_t> ListFrames(std::int64_t first, std::int64_t last,
                                      std::int64_t step) {
   std::vector<std::int64_t> frames;
   for (std::int64_t f = first; f <= last; f += step) frames.push_back(f);
   return frames;
 }
 
-OutlineOptions FitOptionsOf(const Track& track) {
+OutlineOptions MakeFitOptions(const Track& track) {
   OutlineOptions fit_options;
   fit_options.surround =
       track.known_background ? Surround::kBackground : Surround::kPolynomial;
@@ -78,10 +79,10 @@ OutlineOptions FitOptionsOf(const Track& track) {
 
 // Where only every `step`-th frame was looked at, all frames now, and those at
 // the ends that the looks may have missed. Returns a warning, or nothing.
-std::string FitBetween(Clip& clip, const Background& background,
-                       const TrackOptions& options, std::int64_t step,
-                       bool one_size, Track& track) {
-  const OutlineOptions fit_options = FitOptionsOf(track);
+std::string FitSkippedFrames(Clip& clip, const Background& background,
+                             const TrackOptions& options, std::int64_t step,
+                             bool one_size, Track& track) {
+  const OutlineOptions fit_options = MakeFitOptions(track);
   const std::int64_t first =
       std::max(options.first, track.poses.front().frame - step + 1);
   const std::int64_t last =
@@ -90,14 +91,14 @@ std::string FitBetween(Clip& clip, const Background& background,
   std::vector<Fitted> all;
   try {
     all = FitFromTrack(clip, background, track, options, fit_options,
-                       FramesFrom(first, last, 1));
+                       ListFrames(first, last, 1));
   } catch (const core::InputError&) {
     std::string reason;
     const std::int64_t bad = FirstUnreadable(clip, first, last + 1, reason);
     warning = fmt::format("frames from {} on cannot be read: {}", bad, reason);
     track.last_frame = bad;
     all = FitFromTrack(clip, background, track, options, fit_options,
-                       FramesFrom(first, bad - 1, 1));
+                       ListFrames(first, bad - 1, 1));
   }
   DropStrangers(all);
   if (one_size) DropOtherSizes(all);
@@ -122,7 +123,7 @@ void FitMissing(Clip& clip, const Background& background,
     }
   }
   if (missing.empty()) return;
-  OutlineOptions fit_options = FitOptionsOf(track);
+  OutlineOptions fit_options = MakeFitOptions(track);
   fit_options.fit_size = false;
   // Twice as bad as usual is another thing; so is what is off the path.
   constexpr double kUsual = 2.0;
@@ -135,13 +136,14 @@ void FitMissing(Clip& clip, const Background& background,
         std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
                    fit.fit.outline.centre.y_px - there.centre.y_px);
     if (!IsMeasured(fit.fit) || fit.fit.misfit > most_misfit ||
-        fit.fit.hidden > kMostHidden || off > kOff * 2.0 * SizeOf(fit.fit)) {
+        fit.fit.hidden > kMostHidden ||
+        off > kOff * 2.0 * OutlineSize(fit.fit)) {
       continue;
     }
     const auto at = std::lower_bound(
         track.poses.begin(), track.poses.end(), fit.frame,
         [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
-    track.poses.insert(at, PoseOf(fit));
+    track.poses.insert(at, ToPose(fit));
   }
   Unwrap(track);
 }
@@ -159,7 +161,7 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
     return false;
   }
   std::vector<std::int64_t> frames =
-      FramesFrom(std::max(options.first, looks.front().frame - step + 1),
+      ListFrames(std::max(options.first, looks.front().frame - step + 1),
                  looks.front().frame - 1, 1);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (bridged[i]) continue;
@@ -172,7 +174,7 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
     }
   }
   std::vector<Fitted> all = FitFromTrack(clip, background, track, options,
-                                         FitOptionsOf(track), frames);
+                                         MakeFitOptions(track), frames);
   all.insert(all.end(), looks.begin(), looks.end());
   std::sort(all.begin(), all.end(),
             [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
@@ -195,7 +197,8 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
 
 // The track of a look's best chain. Warnings and the length of the whole come
 // later.
-Track TrackOf(const Look& look, const Clip& clip, const TrackOptions& options) {
+Track MakeTrack(const Look& look, const Clip& clip,
+                const TrackOptions& options) {
   Track track;
   track.first_frame = options.first;
   track.last_frame = look.found.last;
@@ -209,12 +212,13 @@ Track TrackOf(const Look& look, const Clip& clip, const TrackOptions& options) {
   return track;
 }
 
-Covers CoversOf(Clip& clip, const TrackOptions& options, const Track& track) {
+Covers FindTrackCovers(Clip& clip, const TrackOptions& options,
+                       const Track& track) {
   const BodyCover cover(clip, track);
   return FindCovers(
       options.first, track.last_frame,
-      [&cover](std::int64_t frame) { return cover.In(frame); },
-      BackgroundFor(clip, options));
+      [&cover](std::int64_t frame) { return cover.CoverInFrame(frame); },
+      ChooseBackgroundOptions(clip, options));
 }
 
 // Whether the body may have been lost where it passed its own ghost.
@@ -251,15 +255,15 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   constexpr double kFew = 0.5;  // of what was seen
   if (!whole && static_cast<double>(track.poses.size()) <
                     kFew * static_cast<double>(chain.links.size())) {
-    whole = FindWhole(clip, result.background, PathOf(chain, track), options);
+    whole = FindWhole(clip, result.background, MakePath(chain, track), options);
   }
   if (!whole) return;
   whole->known_background = true;
   whole->warnings.clear();
   whole->several_bodies = false;
-  Background behind =
-      EstimateBackgroundBehind(clip, CoversOf(clip, options, *whole),
-                               result.background, BackgroundFor(clip, options));
+  Background behind = EstimateMaskedBackground(
+      clip, FindTrackCovers(clip, options, *whole), result.background,
+      ChooseBackgroundOptions(clip, options));
   // What does not move as one picture was none.
   Track followed = FollowPattern(clip, behind, *whole, options.threads);
   if (!followed.patterned) return;
@@ -340,10 +344,10 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     if (!CanStartFromLayers(clip, options)) {
       return tl::unexpected(first.error());
     }
-    auto layered =
-        TrackFromLayers(clip, options, last,
-                        EstimateBackground(clip, options.first, last,
-                                           BackgroundFor(clip, options)));
+    auto layered = TrackFromLayers(
+        clip, options, last,
+        EstimateBackground(clip, options.first, last,
+                           ChooseBackgroundOptions(clip, options)));
     if (!layered) return tl::unexpected(first.error());
     if (auto followed = InLayers(clip, options, *layered)) layered = followed;
     if (!warning.empty()) layered->track.warnings.push_back(warning);
@@ -353,12 +357,12 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
 
   until.Enter("the background behind the body is estimated");
   Track& track = result.track;
-  track = TrackOf(*first, clip, options);
+  track = MakeTrack(*first, clip, options);
   // Now that the body's place is known, the background without it.
-  Covers covers = CoversOf(clip, options, track);
+  Covers covers = FindTrackCovers(clip, options, track);
   const auto look_behind = [&](Background fallback) {
-    return EstimateBackgroundBehind(clip, covers, std::move(fallback),
-                                    BackgroundFor(clip, options));
+    return EstimateMaskedBackground(clip, covers, std::move(fallback),
+                                    ChooseBackgroundOptions(clip, options));
   };
   // Mostly that with the body is not needed again.
   const bool once = covers.most <= kUntouched && track.known_background &&
@@ -366,12 +370,12 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   Background behind =
       look_behind(once ? std::move(first->background) : first->background);
   if (covers.most > kUntouched && IsTorn(*first)) {
-    Look again = LookWith(clip, behind, options, Detector::kDifference,
-                          first->found.last);
+    Look again = TryHypothesis(clip, behind, options, Detector::kDifference,
+                               first->found.last);
     if (again.fits.size() > first->fits.size() && IsBetter(again, *first)) {
       *first = std::move(again);
-      track = TrackOf(*first, clip, options);
-      covers = CoversOf(clip, options, track);
+      track = MakeTrack(*first, clip, options);
+      covers = FindTrackCovers(clip, options, track);
       behind = look_behind(first->background);
     }
   }
@@ -399,7 +403,7 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
         fit_options.blur_px = again.blur_px;
         better = FitFromTrack(
             clip, result.background, track, options, fit_options,
-            FramesFrom(track.poses.front().frame, track.poses.back().frame,
+            ListFrames(track.poses.front().frame, track.poses.back().frame,
                        first->found.step));
       }
       // From the blobs, if the track's outlines are those of the ghost.
@@ -434,8 +438,8 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   }
   for (int pass = 0; pass < passes && track.poses.size() > 1; ++pass) {
     const std::string cut =
-        FitBetween(clip, result.background, options, first->found.step,
-                   first->rough_starts && pass + 1 == passes, track);
+        FitSkippedFrames(clip, result.background, options, first->found.step,
+                         first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
   // Of a ball the outline is a circle whatever it shows; of a block it must be
@@ -482,7 +486,7 @@ Track FitEveryFrame(Clip& clip, const Background& background,
   whole.step = 1;
   whole.warnings.clear();
   const std::string cut =
-      FitBetween(clip, background, options, track.step, false, whole);
+      FitSkippedFrames(clip, background, options, track.step, false, whole);
   whole.body.whole_px = track.body.whole_px;
   if (!cut.empty()) whole.warnings.push_back(cut);
   whole.warnings.insert(whole.warnings.end(), track.warnings.begin(),

@@ -17,19 +17,20 @@ namespace touchdown::vision {
 namespace {
 
 // The outline as its pose has it, its axes being `turns` or not the pose's.
-Outline PartAt(const Track& part, bool turns) {
+Outline PartOutline(const Track& part, bool turns) {
   std::vector<double> angles;
   angles.reserve(part.poses.size());
   for (const Pose& pose : part.poses) angles.push_back(pose.angle_rad);
   Pose pose;
   if (!turns) pose.angle_rad = Median(std::move(angles));
-  return OutlineAt(part.body, pose);
+  return PlaceOutline(part.body, pose);
 }
 
 // What an outline covers of the places, and of those around it that move
 // along.
-std::vector<unsigned char> CoverOf(const CoMoving& places,
-                                   const Outline& outline, double margin_px) {
+std::vector<unsigned char> ComputeCover(const CoMoving& places,
+                                        const Outline& outline,
+                                        double margin_px) {
   const int n = places.size();
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
@@ -38,7 +39,7 @@ std::vector<unsigned char> CoverOf(const CoMoving& places,
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column < n; ++column) {
       const double depth =
-          DepthInside(outline, (column - places.half) * places.spacing_px,
+          SignedDepth(outline, (column - places.half) * places.spacing_px,
                       (row - places.half) * places.spacing_px, cosine, sine);
       cover.push_back(depth > -margin_px ? 1 : 0);
     }
@@ -58,10 +59,9 @@ std::vector<unsigned char> CoverOf(const CoMoving& places,
   return cover;
 }
 
-std::optional<BestOutline> BestOf(const CoMoving& places,
-                                  const std::optional<core::BodyKind>& kind,
-                                  bool finely,
-                                  const core::Cancellation& until) {
+std::optional<BestOutline> FindOutlineOfBestKind(
+    const CoMoving& places, const std::optional<core::BodyKind>& kind,
+    bool finely, const core::Cancellation& until) {
   std::optional<BestOutline> best;
   for (const core::BodyKind k :
        {core::BodyKind::kRectangle, core::BodyKind::kSphere}) {
@@ -73,7 +73,7 @@ std::optional<BestOutline> BestOf(const CoMoving& places,
 }
 
 // What moves along within a reach of the path, its first guess being `guess`.
-std::optional<BestOutline> FindOutlineWithin(
+std::optional<BestOutline> FindOutlineInReach(
     Clip& clip, const Background& background, const Track& part,
     const Outline& guess, const std::optional<core::BodyKind>& kind,
     const CoMovingOptions& options) {
@@ -81,14 +81,14 @@ std::optional<BestOutline> FindOutlineWithin(
   const CoMoving places = FindCoMoving(
       clip, background, part,
       [&](const CoMoving& seen) {
-        const auto found =
-            BestOf(seen, kind.value_or(core::BodyKind::kRectangle), false,
-                   clip.cancellation());
-        return CoverOf(seen, found ? found->outline : guess, kMargin_px);
+        const auto found = FindOutlineOfBestKind(
+            seen, kind.value_or(core::BodyKind::kRectangle), false,
+            clip.cancellation());
+        return ComputeCover(seen, found ? found->outline : guess, kMargin_px);
       },
       options);
   if (places.half == 0) return std::nullopt;
-  return BestOf(places, kind, true, clip.cancellation());
+  return FindOutlineOfBestKind(places, kind, true, clip.cancellation());
 }
 
 // One outline holds what moves along, and little else.
@@ -98,15 +98,15 @@ bool IsOne(const BestOutline& best) {
   return best.holds > kHolds && best.pure > kPure;
 }
 
-std::optional<BestOutline> FindOutlineAround(Clip& clip,
-                                             const Background& background,
-                                             const Track& part,
-                                             const TrackOptions& wanted,
-                                             bool turns) {
+std::optional<BestOutline> FindOutlineNearPath(Clip& clip,
+                                               const Background& background,
+                                               const Track& part,
+                                               const TrackOptions& wanted,
+                                               bool turns) {
   // Of an end the other one is ten of its sizes away.
   constexpr double kReaches[] = {3.0, 6.0, 12.0};  // of the part's
   constexpr double kBeside_px = 12.0;
-  const Outline own = PartAt(part, turns);
+  const Outline own = PartOutline(part, turns);
   const double most = std::max(clip.info().width_px, clip.info().height_px);
   CoMovingOptions options;
   options.turns = turns;
@@ -117,8 +117,8 @@ std::optional<BestOutline> FindOutlineAround(Clip& clip,
     options.reach_px = reach * Extent(own);
     if (options.reach_px > most) break;
     const auto found =
-        FindOutlineWithin(clip, background, part, best ? best->outline : own,
-                          wanted.kind, options);
+        FindOutlineInReach(clip, background, part, best ? best->outline : own,
+                           wanted.kind, options);
     if (found && IsOne(*found) && (!best || found->merit > best->merit)) {
       best = found;
     }
@@ -129,7 +129,7 @@ std::optional<BestOutline> FindOutlineAround(Clip& clip,
   options.reach_px = std::hypot(rough.centre.x_px, rough.centre.y_px) +
                      Extent(rough) + kBeside_px;
   const auto found =
-      FindOutlineWithin(clip, background, part, rough, wanted.kind, options);
+      FindOutlineInReach(clip, background, part, rough, wanted.kind, options);
   return found && IsOne(*found) ? found : std::nullopt;
 }
 
@@ -149,7 +149,7 @@ bool Turns(const Track& part) {
   std::sort(angles.begin(), angles.end());
   const std::size_t tenth = angles.size() / 10;
   const double range = angles[angles.size() - 1 - tenth] - angles[tenth];
-  return range * Extent(PartAt(part, false)) > kSeen_px &&
+  return range * Extent(PartOutline(part, false)) > kSeen_px &&
          range > kNoNoise * Median(std::move(steps));
 }
 
@@ -165,14 +165,15 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
   for (const bool turns : {false, true}) {
     if (turns && !Turns(part)) continue;
     const auto found =
-        FindOutlineAround(clip, background, part, options, turns);
+        FindOutlineNearPath(clip, background, part, options, turns);
     if (!found) continue;
     if (!best || found->merit > best->merit) {
       best = found;
       best_turns = turns;
     }
   }
-  if (!best || Area(best->outline) < kLarger * Area(PartAt(part, best_turns))) {
+  if (!best ||
+      Area(best->outline) < kLarger * Area(PartOutline(part, best_turns))) {
     return std::nullopt;
   }
   Track whole = part;
@@ -209,7 +210,7 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
   return whole;
 }
 
-Track PathOf(const Chain& chain, const Track& like) {
+Track MakePath(const Chain& chain, const Track& like) {
   Track path = like;
   path.step = 1;
   path.body.kind = core::BodyKind::kSphere;

@@ -24,6 +24,6 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
 
 // The path of a chain's blobs, of a body that few outlines fit: good to a pixel
 // or two, which is enough to see what moves along.
-Track PathOf(const Chain& chain, const Track& like);
+Track MakePath(const Chain& chain, const Track& like);
 
 }  // namespace touchdown::vision

@@ -37,7 +37,7 @@ Board ParseBoard(std::string_view text);
 std::string Text(const Board& board);  // as ParseBoard takes it
 
 // The board's points in its own plane, row by row, as FindBoard lists them.
-std::vector<core::PlanePoint> PointsOf(const Board& board);
+std::vector<core::PlanePoint> ListBoardPoints(const Board& board);
 
 // The board's points in the picture, to sub-pixel: chessboard corners by the
 // saddle of the levels around them, circles by the centroid of their image.

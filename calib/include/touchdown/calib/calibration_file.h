@@ -95,8 +95,8 @@ void WriteCalibration(const std::filesystem::path& path,
 // calibrated one. Absent, with the reason, where it does not fit: another
 // resolution, a part of which the place is not known, or one that reaches
 // beyond what was calibrated.
-core::Expected<Calibration> FittedTo(const Calibration& calibration,
-                                     const Picture& picture);
+core::Expected<Calibration> AdaptToPicture(const Calibration& calibration,
+                                           const Picture& picture);
 
 // One sentence where the calibration is no longer valid on `today`
 // (YYYY-MM-DD), or is dated later.

@@ -39,8 +39,8 @@ inline constexpr std::array<const char*, kLensParameters> kLensNames = {
     "fx_px", "fy_px", "cx_px", "cy_px", "k1", "k2", "p1", "p2", "k3"};
 using LensVector = Eigen::Matrix<double, kLensParameters, 1>;
 using LensCovariance = Eigen::Matrix<double, kLensParameters, kLensParameters>;
-LensVector VectorOf(const Lens& lens);
-Lens LensOf(const LensVector& vector);
+LensVector ToVector(const Lens& lens);
+Lens ToLens(const LensVector& vector);
 
 // Focal length of the ideal picture, px.
 double IdealFocal(const Lens& lens);

@@ -25,7 +25,7 @@ namespace touchdown::calib {
 // One picture of the board.
 struct BoardView {
   std::string name;                      // of the picture, for messages
-  std::vector<core::PixelPoint> points;  // as PointsOf(board) lists them
+  std::vector<core::PixelPoint> points;  // as ListBoardPoints(board) lists them
 };
 
 struct LensCalibrationOptions {

@@ -34,21 +34,21 @@ struct GroundLine {
 // `u_point_px` along the normal (default 0.5 px: a careful mouse click; it
 // enters the angle's uncertainty as sqrt(2) u / length). Throws
 // std::invalid_argument if the points coincide.
-GroundLine GroundThrough(core::PixelPoint p1, core::PixelPoint p2,
-                         double u_point_px = 0.5);
+GroundLine MakeGroundLine(core::PixelPoint p1, core::PixelPoint p2,
+                          double u_point_px = 0.5);
 
 // Direction of the line in the image: angle from +x towards +y (image y points
 // down), in (-pi/2, pi/2].
 double ImageAngle(const GroundLine& ground);
 
 // Signed distance of `p` above the line (towards smaller image y), in px.
-double HeightAbove(const GroundLine& ground, core::PixelPoint p);
+double HeightAboveLine(const GroundLine& ground, core::PixelPoint p);
 
 // Standard uncertainty of the line's height at the foot of `p`, in px.
 double HeightUncertainty(const GroundLine& ground, core::PixelPoint p);
 
 // Position of the foot of `p` along the line, from `reference`, in px.
-double PositionAlong(const GroundLine& ground, core::PixelPoint p);
+double PositionOnLine(const GroundLine& ground, core::PixelPoint p);
 
 // A line through the same two points in the lens's ideal picture, and back:
 // the line through the two points at which the ideal points `a` and `b` of it

@@ -27,21 +27,21 @@ struct MarkedPair {
 // px_per_m = |p2 - p1| / length, with u of the points and of the length.
 // Throws std::invalid_argument if the points coincide, the length is not
 // positive or the lens has no ideal point for one of them.
-ScaleRecord ScaleFrom(const MarkedPair& pair, const core::Estimate& length_m,
-                      const std::optional<Lens>& lens = std::nullopt);
+ScaleRecord MeasureScale(const MarkedPair& pair, const core::Estimate& length_m,
+                         const std::optional<Lens>& lens = std::nullopt);
 
 // What `scale` makes of another known length: measured minus known, with u of
 // everything. Compatible with 0 where the calibration is right. Throws as
-// ScaleFrom.
+// MeasureScale.
 core::Estimate CheckError(const ScaleRecord& scale, const MarkedPair& pair,
                           const core::Estimate& length_m,
                           const std::optional<Lens>& lens = std::nullopt);
 
 // Slope of the ground to the level: positive where it rises to the right in
 // the picture. `plumb` is a line that hangs freely, top and bottom in either
-// order. Throws as ScaleFrom.
-core::Estimate SlopeFrom(const MarkedPair& ground, const MarkedPair& plumb,
-                         const std::optional<Lens>& lens = std::nullopt);
+// order. Throws as MeasureScale.
+core::Estimate MeasureSlope(const MarkedPair& ground, const MarkedPair& plumb,
+                            const std::optional<Lens>& lens = std::nullopt);
 
 // A board that lies flat on the ground, its rows along the direction of
 // travel, its middle row under the body's path.

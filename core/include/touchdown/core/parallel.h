@@ -10,7 +10,7 @@
 namespace touchdown::core {
 
 // As many as asked for; 0: one for each core.
-inline int ThreadsOf(int wanted) {
+inline int CountThreads(int wanted) {
   // Asked once: the answer is read from a file of the system's each time.
   static const int cores =
       static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -24,7 +24,7 @@ inline int ThreadsOf(int wanted) {
 template <class Work>
 void InParallel(std::int64_t count, int threads, const Work& work) {
   const std::int64_t parts = std::clamp<std::int64_t>(
-      ThreadsOf(threads), 1, std::max<std::int64_t>(count, 1));
+      CountThreads(threads), 1, std::max<std::int64_t>(count, 1));
   if (parts == 1) {
     work(std::int64_t{0}, count);
     return;

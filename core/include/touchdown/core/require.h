@@ -18,7 +18,7 @@ void RequirePositive(std::string_view field, double value,
                      std::string_view unit = "");
 void RequireNotNegative(std::string_view field, double value,
                         std::string_view unit = "");
-void RequireBetween(std::string_view field, double value, double low,
+void RequireInRange(std::string_view field, double value, double low,
                     double high, std::string_view unit = "");
 
 }  // namespace touchdown::core

@@ -83,7 +83,7 @@ struct RegisterField {
   std::string_view words = {};
   RegisterKind entry = RegisterKind::kRig;  // kEntry: of which kind
 };
-std::span<const RegisterField> FieldsOf(RegisterKind kind);
+std::span<const RegisterField> ListFields(RegisterKind kind);
 
 // One version of an entry. The maps hold every field of the kind by its name.
 struct Entry {
@@ -140,7 +140,7 @@ std::vector<Entry> Entries(const Store& store, RegisterKind kind);
 // oldest first: what an export or a merge carries.
 std::vector<Entry> AllVersions(const Store& store);
 // Every version of one entry, oldest first.
-std::vector<Entry> VersionsOf(const Store& store, RegisterKind kind,
-                              std::string_view name);
+std::vector<Entry> ReadEntryVersions(const Store& store, RegisterKind kind,
+                                     std::string_view name);
 
 }  // namespace touchdown::db

@@ -62,6 +62,6 @@ struct SealCheck {
   std::string problem;
   std::int64_t links_since = 0;  // that the store has grown by
 };
-SealCheck CheckAgainst(const Store& store, const Seal& seal);
+SealCheck CheckStoreSeal(const Store& store, const Seal& seal);
 
 }  // namespace touchdown::db

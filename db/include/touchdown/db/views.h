@@ -37,7 +37,7 @@ struct View {
 const std::vector<View>& Views();
 
 // "deg", "m/s" ... of a name at the edge (core/edge_unit.h); empty: none.
-std::string UnitOf(std::string_view edge_name);
+std::string FindUnit(std::string_view edge_name);
 
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 

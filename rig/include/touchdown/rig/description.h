@@ -81,11 +81,11 @@ inline bool ThrowsRectangle(const Description& rig) {
 
 // One of the springs, at the values of `springs`. Absent where the geometry is
 // unknown.
-core::Expected<Spring> SpringOf(const Springs& springs);
+core::Expected<Spring> MakeSpring(const Springs& springs);
 
 // The barrel's energy balance at the values of the description. Throws
 // std::invalid_argument where neither stiffness nor geometry is given.
-Launch LaunchOf(const Description& rig, double elevation_rad);
+Launch MakeLaunch(const Description& rig, double elevation_rad);
 
 // Checks the springs at a travel of `compression_m` beyond the preload, and the
 // travel against its limit. Without geometry only what can be is checked.

@@ -83,6 +83,6 @@ core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m);
 // `speed_mps` >= 0. The answer exists always (whether the springs bear it:
 // CheckSpring); stable where gravity nearly cancels the preload. Throws as
 // above.
-double CompressionFor(const Launch& launch, double speed_mps);
+double SolveCompression(const Launch& launch, double speed_mps);
 
 }  // namespace touchdown::rig

@@ -46,8 +46,8 @@ struct SetPoint {
 // where one exists the nearest cure: no such kind for this body, angle or speed
 // out of reach of muzzle heights, elevations, compression, coil clearance or
 // stress. Throws std::invalid_argument where the wish itself is out of range.
-core::Expected<Setting> SettingFor(const Description& rig,
-                                   const ContactWish& wish);
+core::Expected<Setting> FindSetting(const Description& rig,
+                                    const ContactWish& wish);
 
 // The setting and the contact it predicts.
 core::Expected<SetPoint> PlanContact(const Description& rig,

@@ -41,7 +41,7 @@ FrameMemory::FrameMemory(std::size_t most_bytes)
   }
   data_ = static_cast<std::byte*>(mapped);
   fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK);
-  if (!GrowTo(kPage)) {
+  if (!Enlarge(kPage)) {
     throw core::InputError(
         "no memory for frames; raise `ulimit -v` and `ulimit -f`");
   }
@@ -53,7 +53,7 @@ FrameMemory::~FrameMemory() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-bool FrameMemory::GrowTo(std::size_t bytes) {
+bool FrameMemory::Enlarge(std::size_t bytes) {
   if (bytes > most_bytes_) return false;
   if (bytes <= file_bytes_) return true;
   if (ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) return false;
@@ -74,7 +74,7 @@ std::byte* FrameMemory::Take(std::size_t bytes) {
       return data_ + piece.offset;
     }
   }
-  if (wanted > most_bytes_ || !GrowTo(used_bytes_ + wanted)) return nullptr;
+  if (wanted > most_bytes_ || !Enlarge(used_bytes_ + wanted)) return nullptr;
   pieces_.push_back({used_bytes_, wanted, true});
   used_bytes_ += wanted;
   return data_ + pieces_.back().offset;
@@ -87,14 +87,15 @@ void FrameMemory::Give(const std::byte* piece) {
   }
 }
 
-std::optional<std::size_t> FrameMemory::OffsetOf(const std::byte* data) const {
+std::optional<std::size_t> FrameMemory::FindOffset(
+    const std::byte* data) const {
   if (data < data_ || data >= data_ + most_bytes_) return std::nullopt;
   return static_cast<std::size_t>(data - data_);
 }
 
 FrameMemoryView::FrameMemoryView(int descriptor) : descriptor_(descriptor) {
   const int seals = fcntl(descriptor_, F_GET_SEALS);
-  if (seals < 0 || (seals & F_SEAL_SHRINK) == 0 || !MapTo(kPage)) {
+  if (seals < 0 || (seals & F_SEAL_SHRINK) == 0 || !MapBytes(kPage)) {
     close(descriptor_);
     throw core::InputError("a reader offers memory that it could take back");
   }
@@ -105,7 +106,7 @@ FrameMemoryView::~FrameMemoryView() {
   close(descriptor_);
 }
 
-bool FrameMemoryView::MapTo(std::size_t bytes) {
+bool FrameMemoryView::MapBytes(std::size_t bytes) {
   struct stat about = {};
   if (fstat(descriptor_, &about) != 0 ||
       bytes > static_cast<std::size_t>(about.st_size)) {
@@ -124,7 +125,8 @@ bool FrameMemoryView::MapTo(std::size_t bytes) {
 
 const std::byte* FrameMemoryView::At(std::size_t offset, std::size_t bytes) {
   if (offset > offset + bytes) return nullptr;
-  if (offset + bytes > mapped_bytes_ && !MapTo(offset + bytes)) return nullptr;
+  if (offset + bytes > mapped_bytes_ && !MapBytes(offset + bytes))
+    return nullptr;
   return data_ + offset;
 }
 

@@ -27,7 +27,7 @@ class FrameMemory {
   void Give(const std::byte* piece);
 
   // Where in the memory `data` lies; nothing where it lies elsewhere.
-  std::optional<std::size_t> OffsetOf(const std::byte* data) const;
+  std::optional<std::size_t> FindOffset(const std::byte* data) const;
   int descriptor() const { return descriptor_; }
 
   // Says that work goes on; from any thread.
@@ -43,7 +43,7 @@ class FrameMemory {
   std::atomic<std::uint64_t>& beats() const {
     return *reinterpret_cast<std::atomic<std::uint64_t>*>(data_);
   }
-  bool GrowTo(std::size_t bytes);
+  bool Enlarge(std::size_t bytes);
 
   int descriptor_ = -1;
   std::byte* data_ = nullptr;
@@ -71,7 +71,7 @@ class FrameMemoryView {
   int descriptor() const { return descriptor_; }
 
  private:
-  bool MapTo(std::size_t bytes);
+  bool MapBytes(std::size_t bytes);
 
   int descriptor_ = -1;
   const std::byte* data_ = nullptr;

@@ -104,7 +104,7 @@ class Line {
   void Open(Packed& question, Packed& answer) {
     const std::filesystem::path path = question.GetText();
     const ClipOptions options = GetOptions(question);
-    clip_ = OpenClipWith(path, options, &memory_);
+    clip_ = OpenClipInMemory(path, options, &memory_);
     PutInfo(answer, clip_->info());
     answer.Put<std::uint8_t>(clip_->Another() != nullptr);
   }
@@ -131,7 +131,7 @@ class Line {
     shared.height_px = frame.height_px;
     shared.bit_depth = frame.bit_depth;
     shared.time_s = frame.time_s;
-    const auto offset = memory_.OffsetOf(frame.data);
+    const auto offset = memory_.FindOffset(frame.data);
     if (offset && frame.stride_bytes > 0) {
       shared.offset = *offset;
       shared.stride_bytes = frame.stride_bytes;
@@ -145,7 +145,7 @@ class Line {
       std::copy_n(frame.data + y * frame.stride_bytes, row_bytes,
                   piece + static_cast<std::size_t>(y) * row_bytes);
     }
-    shared.offset = memory_.OffsetOf(piece).value_or(0);
+    shared.offset = memory_.FindOffset(piece).value_or(0);
     shared.stride_bytes = static_cast<std::int64_t>(row_bytes);
     return shared;
   }

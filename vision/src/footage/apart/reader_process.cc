@@ -68,7 +68,7 @@ pid_t Spawn(int life_line, int first_line) {
 }
 
 // A copy of the descriptor above those that a reader expects.
-Descriptor Above(Descriptor descriptor) {
+Descriptor RaiseDescriptor(Descriptor descriptor) {
   if (descriptor.get() > kFirstLine) return descriptor;
   return Descriptor(fcntl(descriptor.get(), F_DUPFD_CLOEXEC, kFirstLine + 1));
 }
@@ -82,8 +82,8 @@ ReaderProcess::ReaderProcess(const std::filesystem::path& path,
   auto [first, its_first] = MakeSocketPair();
   life_line_ = std::move(life);
   first_line_ = std::move(first);
-  its_life = Above(std::move(its_life));
-  its_first = Above(std::move(its_first));
+  its_life = RaiseDescriptor(std::move(its_life));
+  its_first = RaiseDescriptor(std::move(its_first));
   process_ = Spawn(its_life.get(), its_first.get());
   Packed message;
   message.Put(limits);

@@ -14,7 +14,7 @@ constexpr double kRange = 4034.445;
 constexpr double kCodeBlack = 63.527;
 constexpr double kCodeRange = 954.376;
 
-std::int32_t CodeOf(std::int32_t x) {
+std::int32_t EncodeLevel(std::int32_t x) {
   constexpr double kLinearBelow = 0.018;
   const double light = (x - kBlack) / kRange;
   const double v = light < kLinearBelow ? 4.5 * light
@@ -28,12 +28,12 @@ std::int32_t CodeOf(std::int32_t x) {
 
 CineCurve CineLinearOfCode() {
   CineCurve linear{};
-  const std::int32_t last = CodeOf(kWhiteLevel);
+  const std::int32_t last = EncodeLevel(kWhiteLevel);
   std::int32_t x = 0;
   std::int32_t mean = 0;
   for (std::int32_t code = 0; code <= last; ++code) {
     const std::int32_t first = x;
-    while (x <= kSaturated && CodeOf(x) == code) ++x;
+    while (x <= kSaturated && EncodeLevel(x) == code) ++x;
     if (x > first) mean = (first + x - 1) / 2;
     linear[static_cast<std::size_t>(code)] =
         static_cast<std::uint16_t>(std::min(mean, kWhiteLevel));

@@ -40,9 +40,9 @@ std::unique_ptr<Clip> OpenVideo(const std::filesystem::path& path,
                                 FrameMemory* memory = nullptr);
 
 // OpenClip, with memory for frames.
-std::unique_ptr<Clip> OpenClipWith(const std::filesystem::path& path,
-                                   const ClipOptions& options,
-                                   FrameMemory* memory);
+std::unique_ptr<Clip> OpenClipInMemory(const std::filesystem::path& path,
+                                       const ClipOptions& options,
+                                       FrameMemory* memory);
 
 // Whether a library of others would read it: a folder or a plain file that is
 // no Photron recording.

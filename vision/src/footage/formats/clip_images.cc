@@ -22,7 +22,7 @@ std::string FileKind(const std::filesystem::path& path) {
 }
 
 // The last number in a file's name, if it fits: img_0012.png -> 12.
-std::optional<std::int64_t> NumberOf(const std::filesystem::path& path) {
+std::optional<std::int64_t> FileNumber(const std::filesystem::path& path) {
   constexpr std::string_view kDigits = "0123456789";
   const std::string stem = path.stem().string();
   const auto last = stem.find_last_of(kDigits);
@@ -119,8 +119,8 @@ class ImageFolderClip final : public Clip {
   // Frames that are missing would count as if no time had passed.
   void WarnOfGaps() {
     for (std::size_t i = 1; i < files_.size(); ++i) {
-      const auto before = NumberOf(files_[i - 1]);
-      const auto after = NumberOf(files_[i]);
+      const auto before = FileNumber(files_[i - 1]);
+      const auto after = FileNumber(files_[i]);
       if (!before || !after || *after == *before + 1) continue;
       info_.warnings.push_back(fmt::format(
           "the numbers of the images are not consecutive ({} is followed by "

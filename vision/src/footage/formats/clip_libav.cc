@@ -79,8 +79,8 @@ class VideoClip final : public Clip {
         std::all_of(index_.packets.begin(), index_.packets.end(),
                     [](const VideoPacket& packet) { return packet.key; });
     info_.is_predicted = !index_.pts.empty() && !are_alone_;
-    StartFrom(0);
-    DecodeUpTo(0);
+    PrepareDecoding(0);
+    AdvanceDecoder(0);
     LookAtFirstFrame(options.channel);
     SetTimeBase(index_, options, info_);
   }
@@ -111,8 +111,8 @@ class VideoClip final : public Clip {
 
   std::int64_t EntryFrame(std::int64_t index) const override {
     if (index_.pts.empty()) return 0;
-    const std::size_t key = index_.KeyPacketFor(index);
-    return index_.FrameAt(index_.packets[key].pts).value_or(0);
+    const std::size_t key = index_.FindKeyPacket(index);
+    return index_.FindFrame(index_.packets[key].pts).value_or(0);
   }
 
  protected:
@@ -123,13 +123,13 @@ class VideoClip final : public Clip {
       const bool back = index < current_ || current_ < 0;
       const bool far = !back && index > current_ + threads_ &&
                        !index_.pts.empty() &&
-                       index_.KeyPacketFor(index) >
+                       index_.FindKeyPacket(index) >
                            sent_ + static_cast<std::size_t>(threads_);
-      if (back || (far && can_seek_)) StartFrom(index);
+      if (back || (far && can_seek_)) PrepareDecoding(index);
       if (far && !can_seek_ && are_alone_) {
-        DropUpTo(index_.KeyPacketFor(index));
+        SkipPackets(index_.FindKeyPacket(index));
       }
-      DecodeUpTo(index);
+      AdvanceDecoder(index);
     }
     if (frame_->width != stored_width_ || frame_->height != stored_height_ ||
         frame_->format != reader_->format()) {
@@ -140,7 +140,7 @@ class VideoClip final : public Clip {
     }
     core::Frame view = chroma_ ? chroma_->View(*frame_, window)
                                : reader_->View(*frame_, window);
-    view.time_s = TimeOf(index_, info_.time_base, index);
+    view.time_s = FrameTime(index_, info_.time_base, index);
     return view;
   }
 
@@ -150,9 +150,10 @@ class VideoClip final : public Clip {
   }
 
   // Makes ready to decode frame `index` and those after it.
-  void StartFrom(std::int64_t index) {
-    const std::size_t key = index_.pts.empty() ? 0 : index_.KeyPacketFor(index);
-    if (can_seek_ && SeekTo(key)) return;
+  void PrepareDecoding(std::int64_t index) {
+    const std::size_t key =
+        index_.pts.empty() ? 0 : index_.FindKeyPacket(index);
+    if (can_seek_ && SeekPacket(key)) return;
     can_seek_ = false;
     source_ = OpenVideoSource(path_, threads_, memory_);
     Rewind();
@@ -160,7 +161,7 @@ class VideoClip final : public Clip {
 
   // Moves on to packet number `key`, of which each is a key: what lies before
   // it is read and not decoded.
-  void DropUpTo(std::size_t key) {
+  void SkipPackets(std::size_t key) {
     Libav().avcodec_flush_buffers(source_.codec.get());
     draining_ = false;
     while (sent_ < key && ReadPacket()) {
@@ -168,7 +169,7 @@ class VideoClip final : public Clip {
       have_packet_ = false;
       ++sent_;
     }
-    expected_ = index_.FrameAt(index_.packets[key].pts).value_or(expected_);
+    expected_ = index_.FindFrame(index_.packets[key].pts).value_or(expected_);
   }
 
   // Forgets what the decoder was doing.
@@ -188,7 +189,7 @@ class VideoClip final : public Clip {
   // which a packet is shown (asked for the time of decoding they go back to the
   // key packet before), others for that of decoding (asked for the later time
   // they may go too far).
-  bool SeekTo(std::size_t key) {
+  bool SeekPacket(std::size_t key) {
     const VideoPacket& wanted = index_.packets[key];
     return SeekToTime(wanted.pts, key) ||
            (wanted.dts != wanted.pts && SeekToTime(wanted.dts, key));
@@ -210,7 +211,7 @@ class VideoClip final : public Clip {
         std::find_if(begin, end, [&](const auto& p) { return p.Is(got); });
     if (found == end || (found != begin && !found->key)) return false;
     sent_ = static_cast<std::size_t>(found - begin);
-    expected_ = index_.FrameAt(found->pts).value_or(0);
+    expected_ = index_.FindFrame(found->pts).value_or(0);
     return true;
   }
 
@@ -287,7 +288,7 @@ class VideoClip final : public Clip {
         const std::int64_t time = frame_->pts != AV_NOPTS_VALUE
                                       ? frame_->pts
                                       : frame_->best_effort_timestamp;
-        if (const auto number = index_.FrameAt(time)) {
+        if (const auto number = index_.FindFrame(time)) {
           current_ = *number;
           return true;
         }
@@ -295,7 +296,7 @@ class VideoClip final : public Clip {
     }
   }
 
-  void DecodeUpTo(std::int64_t index) {
+  void AdvanceDecoder(std::int64_t index) {
     trouble_.clear();
     while (current_ < index) {
       if (!DecodeNext()) {
@@ -312,7 +313,7 @@ class VideoClip final : public Clip {
                                               index_.damaged.end(), current_);
       if (current_ > expected_ || damaged) {
         bad_from_ = expected_;
-        bad_to_ = index_.KeyFrameAfter(expected_);
+        bad_to_ = index_.NextKeyFrame(expected_);
       }
       expected_ = current_ + 1;
     }
@@ -340,7 +341,7 @@ class VideoClip final : public Clip {
     if (const std::uint8_t* const matrix = Libav().av_stream_get_side_data(
             source_.stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr)) {
       if (const auto turned =
-              OrientationOf(reinterpret_cast<const std::int32_t*>(matrix))) {
+              ReadOrientation(reinterpret_cast<const std::int32_t*>(matrix))) {
         orientation = *turned;
       } else {
         info_.warnings.push_back(

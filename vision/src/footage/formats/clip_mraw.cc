@@ -127,13 +127,13 @@ class MrawClip final : public Clip {
   }
 
   void WillRead(std::int64_t index, const core::PixelRect& window) override {
-    const Bytes rows = RowsOf(index, window);
+    const Bytes rows = WindowRows(index, window);
     file_->WillRead(rows.begin, rows.end);
     copied_ = {};
   }
   void WillReadOnce(std::int64_t index,
                     const core::PixelRect& window) override {
-    const Bytes rows = RowsOf(index, window);
+    const Bytes rows = WindowRows(index, window);
     const auto size = static_cast<std::size_t>(rows.end - rows.begin);
     if (copy_.size() < size) copy_.resize(size);
     copied_ = {};
@@ -150,7 +150,7 @@ class MrawClip final : public Clip {
     core::Frame frame;
     frame.bit_depth = info_.bit_depth;
     frame.time_s = static_cast<double>(index) / info_.time_base.fps;
-    const Bytes rows = RowsOf(index, window);
+    const Bytes rows = WindowRows(index, window);
     const bool copied = rows.begin >= copied_.begin && rows.end <= copied_.end;
     const std::byte* const data =
         copied ? copy_.data() + (rows.begin - copied_.begin)
@@ -181,7 +181,7 @@ class MrawClip final : public Clip {
            static_cast<std::int64_t>(window.y) * info_.width_px;
   }
   // Those that hold a window's rows, as wide as the picture.
-  Bytes RowsOf(std::int64_t index, const core::PixelRect& window) const {
+  Bytes WindowRows(std::int64_t index, const core::PixelRect& window) const {
     const std::int64_t first = FirstSample(index, window);
     const std::int64_t last =
         first + static_cast<std::int64_t>(window.height) * info_.width_px;

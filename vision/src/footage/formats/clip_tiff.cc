@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "samples of little-endian files are handed out in place");
 
-FileBytes BytesOf(const MappedFile& file) {
+FileBytes ToFileBytes(const MappedFile& file) {
   return {reinterpret_cast<const std::uint8_t*>(file.data()),
           static_cast<std::size_t>(file.size_bytes())};
 }
@@ -37,7 +37,7 @@ class TiffStackClip final : public Clip {
   TiffStackClip(const std::filesystem::path& path, const ClipOptions& options)
       : file_(std::make_shared<const MappedFile>(path)),
         list_(std::make_shared<const TiffPages>(
-            ListTiffPages(BytesOf(*file_), path.string()))) {
+            ListTiffPages(ToFileBytes(*file_), path.string()))) {
     info_.path = path;
     info_.format = "tiff-stack";
     if (pages().empty()) {
@@ -162,7 +162,7 @@ class TiffStackClip final : public Clip {
   void Load(std::int64_t index) {
     loaded_ = -1;  // until it is done
     try {
-      DecodeTiffPage(BytesOf(*file_), page(index).directory,
+      DecodeTiffPage(ToFileBytes(*file_), page(index).directory,
                      info_.path.string(), image_);
     } catch (const core::InputError& error) {
       throw core::InputError(fmt::format("{} (frame {})", error.what(), index));
@@ -218,7 +218,7 @@ bool IsTiffStack(const std::filesystem::path& path) {
   const std::string extension = LowerExtension(path);
   if (extension != ".tif" && extension != ".tiff") return false;
   const MappedFile file(path);
-  return HasSeveralTiffPages(BytesOf(file));
+  return HasSeveralTiffPages(ToFileBytes(file));
 }
 
 std::unique_ptr<Clip> OpenTiffStack(const std::filesystem::path& path,

@@ -89,7 +89,7 @@ int TakeFrame(AVCodecContext* decoder, AVFrame* frame, int flags) {
 
 }  // namespace
 
-void DecodeInto(FrameMemory& memory, AVCodecContext& decoder) {
+void UseFrameMemory(FrameMemory& memory, AVCodecContext& decoder) {
   if (decoder.codec == nullptr ||
       (decoder.codec->capabilities & AV_CODEC_CAP_DR1) == 0) {
     return;

@@ -8,6 +8,6 @@ namespace touchdown::vision {
 
 // From here on the decoder, which is not open yet, writes frames into `memory`
 // where it has room, and tells it of each. It must outlive all frames.
-void DecodeInto(FrameMemory& memory, AVCodecContext& decoder);
+void UseFrameMemory(FrameMemory& memory, AVCodecContext& decoder);
 
 }  // namespace touchdown::vision

@@ -54,10 +54,10 @@ bool FitsGrid(const std::vector<double>& times_s,
 }
 
 // The first of the rates that fits, else the times' own if that fits.
-std::optional<double> RateOf(const std::vector<double>& times_s,
-                             const std::vector<std::int64_t>& slots,
-                             const std::vector<double>& stated_fps,
-                             const TimeErrors& errors) {
+std::optional<double> ChooseRate(const std::vector<double>& times_s,
+                                 const std::vector<std::int64_t>& slots,
+                                 const std::vector<double>& stated_fps,
+                                 const TimeErrors& errors) {
   for (const double fps : stated_fps) {
     if (FitsGrid(times_s, slots, fps, errors)) return fps;
   }
@@ -81,7 +81,7 @@ double MedianInterval(const std::vector<double>& times_s) {
 
 // How many periods after the first each frame comes; nothing where intervals
 // are no whole numbers of periods.
-std::optional<std::vector<std::int64_t>> SlotsOf(
+std::optional<std::vector<std::int64_t>> FindSlots(
     const std::vector<double>& times_s, double period,
     const TimeErrors& errors) {
   if (!(period > 0.0)) return std::nullopt;
@@ -141,19 +141,19 @@ FrameSpacing FindSpacing(const std::vector<double>& times_s,
   const double median = MedianInterval(times_s);
   if (stated != stated_fps.end() &&
       std::abs(median * *stated - 1.0) <= kGapPeriods) {
-    const auto gaps = SlotsOf(times_s, 1.0 / *stated, errors);
+    const auto gaps = FindSlots(times_s, 1.0 / *stated, errors);
     if (gaps && TicksAreExact(1.0 / *stated, gaps->back(), errors) &&
         FitsGrid(times_s, *gaps, *stated, errors)) {
       return WithGaps(*gaps, *stated);
     }
   }
-  if (const auto fps = RateOf(times_s, slots, {}, errors)) {
+  if (const auto fps = ChooseRate(times_s, slots, {}, errors)) {
     spacing.fps = *fps;
     return spacing;
   }
-  const auto gaps = SlotsOf(times_s, median, errors);
+  const auto gaps = FindSlots(times_s, median, errors);
   if (gaps) {
-    if (const auto fps = RateOf(times_s, *gaps, stated_fps, errors)) {
+    if (const auto fps = ChooseRate(times_s, *gaps, stated_fps, errors)) {
       return WithGaps(*gaps, *fps);
     }
     spacing = WithGaps(*gaps, 1.0);

@@ -189,7 +189,7 @@ void Write(const std::filesystem::path& path, const Rows& rows) {
   file.Commit();
 }
 
-Rows RowsOf(const core::Frame& frame) {
+Rows MakeRows(const core::Frame& frame) {
   return {reinterpret_cast<const std::uint8_t*>(frame.data),
           frame.stride_bytes,
           frame.width_px,
@@ -253,12 +253,12 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
 }
 
 void WritePng(const std::filesystem::path& path, const core::Frame& frame) {
-  Write(path, RowsOf(frame));
+  Write(path, MakeRows(frame));
 }
 
 std::string EncodePng(const core::Frame& frame) {
   std::string file;
-  Encode(RowsOf(frame), "a picture", [&](std::span<const std::byte> bytes) {
+  Encode(MakeRows(frame), "a picture", [&](std::span<const std::byte> bytes) {
     file.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   });
   return file;

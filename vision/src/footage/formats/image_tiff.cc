@@ -19,7 +19,7 @@ T Tag(TIFF* tiff, std::uint32_t tag, T fallback) {
 }
 
 // Depth that the words' largest possible value tells, else all 16 bits.
-std::int32_t BitDepthOf(TIFF* tiff) {
+std::int32_t ReadBitDepth(TIFF* tiff) {
   std::uint16_t largest = 0;
   if (TIFFGetField(tiff, TIFFTAG_MAXSAMPLEVALUE, &largest) == 1) {
     for (std::int32_t depth = 9; depth < 16; ++depth) {
@@ -142,7 +142,7 @@ void Decode(TIFF* tiff, const TiffMemory& memory, const std::string& name,
   const Kind kind = ReadKind(tiff, name);
   Allocate(kind.width, kind.height,
            kind.bits == 8 ? 8
-           : kind.gray    ? BitDepthOf(tiff)
+           : kind.gray    ? ReadBitDepth(tiff)
                           : 16,
            memory.input.size(), name, image);
   const RowLayout layout{image.width_px, kind.samples, !kind.gray,

@@ -18,9 +18,10 @@ struct Lattice {
   std::ptrdiff_t dy = 0;
 };
 
-Lattice LatticeOf(const AVFrame& frame, const AVComponentDescriptor& component,
-                  const Orientation& orientation,
-                  const core::PixelRect& window) {
+Lattice MakeLattice(const AVFrame& frame,
+                    const AVComponentDescriptor& component,
+                    const Orientation& orientation,
+                    const core::PixelRect& window) {
   Lattice lattice{frame.data[component.plane] + component.offset,
                   component.step, frame.linesize[component.plane]};
   std::int32_t width = frame.width;
@@ -80,7 +81,7 @@ bool Has(const AVPixFmtDescriptor& format, std::uint64_t flag) {
 
 }  // namespace
 
-std::optional<Orientation> OrientationOf(const std::int32_t matrix[9]) {
+std::optional<Orientation> ReadOrientation(const std::int32_t matrix[9]) {
   // Shown (x', y') = (a x + c y, b x + d y) with a, b, c, d at 0, 1, 3, 4.
   const std::int32_t a = matrix[0];
   const std::int32_t b = matrix[1];
@@ -137,7 +138,7 @@ core::Frame LumaReader::View(const AVFrame& frame,
   const bool rgb = Has(d, AV_PIX_FMT_FLAG_RGB) && !palette;
   const bool big_endian = Has(d, AV_PIX_FMT_FLAG_BE);
   const bool wide = bit_depth_ > 8;
-  const Lattice y = LatticeOf(frame, d.comp[0], orientation_, window);
+  const Lattice y = MakeLattice(frame, d.comp[0], orientation_, window);
 
   core::Frame view;
   view.width_px = window.width;
@@ -166,8 +167,8 @@ core::Frame LumaReader::View(const AVFrame& frame,
         [&](std::int32_t u, std::int32_t v) { return luma[Load8(y, u, v)]; },
         out8);
   } else if (rgb) {
-    const Lattice g = LatticeOf(frame, d.comp[1], orientation_, window);
-    const Lattice b = LatticeOf(frame, d.comp[2], orientation_, window);
+    const Lattice g = MakeLattice(frame, d.comp[1], orientation_, window);
+    const Lattice b = MakeLattice(frame, d.comp[2], orientation_, window);
     if (wide) {
       const auto load = [&](const Lattice& l, const AVComponentDescriptor& c,
                             std::int32_t u, std::int32_t v) {

@@ -24,7 +24,7 @@ struct Orientation {
 
 // From the display matrix of a stream (libavutil/display.h); nothing if it asks
 // for something else than quarter turns and mirroring.
-std::optional<Orientation> OrientationOf(const std::int32_t matrix[9]);
+std::optional<Orientation> ReadOrientation(const std::int32_t matrix[9]);
 
 // What to do with the frames of one stream.
 class LumaReader {

@@ -115,7 +115,7 @@ struct Directory {
   std::uint64_t next = 0;  // 0: the last one
 };
 
-std::optional<Field>* SlotOf(Directory& directory, std::uint64_t tag) {
+std::optional<Field>* FindSlot(Directory& directory, std::uint64_t tag) {
   switch (tag) {
     case kNewSubfileType:
       return &directory.purpose;
@@ -164,7 +164,7 @@ std::optional<Directory> ReadDirectory(const Bytes& file, std::uint64_t at) {
   directory.next = *next;
   for (std::uint64_t i = 0; i < *entries; ++i, at += entry_bytes) {
     const std::uint64_t tag = *file.Number(at, 2);
-    std::optional<Field>* const slot = SlotOf(directory, tag);
+    std::optional<Field>* const slot = FindSlot(directory, tag);
     directory.tiled = directory.tiled || tag == kTileOffsets;
     const unsigned bytes = BytesOfType(*file.Number(at + 2, 2));
     if (slot == nullptr || bytes == 0) continue;

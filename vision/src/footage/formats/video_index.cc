@@ -21,7 +21,7 @@ void FindRate(const std::vector<std::int64_t>& pts, const AVStream& stream,
   std::vector<double> times_s;
   times_s.reserve(pts.size());
   for (const std::int64_t time : pts) {
-    times_s.push_back(TicksBetween(pts[0], time) * tick_s);
+    times_s.push_back(CountTicks(pts[0], time) * tick_s);
   }
   index.spacing = FindSpacing(
       times_s,
@@ -117,7 +117,7 @@ bool CountsLostFrames(const AVStream& stream, AVRational declared,
 
 }  // namespace
 
-double TicksBetween(std::int64_t begin, std::int64_t end) {
+double CountTicks(std::int64_t begin, std::int64_t end) {
   return static_cast<double>(end) - static_cast<double>(begin);
 }
 
@@ -126,13 +126,13 @@ VideoPacket Describe(const AVPacket& packet) {
           (packet.flags & AV_PKT_FLAG_KEY) != 0};
 }
 
-std::optional<std::int64_t> VideoIndex::FrameAt(std::int64_t time) const {
+std::optional<std::int64_t> VideoIndex::FindFrame(std::int64_t time) const {
   const auto found = std::lower_bound(pts.begin(), pts.end(), time);
   if (found == pts.end() || *found != time) return std::nullopt;
   return found - pts.begin();
 }
 
-std::int64_t VideoIndex::KeyFrameAfter(std::int64_t index) const {
+std::int64_t VideoIndex::NextKeyFrame(std::int64_t index) const {
   std::int64_t after = frames;
   if (pts.empty()) {
     // Without timestamps, frames are in the order of their packets.
@@ -144,7 +144,8 @@ std::int64_t VideoIndex::KeyFrameAfter(std::int64_t index) const {
   const std::int64_t time = pts[static_cast<std::size_t>(index)];
   for (const VideoPacket& packet : packets) {
     if (!packet.key || packet.pts <= time) continue;
-    if (const auto frame = FrameAt(packet.pts)) after = std::min(after, *frame);
+    if (const auto frame = FindFrame(packet.pts))
+      after = std::min(after, *frame);
   }
   return after;
 }
@@ -220,7 +221,7 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
     index.damaged = std::move(damaged_numbers);
   } else {
     for (const std::int64_t time : damaged) {
-      if (const auto frame = index.FrameAt(time)) {
+      if (const auto frame = index.FindFrame(time)) {
         index.damaged.push_back(*frame);
       }
     }

@@ -31,7 +31,7 @@ struct VideoPacket {
 
 // From one time of a container to another; damaged files name times whose
 // difference does not fit an integer.
-double TicksBetween(std::int64_t begin, std::int64_t end);
+double CountTicks(std::int64_t begin, std::int64_t end);
 
 VideoPacket Describe(const AVPacket& packet);
 
@@ -42,7 +42,7 @@ struct VideoIndex {
   // coarser than the frames): frames are then numbered by counting from the
   // beginning.
   std::vector<std::int64_t> pts;
-  std::vector<std::size_t> key_packets;  // KeyPacketFor each of pts
+  std::vector<std::size_t> key_packets;  // FindKeyPacket each of pts
   std::int64_t frames = 0;
   bool coarse = false;                // timestamps that several frames share
   FrameSpacing spacing;               // fps is 0 if the file tells none
@@ -53,13 +53,13 @@ struct VideoIndex {
   std::vector<std::uint8_t> palette;
 
   // Number of the frame shown at `pts`, if there is one.
-  std::optional<std::int64_t> FrameAt(std::int64_t pts) const;
+  std::optional<std::int64_t> FindFrame(std::int64_t pts) const;
   // The last key packet from which frame `index` can be decoded; there are pts.
-  std::size_t KeyPacketFor(std::int64_t index) const {
+  std::size_t FindKeyPacket(std::int64_t index) const {
     return key_packets[static_cast<std::size_t>(index)];
   }
   // The first key frame after frame `index`, or the number of frames.
-  std::int64_t KeyFrameAfter(std::int64_t index) const;
+  std::int64_t NextKeyFrame(std::int64_t index) const;
 };
 
 // Reads on from the beginning to the end of the file; of uncompressed video

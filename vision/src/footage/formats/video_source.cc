@@ -77,7 +77,7 @@ LibavPtr<AVCodecContext> OpenDecoder(const std::filesystem::path& path,
   Libav().avcodec_parameters_to_context(context.get(), &parameters);
   context->pkt_timebase = stream.time_base;
   context->thread_count = threads;
-  if (memory != nullptr) DecodeInto(*memory, *context);
+  if (memory != nullptr) UseFrameMemory(*memory, *context);
   // libavcodec's MPEG-4 part 2 (ffmpeg 5.1) ends the process by an assertion
   // where a damaged frame is given up (AV_EF_EXPLODE) while another thread
   // waits for it: no frame threads for it, which costs its speed on several

@@ -99,8 +99,8 @@ void SetTimeBase(const VideoIndex& index, const ClipOptions& options,
   }
 }
 
-double TimeOf(const VideoIndex& index, const TimeBase& time,
-              std::int64_t frame) {
+double FrameTime(const VideoIndex& index, const TimeBase& time,
+                 std::int64_t frame) {
   const std::vector<double>& own = index.spacing.times_s;
   return time.uniform || own.empty() ? static_cast<double>(frame) / time.fps
                                      : own[static_cast<std::size_t>(frame)];

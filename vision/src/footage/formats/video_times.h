@@ -24,7 +24,7 @@ void SetTimeBase(const VideoIndex& index, const ClipOptions& options,
                  ClipInfo& info);
 
 // Time of a frame from frame 0, in seconds.
-double TimeOf(const VideoIndex& index, const TimeBase& time,
-              std::int64_t frame);
+double FrameTime(const VideoIndex& index, const TimeBase& time,
+                 std::int64_t frame);
 
 }  // namespace touchdown::vision

@@ -26,7 +26,7 @@ struct MuxerDelete {
   }
 };
 
-const char* ContainerOf(const std::filesystem::path& path) {
+const char* ChooseContainer(const std::filesystem::path& path) {
   const std::string extension = LowerExtension(path);
   if (extension == ".avi") return "avi";
   if (extension == ".mp4") return "mp4";
@@ -42,7 +42,7 @@ struct CodecChoice {
   int default_quality;
 };
 
-CodecChoice ChoiceOf(VideoCodec codec) {
+CodecChoice ChooseEncoder(VideoCodec codec) {
   switch (codec) {
     case VideoCodec::kMjpeg:
       return {"mjpeg", 31, 2};
@@ -56,7 +56,7 @@ CodecChoice ChoiceOf(VideoCodec codec) {
   return {"", 0, 0};
 }
 
-AVPixelFormat PixelFormatOf(VideoCodec codec, std::int32_t bit_depth) {
+AVPixelFormat ChoosePixelFormat(VideoCodec codec, std::int32_t bit_depth) {
   const bool lossy = codec == VideoCodec::kMjpeg || codec == VideoCodec::kH264;
   if (lossy && bit_depth == 8) return AV_PIX_FMT_YUVJ420P;
   if (!lossy) {
@@ -84,7 +84,7 @@ AVPixelFormat PixelFormatOf(VideoCodec codec, std::int32_t bit_depth) {
 class VideoWriter {
  public:
   VideoWriter(const std::filesystem::path& path, const VideoOptions& options)
-      : container_(ContainerOf(path)),
+      : container_(ChooseContainer(path)),
         options_(options),
         name_(path),
         packet_(Libav().av_packet_alloc()),
@@ -100,7 +100,7 @@ class VideoWriter {
           "fps is {}, must be at most {} in .avi and .mkv; take .mp4 or .mov",
           options.fps, kMaxCoarseFps));
     }
-    const CodecChoice choice = ChoiceOf(options.codec);
+    const CodecChoice choice = ChooseEncoder(options.codec);
     if (options.quality &&
         (*options.quality < 0 || *options.quality > choice.worst_quality)) {
       throw std::invalid_argument(
@@ -155,8 +155,9 @@ class VideoWriter {
   }
 
   void Start(const core::Frame& frame) {
-    const CodecChoice choice = ChoiceOf(options_.codec);
-    const AVPixelFormat pixels = PixelFormatOf(options_.codec, frame.bit_depth);
+    const CodecChoice choice = ChooseEncoder(options_.codec);
+    const AVPixelFormat pixels =
+        ChoosePixelFormat(options_.codec, frame.bit_depth);
     const AVCodec* const codec =
         Libav().avcodec_find_encoder_by_name(choice.encoder);
     if (codec == nullptr) {

@@ -168,13 +168,14 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
                               const BoundaryFitOptions& options = {});
 
 // P(theta < angle) and the angle below which theta lies with probability p.
-double ProbabilityBelow(const BoundaryPosterior& posterior, double angle_rad);
+double CumulativeProbability(const BoundaryPosterior& posterior,
+                             double angle_rad);
 double Quantile(const BoundaryPosterior& posterior, double p);
 
 // P(|theta - value| <= margin), and the least margin for which the equal-tail
 // 90 % interval lies within value +- margin: the smallest one that would be
 // confirmed. That number says how strong a validation is.
-double ProbabilityWithin(const BoundaryPosterior& posterior, double value_rad,
+double MarginProbability(const BoundaryPosterior& posterior, double value_rad,
                          double margin_rad);
 double SmallestPassingMargin(const BoundaryPosterior& posterior,
                              double value_rad);

@@ -13,7 +13,7 @@
 //   detectable-bounce    impact with restitution and friction, and the smallest
 //                        rise that counts as a bounce
 //
-// Angles are the kind that `AngleKindOf` names: a sphere's radius angle is
+// Angles are the kind that `ModelAngleKind` names: a sphere's radius angle is
 // always 90 deg, so its boundary can only be one of the approach angle.
 #pragma once
 
@@ -51,7 +51,7 @@ struct BoundaryModelCard {
   bool is_physics;               // false: a quotation or a replication
 };
 std::span<const BoundaryModelCard> BoundaryModelCards();
-const BoundaryModelCard& CardOf(BoundaryModel model);
+const BoundaryModelCard& FindCard(BoundaryModel model);
 std::string_view Name(BoundaryModel model);
 std::optional<BoundaryModel> ParseBoundaryModel(std::string_view word);
 
@@ -137,7 +137,8 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
                                 const BoundaryOptions& options = {});
 
 // The kind of contact angle that a model speaks of for a body.
-core::AngleKind AngleKindOf(BoundaryModel model, const BoundaryInputs& inputs);
+core::AngleKind ModelAngleKind(BoundaryModel model,
+                               const BoundaryInputs& inputs);
 
 // Rise of the contact point after an impact at the campaign's angle, over the
 // bounce height: >= 1 is a bounce; infinite where spin keeps it off the ground.

@@ -30,7 +30,7 @@ constexpr int Sign(Slip slip) { return static_cast<int>(slip); }
 constexpr Slip Opposite(Slip slip) { return static_cast<Slip>(-Sign(slip)); }
 
 // Slip of a point that moves at `tangential_mps` along x.
-constexpr Slip SlipOf(double tangential_mps) {
+constexpr Slip ClassifySlip(double tangential_mps) {
   if (tangential_mps > 0.0) return Slip::kLeading;
   return tangential_mps < 0.0 ? Slip::kTrailing : Slip::kNone;
 }
@@ -83,7 +83,7 @@ struct Delassus {
   double nt = 0.0;
   double tt = 1.0;
 };
-Delassus DelassusOf(const SinCos& alpha, double kappa);
+Delassus ComputeDelassus(const SinCos& alpha, double kappa);
 
 // Normal response to the normal force while sliding, times m:
 //   A_hat = G_NN - slip mu G_NT = 1 + kappa cos (cos - slip mu sin)

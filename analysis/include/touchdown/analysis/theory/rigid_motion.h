@@ -111,18 +111,18 @@ RigidMotion SimulateRigidMotion(const RigidMotionProblem& problem);
 
 // State at any time; before the first and beyond the last stretch these two
 // are continued.
-BodyState StateAt(const RigidMotion& motion, double time_s);
+BodyState ComputeState(const RigidMotion& motion, double time_s);
 
 // Height of the lowest outline point.
-double GapAt(const RigidMotion& motion, double time_s);
+double ComputeGap(const RigidMotion& motion, double time_s);
 
 // The greatest gap within [from_s, to_s] and when, to 1e-9 m.
 struct GreatestGap {
   double gap_m = 0.0;
   double time_s = 0.0;
 };
-GreatestGap GreatestGapWithin(const RigidMotion& motion, double from_s,
-                              double to_s);
+GreatestGap ComputeGreatestGap(const RigidMotion& motion, double from_s,
+                               double to_s);
 
 // The first touchdown, with the exact angles of words.h. Nothing if the body
 // never touches the ground; from_start if it is on it from the beginning.

@@ -53,8 +53,8 @@ struct Answer {
 };
 
 // Whole lines, with both line feeds.
-std::string LineOf(const Request& request);
-std::string LineOf(const Answer& answer);
+std::string FormatLine(const Request& request);
+std::string FormatLine(const Answer& answer);
 
 // A line without line feeds; nothing where it is damaged or no such line.
 std::optional<Request> ParseRequest(std::string_view line);
@@ -62,7 +62,7 @@ std::optional<Answer> ParseAnswer(std::string_view line);
 
 // The value of `name` in "angle=12500 moving=0"; nothing where it is not there
 // or no whole number.
-std::optional<std::int64_t> FieldOf(std::string_view text,
-                                    std::string_view name);
+std::optional<std::int64_t> ReadField(std::string_view text,
+                                      std::string_view name);
 
 }  // namespace touchdown::rig

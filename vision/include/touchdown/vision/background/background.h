@@ -81,8 +81,9 @@ Background EstimateBackground(Clip& clip, std::int64_t first, std::int64_t last,
                               const BackgroundOptions& options = {});
 
 // The same of given frames, at least one.
-Background BackgroundOf(Clip& clip, std::span<const std::int64_t> frames,
-                        const BackgroundOptions& options = {});
+Background EstimateBackgroundFromFrames(Clip& clip,
+                                        std::span<const std::int64_t> frames,
+                                        const BackgroundOptions& options = {});
 
 // Where the body is in one frame.
 struct Cover {
@@ -113,7 +114,7 @@ Covers FindCovers(std::int64_t first, std::int64_t last,
 // left out, so that a slow or large body leaves no ghost. Pixels that no
 // frame's mask covers keep the level of `fallback`, the mid-mean of the same
 // frames.
-Background EstimateBackgroundBehind(Clip& clip, const Covers& covers,
+Background EstimateMaskedBackground(Clip& clip, const Covers& covers,
                                     Background fallback,
                                     const BackgroundOptions& options = {});
 

@@ -46,8 +46,8 @@ struct SteadyLight {
 // what Clip::Read throws for frame `first`; a later frame that cannot be read
 // ends the look. std::invalid_argument if the range is empty or outside the
 // clip.
-SteadyLight SteadyLightOf(std::unique_ptr<Clip> clip, std::int64_t first,
-                          std::int64_t last,
-                          const SteadyLightOptions& options = {});
+SteadyLight Deflicker(std::unique_ptr<Clip> clip, std::int64_t first,
+                      std::int64_t last,
+                      const SteadyLightOptions& options = {});
 
 }  // namespace touchdown::vision

@@ -60,7 +60,7 @@ struct PlaneTrack {
 
 // Seen from `ground`, in the plane of travel where its yaw is known. The
 // direction of travel is that of the whole displacement; right where there is
-// none. Throws as ViewOf does.
+// none. Throws as MakeYawedView does.
 PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
                           const std::optional<PlaneYaw>& yaw = std::nullopt);
 
@@ -70,8 +70,8 @@ struct SampleRange {
   std::size_t end = 0;  // one past the last
   std::size_t size() const { return end - begin; }
 };
-inline std::span<const PlaneSample> SamplesIn(const PlaneTrack& track,
-                                              const SampleRange& range) {
+inline std::span<const PlaneSample> SelectSamples(const PlaneTrack& track,
+                                                  const SampleRange& range) {
   return std::span(track.samples).subspan(range.begin, range.size());
 }
 
@@ -85,6 +85,6 @@ double SupportHeight(const PlaneTrack& track, double face_rad);
 
 // The lowest point of a rectangle at `face_rad`, from the centre, along x'.
 // (Its height is -SupportHeight.) 0 for a sphere and for a flush landing.
-double LowestPointAlong(const PlaneTrack& track, double face_rad);
+double LowestPointOffset(const PlaneTrack& track, double face_rad);
 
 }  // namespace touchdown::vision

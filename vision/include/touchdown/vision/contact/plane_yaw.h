@@ -48,7 +48,7 @@ struct YawedView {
 // Throws std::invalid_argument naming the field where |yaw| is not below 60
 // degrees, the focal length not positive, or the reference point is where the
 // plane's vanishing line is.
-YawedView ViewOf(const calib::GroundLine& ground, const PlaneYaw& yaw);
+YawedView MakeYawedView(const calib::GroundLine& ground, const PlaneYaw& yaw);
 
 struct InPlane {
   double right_px = 0.0;     // of the ground's reference point

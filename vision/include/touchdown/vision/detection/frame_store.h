@@ -48,7 +48,7 @@ class GrowingClip : public Clip {
   // False: only all of the range is of use, because a frame is damaged, because
   // pictures or body are too large to be kept, or because the clip is so small
   // that it is kept whole: a second look costs more than decoding.
-  virtual bool GrowTo(std::int64_t last) = 0;
+  virtual bool ExtendDecoding(std::int64_t last) = 0;
 
   // Of the frames decoded, those that are kept whole, evenly spread: what
   // backgrounds are made of. Empty: all are.
@@ -67,9 +67,10 @@ class GrowingClip : public Clip {
   virtual std::int64_t DecodedAgain() const = 0;
 };
 
-// As KeepFrames, but nothing of the range is decoded yet: GrowTo does. Not for
-// raw clips. While it grows, 16 to 33 frames more are kept whole, and the still
-// picture is that of the key frames of the whole range: they are decoded first.
+// As KeepFrames, but nothing of the range is decoded yet: ExtendDecoding does.
+// Not for raw clips. While it grows, 16 to 33 frames more are kept whole, and
+// the still picture is that of the key frames of the whole range: they are
+// decoded first.
 std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
                                         const FrameStoreOptions& options = {});
 
@@ -77,13 +78,13 @@ std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
 // into memory, are returned as they are. A clip whose pictures all fit is kept
 // whole, as it is read. Of a longer one the range is decoded here, once and in
 // order: the frames that a background is made of are kept whole, of the others
-// the windows that differ from the still picture (Clip::ChangesIn). Where each
-// frame is stored alone there are several readers, and what lies between
-// glimpses that show nothing is not decoded (ChangesIn: nothing; Read decodes
-// it). The still picture is that of key
-// frames, which are decoded first; where it turns out to hold a ghost of the
-// body, the range is decoded a second time with the right one. A damaged frame
-// ends the pass; reading it says what is wrong.
+// the windows that differ from the still picture (Clip::KnownChanges). Where
+// each frame is stored alone there are several readers, and what lies between
+// glimpses that show nothing is not decoded (KnownChanges: nothing; Read
+// decodes it). The still picture is that of key frames, which are decoded
+// first; where it turns out to hold a ghost of the body, the range is decoded a
+// second time with the right one. A damaged frame ends the pass; reading it
+// says what is wrong.
 std::unique_ptr<Clip> KeepFrames(std::unique_ptr<Clip> clip,
                                  const FrameStoreOptions& options = {});
 

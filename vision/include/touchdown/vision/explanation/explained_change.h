@@ -53,7 +53,7 @@ struct ExplainedChangeOptions {
   core::PixelRect region;  // that counts; width 0: the whole picture
 
   // Not empty: frames that are at hand whole (TrackOptions::still_frames); of a
-  // clip that keeps windows only (Clip::ChangesIn) no other frame is read.
+  // clip that keeps windows only (Clip::KnownChanges) no other frame is read.
   std::vector<std::int64_t> still_frames = {};
 
   int threads = 0;  // 0: one for each core; affects speed only

@@ -159,7 +159,7 @@ class Clip {
   // Where frame `index` may differ from the still picture, if the clip has
   // looked (frame_store.h): elsewhere nothing needs to be looked at, and
   // reading there may be slow. Null: it has not.
-  virtual const Changes* ChangesIn(std::int64_t /*index*/) const {
+  virtual const Changes* KnownChanges(std::int64_t /*index*/) const {
     return nullptr;
   }
 

@@ -159,7 +159,7 @@ core::Expected<OutlineFit> FitOutline(const core::Frame& frame,
                                       const OutlineOptions& options = {});
 
 // Distance of a point from the outline, positive inside, px.
-double DepthInside(const Outline& outline, double x_px, double y_px);
+double SignedDepth(const Outline& outline, double x_px, double y_px);
 
 // Height of the centre above the lowest point of the outline, measured along
 // the normal of a ground line at `ground_angle_rad` in the image: R for a

@@ -118,7 +118,7 @@ core::PixelPoint ToImage(const SceneCamera& camera, core::PlanePoint point);
 
 // Of the camera's depth: that of a point of the plane over that of
 // `ground_point`. 1 without yaw.
-double DepthOf(const SceneCamera& camera, core::PlanePoint point);
+double RelativeDepth(const SceneCamera& camera, core::PlanePoint point);
 
 // Direction of the ground line in the ideal picture, as calib::ImageAngle: the
 // roll, but for what a yaw does away from the axis.
@@ -144,11 +144,11 @@ struct SceneTruth {
   double radius_px = 0.0;  // of a sphere; half the diagonal of a rectangle
   double gap_px = 0.0;     // as seen at `ground_point`
 };
-SceneTruth TruthOf(const Scene& scene, std::int64_t index);
+SceneTruth ComputeTruth(const Scene& scene, std::int64_t index);
 
 // The exact ground line in the image, from its left to its right border; u = 0.
 // With a lens: through two points at which the ground is seen; between them it
 // is bent.
-calib::GroundLine GroundOf(const SceneCamera& camera);
+calib::GroundLine TrueGroundLine(const SceneCamera& camera);
 
 }  // namespace touchdown::vision
