@@ -13,7 +13,7 @@ namespace {
 using core::Campaign;
 using core::StoreError;
 
-std::string Select() {
+std::string CampaignQuery() {
   return fmt::format(
       "SELECT c.name, {}, ifnull(f.name, ''), c.angle_kind, c.bounce_height_m, "
       "c.speed_min_mps, c.speed_max_mps, c.theory_name, "
@@ -22,7 +22,7 @@ std::string Select() {
       BodyNames("c."));
 }
 
-Campaign Take(Statement& row) {
+Campaign TakeCampaign(Statement& row) {
   Campaign campaign;
   campaign.name = row.TakeText();
   campaign.body = TakeBody(row);
@@ -61,7 +61,7 @@ std::string ConventionNames() {
          "margin_rad";
 }
 
-std::string Placeholders(std::string_view names) {
+std::string PlaceholdersFor(std::string_view names) {
   std::string text = "?";
   for (const char c : names) {
     if (c == ',') text += ", ?";
@@ -100,7 +100,7 @@ void InsertCampaign(Connection& connection, const Campaign& campaign,
       connection,
       fmt::format("INSERT INTO campaigns (uuid, name, created_at_utc, {}) "
                   "VALUES (?, ?, ?, {})",
-                  names, Placeholders(names)));
+                  names, PlaceholdersFor(names)));
   insert.Add(uuid).Add(campaign.name).Add(now_utc);
   AddConventions(insert, campaign, surface);
   insert.Run();
@@ -108,10 +108,10 @@ void InsertCampaign(Connection& connection, const Campaign& campaign,
 
 std::optional<Campaign> SelectCampaign(Connection& connection,
                                        std::string_view name) {
-  Statement row(connection, Select() + "WHERE c.name = ?");
+  Statement row(connection, CampaignQuery() + "WHERE c.name = ?");
   row.Add(name);
   if (!row.Step()) return std::nullopt;
-  return Take(row);
+  return TakeCampaign(row);
 }
 
 bool SameConventions(const Campaign& a, const Campaign& b) {
@@ -163,7 +163,7 @@ void Store::ChangeCampaign(const Campaign& campaign) {
   const std::string names = ConventionNames();
   Statement update(
       c, fmt::format("UPDATE campaigns SET ({}) = ({}) WHERE id = ?", names,
-                     Placeholders(names)));
+                     PlaceholdersFor(names)));
   AddConventions(update, campaign, surface);
   update.Add(row).Run();
   transaction.Commit();
@@ -174,9 +174,9 @@ std::optional<Campaign> Store::FindCampaign(std::string_view name) const {
 }
 
 std::vector<Campaign> Store::Campaigns() const {
-  Statement row(connection(), Select() + "ORDER BY c.name");
+  Statement row(connection(), CampaignQuery() + "ORDER BY c.name");
   std::vector<Campaign> campaigns;
-  while (row.Step()) campaigns.push_back(Take(row));
+  while (row.Step()) campaigns.push_back(TakeCampaign(row));
   return campaigns;
 }
 

@@ -11,22 +11,15 @@
 namespace touchdown::db {
 namespace {
 
-// What a link's digest covers: the word for it, and the rows, of parameter ?1,
-// the row's number.
-struct Part {
-  std::string word;
-  std::string sql;
-};
-
 struct Subject {
   std::string word;
   std::string rows;  // the rows that have a link: FROM, and what they must be
   std::string key;   // of a row
   std::string name;  // for a person, of row ?1
-  std::vector<Part> parts;
+  std::vector<DigestPart> parts;  // of a link's digest
 };
 
-std::vector<Part> PartsOfRevision() {
+std::vector<DigestPart> PartsOfRevision() {
   const std::string of_trial =
       "FROM revisions r JOIN trials t ON t.id = r.trial_id ";
   return {
@@ -108,9 +101,9 @@ const Subject* Find(std::string_view word) {
   return nullptr;
 }
 
-std::optional<std::int64_t> RowOf(Connection& connection,
-                                  const Subject& subject,
-                                  std::string_view key) {
+std::optional<std::int64_t> FindRow(Connection& connection,
+                                    const Subject& subject,
+                                    std::string_view key) {
   // A text compared with the number of a row is taken for a number.
   Statement row(connection,
                 fmt::format("SELECT id {} AND {} = ?", subject.rows,
@@ -120,10 +113,10 @@ std::optional<std::int64_t> RowOf(Connection& connection,
   return row.TakeInteger();
 }
 
-std::string RowDigest(Connection& connection, const Subject& subject,
-                      std::int64_t row) {
+std::string DigestOfRow(Connection& connection, const Subject& subject,
+                        std::int64_t row) {
   std::string text = "touchdown.row/1\n";
-  for (const Part& part : subject.parts) {
+  for (const DigestPart& part : subject.parts) {
     Statement rows(connection, part.sql);
     if (subject.word != "store") rows.Add(row);
     while (rows.Step()) {
@@ -159,15 +152,15 @@ std::string RowDigest(Connection& connection, std::string_view subject,
                       std::string_view key) {
   const Subject* known = Find(subject);
   if (known == nullptr) return {};
-  const auto row = RowOf(connection, *known, key);
-  return row ? RowDigest(connection, *known, *row) : std::string();
+  const auto row = FindRow(connection, *known, key);
+  return row ? DigestOfRow(connection, *known, *row) : std::string();
 }
 
 std::string Describe(Connection& connection, std::string_view subject,
                      std::string_view key) {
   const Subject* known = Find(subject);
   const auto row =
-      known == nullptr ? std::nullopt : RowOf(connection, *known, key);
+      known == nullptr ? std::nullopt : FindRow(connection, *known, key);
   if (!row) return fmt::format("{} {}", subject, key);
   Statement name(connection, known->name);
   name.Add(*row);

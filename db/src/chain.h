@@ -38,6 +38,13 @@ struct Link {
   std::string sha256;
 };
 
+// What a digest covers: the word for it, and the rows, of parameter ?1, a row's
+// number.
+struct DigestPart {
+  std::string word;
+  std::string sql;
+};
+
 // C(n) of a link whose other members are known.
 std::string LinkDigest(std::string_view before, const Link& link);
 

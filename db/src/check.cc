@@ -9,6 +9,7 @@
 #include "register_rows.h"
 #include "schema.h"
 #include "statement.h"
+#include "touchdown/db/clips.h"
 #include "touchdown/db/maintenance.h"
 
 namespace touchdown::db {
@@ -111,11 +112,6 @@ void CheckChains(Connection& connection, std::vector<std::string>& problems) {
   CheckSchema(connection, problems);
 }
 
-struct KnownClip {
-  std::string path;
-  std::string sha256;  // empty: never computed
-};
-
 void CheckClips(const std::vector<KnownClip>& clips, const DigestOf& digest,
                 CheckReport& report) {
   std::set<std::string> known;
@@ -128,16 +124,16 @@ void CheckClips(const std::vector<KnownClip>& clips, const DigestOf& digest,
   std::map<std::string, std::optional<std::string>> found_at;
   for (const KnownClip& clip : clips) {
     if (clip.sha256.empty()) continue;
-    const auto [at, is_new] = found_at.try_emplace(clip.path);
-    if (is_new) at->second = digest(clip.path);
+    const auto [at, is_new] = found_at.try_emplace(clip.last_seen_path);
+    if (is_new) at->second = digest(clip.last_seen_path);
     const auto& found = at->second;
     if (found == clip.sha256) {
       ++report.clips_verified;
     } else if (!found || known.contains(*found)) {
       // Gone, or another recording of the store has its name now.
-      report.clips_missing.push_back(clip.path);
+      report.clips_missing.push_back(clip.last_seen_path);
     } else {
-      report.clips_changed.push_back(clip.path);
+      report.clips_changed.push_back(clip.last_seen_path);
     }
   }
 }
@@ -160,15 +156,7 @@ CheckReport Check(const Store& store, const DigestOf& digest) {
     }
     report.trials = connection.Integer("SELECT count(*) FROM trials");
     report.revisions = connection.Integer("SELECT count(*) FROM revisions");
-    Statement row(connection,
-                  "SELECT last_seen_path, ifnull(sha256, '') FROM clips "
-                  "ORDER BY id");
-    while (row.Step()) {
-      KnownClip clip;
-      clip.path = row.TakeText();
-      clip.sha256 = row.TakeText();
-      clips.push_back(std::move(clip));
-    }
+    clips = KnownClips(store);
   }
   // Clips are long: read them when the snapshot has been let go.
   CheckClips(clips, digest, report);

@@ -15,7 +15,7 @@ namespace {
 using core::Conditions;
 
 // Columns in the order in which they are added and taken.
-std::string Names() {
+std::string ConditionNames() {
   std::string names = "anomaly, anomaly_note";
   for (const auto& quantity : kConditionQuantities) {
     names += ", " + MeasuredNames(quantity.name);
@@ -26,8 +26,8 @@ std::string Names() {
   return names + ", note";
 }
 
-[[noreturn]] void Refuse(std::string_view field, double value,
-                         std::string_view must) {
+[[noreturn]] void RefuseCondition(std::string_view field, double value,
+                                  std::string_view must) {
   throw std::invalid_argument(
       fmt::format("conditions: {} is {}, must be {}", field, value, must));
 }
@@ -69,23 +69,23 @@ void RequireStorable(const Conditions& conditions) {
   }
   if (const auto& k = conditions.temperature_k;
       k && !(k->value > 0.0 && std::isfinite(k->value))) {
-    Refuse("temperature_k", k->value, "above 0 and finite");
+    RefuseCondition("temperature_k", k->value, "above 0 and finite");
   }
   if (const auto& share = conditions.relative_humidity;
       share && !(share->value >= 0.0 && share->value <= 1.0)) {
-    Refuse("relative_humidity", share->value, "in 0 .. 1");
+    RefuseCondition("relative_humidity", share->value, "in 0 .. 1");
   }
   for (const auto& [name, length] :
        {std::pair("compression_m", &conditions.compression_m),
         std::pair("muzzle_height_m", &conditions.muzzle_height_m)}) {
     if (*length &&
         !((*length)->value >= 0.0 && std::isfinite((*length)->value))) {
-      Refuse(name, (*length)->value, "at least 0 and finite");
+      RefuseCondition(name, (*length)->value, "at least 0 and finite");
     }
   }
   if (const auto& rad = conditions.elevation_rad;
       rad && !(std::abs(rad->value) <= std::numbers::pi / 2)) {
-    Refuse("elevation_rad", rad->value, "from -pi/2 to pi/2");
+    RefuseCondition("elevation_rad", rad->value, "from -pi/2 to pi/2");
   }
   if (conditions.anomaly == core::Anomaly::kOther &&
       conditions.anomaly_note.empty()) {
@@ -105,7 +105,7 @@ std::optional<std::int64_t> KeepConditions(
     return in_force;
   }
   static const std::string sql = fmt::format(
-      "INSERT INTO conditions (revision_id, {}) VALUES ({})", Names(),
+      "INSERT INTO conditions (revision_id, {}) VALUES ({})", ConditionNames(),
       Placeholders(4 + 5 * kConditionQuantities.size() + rows.size()));
   Statement insert(connection, sql);
   insert.Add(revision_row)
@@ -121,8 +121,8 @@ std::optional<std::int64_t> KeepConditions(
 }
 
 Conditions SelectConditions(Connection& connection, std::int64_t row) {
-  static const std::string sql =
-      fmt::format("SELECT {} FROM conditions WHERE revision_id = ?", Names());
+  static const std::string sql = fmt::format(
+      "SELECT {} FROM conditions WHERE revision_id = ?", ConditionNames());
   Statement select(connection, sql);
   select.Add(row);
   Conditions conditions;

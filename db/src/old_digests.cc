@@ -10,18 +10,12 @@
 namespace touchdown::db {
 namespace {
 
-// What a revision's digest covers: the word for it, and the rows, of parameter
-// ?1, the revision's row.
-struct Part {
-  std::string word;
-  std::string sql;
-};
-
-const std::vector<Part>& Parts() {
-  static const std::vector<Part> parts = [] {
+// Of a revision's digest; ?1 is the revision's row.
+const std::vector<DigestPart>& Parts() {
+  static const std::vector<DigestPart> parts = [] {
     const std::string of_trial =
         "FROM revisions r JOIN trials t ON t.id = r.trial_id ";
-    std::vector<Part> all = {
+    std::vector<DigestPart> all = {
         {"trial", "SELECT t.* " + of_trial + "WHERE r.id = ?1"},
         {"campaign", "SELECT c.* " + of_trial +
                          "JOIN campaigns c ON c.id = t.campaign_id "
@@ -54,10 +48,10 @@ const std::vector<Part>& Parts() {
   return parts;
 }
 
-std::string DigestOf(Connection& connection, std::string_view before,
-                     std::int64_t revision_row) {
+std::string RevisionDigest(Connection& connection, std::string_view before,
+                           std::int64_t revision_row) {
   std::string text = fmt::format("touchdown.trial/1\n{}\n", before);
-  for (const Part& part : Parts()) {
+  for (const DigestPart& part : Parts()) {
     Statement row(connection, part.sql);
     row.Add(revision_row);
     while (row.Step()) {
@@ -143,7 +137,7 @@ void CheckOldDigests(Connection& connection, std::int64_t version,
                        "ORDER BY number");
     revision.Add(id);
     for (; revision.Step(); ++count) {
-      digest = DigestOf(connection, digest, revision.TakeInteger());
+      digest = RevisionDigest(connection, digest, revision.TakeInteger());
     }
     if (kept.empty()) {
       problems.push_back(fmt::format("trial {} has no digest", uuid));

@@ -17,7 +17,7 @@ constexpr std::string_view kColumns =
     "e.uuid, c.name, e.kind, e.design, e.stopping_rule, e.error_rates, "
     "e.trials, e.author, e.reason, e.at_utc";
 
-PlanEvent Take(Statement& row) {
+PlanEvent TakePlanEvent(Statement& row) {
   PlanEvent event;
   event.id = row.TakeText();
   event.campaign = row.TakeText();
@@ -64,7 +64,7 @@ std::vector<PlanEvent> PlanEventsIn(Connection& connection,
                             kColumns));
   row.Add(campaign);
   std::vector<PlanEvent> out;
-  while (row.Step()) out.push_back(Take(row));
+  while (row.Step()) out.push_back(TakePlanEvent(row));
   return out;
 }
 

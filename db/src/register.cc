@@ -16,8 +16,8 @@ namespace {
 using core::Registered;
 using core::StoreError;
 
-// Columns of a version, in the order in which InsertEntry and Take go.
-std::string Names(RegisterKind kind) {
+// Columns of a version, in the order in which InsertEntry and TakeEntry go.
+std::string EntryNames(RegisterKind kind) {
   std::string names = "uuid, name, version, author, reason, recorded_at_utc";
   for (const RegisterField& field : FieldsOf(kind)) {
     switch (field.type) {
@@ -36,7 +36,7 @@ std::string Names(RegisterKind kind) {
   return names;
 }
 
-Entry Take(Connection& connection, Statement& row, RegisterKind kind) {
+Entry TakeEntry(Connection& connection, Statement& row, RegisterKind kind) {
   Entry entry;
   entry.kind = kind;
   entry.id = row.TakeText();
@@ -65,14 +65,15 @@ Entry Take(Connection& connection, Statement& row, RegisterKind kind) {
 }
 
 // The entries of a kind; `tail` is what follows FROM.
-std::vector<Entry> Select(Connection& connection, RegisterKind kind,
-                          std::string_view tail,
-                          std::optional<std::string_view> name = {}) {
-  Statement row(connection, fmt::format("SELECT {} FROM {} {}", Names(kind),
-                                        TableOf(kind).table, tail));
+std::vector<Entry> SelectEntries(Connection& connection, RegisterKind kind,
+                                 std::string_view tail,
+                                 std::optional<std::string_view> name = {}) {
+  Statement row(connection,
+                fmt::format("SELECT {} FROM {} {}", EntryNames(kind),
+                            TableOf(kind).table, tail));
   if (name) row.Add(*name);
   std::vector<Entry> entries;
-  while (row.Step()) entries.push_back(Take(connection, row, kind));
+  while (row.Step()) entries.push_back(TakeEntry(connection, row, kind));
   return entries;
 }
 
@@ -108,7 +109,7 @@ Registered SelectRegistered(Connection& connection, RegisterKind kind,
 std::vector<Entry> VersionsIn(Connection& connection) {
   std::vector<Entry> all;
   for (const RegisterKind kind : kRegisterKinds) {
-    for (Entry& entry : Select(connection, kind, kOldestFirst)) {
+    for (Entry& entry : SelectEntries(connection, kind, kOldestFirst)) {
       all.push_back(std::move(entry));
     }
   }
@@ -117,7 +118,7 @@ std::vector<Entry> VersionsIn(Connection& connection) {
 
 std::optional<Entry> InForce(Connection& connection, RegisterKind kind,
                              std::string_view name) {
-  auto found = Select(
+  auto found = SelectEntries(
       connection, kind,
       fmt::format("WHERE name = ? ORDER BY {} LIMIT 1", kInForceFirst), name);
   if (found.empty()) return std::nullopt;
@@ -149,7 +150,7 @@ std::optional<std::int64_t> RowOf(Connection& connection, RegisterKind kind,
 }
 
 std::int64_t InsertEntry(Connection& connection, const Entry& entry) {
-  const std::string names = Names(entry.kind);
+  const std::string names = EntryNames(entry.kind);
   const auto columns =
       1 + static_cast<std::size_t>(std::ranges::count(names, ','));
   Statement insert(connection, fmt::format("INSERT INTO {} ({}) VALUES ({})",
@@ -242,7 +243,7 @@ std::optional<Entry> FindEntry(const Store& store, RegisterKind kind,
 std::vector<Entry> Entries(const Store& store, RegisterKind kind) {
   Transaction snapshot(store.connection(), Transaction::Kind::kRead);
   std::vector<Entry> in_force;
-  for (Entry& entry : Select(store.connection(), kind, kOldestFirst)) {
+  for (Entry& entry : SelectEntries(store.connection(), kind, kOldestFirst)) {
     if (!in_force.empty() && in_force.back().name == entry.name) {
       in_force.back() = std::move(entry);
     } else {
@@ -260,8 +261,8 @@ std::vector<Entry> AllVersions(const Store& store) {
 std::vector<Entry> VersionsOf(const Store& store, RegisterKind kind,
                               std::string_view name) {
   Transaction snapshot(store.connection(), Transaction::Kind::kRead);
-  return Select(store.connection(), kind,
-                fmt::format("WHERE name = ? {}", kOldestFirst), name);
+  return SelectEntries(store.connection(), kind,
+                       fmt::format("WHERE name = ? {}", kOldestFirst), name);
 }
 
 }  // namespace touchdown::db

@@ -93,7 +93,7 @@ namespace {
 
 // A word of a coded column; the file's CHECK lets no other in.
 template <class T>
-T Word(std::optional<T> parsed, const Connection& connection) {
+T KnownWord(std::optional<T> parsed, const Connection& connection) {
   if (!parsed) {
     throw core::StoreError(fmt::format(
         "{}: the trial store holds a word this program does not know; see "
@@ -171,9 +171,10 @@ ContactRecord TakeContact(Connection& connection, Statement& row) {
   record.contact.reason = row.TakeText();
   record.contact.from_start = row.TakeBool();
   if (const auto corner = row.TakeOptionalText()) {
-    record.contact.corner = Word(core::ParseCorner(*corner), connection);
+    record.contact.corner = KnownWord(core::ParseCorner(*corner), connection);
   }
-  record.state.label = Word(core::ParseMotionState(row.TakeText()), connection);
+  record.state.label =
+      KnownWord(core::ParseMotionState(row.TakeText()), connection);
   record.state.p_bounce = row.TakeOptionalReal();
   record.state.reason = row.TakeText();
   record.state.micro_bounce = row.TakeBool();
@@ -394,12 +395,13 @@ RevisionRow TakeRevision(Connection& connection, Statement& row) {
   const std::int64_t statement_id = row.TakeInteger();
   trial.id = row.TakeText();
   trial.campaign = row.TakeText();
-  trial.origin = Word(core::ParseOrigin(row.TakeText()), connection);
+  trial.origin = KnownWord(core::ParseOrigin(row.TakeText()), connection);
   trial.clip.path = row.TakeText();
   trial.clip.id = row.TakeText();
   trial.clip.sha256 = row.TakeText();
   trial.clip.size_bytes = row.TakeInteger();
-  trial.angle_kind = Word(core::ParseAngleKind(row.TakeText()), connection);
+  trial.angle_kind =
+      KnownWord(core::ParseAngleKind(row.TakeText()), connection);
   trial.body = TakeBody(row);
   trial.set_angle_rad = row.TakeOptionalReal();
   trial.set_speed_mps = row.TakeOptionalReal();

@@ -10,7 +10,7 @@ namespace touchdown::db {
 namespace {
 
 // Present (value and u, perhaps an interval) or absent with a reason.
-std::string Measured(std::string_view name) {
+std::string MeasuredColumns(std::string_view name) {
   return fmt::format(
       "{0} ANY, {0}_u ANY, {0}_low ANY, {0}_high ANY, {0}_absent TEXT,\n"
       "  CHECK (CASE WHEN {0} IS NULL THEN {0}_absent IS NOT NULL"
@@ -66,7 +66,7 @@ std::string Stamp(std::string_view name) {
 }
 
 Group MeasuredGroup(std::string_view name) {
-  const std::string both = Measured(name);
+  const std::string both = MeasuredColumns(name);
   const auto split = both.find(",\n");
   return {both.substr(0, split), both.substr(split + 2)};
 }

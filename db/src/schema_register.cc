@@ -8,7 +8,7 @@ namespace touchdown::db {
 namespace {
 
 // "dry, wet" as SQL, with what every coded word may also be.
-std::string Quoted(std::string_view words) {
+std::string QuotedWords(std::string_view words) {
   std::string sql = "'";
   for (const char c : words) {
     if (c == ' ') continue;
@@ -23,7 +23,7 @@ std::string Reference(RegisterKind kind, std::string_view field) {
 }
 
 // Each row is one version of an entry; none is ever changed.
-std::string TableSql(RegisterKind kind) {
+std::string RegisterTableSql(RegisterKind kind) {
   const std::string_view table = TableOf(kind).table;
   std::string sql = fmt::format(
       "CREATE TABLE {} (\n"
@@ -43,7 +43,7 @@ std::string TableSql(RegisterKind kind) {
         sql += fmt::format("{} TEXT NOT NULL", field.name);
         break;
       case FieldType::kWord:
-        sql += Word(field.name, Quoted(field.words));
+        sql += Word(field.name, QuotedWords(field.words));
         break;
       case FieldType::kMeasured: {
         const Group one = MeasuredGroup(field.name);
@@ -96,7 +96,7 @@ std::string ConditionsSql() {
 
 std::string RegisterSql() {
   std::string sql;
-  for (const RegisterKind kind : kRegisterKinds) sql += TableSql(kind);
+  for (const RegisterKind kind : kRegisterKinds) sql += RegisterTableSql(kind);
   return sql + ConditionsSql();
 }
 

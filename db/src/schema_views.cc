@@ -15,8 +15,6 @@
 namespace touchdown::db {
 namespace {
 
-using enum ColumnType;
-
 // A view, and the SQL of each of its columns.
 class Maker {
  public:
@@ -24,17 +22,17 @@ class Maker {
       : view_{std::move(name), std::move(one_row), {}} {}
 
   void Text(std::string name, const std::string& sql, std::string meaning) {
-    Add(std::move(name), kText, sql, std::move(meaning));
+    Add(std::move(name), ColumnType::kText, sql, std::move(meaning));
   }
   void Integer(std::string name, const std::string& sql, std::string meaning) {
-    Add(std::move(name), kInteger, sql, std::move(meaning));
+    Add(std::move(name), ColumnType::kInteger, sql, std::move(meaning));
   }
   void Plain(std::string name, const std::string& sql, std::string meaning) {
-    Add(std::move(name), kReal, sql, std::move(meaning));
+    Add(std::move(name), ColumnType::kReal, sql, std::move(meaning));
   }
   // Of the first contact f, in deg: the angle that the statement names.
   void Angle(std::string name, std::string_view part, std::string meaning) {
-    Add(std::move(name), kReal,
+    Add(std::move(name), ColumnType::kReal,
         fmt::format(
             "CASE s.angle_kind WHEN 'radius' THEN f.radius_angle_rad{0} "
             "WHEN 'face' THEN f.face_angle_rad{0} "
@@ -46,7 +44,7 @@ class Maker {
   void Real(std::string_view inner, std::string_view table,
             const std::string& meaning) {
     const core::EdgeUnit unit = core::AtTheEdge(inner);
-    Add(unit.stem + unit.suffix, kReal,
+    Add(unit.stem + unit.suffix, ColumnType::kReal,
         AtTheEdge(unit, fmt::format("{}.{}", table, inner), unit.offset),
         meaning);
   }
@@ -58,18 +56,19 @@ class Maker {
       return fmt::format("{}.{}{}", table, inner, part);
     };
     const std::string name = unit.stem + unit.suffix;
-    Add(name, kReal, AtTheEdge(unit, at(""), unit.offset), meaning);
-    Add(unit.stem + "_u" + unit.suffix, kReal, AtTheEdge(unit, at("_u"), 0.0),
+    Add(name, ColumnType::kReal, AtTheEdge(unit, at(""), unit.offset), meaning);
+    Add(unit.stem + "_u" + unit.suffix, ColumnType::kReal,
+        AtTheEdge(unit, at("_u"), 0.0),
         fmt::format("standard uncertainty of {}", name));
-    Add(unit.stem + "_low" + unit.suffix, kReal,
+    Add(unit.stem + "_low" + unit.suffix, ColumnType::kReal,
         AtTheEdge(unit, at("_low"), unit.offset),
         fmt::format(
             "lower end of the 95 % interval of {}, where it has its own",
             name));
-    Add(unit.stem + "_high" + unit.suffix, kReal,
+    Add(unit.stem + "_high" + unit.suffix, ColumnType::kReal,
         AtTheEdge(unit, at("_high"), unit.offset),
         fmt::format("upper end of the same of {}", name));
-    Add(name + "_absent", kText, at("_absent"),
+    Add(name + "_absent", ColumnType::kText, at("_absent"),
         fmt::format("why {} has no value", name));
   }
   void Body(std::string_view table) {
@@ -94,7 +93,7 @@ class Maker {
            std::string meaning) {
     columns_ +=
         fmt::format("{}  {} AS {}", columns_.empty() ? "" : ",\n", sql, name);
-    const std::string unit = type == kReal ? UnitOf(name) : "";
+    const std::string unit = type == ColumnType::kReal ? UnitOf(name) : "";
     view_.columns.push_back({std::move(name), type, unit, std::move(meaning)});
   }
 
@@ -328,11 +327,11 @@ const Made& AllViews() {
 
 std::string_view Name(ColumnType type) {
   switch (type) {
-    case kText:
+    case ColumnType::kText:
       return "text";
-    case kInteger:
+    case ColumnType::kInteger:
       return "integer";
-    case kReal:
+    case ColumnType::kReal:
       break;
   }
   return "real";

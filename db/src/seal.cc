@@ -29,7 +29,7 @@ std::optional<std::int64_t> CountOf(std::string_view text) {
 }
 
 // Takes what stands before `until` (or all) away from `text`.
-std::string_view Take(std::string_view& text, char until) {
+std::string_view TakeUntil(std::string_view& text, char until) {
   const std::size_t end = std::min(text.find(until), text.size());
   const std::string_view part = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
@@ -64,8 +64,8 @@ std::string HeadText(const SealHead& head) {
 }
 
 std::optional<SealHead> ParseHead(std::string_view text) {
-  const std::string_view store = Take(text, ':');
-  const auto links = CountOf(Take(text, ':'));
+  const std::string_view store = TakeUntil(text, ':');
+  const auto links = CountOf(TakeUntil(text, ':'));
   if (!IsUuid(store) || !links || !IsSha256(text)) return std::nullopt;
   return SealHead{std::string(store), *links, std::string(text)};
 }
@@ -108,17 +108,17 @@ Seal ParseSeal(std::string_view text, std::string_view name) {
   };
   const auto line = [&] {
     ++at;
-    return Take(text, '\n');
+    return TakeUntil(text, '\n');
   };
   Seal seal;
   if (line() != kFirstLine) refuse(fmt::format("'{}'", kFirstLine));
   std::string_view head = line();
   const auto parsed =
-      Take(head, ' ') == "head" ? ParseHead(head) : std::nullopt;
+      TakeUntil(head, ' ') == "head" ? ParseHead(head) : std::nullopt;
   if (!parsed) refuse("the head");
   seal.head = *parsed;
   std::string_view sealed = line();
-  if (Take(sealed, ' ') != "sealed" || !IsUtcStamp(sealed)) {
+  if (TakeUntil(sealed, ' ') != "sealed" || !IsUtcStamp(sealed)) {
     refuse("the date of the seal");
   }
   seal.sealed_at_utc = sealed;
@@ -126,8 +126,8 @@ Seal ParseSeal(std::string_view text, std::string_view name) {
   while (!text.empty()) {
     std::string_view rest = line();
     SealLine one;
-    one.subject = Take(rest, ' ');
-    one.key = Take(rest, ' ');
+    one.subject = TakeUntil(rest, ' ');
+    one.key = TakeUntil(rest, ' ');
     one.row_sha256 = rest;
     if (one.subject.empty() || one.key.empty() || !IsSha256(rest)) {
       refuse("what a link is of, which, and its SHA-256");

@@ -127,8 +127,6 @@ void KeepSetPoints(Connection& connection, const Head& head,
   if (!trial.set_speed_mps) trial.set_speed_mps = speed;
 }
 
-std::string Quoted(std::string_view text) { return fmt::format("'{}'", text); }
-
 }  // namespace
 
 struct Store::Impl {
