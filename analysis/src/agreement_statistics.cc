@@ -72,7 +72,8 @@ double ClopperPearsonLowerLimit(int x, int n, double level) {
   return x == 0 ? 0.0 : BetaQuantile(xd, n - xd + 1, 1 - level);
 }
 
-Kappa CohenKappa(std::span<const int> counts, int k, KappaWeights weights) {
+CohensKappa CohenKappa(std::span<const int> counts, int k,
+                       KappaWeights weights) {
   const bool sizes = k >= 2 && counts.size() == static_cast<std::size_t>(k) *
                                                     static_cast<std::size_t>(k);
   const bool all_positive =
@@ -116,7 +117,7 @@ Kappa CohenKappa(std::span<const int> counts, int k, KappaWeights weights) {
     }
   }
   if (chance >= 1.0) return {kNaN, kNaN, kNaN};
-  Kappa out;
+  CohensKappa out;
   out.kappa = (observed - chance) / (1 - chance);
   // Fleiss, Cohen and Everitt (1969), eqs. (8) and (9).
   double sum = 0.0;

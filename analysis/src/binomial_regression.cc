@@ -227,7 +227,7 @@ class Problem {
   VectorXd yes_;
 };
 
-VectorXd Scaled(const Regression& fit, const VectorXd& scale) {
+VectorXd ScaledCoefficients(const Regression& fit, const VectorXd& scale) {
   VectorXd out(scale.size());
   for (Index i = 0; i < out.size(); ++i) {
     out[i] = fit.coefficients[static_cast<std::size_t>(i)] * scale[i];
@@ -319,7 +319,7 @@ core::Interval CoefficientProfile(std::span<const BinomialRow> rows,
         "fit: Firth's probit has no penalised likelihood; must be a logit, or "
         "without firth");
   }
-  VectorXd start = Scaled(fit, problem.scale());
+  VectorXd start = ScaledCoefficients(fit, problem.scale());
   const double top = problem.Aim(problem.Look(start));
   const auto fall = [&](double value) -> std::optional<double> {
     const auto state = problem.Climb(start, {static_cast<Index>(i), value});

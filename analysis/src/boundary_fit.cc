@@ -15,7 +15,7 @@ namespace {
 
 // Scatter levels with less than this of the posterior are left out when the
 // scatter is known well enough for a finer grid.
-constexpr double kNegligible = 1e-7;
+constexpr double kNegligibleMass = 1e-7;
 // Fewer levels than this with any mass to speak of, and the grid is refined.
 constexpr int kEnoughLevels = 14;
 // The last halving reaches steps with this share of the greatest allowed mass.
@@ -29,7 +29,7 @@ constexpr double kFall95 = 3.8414588206941;
 // Splitting stops at this many angles: far beyond what any posterior needed.
 constexpr std::size_t kMaxAngles = 20000;
 
-void Check(const BoundaryFitOptions& o) {
+void CheckFitOptions(const BoundaryFitOptions& o) {
   Require(std::isfinite(o.low_rad), "low_rad", o.low_rad, "finite");
   Require(std::isfinite(o.high_rad) && o.high_rad > o.low_rad, "high_rad",
           o.high_rad, "finite and above low_rad");
@@ -58,7 +58,7 @@ void Check(const BoundaryFitOptions& o) {
   for (const ScatterPrior& prior : o.sensitivity) check(prior);
 }
 
-std::vector<double> Levels(double low, double high, int n) {
+std::vector<double> ScatterLevels(double low, double high, int n) {
   std::vector<double> out(static_cast<std::size_t>(n));
   for (int j = 0; j < n; ++j) {
     out[static_cast<std::size_t>(j)] =
@@ -367,14 +367,14 @@ std::vector<double> FinerScatter(const JointTable& table,
   std::size_t first = s.size();
   std::size_t last = 0;
   for (std::size_t j = 0; j < s.size(); ++j) {
-    if (mass[j] < kNegligible * max) continue;
+    if (mass[j] < kNegligibleMass * max) continue;
     first = std::min(first, j);
     last = std::max(last, j);
   }
   if (last - first + 1 >= static_cast<std::size_t>(kEnoughLevels)) return {};
   first = first > 0 ? first - 1 : first;
   last = std::min(last + 1, s.size() - 1);
-  return Levels(s[first], s[last], options.scatter_levels);
+  return ScatterLevels(s[first], s[last], options.scatter_levels);
 }
 
 // Distribution function at the angles, by the trapezoid; its last value is 1.
@@ -446,7 +446,7 @@ void FillScatter(BoundaryPosterior& out) {
 }
 
 // The greatest log likelihood at each angle, over every scatter.
-std::vector<double> Profile(const JointTable& table) {
+std::vector<double> ProfileByAngle(const JointTable& table) {
   std::vector<double> out;
   for (const auto& row : table.rows()) {
     out.push_back(*std::max_element(row.begin(), row.end()));
@@ -493,7 +493,7 @@ void FillMarginal(const JointTable& table, const ScatterPrior& prior,
   out.density_per_rad = table.Density(prior);
   out.cumulative = Cumulate(out.angle_rad, out.density_per_rad);
   out.median_rad = Quantile(out, 0.5);
-  const std::vector<double> profile = Profile(table);
+  const std::vector<double> profile = ProfileByAngle(table);
   out.interval90_rad = OpenTo(status, out.angle_rad, profile, kFall90,
                               {Quantile(out, 0.05), Quantile(out, 0.95)});
   out.interval95_rad = OpenTo(status, out.angle_rad, profile, kFall95,
@@ -551,8 +551,8 @@ JointTable MakeTable(std::span<const SetUpCells> setups,
                      const BoundaryFitOptions& options, double lapse,
                      double max_mass) {
   const std::vector<double> scatter =
-      Levels(options.scatter_low_rad, options.scatter_high_rad,
-             options.scatter_levels);
+      ScatterLevels(options.scatter_low_rad, options.scatter_high_rad,
+                    options.scatter_levels);
   JointTable table(JointLikelihood(setups, scatter, lapse, options), scatter);
   table.Fill(start);
   table.Refine(options.scatter, max_mass);
@@ -640,7 +640,7 @@ DataStatus Classify(std::span<const Observation> observations) {
 
 BoundaryPosterior FitBoundary(std::span<const Observation> observations,
                               const BoundaryFitOptions& options) {
-  Check(options);
+  CheckFitOptions(options);
   BoundaryPosterior out;
   out.status = Classify(observations);
   out.few_trials = Count(observations).decided() < kFewTrials;

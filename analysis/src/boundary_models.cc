@@ -110,7 +110,7 @@ core::Expected<double> DetectableBounce(const BoundaryInputs& in) {
       "restitution too low");
 }
 
-void Check(const BoundaryInputs& in) {
+void CheckBoundaryInputs(const BoundaryInputs& in) {
   RequireNotNegative("kappa", in.kappa.value);
   RequirePositive("radius", in.radius_m.value, "m");
   RequireNotNegative("mu", in.mu.value);
@@ -309,7 +309,7 @@ double BounceRatio(const BoundaryInputs& in, double angle_rad) {
 
 core::Expected<double> BoundaryAngle(BoundaryModel model,
                                      const BoundaryInputs& inputs) {
-  Check(inputs);
+  CheckBoundaryInputs(inputs);
   switch (model) {
     case BoundaryModel::kPublished:
       return IsSphere(inputs) ? kPublishedSphere_rad : kPublishedRectangle_rad;

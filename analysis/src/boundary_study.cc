@@ -94,7 +94,8 @@ TheoryComparison Compare(std::span<const Observation> observations,
   out.clopper_pearson95 = ClopperPearsonInterval(m.right(), m.total());
   const int counts[] = {m.slide_slide, m.slide_bounce, m.bounce_slide,
                         m.bounce_bounce};
-  if (const Kappa kappa = CohenKappa(counts, 2); !std::isnan(kappa.kappa)) {
+  if (const CohensKappa kappa = CohenKappa(counts, 2);
+      !std::isnan(kappa.kappa)) {
     out.kappa = kappa;
   }
   const double matthews = MatthewsCorrelation(

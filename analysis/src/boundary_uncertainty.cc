@@ -21,18 +21,19 @@ struct Uncertain {
   double high;
 };
 
-constexpr double kTiny = std::numeric_limits<double>::min();
+constexpr double kLeastPositive = std::numeric_limits<double>::min();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 constexpr std::array<Uncertain, 9> kUncertain = {{
     {"kappa", &BoundaryInputs::kappa, 0.0, kHuge},
-    {"radius_m", &BoundaryInputs::radius_m, kTiny, kHuge},
+    {"radius_m", &BoundaryInputs::radius_m, kLeastPositive, kHuge},
     {"mu", &BoundaryInputs::mu, 0.0, kHuge},
     {"omega_rad_per_s", &BoundaryInputs::omega_rad_per_s, -kHuge, kHuge},
-    {"gravity_mps2", &BoundaryInputs::gravity_mps2, kTiny, kHuge},
+    {"gravity_mps2", &BoundaryInputs::gravity_mps2, kLeastPositive, kHuge},
     {"restitution", &BoundaryInputs::restitution, 0.0, 1.0},
-    {"speed_mps", &BoundaryInputs::speed_mps, kTiny, kHuge},
-    {"bounce_height_m", &BoundaryInputs::bounce_height_m, kTiny, kHuge},
+    {"speed_mps", &BoundaryInputs::speed_mps, kLeastPositive, kHuge},
+    {"bounce_height_m", &BoundaryInputs::bounce_height_m, kLeastPositive,
+     kHuge},
     {"held_angle_rad", &BoundaryInputs::held_angle_rad, 0.0,
      std::numbers::pi / 2.0},
 }};

@@ -82,13 +82,13 @@ std::optional<ProbitFit> FitProbit(std::span<const Observation> trials) {
                    1.0 / fit.coefficients[1]};
 }
 
-struct Extent {
+struct TriedRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 };
 
-Extent ExtentOf(std::span<const Observation> trials) {
-  Extent out;
+TriedRange TriedRangeOf(std::span<const Observation> trials) {
+  TriedRange out;
   for (const Observation& o : trials) {
     out.low = std::min(out.low, o.angle_rad);
     out.high = std::max(out.high, o.angle_rad);
@@ -96,7 +96,7 @@ Extent ExtentOf(std::span<const Observation> trials) {
   return out;
 }
 
-std::vector<double> Levels(std::span<const Observation> trials) {
+std::vector<double> TriedAngles(std::span<const Observation> trials) {
   std::vector<double> out;
   for (const Observation& o : trials) out.push_back(o.angle_rad);
   return out;
@@ -105,13 +105,13 @@ std::vector<double> Levels(std::span<const Observation> trials) {
 // The level that adds most once outcomes overlap: about the greatest
 // likelihood, kept inside what was tried.
 double DOptimalAfterOverlap(std::span<const Observation> trials) {
-  const Extent all = ExtentOf(trials);
+  const TriedRange all = TriedRangeOf(trials);
   const auto fit = FitProbit(trials);
   const Bracket bracket = FindBracket(trials);
   const double mean =
       fit ? fit->mean : (*bracket.high_rad + *bracket.low_rad) / 2;
   const double scatter = fit ? fit->scatter : all.high - all.low;
-  return DOptimal(Levels(trials), std::clamp(mean, all.low, all.high),
+  return DOptimal(TriedAngles(trials), std::clamp(mean, all.low, all.high),
                   std::min(scatter, all.high - all.low));
 }
 
@@ -121,7 +121,7 @@ double NeyerLevel(std::span<const Observation> trials,
   if (trials.empty()) {
     return (options.guess_low_rad + options.guess_high_rad) / 2;
   }
-  const Extent all = ExtentOf(trials);
+  const TriedRange all = TriedRangeOf(trials);
   const Counts counts = Count(trials);
   if (counts.bounce == 0) {
     return std::max({(options.guess_high_rad + all.high) / 2,
@@ -138,7 +138,7 @@ double NeyerLevel(std::span<const Observation> trials,
   if (gap >= 0.0) {
     const double scatter = std::min(guess, all.high - all.low);
     guess *= 0.8;
-    return DOptimal(Levels(trials), middle, scatter);
+    return DOptimal(TriedAngles(trials), middle, scatter);
   }
   return DOptimalAfterOverlap(trials);
 }

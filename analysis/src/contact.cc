@@ -30,7 +30,7 @@ bool FitsDouble(const ContactProblem& p) {
           IsComfortable(p.radius_m / p.gyration_radius_m));
 }
 
-void Check(const ContactProblem& p) {
+void CheckContactProblem(const ContactProblem& p) {
   RequireFinite("sin alpha", p.alpha.sin);
   RequireFinite("cos alpha", p.alpha.cos);
   RequireNotNegative("mu", p.mu);
@@ -147,7 +147,7 @@ ContactProblem SphereContact(double mass_kg, double radius_m, double kappa,
 }
 
 ContactResult SolveContact(const ContactProblem& problem) {
-  Check(problem);
+  CheckContactProblem(problem);
   if (FitsDouble(problem)) {
     const auto core = Solved<double>(problem, kUlp);
     if (!core.within_) return Report(core, problem);

@@ -19,7 +19,7 @@ constexpr int kFineMargins = 5;
 constexpr double kWiden = 1.25;
 constexpr double kWidest_rad = 3.0 * core::kDegree;
 // A common error reaches no further than this many of its u: 6e-5 is left out.
-constexpr double kReach = 4.0;
+constexpr double kReach_u = 4.0;
 // Angles closer than this are one.
 constexpr double kTwin_rad = 1e-9;
 
@@ -87,11 +87,11 @@ std::vector<double> Smear(const std::vector<double>& table,
     double* row = out.data() + i * m;
     double total = 0.0;
     auto k = static_cast<std::size_t>(
-        std::lower_bound(edge.begin(), edge.end(), angles[i] - kReach * u) -
+        std::lower_bound(edge.begin(), edge.end(), angles[i] - kReach_u * u) -
         edge.begin());
     k = std::min(k > 0 ? k - 1 : k, i);
     double before = FastNormalCdf((edge[k] - angles[i]) / u);
-    for (; k < n && (k <= i || edge[k] < angles[i] + kReach * u); ++k) {
+    for (; k < n && (k <= i || edge[k] < angles[i] + kReach_u * u); ++k) {
       const double after = FastNormalCdf((edge[k + 1] - angles[i]) / u);
       const double weight = after - before;
       before = after;

@@ -3,15 +3,14 @@
 #include <cmath>
 
 #include "require.h"
+#include "wide.h"
 
 namespace touchdown::analysis {
 namespace {
 
-// Long double: a/b squared may leave the range of double, and nobody solves a
-// million of these.
-using Wide = long double;
-
-constexpr Wide kTolerance = 8 * 0x1p-53L;
+// Wide: a/b squared may leave the range of double, and nobody solves a million
+// of these.
+constexpr Wide kWithinRounding = 8 * 0x1p-53L;
 
 // One foot's share per unit of drive (g, or (1 + e) v).
 struct Shares {
@@ -58,18 +57,16 @@ struct Flush {
   }
 
   bool IsWithinTolerance() const {
-    return std::abs(std::abs(tau) - 1) <= kTolerance * std::abs(tau) ||
-           std::abs(m_ff) <= kTolerance * (1 + std::abs(lean_front)) ||
-           std::abs(m_rr) <= kTolerance * (1 + std::abs(lean_rear));
+    return std::abs(std::abs(tau) - 1) <= kWithinRounding * std::abs(tau) ||
+           std::abs(m_ff) <= kWithinRounding * (1 + std::abs(lean_front)) ||
+           std::abs(m_rr) <= kWithinRounding * (1 + std::abs(lean_rear));
   }
 
   Wide tau = 0, lean_rear = 0, lean_front = 0;
   Wide m_rr = 0, m_rf = 0, m_fr = 0, m_ff = 0, determinant = 0;
 };
 
-double Narrow(Wide x) { return static_cast<double>(x); }
-
-void Check(const FlatProblem& p) {
+void CheckFlatProblem(const FlatProblem& p) {
   RequirePositive("length", p.length_m, "m");
   RequirePositive("height", p.height_m, "m");
   RequireNotNegative("mu", p.mu);
@@ -79,7 +76,7 @@ void Check(const FlatProblem& p) {
 }  // namespace
 
 FlatResult SolveFlatContact(const FlatProblem& problem) {
-  Check(problem);
+  CheckFlatProblem(problem);
   RequirePositive("gravity", problem.gravity_mps2, "m/s^2");
   const Flush flush(problem);
   FlatResult out;
@@ -108,7 +105,7 @@ FlatResult SolveFlatContact(const FlatProblem& problem) {
 std::optional<FlatImpactSolution> SolveFlatImpact(const FlatProblem& problem,
                                                   double approach_mps,
                                                   double restitution) {
-  Check(problem);
+  CheckFlatProblem(problem);
   RequirePositive("approach speed", approach_mps, "m/s");
   RequireBetween("restitution", restitution, 0.0, 1.0);
   const auto shares = Flush(problem).Solve();

@@ -126,7 +126,7 @@ class Marcher {
   ImpactResult result_;
 };
 
-void Check(const ImpactProblem& p) {
+void CheckImpactProblem(const ImpactProblem& p) {
   RequireFinite("sin alpha", p.alpha.sin);
   RequireFinite("cos alpha", p.alpha.cos);
   RequirePositive("radius", p.radius_m, "m");
@@ -141,7 +141,7 @@ void Check(const ImpactProblem& p) {
 }  // namespace
 
 ImpactResult Impact(const ImpactProblem& problem) {
-  Check(problem);
+  CheckImpactProblem(problem);
   return Marcher(problem).Run();
 }
 

@@ -8,15 +8,16 @@
 #include <optional>
 #include <stdexcept>
 
+#include "wide.h"
+
 namespace touchdown::analysis {
 namespace {
 
-using Wide = long double;
 using Vector = std::array<Wide, kLcpMaxSize>;
 using Matrix = std::array<Vector, kLcpMaxSize>;
 using Subset = unsigned;  // bit i: index i belongs to it
 
-constexpr Wide kTolerance = 64 * 0x1p-53L;
+constexpr Wide kRoundOff = 64 * 0x1p-53L;
 
 bool Has(Subset set, std::size_t i) { return (set >> i & 1U) != 0; }
 
@@ -55,7 +56,7 @@ Reduction Reduce(const Matrix& m, Subset rows, Subset columns, std::size_t n) {
       }
     }
     largest = std::max(largest, std::abs(pivot));
-    if (std::abs(pivot) <= kTolerance * largest) break;
+    if (std::abs(pivot) <= kRoundOff * largest) break;
     for (std::size_t j = 0; j < n; ++j) {
       out.a[row][j] /= pivot;
       out.left[row][j] /= pivot;
@@ -180,7 +181,7 @@ class Enumeration {
       if (!Has(columns, j)) continue;
       const Vector& left = reduced.left[reduced.pivot_row[j]];
       for (std::size_t i = 0; i < n_; ++i) {
-        out.error[j] += kTolerance * std::abs(left[i]) * RowSize(out.z, i);
+        out.error[j] += kRoundOff * std::abs(left[i]) * RowSize(out.z, i);
       }
     }
     return out;
@@ -201,7 +202,7 @@ class Enumeration {
   // z >= 0, w >= 0, z w = 0, each within its tolerance.
   bool IsSolution(const Candidate& c) const {
     for (std::size_t i = 0; i < n_; ++i) {
-      Wide w_error = kTolerance * RowSize(c.z, i);
+      Wide w_error = kRoundOff * RowSize(c.z, i);
       for (std::size_t j = 0; j < n_; ++j) {
         w_error += std::abs(m_[i][j]) * c.error[j];
       }
@@ -247,7 +248,7 @@ class Enumeration {
   bool StepSolves(Candidate from, const Vector& step, Wide factor) const {
     for (std::size_t i = 0; i < n_; ++i) {
       from.z[i] += factor * step[i];
-      from.error[i] += kTolerance * std::abs(factor * step[i]);
+      from.error[i] += kRoundOff * std::abs(factor * step[i]);
     }
     return IsSolution(from);
   }

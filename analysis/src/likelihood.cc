@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <tuple>
 
 #include "touchdown/analysis/special_functions.h"
@@ -13,7 +12,7 @@ namespace {
 
 // A probability closer to 1 than this adds nothing to a sum of logarithms that
 // is known to 1e-14.
-constexpr double kCertain = 8.3;
+constexpr double kCertain_z = 8.3;
 // Ends of the table with lapses: Phi is 0 or 1 to rounding beyond.
 constexpr int kLapseEnd = 9;
 // Probabilities are multiplied before the one logarithm is taken, as long as
@@ -34,13 +33,13 @@ struct Key {
   }
 };
 
-// log Phi: 0 above kCertain, the exact function below the table.
+// log Phi: 0 above kCertain_z, the exact function below the table.
 double FastLogNormalCdf(double z) {
   constexpr int kLow = -25;
   static const HermiteTable table(kLow, 9, LogNormalCdf, [](double x) {
     return std::exp(std::log(NormalDensity(x)) - LogNormalCdf(x));
   });
-  if (z >= kCertain) return 0.0;
+  if (z >= kCertain_z) return 0.0;
   return z < kLow ? LogNormalCdf(z) : table(z);
 }
 
@@ -116,7 +115,6 @@ std::vector<Cell> MakeCells(std::span<const Observation> observations,
 
 double LogLikelihood(std::span<const Cell> cells, double angle_rad,
                      double scatter_rad, double lapse) {
-  constexpr double kSqrtHalf = std::numbers::sqrt2 / 2;
   double sum = 0.0;
   double product = 1.0;
   for (const Cell& cell : cells) {
@@ -129,12 +127,12 @@ double LogLikelihood(std::span<const Cell> cells, double angle_rad,
     }
     const double toward = cell.p_bounce == 1.0 ? z : -z;
     if (lapse == 0.0) {
-      if (toward > kCertain) continue;
+      if (toward > kCertain_z) continue;
       if (toward < kSafeZ || cell.count != 1.0) {
         sum += cell.count * LogNormalCdf(toward);
         continue;
       }
-      product *= 0.5 * std::erfc(-toward * kSqrtHalf);
+      product *= NormalCdf(toward);
     } else {
       const double right = lapse + (1.0 - 2.0 * lapse) * NormalCdf(toward);
       if (cell.count != 1.0) {
@@ -154,8 +152,8 @@ double LogLikelihood(std::span<const Cell> cells, double angle_rad,
 double FastNormalCdf(double z) {
   constexpr int kEnd = 9;
   static const HermiteTable table(-kEnd, kEnd, NormalCdf, NormalDensity);
-  if (z <= -kCertain) return 0.0;
-  return z >= kCertain ? 1.0 : table(z);
+  if (z <= -kCertain_z) return 0.0;
+  return z >= kCertain_z ? 1.0 : table(z);
 }
 
 GridLikelihood::GridLikelihood(std::span<const Cell> cells,
@@ -189,7 +187,7 @@ void GridLikelihood::At(double angle_rad, std::span<double> out) const {
       }
     } else if (hard) {
       const HermiteTable& table = with_lapse_.front();
-      constexpr double kEnd = kCertain;
+      constexpr double kEnd = kCertain_z;
       for (std::size_t j = 0; j < levels_; ++j) {
         out[j] +=
             cell.count * table(std::clamp(toward * inverse[j], -kEnd, kEnd));

@@ -26,13 +26,12 @@ constexpr double kFlat = 1e-6;
 constexpr std::size_t kBinAbove = 2000;
 constexpr double kBinWidth_rad = 0.05 * core::kDegree;
 
-const double kGolden = (std::sqrt(5.0) - 1.0) / 2.0;
-
 // Greatest value of f on [a, b], f having one maximum there; to `tolerance` in
 // the argument.
 template <class F>
 std::pair<double, double> Maximize(const F& f, double a, double b,
                                    double tolerance) {
+  constexpr double kGolden = 0.6180339887498949;
   double x1 = b - kGolden * (b - a);
   double x2 = a + kGolden * (b - a);
   double f1 = f(x1);
@@ -106,7 +105,7 @@ class Profile {
   double high_;
 };
 
-void Check(const ProfileOptions& o) {
+void CheckProfileOptions(const ProfileOptions& o) {
   if (!(o.high_rad > o.low_rad) || !std::isfinite(o.high_rad - o.low_rad)) {
     throw std::invalid_argument(fmt::format(
         "low_rad is {} and high_rad is {}; both must be finite, low below high",
@@ -235,7 +234,7 @@ LikelihoodProfile ProfileOfPosterior(const BoundaryPosterior& posterior) {
 
 LikelihoodProfile ProfileLikelihood(std::span<const Observation> observations,
                                     const ProfileOptions& options) {
-  Check(options);
+  CheckProfileOptions(options);
   LikelihoodProfile out;
   out.status = Classify(observations);
   out.interval95_rad = {options.low_rad, options.high_rad};

@@ -16,11 +16,11 @@ namespace {
 
 // Candidates lie within this many standard deviations of the mean, and at least
 // this far on either side.
-constexpr double kReach = 4.0;
+constexpr double kReach_sd = 4.0;
 constexpr double kLeastReach_rad = 3.0 * core::kDegree;
 // Grid points with less weight than this are passed over: together they hold
 // less than a ten-thousandth of the posterior.
-constexpr double kNegligible = 1e-9;
+constexpr double kNegligibleWeight = 1e-9;
 
 // Expected variance of theta after one trial at `angle`.
 double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
@@ -34,7 +34,7 @@ double ExpectedVariance(const BoundaryGrid& grid, double angle_rad,
     double q = 0.0;
     for (std::size_t j = 0; j < m; ++j) {
       const double w = grid.weight[i * m + j];
-      if (w < kNegligible) continue;
+      if (w < kNegligibleWeight) continue;
       q += w * FastNormalCdf((angle_rad - theta) * inverse_scatter[j]);
     }
     p += q;
@@ -95,7 +95,7 @@ NextAngle ChooseNextAngle(const BoundaryPosterior& posterior, int trials_so_far,
     inverse_scatter.push_back(1.0 / std::hypot(s, options.set_u_rad));
   }
   const double mean = design.mean_rad;
-  const double reach = std::max(kReach * design.sd_rad, kLeastReach_rad);
+  const double reach = std::max(kReach_sd * design.sd_rad, kLeastReach_rad);
   const double step = options.candidate_step_rad;
   const double variance = design.sd_rad * design.sd_rad;
   // Where the rig cannot reach what is believed, the nearer of its ends is all

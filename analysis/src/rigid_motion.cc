@@ -265,7 +265,7 @@ class Simulator {
   RigidMotion motion_;
 };
 
-void Check(const RigidMotionProblem& p) {
+void CheckRigidMotionProblem(const RigidMotionProblem& p) {
   const RigidOutline outline(p.body);  // refuses an absent size
   RequireNotNegative("gyration radius", p.gyration_radius_m, "m");
   RequireNotNegative("mu", p.mu);
@@ -298,7 +298,7 @@ const Stretch& StretchAt(const RigidMotion& motion, double time_s) {
 }  // namespace
 
 RigidMotion SimulateRigidMotion(const RigidMotionProblem& problem) {
-  Check(problem);
+  CheckRigidMotionProblem(problem);
   return Simulator(problem).Run();
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 // Outcomes that the model takes for certain tell nothing of a covariate, and
 // their weight is 0 to rounding.
-constexpr double kCertain = 1e-9;
+constexpr double kCertainVariance = 1e-9;
 // What regression leaves of a covariate that does not vary, as a share of its
 // square.
 constexpr double kConstant = 1e-9;
@@ -72,7 +72,7 @@ std::optional<ScoreTest> TestCovariate(
     const double z = (o.angle_rad - posterior.median_rad) / sigma;
     const double p = NormalCdf(z);
     const double variance = p * NormalCdf(-z);
-    if (variance < kCertain) continue;
+    if (variance < kCertainVariance) continue;
     const double density = NormalDensity(z) / sigma;
     terms.push_back({(o.p_bounce - p) * density / variance,
                      density * density / variance, z, *covariate[i]});

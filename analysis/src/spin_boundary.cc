@@ -5,11 +5,10 @@
 #include <numbers>
 
 #include "require.h"
+#include "wide.h"
 
 namespace touchdown::analysis {
 namespace {
-
-using Wide = long double;
 
 // R omega^2 - g with the rounding errors of both products added back.
 Wide Excess(double radius_m, double omega_rad_per_s, double gravity_mps2) {
@@ -20,8 +19,6 @@ Wide Excess(double radius_m, double omega_rad_per_s, double gravity_mps2) {
   const Wide q_error = std::fma(p, omega, -q);
   return (q - static_cast<Wide>(gravity_mps2)) + (q_error + p_error * omega);
 }
-
-double Narrow(Wide x) { return static_cast<double>(x); }
 
 // alpha_b at a spin of x >= threshold.
 double AngleAt(double x, double threshold) {

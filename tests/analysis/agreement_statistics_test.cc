@@ -54,10 +54,10 @@ TEST(ClopperPearsonInterval, TailsAreExact) {
 TEST(CohenKappa, SexualFunOfAgresti) {
   // Agresti (1990); vcd prints 0.1293 (0.0686) and 0.2374 (0.0783).
   const int counts[] = {7, 7, 2, 3, 2, 8, 3, 7, 1, 5, 4, 9, 2, 8, 9, 14};
-  const Kappa plain = CohenKappa(counts, 4);
+  const CohensKappa plain = CohenKappa(counts, 4);
   EXPECT_NEAR(plain.kappa, 0.129330254, kTolerance);
   EXPECT_NEAR(plain.ase, 0.06859853248, kTolerance);
-  const Kappa linear = CohenKappa(counts, 4, KappaWeights::kLinear);
+  const CohensKappa linear = CohenKappa(counts, 4, KappaWeights::kLinear);
   EXPECT_NEAR(linear.kappa, 0.2373806276, kTolerance);
   EXPECT_NEAR(linear.ase, 0.07831633478, kTolerance);
 }
@@ -166,7 +166,7 @@ TEST(AgreementStatistics, EveryNumberOfTheReference) {
               : statistic == "mcnemar_nocc" ? test.chi_square
                                             : test.chi_square_corrected;
     } else if (statistic == "cohen_kappa" && n.size() == 4) {
-      const Kappa kappa = CohenKappa(n, 2);
+      const CohensKappa kappa = CohenKappa(n, 2);
       value = quantity == "kappa" ? kappa.kappa
               : quantity == "ASE" ? kappa.ase
                                   : kappa.ase0;

@@ -32,7 +32,7 @@ enum class KappaWeights { kNone, kLinear };
 // Cohen's kappa with the standard errors of Fleiss, Cohen and Everitt (1969):
 // `ase` at the estimate, `ase0` if there were no agreement but by chance (for
 // tests). Linear weights are 1 - |i - j| / (k - 1).
-struct Kappa {
+struct CohensKappa {
   double kappa = 0.0;
   double ase = 0.0;
   double ase0 = 0.0;
@@ -41,8 +41,8 @@ struct Kappa {
 // Throws std::invalid_argument unless counts are >= 0, their sum is positive
 // and there are k * k of them, k >= 2. Where all lies in one category kappa is
 // undefined: NaN with `ase` NaN.
-Kappa CohenKappa(std::span<const int> counts, int k,
-                 KappaWeights weights = KappaWeights::kNone);
+CohensKappa CohenKappa(std::span<const int> counts, int k,
+                       KappaWeights weights = KappaWeights::kNone);
 
 // Counts of two yes/no ratings: a both yes, b yes/no, c no/yes, d both no.
 struct TwoByTwo {

@@ -67,8 +67,8 @@ struct TheoryComparison {
   // none is left.
   std::optional<core::Interval> wilson95;
   std::optional<core::Interval> clopper_pearson95;
-  std::optional<Kappa> kappa;      // absent where undefined
-  std::optional<double> matthews;  // absent where undefined
+  std::optional<CohensKappa> kappa;  // absent where undefined
+  std::optional<double> matthews;    // absent where undefined
 };
 
 struct BoundaryStudy {
