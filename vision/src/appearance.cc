@@ -18,7 +18,7 @@ namespace touchdown::vision {
 namespace {
 
 // A pixel clear inside the body, of one frame.
-struct Inside {
+struct InsidePixel {
   double x_px = 0.0;  // from the body's centre, along the image's axes
   double y_px = 0.0;
   double level_dn = 0.0;  // beyond the shading
@@ -55,7 +55,8 @@ double ShadingAt(const Shading& shading, double xi, double eta) {
          eta * (k[2] + eta * k[5]);
 }
 
-std::size_t PlaceOf(const core::PixelPoint& centre, double x_px, double y_px) {
+std::size_t StepsFromMiddle(const core::PixelPoint& centre, double x_px,
+                            double y_px) {
   return static_cast<std::size_t>(std::abs(x_px - std::round(centre.x_px)) +
                                   std::abs(y_px - std::round(centre.y_px)));
 }
@@ -76,7 +77,7 @@ class Collection {
 
   void Add(const SeenOutline& seen);
 
-  const std::vector<Inside>& all() const { return all_; }
+  const std::vector<InsidePixel>& all() const { return all_; }
   std::size_t frames() const { return frames_; }
 
  private:
@@ -90,7 +91,7 @@ class Collection {
   double inner_px_;
   std::size_t expected_;  // frames
   OutlinePixels pixels_;
-  std::vector<Inside> all_;
+  std::vector<InsidePixel> all_;
   std::size_t frames_ = 0;
 };
 
@@ -138,7 +139,7 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
     for (std::size_t i = begin; i < end; ++i) {
       const double covered = cover.value[i - begin];
       const double out = pixels_.background[i];
-      Inside in;
+      InsidePixel in;
       in.x_px = pixels_.x[i] - centre.x_px;
       in.y_px = pixels_.y[i] - centre.y_px;
       in.level_dn = out + (pixels_.value[i] - out) / covered;
@@ -151,13 +152,13 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
       in.cosine = cosine;
       in.sine = sine;
       in.frame = frames_;
-      in.place = PlaceOf(centre, pixels_.x[i], pixels_.y[i]);
+      in.place = StepsFromMiddle(centre, pixels_.x[i], pixels_.y[i]);
       all_.push_back(in);
     }
   }
 }
 
-SpotSample SampleOf(const Inside& in, bool turns) {
+SpotSample SampleOf(const InsidePixel& in, bool turns) {
   return {turns ? in.x_px * in.cosine + in.y_px * in.sine : in.x_px,
           turns ? in.y_px * in.cosine - in.x_px * in.sine : in.y_px,
           in.level_dn, in.variance_dn2};
@@ -196,10 +197,10 @@ std::vector<SpotSample> CellsOf(const std::vector<SpotSample>& samples,
 
 // Whether it is so in most of the frames: what comes in front of the body in
 // some, such as an obstacle, is none of its looks.
-bool IsSeenThroughout(const std::vector<Inside>& all, std::size_t frames,
+bool IsSeenThroughout(const std::vector<InsidePixel>& all, std::size_t frames,
                       const Appearance& look) {
   std::vector<double> fall(frames, 0.0);
-  for (const Inside& in : all) {
+  for (const InsidePixel& in : all) {
     const double level = look.At(in.x_px, in.y_px, in.cosine, in.sine).level_dn;
     const double rest = in.level_dn - level;
     fall[in.frame] +=
@@ -216,11 +217,11 @@ bool IsSeenThroughout(const std::vector<Inside>& all, std::size_t frames,
 
 // Every `step`-th, in each frame others: the same ones in a mirror, and of a
 // clip that is played backwards.
-std::vector<Inside> Thinned(const std::vector<Inside>& all, std::size_t frames,
-                            std::size_t step) {
-  std::vector<Inside> some;
+std::vector<InsidePixel> ThinnedPixels(const std::vector<InsidePixel>& all,
+                                       std::size_t frames, std::size_t step) {
+  std::vector<InsidePixel> some;
   some.reserve(all.size() / step);
-  for (const Inside& in : all) {
+  for (const InsidePixel& in : all) {
     const std::size_t last = frames - 1;
     const std::size_t from_middle =
         std::max(in.frame, last - in.frame) - last / 2;
@@ -229,11 +230,12 @@ std::vector<Inside> Thinned(const std::vector<Inside>& all, std::size_t frames,
   return some;
 }
 
-std::optional<Appearance> Described(const std::vector<Inside>& all, bool turns,
-                                    std::size_t frames, const Common& common) {
+std::optional<Appearance> Described(const std::vector<InsidePixel>& all,
+                                    bool turns, std::size_t frames,
+                                    const Common& common) {
   std::vector<SpotSample> samples;
   samples.reserve(all.size());
-  for (const Inside& in : all) samples.push_back(SampleOf(in, turns));
+  for (const InsidePixel& in : all) samples.push_back(SampleOf(in, turns));
   // Some 400 cells, none smaller than half a pixel, and a few samples in each.
   constexpr double kCells = 400.0;
   constexpr double kInCell = 5.0;
@@ -249,11 +251,11 @@ std::optional<Appearance> Described(const std::vector<Inside>& all, bool turns,
   const std::size_t step = (samples.size() + kSamples - 1) / kSamples;
   double left_out = 1.0;  // how many there are for one that stays
   if (step > 1) {
-    const std::vector<Inside> some = Thinned(all, frames, step);
+    const std::vector<InsidePixel> some = ThinnedPixels(all, frames, step);
     left_out =
         static_cast<double>(all.size()) / static_cast<double>(some.size());
     samples.clear();
-    for (const Inside& in : some) samples.push_back(SampleOf(in, turns));
+    for (const InsidePixel& in : some) samples.push_back(SampleOf(in, turns));
   }
   SpotOptions options;
   options.size_px = common.size_px;
@@ -335,7 +337,7 @@ std::optional<Appearance> LearnRings(Clip& clip, const Background& background,
                         frames.size());
   for (const SeenOutline& seen : frames) collection.Add(seen);
   std::vector<std::vector<double>> rings;
-  for (const Inside& in : collection.all()) {
+  for (const InsidePixel& in : collection.all()) {
     const auto ring =
         static_cast<std::size_t>(std::lround(std::hypot(in.x_px, in.y_px)));
     if (ring >= rings.size()) rings.resize(ring + 1);

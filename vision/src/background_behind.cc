@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "box_around.h"
 #include "frame_samples.h"
 #include "mid_mean.h"
 #include "noise_pairs.h"
@@ -51,15 +52,6 @@ void Count(const Cover& cover, Covers& covers) {
       count[x] = static_cast<std::uint16_t>(count[x] + (mask[x] != 0));
     }
   }
-}
-
-core::PixelRect BoxAround(const core::PixelRect& a, const core::PixelRect& b) {
-  if (a.width == 0 || a.height == 0) return b;
-  if (b.width == 0 || b.height == 0) return a;
-  const std::int32_t x = std::min(a.x, b.x);
-  const std::int32_t y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
-          std::max(a.y + a.height, b.y + b.height) - y};
 }
 
 // The mid-mean of what is not covered, in the pixels that anything covers.

@@ -12,7 +12,7 @@ namespace touchdown::vision {
 namespace {
 
 // A place that says something, in places from the middle.
-struct Told {
+struct TellingPlace {
   double x = 0.0;
   double y = 0.0;
   double says = 0.0;
@@ -22,8 +22,8 @@ struct Told {
 // like the wall between two ends is taken in.
 constexpr double kOfAll = 0.1;
 
-std::vector<Told> ToldOf(const CoMoving& places) {
-  std::vector<Told> told;
+std::vector<TellingPlace> ToldOf(const CoMoving& places) {
+  std::vector<TellingPlace> told;
   const int n = places.size();
   const auto at = [&](int column, int row) {
     if (column < 0 || row < 0 || column >= n || row >= n) return 0;
@@ -53,14 +53,14 @@ std::vector<Told> ToldOf(const CoMoving& places) {
 }
 
 // Without the still places that no outline of what moves along would hold.
-void LeaveOutFar(std::vector<Told>& told) {
+void LeaveOutFar(std::vector<TellingPlace>& told) {
   constexpr double kBeyond = 0.25;  // of the box around what moves along
   const double far = std::numeric_limits<double>::infinity();
   double left = far;
   double right = -far;
   double top = far;
   double bottom = -far;
-  for (const Told& t : told) {
+  for (const TellingPlace& t : told) {
     if (t.says < 0.0) continue;
     left = std::min(left, t.x);
     right = std::max(right, t.x);
@@ -68,34 +68,34 @@ void LeaveOutFar(std::vector<Told>& told) {
     bottom = std::max(bottom, t.y);
   }
   const double margin = kBeyond * std::max(right - left, bottom - top);
-  std::erase_if(told, [&](const Told& t) {
+  std::erase_if(told, [&](const TellingPlace& t) {
     return t.x < left - margin || t.x > right + margin || t.y < top - margin ||
            t.y > bottom + margin;
   });
 }
 
 // How much of a place lies within an edge so deep.
-double Within(double depth) { return std::clamp(depth + 0.5, 0.0, 1.0); }
+double ShareInside(double depth) { return std::clamp(depth + 0.5, 0.0, 1.0); }
 
-double MeritOf(const std::vector<Told>& told, const Outline& outline) {
+double MeritOf(const std::vector<TellingPlace>& told, const Outline& outline) {
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
   double merit = -kOfAll * Area(outline);
-  for (const Told& t : told) {
+  for (const TellingPlace& t : told) {
     const double depth = DepthInside(outline, t.x, t.y, cosine, sine);
-    if (depth > -0.5) merit += Within(depth) * t.says;
+    if (depth > -0.5) merit += ShareInside(depth) * t.says;
   }
   return merit;
 }
 
 // By the moments of what moves along.
-std::optional<Outline> StartOf(const std::vector<Told>& told,
+std::optional<Outline> StartOf(const std::vector<TellingPlace>& told,
                                core::BodyKind kind) {
   constexpr double kLeast = 30.0;  // places
   double n = 0.0;
   double x = 0.0;
   double y = 0.0;
-  for (const Told& t : told) {
+  for (const TellingPlace& t : told) {
     if (t.says < 0.0) continue;
     n += 1.0;
     x += t.x;
@@ -107,7 +107,7 @@ std::optional<Outline> StartOf(const std::vector<Told>& told,
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
-  for (const Told& t : told) {
+  for (const TellingPlace& t : told) {
     if (t.says < 0.0) continue;
     xx += (t.x - x) * (t.x - x) / n;
     xy += (t.x - x) * (t.y - y) / n;
@@ -167,7 +167,7 @@ std::vector<Outline> NextTo(const Outline& outline, double step) {
 
 // To the best of the outlines next to it, as long as there is a better one;
 // false where there still is one when the bound of turns is met.
-bool Climb(const std::vector<Told>& told, double step,
+bool Climb(const std::vector<TellingPlace>& told, double step,
            const core::Cancellation& until, Outline& outline) {
   constexpr int kMostTurns = 60;
   double best = MeritOf(told, outline);
@@ -187,9 +187,10 @@ bool Climb(const std::vector<Told>& told, double step,
 }
 
 // Some of them, each standing for as many as make up all.
-std::vector<Told> Thinned(const std::vector<Told>& told, std::size_t most) {
+std::vector<TellingPlace> ThinnedPlaces(const std::vector<TellingPlace>& told,
+                                        std::size_t most) {
   const std::size_t step = (told.size() + most - 1) / most;
-  std::vector<Told> few;
+  std::vector<TellingPlace> few;
   for (std::size_t i = 0; i < told.size(); i += step) {
     few.push_back(told[i]);
     few.back().says *= static_cast<double>(step);
@@ -202,13 +203,13 @@ std::vector<Told> Thinned(const std::vector<Told>& told, std::size_t most) {
 std::optional<BestOutline> FindBestOutline(const CoMoving& places,
                                            core::BodyKind kind, bool finely,
                                            const core::Cancellation& until) {
-  std::vector<Told> told = ToldOf(places);
+  std::vector<TellingPlace> told = ToldOf(places);
   LeaveOutFar(told);
   const auto start = StartOf(told, kind);
   if (!start) return std::nullopt;
   // Few places do to come near.
   constexpr std::size_t kFew = 4000;
-  const std::vector<Told> few = Thinned(told, kFew);
+  const std::vector<TellingPlace> few = ThinnedPlaces(told, kFew);
   // From two sides: what lies between two parts costs first, and gains later.
   constexpr double kLarger = 1.3;
   BestOutline best;
@@ -239,9 +240,9 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
   double moving = 0.0;
   double moving_within = 0.0;
   double within = 0.0;
-  for (const Told& t : told) {
+  for (const TellingPlace& t : told) {
     const double share =
-        Within(DepthInside(best.outline, t.x, t.y, cosine, sine));
+        ShareInside(DepthInside(best.outline, t.x, t.y, cosine, sine));
     within += share;
     if (t.says < 0.0) continue;
     moving += 1.0;

@@ -12,7 +12,7 @@ namespace touchdown::vision {
 namespace {
 
 // Of four values at -3, -1, 1 and 3 half steps the cubic's at `s`.
-double Cubic(const std::array<double, 4>& v, double s) {
+double CubicAt(const std::array<double, 4>& v, double s) {
   constexpr double kOuter = 48.0;  // products of the nodes' distances
   constexpr double kInner = 16.0;
   return -(s + 1) * (s - 1) * (s - 3) / kOuter * v[0] +
@@ -134,9 +134,9 @@ Track Bridged(const Track& track) {
       pose.time_s = std::lerp(poses[i].time_s, poses[i + 1].time_s, share);
       if (before != nullptr && after != nullptr) {
         const auto on_cubic = [&](const auto& value) {
-          return Cubic({value(*before), value(poses[i]), value(poses[i + 1]),
-                        value(*after)},
-                       2.0 * share - 1.0);
+          return CubicAt({value(*before), value(poses[i]), value(poses[i + 1]),
+                          value(*after)},
+                         2.0 * share - 1.0);
         };
         pose.centre.x_px =
             on_cubic([](const Pose& p) { return p.centre.x_px; });

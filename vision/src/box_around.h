@@ -1,4 +1,4 @@
-// The part of a clip's picture around a point.
+// The part of a clip's picture around a point, or around two parts.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +22,17 @@ inline core::PixelRect BoxAround(const core::PixelPoint& centre,
   rect.height =
       within(centre.y_px + reach_px + 1.0, info.height_px) - rect.y + 1;
   return rect;
+}
+
+// An empty one counts for nothing.
+inline core::PixelRect BoxAround(const core::PixelRect& a,
+                                 const core::PixelRect& b) {
+  if (a.width == 0 || a.height == 0) return b;
+  if (b.width == 0 || b.height == 0) return a;
+  const std::int32_t x = std::min(a.x, b.x);
+  const std::int32_t y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
+          std::max(a.y + a.height, b.y + b.height) - y};
 }
 
 }  // namespace touchdown::vision

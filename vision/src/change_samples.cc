@@ -22,7 +22,7 @@ core::PixelRect RegionOf(const Clip& clip,
 // Where the body would be at a steady pace beyond either end of the track. A
 // blow or gravity soon bends the path: nothing is said beyond so many
 // frames (a choice, not measured).
-constexpr std::int64_t kFarthest = 10;
+constexpr std::int64_t kFarthestFrames = 10;
 constexpr std::size_t kPaceOver = 4;  // poses that the pace is of
 
 bool Expect(const Track& track, SampledFrame& frame) {
@@ -34,10 +34,10 @@ bool Expect(const Track& track, SampledFrame& frame) {
   if (poses.size() < 2) return false;
   const std::size_t reach = std::min(kPaceOver, poses.size() - 1);
   if (frame.index < poses.front().frame) {
-    if (poses.front().frame - frame.index > kFarthest) return false;
+    if (poses.front().frame - frame.index > kFarthestFrames) return false;
     frame.pose = OnTheWay(poses.front(), poses[reach], frame.index);
   } else {
-    if (frame.index - poses.back().frame > kFarthest) return false;
+    if (frame.index - poses.back().frame > kFarthestFrames) return false;
     frame.pose =
         OnTheWay(poses[poses.size() - 1 - reach], poses.back(), frame.index);
   }
@@ -66,7 +66,7 @@ core::PixelRect Intersection(const core::PixelRect& a,
   return both;
 }
 
-core::PixelRect BoxOf(const Outline& outline, double margin) {
+core::PixelRect OutlineBox(const Outline& outline, double margin) {
   const double reach = Extent(outline) + margin;
   core::PixelRect box;
   box.x = static_cast<std::int32_t>(std::floor(outline.centre.x_px - reach));
@@ -93,7 +93,7 @@ std::vector<std::uint8_t> MarkNear(const Track& track,
     const double cosine = std::cos(outline.angle_rad);
     const double sine = std::sin(outline.angle_rad);
     const core::PixelRect box =
-        Intersection(BoxOf(outline, margin), lattice.box);
+        Intersection(OutlineBox(outline, margin), lattice.box);
     if (box.width == 0 || box.height == 0) continue;
     const auto first = [&](std::int32_t from, std::int32_t origin) {
       return (from - origin + lattice.step - 1) / lattice.step;
@@ -147,8 +147,8 @@ std::int32_t StepFor(double area, int points) {
 }
 
 template <class Sample>
-void TakeRow(const core::Frame& frame, const LatticePoints& points,
-             std::size_t from, std::size_t to, float* levels) {
+void CopyLevels(const core::Frame& frame, const LatticePoints& points,
+                std::size_t from, std::size_t to, float* levels) {
   const Sample* row = frame.row<Sample>(points.y[from] - frame.origin_y_px);
   for (std::size_t i = from; i < to; ++i) {
     levels[i] = static_cast<float>(row[points.x[i] - frame.origin_x_px]);
@@ -216,8 +216,8 @@ LatticePoints PointsNear(const Clip& clip, const Track& track,
   core::PixelRect box;
   for (const SampledFrame& frame : frames) {
     if (!frame.is_expected) continue;
-    const core::PixelRect one =
-        Intersection(BoxOf(OutlineAt(track.body, frame.pose), margin), region);
+    const core::PixelRect one = Intersection(
+        OutlineBox(OutlineAt(track.body, frame.pose), margin), region);
     if (one.width == 0 || one.height == 0) continue;
     if (box.width == 0) {
       box = one;
@@ -280,9 +280,9 @@ LatticeLevels ReadLevels(Clip& clip, const std::vector<SampledFrame>& frames,
         frame = reader.Read(frames[k].index, row);
       }
       if (frame.is_16_bit()) {
-        TakeRow<std::uint16_t>(frame, points, from, to, of);
+        CopyLevels<std::uint16_t>(frame, points, from, to, of);
       } else {
-        TakeRow<std::uint8_t>(frame, points, from, to, of);
+        CopyLevels<std::uint8_t>(frame, points, from, to, of);
       }
       from = to;
     }

@@ -6,7 +6,7 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr std::int32_t kWhite = 4064;
+constexpr std::int32_t kWhiteLevel = 4064;
 constexpr std::int32_t kSaturated = (1 << kCineLinearBits) - 1;
 // Fitted; see the header.
 constexpr double kBlack = 63.999;
@@ -28,7 +28,7 @@ std::int32_t CodeOf(std::int32_t x) {
 
 CineCurve CineLinearOfCode() {
   CineCurve linear{};
-  const std::int32_t last = CodeOf(kWhite);
+  const std::int32_t last = CodeOf(kWhiteLevel);
   std::int32_t x = 0;
   std::int32_t mean = 0;
   for (std::int32_t code = 0; code <= last; ++code) {
@@ -36,7 +36,7 @@ CineCurve CineLinearOfCode() {
     while (x <= kSaturated && CodeOf(x) == code) ++x;
     if (x > first) mean = (first + x - 1) / 2;
     linear[static_cast<std::size_t>(code)] =
-        static_cast<std::uint16_t>(std::min(mean, kWhite));
+        static_cast<std::uint16_t>(std::min(mean, kWhiteLevel));
   }
   std::fill(linear.begin() + last + 1, linear.end(),
             static_cast<std::uint16_t>(kSaturated));

@@ -178,7 +178,6 @@ Image ReadImageApart(const std::filesystem::path& path,
   image.width_px = shared.width_px;
   image.height_px = shared.height_px;
   image.bit_depth = shared.bit_depth;
-  constexpr std::int32_t kMostSide_px = 1 << 20;
   const std::int64_t row_bytes =
       std::int64_t{shared.width_px} * (shared.bit_depth > 8 ? 2 : 1);
   const bool is_picture =

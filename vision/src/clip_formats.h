@@ -13,6 +13,9 @@ namespace touchdown::vision {
 
 class FrameMemory;
 
+// No camera comes near; keeps every product of sizes far from overflow.
+inline constexpr std::int64_t kMaxSidePx = 1 << 16;
+
 // A Photron recording, given its .mraw or its header.
 std::unique_ptr<Clip> OpenMraw(const std::filesystem::path& path,
                                const ClipOptions& options);

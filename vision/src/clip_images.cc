@@ -15,7 +15,7 @@ namespace touchdown::vision {
 namespace {
 
 // "png", "tiff" or "jpeg".
-std::string KindOf(const std::filesystem::path& path) {
+std::string FileKind(const std::filesystem::path& path) {
   const std::string extension = LowerExtension(path);
   if (extension == ".png") return "png";
   return extension.starts_with(".t") ? "tiff" : "jpeg";
@@ -49,7 +49,7 @@ class ImageFolderClip final : public Clip {
     RefuseStack(0);
     Load(0);
     info_.path = folder;
-    info_.format = KindOf(files_.front()) + "-folder";
+    info_.format = FileKind(files_.front()) + "-folder";
     info_.width_px = image_.width_px;
     info_.height_px = image_.height_px;
     info_.bit_depth = image_.bit_depth;
@@ -163,9 +163,9 @@ std::vector<std::filesystem::path> ListImages(
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
     return NaturalLess(a.filename().string(), b.filename().string());
   });
-  const std::string kind = KindOf(files.front());
+  const std::string kind = FileKind(files.front());
   for (const auto& file : files) {
-    if (KindOf(file) == kind) continue;
+    if (FileKind(file) == kind) continue;
     throw core::InputError(fmt::format(
         "{}: images of two kinds ({} and {}), expected those of one recording "
         "alone",

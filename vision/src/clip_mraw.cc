@@ -26,7 +26,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "16-bit samples are handed out in place");
 
-std::int64_t BytesOf(std::int64_t samples, std::int32_t bits) {
+std::int64_t PackedBytes(std::int64_t samples, std::int32_t bits) {
   return (samples * bits + 7) / 8;
 }
 
@@ -225,7 +225,7 @@ class MrawClip final : public Clip {
       return whole;
     }
     const std::int64_t expected =
-        BytesOf(header_.frames * samples_per_frame(), header_.stored_bits);
+        PackedBytes(header_.frames * samples_per_frame(), header_.stored_bits);
     if (size != expected) {
       throw core::InputError(fmt::format(
           "{}: has {} bytes, but {} describes {}, which are {} bytes; is it "

@@ -137,7 +137,6 @@ class TiffStackClip final : public Clip {
   // The first page's own size is checked by its decoder, or here.
   void CheckAlike() const {
     const TiffPage& first = pages()[0];
-    constexpr std::int64_t kMaxSidePx = 1 << 16;
     if (first.width_px < 1 || first.width_px > kMaxSidePx ||
         first.height_px < 1 || first.height_px > kMaxSidePx) {
       Fail(fmt::format("{}x{} pixels, expected 1 .. {} a side", first.width_px,

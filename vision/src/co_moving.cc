@@ -8,15 +8,16 @@
 
 #include "both_sides.h"
 #include "outline_pixels.h"
+#include "robust.h"
 #include "touchdown/core/parallel.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
 
-constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kLeast = 8;    // frames
-constexpr std::size_t kEnough = 80;  // frames
+constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kLeastStacked = 8;  // frames
+constexpr std::size_t kMostStacked = 80;  // frames
 
 // The frames' pictures along the path, of means of bin x bin pixels.
 struct Stack {
@@ -42,8 +43,8 @@ struct Stack {
   }
 };
 
-core::PixelRect BoxOf(const std::vector<Pose>& poses, double reach_px,
-                      const ClipInfo& info) {
+core::PixelRect PathBox(const std::vector<Pose>& poses, double reach_px,
+                        const ClipInfo& info) {
   double left = poses.front().centre.x_px;
   double right = left;
   double top = poses.front().centre.y_px;
@@ -70,11 +71,12 @@ Stack StackOf(Clip& clip, const Track& path, double reach_px) {
   constexpr double kMostSamples = 8e6;
   constexpr double kMostPlaces = 300.0;  // across
   Stack stack;
-  const std::size_t step = (path.poses.size() + kEnough - 1) / kEnough;
+  const std::size_t step =
+      (path.poses.size() + kMostStacked - 1) / kMostStacked;
   for (const std::size_t i : FromBothSides(path.poses.size(), step)) {
     stack.poses.push_back(path.poses[i]);
   }
-  stack.rect = BoxOf(stack.poses, reach_px, clip.info());
+  stack.rect = PathBox(stack.poses, reach_px, clip.info());
   const double samples = static_cast<double>(stack.rect.width) *
                          static_cast<double>(stack.rect.height) *
                          static_cast<double>(stack.poses.size());
@@ -103,17 +105,10 @@ Stack StackOf(Clip& clip, const Track& path, double reach_px) {
   return stack;
 }
 
-float MedianOf(std::vector<float>& values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-class Layers {
+class MotionLayers {
  public:
-  Layers(Stack stack, const Background& noise, const CoMovingOptions& options,
-         const core::Cancellation& until)
+  MotionLayers(Stack stack, const Background& noise,
+               const CoMovingOptions& options, const core::Cancellation& until)
       : stack_(std::move(stack)),
         noise_(noise),
         until_(until),
@@ -153,7 +148,7 @@ class Layers {
     const double top = std::floor(p.y_px);
     if (!(left >= 0.0 && top >= 0.0 && left + 1.0 < stack_.width &&
           top + 1.0 < stack_.height)) {
-      return kNothing;
+      return kUnseen;
     }
     const std::size_t i =
         stack_.Index(static_cast<int>(left), static_cast<int>(top));
@@ -188,8 +183,8 @@ class Layers {
   std::vector<float> still_;  // NaN where unknown
 };
 
-bool Layers::IsCovered(const std::vector<unsigned char>& covered, std::size_t k,
-                       int x, int y) const {
+bool MotionLayers::IsCovered(const std::vector<unsigned char>& covered,
+                             std::size_t k, int x, int y) const {
   const core::PixelPoint c = stack_.In(stack_.poses[k].centre);
   const double dx = x - c.x_px;
   const double dy = y - c.y_px;
@@ -203,10 +198,10 @@ bool Layers::IsCovered(const std::vector<unsigned char>& covered, std::size_t k,
                  static_cast<std::size_t>(column)] != 0;
 }
 
-void Layers::LookBehind(const std::vector<unsigned char>& covered) {
+void MotionLayers::LookBehind(const std::vector<unsigned char>& covered) {
   constexpr std::size_t kLeastSeen = 3;  // frames
   const std::size_t count = stack_.Index(0, stack_.height);
-  still_.assign(count, kNothing);
+  still_.assign(count, kUnseen);
   core::InParallel(
       stack_.height, threads_, [&](std::int64_t begin, std::int64_t end) {
         std::vector<float> values;
@@ -220,14 +215,14 @@ void Layers::LookBehind(const std::vector<unsigned char>& covered) {
                 values.push_back(stack_.frames[k][i]);
               }
             }
-            if (values.size() >= kLeastSeen) still_[i] = MedianOf(values);
+            if (values.size() >= kLeastSeen) still_[i] = MedianInPlace(values);
           }
         }
       });
 }
 
-signed char Layers::Say(std::size_t place, std::vector<float>& values,
-                        double least_share, float& differs) const {
+signed char MotionLayers::Say(std::size_t place, std::vector<float>& values,
+                              double least_share, float& differs) const {
   constexpr double kMostSeen = 0.5;  // of the frames must show a place
   constexpr double kClear = 4.0;     // of the noise
   differs = 0.0F;
@@ -247,7 +242,7 @@ signed char Layers::Say(std::size_t place, std::vector<float>& values,
   const auto frames = static_cast<double>(stack_.frames.size());
   if (below > kMostSeen * frames) return -1;
   if (static_cast<double>(values.size()) < kMostSeen * frames) return 0;
-  const float moving = MedianOf(values);
+  const float moving = MedianInPlace(values);
   const double noise = std::sqrt(noise_.Variance(static_cast<double>(moving)));
   double moves = 0.0;
   double told = 0.0;
@@ -269,7 +264,7 @@ signed char Layers::Say(std::size_t place, std::vector<float>& values,
   return moves > kMost * told ? 1 : moves < (1.0 - kMost) * told ? -1 : 0;
 }
 
-void Layers::Judge(double least_share) {
+void MotionLayers::Judge(double least_share) {
   std::vector<float> differs(places_.says.size(), 0.0F);
   core::InParallel(
       places_.size(), threads_, [&](std::int64_t begin, std::int64_t end) {
@@ -285,7 +280,7 @@ void Layers::Judge(double least_share) {
 }
 
 // A blurred edge differs clearly long before it is half body.
-void Layers::LeaveOutRim(const std::vector<float>& differs) {
+void MotionLayers::LeaveOutRim(const std::vector<float>& differs) {
   constexpr double kBlur_px = 2.0;  // from nothing to all
   constexpr float kHalf = 0.5F;
   const int reach =
@@ -313,9 +308,9 @@ void Layers::LeaveOutRim(const std::vector<float>& differs) {
 CoMoving FindCoMoving(Clip& clip, const Background& noise, const Track& path,
                       const CoverOfPlaces& cover,
                       const CoMovingOptions& options) {
-  if (path.poses.size() < kLeast) return {};
-  Layers layers(StackOf(clip, path, options.reach_px), noise, options,
-                clip.cancellation());
+  if (path.poses.size() < kLeastStacked) return {};
+  MotionLayers layers(StackOf(clip, path, options.reach_px), noise, options,
+                      clip.cancellation());
   constexpr int kRounds = 4;
   // At first much of what is behind is not known.
   constexpr double kLeastAtFirst = 0.1;  // of the frames must tell

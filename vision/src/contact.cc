@@ -119,8 +119,8 @@ double NearLine(const PlaneTrack& track, const PlaneSample& s, double share) {
                    share * track.half_short_px});
 }
 constexpr double kAtContact = 0.05;
-constexpr double kSunk = 0.1;     // no body sinks into the ground by more
-constexpr double kCarried = 0.3;  // an edge that is seen may be off the contact
+constexpr double kSunk = 0.1;      // no body sinks into the ground by more
+constexpr double kSeenEdge = 0.3;  // it may be off the contact
 
 // Why the line is not the ground: the body passes through it, or is thrown back
 // well above or below it. Empty where line and track agree.
@@ -233,7 +233,7 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
   for (const PlaneSample& s : track.samples) gaps.push_back(s.gap_px);
   const double level = Median(gaps);
   const double sunk = level - *std::min_element(gaps.begin(), gaps.end());
-  if (sunk > NearLine(track, track.samples.front(), kCarried)) {
+  if (sunk > NearLine(track, track.samples.front(), kSeenEdge)) {
     return NoContact(
         fmt::format("its path is neither a flight nor along the ground line: "
                     "it sinks {:.1f} px below where it is half of the time",
@@ -282,7 +282,7 @@ double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
   double sum = 0.0;
   for (const PlaneSample& s : SamplesIn(track, stretch)) sum += s.gap_px;
   const double gap = sum / static_cast<double>(stretch.size());
-  const double near = NearLine(track, track.samples[stretch.begin], kCarried);
+  const double near = NearLine(track, track.samples[stretch.begin], kSeenEdge);
   return std::abs(gap) > near ? gap : 0.0;
 }
 

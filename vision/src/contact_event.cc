@@ -149,8 +149,6 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   }
 }
 
-constexpr double kDisagree = 3.0;  // sigmas between flights and line
-
 // It rebounds: one fit of both flights.
 bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
                     Event& event) {

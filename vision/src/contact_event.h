@@ -30,6 +30,9 @@ struct Event {
   double disagreement = 0.0;    // sigmas between the flights and the line
 };
 
+// Of Event::disagreement: beyond it flights and line contradict each other.
+inline constexpr double kDisagree = 3.0;
+
 // Measures the contact between the flight of `before_frames` and what follows;
 // narrows the ranges where frames were exposed across the impact, or lie in a
 // soft contact. False, with the reason, where the frames do not determine it.

@@ -28,7 +28,7 @@ constexpr double kLeastPace = 0.01;
 // surroundings change, by a quarter of it over a flight (51 clips with
 // photographed faces: 92 % of the drifts lie within 1.96 times that and their
 // own noise, of 76 % without).
-double DriftOf(double u_common, const SampleRange& flight) {
+double CommonDrift(double u_common, const SampleRange& flight) {
   constexpr double kShare = 0.25;
   return kShare * u_common / static_cast<double>(flight.size());
 }
@@ -46,19 +46,20 @@ Measured InMetres(const RecordContext& context, const Estimate& px) {
 }
 
 // Velocities along and normal to the true ground, px per frame.
-double Tangential(const JointVector& p, JointParameter vx, JointParameter vy) {
+double TangentialSpeed(const JointVector& p, JointParameter vx,
+                       JointParameter vy) {
   return p[vx] + p[kSlope] * p[vy];
 }
-double Normal(const JointVector& p, JointParameter vx, JointParameter vy) {
+double NormalSpeed(const JointVector& p, JointParameter vx, JointParameter vy) {
   return p[vy] - p[kSlope] * p[vx];
 }
-double NormalBefore(const JointVector& p) { return Normal(p, kVx, kVy); }
-double NormalAfter(const JointVector& p) { return Normal(p, kVx2, kVy2); }
+double NormalBefore(const JointVector& p) { return NormalSpeed(p, kVx, kVy); }
+double NormalAfter(const JointVector& p) { return NormalSpeed(p, kVx2, kVy2); }
 double TangentialBefore(const JointVector& p) {
-  return Tangential(p, kVx, kVy);
+  return TangentialSpeed(p, kVx, kVy);
 }
 double TangentialAfter(const JointVector& p) {
-  return Tangential(p, kVx2, kVy2);
+  return TangentialSpeed(p, kVx2, kVy2);
 }
 
 // The lowest point from the centre, along x', at touchdown.
@@ -122,7 +123,7 @@ void FillAngles(const RecordContext& context, const Event& event,
           : fit.Of([](const JointVector& p) { return p[kOmega]; }).value;
   const double picture =
       std::hypot(context.u_common_place_px * turns,
-                 DriftOf(context.u_common_place_px, event.before_frames)) /
+                 CommonDrift(context.u_common_place_px, event.before_frames)) /
       paces;
   angle.u = std::hypot(angle.u, picture);
   contact.approach_angle_rad =
@@ -179,7 +180,7 @@ void FillMotion(const RecordContext& context, const Event& event,
     if (!turns) return AbsentBecause("no mark on the sphere");
     // face grows as the leading end rises: counter-clockwise with x' ahead.
     Estimate rate = fit.Of([k](const JointVector& p) { return p[k]; });
-    rate.u = std::hypot(rate.u, DriftOf(context.u_common_face_rad, flight));
+    rate.u = std::hypot(rate.u, CommonDrift(context.u_common_face_rad, flight));
     return core::Scaled(rate, 1.0 / fit.interval_s);
   };
   m.before_omega_rad_per_s = omega(kOmega, event.before_frames);
@@ -202,7 +203,6 @@ void FillMotion(const RecordContext& context, const Event& event,
     const auto quotient = [&](const JointFit::Function& above,
                               const JointFit::Function& below,
                               const char* what) -> Measured {
-      constexpr double kMeasurable = 5.0;  // below, a quotient means nothing
       const Estimate denominator = fit.Of(below);
       if (!(std::abs(denominator.value) > kMeasurable * denominator.u)) {
         return AbsentBecause(
@@ -410,7 +410,6 @@ core::ContactRecord RecordOf(const RecordContext& context, const Event& event,
     contact.duration_s = AbsentBecause("no release from the ground was seen");
   }
   FillMotion(context, event, record);
-  constexpr double kDisagree = 3.0;
   if (std::abs(event.disagreement) > kDisagree && !event.after) {
     warnings.push_back(
         fmt::format("the body comes to rest {:.2f} px {} the ground line",

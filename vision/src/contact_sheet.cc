@@ -15,11 +15,11 @@ namespace touchdown::vision {
 namespace {
 
 // Colours that stay apart for colour-blind eyes (Okabe and Ito), RGB.
-const cv::Scalar kOutline(240, 228, 66);
-const cv::Scalar kGround(86, 180, 233);
-const cv::Scalar kBefore(0, 200, 140);
-const cv::Scalar kAfter(230, 130, 190);
-const cv::Scalar kPath(255, 255, 255);
+const cv::Scalar kOutlineColour(240, 228, 66);
+const cv::Scalar kGroundColour(86, 180, 233);
+const cv::Scalar kBeforeColour(0, 200, 140);
+const cv::Scalar kAfterColour(230, 130, 190);
+const cv::Scalar kPathColour(255, 255, 255);
 const cv::Scalar kText(255, 255, 255);
 constexpr int kTitle_px = 34;
 
@@ -86,7 +86,7 @@ class Panel {
 
 void DrawOutline(Panel& panel, const Outline& outline) {
   if (outline.kind == core::BodyKind::kSphere) {
-    panel.Circle(outline.centre, outline.radius_px, kOutline);
+    panel.Circle(outline.centre, outline.radius_px, kOutlineColour);
     return;
   }
   const double c = std::cos(outline.angle_rad);
@@ -99,7 +99,7 @@ void DrawOutline(Panel& panel, const Outline& outline) {
   const double b = outline.half_short_px;
   const core::PixelPoint p[4] = {corner(a, b), corner(a, -b), corner(-a, -b),
                                  corner(-a, b)};
-  for (int i = 0; i < 4; ++i) panel.Line(p[i], p[(i + 1) % 4], kOutline);
+  for (int i = 0; i < 4; ++i) panel.Line(p[i], p[(i + 1) % 4], kOutlineColour);
 }
 
 void DrawFlight(Panel& panel, const PlaneTrack& plane, const Flight& flight,
@@ -152,7 +152,7 @@ std::vector<std::int64_t> FramesToShow(const Track& track,
   return frames;
 }
 
-const Pose* Nearest(const Track& track, std::int64_t frame) {
+const Pose* MeasuredPose(const Track& track, std::int64_t frame) {
   const auto it = std::lower_bound(
       track.poses.begin(), track.poses.end(), frame,
       [](const Pose& p, std::int64_t f) { return p.frame < f; });
@@ -190,7 +190,7 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
     const int row = static_cast<int>(k) / options.columns;
     const cv::Rect at(column * side + 1, row * side + kTitle_px + 1, side - 2,
                       side - 2);
-    const Pose* pose = Nearest(track, frames[k]);
+    const Pose* pose = MeasuredPose(track, frames[k]);
     core::PixelPoint centre = track.poses.front().centre;
     if (pose != nullptr) {
       centre = pose->centre;
@@ -207,20 +207,20 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
                 g.reference.y_px - far * std::sin(angle)},
                {g.reference.x_px + far * std::cos(angle),
                 g.reference.y_px + far * std::sin(angle)},
-               kGround);
+               kGroundColour);
     if (evidence != nullptr && evidence->before) {
       const double dt = plane.frame_interval_s;
       DrawFlight(
           panel, plane, *evidence->before,
           std::max(evidence->time_s - 400 * dt, plane.samples.front().time_s),
-          evidence->time_s, kBefore);
+          evidence->time_s, kBeforeColour);
       if (evidence->after) {
         DrawFlight(panel, plane, *evidence->after, evidence->release_s,
                    evidence->release_s + (evidence->after->frames - 1) * dt,
-                   kAfter);
+                   kAfterColour);
       }
     } else {
-      for (const Pose& p : track.poses) panel.Dot(p.centre, kPath);
+      for (const Pose& p : track.poses) panel.Dot(p.centre, kPathColour);
     }
     if (pose != nullptr) DrawOutline(panel, OutlineAt(track.body, *pose));
     panel.Text(fmt::format("frame {}", frames[k]), 0);
@@ -247,8 +247,8 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
                          s.height_px - reach * s.v_n / speed),
                  ToImage(plane, s.along_px + reach * s.v_t / speed,
                          s.height_px + reach * s.v_n / speed),
-                 kBefore, 2);
-      panel.Dot(evidence->touching, kOutline);
+                 kBeforeColour, 2);
+      panel.Dot(evidence->touching, kOutlineColour);
     }
   }
   sheet.width_px = canvas.cols;

@@ -13,9 +13,9 @@ constexpr double kPi = std::numbers::pi;
 // The normal distribution function Phi and its antiderivative
 // F(t) = t Phi(t) + phi(t), by cubic Hermite interpolation in a table: ten
 // times faster than erf and exp, error below 2e-10.
-class NormalTable {
+class NormalIntegrals {
  public:
-  NormalTable() {
+  NormalIntegrals() {
     for (int i = 0; i < kSize; ++i) {
       const double t = kFirst + i * kStep;
       const double density = std::exp(-0.5 * t * t) / std::sqrt(2.0 * kPi);
@@ -65,12 +65,12 @@ class NormalTable {
   std::array<Node, kSize> nodes_{};
 };
 
-const NormalTable& Normal() {
-  static const NormalTable table;
+const NormalIntegrals& Integrals() {
+  static const NormalIntegrals table;
   return table;
 }
 
-core::PixelPoint At(const OutlinePiece& piece, double t) {
+core::PixelPoint PointAt(const OutlinePiece& piece, double t) {
   if (!piece.is_arc) {
     return {piece.from.x_px + t * (piece.to.x_px - piece.from.x_px),
             piece.from.y_px + t * (piece.to.y_px - piece.from.y_px)};
@@ -112,8 +112,8 @@ void Crossings(const OutlinePiece& piece, bool of_x, std::vector<double>& out) {
 
 // Integral of x dy over the piece from t0 to t1.
 double IntegralXdY(const OutlinePiece& piece, double t0, double t1) {
-  const core::PixelPoint p = At(piece, t0);
-  const core::PixelPoint q = At(piece, t1);
+  const core::PixelPoint p = PointAt(piece, t0);
+  const core::PixelPoint q = PointAt(piece, t1);
   if (!piece.is_arc) return 0.5 * (p.x_px + q.x_px) * (q.y_px - p.y_px);
   const double a = piece.begin_rad + t0 * (piece.end_rad - piece.begin_rad);
   const double b = piece.begin_rad + t1 * (piece.end_rad - piece.begin_rad);
@@ -134,7 +134,7 @@ double SignedArea(const std::vector<core::PixelPoint>& corners) {
   return 0.5 * twice;
 }
 
-double Side(const HalfPlane& half, core::PixelPoint p) {
+double SignedDistance(const HalfPlane& half, core::PixelPoint p) {
   return half.normal_x * (p.x_px - half.point.x_px) +
          half.normal_y * (p.y_px - half.point.y_px);
 }
@@ -182,8 +182,8 @@ std::vector<core::PixelPoint> ClipPolygon(
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const core::PixelPoint p = corners[i];
     const core::PixelPoint q = corners[(i + 1) % corners.size()];
-    const double sp = Side(half, p);
-    const double sq = Side(half, q);
+    const double sp = SignedDistance(half, p);
+    const double sq = SignedDistance(half, q);
     if (sp < 0.0) kept.push_back(p);
     if ((sp < 0.0) != (sq < 0.0)) {
       const double t = sp / (sp - sq);
@@ -196,14 +196,14 @@ std::vector<core::PixelPoint> ClipPolygon(
 
 ShapeOutline ClipCircle(core::PixelPoint centre, double radius_px,
                         const HalfPlane& half) {
-  const double height = Side(half, centre);
+  const double height = SignedDistance(half, centre);
   if (height >= radius_px) return {};
   if (height <= -radius_px) return CircleOutline(centre, radius_px);
   const double middle = std::atan2(-half.normal_y, -half.normal_x);
   const double spread = std::acos(height / radius_px);
   const OutlinePiece arc =
       Arc(centre, radius_px, middle - spread, middle + spread);
-  return {{arc, Straight(At(arc, 1.0), At(arc, 0.0))}, false};
+  return {{arc, Straight(PointAt(arc, 1.0), PointAt(arc, 0.0))}, false};
 }
 
 CoverageMap::CoverageMap(core::PixelRect window, double psf_sigma_px)
@@ -238,7 +238,7 @@ void CoverageMap::AddNode(double x, double y, double weighted_dy) {
   if (y + reach < window_.y || y - reach > last_y || x + reach < window_.x) {
     return;
   }
-  const NormalTable& normal = Normal();
+  const NormalIntegrals& normal = Integrals();
   const double scale = 1.0 / sigma_;
   const auto i0 = static_cast<std::int32_t>(std::max<double>(
       window_.x, std::min<double>(last_x, std::ceil(x - reach - 1.0))));
@@ -317,7 +317,7 @@ void CoverageMap::AddSmooth(const OutlinePiece& piece, bool periodic,
   for (int panel = 0; panel < panels; ++panel) {
     for (std::size_t k = 0; k < kNode.size(); ++k) {
       const double t = (panel + kNode[k]) * width;
-      const core::PixelPoint p = At(piece, t);
+      const core::PixelPoint p = PointAt(piece, t);
       const double slope =
           piece.is_arc ? span * (p.x_px - piece.centre.x_px) : dy;
       AddNode(p.x_px, p.y_px, weight * kWeight[k] * width * slope);
@@ -333,11 +333,13 @@ void CoverageMap::AddExact(const OutlinePiece& piece, double weight) {
   const std::int32_t last_x = window_.x + window_.width - 1;
   const std::int32_t last_y = window_.y + window_.height - 1;
   for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-    const core::PixelPoint middle = At(piece, 0.5 * (cuts[k] + cuts[k + 1]));
+    const core::PixelPoint middle =
+        PointAt(piece, 0.5 * (cuts[k] + cuts[k + 1]));
     const double column = std::floor(middle.x_px + 0.5);
     const double line = std::floor(middle.y_px + 0.5);
     if (line < window_.y || line > last_y || column < window_.x) continue;
-    const double dy = At(piece, cuts[k + 1]).y_px - At(piece, cuts[k]).y_px;
+    const double dy =
+        PointAt(piece, cuts[k + 1]).y_px - PointAt(piece, cuts[k]).y_px;
     double* row = mutable_row(static_cast<std::int32_t>(line));
     if (column > last_x) {
       row[window_.width - 1] += weight * dy;

@@ -39,7 +39,7 @@ void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
 
 // A region that may be a blob, by its outer contour; holes (specular spots)
 // count as body.
-struct Region {
+struct ContourRegion {
   std::vector<cv::Point> contour;
   double area_px2 = 0.0;
   double contrast_dn = 0.0;
@@ -54,7 +54,7 @@ double AreaWithin(const std::vector<cv::Point>& contour) {
 // The regions within some contours that are large enough.
 void AddRegions(std::vector<std::vector<cv::Point>> contours,
                 const cv::Mat& difference, const DetectOptions& options,
-                std::vector<Region>& regions) {
+                std::vector<ContourRegion>& regions) {
   for (std::vector<cv::Point>& contour : contours) {
     const double area = AreaWithin(contour);
     if (area < options.least_area_px2) continue;
@@ -68,7 +68,7 @@ void AddRegions(std::vector<std::vector<cv::Point>> contours,
   }
 }
 
-Blob BlobOf(const Region& part, const cv::Size& searched,
+Blob BlobOf(const ContourRegion& part, const cv::Size& searched,
             const core::PixelPoint& origin) {
   Blob blob;
   blob.area_px2 = part.area_px2;
@@ -98,15 +98,15 @@ Blob BlobOf(const Region& part, const cv::Size& searched,
 }
 
 // Those of the strongest regions, which alone are worth a closer look.
-std::vector<Blob> BlobsOf(std::vector<Region> regions, const cv::Rect& searched,
-                          const core::Frame& frame,
+std::vector<Blob> BlobsOf(std::vector<ContourRegion> regions,
+                          const cv::Rect& searched, const core::Frame& frame,
                           const DetectOptions& options) {
   KeepStrongest(regions, options);
   const core::PixelPoint origin{
       static_cast<double>(searched.x + frame.origin_x_px),
       static_cast<double>(searched.y + frame.origin_y_px)};
   std::vector<Blob> blobs;
-  for (const Region& part : regions) {
+  for (const ContourRegion& part : regions) {
     blobs.push_back(BlobOf(part, searched.size(), origin));
   }
   return blobs;
@@ -117,7 +117,7 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
                                  const DetectOptions& options) {
   const cv::Rect region = SearchRegion(frame, options.region);
   if (region.empty()) return {};
-  std::vector<Region> found;
+  std::vector<ContourRegion> found;
   cv::Mat value;
   AsMat(frame)(region).convertTo(value, CV_32F);
   const cv::Mat whole(background.height_px, background.width_px, CV_32FC1,
@@ -184,7 +184,7 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
                              const DetectOptions& options) {
   const cv::Rect region = SearchRegion(frame, options.region);
   if (region.empty()) return {};
-  std::vector<Region> found;
+  std::vector<ContourRegion> found;
   cv::Mat value;
   AsMat(frame)(region).convertTo(value, CV_32F);
   cv::blur(value, value, {3, 3});

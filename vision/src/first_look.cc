@@ -15,8 +15,6 @@
 namespace touchdown::vision {
 namespace {
 
-using Surround = OutlineOptions::Surround;
-
 struct Range {
   std::int64_t first = 0;
   std::int64_t last = 0;
@@ -211,7 +209,7 @@ double Badness(const std::optional<Fitted>& fitted) {
 }
 
 // Badness of the outlines; dearer where the body was seen in few frames.
-double CostOf(const Look& look) {
+double LookCost(const Look& look) {
   if (look.found.chains.empty()) {
     return std::numeric_limits<double>::infinity();
   }
@@ -332,7 +330,7 @@ Look LookWith(Clip& clip, Background background, const TrackOptions& options,
     const Chain& chain = look.found.chains.front();
     look.choice =
         ChooseKind(clip, look.background, chain, options, look.surround);
-    if (CostOf(look) > most_cost) return look;
+    if (LookCost(look) > most_cost) return look;
     look.fits = FitChain(clip, look.background, chain, look.choice, options,
                          look.surround);
     DropStrangers(look.fits);
@@ -380,7 +378,7 @@ bool IsBetter(const Look& look, const Look& other) {
     if (kFew * falling.fits.size() >= resting.fits.size()) return falls(look);
   }
   return MuchSmoother(look, other) ||
-         (CostOf(look) < CostOf(other) && !MuchSmoother(other, look));
+         (LookCost(look) < LookCost(other) && !MuchSmoother(other, look));
 }
 
 namespace {
@@ -389,7 +387,7 @@ namespace {
 // background holds its ghost.
 constexpr double kWellFitted = 4.0;
 
-const char* ShapeOf(core::BodyKind kind) {
+const char* KindName(core::BodyKind kind) {
   return kind == core::BodyKind::kSphere ? "a sphere" : "a rectangle";
 }
 
@@ -421,8 +419,8 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
       "the body looks like {}, not like {} as was stated: in a few frames {} "
       "leaves residuals of {:.1f} times the noise, {} {:.1f}; state the kind "
       "that it is",
-      ShapeOf(other.kind), ShapeOf(*options.kind), ShapeOf(other.kind),
-      other.badness, ShapeOf(*options.kind), look.choice.badness);
+      KindName(other.kind), KindName(*options.kind), KindName(other.kind),
+      other.badness, KindName(*options.kind), look.choice.badness);
 }
 
 }  // namespace
@@ -469,7 +467,7 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
     }
     Look look = change
                     ? LookWith(clip, std::move(background), options, detector,
-                               best.found.last, least, CostOf(best))
+                               best.found.last, least, LookCost(best))
                     : LookWith(clip, std::move(background), options, detector,
                                best.found.last);
     look.found.warning = best.found.warning;

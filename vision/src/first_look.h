@@ -25,6 +25,8 @@ struct Detections {
   std::vector<std::string> bounds;
 };
 
+using Surround = OutlineOptions::Surround;
+
 // What to fit, with the evidence.
 struct Choice {
   core::BodyKind kind = core::BodyKind::kSphere;
@@ -36,7 +38,7 @@ struct Look {
   Background background;
   Detections found;
   Choice choice;
-  OutlineOptions::Surround surround = OutlineOptions::Surround::kBackground;
+  Surround surround = Surround::kBackground;
   std::vector<Fitted> fits;  // of the best chain
   // Its blobs hold the body's shadow, too: many a fit began too far off.
   bool rough_starts = false;
@@ -63,14 +65,12 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
 
 // Tries the kinds on a few frames spread over the chain, away from the border.
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
-                  const TrackOptions& options,
-                  OutlineOptions::Surround surround);
+                  const TrackOptions& options, Surround surround);
 
 // The outlines of a chain's links.
 std::vector<Fitted> FitChain(Clip& clip, const Background& background,
                              const Chain& chain, const Choice& choice,
-                             const TrackOptions& options,
-                             OutlineOptions::Surround surround);
+                             const TrackOptions& options, Surround surround);
 
 // The first frame of [first, last) that cannot be read, with the reason; `last`
 // where all can.

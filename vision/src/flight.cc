@@ -73,7 +73,7 @@ double FitPolynomial(std::span<const PlaneSample> samples, double t0,
   return chi2;
 }
 
-double Widen(double chi2, int degrees) {
+double WideningFactor(double chi2, int degrees) {
   // With few degrees of freedom chi2 says little: never narrow.
   return degrees > 0 ? std::max(1.0, chi2 / degrees) : 1.0;
 }
@@ -140,9 +140,9 @@ Flight FitFlight(std::span<const PlaneSample> samples,
   }
 
   const int n = f.frames;
-  f.along_cov *= Widen(chi2_s, n - 2);
-  f.height_cov *= Widen(chi2_h, known ? n - 2 : n - 3);
-  f.face_cov *= Widen(chi2_f, n - 2);
+  f.along_cov *= WideningFactor(chi2_s, n - 2);
+  f.height_cov *= WideningFactor(chi2_h, known ? n - 2 : n - 3);
+  f.face_cov *= WideningFactor(chi2_f, n - 2);
   const int degrees = 2 * n - 4 - (known ? 0 : 1);
   f.reduced_chi2 = degrees > 0 ? (chi2_h + chi2_s) / degrees : 1.0;
   double square = 0.0;

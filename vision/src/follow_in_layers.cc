@@ -26,7 +26,7 @@ using layers::Shape;
 // Pictures of so many frames are learned from; more cost time and memory and
 // tell little more.
 constexpr std::size_t kMostLearned = 96;
-constexpr std::size_t kLeastPoses = 5;
+constexpr std::size_t kLeastLayerPoses = 5;
 
 // A body that comes nearer by more is of another size in each frame. Less is as
 // often an outline that was led astray (by compression, a neighbour's edge) as
@@ -43,7 +43,7 @@ constexpr double kCommonShare = 0.4;
 // is 0.95 in raw clips, for 0.67.
 constexpr double kModel_px = 0.002;
 
-Shape ShapeOf(const BodyImage& body, const std::optional<BodySize>& size) {
+Shape LayerShape(const BodyImage& body, const std::optional<BodySize>& size) {
   Shape shape;
   shape.disc = body.kind == core::BodyKind::kSphere;
   if (size) {
@@ -60,8 +60,8 @@ Shape ShapeOf(const BodyImage& body, const std::optional<BodySize>& size) {
   return shape;
 }
 
-FitLayersOptions OptionsFor(const Track& track, const Shape& shape,
-                            const std::optional<BodySize>& size) {
+FitLayersOptions LayerOptionsFor(const Track& track, const Shape& shape,
+                                 const std::optional<BodySize>& size) {
   FitLayersOptions options;
   auto& value = options.prior.value;
   auto& u = options.prior.u;
@@ -134,7 +134,7 @@ Pose PoseFrom(const PoseFit& at, const core::PixelRect& box,
 // shows: it moves paths for tens of frames. In proportion to what the
 // residuals' correlation adds to a pose's u, as a share of noise over
 // steepness; the share is that of 350 clips in MJPEG and H.264 (crf 17 and 23).
-double DriftOf(const PoseFit& at, double noise_dn) {
+double CodecDrift(const PoseFit& at, double noise_dn) {
   constexpr double kOfNoise = 0.45;
   const double steep = std::max(at.steepness[0], at.steepness[1]);
   if (at.widened <= 1.0 || steep <= 0.0) return 0.0;
@@ -180,7 +180,7 @@ Evidence GatherEvidence(Clip& clip, const Background& background,
   constexpr std::size_t kMostSamples = std::size_t{1} << 26U;
   evidence.most_frames =
       std::clamp(kMostSamples / std::max<std::size_t>(evidence.still.size(), 1),
-                 kLeastPoses, kMostLearned);
+                 kLeastLayerPoses, kMostLearned);
   const LayerPath all = PathInBox(track, evidence.box, options.turns);
   evidence.path =
       Choose(all, SpreadEvenly(all.frames.size(), evidence.most_frames));
@@ -263,8 +263,8 @@ Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized) {
   out.body.u_common_px = std::hypot(
       kModel_px,
       fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share);
-  // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of them
-  // within 0.01.
+  // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
+  // them within 0.01.
   constexpr double kSizeU_px = 0.003;
   const double u_size = std::hypot(kSizeU_px, out.body.u_common_px);
   if (!shape.disc) {
@@ -312,7 +312,7 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
                      });
     for (std::size_t t = 0; t < aligned.size(); ++t) {
       if (!aligned[t].found) continue;
-      drifts.push_back(DriftOf(aligned[t], fit.layers.noise_dn));
+      drifts.push_back(CodecDrift(aligned[t], fit.layers.noise_dn));
       Pose pose = PoseFrom(aligned[t], evidence.box, noise_ratio);
       pose.frame = part.frames[t];
       pose.time_s = pictures.times_s[t];
@@ -344,7 +344,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
                                      const Track& given,
                                      const std::optional<BodySize>& size,
                                      int threads) {
-  if (given.poses.size() < kLeastPoses) {
+  if (given.poses.size() < kLeastLayerPoses) {
     return core::AbsentBecause("fewer than five poses");
   }
   if (GrowthOf(given) > kMostGrowth) {
@@ -354,8 +354,8 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   KeepSize(track);
   const core::Cancellation& until = clip.cancellation();
   until.Enter("the body's picture is learned");
-  const Shape shape = ShapeOf(track.body, size);
-  FitLayersOptions options = OptionsFor(track, shape, size);
+  const Shape shape = LayerShape(track.body, size);
+  FitLayersOptions options = LayerOptionsFor(track, shape, size);
   options.threads = threads;
   Evidence evidence = GatherEvidence(clip, background, track, shape, options);
   until.Check();
@@ -372,7 +372,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const Track learned = TrackInPicture(out, evidence.path, evidence.box);
   AlignFrames(clip, evidence, fit,
               PathInBox(learned, evidence.box, options.turns), options, out);
-  if (out.poses.size() < kLeastPoses) {
+  if (out.poses.size() < kLeastLayerPoses) {
     return core::AbsentBecause("too few frames show the body's picture");
   }
   DropUnexplained(out.poses);

@@ -17,12 +17,12 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr std::size_t kLeast = 8;     // frames
-constexpr std::size_t kEnough = 120;  // frames that a pattern is learnt from
-constexpr int kLearningRounds = 12;   // of a pattern; most settle in five
-constexpr double kSlack_px = 6.0;     // that a pose may move within its view
+constexpr std::size_t kLeastFollowed = 8;    // frames
+constexpr std::size_t kPatternFrames = 120;  // that a pattern is learnt from
+constexpr int kLearningRounds = 12;  // of a pattern; most settle in five
+constexpr double kSlack_px = 6.0;    // that a pose may move within its view
 
-double SizeOf(const BodyImage& body) {
+double GreatestHalf(const BodyImage& body) {
   return body.kind == core::BodyKind::kSphere ? body.radius_px.value
                                               : body.half_long_px.value;
 }
@@ -99,7 +99,7 @@ std::optional<Learnt> LearnFrom(std::vector<PatternView> views,
       before.push_back(poses[k]);
       after.push_back(*found[k]);
     }
-    if (kept.size() < kLeast) return std::nullopt;
+    if (kept.size() < kLeastFollowed) return std::nullopt;
     TakeOutCommonMove(before, after);
     std::vector<double> moved;
     for (std::size_t k = 0; k < after.size(); ++k) {
@@ -210,10 +210,10 @@ std::vector<Pose> Follower::All() const {
   for (const auto& found : At(starts, 0.0)) {
     if (found && IsGood(found->pose)) poses.push_back(found->pose);
   }
-  if (poses.size() < kLeast) return poses;
+  if (poses.size() < kLeastFollowed) return poses;
   // Frames within the track that have none, from both neighbours; then frame by
   // frame beyond its ends, as long as it is found where it should be.
-  const double near = std::max(3.0, 0.15 * SizeOf(track_.body));
+  const double near = std::max(3.0, 0.15 * GreatestHalf(track_.body));
   Track now = track_;
   now.poses = poses;
   starts.clear();
@@ -278,12 +278,13 @@ std::vector<Pose> Follower::All() const {
 Track FollowPattern(Clip& clip, const Background& background,
                     const Track& track, int threads) {
   if (!track.known_background || track.step > 1 || !IsSteady(track) ||
-      track.poses.size() < kLeast) {
+      track.poses.size() < kLeastFollowed) {
     return track;
   }
   if (!(MedianMisfit(track.poses) > kCrude)) return track;
   clip.cancellation().Enter("the body's own picture is followed");
-  const std::size_t step = (track.poses.size() + kEnough - 1) / kEnough;
+  const std::size_t step =
+      (track.poses.size() + kPatternFrames - 1) / kPatternFrames;
   const Outline outline = MiddleOutline(track);
   std::optional<Learnt> best;
   std::vector<Pose> poses;

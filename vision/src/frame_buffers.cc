@@ -10,16 +10,17 @@ namespace {
 
 constexpr std::size_t kPlanes = 4;
 // Decoders may write a vector's width beyond a plane's end.
-constexpr std::size_t kBeyond = 128;
+constexpr std::size_t kSpareBytes = 128;
 
-struct Layout {
+struct PlaneLayout {
   std::array<int, kPlanes> row_bytes{};
   std::array<std::size_t, kPlanes> bytes{};  // 0: there is no such plane
 };
 
 // The planes of a frame as the decoder wants them aligned; false where it is
 // none that is laid out plainly.
-bool LayOut(AVCodecContext& decoder, const AVFrame& frame, Layout& layout) {
+bool LayOut(AVCodecContext& decoder, const AVFrame& frame,
+            PlaneLayout& layout) {
   const auto format = static_cast<AVPixelFormat>(frame.format);
   const AVPixFmtDescriptor* const about = Libav().av_pix_fmt_desc_get(format);
   constexpr std::uint64_t kOtherwise =
@@ -51,13 +52,13 @@ void GiveBack(void* memory, std::uint8_t* data) {
 
 std::size_t Padded(std::size_t bytes) {
   constexpr std::size_t kAlign = 64;
-  return (bytes + kBeyond + kAlign - 1) / kAlign * kAlign;
+  return (bytes + kSpareBytes + kAlign - 1) / kAlign * kAlign;
 }
 
 // libav's get_buffer2, called from its threads.
 int TakeFrame(AVCodecContext* decoder, AVFrame* frame, int flags) {
   auto* const memory = static_cast<FrameMemory*>(decoder->opaque);
-  Layout layout;
+  PlaneLayout layout;
   std::size_t total = 0;
   std::byte* piece = nullptr;
   if (LayOut(*decoder, *frame, layout)) {

@@ -20,8 +20,8 @@ struct Sums {
   std::vector<std::uint16_t> frames;
 };
 
-core::PixelRect BoxOf(std::span<const OutlineJob> jobs, double margin_px,
-                      const ClipInfo& info) {
+core::PixelRect JobsBox(std::span<const OutlineJob> jobs, double margin_px,
+                        const ClipInfo& info) {
   double left = info.width_px;
   double top = info.height_px;
   double right = 0.0;
@@ -46,8 +46,8 @@ core::PixelRect BoxOf(std::span<const OutlineJob> jobs, double margin_px,
 }
 
 // Leaves out frames that show next to nothing of the body: it may not be there.
-void Look(Clip& clip, const Background& background, const OutlineJob& job,
-          const HiderOptions& options, Sums& sums) {
+void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
+              const HiderOptions& options, Sums& sums) {
   constexpr double kClearOfBlur = 1.2;
   constexpr double kSigmas = 4.0;
   constexpr float kHalf = 0.5f;
@@ -91,7 +91,7 @@ void Look(Clip& clip, const Background& background, const OutlineJob& job,
 }
 
 // Marks all within `reach` of the marked ones.
-void Widen(int reach, Hider& hider) {
+void Dilate(int reach, Hider& hider) {
   const std::int32_t width = hider.box.width;
   const std::int32_t height = hider.box.height;
   const std::vector<std::uint8_t> marked = hider.hides;
@@ -191,14 +191,14 @@ std::shared_ptr<const Hider> FindHider(Clip& clip, const Background& background,
   constexpr double kBlurs = 5.0;
   const int reach = static_cast<int>(std::ceil(kBlurs * options.blur_px + 2.0));
   Sums sums;
-  sums.box = BoxOf(jobs, reach, clip.info());
+  sums.box = JobsBox(jobs, reach, clip.info());
   if (sums.box.width < 1 || sums.box.height < 1) return nullptr;
   const auto pixels = static_cast<std::size_t>(sums.box.width) *
                       static_cast<std::size_t>(sums.box.height);
   sums.shown.assign(pixels, 0.0f);
   sums.frames.assign(pixels, 0);
   for (const OutlineJob& job : jobs) {
-    Look(clip, background, job, options, sums);
+    SumShown(clip, background, job, options, sums);
   }
   constexpr int kLeastFrames = 2;
   constexpr float kHidden = 0.25f;
@@ -219,7 +219,7 @@ std::shared_ptr<const Hider> FindHider(Clip& clip, const Background& background,
       std::max(kLeast, kLeastShare * Area(jobs[0].start))) {
     return nullptr;
   }
-  Widen(reach, *hider);
+  Dilate(reach, *hider);
   return hider;
 }
 

@@ -13,9 +13,7 @@
 namespace touchdown::vision {
 namespace {
 
-// Beyond any camera; a damaged header cannot make us allocate more than 512
-// MiB.
-constexpr std::int64_t kMaxSidePx = 1 << 16;
+// A damaged header cannot make us allocate more than 512 MiB.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 // Pixels that a byte of a file can stand for: Deflate (PNG, TIFF) makes at most
 // 1032 bytes of one, a JPEG of one gray 4 bits for each 64 pixels and

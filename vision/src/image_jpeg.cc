@@ -24,7 +24,7 @@ struct Trouble {
   char text[JMSG_LENGTH_MAX];
 };
 
-[[noreturn]] void OnError(j_common_ptr jpeg) {
+[[noreturn]] void OnJpegError(j_common_ptr jpeg) {
   auto* const trouble = reinterpret_cast<Trouble*>(jpeg->err);
   (*jpeg->err->format_message)(jpeg, trouble->text);
   std::longjmp(trouble->back, 1);
@@ -37,7 +37,7 @@ void OnMessage(j_common_ptr jpeg, int level) {
   if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER ||
       code == JWRN_HUFF_BAD_CODE || code == JWRN_MUST_RESYNC ||
       code == JWRN_NOT_SEQUENTIAL) {
-    OnError(jpeg);
+    OnJpegError(jpeg);
   }
 }
 
@@ -45,7 +45,7 @@ void OnOutput(j_common_ptr) {}
 
 jpeg_error_mgr* Prepare(Trouble* trouble) {
   jpeg_std_error(&trouble->manager);
-  trouble->manager.error_exit = OnError;
+  trouble->manager.error_exit = OnJpegError;
   trouble->manager.emit_message = OnMessage;
   trouble->manager.output_message = OnOutput;
   trouble->text[0] = '\0';
@@ -69,8 +69,8 @@ bool ReadHeader(jpeg_decompress_struct* jpeg, Trouble* trouble,
   return true;
 }
 
-bool ReadRows(jpeg_decompress_struct* jpeg, Trouble* trouble,
-              std::uint8_t* pixels) {
+bool ReadJpegRows(jpeg_decompress_struct* jpeg, Trouble* trouble,
+                  std::uint8_t* pixels) {
   if (setjmp(trouble->back) != 0) return false;
   jpeg_start_decompress(jpeg);
   while (jpeg->output_scanline < jpeg->output_height) {
@@ -82,9 +82,9 @@ bool ReadRows(jpeg_decompress_struct* jpeg, Trouble* trouble,
   return true;
 }
 
-bool WriteRows(jpeg_compress_struct* jpeg, Trouble* trouble,
-               const core::Frame& frame, int quality, unsigned char** memory,
-               unsigned long* size) {
+bool WriteJpegRows(jpeg_compress_struct* jpeg, Trouble* trouble,
+                   const core::Frame& frame, int quality,
+                   unsigned char** memory, unsigned long* size) {
   if (setjmp(trouble->back) != 0) return false;
   jpeg_create_compress(jpeg);
   jpeg_mem_dest(jpeg, memory, size);
@@ -120,8 +120,8 @@ void DecodeJpeg(FileBytes file, const std::string& name, Image& image) {
   };
   if (!ReadHeader(&jpeg, &trouble, file)) throw fail();
   Allocate(jpeg.image_width, jpeg.image_height, 8, file.size(), name, image);
-  if (!ReadRows(&jpeg, &trouble,
-                reinterpret_cast<std::uint8_t*>(image.pixels.data()))) {
+  if (!ReadJpegRows(&jpeg, &trouble,
+                    reinterpret_cast<std::uint8_t*>(image.pixels.data()))) {
     throw fail();
   }
 }
@@ -147,7 +147,8 @@ std::string EncodeJpeg(const core::Frame& frame, int quality) {
       std::free(memory);
     }
   } guard{&jpeg};
-  if (!WriteRows(&jpeg, &trouble, frame, quality, &guard.memory, &guard.size)) {
+  if (!WriteJpegRows(&jpeg, &trouble, frame, quality, &guard.memory,
+                     &guard.size)) {
     throw core::InputError(
         fmt::format("a picture cannot be written as JPEG: {}", trouble.text));
   }

@@ -22,20 +22,20 @@ struct Message {
   char text[160] = "";
 };
 
-void OnError(png_structp png, png_const_charp text) {
+void OnPngError(png_structp png, png_const_charp text) {
   auto* const message = static_cast<Message*>(png_get_error_ptr(png));
   std::strncpy(message->text, text, sizeof message->text - 1);
   png_longjmp(png, 1);
 }
 
-void OnWarning(png_structp, png_const_charp) {}
+void OnPngWarning(png_structp, png_const_charp) {}
 
 struct Cursor {
   const std::uint8_t* at;
   std::size_t left;
 };
 
-void OnRead(png_structp png, png_bytep out, std::size_t count) {
+void OnPngRead(png_structp png, png_bytep out, std::size_t count) {
   auto* const cursor = static_cast<Cursor*>(png_get_io_ptr(png));
   if (count > cursor->left) png_error(png, "the file ends early");
   std::memcpy(out, cursor->at, count);
@@ -43,7 +43,7 @@ void OnRead(png_structp png, png_bytep out, std::size_t count) {
   cursor->left -= count;
 }
 
-struct Layout {
+struct PixelLayout {
   png_uint_32 width = 0;
   png_uint_32 height = 0;
   int channels = 0;  // after the transformations: 1 or 3
@@ -53,7 +53,7 @@ struct Layout {
 };
 
 // Reads up to the pixels and asks for 8 or 16 bits, gray or RGB, host order.
-bool ReadLayout(png_structp png, png_infop png_info, Layout* layout) {
+bool ReadLayout(png_structp png, png_infop png_info, PixelLayout* layout) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_read_info(png, png_info);
   layout->width = png_get_image_width(png, png_info);
@@ -79,8 +79,8 @@ bool ReadLayout(png_structp png, png_infop png_info, Layout* layout) {
   return true;
 }
 
-bool ReadRows(png_structp png, png_bytep pixels, std::size_t stride,
-              const Layout& layout) {
+bool ReadPngRows(png_structp png, png_bytep pixels, std::size_t stride,
+                 const PixelLayout& layout) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   for (int pass = 0; pass < layout.passes; ++pass) {
     for (png_uint_32 y = 0; y < layout.height; ++y) {
@@ -108,7 +108,7 @@ struct Writer {
   std::string* trouble;
 };
 
-void OnWrite(png_structp png, png_bytep bytes, std::size_t count) {
+void OnPngWrite(png_structp png, png_bytep bytes, std::size_t count) {
   auto* const writer = static_cast<Writer*>(png_get_io_ptr(png));
   bool failed = false;
   try {
@@ -132,7 +132,7 @@ struct Rows {
   bool rgb;
 };
 
-bool WriteRows(png_structp png, png_infop png_info, const Rows& rows) {
+bool WritePngRows(png_structp png, png_infop png_info, const Rows& rows) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   const bool wide = rows.bit_depth > 8;
   png_set_IHDR(png, png_info, static_cast<png_uint_32>(rows.width),
@@ -168,11 +168,11 @@ void Encode(const Rows& rows, const std::string& name, const Sink& sink) {
   std::string trouble;
   Writer writer{&sink, &trouble};
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message,
-                                            OnError, OnWarning);
+                                            OnPngError, OnPngWarning);
   if (png == nullptr) throw std::bad_alloc();
   png_infop png_info = png_create_info_struct(png);
-  png_set_write_fn(png, &writer, OnWrite, OnFlush);
-  const bool done = png_info != nullptr && WriteRows(png, png_info, rows);
+  png_set_write_fn(png, &writer, OnPngWrite, OnFlush);
+  const bool done = png_info != nullptr && WritePngRows(png, png_info, rows);
   png_destroy_write_struct(&png, &png_info);
   if (!done) {
     throw core::OutputError(
@@ -207,7 +207,7 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
         fmt::format("{}: damaged PNG: {}", name, message.text));
   };
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message,
-                                           OnError, OnWarning);
+                                           OnPngError, OnPngWarning);
   if (png == nullptr) throw std::bad_alloc();
   png_infop png_info = png_create_info_struct(png);
   struct Guard {
@@ -217,9 +217,9 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
   } const guard{&png, &png_info};
   if (png_info == nullptr) throw std::bad_alloc();
   Cursor cursor{file.data(), file.size()};
-  png_set_read_fn(png, &cursor, OnRead);
+  png_set_read_fn(png, &cursor, OnPngRead);
 
-  Layout layout;
+  PixelLayout layout;
   if (!ReadLayout(png, png_info, &layout)) throw fail();
   Allocate(layout.width, layout.height,
            layout.bits == 16 ? layout.significant_bits : 8, file.size(), name,
@@ -227,8 +227,8 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
   if (layout.channels == 1) {
     const std::size_t stride =
         std::size_t{layout.width} * (layout.bits == 16 ? 2 : 1);
-    if (!ReadRows(png, reinterpret_cast<png_bytep>(image.pixels.data()), stride,
-                  layout)) {
+    if (!ReadPngRows(png, reinterpret_cast<png_bytep>(image.pixels.data()),
+                     stride, layout)) {
       throw fail();
     }
     if (image.bit_depth > 8 && image.bit_depth < 16) {
@@ -242,7 +242,7 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
     return;
   }
   std::vector<std::uint8_t> rgb(3 * image.pixels.size());
-  if (!ReadRows(png, rgb.data(), rgb.size() / layout.height, layout)) {
+  if (!ReadPngRows(png, rgb.data(), rgb.size() / layout.height, layout)) {
     throw fail();
   }
   if (layout.bits == 16) {

@@ -19,7 +19,7 @@ T Tag(TIFF* tiff, std::uint32_t tag, T fallback) {
 }
 
 // Depth that the words' largest possible value tells, else all 16 bits.
-std::int32_t DepthOf(TIFF* tiff) {
+std::int32_t BitDepthOf(TIFF* tiff) {
   std::uint16_t largest = 0;
   if (TIFFGetField(tiff, TIFFTAG_MAXSAMPLEVALUE, &largest) == 1) {
     for (std::int32_t depth = 9; depth < 16; ++depth) {
@@ -37,8 +37,8 @@ struct RowLayout {
 };
 
 template <class Sample>
-void TakeRow(const std::uint8_t* row, const RowLayout& layout,
-             std::uint8_t* out) {
+void ConvertRow(const std::uint8_t* row, const RowLayout& layout,
+                std::uint8_t* out) {
   constexpr std::uint32_t kWhite = static_cast<Sample>(~Sample{0});
   for (std::int32_t x = 0; x < layout.width_px; ++x) {
     Sample pixel[3] = {};
@@ -66,7 +66,7 @@ struct Kind {
   std::uint32_t pixel_bytes() const { return samples * (bits / 8u); }
 };
 
-Kind KindOf(TIFF* tiff, const std::string& name) {
+Kind ReadKind(TIFF* tiff, const std::string& name) {
   Kind kind;
   kind.width = Tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
   kind.height = Tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
@@ -139,10 +139,10 @@ bool EachRow(TIFF* tiff, const Kind& kind, std::size_t file_bytes,
 // The page that libtiff has read the directory of.
 void Decode(TIFF* tiff, const TiffMemory& memory, const std::string& name,
             Image& image) {
-  const Kind kind = KindOf(tiff, name);
+  const Kind kind = ReadKind(tiff, name);
   Allocate(kind.width, kind.height,
            kind.bits == 8 ? 8
-           : kind.gray    ? DepthOf(tiff)
+           : kind.gray    ? BitDepthOf(tiff)
                           : 16,
            memory.input.size(), name, image);
   const RowLayout layout{image.width_px, kind.samples, !kind.gray,
@@ -151,9 +151,9 @@ void Decode(TIFF* tiff, const TiffMemory& memory, const std::string& name,
   const bool whole =
       EachRow(tiff, kind, memory.input.size(), [&](const std::uint8_t* row) {
         if (kind.bits == 8) {
-          TakeRow<std::uint8_t>(row, layout, out);
+          ConvertRow<std::uint8_t>(row, layout, out);
         } else {
-          TakeRow<std::uint16_t>(row, layout, out);
+          ConvertRow<std::uint16_t>(row, layout, out);
         }
         out += std::size_t{kind.width} * (kind.bits / 8u);
       });

@@ -10,23 +10,20 @@
 namespace touchdown::vision {
 namespace {
 
-// A quotient by less than so many u of the denominator means nothing.
-constexpr double kMeasurable = 5.0;
 // Of the impulse at the second corner: above it no body of nearly even mass
 // struck with one alone. Chosen, not measured: it moves the centre of mass by a
 // tenth of the side.
 constexpr double kUnevenMass = 0.1;
-constexpr double kClear = 3.3;  // u
 
 // Lowest point and second lowest corner from the centre, along the ground, and
 // how far the lowest is below.
-struct Corners {
+struct LowestCorners {
   double first = 0.0;
   double second = 0.0;
   double depth = 0.0;
 };
 
-Corners CornersOf(const JointVector& p) {
+LowestCorners LowestCornersOf(const JointVector& p) {
   const double face = p[kFace] - p[kSlope];
   const double s = std::sin(face);
   const double c = std::cos(face);
@@ -46,7 +43,7 @@ double NormalChange(const JointVector& p) {
 }
 
 double Share(const JointVector& p) {
-  const Corners corners = CornersOf(p);
+  const LowestCorners corners = LowestCornersOf(p);
   constexpr double kThird = 1.0 / 3.0;
   const double k2 =
       kThird * (p[kHalfLong] * p[kHalfLong] + p[kHalfShort] * p[kHalfShort]);
@@ -71,6 +68,7 @@ core::Measured ShareOfSecondCorner(const PlaneTrack& track,
 }
 
 std::string WhySeveralImpacts(const PlaneTrack& track, const JointFit& fit) {
+  constexpr double kClear = 3.3;  // u
   const core::Measured share = ShareOfSecondCorner(track, fit);
   if (!share || share->value - kClear * share->u < kUnevenMass) return "";
   return fmt::format(

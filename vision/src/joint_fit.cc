@@ -58,7 +58,7 @@ struct PredictedPose {
   Predicted face;
 };
 
-PredictedPose Predict(const JointFit& fit, const Side& side, double t) {
+PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
   const JointVector& p = fit.p;
   const double s = t - p[side.t];
   PredictedPose pose;
@@ -185,7 +185,7 @@ void Solver::Accumulate() {
     const Side side = SideOf(fit_, after);
     for (const PlaneSample& s : samples) {
       const PredictedPose pose =
-          Predict(fit_, side, (s.time_s - fit_.origin_s) / dt);
+          PredictPose(fit_, side, (s.time_s - fit_.origin_s) / dt);
       Add(pose.along, s.along_px - fit_.origin_px, s.u_along_px);
       Add(pose.height, s.height_px, s.u_height_px);
       fit_.degrees += 2;
@@ -304,7 +304,7 @@ Flight FlightOf(const JointFit& fit, const Side& side,
   flight.last_frame = samples.back().frame;
   // State at the fixed time t0, as functions of the parameters.
   Eigen::Matrix<double, 7, kJointParameters> d;
-  const PredictedPose pose = Predict(fit, side, t);
+  const PredictedPose pose = PredictPose(fit, side, t);
   d.row(0) = pose.along.d;
   d.row(1).setZero();
   d(1, side.vx) = fps;

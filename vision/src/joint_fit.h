@@ -97,6 +97,9 @@ struct JointFit {
   Flight After(std::span<const PlaneSample> samples) const;
 };
 
+// A quotient by less than so many u of the denominator means nothing.
+inline constexpr double kMeasurable = 5.0;
+
 // Nothing where it does not converge or the frames do not determine it.
 std::optional<JointFit> FitJointly(const PlaneTrack& track,
                                    const JointInput& input);

@@ -37,6 +37,9 @@ using Wide = float __attribute__((vector_size(64), may_alias));
 using WideBits = std::uint32_t __attribute__((vector_size(64)));
 inline constexpr std::size_t kWide = 16;
 
+// Places that sums are kept in.
+inline constexpr std::size_t kSumPlaces = 8;
+
 // The four that begin at `first`, which lies on a multiple of 32 bytes.
 TOUCHDOWN_INLINE const Four& FourAt(const double* first) {
   return *reinterpret_cast<const Four*>(first);

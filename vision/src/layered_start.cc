@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "path_linking.h"
+#include "robust.h"
 #include "still_layer.h"
 #include "touchdown/core/parallel.h"
 
@@ -86,7 +87,7 @@ cv::Rect RegionOfChange(const ReducedFrames& sampled, const StillLayer& still,
   return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
 }
 
-KnownShape Scaled(const KnownShape& shape, double by) {
+KnownShape ReducedShape(const KnownShape& shape, double by) {
   return {shape.kind, shape.long_side / by, shape.short_side / by};
 }
 
@@ -188,7 +189,7 @@ core::Expected<LayeredStart> FindLayeredStart(
                  static_cast<double>(kMostReduction)));
   const ReducedFrames sampled =
       SampleReducedFrames(clip, options.first, last, options.frames, reduction);
-  const KnownShape reduced = Scaled(shape, reduction);
+  const KnownShape reduced = ReducedShape(shape, reduction);
   const auto by = static_cast<std::int32_t>(
       std::max(1.0, std::round(reduced.short_side / kSearchedAcross)));
   const cv::Size size = sampled.pictures.front().size();
@@ -208,7 +209,7 @@ core::Expected<LayeredStart> FindLayeredStart(
     return core::AbsentBecause(
         "nothing of the stated size changes in these frames");
   }
-  const ShapeSearch search(Scaled(reduced, by), searched.width / by,
+  const ShapeSearch search(ReducedShape(reduced, by), searched.width / by,
                            searched.height / by);
   std::vector<PlacedShape> path;
   std::vector<cv::Mat> masks;

@@ -19,12 +19,12 @@ namespace {
 constexpr double kSameSize = 0.03;
 constexpr double kStandardUncertainties = 4.0;
 
-bool IsOfSize(double found_px, const core::Estimate& stated) {
+bool IsStatedLength(double found_px, const core::Estimate& stated) {
   return std::abs(found_px - stated.value) <=
          std::max(kStandardUncertainties * stated.u, kSameSize * stated.value);
 }
 
-KnownShape ShapeOf(core::BodyKind kind, const BodySize& size) {
+KnownShape KnownShapeOf(core::BodyKind kind, const BodySize& size) {
   return {kind, size.long_px.value,
           kind == core::BodyKind::kSphere ? size.long_px.value
                                           : size.short_px.value};
@@ -48,7 +48,7 @@ Track TrackOfStart(const Clip& clip, const TrackOptions& options,
     body.half_long_px = core::Scaled(size.long_px, 0.5);
     body.half_short_px = core::Scaled(size.short_px, 0.5);
   }
-  body.blur_px = kOff * ShapeOf(body.kind, size).short_side;
+  body.blur_px = kOff * KnownShapeOf(body.kind, size).short_side;
   for (const StartPose& at : start.poses) {
     if (!at.seen) continue;
     Pose pose;
@@ -88,10 +88,10 @@ std::vector<Fitted> FitAlong(Clip& clip, const Background& background,
 
 bool IsOfSize(const BodyImage& body, const BodySize& size) {
   if (body.kind == core::BodyKind::kSphere) {
-    return IsOfSize(2.0 * body.radius_px.value, size.long_px);
+    return IsStatedLength(2.0 * body.radius_px.value, size.long_px);
   }
-  return IsOfSize(2.0 * body.half_long_px.value, size.long_px) &&
-         IsOfSize(2.0 * body.half_short_px.value, size.short_px);
+  return IsStatedLength(2.0 * body.half_long_px.value, size.long_px) &&
+         IsStatedLength(2.0 * body.half_short_px.value, size.short_px);
 }
 
 bool CanStartFromLayers(const Clip& clip, const TrackOptions& options) {
@@ -146,7 +146,7 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
   LayeredStartOptions start_options;
   start_options.first = options.first;
   start_options.last = last;
-  start_options.shape = ShapeOf(*options.kind, *options.size);
+  start_options.shape = KnownShapeOf(*options.kind, *options.size);
   start_options.threads = options.threads;
   const auto start = FindLayeredStart(clip, start_options);
   if (!start) return tl::unexpected(start.error());
@@ -177,7 +177,7 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
     std::erase_if(fits, [&](const Fitted& f) {
       core::Estimate stated = options.size->long_px;
       stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
-      return !IsOfSize(2.0 * SizeOf(f.fit), stated);
+      return !IsStatedLength(2.0 * SizeOf(f.fit), stated);
     });
     // What is lost by holding the size was better known without.
     constexpr double kMostLost = 0.2;

@@ -15,16 +15,16 @@ namespace touchdown::vision {
 namespace {
 
 // x, y, angle, long half side (or radius), short half side.
-using Shape = Eigen::Matrix<double, 5, 1>;
+using ShapeVector = Eigen::Matrix<double, 5, 1>;
 
-struct OutlinePoint {
+struct RimPoint {
   core::PixelPoint at;
   Eigen::Vector2d normal;
 };
 
 // Points spread evenly along the outline, with outward normals.
-std::vector<OutlinePoint> PointsOf(core::BodyKind kind, const Shape& s) {
-  std::vector<OutlinePoint> points;
+std::vector<RimPoint> PointsOf(core::BodyKind kind, const ShapeVector& s) {
+  std::vector<RimPoint> points;
   const double c = std::cos(s[2]);
   const double n = std::sin(s[2]);
   if (kind == core::BodyKind::kSphere) {
@@ -57,17 +57,19 @@ std::vector<OutlinePoint> PointsOf(core::BodyKind kind, const Shape& s) {
 
 // The outline that fits the distorted image of `ideal` best, as its difference
 // from `seen`: least squares of the normal distances.
-std::optional<Shape> Misfit(core::BodyKind kind, const Shape& ideal,
-                            const Shape& seen, const calib::Lens& lens) {
+std::optional<ShapeVector> DistortedOffset(core::BodyKind kind,
+                                           const ShapeVector& ideal,
+                                           const ShapeVector& seen,
+                                           const calib::Lens& lens) {
   const bool sphere = kind == core::BodyKind::kSphere;
   const double c = std::cos(seen[2]);
   const double n = std::sin(seen[2]);
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
-  Shape right = Shape::Zero();
-  for (const OutlinePoint& p : PointsOf(kind, ideal)) {
+  ShapeVector right = ShapeVector::Zero();
+  for (const RimPoint& p : PointsOf(kind, ideal)) {
     const core::PixelPoint q = calib::Distort(lens, p.at);
     const Eigen::Vector2d d(q.x_px - seen[0], q.y_px - seen[1]);
-    Shape row = Shape::Zero();
+    ShapeVector row = ShapeVector::Zero();
     double off = 0.0;
     if (sphere) {
       const double r = d.norm();
@@ -98,22 +100,22 @@ std::optional<Shape> Misfit(core::BodyKind kind, const Shape& ideal,
     normal(4, 4) = 1.0;
   }
   const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(normal);
-  const Shape solution = solver.solve(right);
+  const ShapeVector solution = solver.solve(right);
   if (!solution.allFinite()) return std::nullopt;
   return solution;
 }
 
 // The ideal outline whose image is `seen`.
-std::optional<Shape> IdealOf(core::BodyKind kind, const Shape& seen,
-                             const calib::Lens& lens,
-                             Eigen::Matrix2d& jacobian) {
+std::optional<ShapeVector> IdealOf(core::BodyKind kind, const ShapeVector& seen,
+                                   const calib::Lens& lens,
+                                   Eigen::Matrix2d& jacobian) {
   const auto centre = calib::Undistort(lens, {seen[0], seen[1]});
   if (!centre) return std::nullopt;
   jacobian = centre->jacobian;
   const double magnified = std::sqrt(jacobian.determinant());
   const Eigen::Vector2d along =
       jacobian * Eigen::Vector2d(std::cos(seen[2]), std::sin(seen[2]));
-  Shape ideal;
+  ShapeVector ideal;
   ideal << centre->point.x_px, centre->point.y_px,
       seen[2] + std::remainder(std::atan2(along.y(), along.x()) - seen[2],
                                2.0 * std::numbers::pi),
@@ -122,7 +124,7 @@ std::optional<Shape> IdealOf(core::BodyKind kind, const Shape& seen,
   constexpr int kMostSteps = 8;
   constexpr double kEnough_px = 1e-7;
   for (int step = 0; step < kMostSteps; ++step) {
-    const auto off = Misfit(kind, ideal, seen, lens);
+    const auto off = DistortedOffset(kind, ideal, seen, lens);
     if (!off) return std::nullopt;
     ideal.head<2>() -= jacobian * off->head<2>();
     if (kind != core::BodyKind::kSphere) ideal[2] -= (*off)[2];
@@ -135,9 +137,9 @@ std::optional<Shape> IdealOf(core::BodyKind kind, const Shape& seen,
   return ideal;
 }
 
-Shape SeenShape(const Track& track, const Pose& pose) {
+ShapeVector SeenShape(const Track& track, const Pose& pose) {
   const bool sphere = track.body.kind == core::BodyKind::kSphere;
-  Shape s;
+  ShapeVector s;
   s << pose.centre.x_px, pose.centre.y_px, sphere ? 0.0 : pose.angle_rad,
       (sphere ? track.body.radius_px : track.body.half_long_px).value,
       (sphere ? track.body.radius_px : track.body.half_short_px).value;
@@ -159,7 +161,7 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
   std::vector<double> sizes;         // ideal size over the common one
   std::size_t lost = 0;
   for (const Pose& pose : track.poses) {
-    const Shape seen = SeenShape(track, pose);
+    const ShapeVector seen = SeenShape(track, pose);
     Eigen::Matrix2d j;
     const auto ideal = IdealOf(track.body.kind, seen, lens, j);
     if (!ideal) {

@@ -19,7 +19,8 @@
 namespace touchdown::vision {
 namespace {
 
-[[noreturn]] void Fail(const std::filesystem::path& path, int error) {
+[[noreturn]] void ThrowSystemError(const std::filesystem::path& path,
+                                   int error) {
   throw core::InputError(fmt::format("{}: {}", path.string(),
                                      std::generic_category().message(error)));
 }
@@ -114,16 +115,16 @@ void Leave(const void* data) {
 MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
   // O_NONBLOCK: of a FIFO nobody writes into.
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file_ < 0) Fail(path, errno);
+  if (file_ < 0) ThrowSystemError(path, errno);
   struct stat status {};
   if (::fstat(file_, &status) != 0) {
     const int error = errno;
     ::close(file_);
-    Fail(path, error);
+    ThrowSystemError(path, error);
   }
   if (!S_ISREG(status.st_mode)) {
     ::close(file_);
-    if (S_ISDIR(status.st_mode)) Fail(path, EISDIR);
+    if (S_ISDIR(status.st_mode)) ThrowSystemError(path, EISDIR);
     throw core::InputError(path.string() +
                            ": is no plain file; copy the recording to a disk");
   }
@@ -134,14 +135,14 @@ MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
     const int error = errno;
     if (map == MAP_FAILED) {
       ::close(file_);
-      Fail(path, error);
+      ThrowSystemError(path, error);
     }
     data_ = static_cast<const std::byte*>(map);
     CatchBusErrors();
     if (!Enter(data_, size_bytes_, lost_)) {
       ::munmap(map, static_cast<std::size_t>(size_bytes_));
       ::close(file_);
-      Fail(path, EMFILE);
+      ThrowSystemError(path, EMFILE);
     }
   }
 }
@@ -173,7 +174,7 @@ void MappedFile::Copy(std::int64_t begin, std::int64_t end,
         ::pread(file_, to, static_cast<std::size_t>(end - begin), begin);
     if (got < 0 && errno == EINTR) continue;
     if (got == 0) RequireWhole();
-    if (got <= 0) Fail(path_, got < 0 ? errno : EIO);
+    if (got <= 0) ThrowSystemError(path_, got < 0 ? errno : EIO);
     begin += got;
     to += got;
   }

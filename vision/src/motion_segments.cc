@@ -12,7 +12,7 @@ namespace touchdown::vision {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kTold = 4;  // frames that tell of a motion of any kind
+constexpr std::size_t kTelling = 4;  // frames that tell of a motion of any kind
 
 // Squares that the best line of a supported stretch's gaps by place leaves,
 // with what is known of its level and slope as precisions.
@@ -37,27 +37,34 @@ double ForecastVariance(std::size_t n) {
 }
 
 // What the frames before a boundary were.
-enum State : std::size_t { kStart, kCarried, kTouched, kLeft, kEnded, kStates };
+enum State : std::size_t {
+  kAtStart,
+  kOnGround,
+  kTouched,
+  kLeft,
+  kEnded,
+  kStates
+};
 
-struct Step {
+struct PathStep {
   double cost = kInfinity;
   std::size_t begin = 0;
-  State from = kStart;
+  State from = kAtStart;
   StretchKind kind = StretchKind::kOther;
   double chi2 = 0.0;
   int degrees = 0;
 };
 
-struct Motion {
+struct MotionFit {
   StretchKind kind = StretchKind::kOther;
   int parameters = 0;
   double rss = 0.0;
 };
 
 // The coordinates of a frame: of the path by time, in frames; the gap by place.
-enum Coordinate : int { kAlong, kHeight, kFace, kGap, kCoordinates };
+enum Coordinate : int { kAlong, kHeight, kFaceAngle, kGap, kCoordinates };
 using Each = double __attribute__((vector_size(kCoordinates * sizeof(double))));
-struct Seen {
+struct WeightedValues {
   Each at, value, weight;
 };
 
@@ -78,7 +85,7 @@ class Segmenter {
   void OfferFlight(const Fits& fits);
   void OfferSupport(const Fits& fits);
   void OfferAnyMotion(const Fits& fits);
-  void Offer(const Fits& fits, const Motion& motion, State from, State to,
+  void Offer(const Fits& fits, const MotionFit& motion, State from, State to,
              double ends);
   double FlightGap(const Fits& fits, std::size_t at) const;
   double StartCost(const Fits& fits) const;
@@ -98,16 +105,16 @@ class Segmenter {
   double per_cut_;
   double level_precision_;  // of a supported stretch's level and slope
   double slope_precision_;
-  std::vector<bool> allowed_;                    // cuts before these samples
-  std::vector<std::array<Step, kStates>> best_;  // by boundary
-  std::vector<Seen> seen_;
+  std::vector<bool> allowed_;  // cuts before these samples
+  std::vector<std::array<PathStep, kStates>> best_;  // by boundary
+  std::vector<WeightedValues> seen_;
 };
 
 // Of the frames from `begin` on, one after the other.
 struct Segmenter::Fits {
   std::size_t begin = 0;
   std::size_t frames = 0;
-  Seen first;  // but the gap, which is not relative to it
+  WeightedValues first;  // but the gap, which is not relative to it
   MomentsOf<Each> sums;
   double lowest_px = kInfinity;
   double highest_px = -kInfinity;
@@ -123,13 +130,13 @@ struct Segmenter::Fits {
   void Add(const Segmenter& of);
   void Fit();
   double RssOf(StretchKind kind, const Segmenter& of) const;
-  Motion As(StretchKind kind, int parameters, const Segmenter& of) const {
+  MotionFit As(StretchKind kind, int parameters, const Segmenter& of) const {
     return {kind, parameters, RssOf(kind, of)};
   }
 };
 
 void Segmenter::Fits::Add(const Segmenter& of) {
-  const Seen& s = of.seen_[begin + frames++];
+  const WeightedValues& s = of.seen_[begin + frames++];
   const Each at = s.at - first.at;
   sums.Add(at, s.value - first.value + of.falls_ * at * at, s.weight);
   lowest_px = std::min(lowest_px, s.value[kGap]);
@@ -139,7 +146,7 @@ void Segmenter::Fits::Add(const Segmenter& of) {
 void Segmenter::Fits::Fit() {
   x = Polynomial(sums.Of(kAlong));
   y = Polynomial(sums.Of(kHeight));
-  f = Polynomial(sums.Of(kFace));
+  f = Polynomial(sums.Of(kFaceAngle));
   gaps = sums.Of(kGap);
 }
 
@@ -151,7 +158,7 @@ double Segmenter::Fits::RssOf(StretchKind kind, const Segmenter& of) const {
   if (kind == StretchKind::kSupported) {
     return x.rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + f.rss2;
   }
-  return frames < kTold ? 0.0 : x.rss2 + y.rss2 + f.rss2;
+  return frames < kTelling ? 0.0 : x.rss2 + y.rss2 + f.rss2;
 }
 
 Segmenter::Segmenter(const PlaneTrack& track,
@@ -160,7 +167,7 @@ Segmenter::Segmenter(const PlaneTrack& track,
       options_(options),
       samples_(track.samples),
       turns_(track.kind == core::BodyKind::kRectangle),
-      least_flight_(options.gravity_px_per_s2 ? 2 : kTold),
+      least_flight_(options.gravity_px_per_s2 ? 2 : kTelling),
       per_frame_(turns_ ? 3 : 2),
       falls_{0.0, 0.5 * options.gravity_px_per_s2.value_or(0.0) *
                       track.frame_interval_s * track.frame_interval_s},
@@ -183,11 +190,11 @@ Segmenter::Segmenter(const PlaneTrack& track,
     };
     const double t = s.time_s / track.frame_interval_s;
     const double face = turns_ ? weight(s.u_face_rad, floor_rad) : 0.0;
-    seen_.push_back(
-        Seen{{t, t, t, s.along_px},
-             {s.along_px, s.height_px, s.face_rad, s.gap_px},
-             {weight(s.u_along_px, floor_px), weight(s.u_height_px, floor_px),
-              face, weight(s.u_gap_px, floor_px)}});
+    seen_.push_back(WeightedValues{
+        {t, t, t, s.along_px},
+        {s.along_px, s.height_px, s.face_rad, s.gap_px},
+        {weight(s.u_along_px, floor_px), weight(s.u_height_px, floor_px), face,
+         weight(s.u_gap_px, floor_px)}});
   }
 }
 
@@ -200,7 +207,8 @@ double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
   } else {
     height += fits.y.Parabola(t);
   }
-  const double face = turns_ ? fits.first.value[kFace] + fits.f.Line(t) : 0.0;
+  const double face =
+      turns_ ? fits.first.value[kFaceAngle] + fits.f.Line(t) : 0.0;
   return height - SupportHeight(track_, face);
 }
 
@@ -234,14 +242,14 @@ double Segmenter::EndCost(const Fits& fits) const {
 
 // The frames of `fits` as one stretch after `from`, before `to`. `ends`: what
 // its start and its end cost.
-void Segmenter::Offer(const Fits& fits, const Motion& motion, State from,
+void Segmenter::Offer(const Fits& fits, const MotionFit& motion, State from,
                       State to, double ends) {
-  const Step& before = best_[fits.begin][from];
+  const PathStep& before = best_[fits.begin][from];
   if (!(before.cost < kInfinity)) return;
   const auto [kind, parameters, rss] = motion;
   const double cost = before.cost + 0.5 * rss + per_parameter_ * parameters +
                       (fits.begin > 0 ? per_cut_ : 0.0) + ends;
-  Step& best = best_[fits.end()][to];
+  PathStep& best = best_[fits.end()][to];
   if (!(cost < best.cost)) return;
   const int values = static_cast<int>(fits.frames) * per_frame_;
   best = {cost, fits.begin, from, kind, rss, std::max(0, values - parameters)};
@@ -260,11 +268,11 @@ void Segmenter::OfferFlight(const Fits& fits) {
   if (fits.frames < least_flight_ && !tail) return;
   const int values = static_cast<int>(fits.frames) * per_frame_;
   const int free = 2 * per_frame_ + (options_.gravity_px_per_s2 ? 0 : 1);
-  const Motion flight =
+  const MotionFit flight =
       fits.As(StretchKind::kFlight, std::min(values, free), *this);
   const double ending = tail ? 0.0 : EndCost(fits);
-  for (const State from : {kStart, kCarried, kTouched}) {
-    double starting = from == kStart ? 0.0 : options_.rebound_cost;
+  for (const State from : {kAtStart, kOnGround, kTouched}) {
+    double starting = from == kAtStart ? 0.0 : options_.rebound_cost;
     if (from == kTouched && !tail) starting += StartCost(fits);
     if (MayTouch(fits.end())) {
       Offer(fits, flight, from, kTouched, starting + ending);
@@ -284,9 +292,9 @@ void Segmenter::OfferSupport(const Fits& fits) {
                0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
                       RssOfLine(fits.gaps, 0.0, slope_precision_)));
   const int along = static_cast<int>(std::min<std::size_t>(fits.frames, 3));
-  const Motion down = fits.As(StretchKind::kSupported,
-                              turns_ ? 1 + 2 * along : 1 + along, *this);
-  for (const State from : {kStart, kCarried, kTouched}) {
+  const MotionFit down = fits.As(StretchKind::kSupported,
+                                 turns_ ? 1 + 2 * along : 1 + along, *this);
+  for (const State from : {kAtStart, kOnGround, kTouched}) {
     Offer(fits, down, from, kTouched, off);
   }
 }
@@ -296,11 +304,11 @@ void Segmenter::OfferSupport(const Fits& fits) {
 void Segmenter::OfferAnyMotion(const Fits& fits) {
   const std::size_t n = fits.frames;
   const int k = static_cast<int>(std::min<std::size_t>(n, 3)) * per_frame_;
-  const Motion any = fits.As(StretchKind::kOther, k, *this);
+  const MotionFit any = fits.As(StretchKind::kOther, k, *this);
   // No motion that is known: mostly it is one, badly seen. A few frames tell of
   // none, but those after an impact would be a rebound.
   const double few = 2.0 * per_cut_;
-  const bool told = n >= kTold;
+  const bool told = n >= kTelling;
   const double before = told ? options_.unknown_cost : few;
   const double after =
       told ? options_.unknown_cost : few + options_.rebound_cost;
@@ -317,8 +325,8 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
                                                   std::max<std::size_t>(n, 2),
                                                   kInfinity));
   }
-  offer_other(kStart, kCarried, before);
-  if (told) offer_other(kCarried, kCarried, before);
+  offer_other(kAtStart, kOnGround, before);
+  if (told) offer_other(kOnGround, kOnGround, before);
   if (!MayTouch(fits.begin)) return;
   offer_other(kTouched, kEnded, after);
   offer_other(kLeft, kEnded, after);
@@ -327,7 +335,7 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
 
 void Segmenter::GrowFrom(std::size_t begin) {
   double least = kInfinity;
-  for (const Step& step : best_[begin]) least = std::min(least, step.cost);
+  for (const PathStep& step : best_[begin]) least = std::min(least, step.cost);
   if (!(least < kInfinity)) return;
   const bool early = options_.touchdown && begin < *options_.touchdown;
   const std::size_t limit = early ? *options_.touchdown : samples_.size();
@@ -344,7 +352,7 @@ void Segmenter::GrowFrom(std::size_t begin) {
     // later frames only make worse, has lost to what leads there already.
     const double loosest = 0.5 * (fits.x.rss2 + fits.y.rss2 + fits.f.rss2);
     double leads = kInfinity;
-    for (const State state : {kCarried, kTouched, kEnded}) {
+    for (const State state : {kOnGround, kTouched, kEnded}) {
       leads = std::min(leads, best_[end][state].cost);
     }
     constexpr double kMargin = 80.0;  // end terms that may still be saved
@@ -430,17 +438,17 @@ std::vector<Stretch> Segmenter::Run() {
 std::vector<Stretch> Segmenter::BestPath() {
   const std::size_t n = samples_.size();
   best_.assign(n + 1, {});
-  best_[0][kStart].cost = 0.0;
+  best_[0][kAtStart].cost = 0.0;
   for (std::size_t begin = 0; begin < n; ++begin) {
     if (allowed_[begin]) GrowFrom(begin);
   }
   State state = kTouched;
-  for (const State other : {kCarried, kLeft, kEnded}) {
+  for (const State other : {kOnGround, kLeft, kEnded}) {
     if (best_[n][other].cost < best_[n][state].cost) state = other;
   }
   std::vector<Stretch> stretches;
   for (std::size_t end = n; end > 0;) {
-    const Step& step = best_[end][state];
+    const PathStep& step = best_[end][state];
     if (!(step.cost < kInfinity)) return {};
     stretches.push_back(
         {{step.begin, end}, step.kind, step.chi2, step.degrees});

@@ -15,6 +15,7 @@
 #include "outline_inside.h"
 #include "outline_pixels.h"
 #include "outline_sums.h"
+#include "robust.h"
 #include "shared_fit.h"
 #include "track_shape.h"
 
@@ -24,13 +25,13 @@ namespace {
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
 constexpr int kMaxParameters = kMostTerms;
-constexpr double kTukey = 4.685;  // 95 % efficient
 // Pixels that come and go at the band's borders as the outline moves by so much
 // tell nothing of its place, and residuals at its edge are no outliers yet.
 constexpr double kNearStart_px = 0.05;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
-                             kMaxParameters, kMaxParameters>;
+using ParameterVector =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
+using NormalMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                                   kMaxParameters, kMaxParameters>;
 
 class Fitter {
  public:
@@ -84,7 +85,7 @@ class Fitter {
   void Accumulate(bool robust);
   void Sum(const OutlineRound& round);
   OutlineRound Round() const;
-  Matrix Regular() const;
+  NormalMatrix Regular() const;
   bool Step(double longer, double& geometric_step);
   int OpenAt() const { return geometry_ + 1; }
   int LevelsBegin() const { return geometry_ + 2; }
@@ -109,13 +110,13 @@ class Fitter {
   bool saturated_ = false;  // what lies around the body
   double cosine_ = 1.0;
   double sine_ = 0.0;
-  Vector levels_;  // interior then outer polynomial coefficients, DN
+  ParameterVector levels_;  // interior then outer polynomial coefficients, DN
   OutlinePixels pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
   OutlineSums sums_;
-  Matrix normal_;
-  Vector gradient_;
+  NormalMatrix normal_;
+  ParameterVector gradient_;
   double contrast_ = 0.0;
   double misfit_ = 0.0;
   double inliers_ = 0.0;
@@ -172,8 +173,8 @@ void Fitter::Sum(const OutlineRound& round) {
   for (std::size_t k = round.shapes; k < round.terms(); ++k) {
     at[k] = LevelsBegin() + static_cast<int>(k - round.shapes);
   }
-  normal_ = Matrix::Zero(Parameters(), Parameters());
-  gradient_ = Vector::Zero(Parameters());
+  normal_ = NormalMatrix::Zero(Parameters(), Parameters());
+  gradient_ = ParameterVector::Zero(Parameters());
   for (std::size_t i = 0; i < round.terms(); ++i) {
     gradient_[at[i]] = sums_.gradient(i);
     for (std::size_t j = 0; j <= i; ++j) {
@@ -202,7 +203,7 @@ OutlineRound Fitter::Round() const {
 void Fitter::SolveLevels() {
   Sum(Round());
   const int n = interior_ + outer_;
-  Matrix a = normal_.bottomRightCorner(n, n);
+  NormalMatrix a = normal_.bottomRightCorner(n, n);
   // A trace of ridge keeps an unseen polynomial term at zero.
   a.diagonal().array() += 1e-9 * (1e-12 + a.diagonal().maxCoeff());
   levels_ = a.ldlt().solve(gradient_.tail(n));
@@ -227,7 +228,7 @@ void Fitter::Accumulate(bool robust) {
   if (Free(geometry_)) round.shape[round.shapes++] = OutlineRound::kBlur;
   if (Free(OpenAt())) round.shape[round.shapes++] = OutlineRound::kOpen;
   std::copy(levels_.begin(), levels_.end(), round.levels.begin());
-  if (robust) round.cut = kTukey * robust_scale_;
+  if (robust) round.cut = kTukeyCut * robust_scale_;
   Sum(round);
   contrast_ = sums_.contrast_dn;
   const double clipped =
@@ -239,8 +240,8 @@ void Fitter::Accumulate(bool robust) {
 }
 
 // The normal equations with what is held held, and a trace of ridge.
-Matrix Fitter::Regular() const {
-  Matrix a = normal_;
+NormalMatrix Fitter::Regular() const {
+  NormalMatrix a = normal_;
   for (int k = 0; k < Parameters(); ++k) {
     a(k, k) =
         (k < LevelsBegin() && !Free(k)) ? 1.0 : a(k, k) * (1 + 1e-9) + 1e-12;
@@ -250,9 +251,9 @@ Matrix Fitter::Regular() const {
 
 // A step of Gauss and Newton, `longer` so many times.
 bool Fitter::Step(double longer, double& geometric_step) {
-  const Eigen::LDLT<Matrix> factor(Regular());
+  const Eigen::LDLT<NormalMatrix> factor(Regular());
   if (factor.info() != Eigen::Success) return false;
-  Vector step = longer * factor.solve(gradient_);
+  ParameterVector step = longer * factor.solve(gradient_);
   if (!step.allFinite()) return false;
   // No parameter may jump further than the linearisation holds.
   const double size = SmallestHalf(outline_);
@@ -380,7 +381,7 @@ bool Fitter::SetAsideUnexplained() {
   constexpr double kClear = 1.5;  // of the blur, inside the edge
   constexpr double kReach = 4.0;  // of the blur: where its tail is 1e-4
   const std::vector<core::PixelPoint> unexplained =
-      Unexplained(pixels_, residuals_, kTukey * robust_scale_, outline_,
+      Unexplained(pixels_, residuals_, kTukeyCut * robust_scale_, outline_,
                   cosine_, sine_, kClear * blur_ + 0.5 * smear_.way_px());
   if (unexplained.empty()) return false;
   before_aside_ = Visible();
@@ -426,8 +427,8 @@ core::Expected<OutlineFit> Fitter::Run() {
                     std::abs(contrast_), kLeastContrast, noise));
   }
 
-  const Matrix covariance =
-      Regular().ldlt().solve(Matrix::Identity(Parameters(), Parameters()));
+  const NormalMatrix covariance = Regular().ldlt().solve(
+      NormalMatrix::Identity(Parameters(), Parameters()));
   const double widen = std::max(1.0, misfit_);
   const auto u = [&](int k) {
     return k >= LevelsBegin() || Free(k)
@@ -437,7 +438,7 @@ core::Expected<OutlineFit> Fitter::Run() {
   OutlineFit fit;
   fit.outline = outline_;
   if (telling_) {
-    const Vector step = covariance * gradient_;
+    const ParameterVector step = covariance * gradient_;
     Grow(step[2], geometry_ == 5 ? step[3] : 0.0, fit.outline);
     const auto row = [&](int k) { return Free(k) ? k : -1; };
     fit.shared =

@@ -24,8 +24,8 @@ struct Window {
 };
 
 // Within the picture, so far to all sides of the outline's centre.
-core::PixelRect Around(const core::PixelPoint& centre, double reach_px,
-                       const ClipInfo& info) {
+core::PixelRect WindowReaching(const core::PixelPoint& centre, double reach_px,
+                               const ClipInfo& info) {
   const auto from = [&](double at, std::int32_t end) {
     return static_cast<std::int32_t>(
         std::clamp(std::floor(at - reach_px), 0.0, end - 1.0));
@@ -51,10 +51,11 @@ core::PixelRect FirstSeen(const Outline& start, const OutlineOptions& options,
                           const ClipInfo& info) {
   constexpr double kBlurs = 3.0;
   constexpr double kSpare_px = 2.0;
-  return Around(start.centre,
-                Extent(start) + kBlurs * std::max(options.blur_px, 0.5) +
-                    HalfWay_px(options) + kSpare_px,
-                info);
+  return WindowReaching(start.centre,
+                        Extent(start) +
+                            kBlurs * std::max(options.blur_px, 0.5) +
+                            HalfWay_px(options) + kSpare_px,
+                        info);
 }
 
 Window Take(Clip& clip, const OutlineJob& job, const OutlineOptions& options) {
@@ -81,8 +82,8 @@ void PrefetchRows(const Window& window) {
 }
 
 // The options of all, and a job's own.
-OutlineOptions OptionsFor(const OutlineJob& job,
-                          const OutlineOptions& options) {
+OutlineOptions OptionsOfJob(const OutlineJob& job,
+                            const OutlineOptions& options) {
   OutlineOptions own = options;
   own.travel_px = job.travel_px;
   own.turn_rad = job.turn_rad;
@@ -99,7 +100,7 @@ void FitThese(std::span<const OutlineJob> jobs, std::span<const Window> windows,
     if (i + 1 < to) PrefetchRows(windows[i + 1]);
     const core::Frame& frame = windows[i].frame;
     const auto fit = FitOutline(frame, background, jobs[i].start,
-                                OptionsFor(jobs[i], options));
+                                OptionsOfJob(jobs[i], options));
     if (fit) fits[i] = Fitted{jobs[i].frame, frame.time_s, *fit};
   }
 }
@@ -108,7 +109,7 @@ void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
              const OutlineOptions& options, std::vector<Window>& windows) {
   windows.clear();
   for (const OutlineJob& job : jobs) {
-    windows.push_back(Take(clip, job, OptionsFor(job, options)));
+    windows.push_back(Take(clip, job, OptionsOfJob(job, options)));
   }
 }
 
@@ -148,11 +149,11 @@ core::PixelRect WindowFor(const Outline& start, const OutlineOptions& options,
   constexpr double kMayMove = 0.5;
   constexpr double kBlurs = 6.0;
   constexpr double kSpare_px = 6.0;
-  return Around(start.centre,
-                (1.0 + kMayMove) * Extent(start) +
-                    kBlurs * std::max(options.blur_px, 0.5) +
-                    HalfWay_px(options) + kSpare_px,
-                info);
+  return WindowReaching(start.centre,
+                        (1.0 + kMayMove) * Extent(start) +
+                            kBlurs * std::max(options.blur_px, 0.5) +
+                            HalfWay_px(options) + kSpare_px,
+                        info);
 }
 
 std::vector<std::optional<Fitted>> FitOutlines(Clip& clip,

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "lanes.h"
+#include "robust.h"
 
 namespace touchdown::vision {
 namespace {
@@ -304,8 +305,7 @@ double OutlineSums::normal(std::size_t i, std::size_t j) const {
 double OutlineSums::gradient(std::size_t i) const { return gradient_[i]; }
 
 double RobustScale(const std::vector<double>& residuals) {
-  constexpr double kPerMedian = 1.4826;
-  const double one = 1.0 / kPerMedian;
+  const double one = 1.0 / kSigmaPerMedian;
   const auto larger = static_cast<std::size_t>(
       std::count_if(residuals.begin(), residuals.end(),
                     [&](double r) { return std::abs(r) > one; }));
@@ -330,7 +330,7 @@ double RobustScale(const std::vector<double>& residuals) {
   const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(middle - others);
   std::nth_element(sizes.begin(), at,
                    sizes.begin() + static_cast<std::ptrdiff_t>(count));
-  return kPerMedian * *at;
+  return kSigmaPerMedian * *at;
 }
 
 }  // namespace touchdown::vision

@@ -9,17 +9,17 @@
 
 #include "box_around.h"
 #include "outline_pixels.h"
+#include "robust.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOfMedian = 1.4826;  // of |normal|
+constexpr double kNoLevel = std::numeric_limits<double>::quiet_NaN();
 
 // Weights of Keys' cubic convolution (1981), a = -1/2, at `t` beyond the second
 // of four samples.
-std::array<double, 4> Cubic(double t) {
+std::array<double, 4> KeysWeights(double t) {
   const double t2 = t * t;
   const double t3 = t2 * t;
   return {0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
@@ -29,7 +29,6 @@ std::array<double, 4> Cubic(double t) {
 double Tukey(double t) {
   return std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
 }
-constexpr double kTukey = 4.685;
 
 struct Axes {
   double cosine = 1.0;
@@ -69,12 +68,12 @@ Usual UsualOf(const std::vector<double>& values) {
   std::vector<double> off;
   off.reserve(values.size());
   for (const double v : values) off.push_back(std::abs(v - usual.level));
-  usual.scatter = kOfMedian * Median(std::move(off));
+  usual.scatter = kSigmaPerMedian * Median(std::move(off));
   if (!(usual.scatter > 0.0)) return usual;
   double sw = 0.0;
   double swv = 0.0;
   for (const double v : values) {
-    const double w = Tukey((v - usual.level) / (kTukey * usual.scatter));
+    const double w = Tukey((v - usual.level) / (kTukeyCut * usual.scatter));
     sw += w;
     swv += w * v;
   }
@@ -91,10 +90,10 @@ double PatternView::At(double x_px, double y_px) const {
   const double top = std::floor(y);
   if (!(left >= 1.0 && top >= 1.0 && left + 2.0 < rect.width &&
         top + 2.0 < rect.height)) {
-    return kNothing;
+    return kNoLevel;
   }
-  const std::array<double, 4> across = Cubic(x - left);
-  const std::array<double, 4> down = Cubic(y - top);
+  const std::array<double, 4> across = KeysWeights(x - left);
+  const std::array<double, 4> down = KeysWeights(y - top);
   const float* row = value.data() +
                      static_cast<std::ptrdiff_t>(top - 1.0) * rect.width +
                      static_cast<std::ptrdiff_t>(left - 1.0);
@@ -246,7 +245,7 @@ double Pattern::MisfitOf(const std::vector<double>& rest, double scale) const {
   double sum = 0.0;
   for (std::size_t k = 0; k < own_.size(); ++k) {
     const Node& node = nodes_[own_[k]];
-    const double w = Tukey(rest[k] / (kTukey * scale));
+    const double w = Tukey(rest[k] / (kTukeyCut * scale));
     if (!(w > 0.0)) continue;
     const double off_dn = rest[k] * node.u;
     sw += w;
@@ -272,10 +271,10 @@ double Pattern::Mismatch(const PatternView& view, const Pose& at,
     const double value = view.At(p.x_px, p.y_px);
     if (!std::isfinite(value)) continue;
     const double r = (value - node.level) / node.u;
-    sum += std::min(std::abs(r), kTukey);
+    sum += std::min(std::abs(r), kTukeyCut);
     seen += 1.0;
   }
-  return seen > 0.0 ? sum / seen : kTukey;
+  return seen > 0.0 ? sum / seen : kTukeyCut;
 }
 
 std::optional<PatternPose> Pattern::Register(const PatternView& view,
@@ -283,8 +282,8 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
                                              double within_px) const {
   // Gain, offset and slopes of the light; x, y and turn of the pattern.
   constexpr int kLight = 4;
-  constexpr int kX = kLight;
-  constexpr int kY = kLight + 1;
+  constexpr int kShiftX = kLight;
+  constexpr int kShiftY = kLight + 1;
   constexpr int kTurn = kLight + 2;
   using Matrix = Eigen::Matrix<double, kLight + 3, kLight + 3>;
   using Vector = Eigen::Matrix<double, kLight + 3, 1>;
@@ -332,7 +331,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       const bool last = part == kLightRounds;
       sizes.clear();
       for (std::size_t k = 0; k < n; ++k) {
-        rest[k] = kNothing;
+        rest[k] = kNoLevel;
         if (!std::isfinite(value[k])) continue;
         const Node& node = nodes_[own_[k]];
         rest[k] =
@@ -343,7 +342,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
           kMostSeen * static_cast<double>(n)) {
         return std::nullopt;
       }
-      scale = std::max(1.0, kOfMedian * Median(sizes));
+      scale = std::max(1.0, kSigmaPerMedian * Median(sizes));
       normal.setZero();
       Vector right = Vector::Zero();
       for (std::size_t k = 0; k < n; ++k) {
@@ -351,7 +350,8 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         const Node& node = nodes_[own_[k]];
         const double sx = node.slope_x;
         const double sy = node.slope_y;
-        const double w = Tukey(rest[k] / (kTukey * scale)) / (node.u * node.u);
+        const double w =
+            Tukey(rest[k] / (kTukeyCut * scale)) / (node.u * node.u);
         Vector row;
         row << node.level, 1.0, node.x_px, node.y_px, -sx, -sy,
             sx * node.y_px - sy * node.x_px;
@@ -361,7 +361,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         right += w * value[k] * row;
       }
       normal = Matrix(normal.selfadjointView<Eigen::Lower>());
-      if (!last) normal(kX, kX) = normal(kY, kY) = 1.0;
+      if (!last) normal(kShiftX, kShiftX) = normal(kShiftY, kShiftY) = 1.0;
       if (!last || !turns_) normal(kTurn, kTurn) = 1.0;
       const Eigen::LDLT<Matrix> factor(normal);
       p = factor.solve(right);
@@ -373,9 +373,9 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       }
     }
     const double dx =
-        std::clamp(p[kX] / light.gain, -kMostStep_px, kMostStep_px);
+        std::clamp(p[kShiftX] / light.gain, -kMostStep_px, kMostStep_px);
     const double dy =
-        std::clamp(p[kY] / light.gain, -kMostStep_px, kMostStep_px);
+        std::clamp(p[kShiftY] / light.gain, -kMostStep_px, kMostStep_px);
     const double reach = reach_px();
     const double turn =
         turns_ ? std::clamp(p[kTurn] / light.gain, -kMostStep_px / reach,
@@ -388,13 +388,13 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       const Matrix covariance =
           Eigen::LDLT<Matrix>(normal).solve(Matrix::Identity()) *
           (scale * scale) / (light.gain * light.gain);
-      if (!covariance.allFinite() || !(covariance(kX, kX) > 0.0) ||
-          !(covariance(kY, kY) > 0.0)) {
+      if (!covariance.allFinite() || !(covariance(kShiftX, kShiftX) > 0.0) ||
+          !(covariance(kShiftY, kShiftY) > 0.0)) {
         return std::nullopt;
       }
-      const double xx = covariance(kX, kX);
-      const double yy = covariance(kY, kY);
-      const double xy = covariance(kX, kY);
+      const double xx = covariance(kShiftX, kShiftX);
+      const double yy = covariance(kShiftY, kShiftY);
+      const double xy = covariance(kShiftX, kShiftY);
       const double c = axes.cosine;
       const double s = axes.sine;
       const double vx = c * c * xx + s * s * yy - 2.0 * c * s * xy;

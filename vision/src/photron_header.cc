@@ -17,8 +17,6 @@ namespace {
 
 // Real headers are 8 to 20 kB; a preview picture in a .cihx may add to that.
 constexpr std::int64_t kMaxHeaderBytes = 64 << 20;
-// No sensor comes near; keeps every product of sizes far from overflow.
-constexpr std::int64_t kMaxSidePx = 1 << 16;
 constexpr std::int64_t kMaxFrames = std::int64_t{1} << 40;
 constexpr std::int64_t kMaxFrameNumber = std::int64_t{1} << 60;
 
@@ -238,12 +236,12 @@ PhotronHeader ParseCihx(std::string_view bytes, const std::string& name) {
   const Entries entries{
       name, [root](std::string_view entry) { return Find(root, entry); }};
   PhotronHeader header = Interpret(entries, kCihx);
-  constexpr std::string_view kX = "imageDataInfo/segmentPos/sensorXpos";
-  constexpr std::string_view kY = "imageDataInfo/segmentPos/sensorYpos";
-  if (entries.find(kX) && entries.find(kY)) {
+  constexpr std::string_view kSensorX = "imageDataInfo/segmentPos/sensorXpos";
+  constexpr std::string_view kSensorY = "imageDataInfo/segmentPos/sensorYpos";
+  if (entries.find(kSensorX) && entries.find(kSensorY)) {
     header.sensor_origin = {
-        static_cast<std::int32_t>(entries.Integer(kX, 0, kMaxSidePx)),
-        static_cast<std::int32_t>(entries.Integer(kY, 0, kMaxSidePx))};
+        static_cast<std::int32_t>(entries.Integer(kSensorX, 0, kMaxSidePx)),
+        static_cast<std::int32_t>(entries.Integer(kSensorY, 0, kMaxSidePx))};
   }
   return header;
 }

@@ -14,10 +14,7 @@
 namespace touchdown::vision {
 namespace {
 
-using NearGround = OutlineOptions::NearGround;
-using Surround = OutlineOptions::Surround;
-
-std::vector<Motion> MotionsOf(const std::vector<Pose>& poses) {
+std::vector<Motion> MotionAtPoses(const std::vector<Pose>& poses) {
   std::vector<layers::LayerPose> path;
   std::vector<std::int64_t> frames;
   for (const Pose& pose : poses) {
@@ -40,8 +37,9 @@ Refiner::Refiner(Clip& clip, const Background& background, const Track& track,
       track_(track),
       threads_(refine.threads),
       hidden_(clip, background, track) {
-  options_.surround =
-      track.known_background ? Surround::kBackground : Surround::kPolynomial;
+  options_.surround = track.known_background
+                          ? OutlineOptions::Surround::kBackground
+                          : OutlineOptions::Surround::kPolynomial;
   options_.blur_px = track.body.blur_px;
   options_.ground = refine.ground;
   // The blurred edges of body and ground do not superpose: clear of both, as
@@ -54,7 +52,7 @@ Refiner::Refiner(Clip& clip, const Background& background, const Track& track,
   options_.ground_margin_px =
       std::max(options_.ground_margin_px,
                std::min(kBlurs * track.body.blur_px, kMostOfHalf * half));
-  motion_ = MotionsOf(track.poses);
+  motion_ = MotionAtPoses(track.poses);
 }
 
 void Refiner::LookNearGround(Track& refined) {
@@ -78,7 +76,7 @@ void Refiner::LookNearGround(Track& refined) {
   for (const std::size_t i : FromBothSides(low.size(), step)) {
     jobs.push_back(JobAt(track_.body, low[i]));
   }
-  options_.near_ground = NearGround::kModelled;
+  options_.near_ground = OutlineOptions::NearGround::kModelled;
   double pixels = 0.0;
   double excess = 0.0;
   std::vector<Fitted> near;
@@ -96,7 +94,7 @@ void Refiner::LookNearGround(Track& refined) {
   // A body that is crudely modelled says nothing of what is near it.
   if (excess > kMostExcess * pixels + kSigmas * std::sqrt(2.0 * pixels) ||
       near.empty() || MedianMisfit(near) > kWellModelled) {
-    options_.near_ground = NearGround::kLeftOut;
+    options_.near_ground = OutlineOptions::NearGround::kLeftOut;
     return;
   }
   refined.near_ground_modelled = true;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "refiner.h"
+#include "robust.h"
 
 namespace touchdown::vision {
 namespace {
@@ -18,7 +19,7 @@ void PriorOf(const std::vector<double>& values, const std::vector<double>& us,
   std::vector<double> off;
   off.reserve(values.size());
   for (const double v : values) off.push_back(std::abs(v - level));
-  const double scatter = 1.4826 * Median(off);
+  const double scatter = kSigmaPerMedian * Median(off);
   const double noise = Median(us);
   const double own = std::max(0.0, scatter * scatter - noise * noise);
   // The median's own uncertainty, pi/2 times the mean's variance.

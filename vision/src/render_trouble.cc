@@ -9,7 +9,8 @@
 namespace touchdown::vision {
 namespace {
 
-std::size_t At(const CleanImage& image, std::int32_t x, std::int32_t y) {
+std::size_t PixelIndex(const CleanImage& image, std::int32_t x,
+                       std::int32_t y) {
   return static_cast<std::size_t>(y) *
              static_cast<std::size_t>(image.width_px) +
          static_cast<std::size_t>(x);
@@ -113,7 +114,7 @@ void TroubleRenderer::DrawShadow(const Scene& scene, const ScenePose& pose,
   const double s = std::sin(camera.roll_rad);
   for (std::int32_t y = 0; y < image.height_px; ++y) {
     for (std::int32_t x = 0; x < image.width_px; ++x) {
-      const std::size_t i = At(image, x, y);
+      const std::size_t i = PixelIndex(image, x, y);
       const double share = static_cast<double>(layers.ground_share[i]) *
                            (1.0 - Covered(layers.body, x, y));
       if (!(share > 0.0)) continue;
@@ -154,7 +155,7 @@ void TroubleRenderer::DrawSpecks(const Scene& scene, double time_s,
     map.Finish();
     for (std::int32_t row = y0; row < y1; ++row) {
       for (std::int32_t column = x0; column < x1; ++column) {
-        const std::size_t i = At(image, column, row);
+        const std::size_t i = PixelIndex(image, column, row);
         const double share = map.row(row)[column - x0] *
                              (1.0 - Covered(layers.body, column, row));
         const double level =
@@ -175,7 +176,7 @@ void TroubleRenderer::DrawShading(const Scene& scene, const ScenePose& pose,
   const core::PixelRect& w = layers.body.window();
   for (std::int32_t y = w.y; y < w.y + w.height; ++y) {
     for (std::int32_t x = w.x; x < w.x + w.width; ++x) {
-      const std::size_t i = At(image, x, y);
+      const std::size_t i = PixelIndex(image, x, y);
       const double dx = x - centre.x_px;
       const double dy = y - centre.y_px;
       const double shading =
@@ -206,7 +207,7 @@ void TroubleRenderer::Draw(const Scene& scene, double time_s,
   if (obstacle_) {
     for (std::int32_t y = 0; y < image.height_px; ++y) {
       for (std::int32_t x = 0; x < image.width_px; ++x) {
-        const std::size_t i = At(image, x, y);
+        const std::size_t i = PixelIndex(image, x, y);
         const double level =
             static_cast<double>(layers.light[i]) * trouble.obstacle_level;
         image.dn[i] += static_cast<float>(

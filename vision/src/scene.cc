@@ -29,7 +29,7 @@ void RequireSize(const core::Measured& size, const char* field) {
 
 bool IsLevel(double value) { return value >= 0.0 && value <= 1.0; }
 
-void Validate(const SceneTrouble& trouble, bool lens) {
+void ValidateTrouble(const SceneTrouble& trouble, bool lens) {
   Require(std::abs(trouble.shading_x) <= 1.0, "trouble.shading_x",
           trouble.shading_x, "-1 .. 1");
   Require(std::abs(trouble.shading_y) <= 1.0, "trouble.shading_y",
@@ -147,7 +147,7 @@ void Validate(const Scene& scene) {
             "such that the mark lies on the body");
   }
 
-  Validate(scene.trouble, camera.lens.has_value());
+  ValidateTrouble(scene.trouble, camera.lens.has_value());
   Require(scene.noise.read_dn >= 0.0 && std::isfinite(scene.noise.read_dn),
           "noise.read_dn", scene.noise.read_dn, "at least 0 and finite");
   Require(scene.noise.shot_dn2_per_dn >= 0.0 &&

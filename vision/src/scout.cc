@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "box_around.h"
 #include "kept_pixels.h"
 #include "lanes.h"
 
@@ -60,29 +61,24 @@ bool Meet(const core::PixelRect& a, const core::PixelRect& b) {
          b.y < a.y + a.height;
 }
 
-core::PixelRect Both(const core::PixelRect& a, const core::PixelRect& b) {
-  const std::int32_t x = std::min(a.x, b.x);
-  const std::int32_t y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
-          std::max(a.y + a.height, b.y + b.height) - y};
-}
-
-struct Region {
+struct ChangedRegion {
   core::PixelRect rect;
   double strength = 0.0;  // sum of its differences, in standard deviations
 };
 
 // Until none meets another.
-void Join(std::vector<Region>& regions) {
+void Join(std::vector<ChangedRegion>& regions) {
   for (std::size_t i = 0; i < regions.size();) {
-    const auto meets = std::find_if(
-        regions.begin() + static_cast<std::ptrdiff_t>(i) + 1, regions.end(),
-        [&](const Region& other) { return Meet(regions[i].rect, other.rect); });
+    const auto meets =
+        std::find_if(regions.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                     regions.end(), [&](const ChangedRegion& other) {
+                       return Meet(regions[i].rect, other.rect);
+                     });
     if (meets == regions.end()) {
       ++i;
       continue;
     }
-    regions[i].rect = Both(regions[i].rect, meets->rect);
+    regions[i].rect = BoxAround(regions[i].rect, meets->rect);
     regions[i].strength += meets->strength;
     regions.erase(meets);
     // It has grown: all are asked again.
@@ -269,7 +265,7 @@ std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
   core::PixelRect all{0, 0, width_px_, height_px_};
   const core::PixelRect& wanted = options_.region;
   if (wanted.width > 0) all = wanted;
-  std::vector<Region> regions;
+  std::vector<ChangedRegion> regions;
   for (const core::PixelRect& rect : options_.always) {
     regions.push_back({rect, std::numeric_limits<double>::infinity()});
   }
@@ -310,15 +306,16 @@ std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
     if (rect.width > 0 && rect.height > 0) regions.push_back({rect, strength});
   }
   Join(regions);
-  std::stable_sort(
-      regions.begin(), regions.end(),
-      [](const Region& a, const Region& b) { return a.strength > b.strength; });
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const ChangedRegion& a, const ChangedRegion& b) {
+                     return a.strength > b.strength;
+                   });
   if (regions.size() > options_.most_regions) {
     regions.resize(options_.most_regions);
   }
   std::vector<core::PixelRect> rects;
   rects.reserve(regions.size());
-  for (const Region& region : regions) rects.push_back(region.rect);
+  for (const ChangedRegion& region : regions) rects.push_back(region.rect);
   return rects;
 }
 

@@ -5,19 +5,21 @@
 #include <cmath>
 #include <vector>
 
+#include "robust.h"
+
 namespace touchdown::vision {
 namespace {
 
-constexpr std::size_t kLeast = 3;  // frames
+constexpr std::size_t kLeastSharing = 3;  // frames
 
-struct Told {
+struct FrameStep {
   const SharedTerms* terms = nullptr;
   double step = 0.0;  // of the size, by this frame alone
   double u = 0.0;
 };
 
 // What one frame says alone: blur and exposure no better known than this.
-Told Alone(const SharedTerms& terms) {
+FrameStep Alone(const SharedTerms& terms) {
   constexpr double kVague = 1.0;  // px, and share
   Eigen::Matrix4d information = terms.information;
   information.diagonal().array() += 1.0 / (kVague * kVague);
@@ -27,30 +29,29 @@ Told Alone(const SharedTerms& terms) {
           std::sqrt(covariance(0, 0))};
 }
 
-std::vector<Told> Collect(std::span<const Fitted> all) {
+std::vector<FrameStep> Collect(std::span<const Fitted> all) {
   constexpr double kWhole = 0.98;
-  std::vector<Told> told;
+  std::vector<FrameStep> told;
   for (const bool strict : {true, false}) {
     told.clear();
     for (const Fitted& f : all) {
       if (!f.fit.shared || (strict && f.fit.visible < kWhole)) continue;
       told.push_back(Alone(*f.fit.shared));
     }
-    if (told.size() >= kLeast) break;
+    if (told.size() >= kLeastSharing) break;
   }
   return told;
 }
 
-void DropFarOff(std::vector<Told>& told) {
+void DropFarOff(std::vector<FrameStep>& told) {
   std::vector<double> values;
   values.reserve(told.size());
-  for (const Told& t : told) values.push_back(t.step);
+  for (const FrameStep& t : told) values.push_back(t.step);
   const double centre = Median(values);
   for (double& v : values) v = std::abs(v - centre);
-  constexpr double kPerMedian = 1.4826;
   constexpr double kMost = 4.0;
-  const double scatter = kPerMedian * Median(std::move(values));
-  std::erase_if(told, [&](const Told& t) {
+  const double scatter = kSigmaPerMedian * Median(std::move(values));
+  std::erase_if(told, [&](const FrameStep& t) {
     return std::abs(t.step - centre) > kMost * scatter;
   });
 }
@@ -95,12 +96,12 @@ SharedTerms WithoutOwn(const Eigen::MatrixXd& normal,
 }
 
 std::optional<SharedStep> StepTogether(std::span<const Fitted> all) {
-  std::vector<Told> told = Collect(all);
+  std::vector<FrameStep> told = Collect(all);
   DropFarOff(told);
-  if (told.size() < kLeast) return std::nullopt;
+  if (told.size() < kLeastSharing) return std::nullopt;
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
-  for (const Told& t : told) {
+  for (const FrameStep& t : told) {
     information += t.terms->information;
     gradient += t.terms->gradient;
   }
@@ -119,7 +120,7 @@ std::optional<SharedStep> StepTogether(std::span<const Fitted> all) {
   step.step = known * factor.solve(gradient).array();
   const Eigen::Matrix4d covariance = factor.solve(Eigen::Matrix4d::Identity());
   double chi2 = 0.0;
-  for (const Told& t : told) {
+  for (const FrameStep& t : told) {
     const double z = (t.step - step.step[0]) / t.u;
     chi2 += z * z;
   }

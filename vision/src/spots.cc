@@ -8,23 +8,21 @@
 #include <utility>
 #include <vector>
 
+#include "robust.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
 
-using Vector = SpotModel::Vector;
-using Matrix = SpotModel::Matrix;
 using Samples = std::span<const SpotSample>;
 
 // A fall of the squares' sum by so much is no chance: six parameters, hundreds
 // of places.
-constexpr double kSure = 60.0;
-constexpr double kOfMedian = 1.4826;  // of |normal|
+constexpr double kSureFall = 60.0;
 
 // Whether each spot falls off in all directions, from a place on the body.
 bool AreSpots(const SpotModel& model, double reach_px) {
-  const Vector& k = model.parameters;
+  const SpotModel::Vector& k = model.parameters;
   for (int spot = 0; spot < model.spots; ++spot) {
     const int at = SpotModel::kShading + spot * SpotModel::kSpot;
     // The greatest and the least of S's eigenvalues: 1 / width^2.
@@ -59,10 +57,10 @@ double CutOf(const std::vector<double>& residuals) {
   sizes.reserve(residuals.size());
   for (const double r : residuals) sizes.push_back(std::abs(r));
   constexpr double kSquares = 2.0;
-  return kSquares * std::max(1.0, kOfMedian * Median(std::move(sizes)));
+  return kSquares * std::max(1.0, kSigmaPerMedian * Median(std::move(sizes)));
 }
 
-double CostOf(const std::vector<double>& residuals, double cut) {
+double HuberCost(const std::vector<double>& residuals, double cut) {
   double cost = 0.0;
   for (const double r : residuals) {
     const double size = std::abs(r);
@@ -71,17 +69,18 @@ double CostOf(const std::vector<double>& residuals, double cut) {
   return cost;
 }
 
-struct NormalEquations {
-  Matrix normal;
-  Vector gradient;
+struct SpotEquations {
+  SpotModel::Matrix normal;
+  SpotModel::Vector gradient;
 };
 
-NormalEquations EquationsOf(Samples samples, const SpotModel& model,
-                            const std::vector<double>& residuals, double cut,
-                            bool curved) {
+SpotEquations EquationsOf(Samples samples, const SpotModel& model,
+                          const std::vector<double>& residuals, double cut,
+                          bool curved) {
   const Eigen::Index n = model.parameters.size();
-  NormalEquations sums = {Matrix::Zero(n, n), Vector::Zero(n)};
-  Vector by(n);
+  SpotEquations sums = {SpotModel::Matrix::Zero(n, n),
+                        SpotModel::Vector::Zero(n)};
+  SpotModel::Vector by(n);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     model.At(samples[i].x_px, samples[i].y_px, &by);
     by /= std::sqrt(samples[i].variance_dn2);
@@ -118,28 +117,28 @@ double FallOf(Samples samples, const SpotModel& before,
 }
 
 // Levenberg and Marquardt from `model`.
-void Fit(Samples samples, const SpotOptions& options, SpotModel& model) {
+void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
   constexpr int kRounds = 40;
   constexpr double kMostDamping = 1e6;
   constexpr double kSettled = 1e-4;  // of the cost
   constexpr double kRidge = 1e-12;
   double damping = 1e-3;
   std::vector<double> residuals = ResidualsOf(samples, model);
-  NormalEquations sums;
+  SpotEquations sums;
   for (int round = 0; round < kRounds; ++round) {
     const double cut = CutOf(residuals);
-    const double cost = CostOf(residuals, cut);
+    const double cost = HuberCost(residuals, cut);
     sums = EquationsOf(samples, model, residuals, cut, options.curved);
     double gain = 0.0;
     while (gain <= 0.0 && damping < kMostDamping) {
-      Matrix a = sums.normal;
+      SpotModel::Matrix a = sums.normal;
       a.diagonal() *= 1.0 + damping;
       a.diagonal().array() += kRidge * a.diagonal().maxCoeff();
       SpotModel next = model;
       next.parameters += a.ldlt().solve(sums.gradient);
       if (AreSpots(next, options.reach_px)) {
         std::vector<double> again = ResidualsOf(samples, next);
-        gain = cost - CostOf(again, cut);
+        gain = cost - HuberCost(again, cut);
         if (gain > 0.0) {
           model.parameters = next.parameters;
           residuals = std::move(again);
@@ -153,11 +152,12 @@ void Fit(Samples samples, const SpotOptions& options, SpotModel& model) {
   double square = 0.0;
   for (const double r : residuals) square += std::min(r * r, cut * cut);
   model.chi2 = square / static_cast<double>(samples.size());
-  Matrix a = EquationsOf(samples, model, residuals, cut, options.curved).normal;
+  SpotModel::Matrix a =
+      EquationsOf(samples, model, residuals, cut, options.curved).normal;
   a.diagonal().array() += kRidge * a.diagonal().maxCoeff();
   const Eigen::Index n = model.parameters.size();
-  model.covariance =
-      std::max(1.0, model.chi2) * a.ldlt().solve(Matrix::Identity(n, n));
+  model.covariance = std::max(1.0, model.chi2) *
+                     a.ldlt().solve(SpotModel::Matrix::Identity(n, n));
 }
 
 // The spot of a width that would explain the most of the residuals.
@@ -215,7 +215,7 @@ std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
   for (const double width : kWidths) {
     const double sigma = std::max(width * options.size_px, options.least_px);
     const Patch patch = PatchOf(cells, residuals, sigma);
-    if (patch.gain < kSure) continue;
+    if (patch.gain < kSureFall) continue;
     SpotModel tried = model;
     ++tried.spots;
     tried.parameters.resize(model.parameters.size() + SpotModel::kSpot);
@@ -223,14 +223,14 @@ std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
     tried.parameters << model.parameters, patch.level_dn, patch.x_px,
         patch.y_px, s, 0.0, s;
     if (!AreSpots(tried, options.reach_px)) continue;
-    Fit(cells, options, tried);
+    FitSpots(cells, options, tried);
     if (tried.chi2 < best.chi2) best = tried;
   }
   if (best.spots == 0) return std::nullopt;
-  Fit(samples, options, best);
+  FitSpots(samples, options, best);
   SpotModel without = model;
-  Fit(samples, options, without);
-  if (!(FallOf(samples, without, best) > kSure)) return std::nullopt;
+  FitSpots(samples, options, without);
+  if (!(FallOf(samples, without, best) > kSureFall)) return std::nullopt;
   return best;
 }
 
@@ -275,7 +275,7 @@ std::optional<SpotModel> FindSpots(std::span<const SpotSample> cells,
   if (cells.size() < kLeastCells) return std::nullopt;
   SpotModel model;
   model.size_px = options.size_px;
-  Fit(cells, options, model);
+  FitSpots(cells, options, model);
   while (model.spots < SpotModel::kMostSpots) {
     auto more = WithSpot(cells, samples, options, model);
     if (!more) break;

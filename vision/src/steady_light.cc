@@ -14,6 +14,7 @@
 #include "bracket.h"
 #include "mid_mean.h"
 #include "read_apart.h"
+#include "robust.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/parallel.h"
 #include "track_shape.h"
@@ -180,7 +181,7 @@ class Grid {
     if (off.empty()) return 0.0;
     // Half a level: what rounding alone leaves.
     constexpr double kSigmas = 4.0;
-    return kSigmas * std::max(0.5, 1.4826 * Median(std::move(off)));
+    return kSigmas * std::max(0.5, kSigmaPerMedian * Median(std::move(off)));
   }
 
   void AddRow(const core::Frame& frame, std::int32_t row,

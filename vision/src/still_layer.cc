@@ -6,6 +6,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "robust.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision {
@@ -29,13 +30,6 @@ cv::Mat Reduce(const core::Frame& frame, std::int32_t by) {
 }
 
 }  // namespace
-
-float MedianInPlace(std::vector<float>& values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
                                   std::int64_t last, int count,
@@ -66,8 +60,7 @@ double EstimateCellNoise(const ReducedFrames& sampled) {
       }
     }
   }
-  constexpr double kMedianToSigma = 1.4826;
-  const double sigma = kMedianToSigma * std::numbers::sqrt2 / 2.0 *
+  const double sigma = kSigmaPerMedian * std::numbers::sqrt2 / 2.0 *
                        static_cast<double>(MedianInPlace(differences));
   return std::max(sigma, kLeastShare * sampled.full_scale_dn);
 }

@@ -58,7 +58,4 @@ ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn);
 cv::Mat ChangeFrom(const StillLayer& still, const cv::Mat& picture,
                    const ChangeScale& scale);
 
-// Of at least one value, which lose their order.
-float MedianInPlace(std::vector<float>& values);
-
 }  // namespace touchdown::vision

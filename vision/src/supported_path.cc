@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "moments.h"
+#include "robust.h"
 #include "touchdown/core/units.h"
 #include "track_shape.h"
 
 namespace touchdown::vision {
 namespace {
-
-constexpr double kOfMedian = 1.4826;  // of |normal|
 
 // An edge of the ground seen in perspective differs from the contact line by so
 // much; more is another line, or none.
@@ -31,10 +30,9 @@ struct RobustFit {
   bool good() const { return (bent ? terms.third : terms.spread) > 0.0; }
 };
 
-RobustFit Fit(const std::vector<double>& x, const std::vector<double>& v,
-              bool bent) {
+RobustFit FitRobustly(const std::vector<double>& x,
+                      const std::vector<double>& v, bool bent) {
   constexpr int kRounds = 15;
-  constexpr double kTukey = 4.685;
   RobustFit fit;
   fit.terms.level = Median(v);
   for (int round = 0; round < kRounds; ++round) {
@@ -43,8 +41,8 @@ RobustFit Fit(const std::vector<double>& x, const std::vector<double>& v,
     for (std::size_t i = 0; i < v.size(); ++i) {
       off.push_back(std::abs(v[i] - fit.At(x[i])));
     }
-    fit.scatter = kOfMedian * Median(off);
-    const double cut = kTukey * std::max(fit.scatter, 1e-6);
+    fit.scatter = kSigmaPerMedian * Median(off);
+    const double cut = kTukeyCut * std::max(fit.scatter, 1e-6);
     Moments sums;
     fit.square = 0.0;
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -78,13 +76,13 @@ struct Path {
       time.push_back((s.time_s - begin) / half_s - 1.0);
       gap.push_back(s.gap_px);
     }
-    line = Fit(place, gap, false);
+    line = FitRobustly(place, gap, false);
     std::vector<double> off;
     for (std::size_t i = 0; i < gap.size(); ++i) {
       off.push_back((gap[i] - line.At(place[i])) / half_px);
     }
-    along = Fit(time, place, true);
-    across = Fit(time, off, true);
+    along = FitRobustly(time, place, true);
+    across = FitRobustly(time, off, true);
   }
 
   // What carries a body leaves so much of its fall beside the acceleration
@@ -194,7 +192,7 @@ PathTrend TakeOutTrend(PlaneTrack& track) {
   PathTrend trend;
   if (!path.line.good()) return trend;
   RobustFit fit = path.line;
-  if (const RobustFit bent = Fit(path.place, path.gap, true);
+  if (const RobustFit bent = FitRobustly(path.place, path.gap, true);
       AsksForBend(track, path, bent)) {
     fit = bent;
     // The straight line and the bend apart: x^2 - 1 vanishes at both ends.

@@ -8,7 +8,8 @@
 namespace touchdown::vision {
 namespace {
 
-int OnError(TIFF*, void* user, const char*, const char* format, va_list args) {
+int OnTiffError(TIFF*, void* user, const char*, const char* format,
+                va_list args) {
   auto* const memory = static_cast<TiffMemory*>(user);
   // The first message is the cause; later ones follow from it.
   if (memory->error[0] == '\0') {
@@ -17,9 +18,9 @@ int OnError(TIFF*, void* user, const char*, const char* format, va_list args) {
   return 1;
 }
 
-int OnWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+int OnTiffWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
-tmsize_t OnRead(thandle_t handle, void* out, tmsize_t count) {
+tmsize_t OnTiffRead(thandle_t handle, void* out, tmsize_t count) {
   auto* const memory = static_cast<TiffMemory*>(handle);
   if (count <= 0 || memory->at >= memory->size()) return 0;
   const auto got = std::min<std::uint64_t>(static_cast<std::uint64_t>(count),
@@ -31,7 +32,7 @@ tmsize_t OnRead(thandle_t handle, void* out, tmsize_t count) {
   return static_cast<tmsize_t>(got);
 }
 
-tmsize_t OnWrite(thandle_t handle, void* bytes, tmsize_t count) {
+tmsize_t OnTiffWrite(thandle_t handle, void* bytes, tmsize_t count) {
   auto* const memory = static_cast<TiffMemory*>(handle);
   if (memory->output == nullptr || count < 0) return 0;
   const std::uint64_t end = memory->at + static_cast<std::uint64_t>(count);
@@ -60,11 +61,11 @@ toff_t OnSize(thandle_t handle) {
 
 TiffHandle OpenTiff(TiffMemory& memory, const char* mode) {
   TIFFOpenOptions* const options = TIFFOpenOptionsAlloc();
-  TIFFOpenOptionsSetErrorHandlerExtR(options, OnError, &memory);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, OnWarning, &memory);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, OnTiffError, &memory);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, OnTiffWarning, &memory);
   TIFF* const tiff =
-      TIFFClientOpenExt("", mode, &memory, OnRead, OnWrite, OnSeek, OnClose,
-                        OnSize, nullptr, nullptr, options);
+      TIFFClientOpenExt("", mode, &memory, OnTiffRead, OnTiffWrite, OnSeek,
+                        OnClose, OnSize, nullptr, nullptr, options);
   TIFFOpenOptionsFree(options);
   return TiffHandle(tiff);
 }

@@ -184,8 +184,8 @@ std::uint64_t Value(const Bytes& file, const std::optional<Field>& field,
       .value_or(fallback);
 }
 
-std::int32_t DepthOf(const Bytes& file, const Directory& directory,
-                     bool colour) {
+std::int32_t PageBitDepth(const Bytes& file, const Directory& directory,
+                          bool colour) {
   const std::uint64_t bits = Value(file, directory.bits, 1);
   if (bits == 16 && !colour) {
     const std::uint64_t largest = Value(file, directory.largest, 0);
@@ -196,8 +196,8 @@ std::int32_t DepthOf(const Bytes& file, const Directory& directory,
   return static_cast<std::int32_t>(std::min<std::uint64_t>(bits, 64));
 }
 
-TiffPage Describe(const Bytes& file, std::uint64_t at,
-                  const Directory& directory) {
+TiffPage DescribePage(const Bytes& file, std::uint64_t at,
+                      const Directory& directory) {
   TiffPage page;
   page.directory = at;
   constexpr std::uint64_t kNoPicture = std::uint64_t{1} << 32;
@@ -209,7 +209,7 @@ TiffPage Describe(const Bytes& file, std::uint64_t at,
   page.height_px = static_cast<std::int64_t>(height);
   const std::uint64_t samples = Value(file, directory.samples, 1);
   const std::uint64_t bits = Value(file, directory.bits, 1);
-  page.bit_depth = DepthOf(file, directory, samples > 2);
+  page.bit_depth = PageBitDepth(file, directory, samples > 2);
   if (!directory.offsets || directory.offsets->count == 0) {
     page.whole = false;
     return page;
@@ -309,7 +309,7 @@ TiffPages ListTiffPages(FileBytes bytes, const std::string& name) {
     if (IsThumbnail(file, *directory)) {
       ++list.thumbnails;
     } else {
-      list.pages.push_back(Describe(file, at, *directory));
+      list.pages.push_back(DescribePage(file, at, *directory));
       if (list.pages.size() == 1) images = ImagesOfImageJ(file, *directory);
     }
     at = directory->next;

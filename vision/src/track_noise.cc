@@ -27,7 +27,7 @@ std::vector<double> ThirdDifferences(const std::vector<PlaneSample>& samples,
 
 // Standard deviation of one pose's noise, from differences of poses `lag`
 // frames apart: what neighbours have in common shows at the longer lags.
-double NoiseOf(std::vector<double>& d) {
+double PoseNoise(std::vector<double>& d) {
   // An impact spoils three differences of neighbours: in short tracks too many
   // for the median.
   constexpr std::size_t kMany = 12;
@@ -40,8 +40,8 @@ double NoiseOf(std::vector<double>& d) {
 }
 
 // Returns the excess.
-double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
-             double PlaneSample::*u) {
+double WidenToNoise(std::vector<PlaneSample>& samples,
+                    double PlaneSample::*value, double PlaneSample::*u) {
   std::vector<double> claims;
   claims.reserve(samples.size());
   for (const PlaneSample& s : samples) claims.push_back(s.*u);
@@ -59,7 +59,7 @@ double Widen(std::vector<PlaneSample>& samples, double PlaneSample::*value,
     std::vector<double> d = ThirdDifferences(samples, value, lag);
     constexpr std::size_t kLeast = 5;
     if (d.size() < kLeast) break;
-    const double ratio = NoiseOf(d) / claim;
+    const double ratio = PoseNoise(d) / claim;
     // An excess within the scatter's own uncertainty is none. Third differences
     // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
     // not 1.2/sqrt(n); 4/sqrt(n) lets one honest track in a hundred be widened.
@@ -157,12 +157,12 @@ ExcessNoise WidenToScatter(PlaneTrack& track) {
   constexpr std::size_t kLeast = 8;
   auto& samples = track.samples;
   if (samples.size() < kLeast) return excess;
-  Widen(samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
+  WidenToNoise(samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
   excess.height_px =
-      Widen(samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
+      WidenToNoise(samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
   if (track.kind == core::BodyKind::kRectangle) {
     excess.face_rad =
-        Widen(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
+        WidenToNoise(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
     // An attitude that was smoothed does not scatter, and is known no better
     // than the ends of the long side are.
     constexpr double kOfPlace = 0.25;  // about 1 where each frame has its own
@@ -175,7 +175,7 @@ ExcessNoise WidenToScatter(PlaneTrack& track) {
         std::max(excess.face_rad, kOfPlace * excess.height_px /
                                       std::max(track.half_long_px, 1.0));
   }
-  Widen(samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);
+  WidenToNoise(samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);
   return excess;
 }
 

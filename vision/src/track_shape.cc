@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bracket.h"
+#include "robust.h"
 
 namespace touchdown::vision {
 namespace {
@@ -84,7 +85,7 @@ core::Estimate RobustMean(const std::vector<double>& values,
   std::vector<double> off;
   off.reserve(values.size());
   for (const double v : values) off.push_back(std::abs(v - centre));
-  const double scatter = 1.4826 * Median(off);
+  const double scatter = kSigmaPerMedian * Median(off);
   const double typical = Median(us);
   double sw = 0.0;
   double swx = 0.0;

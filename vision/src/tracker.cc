@@ -18,11 +18,9 @@
 namespace touchdown::vision {
 namespace {
 
-using Surround = OutlineOptions::Surround;
-
 // Where the body should be: between two measured poses, or straight on from the
 // ends of the track.
-Pose Expected(const Track& track, std::int64_t frame) {
+Pose ExpectedPose(const Track& track, std::int64_t frame) {
   if (const auto pose = PoseIn(track, frame)) return *pose;
   const auto& poses = track.poses;
   const bool before = frame < poses.front().frame;
@@ -41,7 +39,7 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
   std::vector<OutlineJob> jobs;
   jobs.reserve(frames.size());
   for (const std::int64_t f : frames) {
-    jobs.push_back({f, OutlineAt(track.body, Expected(track, f))});
+    jobs.push_back({f, OutlineAt(track.body, ExpectedPose(track, f))});
   }
   return Found(
       FitOutlines(clip, background, jobs, fit_options, options.threads));
@@ -130,7 +128,7 @@ void FitMissing(Clip& clip, const Background& background,
   const double most_misfit = kUsual * MedianMisfit(track.poses);
   for (const Fitted& fit :
        FitFromTrack(clip, background, track, options, fit_options, missing)) {
-    const Pose there = Expected(track, fit.frame);
+    const Pose there = ExpectedPose(track, fit.frame);
     const double off =
         std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
                    fit.fit.outline.centre.y_px - there.centre.y_px);

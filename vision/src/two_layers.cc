@@ -13,12 +13,12 @@ namespace touchdown::vision {
 namespace {
 
 // Coverage below which a pixel shows nothing of the body.
-constexpr float kLeastCover = 1e-3F;
+constexpr float kBarelyCovered = 1e-3F;
 // From there on it shows nothing but the body.
-constexpr float kWhole = 0.95F;
+constexpr float kWhollyCovered = 0.95F;
 
 // The body's picture: a grid around its outline, in its own coordinates.
-struct PictureGrid {
+struct BodyGrid {
   double half_x_px = 0.0;  // of the body at relative size 1, with a rim
   double half_y_px = 0.0;
   double cell_px = 1.0;
@@ -28,9 +28,9 @@ struct PictureGrid {
 
 // Cells as wide as the lattice's step: each frame then fills each cell about
 // once. The rim holds the blurred edge.
-PictureGrid GridOf(const BodyImage& body, std::int32_t step) {
+BodyGrid GridOf(const BodyImage& body, std::int32_t step) {
   constexpr double kBlurs = 4.0;
-  PictureGrid grid;
+  BodyGrid grid;
   grid.cell_px = step;
   const double rim = kBlurs * body.blur_px + 2.0 * grid.cell_px;
   const bool is_sphere = body.kind == core::BodyKind::kSphere;
@@ -48,11 +48,11 @@ PictureGrid GridOf(const BodyImage& body, std::int32_t step) {
 }
 
 // The body's motion in one frame interval at a frame, from the poses beside it.
-struct Step {
+struct FrameMotion {
   core::PixelPoint travel_px{0.0, 0.0};
   double turn_rad = 0.0;
 };
-Step StepAt(const Track& track, std::int64_t frame) {
+FrameMotion MotionAt(const Track& track, std::int64_t frame) {
   const auto& poses = track.poses;
   const auto at = std::lower_bound(
       poses.begin(), poses.end(), frame,
@@ -61,7 +61,7 @@ Step StepAt(const Track& track, std::int64_t frame) {
                      : at + 1 < poses.end() ? at + 1
                                             : at;
   const auto before = at == poses.begin() ? at : at - 1;
-  Step step;
+  FrameMotion step;
   if (after->frame == before->frame) return step;
   const double frames = static_cast<double>(after->frame - before->frame);
   step.travel_px = {(after->centre.x_px - before->centre.x_px) / frames,
@@ -71,11 +71,10 @@ Step StepAt(const Track& track, std::int64_t frame) {
 }
 
 CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
-                         const LatticePoints& lattice,
-                         const PictureGrid& grid) {
+                         const LatticePoints& lattice, const BodyGrid& grid) {
   CoveredPoints covered;
   const Outline outline = OutlineAt(track.body, frame.pose);
-  const Step step = StepAt(track, frame.index);
+  const FrameMotion step = MotionAt(track, frame.index);
   const double extent = Extent(outline);
   const double blur = std::max(track.body.blur_px, 0.3);
   Smear smear(step.travel_px, step.turn_rad, extent);
@@ -111,7 +110,7 @@ CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
     image.Cover(xs.data(), ys.data(), block);
     for (std::size_t i = 0; i < filled; ++i) {
       const float cover = block.value[i];
-      if (!(cover > kLeastCover)) continue;
+      if (!(cover > kBarelyCovered)) continue;
       const double dx = xs[i] - outline.centre.x_px;
       const double dy = ys[i] - outline.centre.y_px;
       const double u = std::clamp(
@@ -153,7 +152,7 @@ std::vector<CoveredPoints> CoverPoints(const Track& track,
                                        const std::vector<SampledFrame>& frames,
                                        const LatticePoints& lattice,
                                        int threads) {
-  const PictureGrid grid = GridOf(track.body, lattice.step);
+  const BodyGrid grid = GridOf(track.body, lattice.step);
   std::vector<CoveredPoints> covered(frames.size());
   core::InParallel(static_cast<std::int64_t>(frames.size()), threads,
                    [&](std::int64_t from, std::int64_t to) {
@@ -171,7 +170,7 @@ TwoLayers::TwoLayers(const Track& track,
                      const LatticePoints& lattice, const LatticeLevels& levels,
                      const std::vector<CoveredPoints>& covered)
     : points_(lattice.size()) {
-  const PictureGrid grid = GridOf(track.body, lattice.step);
+  const BodyGrid grid = GridOf(track.body, lattice.step);
   columns_ = grid.columns;
   picture_.assign(static_cast<std::size_t>(grid.columns) *
                       static_cast<std::size_t>(grid.rows),
@@ -220,7 +219,7 @@ void TwoLayers::LearnStill(const std::vector<SampledFrame>& frames,
       if (has_picture_) {
         sum[p] += open * (level[p] - m * picture(here, i));
         weight_[p] += open * open;
-      } else if (m < 1.0F - kWhole) {
+      } else if (m < 1.0F - kWhollyCovered) {
         sum[p] += open * open * level[p];
         weight_[p] += open * open;
       }
@@ -253,7 +252,7 @@ void TwoLayers::LearnPicture(const LatticeLevels& levels,
       const CoveredPoints& here = covered[k];
       const float* level = levels.of(k);
       for (std::size_t i = 0; i < here.point.size(); ++i) {
-        if (here.cover[i] < kWhole) continue;
+        if (here.cover[i] < kWhollyCovered) continue;
         sum += level[here.point[i]];
         weight += 1.0;
       }
@@ -273,7 +272,7 @@ void TwoLayers::LearnPicture(const LatticeLevels& levels,
       for (std::size_t i = 0; i < here.point.size(); ++i) {
         const auto p = static_cast<std::size_t>(here.point[i]);
         const float m = here.cover[i];
-        if (!is_known(p) && m < kWhole) continue;
+        if (!is_known(p) && m < kWhollyCovered) continue;
         const float behind = is_known(p) ? still_[p] : 0.0F;
         const float off =
             m * (level[p] - (1.0F - m) * behind - m * picture(here, i));

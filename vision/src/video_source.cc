@@ -28,7 +28,7 @@ constexpr char kContainers[] =
 }
 
 // libav asks before each read whether to go on.
-int OnRead(void* memory) {
+int OnInterruptCheck(void* memory) {
   static_cast<FrameMemory*>(memory)->Beat();
   return 0;
 }
@@ -41,7 +41,7 @@ LibavPtr<AVFormatContext> OpenContainer(const std::filesystem::path& path,
   Libav().av_dict_set(&options, "protocol_whitelist", "file", 0);
   AVFormatContext* format = libav.avformat_alloc_context();
   if (memory != nullptr && format != nullptr) {
-    format->interrupt_callback = {OnRead, memory};
+    format->interrupt_callback = {OnInterruptCheck, memory};
   }
   // The prefix keeps a name like "http:a.avi" a name.
   const int opened = libav.avformat_open_input(

@@ -17,7 +17,7 @@ DetectOptions OneMore(DetectOptions detect) {
   return detect;
 }
 
-void KeepStrongest(const DetectOptions& detect, Seen& seen) {
+void KeepStrongestBlobs(const DetectOptions& detect, Seen& seen) {
   // Of the strongest: specks of noise and of compression, of which there may be
   // any number, are no body that was overlooked.
   constexpr double kLikeABody = 0.1;
@@ -59,7 +59,7 @@ Seen Watcher::Look(Clip& clip, std::int64_t index) const {
     const core::Frame frame = clip.Read(index);
     seen.time_s = frame.time_s;
     seen.blobs = DetectBlobs(frame, background_, OneMore(detect_));
-    KeepStrongest(detect_, seen);
+    KeepStrongestBlobs(detect_, seen);
     return seen;
   }
   Changes changes;
@@ -76,7 +76,7 @@ Seen Watcher::Look(Clip& clip, std::int64_t index) const {
     const auto more = DetectBlobs(window, background_, detect);
     seen.blobs.insert(seen.blobs.end(), more.begin(), more.end());
   }
-  KeepStrongest(detect_, seen);
+  KeepStrongestBlobs(detect_, seen);
   return seen;
 }
 

@@ -71,10 +71,10 @@ std::optional<BestOutline> BestOf(const CoMoving& places,
 }
 
 // What moves along within a reach of the path, its first guess being `guess`.
-std::optional<BestOutline> Within(Clip& clip, const Background& background,
-                                  const Track& part, const Outline& guess,
-                                  const std::optional<core::BodyKind>& kind,
-                                  const CoMovingOptions& options) {
+std::optional<BestOutline> FindOutlineWithin(
+    Clip& clip, const Background& background, const Track& part,
+    const Outline& guess, const std::optional<core::BodyKind>& kind,
+    const CoMovingOptions& options) {
   constexpr double kMargin_px = 4.0;  // blur, and what a part's poses wander
   const CoMoving places = FindCoMoving(
       clip, background, part,
@@ -96,9 +96,11 @@ bool IsOne(const BestOutline& best) {
   return best.holds > kHolds && best.pure > kPure;
 }
 
-std::optional<BestOutline> Around(Clip& clip, const Background& background,
-                                  const Track& part, const TrackOptions& wanted,
-                                  bool turns) {
+std::optional<BestOutline> FindOutlineAround(Clip& clip,
+                                             const Background& background,
+                                             const Track& part,
+                                             const TrackOptions& wanted,
+                                             bool turns) {
   // Of an end the other one is ten of its sizes away.
   constexpr double kReaches[] = {3.0, 6.0, 12.0};  // of the part's
   constexpr double kBeside_px = 12.0;
@@ -112,8 +114,9 @@ std::optional<BestOutline> Around(Clip& clip, const Background& background,
   for (const double reach : kReaches) {
     options.reach_px = reach * Extent(own);
     if (options.reach_px > most) break;
-    const auto found = Within(clip, background, part,
-                              best ? best->outline : own, wanted.kind, options);
+    const auto found =
+        FindOutlineWithin(clip, background, part, best ? best->outline : own,
+                          wanted.kind, options);
     if (found && IsOne(*found) && (!best || found->merit > best->merit)) {
       best = found;
     }
@@ -124,7 +127,7 @@ std::optional<BestOutline> Around(Clip& clip, const Background& background,
   options.reach_px = std::hypot(rough.centre.x_px, rough.centre.y_px) +
                      Extent(rough) + kBeside_px;
   const auto found =
-      Within(clip, background, part, rough, wanted.kind, options);
+      FindOutlineWithin(clip, background, part, rough, wanted.kind, options);
   return found && IsOne(*found) ? found : std::nullopt;
 }
 
@@ -159,7 +162,8 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
   bool best_turns = false;
   for (const bool turns : {false, true}) {
     if (turns && !Turns(part)) continue;
-    const auto found = Around(clip, background, part, options, turns);
+    const auto found =
+        FindOutlineAround(clip, background, part, options, turns);
     if (!found) continue;
     if (!best || found->merit > best->merit) {
       best = found;

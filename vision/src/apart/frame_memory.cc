@@ -16,9 +16,9 @@ namespace {
 // The first page tells that work goes on; frames follow.
 constexpr std::size_t kPage = 4096;
 // Of a piece: what the widest vector instructions want.
-constexpr std::size_t kAlign = 64;
+constexpr std::size_t kPieceAlign = 64;
 // What a process with little address space is still given.
-constexpr std::size_t kLeast = std::size_t{32} << 20;
+constexpr std::size_t kLeastMemory = std::size_t{32} << 20;
 
 std::size_t RoundUp(std::size_t bytes, std::size_t to) {
   return (bytes + to - 1) / to * to;
@@ -30,7 +30,8 @@ FrameMemory::FrameMemory(std::size_t most_bytes)
     : descriptor_(memfd_create("frames", MFD_CLOEXEC | MFD_ALLOW_SEALING)),
       most_bytes_(most_bytes) {
   void* mapped = MAP_FAILED;
-  while (descriptor_ >= 0 && mapped == MAP_FAILED && most_bytes_ >= kLeast) {
+  while (descriptor_ >= 0 && mapped == MAP_FAILED &&
+         most_bytes_ >= kLeastMemory) {
     mapped = mmap(nullptr, most_bytes_, PROT_READ | PROT_WRITE,
                   MAP_SHARED | MAP_NORESERVE, descriptor_, 0);
     if (mapped == MAP_FAILED) most_bytes_ /= 2;
@@ -62,7 +63,8 @@ bool FrameMemory::GrowTo(std::size_t bytes) {
 
 std::byte* FrameMemory::Take(std::size_t bytes) {
   Beat();
-  const std::size_t wanted = RoundUp(std::max<std::size_t>(bytes, 1), kAlign);
+  const std::size_t wanted =
+      RoundUp(std::max<std::size_t>(bytes, 1), kPieceAlign);
   const std::lock_guard lock(mutex_);
   // Frames of a recording are of one size, so pieces are used as they are; one
   // much larger than what is wanted is left for its like.

@@ -11,8 +11,6 @@ namespace {
 // Of a text, bytes; with some of them a message still fits a datagram.
 constexpr std::size_t kMostText = 8000;
 constexpr std::uint32_t kMostWarnings = 16;
-// Beyond any camera (video_source.cc bounds what is decoded).
-constexpr std::int32_t kMostSide_px = 1 << 20;
 
 [[noreturn]] void Refuse() {
   throw core::InputError("the reader's answer is not understood");

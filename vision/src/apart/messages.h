@@ -75,6 +75,9 @@ void PutInfo(Packed& to, const ClipInfo& info);
 // Throws core::InputError where it says what no clip can.
 ClipInfo GetInfo(Packed& from);
 
+// Beyond any camera (video_source.cc bounds what is decoded).
+inline constexpr std::int32_t kMostSide_px = 1 << 20;
+
 // Where the samples of a window lie in the shared memory.
 struct SharedFrame {
   std::uint64_t offset = 0;

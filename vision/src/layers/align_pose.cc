@@ -52,29 +52,28 @@ void WeighByLayers(const Layers& layers, const LayerPose& motion,
   }
 }
 
-using Matrix = Eigen::Matrix3d;
-
-constexpr std::size_t kLanes = 8;
+using PoseMatrix = Eigen::Matrix3d;
 
 // Sum of a(i) b(i) over `count` numbers, a multiple of eight.
 TOUCHDOWN_WIDEST
 double SumOfProducts(const float* a, const float* b, std::size_t count) {
   Eight sums{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
+  for (std::size_t i = 0; i < count; i += kSumPlaces) {
     Eight of_a, of_b;
     std::memcpy(&of_a, a + i, sizeof of_a);
     std::memcpy(&of_b, b + i, sizeof of_b);
     sums += of_a * of_b;
   }
   double sum = 0.0;
-  for (std::size_t k = 0; k < kLanes; ++k) sum += static_cast<double>(sums[k]);
+  for (std::size_t k = 0; k < kSumPlaces; ++k)
+    sum += static_cast<double>(sums[k]);
   return sum;
 }
 
 // Sum over pairs of pixels: c(lag) g(x) g(x + lag)', g = w J, of the first
 // `free` coordinates of a pose.
-Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
-                  double variance, int free) {
+PoseMatrix SandwichOf(const FrameSamples& samples, std::int32_t width,
+                      double variance, int free) {
   constexpr std::int32_t kLags = 4;  // px
   // The samples on a grid of their own, with so many zeros beside and below it
   // that a shifted grid ends in them.
@@ -87,8 +86,8 @@ Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
     right = std::max(right, pixel % width);
   }
   const auto stride =
-      (static_cast<std::size_t>(right - left + 1 + kLags) / kLanes + 1) *
-      kLanes;
+      (static_cast<std::size_t>(right - left + 1 + kLags) / kSumPlaces + 1) *
+      kSumPlaces;
   const std::size_t cells = stride * static_cast<std::size_t>(bottom - top + 1);
   const std::vector<float> zeros(cells + (kLags + 1) * stride, 0.0F);
   std::array<std::vector<float>, kPose> g;
@@ -108,7 +107,7 @@ Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
       known[at] = 1.0F;
     }
   }
-  Matrix sum = Matrix::Zero();
+  PoseMatrix sum = PoseMatrix::Zero();
   for (std::int32_t down = 0; down <= kLags; ++down) {
     for (std::int32_t across = down == 0 ? 0 : -kLags; across <= kLags;
          ++across) {
@@ -120,7 +119,7 @@ Matrix SandwichOf(const FrameSamples& samples, std::int32_t width,
       };
       const double pairs = overlap(known, known);
       if (pairs < 1.0) continue;
-      Matrix own = Matrix::Zero();
+      PoseMatrix own = PoseMatrix::Zero();
       for (int a = 0; a < free; ++a) {
         for (int b = 0; b < free; ++b) {
           own(a, b) = overlap(g[static_cast<std::size_t>(a)],
@@ -153,7 +152,7 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   out.pose = start;
   const double reach = layers.shape.Reach();
   const double most_px = 1.5 * layers.blur;
-  Matrix normal = Matrix::Identity();
+  PoseMatrix normal = PoseMatrix::Identity();
   FrameSamples samples;
   for (int step = 0; step < kSteps; ++step) {
     Linearize(stack, picture, layers, out.pose, motion, Derivatives::kByPose,
@@ -188,10 +187,10 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
     }
   }
   const double variance = layers.noise_dn * layers.noise_dn;
-  const Matrix sandwich =
+  const PoseMatrix sandwich =
       SandwichOf(samples, stack.width, variance, turns ? 3 : 2);
-  const Matrix inverse = normal.inverse();
-  const Matrix covariance = inverse * sandwich * inverse;
+  const PoseMatrix inverse = normal.inverse();
+  const PoseMatrix covariance = inverse * sandwich * inverse;
   constexpr double kMostSquare = 16.0;  // of the noise: four deviations
   double sum = 0.0;
   double count = 0.0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "lanes.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision::layers {
@@ -69,7 +70,7 @@ void Turn(Unknowns& b, double factor, const Unknowns& a) {
 }
 
 // Coefficients of T that are unknown: a flat body's picture is shared numbers.
-std::size_t CellsOf(const Layers& layers) {
+std::size_t CountCells(const Layers& layers) {
   return layers.flat ? 0 : layers.picture.size();
 }
 
@@ -77,13 +78,12 @@ std::size_t CellsOf(const Layers& layers) {
 // same everywhere.
 double WeightedSum(const FrameSamples& samples, const std::vector<float>& a,
                    const std::vector<float>& b) {
-  constexpr std::size_t kLanes = 8;
-  std::array<float, kLanes> sums{};
+  std::array<float, kSumPlaces> sums{};
   const std::size_t n = samples.size();
-  const std::size_t whole = n / kLanes * kLanes;
+  const std::size_t whole = n / kSumPlaces * kSumPlaces;
   const float* const w = samples.weight.data();
-  for (std::size_t i = 0; i < whole; i += kLanes) {
-    for (std::size_t k = 0; k < kLanes; ++k) {
+  for (std::size_t i = 0; i < whole; i += kSumPlaces) {
+    for (std::size_t k = 0; k < kSumPlaces; ++k) {
       sums[k] += w[i + k] * a[i + k] * b[i + k];
     }
   }
@@ -112,7 +112,7 @@ class NormalEquations {
         evidence_(evidence),
         free_(free),
         options_(options),
-        cells_(CellsOf(layers)),
+        cells_(CountCells(layers)),
         columns_(layers.flat ? kShared : std::size_t{kQuadratic}),
         parts_(kParts, Unknowns(0, cells_, layers.still.size())),
         outside_(cells_) {
@@ -443,7 +443,7 @@ JointStep SolveJointStep(const Layers& layers,
                          const JointStepOptions& options) {
   const std::size_t n = frames.size();
   NormalEquations equations(layers, frames, evidence, free, options);
-  const std::size_t cells = CellsOf(layers);
+  const std::size_t cells = CountCells(layers);
   Unknowns residual(n, cells, layers.still.size());
   equations.Fill(residual);
   Unknowns step(n, cells, layers.still.size());

@@ -35,15 +35,15 @@ std::span<const Node> NodesFor(double way) {
   return kFive;
 }
 
-struct Window {
+struct SampleWindow {
   std::int32_t left = 0;
   std::int32_t top = 0;
   std::int32_t right = 0;
   std::int32_t bottom = 0;
 };
 
-Window WindowOf(const PictureStack& stack, const Layers& layers,
-                const LayerPose& pose, const LayerPose& motion) {
+SampleWindow SampleWindowOf(const PictureStack& stack, const Layers& layers,
+                            const LayerPose& pose, const LayerPose& motion) {
   constexpr double kBlurs = 3.5;  // coverage is below 3e-4 beyond
   const double rim = kBlurs * layers.blur + 1.0;
   double reach_x = layers.shape.half_long;
@@ -123,7 +123,7 @@ void LinearizeBy(const PictureStack& stack, std::size_t picture,
   constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
 
   samples.Resize(0, kDerivatives);
-  const Window window = WindowOf(stack, layers, pose, motion);
+  const SampleWindow window = SampleWindowOf(stack, layers, pose, motion);
   if (window.right <= window.left || window.bottom <= window.top) {
     return;
   }

@@ -67,16 +67,16 @@ std::vector<float> WeighPicture(const Layers& layers,
 double TextureOf(const Layers& layers, const std::vector<float>& weight) {
   constexpr double kBlurs = 1.5;
   constexpr double kLeastHalf = 0.3;  // of a thin body's half side
-  using Terms = Eigen::Matrix<double, 6, 1>;
+  using TermVector = Eigen::Matrix<double, 6, 1>;
   const Shape& shape = layers.shape;
   const auto inner = [&](double half) {
     return std::max(half - kBlurs * layers.blur, kLeastHalf * half);
   };
   const double half_x = inner(shape.half_long);
   const double half_y = inner(shape.half_short);
-  std::vector<std::pair<std::size_t, Terms>> inside;
+  std::vector<std::pair<std::size_t, TermVector>> inside;
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-  Terms right = Terms::Zero();
+  TermVector right = TermVector::Zero();
   for (std::size_t c = 0; c < weight.size(); ++c) {
     const auto cell = static_cast<std::int32_t>(c);
     const double x =
@@ -89,7 +89,7 @@ double TextureOf(const Layers& layers, const std::vector<float>& weight) {
                                ? std::hypot(x, y) <= 1.0
                                : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
     if (!is_inside) continue;
-    Terms terms;
+    TermVector terms;
     terms << 1.0, x, y, x * x, x * y, y * y;
     normal += terms * terms.transpose();
     right += static_cast<double>(layers.picture[c]) * terms;
@@ -98,7 +98,7 @@ double TextureOf(const Layers& layers, const std::vector<float>& weight) {
   constexpr std::size_t kLeastCells = 12;
   if (inside.size() < kLeastCells) return layers.texture_dn;
   normal.diagonal().array() += 1e-6;
-  const Terms quadratic = normal.ldlt().solve(right);
+  const TermVector quadratic = normal.ldlt().solve(right);
   const double variance = layers.noise_dn * layers.noise_dn;
   const double texture2 = layers.texture_dn * layers.texture_dn;
   double sum = 0.0;
