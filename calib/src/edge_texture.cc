@@ -52,8 +52,8 @@ std::optional<Strip> Look(const StillImage& image,
       if (end < 0 || end >= image.height_px) return std::nullopt;
     }
     for (std::int32_t k = 0; k < kRows; ++k) {
-      mean[x] += LevelAt(image, static_cast<std::int32_t>(x),
-                         strip.first_row[x] + strip.step * k) /
+      mean[x] += PixelLevel(image, static_cast<std::int32_t>(x),
+                            strip.first_row[x] + strip.step * k) /
                  kRows;
     }
   }
@@ -71,8 +71,8 @@ double LagCovariance(const StillImage& image, const Strip& strip,
     std::array<double, kRows> off{};
     for (std::int32_t k = 0; k < kRows; ++k) {
       off[static_cast<std::size_t>(k)] =
-          LevelAt(image, static_cast<std::int32_t>(x),
-                  strip.first_row[x] + strip.step * k) -
+          PixelLevel(image, static_cast<std::int32_t>(x),
+                     strip.first_row[x] + strip.step * k) -
           strip.level[x];
     }
     for (std::int32_t k = 0; k + lag < kRows; ++k) {
@@ -136,7 +136,7 @@ EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
       cover[i] = Phi(z);
       slope[i] = -side * std::exp(-0.5 * z * z) /
                  (blur_px * std::sqrt(2.0 * std::numbers::pi));
-      value[i] = LevelAt(image, x, from + static_cast<std::int32_t>(i));
+      value[i] = PixelLevel(image, x, from + static_cast<std::int32_t>(i));
     }
     Eigen::MatrixXd covariance =
         texture.variance_dn2 * Eigen::MatrixXd::Identity(n, n);

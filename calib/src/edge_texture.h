@@ -19,7 +19,8 @@
 
 namespace touchdown::calib {
 
-inline double LevelAt(const StillImage& image, std::int32_t x, std::int32_t y) {
+inline double PixelLevel(const StillImage& image, std::int32_t x,
+                         std::int32_t y) {
   return static_cast<double>(
       image.level[static_cast<std::size_t>(y) *
                       static_cast<std::size_t>(image.width_px) +

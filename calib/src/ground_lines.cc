@@ -20,8 +20,8 @@ double VerticalStep(const StillImage& image, std::int32_t x, std::int32_t y) {
   double below = 0.0;
   double above = 0.0;
   for (std::int32_t k = 1; k <= 3; ++k) {
-    below += LevelAt(image, x, y + k);
-    above += LevelAt(image, x, y - k);
+    below += PixelLevel(image, x, y + k);
+    above += PixelLevel(image, x, y - k);
   }
   return (below - above) / 3.0;
 }
@@ -230,7 +230,7 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     for (std::int32_t y = from; y <= to; ++y) {
       const double p = NormalCdf((y - edge.y) / blur);
       phi.push_back(p);
-      const auto v = LevelAt(image, x, y);
+      const auto v = PixelLevel(image, x, y);
       n += 1;
       sp += p;
       spp += p * p;
@@ -251,7 +251,7 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     residual2 = 0.0;
     for (std::int32_t y = from; y <= to; ++y) {
       const double z = (y - edge.y) / blur;
-      const double r = LevelAt(image, x, y) - a -
+      const double r = PixelLevel(image, x, y) - a -
                        b * phi[static_cast<std::size_t>(y - from)];
       const double slope =
           -b * 0.3989422804014327 * std::exp(-0.5 * z * z) / blur;

@@ -106,7 +106,7 @@ TEST_F(QueryPlan, WhatWasLoggedOfAClipIsFoundByItsIndex) {
 
 TEST_F(QueryPlan, AnEntryInForceIsFoundByItsIndex) {
   for (const RegisterKind kind : kRegisterKinds) {
-    const std::string table(TableOf(kind).table);
+    const std::string table(FindTable(kind).table);
     EXPECT_EQ(Of("SELECT id FROM " + table + " WHERE name = ? ORDER BY " +
                  std::string(kInForceFirst) + " LIMIT 1"),
               "SEARCH " + table + " USING COVERING INDEX " + table +
