@@ -36,7 +36,8 @@ double ComputeInflation(const std::vector<std::vector<double>>& runs,
 
 // Widens the claims of poses whose errors go together, so that fits of many
 // frames do not gain by their number: of each coordinate by the
-// ComputeInflation the residuals of all flights. Whether any was widened.
+// inflation of the residuals of all flights (ComputeInflation). Whether any was
+// widened.
 bool WidenToCorrelation(const std::vector<Stretch>& stretches,
                         const FlightOptions& options, PlaneTrack& track);
 

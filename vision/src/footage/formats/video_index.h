@@ -42,7 +42,7 @@ struct VideoIndex {
   // coarser than the frames): frames are then numbered by counting from the
   // beginning.
   std::vector<std::int64_t> pts;
-  std::vector<std::size_t> key_packets;  // FindKeyPacket each of pts
+  std::vector<std::size_t> key_packets;  // of each of pts (FindKeyPacket)
   std::int64_t frames = 0;
   bool coarse = false;                // timestamps that several frames share
   FrameSpacing spacing;               // fps is 0 if the file tells none
