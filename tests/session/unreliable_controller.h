@@ -177,7 +177,7 @@ class UnreliableController {
     }
     if (Happens(trouble_.lost)) return;
     if (Happens(trouble_.empty)) answer.text.clear();
-    std::string bytes = ParseLineNumber(answer);
+    std::string bytes = FormatLine(answer);
     if (Happens(trouble_.garbled)) {
       const std::size_t at = random_() % bytes.size();
       bytes[at] = static_cast<char>(random_());
