@@ -115,10 +115,11 @@ inline PictureStack Film(const LayeredScene& scene, std::uint64_t seed) {
   stack.width = scene.width;
   stack.height = scene.height;
   for (std::size_t t = 0; t < scene.poses.size(); ++t) {
-    stack.frames.push_back(static_cast<std::int64_t>(t));
-    stack.times_s.push_back(1e-3 * static_cast<double>(t));
+    float* to = stack.Add(static_cast<std::int64_t>(t),
+                          {0, 0, scene.width, scene.height});
+    stack.times_s.back() = 1e-3 * static_cast<double>(t);
     for (const float level : Paint(scene, &scene.poses[t])) {
-      stack.levels.push_back(level + noise(engine));
+      *to++ = level + noise(engine);
     }
   }
   return stack;

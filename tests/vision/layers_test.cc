@@ -408,6 +408,80 @@ TEST(FitLayers, DoesNotDependOnThreads) {
   }
 }
 
+// Windows of pictures that show `still` everywhere else, and the same pictures
+// whole.
+struct WindowedAndWhole {
+  PictureStack windowed;
+  PictureStack whole;
+};
+WindowedAndWhole FilmInWindows(const LayeredScene& scene,
+                               const std::vector<float>& still) {
+  const PictureStack seen = Film(scene, 31);
+  WindowedAndWhole out;
+  for (PictureStack* stack : {&out.windowed, &out.whole}) {
+    stack->width = scene.width;
+    stack->height = scene.height;
+  }
+  out.windowed.outside = still;
+  const int room = 2 * static_cast<int>(0.5 * scene.shape.Reach()) + 12;
+  for (std::size_t t = 0; t < seen.frames.size(); ++t) {
+    const int left = static_cast<int>(scene.poses[t].x) / 2 * 2 - room;
+    const int top = static_cast<int>(scene.poses[t].y) / 2 * 2 - room;
+    core::PixelRect window;
+    window.x = std::max(left, 0);
+    window.y = std::max(top, 0);
+    window.width = std::min(left + 2 * room, scene.width) - window.x;
+    window.height = std::min(top + 2 * room, scene.height) - window.y;
+    float* whole = out.whole.Add(seen.frames[t], seen.windows[t]);
+    std::copy(still.begin(), still.end(), whole);
+    float* windowed = out.windowed.Add(seen.frames[t], window);
+    for (int y = window.y; y < window.y + window.height; ++y) {
+      const float* const from = seen.WindowRow(t, y) + window.x;
+      std::copy_n(from, window.width, whole + y * scene.width + window.x);
+      windowed = std::copy_n(from, window.width, windowed);
+    }
+  }
+  return out;
+}
+
+TEST(FitLayers, WindowsTellWhatWholePicturesTell) {
+  const LayeredScene scene = BlockOnGround();
+  const std::vector<float> still = Paint(scene, nullptr);
+  const auto [windowed, whole] = FilmInWindows(scene, still);
+  ASSERT_LT(windowed.levels.size(), whole.levels.size() * 2 / 3);
+  const FitLayersOptions options = OptionsOf(scene);
+  const std::vector<LayerPose> start = Shaken(scene.poses, 0.2);
+  const LayerFit a =
+      FitLayers(windowed, scene.shape, start, still, 1.0, options);
+  const LayerFit b = FitLayers(whole, scene.shape, start, still, 1.0, options);
+  for (std::size_t t = 0; t < a.poses.size(); ++t) {
+    EXPECT_NEAR(a.poses[t].x, b.poses[t].x, 1e-4);
+    EXPECT_NEAR(a.poses[t].y, b.poses[t].y, 1e-4);
+    EXPECT_NEAR(a.poses[t].angle_rad, b.poses[t].angle_rad, 1e-5);
+  }
+  for (std::size_t x = 0; x < a.layers.still.size(); ++x) {
+    EXPECT_NEAR(a.layers.still_weight[x], b.layers.still_weight[x],
+                1e-3F * b.layers.still_weight[x] + 1e-3F);
+  }
+}
+
+TEST(PictureStack, HalvedWindowsAreWindowsOfHalvedPictures) {
+  const LayeredScene scene = BlockOnGround();
+  const auto [windowed, whole] = FilmInWindows(scene, Paint(scene, nullptr));
+  const PictureStack small = Halve(windowed, 1);
+  const PictureStack large = Halve(whole, 1);
+  ASSERT_EQ(small.width, large.width);
+  for (std::size_t t = 0; t < small.frames.size(); ++t) {
+    const core::PixelRect& window = small.windows[t];
+    for (int y = window.y; y < window.y + window.height; ++y) {
+      for (int x = 0; x < window.width; ++x) {
+        EXPECT_EQ(small.WindowRow(t, y)[x],
+                  large.WindowRow(t, y)[window.x + x]);
+      }
+    }
+  }
+}
+
 TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 29);

@@ -57,16 +57,14 @@ void Reweigh(double noise_dn, std::vector<FrameSamples>& frames) {
 }
 
 // The level that most of the body shows.
-float MeanLevel(const PictureStack& stack,
-                const std::vector<FrameSamples>& frames) {
+float MeanLevel(const std::vector<FrameSamples>& frames) {
   constexpr float kWhole = 0.95F;
   double sum = 0.0;
   double count = 0.0;
-  for (std::size_t t = 0; t < frames.size(); ++t) {
-    const FrameSamples& samples = frames[t];
+  for (const FrameSamples& samples : frames) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples.cover[i] < kWhole) continue;
-      sum += static_cast<double>(stack.of(t)[samples.pixel[i]]);
+      sum += static_cast<double>(samples.level[i]);
       count += 1.0;
     }
   }
@@ -209,7 +207,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   const FreePart free(layers.grid);
   std::vector<FrameSamples> frames;
   LinearizeAll(stack, layers, fit.poses, options.threads, frames);
-  layers.quadratic = {static_cast<double>(MeanLevel(stack, frames))};
+  layers.quadratic = {static_cast<double>(MeanLevel(frames))};
   if (options.textured) LearnTexture(layers);
 
   constexpr double kHeld = 0.0;

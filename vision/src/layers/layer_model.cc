@@ -42,7 +42,7 @@ struct SampleWindow {
   std::int32_t bottom = 0;
 };
 
-SampleWindow ComputeSampleWindow(const PictureStack& stack,
+SampleWindow ComputeSampleWindow(const PictureStack& stack, std::size_t picture,
                                  const Layers& layers, const LayerPose& pose,
                                  const LayerPose& motion) {
   constexpr double kBlurs = 3.5;  // coverage is below 3e-4 beyond
@@ -59,15 +59,18 @@ SampleWindow ComputeSampleWindow(const PictureStack& stack,
       0.5 * std::abs(motion.angle_rad) * layers.exposure * layers.shape.Reach();
   reach_x += rim + 0.5 * std::abs(motion.x) * layers.exposure + turn;
   reach_y += rim + 0.5 * std::abs(motion.y) * layers.exposure + turn;
-  const auto from = [](double at) {
-    return std::max(1, static_cast<std::int32_t>(std::ceil(at)));
+  // The still picture's slope takes a pixel on each side.
+  const auto from = [](double at, std::int32_t begin) {
+    return std::max({1, begin, static_cast<std::int32_t>(std::ceil(at))});
   };
-  const auto to = [](double at, std::int32_t end) {
-    return std::min(end - 1, static_cast<std::int32_t>(std::floor(at)) + 1);
+  const auto to = [](double at, std::int32_t end, std::int32_t size) {
+    return std::min(
+        {size - 1, end, static_cast<std::int32_t>(std::floor(at)) + 1});
   };
-  return {from(pose.x - reach_x), from(pose.y - reach_y),
-          to(pose.x + reach_x, stack.width),
-          to(pose.y + reach_y, stack.height)};
+  const core::PixelRect& seen = stack.windows[picture];
+  return {from(pose.x - reach_x, seen.x), from(pose.y - reach_y, seen.y),
+          to(pose.x + reach_x, seen.x + seen.width, stack.width),
+          to(pose.y + reach_y, seen.y + seen.height, stack.height)};
 }
 
 // A node's own numbers.
@@ -126,7 +129,8 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
 
   samples.Resize(0, kDerivatives);
-  const SampleWindow window = ComputeSampleWindow(stack, layers, pose, motion);
+  const SampleWindow window =
+      ComputeSampleWindow(stack, picture, layers, pose, motion);
   if (window.right <= window.left || window.bottom <= window.top) {
     return;
   }
@@ -152,7 +156,6 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   std::size_t count = 0;
 
   const ShapeCover cover(layers.shape, layers.blur);
-  const float* const levels = stack.of(picture);
   const float* const still = layers.still.data();
   const auto blur2 = static_cast<float>(layers.blur * layers.blur);
   const auto twice_blur = static_cast<float>(2.0 * layers.blur);
@@ -174,7 +177,9 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
             quadratic.begin());
   std::vector<SplinePlace> places(placed.size());
   std::vector<float> shares(placed.size());
+  const std::int32_t first_column = stack.windows[picture].x;
   for (std::int32_t row = window.top; row < window.bottom; ++row) {
+    const float* const levels = stack.WindowRow(picture, row);
     for (std::int32_t column = window.left; column < window.right; ++column) {
       const std::int32_t pixel = row * stack.width + column;
       const float behind = still[pixel];
@@ -269,9 +274,11 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
           by_shared[i] *= steeper;
         }
       }
-      const float residual = levels[pixel] - model;
+      const float level = levels[column - first_column];
+      const float residual = level - model;
       const std::size_t at = count++;
       samples.pixel[at] = pixel;
+      samples.level[at] = level;
       samples.residual[at] = residual;
       samples.weight[at] = RobustWeight(residual, layers.noise_dn);
       samples.open[at] = 1.0F - covered;
@@ -296,7 +303,7 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
 void FrameSamples::Resize(std::size_t count, Derivatives derivatives) {
   const bool all = derivatives == Derivatives::kAll;
   pixel.resize(count);
-  for (auto* column : {&residual, &weight, &open, &cover}) {
+  for (auto* column : {&level, &residual, &weight, &open, &cover}) {
     column->resize(count);
   }
   for (auto& column : by_pose) column.resize(count);

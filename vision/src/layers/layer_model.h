@@ -96,6 +96,7 @@ enum class Derivatives { kAll, kByPose };
 // derivatives.
 struct FrameSamples {
   std::vector<std::int32_t> pixel;
+  std::vector<float> level;     // I, DN
   std::vector<float> residual;  // I - model, DN
   std::vector<float> weight;    // robust, 0..1
   std::vector<float> open;      // 1 - M: derivative by B
@@ -122,8 +123,9 @@ inline float RobustWeight(float residual, double noise_dn) {
   return 1.0F / (1.0F + off * off);
 }
 
-// `motion`: v. Pixels that the body does not reach are left out. Takes the
-// place of what `samples` held; its memory is used again.
+// `motion`: v. Pixels that the body does not reach, or that lie outside of the
+// picture's window, are left out. Takes the place of what `samples` held; its
+// memory is used again.
 void Linearize(const PictureStack& stack, std::size_t picture,
                const Layers& layers, const LayerPose& pose,
                const LayerPose& motion, Derivatives derivatives,

@@ -293,7 +293,9 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
   constexpr std::size_t kAtATime = 8;
   const bool is_read = path.frames == evidence.path.frames;
   const std::size_t step = is_read ? path.frames.size() : kAtATime;
-  PictureReader reader(clip, evidence.still, fit.layers.shape, evidence.box);
+  const PictureReader reader(clip, evidence.still, fit.layers.shape,
+                             evidence.box);
+  PictureStack part_pictures;
   for (std::size_t from = 0; from < path.frames.size(); from += step) {
     const std::size_t to = std::min(path.frames.size(), from + step);
     LayerPath part;
@@ -301,7 +303,8 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
       part.frames.push_back(path.frames[t]);
       part.poses.push_back(path.poses[t]);
     }
-    const PictureStack& pictures = is_read ? evidence.stack : reader.Read(part);
+    if (!is_read) reader.Read(part, part_pictures);
+    const PictureStack& pictures = is_read ? evidence.stack : part_pictures;
     std::vector<PoseFit> aligned(part.frames.size());
     core::InParallel(static_cast<std::int64_t>(aligned.size()), options.threads,
                      [&](std::int64_t begin, std::int64_t end) {

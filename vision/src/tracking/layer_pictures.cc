@@ -16,24 +16,24 @@ namespace {
 
 template <class Sample>
 void CopyRows(const core::Frame& window, const core::PixelRect& size,
-              float* out, std::int32_t stride) {
-  for (std::int32_t y = 0; y < size.height; ++y, out += stride) {
+              float* out) {
+  for (std::int32_t y = 0; y < size.height; ++y, out += size.width) {
     std::copy_n(window.row<Sample>(y), size.width, out);
   }
 }
 
-// Reads `window` of a frame into rows that begin `stride` apart. The frame's
-// time.
-double ReadWindowRows(Clip& clip, std::int64_t frame,
-                      const core::PixelRect& window, float* out,
-                      std::int32_t stride) {
-  const core::Frame seen = clip.Read(frame, window);
+// Adds what `window`, which lies within `box`, shows of a frame.
+void AddPicture(Clip& clip, std::int64_t frame, const core::PixelRect& box,
+                const core::PixelRect& window, PictureStack& stack) {
+  const core::Frame seen = clip.Read(
+      frame, {box.x + window.x, box.y + window.y, window.width, window.height});
+  float* const levels = stack.Add(frame, window);
   if (seen.is_16_bit()) {
-    CopyRows<std::uint16_t>(seen, window, out, stride);
+    CopyRows<std::uint16_t>(seen, window, levels);
   } else {
-    CopyRows<std::uint8_t>(seen, window, out, stride);
+    CopyRows<std::uint8_t>(seen, window, levels);
   }
-  return seen.time_s;
+  stack.times_s.back() = seen.time_s;
 }
 
 }  // namespace
@@ -140,12 +140,9 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
   PictureStack stack;
   stack.width = box.width;
   stack.height = box.height;
-  stack.frames.assign(frames.begin(), frames.end());
-  stack.levels.resize(stack.pixels() * frames.size());
-  for (std::size_t t = 0; t < frames.size(); ++t) {
-    stack.times_s.push_back(
-        ReadWindowRows(clip, frames[t], box,
-                       stack.levels.data() + t * stack.pixels(), stack.width));
+  stack.levels.reserve(stack.pixels() * frames.size());
+  for (const std::int64_t frame : frames) {
+    AddPicture(clip, frame, box, {0, 0, box.width, box.height}, stack);
   }
   return stack;
 }
@@ -153,20 +150,19 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
 PictureReader::PictureReader(Clip& clip, const std::vector<float>& still,
                              const Shape& shape, const core::PixelRect& box)
     : clip_(clip), still_(still), box_(box) {
-  constexpr double kRoom = 12.0;  // px
-  reach_ = shape.Reach() + kRoom;
-  stack_.width = box.width;
-  stack_.height = box.height;
+  constexpr double kRoom_px = 12.0;
+  reach_px_ = shape.Reach() + kRoom_px;
 }
 
+// Begins and ends at even pixels (Halve), as the box does.
 core::PixelRect PictureReader::ClippedWindow(const LayerPose& pose) const {
-  const auto from = [this](double at, std::int32_t end) {
-    return std::clamp(static_cast<std::int32_t>(std::floor(at - reach_)), 0,
-                      end - 1);
+  const auto from = [this](double at, std::int32_t size) {
+    const auto begin = static_cast<std::int32_t>(std::floor(at - reach_px_));
+    return std::clamp(begin, 0, size - 2) / 2 * 2;
   };
-  const auto to = [this](double at, std::int32_t begin, std::int32_t end) {
-    return std::clamp(static_cast<std::int32_t>(std::ceil(at + reach_)),
-                      begin + 1, end);
+  const auto to = [this](double at, std::int32_t begin, std::int32_t size) {
+    const auto end = static_cast<std::int32_t>(std::ceil(at + reach_px_));
+    return (std::clamp(end, begin + 2, size) + 1) / 2 * 2;
   };
   core::PixelRect window;
   window.x = from(pose.x, box_.width);
@@ -176,46 +172,31 @@ core::PixelRect PictureReader::ClippedWindow(const LayerPose& pose) const {
   return window;
 }
 
-const PictureStack& PictureReader::Read(const LayerPath& path) {
-  const bool whole =
-      path.frames.empty() || clip_.KnownChanges(path.frames.front()) == nullptr;
-  const std::size_t pixels = stack_.pixels();
-  stack_.frames = path.frames;
-  stack_.times_s.clear();
-  // It only grows: what `read_` says of a picture stays true.
-  stack_.levels.reserve(pixels * path.frames.size());
-  for (std::size_t t = 0; t < path.frames.size(); ++t) {
-    float* const levels = stack_.levels.data() + t * pixels;
-    if (t == read_.size()) {
-      stack_.levels.insert(stack_.levels.end(), still_.begin(), still_.end());
-      read_.emplace_back();
-    } else {
-      const core::PixelRect& old = read_[t];
-      for (std::int32_t y = old.y; y < old.y + old.height; ++y) {
-        const std::ptrdiff_t row = std::ptrdiff_t{y} * box_.width + old.x;
-        std::copy_n(still_.data() + row, old.width, levels + row);
-      }
-      read_[t] = {};
-    }
-    const core::PixelRect window =
-        whole ? core::PixelRect{0, 0, box_.width, box_.height}
-              : ClippedWindow(path.poses[t]);
-    stack_.times_s.push_back(ReadWindowRows(
-        clip_, path.frames[t],
-        {box_.x + window.x, box_.y + window.y, window.width, window.height},
-        levels + std::ptrdiff_t{window.y} * box_.width + window.x, box_.width));
-    // A whole picture is written over by the next.
-    if (!whole) read_[t] = window;
+void PictureReader::Read(const LayerPath& path, PictureStack& stack) const {
+  stack.Clear();
+  stack.width = box_.width;
+  stack.height = box_.height;
+  const bool keeps_changes = !path.frames.empty() &&
+                             clip_.KnownChanges(path.frames.front()) != nullptr;
+  if (keeps_changes) {
+    stack.outside = still_;
+  } else {
+    stack.levels.reserve(stack.pixels() * path.frames.size());
   }
-  return stack_;
+  for (std::size_t t = 0; t < path.frames.size(); ++t) {
+    AddPicture(clip_, path.frames[t], box_,
+               keeps_changes ? ClippedWindow(path.poses[t])
+                             : core::PixelRect{0, 0, box_.width, box_.height},
+               stack);
+  }
 }
 
 PictureStack ReadPath(Clip& clip, const std::vector<float>& still,
                       const LayerPath& path, const Shape& shape,
                       const core::PixelRect& box) {
-  PictureReader reader(clip, still, shape, box);
-  reader.Read(path);
-  return std::move(reader).Take();
+  PictureStack stack;
+  PictureReader(clip, still, shape, box).Read(path, stack);
+  return stack;
 }
 
 }  // namespace touchdown::vision

@@ -49,18 +49,17 @@ layers::PictureStack ReadPictures(Clip& clip,
                                   std::span<const std::int64_t> frames,
                                   const core::PixelRect& box);
 
-// Those of a path's frames, again and again in the same memory. Of a clip that
-// keeps only what changes (Clip::KnownChanges) the surroundings of the body,
-// before `still`. `clip` and `still` must outlive it.
+// Those of a path's frames. Of a clip that keeps only what changes
+// (Clip::KnownChanges) the surroundings of the body are read, and `still` is
+// taken to be seen outside of them. `clip` and `still` must outlive it.
 class PictureReader {
  public:
   PictureReader(Clip& clip, const std::vector<float>& still,
                 const layers::Shape& shape, const core::PixelRect& box);
 
-  // Valid until the next call. Throws what Clip::Read throws.
-  const layers::PictureStack& Read(const LayerPath& path);
-  // What was read last.
-  layers::PictureStack Take() && { return std::move(stack_); }
+  // Takes the place of what `stack` held; its memory is used again. Throws what
+  // Clip::Read throws.
+  void Read(const LayerPath& path, layers::PictureStack& stack) const;
 
  private:
   core::PixelRect ClippedWindow(const layers::LayerPose& pose) const;
@@ -68,9 +67,7 @@ class PictureReader {
   Clip& clip_;
   const std::vector<float>& still_;
   core::PixelRect box_;
-  double reach_ = 0.0;  // px
-  layers::PictureStack stack_;
-  std::vector<core::PixelRect> read_;  // what is not `still` in each picture
+  double reach_px_ = 0.0;
 };
 
 // Those of one path.
