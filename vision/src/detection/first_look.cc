@@ -218,14 +218,52 @@ double LookCost(const Look& look) {
          std::sqrt(static_cast<double>(look.found.chains.front().links.size()));
 }
 
+// Of two hypotheses a smoother one wins with so many of the other's outlines,
+// one that falls with half of them.
+constexpr double kAsManyFrames = 0.9;
+constexpr double kFewFrames = 0.5;
+
 // Outlines fitted to a ghost's edge jump about, however well they fit: a track
 // of as many frames that is four times smoother is the body's.
 bool MuchSmoother(const Look& look, const Look& other) {
   constexpr double kSmoother = 0.25;
-  constexpr double kAsManyFrames = 0.9;
   return Roughness(look.fits) < kSmoother * Roughness(other.fits) &&
          static_cast<double>(look.fits.size()) >=
              kAsManyFrames * static_cast<double>(other.fits.size());
+}
+
+// What falls before what fits: a person in the picture may fit better.
+bool Falls(const Look& look) {
+  return !look.found.chains.empty() && look.found.chains.front().Falls();
+}
+
+// Fewest outlines with which a hypothesis of known cost can win (IsBetter).
+double CountFitsToWin(const Look& look, const Look& rival) {
+  if (LookCost(look) < LookCost(rival)) return 0.0;
+  const bool falls = Falls(look) && !Falls(rival);
+  return (falls ? kFewFrames : kAsManyFrames) *
+         static_cast<double>(rival.fits.size());
+}
+
+// The outlines of the best chain; none where fewer than `least` will be found,
+// by a sample of the links.
+std::vector<Fitted> FitLinks(Clip& clip, const Look& look,
+                             const TrackOptions& options, double least) {
+  constexpr std::size_t kSampled = 8;  // every eighth link
+  // A sample finds half as many by chance, or where they come in stretches.
+  constexpr double kUnlucky = 0.5;
+  const Chain& chain = look.found.chains.front();
+  const auto fit = [&](const LinkRange& range) {
+    return FitChain(clip, look.background, chain, look.choice, options,
+                    look.surround, range);
+  };
+  if (least <= 0.0) return fit({});
+  if (static_cast<double>(chain.links.size()) < least) return {};
+  if (static_cast<double>(fit({0, kSampled}).size() * kSampled) <
+      kUnlucky * least) {
+    return {};
+  }
+  return fit({});
 }
 
 }  // namespace
@@ -290,13 +328,15 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
 
 std::vector<Fitted> FitChain(Clip& clip, const Background& background,
                              const Chain& chain, const Choice& choice,
-                             const TrackOptions& options, Surround surround) {
+                             const TrackOptions& options, Surround surround,
+                             const LinkRange& range) {
   OutlineOptions fit_options;
   fit_options.surround = surround;
   fit_options.ground = options.ground;
   fit_options.blur_px = choice.blur_px;
   std::vector<OutlineJob> jobs;
-  for (const Link& link : chain.links) {
+  for (std::size_t i = range.first; i < chain.links.size(); i += range.step) {
+    const Link& link = chain.links[i];
     jobs.push_back({link.frame, MakeStart(link.blob, choice.kind)});
   }
   return Found(
@@ -319,24 +359,27 @@ BackgroundOptions ChooseBackgroundOptions(const Clip& clip,
 
 Look TryHypothesis(Clip& clip, Background background,
                    const TrackOptions& options, Detector detector,
-                   std::int64_t last, double least_links, double most_cost) {
+                   std::int64_t last, const Look* rival, double least_fits) {
   Look look;
   look.background = std::move(background);
   look.surround = detector == Detector::kLevels ? Surround::kPolynomial
                                                 : Surround::kBackground;
   look.found = Detect(clip, look.background, options, detector, last);
   look.rough_starts = detector == Detector::kChange;
-  if (!look.found.chains.empty() &&
-      static_cast<double>(look.found.chains.front().links.size()) >=
-          least_links) {
-    const Chain& chain = look.found.chains.front();
-    look.choice =
-        ChooseKind(clip, look.background, chain, options, look.surround);
-    if (LookCost(look) > most_cost) return look;
-    look.fits = FitChain(clip, look.background, chain, look.choice, options,
-                         look.surround);
-    DropStrangers(look.fits);
+  if (look.found.chains.empty() ||
+      static_cast<double>(look.found.chains.front().links.size()) <
+          least_fits) {
+    return look;
   }
+  look.choice = ChooseKind(clip, look.background, look.found.chains.front(),
+                           options, look.surround);
+  if (rival != nullptr) {
+    // Rough starts win by their cost alone.
+    if (look.rough_starts && LookCost(look) > LookCost(*rival)) return look;
+    least_fits = std::max(least_fits, CountFitsToWin(look, *rival));
+  }
+  look.fits = FitLinks(clip, look, options, least_fits);
+  DropStrangers(look.fits);
   return look;
 }
 
@@ -369,15 +412,13 @@ bool IsWithin(const Look& look, const Look& other) {
 }  // namespace
 
 bool IsBetter(const Look& look, const Look& other) {
-  // What falls before what fits: a person in the picture may fit better.
-  const auto falls = [](const Look& l) {
-    return !l.found.chains.empty() && l.found.chains.front().Falls();
-  };
-  constexpr std::size_t kFew = 2;  // times fewer outlines are another matter
-  if (falls(look) != falls(other)) {
-    const Look& falling = falls(look) ? look : other;
-    const Look& resting = falls(look) ? other : look;
-    if (kFew * falling.fits.size() >= resting.fits.size()) return falls(look);
+  if (Falls(look) != Falls(other)) {
+    const Look& falling = Falls(look) ? look : other;
+    const Look& resting = Falls(look) ? other : look;
+    if (static_cast<double>(falling.fits.size()) >=
+        kFewFrames * static_cast<double>(resting.fits.size())) {
+      return Falls(look);
+    }
   }
   return MuchSmoother(look, other) ||
          (LookCost(look) < LookCost(other) && !MuchSmoother(other, look));
@@ -467,11 +508,8 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
           clip, std::max(options.first, best.found.last - part),
           best.found.last, still);
     }
-    Look look =
-        change ? TryHypothesis(clip, std::move(background), options, detector,
-                               best.found.last, least, LookCost(best))
-               : TryHypothesis(clip, std::move(background), options, detector,
-                               best.found.last);
+    Look look = TryHypothesis(clip, std::move(background), options, detector,
+                              best.found.last, &best, change ? least : 0.0);
     look.found.warning = best.found.warning;
     if (change && static_cast<double>(look.fits.size()) < least) continue;
     if (!Moves(look.fits)) continue;

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -53,12 +52,13 @@ BackgroundOptions ChooseBackgroundOptions(const Clip& clip,
                                           const TrackOptions& options);
 
 // A look against this background. It is less good than another (by IsBetter)
-// where the background holds the body's ghost. No outline is fitted where there
-// are fewer links than `least_links`, or no cost below `most_cost`.
+// where the background holds the body's ghost. Outlines are fitted only where
+// it can still win against `rival`, and with `least_fits` outlines or more: a
+// hypothesis that is wrong costs the most, because no outline converges.
 Look TryHypothesis(Clip& clip, Background background,
                    const TrackOptions& options, Detector detector,
-                   std::int64_t last, double least_links = 0.0,
-                   double most_cost = std::numeric_limits<double>::infinity());
+                   std::int64_t last, const Look* rival = nullptr,
+                   double least_fits = 0.0);
 bool IsBetter(const Look& look, const Look& other);
 
 // Absent where nothing moves, or nothing with an outline.
@@ -69,10 +69,15 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
                   const TrackOptions& options, Surround surround);
 
-// The outlines of a chain's links.
+// The outlines of a chain's links: of each, or from `first` on of every `step`.
+struct LinkRange {
+  std::size_t first = 0;
+  std::size_t step = 1;
+};
 std::vector<Fitted> FitChain(Clip& clip, const Background& background,
                              const Chain& chain, const Choice& choice,
-                             const TrackOptions& options, Surround surround);
+                             const TrackOptions& options, Surround surround,
+                             const LinkRange& range = {});
 
 // The first frame of [first, last) that cannot be read, with the reason; `last`
 // where all can.

@@ -370,9 +370,11 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   Background behind =
       look_behind(once ? std::move(first->background) : first->background);
   if (covers.most > kUntouched && IsTorn(*first)) {
+    const auto more = static_cast<double>(first->fits.size() + 1);
     Look again = TryHypothesis(clip, behind, options, Detector::kDifference,
-                               first->found.last);
-    if (again.fits.size() > first->fits.size() && IsBetter(again, *first)) {
+                               first->found.last, &*first, more);
+    if (static_cast<double>(again.fits.size()) >= more &&
+        IsBetter(again, *first)) {
       *first = std::move(again);
       track = MakeTrack(*first, clip, options);
       covers = FindTrackCovers(clip, options, track);
