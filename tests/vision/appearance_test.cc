@@ -167,65 +167,6 @@ TEST_P(Appearances, AnObstacleIsNotLearnt) {
       LearnAppearance(*clip, result->background, TrueOutlines(scene), {}));
 }
 
-// A wheel of 25 px: through its middle the background is seen, and a mark on
-// its rim turns with it.
-Scene Wheel() {
-  Scene scene = Flying(core::BodyKind::kSphere);
-  scene.camera.width_px = 400;
-  scene.camera.height_px = 250;
-  scene.camera.ground_point = {50.0, 230.7};
-  scene.body = core::Sphere({0.050, 0.0});
-  scene.look.hole = 0.6;
-  scene.look.mark = SceneMark{0.9, 0.8, 0.18};
-  scene.pose = [](double t) {
-    return ScenePose{{-0.1125 + 9.0 * t, 0.0875 + 1.5 * t - 9.0 * t * t},
-                     60.0 * t};
-  };
-  return scene;
-}
-
-TEST(Rings, OfAWheelAreItsHole) {
-  const Scene scene = Wheel();
-  const auto clip = OpenScene(scene, 1);
-  TrackOptions options;
-  options.kind = core::BodyKind::kSphere;
-  const auto result = TrackBody(*clip, options);
-  ASSERT_TRUE(result);
-  const auto look =
-      LearnRings(*clip, result->background, TrueOutlines(scene), {});
-  ASSERT_TRUE(look);
-  const auto at = [&](double r) { return look->At(r, 0.0, 1.0, 0.0).level_dn; };
-  // Background over body, but for what a quadratic says of it.
-  const double step = 0.5 * 4095.0;
-  EXPECT_GT(at(13.0) - at(17.0), 0.5 * step);
-  // It is the same all around, and its slope is the difference's.
-  const Appearance::Value value = look->At(10.0, 11.2, 0.6, 0.8);
-  EXPECT_NEAR(value.level_dn, at(std::hypot(10.0, 11.2)), 1e-9);
-  constexpr double kStep_px = 1e-4;
-  EXPECT_NEAR(value.slope_y_dn_per_px,
-              (look->At(10.0, 11.2 + kStep_px, 1.0, 0.0).level_dn -
-               look->At(10.0, 11.2 - kStep_px, 1.0, 0.0).level_dn) /
-                  (2.0 * kStep_px),
-              1e-3 * std::abs(value.slope_y_dn_per_px));
-}
-
-// Its outline was 0.7 px too small, and wandered by 0.011 px.
-TEST(Rings, AWheelIsWhereItIs) {
-  const Scene scene = Wheel();
-  const auto found = Follow(scene, 5);
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->refined.body.radius_px.value, 25.0, 0.05);
-  double square = 0.0;
-  for (const Pose& pose : found->refined.poses) {
-    const SceneTruth truth = ComputeTruth(scene, pose.frame);
-    square += std::pow(pose.centre.x_px - truth.centre.x_px, 2) +
-              std::pow(pose.centre.y_px - truth.centre.y_px, 2);
-  }
-  const auto n = static_cast<double>(found->refined.poses.size());
-  EXPECT_GE(n, 30.0);
-  EXPECT_LT(std::sqrt(0.5 * square / n), 0.004);
-}
-
 INSTANTIATE_TEST_SUITE_P(Kinds, Appearances,
                          ::testing::Values(core::BodyKind::kSphere,
                                            core::BodyKind::kRectangle),

@@ -320,6 +320,36 @@ TEST(Contact, OnTheGroundFromTheStart) {
   }
 }
 
+// A block that slides on a corner and tips onto its face: it came down before
+// it was filmed, at angles that nobody saw.
+TEST(Contact, WhatTurnsWhileItIsDownHasNoAngleOfItsTouchdown) {
+  Throw thrown = Block(0.0);
+  thrown.contact_s = -1.0;
+  thrown.x_m = -1.2;
+  thrown.after = {1.2, 0.0, 0.0};
+  thrown.stays = true;
+  Filming filming;
+  PlaneTrack track = FilmPlane(thrown, filming);
+  const auto n = static_cast<double>(track.samples.size());
+  for (std::size_t i = 0; i < track.samples.size(); ++i) {
+    PlaneSample& sample = track.samples[i];
+    sample.face_rad = (8.0 - 6.0 * static_cast<double>(i) / n) * core::kDegree;
+    const double noise_px = sample.gap_px;
+    sample.height_px = SupportHeight(track, sample.face_rad) + noise_px;
+  }
+  const ContactResult result = FindContacts(track, WithScale(filming));
+  const core::Contact& contact = result.first.contact;
+  ASSERT_TRUE(contact.found) << contact.reason;
+  ASSERT_TRUE(contact.from_start);
+  for (const core::Measured* angle :
+       {&contact.approach_angle_rad, &contact.radius_angle_rad,
+        &contact.face_angle_rad, &result.first.motion.before_speed_mps}) {
+    ASSERT_FALSE(*angle);
+    EXPECT_THAT(angle->error().reason, HasSubstr("was not filmed"));
+  }
+  EXPECT_TRUE(core::IsNotBounce(result.first.state.label));
+}
+
 // On an incline a spring turns it round each time it comes down; the line is
 // inclined to its path by what changes its gap by half a pixel, and that is
 // known to a hundredth.

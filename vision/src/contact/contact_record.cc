@@ -443,6 +443,25 @@ core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
   return record;
 }
 
+namespace {
+
+// Whether a body turns over while it is down: by more than its path and the
+// ground line can be inclined to each other, and more than its attitude is
+// known.
+bool TurnsWhileDown(std::span<const PlaneSample> down) {
+  constexpr double kInclined_rad = 0.5 * core::kDegree;
+  constexpr double kSigmas = 8.0;  // of a frame: the range of many is six
+  const auto [least, most] = std::minmax_element(
+      down.begin(), down.end(), [](const PlaneSample& a, const PlaneSample& b) {
+        return a.face_rad < b.face_rad;
+      });
+  return most->face_rad - least->face_rad >
+         std::max(kInclined_rad,
+                  kSigmas * std::max(least->u_face_rad, most->u_face_rad));
+}
+
+}  // namespace
+
 core::ContactRecord RecordFromStart(const RecordContext& context,
                                     const Stretch& down, double slope_rad) {
   const PlaneTrack& track = context.track;
@@ -472,7 +491,18 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
   const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1))};
   m.before_tangential_mps = InMetres(context, vt);
   m.before_speed_mps = InMetres(context, vt);
-  if (track.kind == core::BodyKind::kSphere) {
+  if (track.kind == core::BodyKind::kRectangle &&
+      TurnsWhileDown(SelectSamples(track, down))) {
+    // What changes while it is down was another at its touchdown.
+    const char turns[] =
+        "on the ground from the start, where it turns: its touchdown was not "
+        "filmed";
+    MakeAbsent({&contact.approach_angle_rad, &contact.radius_angle_rad,
+                &contact.face_angle_rad, &m.before_speed_mps,
+                &m.before_tangential_mps},
+               turns);
+    contact.approach_budget.clear();
+  } else if (track.kind == core::BodyKind::kSphere) {
     contact.radius_angle_rad = AbsentBecause("sphere: 90 degrees always");
     contact.face_angle_rad = AbsentBecause("sphere");
   } else {

@@ -25,6 +25,7 @@ core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
                                std::vector<std::string>& warnings);
 
 // A body that is on the ground from the first frame, `down`: approach angle 0.
+// Of one that turns meanwhile no angle of the touchdown is known.
 // `slope` is the inclination of its path to the ground line that was taken out.
 core::ContactRecord RecordFromStart(const RecordContext& context,
                                     const Stretch& down, double slope_rad);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -265,7 +264,7 @@ std::optional<Appearance> Described(const std::vector<InsidePixel>& all,
   auto spots = FindSpots(cells, samples, options);
   if (!spots) return std::nullopt;
   spots->covariance /= left_out;
-  Appearance look = {turns, common.shaded, std::move(*spots), {}};
+  Appearance look = {turns, common.shaded, std::move(*spots)};
   if (!IsSeenThroughout(all, frames, look)) return std::nullopt;
   return look;
 }
@@ -285,80 +284,8 @@ Appearance::Value Appearance::At(double x_px, double y_px, double cosine,
     value.level_dn -= spots.parameters[i] * by[i];
     by[i] = 0.0;
   }
-  if (!rings_dn.empty()) {
-    const auto last = static_cast<double>(rings_dn.size() - 1);
-    const double r = std::hypot(x_px, y_px);
-    const auto i = std::min(static_cast<std::size_t>(std::min(r, last)),
-                            rings_dn.size() - 2);
-    const double rise = rings_dn[i + 1] - rings_dn[i];
-    value.level_dn +=
-        rings_dn[i] + (std::min(r, last) - static_cast<double>(i)) * rise;
-    if (r > 0.0 && r < last) {
-      value.slope_x_dn_per_px = rise * x_px / r;
-      value.slope_y_dn_per_px = rise * y_px / r;
-    }
-  }
   value.u_dn = std::sqrt(std::max(0.0, by.dot(spots.covariance * by)));
   return value;
-}
-
-namespace {
-
-// Takes out what the frames' own shading finds again, a + b r^2: it would grow
-// from round to round.
-void DropOwnShading(std::vector<double>& rings) {
-  double s0 = 0.0, s2 = 0.0, s4 = 0.0, m0 = 0.0, m2 = 0.0;
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    const auto r = static_cast<double>(i);  // as many pixels, nearly
-    s0 += r;
-    s2 += r * r * r;
-    s4 += r * r * r * r * r;
-    m0 += r * rings[i];
-    m2 += r * r * r * rings[i];
-  }
-  const double determinant = s0 * s4 - s2 * s2;
-  if (!(determinant > 0.0)) return;
-  const double a = (m0 * s4 - m2 * s2) / determinant;
-  const double b = (m2 * s0 - m0 * s2) / determinant;
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    rings[i] -= a + b * static_cast<double>(i * i);
-  }
-}
-
-}  // namespace
-
-std::optional<Appearance> LearnRings(Clip& clip, const Background& background,
-                                     std::span<const SeenOutline> frames,
-                                     const OutlineOptions& options) {
-  constexpr std::size_t kLeast = 8;
-  if (frames.size() < kLeast) return std::nullopt;
-  const Common common = ComputeCommon(frames);
-  Collection collection(clip, background, options, common.extent_px,
-                        frames.size());
-  for (const SeenOutline& seen : frames) collection.Add(seen);
-  std::vector<std::vector<double>> rings;
-  for (const InsidePixel& in : collection.all()) {
-    const auto ring =
-        static_cast<std::size_t>(std::lround(std::hypot(in.x_px, in.y_px)));
-    if (ring >= rings.size()) rings.resize(ring + 1);
-    rings[ring].push_back(in.level_dn);
-  }
-  // The outermost are seen by the largest of the outlines only.
-  constexpr double kLeastShare = 0.5;  // of a ring's pixels in all frames
-  while (!rings.empty() && static_cast<double>(rings.back().size()) <
-                               kLeastShare * 2.0 * std::numbers::pi *
-                                   static_cast<double>(rings.size() - 1) *
-                                   static_cast<double>(frames.size())) {
-    rings.pop_back();
-  }
-  if (rings.size() < kLeast) return std::nullopt;
-  Appearance look;
-  look.shaded = common.shaded;
-  for (std::vector<double>& ring : rings) {
-    look.rings_dn.push_back(Median(std::move(ring)));
-  }
-  DropOwnShading(look.rings_dn);
-  return look;
 }
 
 std::optional<Appearance> LearnAppearance(Clip& clip,

@@ -32,10 +32,6 @@ struct Appearance {
   struct Value {
     double level_dn = 0.0;  // to be added to the shading
     double u_dn = 0.0;      // its standard uncertainty
-    // Of the rings', along the image's axes: they are the body's own, and tell
-    // where it is. A highlight moves over the face with the lamp.
-    double slope_x_dn_per_px = 0.0;
-    double slope_y_dn_per_px = 0.0;
   };
   // At (x, y) px from the body's centre along the image's axes. `cosine`,
   // `sine`: of the body's angle.
@@ -44,9 +40,6 @@ struct Appearance {
   bool turns = false;  // the axes are the body's
   bool shaded = true;  // its fits have a shading of their own
   SpotModel spots;
-  // Of a disc with a rim: what is added at 0, 1, 2 ... px from its centre; the
-  // last one from there on. Empty: nothing.
-  std::vector<double> rings_dn;
 };
 
 // A frame whose outline is known.
@@ -65,13 +58,5 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
                                           const Background& background,
                                           std::span<const SeenOutline> frames,
                                           const OutlineOptions& options);
-
-// The same of a disc that looks alike all around but for the quadratic, and for
-// marks that turn with it and cover less than half of any ring: medians over
-// rings a pixel wide. Outwards of where it is seen clear of the edge it goes on
-// level: that moves the radius, for all frames alike, and no centre.
-std::optional<Appearance> LearnRings(Clip& clip, const Background& background,
-                                     std::span<const SeenOutline> frames,
-                                     const OutlineOptions& options);
 
 }  // namespace touchdown::vision

@@ -285,20 +285,11 @@ class Collector {
 // pixels have less weight.
 void AddAppearance(const Appearance& appearance, const Outline& outline,
                    double cosine, double sine, OutlinePixels& pixels) {
-  pixels.sloped = !appearance.rings_dn.empty();
-  if (pixels.sloped) {
-    pixels.slope_x.assign(pixels.padded(), 0.0F);
-    pixels.slope_y.assign(pixels.padded(), 0.0F);
-  }
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const Appearance::Value value =
         appearance.At(pixels.x[i] - outline.centre.x_px,
                       pixels.y[i] - outline.centre.y_px, cosine, sine);
     pixels.behind[i] -= static_cast<float>(value.level_dn);
-    if (pixels.sloped) {
-      pixels.slope_x[i] = static_cast<float>(value.slope_x_dn_per_px);
-      pixels.slope_y[i] = static_cast<float>(value.slope_y_dn_per_px);
-    }
     constexpr double kEdge_px = 1.0;
     if (SignedDepth(outline, pixels.x[i], pixels.y[i], cosine, sine) <
         -kEdge_px) {

@@ -22,7 +22,6 @@ double SumLanes(const std::array<float, kCount>& lanes) {
 
 void OutlinePixels::Clear(std::size_t room) {
   size = 0;
-  sloped = false;
   if (x.size() >= room + kBlock) return;
   x.resize(room + kBlock);
   y.resize(room + kBlock);
@@ -70,8 +69,6 @@ struct OutlineBlock {
   const float* background;
   const float* behind;
   const float* per_noise;
-  const float* slope_x;  // null: none
-  const float* slope_y;
   double* residuals;
 
   using Lanes = OutlineSums::Lanes;
@@ -219,11 +216,6 @@ void OutlineBlock::AccumulateBlock(const OutlineRound& round,
                                ? cover.d_open
                                : cover.d_shape[round.shape[k]];
     Multiply(w.step, d, rows[k]);
-    if (slope_x == nullptr || round.shape[k] > 1) continue;
-    const float* const slope = round.shape[k] == 0 ? slope_x : slope_y;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      rows[k][i] -= w.inside[i] * slope[i];
-    }
   }
   Terms(cover, w.inside, round.interior, rows + round.shapes);
   if (!known) {
@@ -280,14 +272,9 @@ void OutlineSums::SumPixels(const OutlinePixels& pixels,
   CoverBlock cover;
   for (std::size_t begin = 0; begin < pixels.padded(); begin += kBlock) {
     image.Cover(&pixels.x[begin], &pixels.y[begin], cover);
-    const OutlineBlock block = {
-        &pixels.value[begin],
-        &pixels.background[begin],
-        &pixels.behind[begin],
-        &pixels.per_noise[begin],
-        pixels.sloped ? &pixels.slope_x[begin] : nullptr,
-        pixels.sloped ? &pixels.slope_y[begin] : nullptr,
-        &residuals[begin]};
+    const OutlineBlock block = {&pixels.value[begin], &pixels.background[begin],
+                                &pixels.behind[begin], &pixels.per_noise[begin],
+                                &residuals[begin]};
     block.AccumulateBlock(round, cover, totals_);
     // So many short numbers still add up to 1e-6 of their sum.
     constexpr std::size_t kTogether = 16 * kBlock;

@@ -45,11 +45,6 @@ struct OutlinePixels {
   Column background;  // DN
   Column behind;      // DN, of what the body hides here
   Column per_noise;   // 1/DN; 0: padding
-  // Of what is added to the interior's levels and moves with the body, DN/px;
-  // used where `sloped`.
-  Column slope_x;
-  Column slope_y;
-  bool sloped = false;
 
   std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
   // None yet, and room for so many.

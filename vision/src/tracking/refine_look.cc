@@ -9,7 +9,7 @@ namespace touchdown::vision {
 
 void Refiner::LearnLook(Track& refined, std::vector<Fitted>& sized) {
   if (!track_.known_background) return;
-  if (!LearnSpots(refined.body, sized) && !LearnRim(refined.body, sized)) {
+  if (!LearnSpots(refined.body, sized)) {
     options_.appearance = nullptr;
     return;
   }
@@ -39,42 +39,6 @@ bool Refiner::LearnSpots(const BodyImage& body, std::vector<Fitted>& sized) {
     return false;
   }
   sized = std::move(again);
-  return true;
-}
-
-bool Refiner::LearnRim(const BodyImage& body, std::vector<Fitted>& sized) {
-  const double crude = MedianMisfit(sized);
-  if (body.kind != core::BodyKind::kSphere || !(crude > kWellModelled)) {
-    return false;
-  }
-  // Each round aligns the frames better to each other, or strays: the best
-  // counts. A hoop's misfit fell to 0.6 where its poses became twice as smooth,
-  // to 0.85 where they did not.
-  constexpr int kRounds = 8;
-  constexpr double kMuchBetter = 0.7;
-  constexpr double kNearlyAll = 0.8;  // of the frames
-  look_.reset();
-  options_.appearance = nullptr;
-  double least = kMuchBetter * crude;
-  std::vector<Fitted> best;
-  std::vector<Fitted> again = sized;
-  std::optional<Appearance> look;
-  for (int round = 0; round < kRounds; ++round) {
-    look = LearnRings(clip_, background_, Seen(again), options_);
-    if (!look) break;
-    options_.appearance = &*look;
-    again = Sample(body);
-    if (static_cast<double>(again.size()) <
-            kNearlyAll * static_cast<double>(sized.size()) ||
-        MedianMisfit(again) > least) {
-      continue;
-    }
-    least = MedianMisfit(again);
-    best = again;
-    look_ = look;
-  }
-  if (!look_) return false;
-  sized = std::move(best);
   return true;
 }
 

@@ -43,7 +43,6 @@ class Refiner {
   // `sized` are fits of a sample of frames, and are fitted again then.
   void LearnLook(Track& refined, std::vector<Fitted>& sized);
   bool LearnSpots(const BodyImage& body, std::vector<Fitted>& sized);
-  bool LearnRim(const BodyImage& body, std::vector<Fitted>& sized);
   std::vector<SeenOutline> Seen(const std::vector<Fitted>& fits) const;
   OutlineJob MakeJob(const BodyImage& body, std::size_t i) const;
   // Blur and exposure, from fits of each frame, which it returns.
