@@ -392,6 +392,11 @@ core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
   contact.time_s = event.time_s;
   // Frame numbers follow the time: exact where frames are equally spaced.
   const double dt = track.frame_interval_s;
+  // What all poses have in common is not quite the same before and after: a
+  // texture lies otherwise on its outline, and beside another background. 0.01
+  // px: chosen on 40 photographed faces in raw clips, of which 30 contact times
+  // lay within 1.96 u without it.
+  constexpr double kMostChange_px = 0.01;
   // A codec that leaves out slow changes from frame to frame lags behind the
   // body: before an impact it is above its place, after it below, so that the
   // flights meet too late. Half of the common error of place: chosen on 79
@@ -400,10 +405,10 @@ core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
   constexpr double kOfPlace = 0.5;
   const double pace = std::max(
       std::abs(event.fit->EstimateFunction(ApproachNormal).value), kLeastPace);
-  if (track.is_predicted) {
-    contact.time_s->u = std::hypot(
-        contact.time_s->u, kOfPlace * context.u_common_place_px / pace * dt);
-  }
+  const double change_px =
+      track.is_predicted ? kOfPlace * context.u_common_place_px
+                         : std::min(context.u_common_place_px, kMostChange_px);
+  contact.time_s->u = std::hypot(contact.time_s->u, change_px / pace * dt);
   const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
                                                    track.samples.size() - 1)];
   contact.frame = Estimate{
