@@ -290,6 +290,32 @@ TEST(Contact, FaceAngleLiesInItsHalfTurn) {
   }
 }
 
+// Flights that meet far off the line were cut wrongly, or there was more than
+// one impact: what they tell is known no better than the line is missed by.
+TEST(Contact, FlightsThatMissTheLineAreWidened) {
+  Throw thrown;
+  thrown.before = {1.4, -0.5, 0.0};
+  thrown.after = {1.2, 0.3, 0.0};
+  const Filming filming;
+  const PlaneTrack track = FilmPlane(thrown, filming);
+  PlaneTrack off = track;
+  constexpr double kOff_px = 0.4;  // the line is said to be known to 0.02
+  for (PlaneSample& s : off.samples) {
+    s.gap_px += kOff_px;
+    s.height_px += kOff_px;
+  }
+  const ContactResult on_line = FindContacts(track, WithScale(filming));
+  const ContactResult off_line = FindContacts(off, WithScale(filming));
+  ASSERT_TRUE(on_line.first.contact.found);
+  ASSERT_TRUE(off_line.first.contact.found);
+  ASSERT_EQ(off_line.warnings.size(), 1u);
+  EXPECT_THAT(off_line.warnings[0], HasSubstr("standard deviations above"));
+  EXPECT_GT(off_line.first.contact.time_s->u,
+            3.0 * on_line.first.contact.time_s->u);
+  EXPECT_GT(off_line.first.contact.approach_angle_rad->u,
+            3.0 * on_line.first.contact.approach_angle_rad->u);
+}
+
 TEST(Contact, OnTheGroundFromTheStart) {
   for (const auto kind :
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {

@@ -75,14 +75,14 @@ TEST(StillEdges, ReadContrastAndDistanceOffABlurredEdge) {
             static_cast<float>(70.0 + 120.0 * Phi((edge - y) / kBlur)));
       }
     }
-    const StillEdges edges(still.data(), kWidth, kBlur, 1.0);
+    StillEdges edges(still.data(), kWidth, kBlur, 1.0);
     for (int y = 9; y <= 12; ++y) {
-      const StillEdge at = edges.At(y * kWidth + 2);
+      const StillEdge at = edges.FindEdge(y * kWidth + 2);
       EXPECT_NEAR(at.contrast, 120.0, 1.0) << y;
       EXPECT_NEAR(at.z, (edge - y) / kBlur, 0.02) << y;
       EXPECT_NEAR(at.normal_y, -1.0, 1e-6);
     }
-    EXPECT_EQ(edges.At(2 * kWidth + 2).contrast, 0.0F);
+    EXPECT_EQ(edges.FindEdge(2 * kWidth + 2).contrast, 0.0F);
   }
 }
 

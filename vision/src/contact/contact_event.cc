@@ -205,6 +205,13 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   input.ground_px.u = on_line.u;
   TryLasting(track, input, t1, t2, fit, event);
   event.fit = fit;
+  if (fit && !in_contact && std::abs(event.disagreement) > kDisagree) {
+    // The flights were cut a frame off, or there were two impacts between two
+    // frames: nothing they tell is known better than the line is missed by.
+    const double square = event.disagreement * event.disagreement;
+    event.fit->covariance *= square;
+    event.fit->information /= square;
+  }
   return fit.has_value();
 }
 

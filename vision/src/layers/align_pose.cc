@@ -117,6 +117,10 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
                                const std::vector<float>& b) {
         return SumOfProducts(a.data(), b.data() + lag, cells);
       };
+      const double away =
+          std::hypot(static_cast<double>(across), static_cast<double>(down));
+      const double taper = 1.0 - away / (kLags + 1);  // Bartlett
+      if (!(taper > 0.0)) continue;
       const double pairs = overlap(known, known);
       if (pairs < 1.0) continue;
       PoseMatrix own = PoseMatrix::Zero();
@@ -126,9 +130,6 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
                               g[static_cast<std::size_t>(b)]);
         }
       }
-      const double away =
-          std::hypot(static_cast<double>(across), static_cast<double>(down));
-      const double taper = std::max(0.0, 1.0 - away / (kLags + 1));  // Bartlett
       const double correlation = taper * overlap(residual, residual) / pairs;
       if (lag == 0) {
         sum += std::max(correlation, variance) * own;

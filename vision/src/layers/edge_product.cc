@@ -15,11 +15,8 @@ constexpr float kMostRho = 0.9999F;
 
 }  // namespace
 
-StillEdges::StillEdges(const float* still, std::int32_t width, double blur,
-                       double least_dn)
-    : still_(still), width_(width), least_dn_(static_cast<float>(least_dn)) {
-  // Neighbours one pixel away. The curvature over the step falls from 1 to -1
-  // as z grows.
+// The curvature over the step falls from 1 to -1 as z grows.
+EdgeTable::EdgeTable(double blur) {
   constexpr double kFarthest = 3.5;
   const double h = 1.0 / blur;
   const auto step = [h](double z) { return Phi(z + h) - Phi(z - h); };
@@ -51,7 +48,24 @@ StillEdges::StillEdges(const float* still, std::int32_t width, double blur,
   fill_down_to(kNone, kFarthest, 0.0);
 }
 
-StillEdge StillEdges::At(std::int32_t pixel) const {
+EdgeTable::Place EdgeTable::Look(float curvature) const {
+  const float at =
+      std::clamp(0.5F * (curvature + 1.0F) * static_cast<float>(kCells), 0.0F,
+                 static_cast<float>(kCells) - 1e-3F);
+  const auto cell = static_cast<std::size_t>(at);
+  const float share = at - static_cast<float>(cell);
+  return {z_[cell] + share * (z_[cell + 1] - z_[cell]),
+          share_[cell] + share * (share_[cell + 1] - share_[cell])};
+}
+
+StillEdges::StillEdges(const float* still, std::int32_t width, double blur,
+                       double least_dn)
+    : still_(still),
+      width_(width),
+      blur_(blur),
+      least_dn_(static_cast<float>(least_dn)) {}
+
+StillEdge StillEdges::FindEdge(std::int32_t pixel) {
   StillEdge edge;
   const float* const here = still_ + pixel;
   const float step_x = here[1] - here[-1];
@@ -64,13 +78,9 @@ StillEdge StillEdges::At(std::int32_t pixel) const {
   const float length = std::hypot(step_x, step_y);
   edge.normal_x = step_x / length;
   edge.normal_y = step_y / length;
-  const float at = std::clamp(
-      0.5F * (bend / std::abs(step) + 1.0F) * static_cast<float>(kCells), 0.0F,
-      static_cast<float>(kCells) - 1e-3F);
-  const auto cell = static_cast<std::size_t>(at);
-  const float share = at - static_cast<float>(cell);
-  edge.z = z_[cell] + share * (z_[cell + 1] - z_[cell]);
-  const float of = share_[cell] + share * (share_[cell + 1] - share_[cell]);
+  if (!table_) table_.emplace(blur_);
+  const auto [z, of] = table_->Look(bend / std::abs(step));
+  edge.z = z;
   // Far from an edge, what little steps is as likely something else.
   constexpr float kLeastShare = 0.02F;
   if (of < kLeastShare) return {};

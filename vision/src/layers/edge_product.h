@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace touchdown::vision::layers {
 
@@ -27,6 +28,24 @@ struct StillEdge {
   float normal_y = 0.0F;
 };
 
+// Three neighbours, one pixel apart across an edge of one blur: by their
+// curvature over their step, from -1 to 1, where they lie beside the edge, and
+// what of the contrast their step is.
+class EdgeTable {
+ public:
+  explicit EdgeTable(double blur);
+  struct Place {
+    float z = 0.0F;
+    float share = 0.0F;
+  };
+  Place Look(float curvature) const;
+
+ private:
+  static constexpr std::size_t kCells = 128;
+  std::array<float, kCells + 1> z_{};
+  std::array<float, kCells + 1> share_{};
+};
+
 // Reads edges off a picture, all of one blur.
 class StillEdges {
  public:
@@ -34,18 +53,16 @@ class StillEdges {
   StillEdges(const float* still, std::int32_t width, double blur,
              double least_dn);
   // `pixel` is not at the picture's border.
-  StillEdge At(std::int32_t pixel) const;
+  StillEdge FindEdge(std::int32_t pixel);
 
  private:
-  static constexpr std::size_t kCells = 128;
-
   const float* still_;
   std::int32_t width_;
+  double blur_;
   float least_dn_;
-  // Of the curvature over the step of three neighbours, from -1 to 1: where
-  // they lie beside the edge, and what of the contrast their step is.
-  std::array<float, kCells + 1> z_{};
-  std::array<float, kCells + 1> share_{};
+  // Made when the first edge is met: in flight most windows show none, and the
+  // table costs as much as a hundred pixels.
+  std::optional<EdgeTable> table_;
 };
 
 // Phi2(z1, z2; rho) - Phi(z1) Phi(z2), to 1e-3.

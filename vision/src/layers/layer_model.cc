@@ -162,8 +162,8 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   constexpr double kLeastStep = 2.0;  // of the noise
   const auto most_slope =
       static_cast<float>(0.5 * kLeastStep * layers.noise_dn);
-  const StillEdges edges(still, stack.width, layers.blur,
-                         kLeastStep * layers.noise_dn);
+  StillEdges edges(still, stack.width, layers.blur,
+                   kLeastStep * layers.noise_dn);
   const auto per_reach = static_cast<float>(1.0 / reach);
   const auto slope_x = static_cast<float>(layers.slope_x) * per_reach;
   const auto slope_y = static_cast<float>(layers.slope_y) * per_reach;
@@ -186,7 +186,7 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
       const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);
       const float step_y =
           0.5F * (still[pixel + stack.width] - still[pixel - stack.width]);
-      const StillEdge edge = edges.At(pixel);
+      const StillEdge edge = edges.FindEdge(pixel);
       float covered = 0.0F;
       float lifted = 0.0F;  // by what covers it: sum of w M (T + S - B)
       float model = behind;
