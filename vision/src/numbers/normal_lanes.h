@@ -9,6 +9,7 @@
 
 namespace touchdown::vision {
 
+// 1 / sqrt(2 pi): the normal density at 0.
 inline constexpr double kInverseSqrt2Pi = 0.3989422804014327;
 
 // exp(-y), 0 <= y <= 700, to 1e-9 of itself: 2^-n exp(-r), |r| <= ln(2)/2. The
