@@ -11,6 +11,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Cost of what is impossible.
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Frames. A parabola has three numbers a coordinate, so that four frames are
 // the fewest that can contradict it. Fewer frames fit any motion.

@@ -533,6 +533,7 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   const std::int64_t part = EndPart(options.first, last);
   for (int attempt = 0; attempt < 4 && best.choice.badness > kMaxGoodCost;
        ++attempt) {
+    // The detector of each attempt; the comment above names their backgrounds.
     constexpr Detector kDetectors[] = {Detector::kDifference,
                                        Detector::kDifference, Detector::kLevels,
                                        Detector::kChange};

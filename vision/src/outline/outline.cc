@@ -74,9 +74,10 @@ class Fitter {
   // blurred edge. That edge has ended, to 2e-4, after 3.5 blurs; half of the 3
   // x 3 pixels that are averaged there comes on top.
   double Zone_px() const {
-    constexpr double kBlurs = 3.5;
+    // In units of blur_px, and px; see above.
+    constexpr double kZoneBlurs = 3.5;
     constexpr double kHalf_px = 1.5;
-    return kBlurs * options_.blur_px + kHalf_px;
+    return kZoneBlurs * options_.blur_px + kHalf_px;
   }
   void CollectPixels();
   std::string Gather();

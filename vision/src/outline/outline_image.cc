@@ -164,11 +164,13 @@ struct QuarterCircle {
 // Nodes and weights on 0..1 (Abramowitz and Stegun, table 25.4), computed once.
 const QuarterCircle& Nodes() {
   static const QuarterCircle nodes = [] {
+    // Nodes and weights on 0..1.
     constexpr std::array<double, 10> kNode = {
         0.0130467357414141, 0.0674683166555077, 0.1602952158504878,
         0.2833023029353764, 0.4255628305091844, 0.5744371694908156,
         0.7166976970646236, 0.8397047841495122, 0.9325316833444923,
         0.9869532642585859};
+    // They add up to 1.
     constexpr std::array<double, 10> kWeight = {
         0.0333356721543441, 0.0747256745752903, 0.1095431812579910,
         0.1346333596549982, 0.1477621123573764, 0.1477621123573764,

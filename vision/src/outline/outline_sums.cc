@@ -79,6 +79,7 @@ struct OutlineBlock {
 
   using Lanes = OutlineSums::Lanes;
   using Totals = OutlineSums::Totals;
+  // Of outline_sums.h.
   static constexpr std::size_t kLanes = OutlineSums::kLanes;
   static constexpr std::size_t kPadded = OutlineSums::kPadded;
 

@@ -14,6 +14,7 @@
 namespace touchdown::vision {
 namespace {
 
+// A place that no frame shows.
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 // Frames in the stack. Fewer give no medians of both layers; more cost time and
 // memory, and the medians gain only by their square root. Not studied.

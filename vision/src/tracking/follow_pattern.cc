@@ -180,8 +180,10 @@ class Follower {
   std::vector<std::optional<PatternPose>> At(const std::vector<Pose>& starts,
                                              double within_px) const;
   bool IsGood(const Pose& pose) const {
-    constexpr double kUsual = 3.0;
-    return pose.misfit <= kUsual * learnt_.misfit;
+    // In units of the misfit that the template was learnt with: a worse frame
+    // shows something else. Not studied.
+    constexpr double kMaxMisfitRatio = 3.0;
+    return pose.misfit <= kMaxMisfitRatio * learnt_.misfit;
   }
 
   Clip& clip_;
