@@ -21,6 +21,9 @@ template <class Sample>
 void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
                    std::size_t n, std::int32_t width, std::int64_t begin,
                    std::int64_t end, float* level, NoisePairs& pairs) {
+  // Interquartile mean of each pixel over the samples: the middle half, after
+  // sorting. A body that covers a pixel in less than a quarter of the samples
+  // does not change it.
   const std::size_t cut = MidBegin(n);
   std::vector<Sample> lanes(n * kLanes);
   std::array<std::uint32_t, kLanes> sums{};
@@ -69,8 +72,9 @@ void ComputeMidMean(const FrameSamples& samples, int threads,
                    });
 }
 
-// Evenly over the range, both ends included; rounded towards the nearer
-// one, so that a clip has the same ones when it is played backwards.
+// The k-th of n frames, evenly over the range with both ends included; rounded
+// towards the nearer end, so that a clip has the same ones when it is played
+// backwards.
 std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
                          std::int64_t n) {
   if (n == 1) return first;
@@ -82,7 +86,9 @@ std::int64_t SampleIndex(std::int64_t first, std::int64_t last, std::int64_t k,
 }  // namespace
 
 double Background::UsualVariance() const {
-  constexpr std::int32_t kPlaces = 8;  // across and down
+  // Places across and down, whose mean level stands for the picture's. Not
+  // studied.
+  constexpr std::int32_t kPlaces = 8;
   // Evenly from both sides to the middle: the same ones in a mirror.
   const auto place = [](std::int32_t i, std::int32_t size_px) {
     const std::int32_t from_side = std::min(i, kPlaces - 1 - i);
@@ -113,6 +119,8 @@ std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
                                            std::int64_t last,
                                            const BackgroundOptions& options) {
   const std::vector<std::int64_t>& among = options.among;
+  // Frames that are kept whole are read for nothing: samples are taken from
+  // those.
   const auto begin = std::lower_bound(among.begin(), among.end(), first);
   const auto end = std::lower_bound(begin, among.end(), last);
   if (begin == end) return BackgroundFrames(first, last, options.samples);

@@ -17,7 +17,7 @@
 namespace touchdown::vision {
 namespace {
 
-// Where the body was in the samples.
+// How often each pixel of row y was covered in the samples.
 const std::uint16_t* RowCounts(const Covers& covers, std::int32_t y) {
   return covers.counts.data() +
          static_cast<std::ptrdiff_t>(y - covers.box.y) * covers.box.width;
@@ -38,6 +38,7 @@ void ForEachCovered(const Cover& cover, std::int32_t x, std::int32_t y,
   }
 }
 
+// Adds one sample's mask to the counts.
 void Count(const Cover& cover, Covers& covers) {
   const core::PixelRect& own = cover.box;
   for (std::int32_t y = 0; y < own.height; ++y) {
@@ -61,8 +62,9 @@ template <class Sample>
 void MaskedMidMean(const FrameSamples& samples, const Covers& covers,
                    std::int64_t top, std::int64_t bottom,
                    Background& background) {
-  // Fewer samples than this are no background: noise, or the body's rim.
-  constexpr std::size_t kLeastSamples = 3;
+  // Samples. Fewer are no background: noise, or the body's rim. Larger leaves
+  // more pixels unknown. Not studied.
+  constexpr std::size_t kMinSamples = 3;
   const std::size_t n = samples.size();
   const SortingNetwork network(n, SortingNetwork::Order::kFull);
   FrameSamples::Reader reader(samples);
@@ -109,6 +111,8 @@ void MaskedMidMean(const FrameSamples& samples, const Covers& covers,
         Sample* const samples_k = &lanes[k * kLanes];
         LoadLanes((*windows)[k], x - covers.box.x, y - windows_top, samples_k);
         ForEachCovered(covers.of[k], x, y, count, [&](std::size_t i) {
+          // Alternately below and above all levels: the middle of the order
+          // stays that of the uncovered samples.
           const bool down = low[i] == high[i];
           samples_k[i] = down ? Sample{0} : std::numeric_limits<Sample>::max();
           ++(down ? low : high)[i];
@@ -118,7 +122,7 @@ void MaskedMidMean(const FrameSamples& samples, const Covers& covers,
       for (std::size_t i = 0; i < count; ++i) {
         if (touched[i] == 0) continue;
         const std::size_t uncovered = n - low[i] - high[i];
-        if (uncovered < kLeastSamples) {
+        if (uncovered < kMinSamples) {
           background.unknown[at + i] = 1;
           continue;
         }
@@ -134,7 +138,7 @@ void MaskedMidMean(const FrameSamples& samples, const Covers& covers,
   }
 }
 
-// The noise of the samples themselves.
+// Estimates the noise from the samples themselves.
 void EstimateSampleNoise(const FrameSamples& samples, int threads,
                          Background& background) {
   NoisePairs pairs(background.width_px, background.height_px, samples);
@@ -210,14 +214,15 @@ Background EstimateMaskedBackground(Clip& clip, const Covers& covers,
                    [](std::uint8_t u) { return u != 0; })) {
     background.unknown.clear();
   }
-  // What is known of the noise is known from all of the picture: levels that
-  // change in a small part of it say nothing new.
-  constexpr double kSmallPart = 0.05;
+  // Share of the picture that the body covered. What is known of the noise
+  // comes from all of the picture: levels that change in a smaller part say
+  // nothing new, and the estimate, which takes time, stays. Not studied.
+  constexpr double kMaxUnchangedShare = 0.05;
   const auto untouched =
       std::count(covers.counts.begin(), covers.counts.end(), std::uint16_t{0});
   if (static_cast<double>(covers.counts.size()) -
           static_cast<double>(untouched) >
-      kSmallPart * static_cast<double>(pixels)) {
+      kMaxUnchangedShare * static_cast<double>(pixels)) {
     EstimateSampleNoise(samples, options.threads, background);
   }
   return background;

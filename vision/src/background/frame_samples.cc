@@ -4,6 +4,8 @@ namespace touchdown::vision {
 
 FrameSamples::FrameSamples(Clip& clip, std::span<const std::int64_t> frames)
     : clip_(clip), indices_(frames.begin(), frames.end()) {
+  // Frames whose windows are cheap are not read here; others are read whole,
+  // and copied where the clip's own view does not last.
   for (const std::int64_t index : indices_) {
     if (!clip.views_last() && clip.windows_are_cheap()) continue;
     core::Frame frame = clip.Read(index);
@@ -15,6 +17,7 @@ FrameSamples::FrameSamples(Clip& clip, std::span<const std::int64_t> frames)
   }
 }
 
+// More threads help only where each can read for itself.
 int FrameSamples::Threads(int wanted) const {
   return !whole_.empty() || clip_.Another() != nullptr ? wanted : 1;
 }
@@ -31,6 +34,7 @@ void FrameSamples::Reader::WillRead(const core::PixelRect& window) {
   }
 }
 
+// The same window of all samples, valid until the next call.
 const std::vector<core::Frame>& FrameSamples::Reader::Read(
     const core::PixelRect& window) {
   samples_.clip_.cancellation().Check();

@@ -21,13 +21,15 @@ NoisePairs::NoisePairs(std::int32_t width_px, std::int32_t height_px,
   for (std::size_t k = per_point_; k-- > 0;) {
     taken_.push_back(end - 1 - k * apart_);
   }
-  // Of a sensor's noise 160 000 pairs tell each bin to 1 %, on any rows. That
-  // of compressed pictures differs from place to place in their blocks.
+  // Pairs of samples of one pixel. Of a sensor's noise 160 000 tell each bin to
+  // 1 %, on any rows. Noise of compressed pictures differs from place to place
+  // in their blocks: four times as many, on all rows.
   const bool alike = samples.are_raw();
   row_step_ = alike ? 4 : 1;
   const double wanted = alike ? 160'000 : 640'000;
   const double there = static_cast<double>(width_px) * height_px / row_step_ *
                        static_cast<double>(per_point_);
+  // An odd step: even ones would meet the same column of each block.
   const int step = std::max(1, static_cast<int>(there / wanted)) | 1;
   for (const std::size_t x : FromBothSides(static_cast<std::size_t>(width_px),
                                            static_cast<std::size_t>(step))) {
@@ -69,12 +71,16 @@ class DifferenceCounts {
 
 }  // namespace
 
-// Least squares of variance on level over bins of pixels of like level. In each
-// bin the variance is robust: (1.4826 * median |difference|)^2 / 2 of
-// neighbouring samples' differences, with a correction for whole numbers.
+// Variance = floor + slope * level, by least squares over bins of pixels of
+// like level. In each bin the variance is that of differences of neighbouring
+// samples, halved; the fifth of them that is largest is left out, since the
+// body makes it.
 void EstimateNoise(const NoisePairs& pairs, Background& background) {
+  // Bins of level between the darkest and the brightest pixel. Not studied.
   constexpr std::size_t kBins = 24;
-  constexpr std::size_t kMinimumPerBin = 200;
+  // Differences in a bin, whose variance is then known to 10 %: a bin with
+  // fewer is left out. Not studied.
+  constexpr std::size_t kMinPerBin = 200;
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
   pairs.ForEachPoint([&](std::int32_t x, std::int32_t y, const auto&) {
@@ -86,11 +92,14 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
   std::array<DifferenceCounts, kBins> bins;
   pairs.ForEachPoint([&](std::int32_t x, std::int32_t y,
                          const auto& for_each_pair) {
-    // A clipped sample has no noise to tell of; nor has a place that is clipped
-    // without the body: the samples that are left there are the body's.
-    constexpr double kOff_dn = 1.0;
+    // DN from either end of the scale. A clipped sample has no noise to tell
+    // of; nor has a place that is clipped without the body: the samples that
+    // are left there are the body's.
+    constexpr double kClipMargin_dn = 1.0;
     const auto level = static_cast<double>(background.at(x, y));
-    if (level > background.full_scale_dn - kOff_dn || level < kOff_dn) return;
+    if (level > background.full_scale_dn - kClipMargin_dn ||
+        level < kClipMargin_dn)
+      return;
     const auto bin =
         std::min(kBins - 1,
                  static_cast<std::size_t>((level - static_cast<double>(low)) /
@@ -104,10 +113,11 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const DifferenceCounts& differences = bins[bin];
-    if (differences.total() < kMinimumPerBin) continue;
-    // The middle 80 % of the differences, whose mean square is a fixed share
-    // (0.4377) of a normal variance: robust to the body passing, and fair to
-    // noise of less than one DN, where a median would read 0 or 1.
+    if (differences.total() < kMinPerBin) continue;
+    // The middle 80 % of the differences have a mean square of this share of a
+    // normal variance: int x^2 phi over |x| < 1.2816, divided by 0.8. Robust to
+    // the body passing, and fair to noise below one DN, where a median would
+    // read 0 or 1.
     constexpr double kShareOfVariance = 0.43772;
     const std::size_t keep = differences.total() * 8 / 10;
     const double sum = differences.SumOfSquares(keep);
@@ -124,6 +134,8 @@ void EstimateNoise(const NoisePairs& pairs, Background& background) {
   if (sw <= 0.0) return;
   const double determinant = sw * sxx - sx * sx;
   double slope = 0.0;
+  // All pixels of one level tell no slope; and noise does not fall with the
+  // level.
   if (determinant > 1e-9 * sw * sxx) {
     slope = std::max(0.0, (sw * sxy - sx * sy) / determinant);
   }

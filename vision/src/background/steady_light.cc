@@ -20,7 +20,8 @@
 namespace touchdown::vision {
 namespace {
 
-// A grid of points and what they are under steady light.
+// A grid of points, with their levels under steady light, from which a frame's
+// gain is measured.
 class Grid {
  public:
   Grid(const ClipInfo& info, int points) {
@@ -31,6 +32,7 @@ class Grid {
     full_ = (1 << info.bit_depth) - 1;
   }
 
+  // Levels of a frame at the points of the grid.
   std::vector<float> Look(const core::Frame& frame) const {
     std::vector<float> levels;
     for (std::int32_t y = step_ / 2; y < height_; y += step_) {
@@ -56,29 +58,31 @@ class Grid {
   // Whether enough of the picture is below full scale to tell the light. Behind
   // a backlit body all is saturated: what is left is the body, and it moves.
   bool Tells() const {
-    constexpr double kLeast = 0.25;  // share of the points
+    // Share of the points. Not studied.
+    constexpr double kMinUsable = 0.25;
     const auto usable =
         std::count_if(steady_.begin(), steady_.end(),
                       [this](float r) { return IsUsable(0.0F, r); });
     return static_cast<double>(usable) >=
-           kLeast * static_cast<double>(steady_.size());
+           kMinUsable * static_cast<double>(steady_.size());
   }
 
-  // Where most of the light is, by one point in four: with 2.5 times the noise
-  // of EstimateGain, which is far below what is taken out.
+  // The gain where most of the light is.
   double EstimateMedianGain(const std::vector<float>& levels) const {
+    // One point in four: the noise is 2.5 times that of EstimateGain, and far
+    // below what is taken out.
     constexpr std::size_t kStep = 4;
     return MedianGain(Usable(levels, kStep));
   }
 
-  // Least squares of v = g r without points off by more than 4 sigma. It begins
-  // where most of the light is: least squares of all points are drawn to a body
-  // that hides a tenth of the picture, and leave it in.
+  // Least squares of v = g r, without points that are off by more than 4 sigma.
+  // It begins at the median gain: least squares of all points are drawn to a
+  // body that hides a tenth of the picture, and would leave it in.
   double EstimateGain(const std::vector<float>& levels) const {
     const Points points = Usable(levels);
     double gain = MedianGain(points);
     double most_off = MostOff(points, gain);
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       const double gain_before = gain;
       const double most_before = most_off;
       double over = 0.0;
@@ -116,8 +120,8 @@ class Grid {
     return points;
   }
 
-  // That of the least sum of |v - g r|: the median of v / r, each point counted
-  // r times. Right as long as a body hides less than half of the light.
+  // The gain of the least sum of |v - g r|: the median of v / r, each point
+  // counted r times. Right as long as a body hides less than half of the light.
   static double MedianGain(const Points& points) {
     Gains gains(points.size());
     double all = 0.0;
@@ -128,7 +132,8 @@ class Grid {
     }
     if (gains.empty()) return 1.0;
     double below = KeepNearMiddle(gains, all);
-    // Half by half: only the part that holds it is put in order.
+    // Weighted median by bisection: only the half that holds it is put in
+    // order.
     auto first = gains.begin();
     auto last = gains.end();
     while (last - first > 1) {
@@ -146,9 +151,9 @@ class Grid {
     return first->first;
   }
 
-  // Leaves of many those among which half of `all` is reached; returns what
-  // those left out below count. Levels are whole numbers: their sums are exact
-  // in any order.
+  // Keeps, of many numbers, those among which half of `all` is reached; returns
+  // the weight of those left out below. Levels are whole numbers, so that their
+  // sums are exact in any order.
   static double KeepNearMiddle(Gains& gains, double all) {
     if (gains.size() < kManyNumbers) return 0.0;
     const auto [low, high] = BracketOfMedian(
@@ -170,14 +175,15 @@ class Grid {
     return below;
   }
 
-  // How far a point may be off.
+  // How far a point may be off before it counts as the body's.
   static double MostOff(const Points& points, double gain) {
     std::vector<double> off(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       off[i] = std::abs(points[i].level - gain * points[i].steady);
     }
     if (off.empty()) return 0.0;
-    // Half a level: what rounding alone leaves.
+    // Robust standard deviations, of at least half a level, which rounding
+    // alone leaves. Not studied.
     constexpr double kSigmas = 4.0;
     return kSigmas * std::max(0.5, kSigmaPerMedian * Median(std::move(off)));
   }
@@ -193,7 +199,8 @@ class Grid {
            steady < static_cast<float>(full_);
   }
 
-  static constexpr int kRounds = 5;
+  // Rounds of rejection; most frames settle sooner. Not studied.
+  static constexpr int kMaxRounds = 5;
   std::int32_t step_ = 1;
   std::int32_t width_ = 0;
   std::int32_t height_ = 0;
@@ -201,6 +208,8 @@ class Grid {
   std::vector<float> steady_;
 };
 
+// A clip whose frames are divided by their gain, in 16 bits: rounding to the
+// clip's own bits would add noise.
 class CorrectedClip final : public Clip {
  public:
   CorrectedClip(std::unique_ptr<Clip> clip, Grid grid, double least_gain)
@@ -250,6 +259,7 @@ class CorrectedClip final : public Clip {
     return gain;
   }
 
+  // Bits and full scale of the corrected samples.
   static constexpr int kBits = 16;
   static constexpr double kFull = 65535.0;
   std::unique_ptr<Clip> clip_;
@@ -261,7 +271,7 @@ class CorrectedClip final : public Clip {
   std::vector<std::uint16_t> samples_;
 };
 
-// Of these frames, up to the first that cannot be read.
+// Looks at these frames, up to the first that cannot be read.
 std::vector<std::vector<float>> SampleGrid(
     Clip& clip, const Grid& grid, std::span<const std::int64_t> indices,
     int threads) {
@@ -289,7 +299,8 @@ std::vector<std::vector<float>> SampleGrid(
   return looks;
 }
 
-// Point by point. Levels are whole numbers of 16 bits.
+// Median over the frames, point by point. Levels are whole numbers of at most
+// 16 bits, which a sorting network puts in order.
 std::vector<float> PointwiseMedians(
     const std::vector<std::vector<float>>& looks) {
   const SortingNetwork network(looks.size(), SortingNetwork::Order::kFull);
@@ -310,7 +321,6 @@ std::vector<float> PointwiseMedians(
   return medians;
 }
 
-// Standard deviation.
 double StandardDeviation(const std::vector<double>& gains) {
   double mean = 0.0;
   for (const double g : gains) mean += g / static_cast<double>(gains.size());
@@ -333,9 +343,10 @@ SteadyLight Deflicker(std::unique_ptr<Clip> clip, std::int64_t first,
   const auto frames = static_cast<std::int64_t>(
       std::clamp<double>(std::ceil(options.look_s * info.time_base.fps),
                          options.least_frames, options.most_frames));
-  // So many looks give the spread to an eighth.
-  constexpr std::int64_t kLooks = 34;
-  const std::int64_t step = std::max<std::int64_t>(1, frames / kLooks);
+  // Frames looked at: they give the spread to an eighth, 1/sqrt(2 n). More cost
+  // time.
+  constexpr std::int64_t kGridLooks = 34;
+  const std::int64_t step = std::max<std::int64_t>(1, frames / kGridLooks);
   const std::int64_t end = std::min<std::int64_t>(last, first + frames);
   std::vector<std::int64_t> indices;
   for (std::int64_t index = first; index < end; index += step) {
@@ -362,18 +373,24 @@ SteadyLight Deflicker(std::unique_ptr<Clip> clip, std::int64_t first,
                      });
     light.spread = StandardDeviation(gains);
   };
-  // Mostly the light is steady, and far from any doubt.
-  constexpr double kSure = 0.5;
+  // Share of the limit. In most clips the light is steady, and the cheap median
+  // gain is far from any doubt: only above this share the better gain is
+  // computed. Not studied.
+  constexpr double kDoubtShare = 0.5;
   measure(&Grid::EstimateMedianGain);
-  if (light.spread > kSure * options.least_spread) measure(&Grid::EstimateGain);
+  if (light.spread > kDoubtShare * options.least_spread)
+    measure(&Grid::EstimateGain);
   light.corrected = light.spread > options.least_spread;
   if (!light.corrected) {
     light.clip = std::move(clip);
     return light;
   }
-  // Room for frames that are brighter or darker than those that were sampled.
-  constexpr double kRoom = 0.9;
-  const double least = kRoom * *std::min_element(gains.begin(), gains.end());
+  // Share of the least gain: room for frames that are darker than those that
+  // were sampled. Smaller costs resolution; larger clips such frames. Not
+  // studied.
+  constexpr double kGainRoom = 0.9;
+  const double least =
+      kGainRoom * *std::min_element(gains.begin(), gains.end());
   light.clip = std::make_unique<CorrectedClip>(std::move(clip), std::move(grid),
                                                std::clamp(least, 0.05, 1.0));
   return light;

@@ -16,6 +16,8 @@
 namespace touchdown::vision {
 namespace {
 
+// Of the ground line's height at a sample: its own, and its direction's times
+// the distance from the line's reference point.
 double UncertaintyOfLine(const PlaneTrack& track, const PlaneSample& s) {
   return std::hypot(track.ground.u_offset_px,
                     track.ground.u_angle_rad * s.along_px);
@@ -28,6 +30,8 @@ const PlaneSample& FindLowest(const PlaneTrack& track) {
                            });
 }
 
+// Gravity in px/s^2 along the ground's normal; it is known only where a scale
+// is.
 FlightOptions MakeFlightOptions(const ContactOptions& options) {
   FlightOptions flight;
   if (options.scale) {
@@ -35,6 +39,8 @@ FlightOptions MakeFlightOptions(const ContactOptions& options) {
     const core::Estimate& g = options.gravity_mps2;
     core::Estimate px;
     px.value = g.value * scale.value;
+    // Relative 1e-9: a scale and a gravity without u still need a finite
+    // weight.
     px.u = std::max(std::hypot(g.u * scale.value, g.value * scale.u),
                     1e-9 * px.value);
     flight.gravity_px_per_s2 = px;
@@ -49,6 +55,8 @@ SegmentationOptions MakeSegmentationOptions(const PlaneTrack& track,
   if (flight.gravity_px_per_s2) {
     out.gravity_px_per_s2 = flight.gravity_px_per_s2->value;
   }
+  // The sample after the stated frame; a frame before the first sample or after
+  // the last one states nothing that could be used.
   if (options.contact_frame) {
     const auto next = std::find_if(
         track.samples.begin(), track.samples.end(),
@@ -60,13 +68,16 @@ SegmentationOptions MakeSegmentationOptions(const PlaneTrack& track,
   return out;
 }
 
-// What all poses have in common no scatter shows. Of their excess noise it is
-// this part, in place and attitude and in the body's size (as in
-// kExcessVariance: 117 compressed clips).
+// What all poses have in common no scatter shows. It is this share of their
+// excess noise, in place and attitude. Larger: u too wide in compressed clips;
+// smaller: intervals that cover in less than 95 %. Measured on 117 compressed
+// clips of known truth (as kExcessVariance).
 constexpr double kCommonPlace = 0.45;
+// The same share for the body's size, from the same clips.
 constexpr double kCommonSize = 0.3;
-// No lens blurs as the model has it: sizes in clean clips of another renderer
-// were off by 0.001 to 0.003 px.
+// px: no lens blurs as the model has it. Sizes in clean clips of another
+// renderer were off by 0.001 to 0.003 px. It keeps the u of a size from
+// vanishing in long clean clips.
 constexpr double kOutline_px = 0.0015;
 
 // A flight that ends as something stops it or throws it back, and what follows.
@@ -86,6 +97,8 @@ std::vector<Touch> FindTouches(const PlaneTrack& track,
       continue;
     }
     Touch touch;
+    // Stretches in contact belong to the impact; what follows them tells
+    // whether the body rebounds or stays down.
     touch.event.before_frames = stretches[k];
     std::size_t next = k + 1;
     while (next + 1 < stretches.size() &&
@@ -111,30 +124,40 @@ std::vector<Touch> FindTouches(const PlaneTrack& track,
   return touches;
 }
 
-// How far from the line what touches the ground may lie: what yields, and a
-// line that is not quite that of contact, by a share of half the body's size.
+// How far from the line a body that touches the ground may lie: what yields,
+// and a line that is not quite that of contact, by a share of half the body's
+// size.
 double NearLine(const PlaneTrack& track, const PlaneSample& s, double share) {
-  constexpr double kNear_px = 2.0;
-  return std::max({kNear_px, 4.0 * UncertaintyOfLine(track, s),
+  // px. Bodies of a few px are outlined no better; larger lets a wrong line
+  // pass for the ground, smaller refutes a right one. Not studied.
+  constexpr double kMinNear_px = 2.0;
+  // Four standard deviations of the line's own height always pass.
+  return std::max({kMinNear_px, 4.0 * UncertaintyOfLine(track, s),
                    share * track.half_short_px});
 }
-constexpr double kAtContact = 0.05;
-constexpr double kSunk = 0.1;      // no body sinks into the ground by more
-constexpr double kSeenEdge = 0.3;  // it may be off the contact
+
+// Shares of half the short side, for NearLine. Larger: a wrong line is taken
+// for the ground; smaller: a right one is refuted. Not studied. At an impact
+// the flight ends so near to the line.
+constexpr double kImpactShare = 0.05;
+// No body sinks deeper into the ground.
+constexpr double kSinkShare = 0.1;
+// An edge of the ground that is seen may be so far off the line of contact.
+constexpr double kEdgeShare = 0.3;
 
 // Why the line is not the ground: the body passes through it, or is thrown back
 // well above or below it. Empty where line and track agree.
 std::string RefuteGround(const PlaneTrack& track,
                          const std::vector<Touch>& touches) {
   const PlaneSample& lowest = FindLowest(track);
-  if (-lowest.gap_px > NearLine(track, lowest, kSunk)) {
+  if (-lowest.gap_px > NearLine(track, lowest, kSinkShare)) {
     return fmt::format(
         "the body passes {:.1f} px below the ground line at frame {}",
         -lowest.gap_px, lowest.frame);
   }
   for (const Touch& touch : touches) {
     const PlaneSample& s = track.samples[touch.event.before_frames.end - 1];
-    if (std::abs(touch.gap_px) > NearLine(track, s, kAtContact)) {
+    if (std::abs(touch.gap_px) > NearLine(track, s, kImpactShare)) {
       return fmt::format(
           "the body rebounds {:.1f} px {} the ground line at frame {}",
           std::abs(touch.gap_px), touch.gap_px > 0 ? "above" : "below",
@@ -167,8 +190,9 @@ ContactEvidence MakeContactEvidence(const PlaneTrack& track,
   return e;
 }
 
-// The clip ends with the body in the air, and it meets the ground within a
-// frame and a half of the last: the flight is known well enough to say so.
+// Measures a touchdown that the clip just misses: it ends with the body in the
+// air, and the last flight is known well enough to say when it meets the
+// ground, at most a frame and a half after the last.
 std::optional<Event> MeasureAtEnd(const PlaneTrack& track,
                                   const std::vector<Stretch>& stretches,
                                   const FlightOptions& options,
@@ -195,13 +219,17 @@ std::optional<Event> MeasureAtEnd(const PlaneTrack& track,
   const double dt = track.frame_interval_s;
   const double late = event.time_s.value - samples.back().time_s;
   const FlightGap g = GapOfFlight(track, *event.before, event.time_s.value);
-  constexpr double kOnLine = 4.0;  // sigmas
+  // Standard deviations (and at least 1 px): the fit must end on the line. Not
+  // studied.
+  constexpr double kOnLineSigmas = 4.0;
   if (g.rate >= 0.0 ||
-      std::abs(g.gap_px) > std::max(1.0, kOnLine * event.ground_px.u)) {
+      std::abs(g.gap_px) > std::max(1.0, kOnLineSigmas * event.ground_px.u)) {
     return std::nullopt;
   }
-  constexpr double kFramesBeyond = 1.5;
-  if (late > kFramesBeyond * dt) {
+  // Frames after the last. A forecast's u grows as it reaches farther, and
+  // anything may happen that was not filmed. Not studied.
+  constexpr double kMaxFramesBeyond = 1.5;
+  if (late > kMaxFramesBeyond * dt) {
     reason += fmt::format(
         "; the path would meet the ground {:.1f} frames after the last",
         late / dt);
@@ -222,19 +250,22 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
                     "calibration bends a line; its gap is taken from the path",
                     std::abs(trend.bend_px)));
   }
-  constexpr double kNotable = 3.0;  // of the line's own uncertainty
-  if (std::abs(trend.slope_rad) > kNotable * track.ground.u_angle_rad) {
+  // Standard deviations of the line's direction; for a warning only. Chosen by
+  // the normal distribution.
+  constexpr double kNotableSigmas = 3.0;
+  if (std::abs(trend.slope_rad) > kNotableSigmas * track.ground.u_angle_rad) {
     warnings.push_back(
         fmt::format("the body's path is inclined by {:.2f} deg to the ground "
                     "line; its gap is taken from the path",
                     trend.slope_rad / core::kDegree));
   }
-  // Whatever is down from the start does not sink into what carries it.
+  // A body that is down from the start does not sink into what carries it: its
+  // lowest place lies near the median of its heights.
   std::vector<double> gaps;
   for (const PlaneSample& s : track.samples) gaps.push_back(s.gap_px);
   const double level = Median(gaps);
   const double sunk = level - *std::min_element(gaps.begin(), gaps.end());
-  if (sunk > NearLine(track, track.samples.front(), kSeenEdge)) {
+  if (sunk > NearLine(track, track.samples.front(), kEdgeShare)) {
     return NoContact(
         fmt::format("its path is neither a flight nor along the ground line: "
                     "it sinks {:.1f} px below where it is half of the time",
@@ -243,8 +274,9 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
   return RecordFromStart(context, down, trend.slope_rad);
 }
 
-// The first flight that is seen rises from the ground: it touched down before,
-// in frames that are too few to tell of a flight, or in none.
+// Whether the first flight that is seen rises from the ground. Then the body
+// touched down before, in frames that are too few to tell of a flight or in
+// none, and this touchdown must not be taken from a later contact.
 bool BeginsAtImpact(const PlaneTrack& track,
                     const std::vector<Stretch>& stretches,
                     const FlightOptions& options) {
@@ -258,15 +290,21 @@ bool BeginsAtImpact(const PlaneTrack& track,
   const PlaneSample& s = track.samples[first.begin];
   const FlightGap before =
       GapOfFlight(track, flight, s.time_s - track.frame_interval_s);
+  // px: common error of the outlines beside the ground's edge, up to 0.07 px in
+  // clips of known truth.
   constexpr double kEdgeBias_px = 0.05;
-  constexpr double kSigmas = 3.0;
+  // Standard deviations by which the flight may start above the line. Chosen by
+  // the normal distribution.
+  constexpr double kAboveLineSigmas = 3.0;
   return before.rate > 0.0 &&
-         before.gap_px < kSigmas * std::hypot(before.u_px,
-                                              UncertaintyOfLine(track, s),
-                                              kEdgeBias_px);
+         before.gap_px <
+             kAboveLineSigmas * std::hypot(before.u_px,
+                                           UncertaintyOfLine(track, s),
+                                           kEdgeBias_px);
 }
 
-// The stretch in which the body is down, where it is so from the start.
+// The stretch in which the body is down, where it is so from the start (after
+// any frames whose motion is not explained); else null.
 const Stretch* DownFromStart(const std::vector<Stretch>& stretches) {
   std::size_t first = 0;
   while (first + 1 < stretches.size() &&
@@ -277,13 +315,13 @@ const Stretch* DownFromStart(const std::vector<Stretch>& stretches) {
                                                           : nullptr;
 }
 
-// How far a supported stretch lies above the line, where that is so far that
-// something else carries the body; else 0.
+// Mean height of a supported stretch above the line, where that is so far that
+// something else than the ground carries the body (a rail, a hand); else 0.
 double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
   double sum = 0.0;
   for (const PlaneSample& s : SelectSamples(track, stretch)) sum += s.gap_px;
   const double gap = sum / static_cast<double>(stretch.size());
-  const double near = NearLine(track, track.samples[stretch.begin], kSeenEdge);
+  const double near = NearLine(track, track.samples[stretch.begin], kEdgeShare);
   return std::abs(gap) > near ? gap : 0.0;
 }
 
@@ -292,14 +330,18 @@ double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
 ContactResult FindContacts(const PlaneTrack& given,
                            const ContactOptions& options) {
   ContactResult result;
-  constexpr std::size_t kLeastSamples = 5;
-  if (given.samples.size() < kLeastSamples) {
+  // Frames: two for the flight, two for what follows, one to contradict them.
+  constexpr std::size_t kMinSamples = 5;
+  if (given.samples.size() < kMinSamples) {
     result.first = NoContact(
         fmt::format("the body is seen in {} frames only, {} are needed",
-                    given.samples.size(), kLeastSamples));
+                    given.samples.size(), kMinSamples));
     return result;
   }
   PlaneTrack track = given;
+  // First the poses' u as their scatter asks for, then what all poses share,
+  // then the correlation of the flights' residuals, which needs the flights. If
+  // that widens the poses, the path is cut once more under the new weights.
   const ExcessNoise excess = WidenToScatter(track);
   const double u_common_px =
       std::hypot(kCommonPlace * excess.height_px, track.u_common_px);
@@ -331,6 +373,8 @@ ContactResult FindContacts(const PlaneTrack& given,
     result.first = MeasureFromStart(context, *down, track, result.warnings);
     return result;
   }
+  // A refuted line is reported, and contacts are measured all the same: the
+  // caller may try another line.
   result.ground_refuted = RefuteGround(track, touches);
   std::optional<core::ContactRecord> first;
   if (BeginsAtImpact(track, stretches, flight)) {
@@ -351,7 +395,7 @@ ContactResult FindContacts(const PlaneTrack& given,
   for (const Touch& touch : touches) {
     const PlaneSample& last = track.samples[touch.event.before_frames.end - 1];
     if (!options.contact_frame &&
-        std::abs(touch.gap_px) > NearLine(track, last, kAtContact)) {
+        std::abs(touch.gap_px) > NearLine(track, last, kImpactShare)) {
       continue;
     }
     Event event = touch.event;
@@ -382,10 +426,11 @@ ContactResult FindContacts(const PlaneTrack& given,
 
 std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
                                                     double u_level_rad) {
+  // Fewer frames do not hold a flight of four frames and what follows it.
   if (track.poses.size() < 6) return std::nullopt;
-  // A level line through the lowest point of all: also a flight that rises by
-  // less than the body's radius comes down to it, and gaps vanish near
-  // contacts.
+  // Start with a level line through the lowest centre of all: a flight that
+  // rises by less than the body's radius comes down to it, too, and gaps vanish
+  // near contacts.
   double lowest = track.poses.front().centre.y_px;
   double left = track.poses.front().centre.x_px;
   double right = left;
@@ -401,12 +446,13 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     return level;
   };
   PlaneTrack plane = SeenFromGround(track, level_at(lowest));
-  // Below it the body does not sink.
+  // The level below which the body never sinks: the deepest outline point.
   const double deepest = lowest - FindLowest(plane).gap_px;
   plane = SeenFromGround(track, level_at(deepest));
   WidenToScatter(plane);
-  constexpr double kUnknown_px = 1e3;  // nothing is known of the line yet
-  plane.ground.u_offset_px = kUnknown_px;
+  // px: nothing is known of the line yet, so that flights may end at any level.
+  constexpr double kUnknownLine_px = 1e3;
+  plane.ground.u_offset_px = kUnknownLine_px;
   // The first contact below which the body does not sink by its own size: what
   // is met later lies elsewhere in perspective, and a body does not pass below
   // its ground.
@@ -417,6 +463,8 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     if (deepest - at.touching.y_px > plane.size_px) continue;
     calib::GroundLine ground = level_at(at.touching.y_px);
     ground.reference = at.touching;
+    // At most 5 px: with a larger u the line would say nothing of later
+    // contacts. Not studied.
     ground.u_offset_px = std::min(touch.event.ground_px.u, 5.0);
     ground.source = calib::GroundSource::kContactPoints;
     return ground;

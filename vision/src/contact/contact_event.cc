@@ -17,13 +17,15 @@ namespace {
 // first, release the last.
 double CrossingTime(const PlaneTrack& track, const Flight& flight,
                     double from_s, double to_s, bool falling) {
+  // Steps over a handful of frames. A block whose gap dips below zero for less
+  // than one step is missed. Not studied.
   constexpr int kSteps = 64;
   const double step = (to_s - from_s) / kSteps;
   const auto gap = [&](double t) {
     const double g = GapOfFlight(track, flight, t).gap_px;
     return falling ? g : -g;
   };
-  // From the end that is in flight.
+  // The search for the nearest instant starts at the end that is in flight.
   double nearest = falling ? from_s : to_s;
   double least = std::abs(gap(nearest));
   double previous = gap(from_s);
@@ -34,6 +36,7 @@ double CrossingTime(const PlaneTrack& track, const Flight& flight,
     if (previous >= 0.0 && here < 0.0) {
       double low = t - step;
       double high = t;
+      // Bisection to the last digit of a double.
       constexpr int kHalvings = 50;
       for (int k = 0; k < kHalvings; ++k) {
         const double middle = 0.5 * (low + high);
@@ -58,11 +61,11 @@ void LeaveOutContact(const PlaneTrack& track, const FlightOptions& options,
   const auto& samples = track.samples;
   SampleRange before = event.before_frames;
   SampleRange after = event.after_frames;
-  while (before.size() > LeastFrames(options) &&
+  while (before.size() > MinFlightFrames(options) &&
          samples[before.end - 1].time_s > touchdown_s) {
     --before.end;
   }
-  while (after.size() > LeastFrames(options) &&
+  while (after.size() > MinFlightFrames(options) &&
          samples[after.begin].time_s < release_s) {
     ++after.begin;
   }
@@ -72,10 +75,12 @@ void LeaveOutContact(const PlaneTrack& track, const FlightOptions& options,
   event.after = FitFlight(SelectSamples(track, after), options);
 }
 
-// A frame within half an interval of touchdown may have been exposed across
-// it: left out where the others suffice.
+// A frame within half an interval of touchdown may have been exposed across it:
+// it shows the body at both velocities and is left out where the others
+// suffice.
 void LeaveOutStraddling(const PlaneTrack& track, const FlightOptions& options,
                         double time_s, Event& event) {
+  // Frames: the longest exposure, that of an open shutter, reaches so far.
   constexpr double kHalfAFrame = 0.5;
   const double reach = kHalfAFrame * track.frame_interval_s;
   const auto near = [&](std::size_t i) {
@@ -83,13 +88,18 @@ void LeaveOutStraddling(const PlaneTrack& track, const FlightOptions& options,
   };
   SampleRange& before = event.before_frames;
   SampleRange& after = event.after_frames;
-  const std::size_t spare = LeastFrames(options) + 1;
+  // One frame more than determines the flight, so that its residuals still
+  // judge it.
+  const std::size_t spare = MinFlightFrames(options) + 1;
   if (before.size() > spare && near(before.end - 1)) --before.end;
   if (after.size() > spare && near(after.begin)) ++after.begin;
 }
 
-// Whether a sample lies more than 4 standard deviations off a flight.
+// Whether a sample lies clearly off a flight in any of its coordinates.
 bool LeavesFlight(const PlaneSample& s, const Flight& flight) {
+  // Standard deviations. Fewer: a frame of the flight after the impact passes
+  // for one before it, and the contact is a frame too late; more: contacts of
+  // few frames are absent. Not studied.
   constexpr double kSigmas = 4.0;
   const FlightState at = flight.At(s.time_s);
   const auto off = [](double difference, double u1, double u2) {
@@ -108,14 +118,16 @@ JointInput MakeJointInput(const PlaneTrack& track, const Event& event,
   if (event.after) input.after = SelectSamples(track, event.after_frames);
   input.u_slope_rad = track.ground.u_angle_rad;
   input.gravity_px_per_s2 = options.gravity_px_per_s2;
+  // px: a line without u still needs a finite weight.
   input.ground_px = {0.0, std::max(track.ground.u_offset_px, 1e-6)};
   return input;
 }
 
-// A contact that lasts needs up to three numbers more, and must earn them
-// (Schwarz's criterion): of a soft body, or of a block that strikes with one
-// corner and then with the other before the next frame. Else it only widens the
-// instant's u.
+// Fits a contact that lasts: of a soft body, or of a block that strikes with
+// one corner and then with the other before the next frame. It needs up to
+// three parameters more than an instant one (T2, X2, FACE2) and replaces it
+// only if it earns them by Schwarz's criterion, chi^2 falling by more than k ln
+// n. If it does not, the duration that it found only widens the instant's u.
 void TryLasting(const PlaneTrack& track, const JointInput& input,
                 double start_s, double end_s, std::optional<JointFit>& instant,
                 Event& event) {
@@ -127,7 +139,8 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   if (!soft) return;
   const core::Estimate lasts = soft->EstimateFunction(
       [](const JointVector& p) { return p[kT2] - p[kT]; });  // frames
-  // No frame of either flight is in contact.
+  // No frame of either flight is in contact: a longer duration contradicts the
+  // flights that it is fitted to.
   if (instant && !input.after.empty() &&
       (lasts.value - lasts.u) * soft->interval_s >
           input.after.front().time_s - input.before.back().time_s) {
@@ -136,10 +149,12 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   const double more = static_cast<double>(
       soft->active.count() - (instant ? instant->active.count() : 0));
   const double n = static_cast<double>(soft->degrees);
-  // Where neither describes the frames to their noise, noise is what is left.
+  // Where neither model describes the frames to their noise, the residuals are
+  // taken for noise: the gain is judged in their unit.
   const double excess = std::max(1.0, soft->chi2 / std::max(1.0, n));
-  constexpr double kClear = 3.0;
-  const bool clear = lasts.value > kClear * lasts.u;
+  // Standard deviations of the duration. Not studied.
+  constexpr double kClearSigmas = 3.0;
+  const bool clear = lasts.value > kClearSigmas * lasts.u;
   if (!instant ||
       (lasts.value > 0.0 && instant->chi2 - soft->chi2 >
                                 excess * more * std::log(std::max(2.0, n)))) {
@@ -149,7 +164,8 @@ void TryLasting(const PlaneTrack& track, const JointInput& input,
   }
 }
 
-// It rebounds: one fit of both flights.
+// Measures a rebound by one fit of both flights. Returns false if what follows
+// cannot be a flight of this contact.
 bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
                     Event& event) {
   const auto& samples = track.samples;
@@ -159,12 +175,13 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   double t2 = 0.0;
   const auto cross = [&] {
     // A soft body deviates from flight for a while by less than its noise.
-    constexpr double kBefore = 3.0;  // frames
+    // The crossing is sought so many frames beyond it. Not studied.
+    constexpr double kSoftFrames = 3.0;
     const double last = samples[event.before_frames.end - 1].time_s;
     const double first = samples[event.after_frames.begin].time_s;
-    t1 = CrossingTime(track, *event.before, last - kBefore * dt, first + dt,
+    t1 = CrossingTime(track, *event.before, last - kSoftFrames * dt, first + dt,
                       true);
-    t2 = CrossingTime(track, *event.after, last - dt, first + kBefore * dt,
+    t2 = CrossingTime(track, *event.after, last - dt, first + kSoftFrames * dt,
                       false);
   };
   cross();
@@ -178,10 +195,12 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   input.touchdown_s = input.release_s = 0.5 * (t1 + t2);
 
   // The flights alone, without the line: do they meet on it?
-  constexpr double kUnknown_px = 1e3;
+  // px: larger than any picture's error of a line, so that it weighs nothing.
+  constexpr double kUnknownLine_px = 1e3;
   JointInput without = input;
   const core::Estimate on_line = input.ground_px;
-  without.ground_px.u = kUnknown_px;
+  without.ground_px.u = kUnknownLine_px;
+  // The gap is zero at touchdown within what line and size are known to.
   const double half_px = std::hypot(track.ground.u_offset_px, track.u_half_px);
   event.disagreement = 0.0;
   if (const auto free = FitJointly(track, without)) {
@@ -192,7 +211,7 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
     // A flight of two frames, with gravity known, is told by nothing but them:
     // the line says that they are not of one flight.
     if (disagree && options.gravity_px_per_s2 &&
-        event.after_frames.size() <= LeastFrames(options)) {
+        event.after_frames.size() <= MinFlightFrames(options)) {
       return false;
     }
     if (disagree && !in_contact) {
@@ -215,24 +234,28 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   return fit.has_value();
 }
 
-// What stays down may have left the ground by less than makes a flight of its
-// own. No frame in contact is above those that follow: frames up to the last
-// that clearly is are left out.
+// A body that stays down may have left the ground by less than makes a flight
+// of its own. A frame in contact does not lie above those that follow it: all
+// frames up to the last that clearly does are left out.
 void LeaveOutHops(const PlaneTrack& track, std::size_t least,
                   SampleRange& down) {
-  constexpr double kClear = 3.0;  // sigmas
+  // Standard deviations. Fewer: noise takes frames away from the level; more: a
+  // small hop raises it. Not studied.
+  constexpr double kAboveRestSigmas = 3.0;
   const std::size_t begin = down.begin;
   for (std::size_t i = begin; i + least < down.end; ++i) {
     const core::Estimate rest =
         MeanRestingGap(SelectSamples(track, {i + 1, down.end}));
     const PlaneSample& s = track.samples[i];
-    if (s.gap_px - rest.value > kClear * std::hypot(s.u_gap_px, rest.u)) {
+    if (s.gap_px - rest.value >
+        kAboveRestSigmas * std::hypot(s.u_gap_px, rest.u)) {
       down.begin = i + 1;
     }
   }
 }
 
-// It stays down: the frames in contact tell the ground's height.
+// Measures the contact of a body that stays down: the frames in contact tell
+// the ground's height.
 bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
                  Event& event) {
   const auto& samples = track.samples;
@@ -241,14 +264,18 @@ bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
   core::Estimate ground{
       0.0,
       std::max(std::hypot(track.ground.u_offset_px, track.u_half_px), 1e-6)};
-  // Near the contact: what is far along it speaks of the line's direction.
-  constexpr std::size_t kNear = 40;  // frames
+  // Frames after touchdown that tell the level. More tell it better, but frames
+  // far along the line speak of its direction. Not studied.
+  constexpr std::size_t kMaxRestFrames = 40;
   SampleRange down = event.down_frames;
-  down.end = std::min(down.end, down.begin + kNear);
-  // A few frames may still belong to a rebound.
-  constexpr std::size_t kEnough = 6;
-  LeaveOutHops(track, kEnough, down);
-  if (down.size() >= kEnough) {
+  down.end = std::min(down.end, down.begin + kMaxRestFrames);
+  // Frames. Fewer may still belong to a rebound, and tell no level. Not
+  // studied.
+  constexpr std::size_t kMinRestFrames = 6;
+  LeaveOutHops(track, kMinRestFrames, down);
+  if (down.size() >= kMinRestFrames) {
+    // Level of rest and line are two measurements of one height: their weighted
+    // mean, unless they contradict each other.
     const core::Estimate level = MeanRestingGap(SelectSamples(track, down));
     event.disagreement = level.value / std::hypot(ground.u, level.u);
     if (std::abs(event.disagreement) > kDisagree) {
@@ -275,6 +302,8 @@ bool MeasureStay(const PlaneTrack& track, const FlightOptions& options,
 }  // namespace
 
 core::Estimate MeanRestingGap(std::span<const PlaneSample> samples) {
+  // Weighted mean, whose u = 1/sqrt(sum of weights) holds for independent
+  // poses; the inflation corrects it for scatter and correlation.
   double sw = 0.0;
   double swx = 0.0;
   for (const PlaneSample& s : samples) {
@@ -294,6 +323,8 @@ core::Estimate MeanRestingGap(std::span<const PlaneSample> samples) {
 FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
                       double time_s) {
   const FlightState s = flight.At(time_s);
+  // The support height changes with attitude by the lowest point's place along
+  // the ground: d(support)/d(face) = -arm.
   const double arm = LowestPointOffset(track, s.face_rad);
   FlightGap g;
   g.gap_px = s.height_px - SupportHeight(track, s.face_rad);
@@ -307,16 +338,16 @@ bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
   const PlaneSample& last = track.samples[event.before_frames.end - 1];
   reason = fmt::format(
       "too few frames show the body before its impact at frame {}", last.frame);
-  if (event.before_frames.size() < LeastFrames(options)) return false;
+  if (event.before_frames.size() < MinFlightFrames(options)) return false;
   event.before = FitFlight(SelectSamples(track, event.before_frames), options);
-  bool flies = event.after_frames.size() >= LeastFrames(options);
+  bool flies = event.after_frames.size() >= MinFlightFrames(options);
   if (flies) {
     event.after = FitFlight(SelectSamples(track, event.after_frames), options);
   }
-  // With none to spare only a rebound tells where and when the flight ended,
-  // and an impact one frame earlier looks alike unless the last frame is
+  // With no frame to spare only a rebound tells where and when the flight
+  // ended. An impact one frame earlier looks alike, unless the last frame is
   // clearly not of the flight after it.
-  if (event.before_frames.size() <= LeastFrames(options) &&
+  if (event.before_frames.size() <= MinFlightFrames(options) &&
       !(flies && LeavesFlight(last, *event.after))) {
     return false;
   }

@@ -20,23 +20,26 @@ using core::Measured;
 const char kNoScale[] =
     "no scale: give a calibration, a scale or the body's size";
 
-// Paces below it are no motion, px a frame.
-constexpr double kLeastPace = 0.01;
+// px a frame. Slower motion cannot be told from rest; it keeps the quotients by
+// a pace finite. Not studied.
+constexpr double kMinPace_px = 0.01;
 
-// How fast what all poses have in common drifts, per frame: as body and
-// surroundings change, by a quarter of it over a flight (51 clips with
-// photographed faces: 92 % of the drifts lie within 1.96 times that and their
-// own noise, of 76 % without).
+// By how much what all poses have in common drifts per frame, as body and
+// surroundings change.
 double CommonDrift(double u_common, const SampleRange& flight) {
-  constexpr double kShare = 0.25;
-  return kShare * u_common / static_cast<double>(flight.size());
+  // Of the common part, over a whole flight. 0.25: in 51 clips with
+  // photographed faces 92 % of the drifts then lie within 1.96 times this and
+  // their own noise; without it 76 %. Larger widens every approach angle.
+  constexpr double kDriftShare = 0.25;
+  return kDriftShare * u_common / static_cast<double>(flight.size());
 }
 
 void MakeAbsent(std::initializer_list<Measured*> values, const char* reason) {
   for (Measured* value : values) *value = AbsentBecause(reason);
 }
 
-// px (or px/s) to metres (or m/s), with the scale's uncertainty.
+// Converts px (or px/s) to metres (or m/s); the scale's relative u is added in
+// quadrature.
 Measured InMetres(const RecordContext& context, const Estimate& px) {
   if (!context.options.scale) return AbsentBecause(kNoScale);
   const Estimate& s = context.options.scale->px_per_m;
@@ -44,7 +47,8 @@ Measured InMetres(const RecordContext& context, const Estimate& px) {
   return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value)};
 }
 
-// Velocities along and normal to the true ground, px per frame.
+// Velocities along and normal to the true ground, px per frame. The ground is
+// inclined to the line by the small angle kSlope: sin = kSlope, cos = 1.
 double TangentialSpeed(const JointVector& p, JointParameter vx,
                        JointParameter vy) {
   return p[vx] + p[kSlope] * p[vy];
@@ -63,7 +67,7 @@ double ReboundTangential(const JointVector& p) {
   return TangentialSpeed(p, kVx2, kVy2);
 }
 
-// The lowest point from the centre, along x', at touchdown.
+// Place of the lowest point along x', from the centre, at touchdown.
 double ContactArm(const PlaneTrack& track, const JointVector& p) {
   PlaneTrack sized;
   sized.kind = track.kind;
@@ -72,7 +76,9 @@ double ContactArm(const PlaneTrack& track, const JointVector& p) {
   return LowestPointOffset(sized, p[kFace] - p[kSlope]);
 }
 
-// What the uncertainty of `f` comes of; the squares add up to its own.
+// Splits the variance of `f` by what it comes of: ground first, then what the
+// size adds to it, then the scale (which the known gravity in px/s^2 stands
+// for). The rest is localisation. The squares add up to u^2.
 core::Budget ComputeBudget(const JointFit& fit, const JointFit::Function& f,
                            double u) {
   const double ground = fit.UncertaintyShare(f, {kGround, kSlope});
@@ -89,11 +95,14 @@ core::Budget ComputeBudget(const JointFit& fit, const JointFit::Function& f,
           {"scale", rest(with_scale, with_size)}};
 }
 
-// Flush where the second lowest corner is as low as the lowest within what the
-// attitude is known to (2 u), or within the resolution.
+// Writes the face angle and names the corner. Flush: the second lowest corner
+// is as low as the lowest within what the attitude is known to (2 u), or within
+// the resolution.
 void FillAttitude(const PlaneTrack& track, const Estimate& measured,
                   double resolution_rad, core::Contact& contact) {
   const double pi = std::numbers::pi;
+  // A rectangle turned by pi looks the same: the angle is taken to (-90, 90]
+  // deg.
   double face = std::remainder(measured.value, pi);
   if (face <= -0.5 * pi) face += pi;
   contact.face_angle_rad = Estimate{face, measured.u};
@@ -113,12 +122,13 @@ void FillAngles(const RecordContext& context, const Event& event,
   };
   Estimate angle = fit.EstimateFunction(approach);
   const double localised_approach = angle.u;
-  // What all poses are off in the body's own directions turns with it, as if
-  // the centre moved; and it drifts.
+  // A common error in the body's own directions turns with the body, as if the
+  // centre moved by u omega a frame; besides, it drifts. Divided by the pace,
+  // either is an error of the direction of motion.
   const double paces =
       std::max(std::hypot(fit.EstimateFunction(ApproachNormal).value,
                           fit.EstimateFunction(ApproachTangential).value),
-               kLeastPace);
+               kMinPace_px);
   const double turns =
       track.kind == core::BodyKind::kSphere
           ? 0.0
@@ -131,7 +141,8 @@ void FillAngles(const RecordContext& context, const Event& event,
   angle.u = std::hypot(angle.u, picture);
   contact.approach_angle_rad =
       Estimate{std::clamp(angle.value, 0.0, 0.5 * std::numbers::pi), angle.u};
-  // No angle is negative: near 0 the normal interval promises what cannot be.
+  // No angle is negative: near 0 the normal interval promises what cannot be,
+  // and an interval from 0 on is given instead.
   if (angle.value < core::kNormal975 * angle.u) {
     Estimate& flat = *contact.approach_angle_rad;
     flat.interval95 =
@@ -150,11 +161,15 @@ void FillAngles(const RecordContext& context, const Event& event,
   Estimate measured = fit.EstimateFunction(to_ground);
   const double localised = measured.u;
   measured.u = std::hypot(measured.u, context.u_common_face_rad);
-  constexpr double kResolution_px = 0.05;
-  FillAttitude(track, measured, kResolution_px / (2.0 * track.half_long_px),
+  // px at a corner: lower than that the two lowest corners are not told apart.
+  // Larger calls more impacts flush. Not studied.
+  constexpr double kFlush_px = 0.05;
+  FillAttitude(track, measured, kFlush_px / (2.0 * track.half_long_px),
                contact);
   contact.attitude_budget = ComputeBudget(fit, to_ground, localised);
   contact.attitude_budget.push_back({"picture", context.u_common_face_rad});
+  // Paper, Fig. 1: the acute angle between the ground and the line from the
+  // centre to the contact point, atan2(support height, |arm|).
   contact.radius_angle_rad = fit.EstimateFunction([&](const JointVector& p) {
     const double at = p[kFace] - p[kSlope];
     const double reach = p[kHalfLong] * std::abs(std::sin(at)) +
@@ -198,13 +213,16 @@ void FillMotion(const RecordContext& context, const Event& event,
     m.after_normal_mps = speed(ReboundNormal);
     m.after_tangential_mps = speed(ReboundTangential);
     m.after_omega_rad_per_s = omega(kOmega2, event.after_frames);
+    // Normal velocity of the contact point: the centre's and that of the lowest
+    // point about it, omega times its arm along the ground.
     const auto point_before = [&](const JointVector& p) {
       return ApproachNormal(p) + p[kOmega] * ContactArm(track, p);
     };
     const auto point_after = [&](const JointVector& p) {
       return ReboundNormal(p) + p[kOmega2] * ContactArm(track, p);
     };
-    // A quotient, where its denominator stands out of its uncertainty.
+    // A quotient is given where its denominator stands clear of its own u: else
+    // the first-order u of the quotient means nothing.
     const auto quotient = [&](const JointFit::Function& above,
                               const JointFit::Function& below,
                               const char* what) -> Measured {
@@ -226,6 +244,9 @@ void FillMotion(const RecordContext& context, const Event& event,
     m.centre_rebound_ratio =
         quotient([](const JointVector& p) { return -ReboundNormal(p); },
                  ApproachNormal, "normal velocity before");
+    // Of the impulses per mass: |change of tangential velocity| over change of
+    // normal velocity. It equals the coefficient of friction where the contact
+    // slips throughout.
     m.impulse_ratio = quotient(
         [](const JointVector& p) {
           return std::abs(ReboundTangential(p) - ApproachTangential(p));
@@ -236,7 +257,8 @@ void FillMotion(const RecordContext& context, const Event& event,
         "change of normal velocity");
   }
 
-  // Gravity free, as a check of scale and frame rate.
+  // Gravity is fitted freely, as a check of scale and frame rate: both flights'
+  // values, weighted.
   m.gravity_check_mps2 = AbsentBecause(kNoScale);
   if (context.options.scale) {
     m.gravity_check_mps2 =
@@ -244,7 +266,9 @@ void FillMotion(const RecordContext& context, const Event& event,
     double sw = 0.0;
     double swx = 0.0;
     const auto add = [&](const SampleRange& range) {
-      if (range.size() < 6) return;
+      // Frames: three determine a parabola; so few do not judge it.
+      constexpr std::size_t kMinFrames = 6;
+      if (range.size() < kMinFrames) return;
       const Flight free = FitFlight(SelectSamples(track, range));
       const double w = 1.0 / free.height_cov(2, 2);
       sw += w;
@@ -254,8 +278,10 @@ void FillMotion(const RecordContext& context, const Event& event,
     if (event.after) add(event.after_frames);
     if (sw > 0.0) {
       const Measured g_si = InMetres(context, {swx / sw, 1.0 / std::sqrt(sw)});
-      constexpr double kInformative = 0.03;
-      if (g_si->u < kInformative * std::abs(g_si->value)) {
+      // Relative u, by the document's definition (DESIGN: below 3 %): a frame
+      // rate or a scale that is off by less would not show.
+      constexpr double kMaxInformativeU = 0.03;
+      if (g_si->u < kMaxInformativeU * std::abs(g_si->value)) {
         m.gravity_check_mps2 = g_si;
       }
     }
@@ -268,6 +294,7 @@ double BounceHeight(const RecordContext& context, core::StateDecision& state) {
   const double size_px = track.size_px;
   if (!context.options.scale) {
     state.bounce_height_m = AbsentBecause(kNoScale);
+    // The campaign's default without its floor in mm, which needs a scale.
     constexpr double kShareOfSize = 0.02;
     return kShareOfSize * size_px;
   }
@@ -279,7 +306,8 @@ double BounceHeight(const RecordContext& context, core::StateDecision& state) {
   return height_m * px_per_m;
 }
 
-// Without u where there is none: a bounce height is a convention.
+// In mm where there is a scale, else in px. Without u where there is none: a
+// bounce height is a convention.
 std::string LengthText(const RecordContext& context, double px, double u_px) {
   const double unit =
       context.options.scale ? 1e3 / context.options.scale->px_per_m.value : 1.0;
@@ -297,6 +325,8 @@ void FillState(const RecordContext& context, std::size_t from,
   const PlaneTrack& track = context.track;
   const std::vector<PlaneSample>& samples = track.samples;
   const double height_px = BounceHeight(context, state);
+  // Of one typical frame: the middle one stands neither at the edge of the
+  // picture nor at the start.
   const double noise_px = samples[samples.size() / 2].u_gap_px;
   if (context.options.scale) {
     const double s = context.options.scale->px_per_m.value;
@@ -310,17 +340,20 @@ void FillState(const RecordContext& context, std::size_t from,
   }
   const auto greatest = FindGreatestGap(track, context.stretches, from, ground,
                                         context.flight, event);
-  constexpr std::size_t kLeastAfter = 3;
-  if (!greatest || samples.size() - from < kLeastAfter) {
+  // Frames. With fewer no rebound can be judged and the state is undecided. Not
+  // studied.
+  constexpr std::size_t kMinFramesAfter = 3;
+  if (!greatest || samples.size() - from < kMinFramesAfter) {
     state.label = core::MotionState::kUndecided;
     state.max_gap_m = AbsentBecause("no rebound was filmed");
     state.reason = fmt::format(
         "no rebound was filmed: {} frames after touchdown, {} are needed",
-        samples.size() - from, kLeastAfter);
+        samples.size() - from, kMinFramesAfter);
     return;
   }
-  // A gap is a difference of poses far from each other, each with what its
-  // neighbours have in common.
+  // A gap is a difference of two poses far from each other. Each has an error
+  // that its neighbours share, so that the u of the common part counts sqrt(2)
+  // times.
   Estimate gap = greatest->gap_px;
   gap.u = std::hypot(gap.u, std::numbers::sqrt2 * context.u_common_place_px);
   // A gap is not negative; what is below is noise of pose and ground.
@@ -332,6 +365,9 @@ void FillState(const RecordContext& context, std::size_t from,
       fmt::format("greatest gap {} at frame {}, bounce height {}",
                   LengthText(context, gap.value, gap.u), greatest->frame,
                   LengthText(context, height_px, 0.0));
+  // DESIGN's rule: where the film ends while the body rises below the bounce
+  // height, the state is undecided, and the extrapolated height is a field of
+  // its own.
   if (state.label != core::MotionState::kBounce && greatest->reaches_px) {
     Estimate reaches = *greatest->reaches_px;
     reaches.u =
@@ -348,7 +384,7 @@ void FillState(const RecordContext& context, std::size_t from,
                        event->after && gap.value > core::kNormal975 * gap.u;
 }
 
-// Of what stays down: did it slide, or stick? Where that can be seen.
+// Names what stays down as slide, roll-slide or stick, where that can be seen.
 void NameWhatStaysDown(const RecordContext& context, std::size_t from,
                        core::StateDecision& state) {
   if (state.label != core::MotionState::kStaysDown) return;
@@ -366,13 +402,17 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
   }
   const double turned = std::abs(b.face_rad - a.face_rad);
   const double u_turned = std::hypot(a.u_face_rad, b.u_face_rad);
-  constexpr double kClear = 3.0;
-  constexpr double kQuarterTurn = 0.25 * std::numbers::pi;
+  // Standard deviations of path and turn. Fewer: noise of a body at rest is
+  // called a slide. Chosen by the normal distribution.
+  constexpr double kClearSigmas = 3.0;
+  // rad: 45 deg. Beyond it another face comes down; a rocking block turns back
+  // before. From geometry (a square's).
+  constexpr double kTurnsOver_rad = 0.25 * std::numbers::pi;
   const double u_path = std::hypot(a.u_along_px, b.u_along_px);
-  if (turned > kQuarterTurn && turned > kClear * u_turned) {
+  if (turned > kTurnsOver_rad && turned > kClearSigmas * u_turned) {
     state.label = core::MotionState::kRollSlide;
     state.reason += "; it turns over along the ground";
-  } else if (path > std::max(1.0, kClear * u_path)) {
+  } else if (path > std::max(1.0, kClearSigmas * u_path)) {
     state.label = core::MotionState::kSlide;
     state.reason += "; it moves along the ground without turning over";
   } else {
@@ -390,23 +430,25 @@ core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
   core::Contact& contact = record.contact;
   contact.found = true;
   contact.time_s = event.time_s;
-  // Frame numbers follow the time: exact where frames are equally spaced.
+  // The frame number follows from the time: exact where frames are equally
+  // spaced.
   const double dt = track.frame_interval_s;
-  // What all poses have in common is not quite the same before and after: a
-  // texture lies otherwise on its outline, and beside another background. 0.01
-  // px: chosen on 40 photographed faces in raw clips, of which 30 contact times
-  // lay within 1.96 u without it.
+  // px. What all poses have in common is not quite the same before and after
+  // the impact: a texture lies otherwise on its outline, and beside another
+  // background. Larger widens u of every contact time. 0.01: chosen on 40
+  // photographed faces in raw clips, of which 30 contact times lay within 1.96
+  // u without it.
   constexpr double kMostChange_px = 0.01;
   // A codec that leaves out slow changes from frame to frame lags behind the
-  // body: before an impact it is above its place, after it below, so that the
-  // flights meet too late. Half of the common error of place: chosen on 79
-  // clips in H.264 (crf 23), of which 61 of 76 lay within 1.96 u without it; on
-  // 113 others 108 lie with it.
-  constexpr double kOfPlace = 0.5;
+  // body: before an impact the body is seen above its place, after it below,
+  // and the flights meet too late. Share of the common error of place. Chosen
+  // on 79 clips in H.264 (crf 23), of which 61 of 76 lay within 1.96 u without
+  // it; on 113 others 108 lie with it.
+  constexpr double kLagShare = 0.5;
   const double pace = std::max(
-      std::abs(event.fit->EstimateFunction(ApproachNormal).value), kLeastPace);
+      std::abs(event.fit->EstimateFunction(ApproachNormal).value), kMinPace_px);
   const double change_px =
-      track.is_predicted ? kOfPlace * context.u_common_place_px
+      track.is_predicted ? kLagShare * context.u_common_place_px
                          : std::min(context.u_common_place_px, kMostChange_px);
   contact.time_s->u = std::hypot(contact.time_s->u, change_px / pace * dt);
   const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
@@ -454,15 +496,19 @@ namespace {
 // ground line can be inclined to each other, and more than its attitude is
 // known.
 bool TurnsWhileDown(std::span<const PlaneSample> down) {
+  // As far as the path and the visible edge of the ground may differ in
+  // direction (as in motion_segments.cc). Not studied.
   constexpr double kInclined_rad = 0.5 * core::kDegree;
-  constexpr double kSigmas = 8.0;  // of a frame: the range of many is six
+  // Standard deviations of one frame: the range of a hundred normal values is
+  // about five, of a thousand six and a half. Fewer: noise is called a turn.
+  constexpr double kRangeSigmas = 8.0;
   const auto [least, most] = std::minmax_element(
       down.begin(), down.end(), [](const PlaneSample& a, const PlaneSample& b) {
         return a.face_rad < b.face_rad;
       });
   return most->face_rad - least->face_rad >
          std::max(kInclined_rad,
-                  kSigmas * std::max(least->u_face_rad, most->u_face_rad));
+                  kRangeSigmas * std::max(least->u_face_rad, most->u_face_rad));
 }
 
 }  // namespace
@@ -491,7 +537,10 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
        &m.after_tangential_mps, &m.after_omega_rad_per_s, &m.restitution,
        &m.centre_rebound_ratio, &m.impulse_ratio, &m.gravity_check_mps2},
       reason);
-  const std::size_t n = std::min<std::size_t>(samples.size(), 12);
+  // Frames that give the first velocity: more average its noise, but the body
+  // slows down meanwhile. Not studied.
+  constexpr std::size_t kStartFrames = 12;
+  const std::size_t n = std::min<std::size_t>(samples.size(), kStartFrames);
   const Flight start = FitFlight(samples.first(n), context.flight);
   const Estimate vt{start.along[1], std::sqrt(start.along_cov(1, 1))};
   m.before_tangential_mps = InMetres(context, vt);
@@ -515,7 +564,9 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
     const double u_face = start.At(s.time_s).u_face_rad;
     const Estimate face{s.face_rad,
                         std::hypot(u_face, track.ground.u_angle_rad)};
-    constexpr double kResolution_rad = 0.05;  // lying on a face
+    // rad: a block that lies on a face from the start is flush, although the
+    // ground line may be inclined to it. Larger hides a tilt. Not studied.
+    constexpr double kResolution_rad = 0.05;
     FillAttitude(track, face, kResolution_rad, contact);
     contact.attitude_budget = {{"localisation", u_face},
                                {"ground", track.ground.u_angle_rad}};

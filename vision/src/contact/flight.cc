@@ -10,8 +10,11 @@
 namespace touchdown::vision {
 namespace {
 
-// Weighted polynomial of N terms, with an optional prior on the last; returns
-// the sum of squared weighted residuals. `unit` scales time to order one.
+// Weighted least squares of value(t) = sum over k of factors[k] c[k] ((t - t0)
+// / unit)^k, k < N, with an optional prior on the last coefficient. `unit`
+// scales time to order one, which keeps the normal equations well conditioned.
+// Writes `solution` and `covariance` in physical units; returns the sum of
+// squared weighted residuals, that of the prior included.
 template <int N>
 double FitPolynomial(std::span<const PlaneSample> samples, double t0,
                      double unit, double PlaneSample::*value,
@@ -73,6 +76,8 @@ double FitPolynomial(std::span<const PlaneSample> samples, double t0,
   return chi2;
 }
 
+// Birge's ratio: the factor by which residuals that exceed the poses' u widen
+// the covariance.
 double WideningFactor(double chi2, int degrees) {
   // With few degrees of freedom chi2 says little: never narrow.
   return degrees > 0 ? std::max(1.0, chi2 / degrees) : 1.0;
@@ -89,6 +94,7 @@ FlightState Flight::At(double time_s) const {
   s.v_n = height[1] - height[2] * t;
   s.face_rad = face[0] + face[1] * t;
   s.omega = face[1];
+  // Derivatives of place and velocity with respect to the coefficients.
   const Eigen::Vector2d line(1.0, t);
   const Eigen::Vector3d position(1.0, t, -0.5 * t * t);
   const Eigen::Vector3d velocity(0.0, 1.0, -t);
@@ -105,6 +111,7 @@ FlightState Flight::At(double time_s) const {
 Flight FitFlight(std::span<const PlaneSample> samples,
                  const FlightOptions& options) {
   const bool known = options.gravity_px_per_s2.has_value();
+  // Frames: with the prior on gravity two determine a parabola.
   const std::size_t least = known ? 2 : 3;
   if (samples.size() < least) {
     throw std::invalid_argument(
@@ -118,8 +125,11 @@ Flight FitFlight(std::span<const PlaneSample> samples,
   const double start = samples.front().time_s;
   const double end = samples.back().time_s;
   f.t0_s = 0.5 * (start + end);
+  // Half of the flight's duration: scaled times lie within -1..1.
   const double unit = std::max(0.5 * (end - start), 1e-300);
 
+  // height(t) = h + v t - g t^2 / 2: the third coefficient is gravity itself,
+  // so that its prior and its covariance need no conversion.
   const Eigen::Vector3d height_factors(1.0, 1.0, -0.5);
   const double chi2_h = FitPolynomial<3>(
       samples, f.t0_s, unit, &PlaneSample::height_px, &PlaneSample::u_height_px,
@@ -143,6 +153,7 @@ Flight FitFlight(std::span<const PlaneSample> samples,
   f.along_cov *= WideningFactor(chi2_s, n - 2);
   f.height_cov *= WideningFactor(chi2_h, known ? n - 2 : n - 3);
   f.face_cov *= WideningFactor(chi2_f, n - 2);
+  // Numbers measured, less place and velocity of both coordinates and gravity.
   const int degrees = 2 * n - 4 - (known ? 0 : 1);
   f.reduced_chi2 = degrees > 0 ? (chi2_h + chi2_s) / degrees : 1.0;
   double square = 0.0;

@@ -10,7 +10,7 @@ namespace {
 
 struct Finder {
   const PlaneTrack& track;
-  std::size_t since;  // samples before say nothing
+  std::size_t since;  // first sample after the contact
   const GroundLevel& ground;
   const FlightOptions& options;
   const Event* event;
@@ -28,8 +28,8 @@ struct Finder {
   }
 };
 
-// Among noisy heights the highest is no bounce: a value counts by what it
-// surely reaches.
+// Keeps the gap with the greatest lower bound, gap - u: among many noisy
+// heights the highest is no bounce.
 void Finder::Offer(const core::Estimate& gap, std::int64_t frame) {
   if (greatest &&
       gap.value - gap.u <= greatest->gap_px.value - greatest->gap_px.u) {
@@ -38,6 +38,8 @@ void Finder::Offer(const core::Estimate& gap, std::int64_t frame) {
   greatest = GreatestGap{gap, frame, std::nullopt};
 }
 
+// The apex of a flight, also between two frames. The flight after the contact
+// is that of the joint fit; others are fitted here.
 void Finder::LookAtFlight(const SampleRange& range) {
   const auto& samples = track.samples;
   const auto [begin, end] = range;
@@ -62,15 +64,18 @@ void Finder::LookAtFlight(const SampleRange& range) {
   const auto height_at = [&](double t) {
     return GapOfFlight(track, flight, t).gap_px;
   };
-  // From where it may have left the ground to where it may have met it again.
+  // The search reaches from the frame before the flight, where the body may
+  // have left the ground, to the frame after it.
   const double last = samples[end - 1].time_s;
   const double start =
       begin > 0 ? samples[begin - 1].time_s : samples[begin].time_s;
   const double stop = end < samples.size() ? samples[end].time_s : last;
-  // A block that turns has a cusp where its lowest corner changes: the best of
-  // some steps, then the best beside it, by thirds.
+  // A block that turns has a cusp where its lowest corner changes, so that the
+  // gap has several maxima: the best of equal steps, then the best beside it by
+  // ternary search. More steps cost time only. Not studied.
   constexpr int kSteps = 256;
-  constexpr int kThirds = 30;  // to 1e-5 of a step
+  // (2/3)^30: to 1e-5 of a step.
+  constexpr int kThirds = 30;
   const auto highest = [&](double t0, double t1) {
     double best = t0;
     for (int i = 1; i <= kSteps; ++i) {
@@ -101,13 +106,16 @@ void Finder::LookAtFlight(const SampleRange& range) {
   const bool was = greatest.has_value();
   const double before = was ? greatest->gap_px.value : 0.0;
   Offer(gap, near->frame);
-  // Does the film end while it rises?
+  // Only where the film ends in this flight, and this flight is the greatest,
+  // may the body still rise.
   if (end < samples.size() || (was && greatest->gap_px.value == before)) {
     return;
   }
   const FlightState state = flight.At(last);
   const FlightGap g = GapOfFlight(track, flight, last);
   if (!(g.rate > 0.0) || !(flight.height[2] > 0.0)) return;
+  // The centre rises for v_n / g; the lowest point of a turning body may do so
+  // for longer: twice that bounds the search.
   const double apex =
       last + 2.0 * std::max(state.v_n, g.rate) / flight.height[2];
   const core::Estimate reaches = gap_at(highest(last, apex));
@@ -115,14 +123,16 @@ void Finder::LookAtFlight(const SampleRange& range) {
   if (reaches.value - gap.value > gap.u) greatest->reaches_px = reaches;
 }
 
-// Frames of no flight: of parabolas through a few neighbours, so that a hop too
-// small to be told from rest counts with what it shows.
+// Frames of no flight: parabolas through a few neighbours give their gap, so
+// that a hop too small to be told from rest counts with what it shows.
 void Finder::LookAtFrames(const SampleRange& range) {
   const auto [begin, end] = range;
-  // 7: the noise of the middle falls to 0.58, and a hop of as many frames is
-  // followed exactly.
+  // Frames. At 7 the noise of the middle one falls to 0.58 (a parabola's), and
+  // a hop of as many frames is followed exactly. More flattens short hops;
+  // fewer offers noise as a gap. Chosen by these two figures.
   constexpr std::size_t kWindow = 7;
-  constexpr std::size_t kLeastFrames = 4;
+  // Three frames pass through any parabola; a frame then speaks for itself.
+  constexpr std::size_t kMinWindow = 4;
   const std::size_t window = std::min(kWindow, end - begin);
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t half = window / 2;
@@ -130,7 +140,7 @@ void Finder::LookAtFrames(const SampleRange& range) {
         std::min(i > begin + half ? i - half : begin, end - window);
     const PlaneSample& s = track.samples[i];
     FlightGap local{s.gap_px, 0.0, s.u_gap_px};
-    if (window >= kLeastFrames) {
+    if (window >= kMinWindow) {
       const Flight flight =
           FitFlight(std::span(track.samples).subspan(from, window));
       local = GapOfFlight(track, flight, s.time_s);
@@ -143,12 +153,15 @@ void Finder::LookAtFrames(const SampleRange& range) {
 }
 
 // A block that falls from one corner onto another is lifted off the ground on
-// the way, which no frame need show. Its poses in between are those of a steady
-// motion; how much more they show than both frames is known to nothing better
-// than that: a rectangular distribution of that half-width.
+// the way, which no frame need show. Its poses between the frames are those of
+// a steady motion. Nothing tells better how much higher it was than either
+// frame shows: the excess has a rectangular distribution of that half-width (u
+// = half-width / sqrt 3, GUM 4.3.7).
 void Finder::SearchInterval(const PlaneSample& a, const PlaneSample& b) {
   if (track.kind != core::BodyKind::kRectangle) return;
-  constexpr int kSteps = 16;  // misses a 32nd of what the motion shows
+  // Steps between two frames: the highest of them misses at most a 32nd of the
+  // excess.
+  constexpr int kSteps = 16;
   double most = 0.0;
   const double seen = std::max(a.gap_px, b.gap_px);
   for (int i = 1; i < kSteps; ++i) {
@@ -158,19 +171,23 @@ void Finder::SearchInterval(const PlaneSample& a, const PlaneSample& b) {
     most = std::max(most, height - SupportHeight(track, face) - seen);
   }
   const double u_seen = std::max(a.u_gap_px, b.u_gap_px);
-  constexpr double kClear = 2.0;  // less is noise of the attitude
-  if (most < kClear * u_seen) return;
+  // Standard deviations of a frame's gap: a smaller excess is noise of the
+  // attitude. Not studied.
+  constexpr double kClearSigmas = 2.0;
+  if (most < kClearSigmas * u_seen) return;
   Offer({seen + most - ground.height_px.value,
          std::hypot(most / std::numbers::sqrt3, u_seen,
                     UncertaintyOfGround(a.along_px))},
         b.frame);
 }
 
-// A body that left the ground flies until it meets it again, be that between
-// two frames: from touchdown, where its pose is known best, through the frames
-// of one flight, and on to where that flight ends.
+// Looks for a hop that begins at touchdown and ends between two frames: a body
+// that left the ground flies until it meets it again. Its path starts where the
+// pose is known best, at touchdown, goes through the frames of one flight, and
+// on to where that flight ends.
 void Finder::LookAfterTouchdown() {
-  constexpr double kHalfAFrame = 0.5;  // nearer, the exposure spans the impact
+  // Frames: nearer to an impact the exposure may span it.
+  constexpr double kHalfAFrame = 0.5;
   const double dt = track.frame_interval_s;
   const FlightState at = event->before->At(event->time_s.value);
   PlaneSample touchdown;
@@ -179,11 +196,13 @@ void Finder::LookAfterTouchdown() {
   touchdown.face_rad = at.face_rad;
   touchdown.height_px =
       ground.height_px.value + SupportHeight(track, at.face_rad);
-  constexpr double kLeastU_px = 1e-3;
+  // px: the constructed pose must not outweigh what was seen, nor divide by
+  // zero.
+  constexpr double kMinU_px = 1e-3;
   const double arm = LowestPointOffset(track, at.face_rad);
-  touchdown.u_along_px = std::max(at.u_along_px, kLeastU_px);
+  touchdown.u_along_px = std::max(at.u_along_px, kMinU_px);
   touchdown.u_face_rad = at.u_face_rad;
-  touchdown.u_height_px = std::hypot(arm * at.u_face_rad, kLeastU_px);
+  touchdown.u_height_px = std::hypot(arm * at.u_face_rad, kMinU_px);
   const std::vector<PlaneSample>& samples = track.samples;
   const auto first = static_cast<std::size_t>(
       std::find_if(samples.begin(), samples.end(),
@@ -191,8 +210,8 @@ void Finder::LookAfterTouchdown() {
                      return s.time_s > touchdown.time_s + kHalfAFrame * dt;
                    }) -
       samples.begin());
-  // It still stands on the corner that it landed on, so that no other impact
-  // lies between.
+  // If the lowest corner is another than at touchdown, a second impact lies
+  // between, and the path is no flight.
   if (first == samples.size() ||
       arm * LowestPointOffset(track, samples[first].face_rad) < 0.0) {
     return;
@@ -206,20 +225,23 @@ void Finder::LookAfterTouchdown() {
   std::size_t i = first;
   for (std::vector<PlaneSample> flown{touchdown}; i < samples.size(); ++i) {
     flown.push_back(samples[i]);
-    if (flown.size() < LeastFrames(options)) continue;
+    if (flown.size() < MinFlightFrames(options)) continue;
     const Flight flight = FitFlight(flown, options);
-    constexpr double kMostChi2 = 4.0;  // a degree: frames of two motions
-    if (flight.reduced_chi2 > kMostChi2) break;
+    // Per degree of freedom. Above it the frames are of two motions and the hop
+    // has ended. Not studied.
+    constexpr double kMaxReducedChi2 = 4.0;
+    if (flight.reduced_chi2 > kMaxReducedChi2) break;
     const auto gap_at = [&](double t) {
       const FlightGap g = GapOfFlight(track, flight, t);
       return core::Estimate{
           g.gap_px - ground.height_px.value,
           std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px))};
     };
-    constexpr double kStepsAFrame = 128.0;
+    // Steps a frame: the apex is missed by g dt^2 / (8 * 128^2) at most.
+    constexpr double kStepsPerFrame = 128.0;
     Hop seen{gap_at(samples[i].time_s), samples[i].frame};
     double t = touchdown.time_s;
-    for (; t < samples.back().time_s; t += dt / kStepsAFrame) {
+    for (; t < samples.back().time_s; t += dt / kStepsPerFrame) {
       const core::Estimate gap = gap_at(t);
       if (t > samples[i].time_s && gap.value <= 0.0) break;
       if (gap.value > seen.most.value) seen.most = gap;
@@ -228,7 +250,7 @@ void Finder::LookAfterTouchdown() {
     // A frame that was exposed across the next impact says less.
     if (t - samples[i].time_s > kHalfAFrame * dt) hop = seen;
   }
-  // Frames before its end that are not of it refute it.
+  // A frame that the flight claims but does not explain refutes the hop.
   if (hop && hop->end_s < samples.back().time_s && i < samples.size() &&
       samples[i].time_s > hop->end_s - kHalfAFrame * dt) {
     Offer(hop->most, hop->frame);
@@ -239,7 +261,7 @@ void Finder::SearchStretch(const Stretch& stretch) {
   const SampleRange range{std::max(stretch.begin, since), stretch.end};
   if (range.begin >= range.end) return;
   if (stretch.kind == StretchKind::kFlight &&
-      range.size() >= LeastFrames(options)) {
+      range.size() >= MinFlightFrames(options)) {
     LookAtFlight(range);
   } else {
     LookAtFrames(range);

@@ -11,12 +11,13 @@ namespace touchdown::vision {
 namespace {
 
 // Of the impulse at the second corner: above it no body of nearly even mass
-// struck with one alone. Chosen, not measured: it moves the centre of mass by a
-// tenth of the side.
+// struck with one corner alone. Smaller: an uneven block loses its restitution;
+// larger: two impacts pass for one. Chosen, not measured: it moves the centre
+// of mass by a tenth of the side.
 constexpr double kUnevenMass = 0.1;
 
-// Lowest point and second lowest corner from the centre, along the ground, and
-// how far the lowest is below.
+// Places of the lowest and the second lowest corner along the ground from the
+// centre, and how far the lowest lies below the centre.
 struct LowestCorners {
   double first = 0.0;
   double second = 0.0;
@@ -38,12 +39,17 @@ LowestCorners FindLowestCorners(const JointVector& p) {
   return {corners[0].second, corners[1].second, -corners[0].first};
 }
 
+// Change of the centre's velocity along the ground's normal: the normal impulse
+// per mass.
 double NormalChange(const JointVector& p) {
   return p[kVy2] - p[kVy] - p[kSlope] * (p[kVx2] - p[kVx]);
 }
 
+// Share of the second corner (impacts.h): the impulse acts at the weighted mean
+// place of both corners, `lever`, which the change of spin tells.
 double Share(const JointVector& p) {
   const LowestCorners corners = FindLowestCorners(p);
+  // Radius of gyration of a homogeneous rectangle: k^2 = (a^2 + b^2) / 3.
   constexpr double kThird = 1.0 / 3.0;
   const double k2 =
       kThird * (p[kHalfLong] * p[kHalfLong] + p[kHalfShort] * p[kHalfShort]);
@@ -68,9 +74,11 @@ core::Measured ShareOfSecondCorner(const PlaneTrack& track,
 }
 
 std::string WhySeveralImpacts(const PlaneTrack& track, const JointFit& fit) {
-  constexpr double kClear = 3.3;  // u
+  // Standard deviations: one honest contact in 2000 loses its restitution
+  // (one-sided). Two impacts whose share is less clear keep a wrong one.
+  constexpr double kClearSigmas = 3.3;
   const core::Measured share = ShareOfSecondCorner(track, fit);
-  if (!share || share->value - kClear * share->u < kUnevenMass) return "";
+  if (!share || share->value - kClearSigmas * share->u < kUnevenMass) return "";
   return fmt::format(
       "more than one impact between two frames: {:.0f} +- {:.0f} % of the "
       "impulse was at the other corner",
@@ -82,7 +90,8 @@ RestitutionOfImpacts PoolRestitution(const ContactResult& contacts) {
   double weights = 0.0;
   double sum = 0.0;
   double squares = 0.0;
-  // What strikes again has left the ground, seen or not.
+  // A body that strikes again has left the ground before, seen or not: a
+  // contact without a restitution then is an impact that was not resolved.
   const auto add = [&](const core::Motion& motion, bool strikes_again) {
     const core::Measured& e = motion.restitution;
     out.unresolved += !e && strikes_again
@@ -105,6 +114,7 @@ RestitutionOfImpacts PoolRestitution(const ContactResult& contacts) {
   }
   const double mean = sum / weights;
   const double chi2 = std::max(0.0, squares - weights * mean * mean);
+  // The mean's u is widened where the values scatter by more than their u.
   const double birge =
       out.resolved > 1 ? std::max(1.0, chi2 / (out.resolved - 1)) : 1.0;
   out.value = core::Estimate{mean, std::sqrt(birge / weights), std::nullopt};

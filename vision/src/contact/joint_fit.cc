@@ -8,9 +8,12 @@
 namespace touchdown::vision {
 namespace {
 
+// Sign(0) = 1: at face angles where two corners are level the derivative is
+// that of one of them.
 double Sign(double v) { return v < 0.0 ? -1.0 : 1.0; }
 
-// Height of the centre above the lowest point, with its derivatives.
+// Height of the centre above the lowest point, S = a |sin face| + b |cos face|,
+// with its derivatives (a, b: half sides; a sphere has S = radius).
 struct Support {
   double value = 0.0;
   double d_long = 0.0;
@@ -35,7 +38,7 @@ Support ComputeSupport(bool turns, const JointVector& p, double face) {
   return s;
 }
 
-// Which parameters one side of the contact uses.
+// The parameters that one side of the contact uses.
 struct Side {
   JointParameter t, x, vx, vy, face, omega, gravity;
 };
@@ -43,10 +46,12 @@ struct Side {
 Side SideParameters(const JointFit& fit, bool after) {
   if (!after) return {kT, kX, kVx, kVy, kFace, kOmega, kGravity};
   const JointParameter gravity = fit.active[kGravity2] ? kGravity2 : kGravity;
+  // An instant contact shares instant, place and attitude between the flights.
   if (fit.instant) return {kT, kX, kVx2, kVy2, kFace, kOmega2, gravity};
   return {kT2, kX2, kVx2, kVy2, kFace2, kOmega2, gravity};
 }
 
+// A predicted number with its derivatives by all parameters.
 struct Predicted {
   double value = 0.0;
   JointVector d = JointVector::Zero();
@@ -58,6 +63,7 @@ struct PredictedPose {
   Predicted face;
 };
 
+// The model of joint_fit.h at time t (frames after the origin).
 PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
   const JointVector& p = fit.p;
   const double s = t - p[side.t];
@@ -69,6 +75,8 @@ PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
 
   const Support support =
       ComputeSupport(fit.turns, p, fit.turns ? p[side.face] - p[kSlope] : 0.0);
+  // The ground at the contact: level plus slope times the distance from the
+  // line's reference point.
   const double reach = p[side.x] - fit.reference_px;
   Predicted& h = pose.height;
   h.value = p[kGround] + p[kSlope] * reach + support.value + p[side.vy] * s -
@@ -91,6 +99,8 @@ PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
   return pose;
 }
 
+// Gauss-Newton. Each flight alone gives the start values, so that a few steps
+// suffice.
 class Solver {
  public:
   Solver(const PlaneTrack& track, const JointInput& input)
@@ -112,6 +122,9 @@ class Solver {
   double u_gravity_ = 0.0;
 };
 
+// Start values from separate fits of both flights, and which parameters are
+// free: a sphere has no attitude; without a rebound there is no second side;
+// with known gravity one parameter holds for both flights.
 void Solver::Start() {
   fit_.turns = track_.kind == core::BodyKind::kRectangle;
   fit_.instant = input_.instant;
@@ -160,6 +173,8 @@ void Solver::Start() {
   start_ = p;
 }
 
+// Adds one measured number to the normal equations: information += w d d^T,
+// gradient += w r d, chi^2 += w r^2, with w = 1/u^2.
 void Solver::Add(const Predicted& predicted, double measured, double u) {
   const double w = 1.0 / (u * u);
   const double r = measured - predicted.value;
@@ -175,6 +190,9 @@ void Solver::Prior(JointParameter k, double value, double u) {
   Add(predicted, value, u);
 }
 
+// Normal equations at the present parameters: all poses, then the priors of
+// ground, slope, sizes and gravity. A prior counts as a measured number, so
+// that the degrees of freedom do not fall with it.
 void Solver::Accumulate() {
   fit_.information.setZero();
   gradient_.setZero();
@@ -197,11 +215,13 @@ void Solver::Accumulate() {
   };
   add(input_.before, false);
   add(input_.after, true);
-  constexpr double kLeast = 1e-9;  // px: a prior without u holds its parameter
+  // px or rad: a prior without u holds its parameter.
+  constexpr double kMinPriorU = 1e-9;
   const int measured = fit_.degrees;
-  Prior(kGround, input_.ground_px.value, std::max(kLeast, input_.ground_px.u));
-  Prior(kSlope, 0.0, std::max(kLeast, input_.u_slope_rad));
-  const double u_half = std::max(kLeast, track_.u_half_px);
+  Prior(kGround, input_.ground_px.value,
+        std::max(kMinPriorU, input_.ground_px.u));
+  Prior(kSlope, 0.0, std::max(kMinPriorU, input_.u_slope_rad));
+  const double u_half = std::max(kMinPriorU, track_.u_half_px);
   Prior(kHalfLong, start_[kHalfLong], u_half);
   if (fit_.turns) Prior(kHalfShort, start_[kHalfShort], u_half);
   int with_prior = fit_.turns ? 4 : 3;
@@ -220,7 +240,8 @@ void Solver::Accumulate() {
   }
 }
 
-// Solves with each parameter in the unit of its own information.
+// Solves the normal equations with each parameter in the unit of its own
+// information (Jacobi scaling): px, frames and radians then compare.
 std::optional<JointVector> Solve(const JointMatrix& information,
                                  const JointVector& gradient,
                                  JointMatrix* covariance) {
@@ -229,6 +250,9 @@ std::optional<JointVector> Solve(const JointMatrix& information,
   const JointMatrix scaled =
       unit.asDiagonal() * information * unit.asDiagonal();
   const Eigen::LDLT<JointMatrix> factor(scaled);
+  // Smallest pivot of the scaled matrix, whose diagonal is 1: below it the
+  // frames do not determine some combination of parameters. Rounding reaches
+  // 1e-15.
   constexpr double kSingular = 1e-13;
   if (factor.info() != Eigen::Success ||
       !(factor.vectorD().minCoeff() > kSingular)) {
@@ -246,20 +270,24 @@ std::optional<JointVector> Solve(const JointMatrix& information,
 
 std::optional<JointFit> Solver::Run() {
   Start();
-  constexpr int kIterations = 30;
+  // Gauss-Newton steps. A bound: without convergence there is no fit. Not
+  // studied.
+  constexpr int kMaxIterations = 30;
   bool converged = false;
-  for (int i = 0; i < kIterations && !converged; ++i) {
+  for (int i = 0; i < kMaxIterations && !converged; ++i) {
     Accumulate();
     const auto step = Solve(fit_.information, gradient_, nullptr);
     if (!step) return std::nullopt;
-    // Beyond some frames the parabola is not the one that was linearised.
-    constexpr double kLongest = 5.0;  // frames
+    // Frames by which one step may move the touchdown: farther away the
+    // parabola is not the one that was linearised. Not studied.
+    constexpr double kMaxStepFrames = 5.0;
     const double shrink =
-        std::min(1.0, kLongest / std::max(std::abs((*step)[kT]), 1e-300));
+        std::min(1.0, kMaxStepFrames / std::max(std::abs((*step)[kT]), 1e-300));
     fit_.p += shrink * *step;
     const double cost = step->dot(gradient_);
-    constexpr double kNegligible = 1e-10;  // of chi^2
-    converged = std::abs(cost) < kNegligible * (1.0 + fit_.chi2);
+    // Of chi^2: what the last step could still gain, far below any effect on p.
+    constexpr double kNegligibleGain = 1e-10;
+    converged = std::abs(cost) < kNegligibleGain * (1.0 + fit_.chi2);
   }
   if (!converged) return std::nullopt;
   Accumulate();
@@ -271,17 +299,21 @@ std::optional<JointFit> Solver::Run() {
     fit_.covariance.row(k).setZero();
     fit_.covariance.col(k).setZero();
   }
+  // Birge's ratio: residuals that exceed the poses' u widen all u, never narrow
+  // them.
   if (fit_.degrees > 0) {
     fit_.covariance *= std::max(1.0, fit_.chi2 / fit_.degrees);
   }
   return fit_;
 }
 
+// Central differences of any function of the parameters.
 JointVector Gradient(const JointFit& fit, const JointFit::Function& f) {
   JointVector gradient = JointVector::Zero();
   for (int k = 0; k < kJointParameters; ++k) {
     if (!fit.active[k]) continue;
-    // A hundredth of the parameter's own uncertainty.
+    // A hundredth of the parameter's own u: the function is linear over it, and
+    // rounding does not yet show.
     const double step = 0.01 * std::sqrt(fit.covariance(k, k)) + 1e-12;
     JointVector up = fit.p;
     JointVector down = fit.p;
@@ -292,7 +324,9 @@ JointVector Gradient(const JointFit& fit, const JointFit::Function& f) {
   return gradient;
 }
 
-// One side as a Flight about the instant of contact.
+// Writes one side as a Flight about the instant of contact, with its covariance
+// J C J^T. J holds the derivatives of (along, v_t, height, v_n, g, face,
+// omega), at fixed time, by the parameters.
 Flight MakeFlight(const JointFit& fit, const Side& side,
                   std::span<const PlaneSample> samples) {
   Flight flight;
@@ -302,7 +336,8 @@ Flight MakeFlight(const JointFit& fit, const Side& side,
   flight.frames = static_cast<int>(samples.size());
   flight.first_frame = samples.front().frame;
   flight.last_frame = samples.back().frame;
-  // State at the fixed time t0, as functions of the parameters.
+  // The state at the fixed time t0, as functions of the parameters: the
+  // velocity at t0 also depends on T, through gravity.
   Eigen::Matrix<double, 7, kJointParameters> d;
   const PredictedPose pose = PredictPose(fit, side, t);
   d.row(0) = pose.along.d;
@@ -358,7 +393,8 @@ double JointFit::UncertaintyShare(
     const Function& f, std::initializer_list<JointParameter> known) const {
   const JointVector gradient = Gradient(*this, f);
   const double all = gradient.dot(covariance * gradient);
-  // With `known` fixed: the covariance less its regression on them.
+  // The variance explained by `known`, c^T own^-1 c with c = cov(known, f):
+  // what conditioning on them would take away.
   const auto n = static_cast<Eigen::Index>(known.size());
   Eigen::MatrixXd cross(kJointParameters, n);
   Eigen::MatrixXd own(n, n);
@@ -375,6 +411,9 @@ double JointFit::UncertaintyShare(
   return std::sqrt(std::clamp(share, 0.0, all));
 }
 
+// Height of the lowest point above the ground t frames after the origin:
+// support heights at release and then, normal velocity relative to the inclined
+// ground, and the fall.
 double JointFit::ReboundGap(const JointVector& q, double t) const {
   const Side side = SideParameters(*this, true);
   const double s = t - q[side.t];

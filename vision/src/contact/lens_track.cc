@@ -18,6 +18,7 @@ namespace {
 // x, y, angle, long half side (or radius), short half side.
 using ShapeVector = Eigen::Matrix<double, 5, 1>;
 
+// A point of the outline with its outward normal.
 struct RimPoint {
   core::PixelPoint at;
   Eigen::Vector2d normal;
@@ -29,6 +30,8 @@ std::vector<RimPoint> SpreadPoints(core::BodyKind kind, const ShapeVector& s) {
   const double c = std::cos(s[2]);
   const double n = std::sin(s[2]);
   if (kind == core::BodyKind::kSphere) {
+    // A lens's distortion is smooth over a body, so that few points suffice.
+    // Not studied.
     constexpr int kPoints = 32;
     for (int k = 0; k < kPoints; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / kPoints;
@@ -37,10 +40,13 @@ std::vector<RimPoint> SpreadPoints(core::BodyKind kind, const ShapeVector& s) {
     }
     return points;
   }
+  // Points around a rectangle, whose sides are sampled one by one. Not studied.
   constexpr int kAround = 64;
   const double spacing = 4.0 * (s[3] + s[4]) / kAround;
   const auto side = [&](double half, double away, double ax, double ay,
                         double nx, double ny) {
+    // Four points at least on each side: two would not separate its turn from
+    // its place.
     const int count = std::max(4, static_cast<int>(2.0 * half / spacing));
     for (int k = 0; k < count; ++k) {
       const double along = half * (2.0 * (k + 0.5) / count - 1.0);
@@ -97,6 +103,7 @@ std::optional<ShapeVector> DistortedOffset(core::BodyKind kind,
     right += row * off;
   }
   if (sphere) {
+    // A sphere has neither angle nor short side: their rows are held.
     normal(2, 2) = 1.0;
     normal(4, 4) = 1.0;
   }
@@ -106,7 +113,9 @@ std::optional<ShapeVector> DistortedOffset(core::BodyKind kind,
   return solution;
 }
 
-// The ideal outline whose image is `seen`.
+// Finds the ideal outline whose distorted image is `seen`: fixed-point
+// iteration with the lens's jacobian at the centre, which is exact but for the
+// distortion's change across the body.
 std::optional<ShapeVector> FindIdealShape(core::BodyKind kind,
                                           const ShapeVector& seen,
                                           const calib::Lens& lens,
@@ -114,6 +123,7 @@ std::optional<ShapeVector> FindIdealShape(core::BodyKind kind,
   const auto centre = calib::Undistort(lens, {seen[0], seen[1]});
   if (!centre) return std::nullopt;
   jacobian = centre->jacobian;
+  // Mean magnification at the centre: the square root of the change of area.
   const double magnified = std::sqrt(jacobian.determinant());
   const Eigen::Vector2d along =
       jacobian * Eigen::Vector2d(std::cos(seen[2]), std::sin(seen[2]));
@@ -123,15 +133,17 @@ std::optional<ShapeVector> FindIdealShape(core::BodyKind kind,
                                2.0 * std::numbers::pi),
       magnified * seen[3], magnified * seen[4];
   if (kind == core::BodyKind::kSphere) ideal[2] = 0.0;
-  constexpr int kMostSteps = 8;
-  constexpr double kEnough_px = 1e-7;
-  for (int step = 0; step < kMostSteps; ++step) {
+  // A bound only: the loop ends at the limit below. Not studied.
+  constexpr int kMaxSteps = 8;
+  // px: far below any u of a pose.
+  constexpr double kConverged_px = 1e-7;
+  for (int step = 0; step < kMaxSteps; ++step) {
     const auto off = DistortedOffset(kind, ideal, seen, lens);
     if (!off) return std::nullopt;
     ideal.head<2>() -= jacobian * off->head<2>();
     if (kind != core::BodyKind::kSphere) ideal[2] -= (*off)[2];
     ideal.tail<2>() -= magnified * off->tail<2>();
-    if (off->cwiseAbs().maxCoeff() < kEnough_px) break;
+    if (off->cwiseAbs().maxCoeff() < kConverged_px) break;
   }
   if (!ideal.allFinite() || !(ideal[3] > 0.0) || !(ideal[4] > 0.0)) {
     return std::nullopt;
@@ -139,6 +151,7 @@ std::optional<ShapeVector> FindIdealShape(core::BodyKind kind,
   return ideal;
 }
 
+// The outline as it was seen: a sphere's radius stands for both half sides.
 ShapeVector SeenShape(const Track& track, const Pose& pose) {
   const bool sphere = track.body.kind == core::BodyKind::kSphere;
   ShapeVector s;
@@ -174,6 +187,7 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
     p.centre = {(*ideal)[0], (*ideal)[1]};
     Eigen::Matrix2d covariance;
     const double xy = pose.correlation_xy * pose.u_x_px * pose.u_y_px;
+    // Place: C' = J C J^T.
     covariance << pose.u_x_px * pose.u_x_px, xy, xy, pose.u_y_px * pose.u_y_px;
     covariance = j * covariance * j.transpose();
     p.u_x_px = std::sqrt(covariance(0, 0));
@@ -185,6 +199,7 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
       const Eigen::Vector2d along(std::cos(pose.angle_rad),
                                   std::sin(pose.angle_rad));
       p.angle_rad = (*ideal)[2];
+      // A direction e turns by det(J) / |J e|^2 for each radian.
       p.u_angle_rad *= j.determinant() / (j * along).squaredNorm();
     }
     growth_long.push_back((*ideal)[3] / seen[3]);
@@ -212,10 +227,11 @@ Track Undistorted(const Track& track, const calib::Lens& lens) {
   if (!IsSteady(track)) {
     const double common = Median(sizes);
     const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
-    // What remains of a change of size that only the lens made (FollowSize
-    // takes one below 1 % for none, too).
-    constexpr double kMatters = 0.01;
-    const bool steady = (*most - *least) < kMatters * common;
+    // Of the size: a change below it is only the lens's (FollowSize takes one
+    // below 1 % for none, too). Larger: a body that nears the camera is held at
+    // one size.
+    constexpr double kMinSizeChange = 0.01;
+    const bool steady = (*most - *least) < kMinSizeChange * common;
     for (std::size_t i = 0; i < out.poses.size(); ++i) {
       out.poses[i].relative_size = sizes[i] / common;
     }

@@ -11,17 +11,25 @@
 namespace touchdown::vision {
 namespace {
 
+// Cost of what is impossible.
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kTelling = 4;  // frames that tell of a motion of any kind
+// Frames. A parabola has three numbers a coordinate, so that four frames are
+// the fewest that can contradict it. Fewer frames fit any motion.
+constexpr std::size_t kMinFramesToJudge = 4;
 
-// Squares that the best line of a supported stretch's gaps by place leaves,
-// with what is known of its level and slope as precisions.
+// Residual sum of squares of the best line through a supported stretch's gaps
+// by place: min over (a, b) of sum w (gap - a - b x)^2 + prior_level a^2 +
+// prior_slope b^2. The priors are precisions (1/u^2) of a level and a slope of
+// zero: they say how well the ground line is known.
 double RssOfLine(const Moments& gaps, double prior_level, double prior_slope) {
   const double a = gaps.w + prior_level;
   const double c = gaps.tt + prior_slope;
   const double determinant = a * c - gaps.t * gaps.t;
-  constexpr double kLeast = 1e-12;
-  if (!(determinant > kLeast * a * c)) {
+  // Share of the product of the diagonal: rounding alone leaves about 1e-16.
+  // Below it all frames lie at one place, no slope is told, and the level alone
+  // is fitted.
+  constexpr double kSingular = 1e-12;
+  if (!(determinant > kSingular * a * c)) {
     return std::max(0.0, gaps.yy - gaps.y * gaps.y / a);
   }
   const double level = (c * gaps.y - gaps.t * gaps.ty) / determinant;
@@ -29,23 +37,27 @@ double RssOfLine(const Moments& gaps, double prior_level, double prior_slope) {
   return std::max(0.0, gaps.yy - level * gaps.y - slope * gaps.ty);
 }
 
-// A forecast's variance over that of one frame, one frame beyond `n` frames of
-// a straight line.
+// Variance of a straight line's forecast one frame beyond its n equally spaced
+// frames, in units of the variance of one frame: 1/n + (distance from the
+// mean)^2 / (sum of squares about the mean) = 2 (2n + 1) / (n (n - 1)).
 double ForecastVariance(std::size_t n) {
   const auto m = static_cast<double>(n);
   return 2.0 * (2.0 * m + 1.0) / (m * (m - 1.0));
 }
 
-// What the frames before a boundary were.
+// States of the automaton: what the frames before a boundary were. They forbid
+// a path that makes no sense, such as a second flight after one that did not
+// end on the ground.
 enum State : std::size_t {
-  kAtStart,
-  kOnGround,
-  kTouched,
-  kLeft,
-  kEnded,
+  kAtStart,        // no frame yet
+  kBeforeFlights,  // in a hand, say: how the next flight starts is free
+  kTouched,        // the last stretch ended on the ground
+  kInAir,          // a flight ended off the ground: no other flight follows
+  kAfterFlights,   // whatever follows the last flight
   kStates
 };
 
+// The cheapest way to one boundary in one state, and its last stretch.
 struct PathStep {
   double cost = kInfinity;
   std::size_t begin = 0;
@@ -55,6 +67,7 @@ struct PathStep {
   int degrees = 0;
 };
 
+// One motion fitted to one stretch: `rss` in units of u^2.
 struct MotionFit {
   StretchKind kind = StretchKind::kOther;
   int parameters = 0;
@@ -101,11 +114,15 @@ class Segmenter {
   std::size_t least_flight_;  // frames
   int per_frame_;             // numbers measured in a frame
   Each falls_;                // half of gravity, px per frame^2
+  // Schwarz's criterion: (ln N) / 2 for each parameter, ln n for each cut (N
+  // numbers measured, n frames), in units of ln odds.
   double per_parameter_;
   double per_cut_;
   double level_precision_;  // of a supported stretch's level and slope
   double slope_precision_;
   std::vector<bool> allowed_;  // cuts before these samples
+  // best_[b][s]: the cheapest way to explain the samples before boundary b that
+  // ends in state s.
   std::vector<std::array<PathStep, kStates>> best_;  // by boundary
   std::vector<WeightedValues> seen_;
 };
@@ -135,6 +152,8 @@ struct Segmenter::Fits {
   }
 };
 
+// Adds half of gravity times t^2 to each height, so that a flight under known
+// gravity becomes a straight line: its residuals are those of degree 1.
 void Segmenter::Fits::Add(const Segmenter& of) {
   const WeightedValues& s = of.seen_[begin + frames++];
   const Each at = s.at - first.at;
@@ -150,6 +169,9 @@ void Segmenter::Fits::Fit() {
   gaps = sums.SelectSeries(kGap);
 }
 
+// Residuals of the stretch as one kind of motion. On the ground the height is
+// not free: it is the ground line's plus the support height, so that the gap is
+// what must be zero.
 double Segmenter::Fits::ComputeRss(StretchKind kind,
                                    const Segmenter& of) const {
   if (kind == StretchKind::kFlight) {
@@ -159,7 +181,7 @@ double Segmenter::Fits::ComputeRss(StretchKind kind,
   if (kind == StretchKind::kSupported) {
     return x.rss2 + RssOfLine(gaps, 0.0, of.slope_precision_) + f.rss2;
   }
-  return frames < kTelling ? 0.0 : x.rss2 + y.rss2 + f.rss2;
+  return frames < kMinFramesToJudge ? 0.0 : x.rss2 + y.rss2 + f.rss2;
 }
 
 Segmenter::Segmenter(const PlaneTrack& track,
@@ -168,7 +190,7 @@ Segmenter::Segmenter(const PlaneTrack& track,
       options_(options),
       samples_(track.samples),
       turns_(track.kind == core::BodyKind::kRectangle),
-      least_flight_(options.gravity_px_per_s2 ? 2 : kTelling),
+      least_flight_(options.gravity_px_per_s2 ? 2 : kMinFramesToJudge),
       per_frame_(turns_ ? 3 : 2),
       falls_{0.0, 0.5 * options.gravity_px_per_s2.value_or(0.0) *
                       track.frame_interval_s * track.frame_interval_s},
@@ -179,11 +201,15 @@ Segmenter::Segmenter(const PlaneTrack& track,
   const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
   level_precision_ = precision(std::hypot(
       track.ground.u_offset_px, track.u_half_px, options.edge_bias_px));
-  // An edge of the ground seen in perspective differs so much from the line of
-  // contact, at most.
+  // By how much an edge of the ground seen in perspective may differ in
+  // direction from the line of contact. With more, a slow descent passes for
+  // rest; with less, rest along a line that is off is cut into flights. Not
+  // studied.
   constexpr double kInclined_rad = 0.5 * core::kDegree;
   slope_precision_ =
       precision(std::hypot(track.ground.u_angle_rad, kInclined_rad));
+  // The floor of the attitude moves an end of the long side by the floor of
+  // place.
   const double floor_rad = floor_px / std::max(track.half_long_px, 1.0);
   for (const PlaneSample& s : samples_) {
     const auto weight = [](double u, double floor) {
@@ -199,7 +225,8 @@ Segmenter::Segmenter(const PlaneTrack& track,
   }
 }
 
-// Of the flight fitted to the frames so far, at a sample.
+// Gap at sample `at` of the flight fitted to the frames so far: its height less
+// the support height at the attitude that the flight has then.
 double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
   const double t = seen_[at].at[kHeight] - fits.first.at[kHeight];
   double height = fits.first.value[kHeight];
@@ -213,8 +240,10 @@ double Segmenter::FlightGap(const Fits& fits, std::size_t at) const {
   return height - SupportHeight(track_, face);
 }
 
-// What it costs that the gap is `above` zero (or below) by more than the line
-// and the forecast are known to.
+// Cost of a gap that is `above` zero (or below it, with the sign turned), in
+// units of ln odds: half of its square over the variance of line, tilt and
+// forecast, at most `most`. The bound keeps one end off the line from buying a
+// whole path of unknown motion.
 double Segmenter::OffGround(double above, std::size_t at, std::size_t frames,
                             double most) const {
   if (!(above > 0.0)) return 0.0;
@@ -224,6 +253,8 @@ double Segmenter::OffGround(double above, std::size_t at, std::size_t frames,
   return std::min(most, 0.5 * above * above / variance);
 }
 
+// A flight leaves the ground between the frame before it and its first: its gap
+// is not above zero in the one and not below zero in the other.
 double Segmenter::StartCost(const Fits& fits) const {
   const std::size_t begin = fits.begin;
   if (begin == 0) return 0.0;
@@ -232,6 +263,7 @@ double Segmenter::StartCost(const Fits& fits) const {
          OffGround(-FlightGap(fits, begin), begin, fits.frames, most);
 }
 
+// A flight meets the ground between its last frame and the next.
 double Segmenter::EndCost(const Fits& fits) const {
   const std::size_t end = fits.end();
   const double most = options_.off_line_cost;
@@ -241,8 +273,9 @@ double Segmenter::EndCost(const Fits& fits) const {
   return last + OffGround(FlightGap(fits, end), end, fits.frames, most);
 }
 
-// The frames of `fits` as one stretch after `from`, before `to`. `ends`: what
-// its start and its end cost.
+// Takes the frames of `fits` as one stretch that leads from state `from` to
+// state `to`, if that is cheaper than what leads there already. `ends`: cost of
+// its start and its end.
 void Segmenter::Offer(const Fits& fits, const MotionFit& motion, State from,
                       State to, double ends) {
   const PathStep& before = best_[fits.begin][from];
@@ -262,40 +295,48 @@ bool Segmenter::MayTouch(std::size_t end) const {
   return !options_.touchdown || end >= *options_.touchdown;
 }
 
-// The last frame alone may have left the ground.
+// One frame at the end of the film may be a flight of its own: the last frame
+// alone may have left the ground.
 void Segmenter::OfferFlight(const Fits& fits) {
   const bool tail =
       fits.frames == 1 && fits.begin > 0 && fits.end() == samples_.size();
   if (fits.frames < least_flight_ && !tail) return;
   const int values = static_cast<int>(fits.frames) * per_frame_;
+  // Place and velocity for each coordinate; the curvature only where gravity is
+  // not known.
   const int free = 2 * per_frame_ + (options_.gravity_px_per_s2 ? 0 : 1);
   const MotionFit flight =
       fits.As(StretchKind::kFlight, std::min(values, free), *this);
   const double ending = tail ? 0.0 : EndCost(fits);
-  for (const State from : {kAtStart, kOnGround, kTouched}) {
+  for (const State from : {kAtStart, kBeforeFlights, kTouched}) {
     double starting = from == kAtStart ? 0.0 : options_.rebound_cost;
     if (from == kTouched && !tail) starting += StartCost(fits);
     if (MayTouch(fits.end())) {
       Offer(fits, flight, from, kTouched, starting + ending);
     }
-    Offer(fits, flight, from, kLeft, starting);
+    Offer(fits, flight, from, kInAir, starting);
   }
 }
 
 // On the ground: one line of gaps, whose level and slope the ground line
 // foretells. Another level costs no more than a flight that ends off it.
 void Segmenter::OfferSupport(const Fits& fits) {
-  constexpr std::size_t kLeastSupported = 3;
+  // Frames. Two frames cannot show that the gap stays the same. Only the end of
+  // the film may leave fewer.
+  constexpr std::size_t kMinSupportedFrames = 3;
   const bool last = fits.begin > 0 && fits.end() == samples_.size();
-  if ((fits.frames < kLeastSupported && !last) || !MayTouch(fits.begin)) return;
+  if ((fits.frames < kMinSupportedFrames && !last) || !MayTouch(fits.begin))
+    return;
   const double off =
       std::min(options_.off_line_cost,
                0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
                       RssOfLine(fits.gaps, 0.0, slope_precision_)));
+  // Along the ground it may accelerate (three numbers), and so may its
+  // attitude; the level of the gap is one more.
   const int along = static_cast<int>(std::min<std::size_t>(fits.frames, 3));
   const MotionFit down = fits.As(StretchKind::kSupported,
                                  turns_ ? 1 + 2 * along : 1 + along, *this);
-  for (const State from : {kAtStart, kOnGround, kTouched}) {
+  for (const State from : {kAtStart, kBeforeFlights, kTouched}) {
     Offer(fits, down, from, kTouched, off);
   }
 }
@@ -306,19 +347,21 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
   const std::size_t n = fits.frames;
   const int k = static_cast<int>(std::min<std::size_t>(n, 3)) * per_frame_;
   const MotionFit any = fits.As(StretchKind::kOther, k, *this);
-  // No motion that is known: mostly it is one, badly seen. A few frames tell of
-  // none, but those after an impact would be a rebound.
+  // A stretch of unknown motion mostly is one that is known, badly seen: it
+  // costs much. A few frames say nothing of their motion and cost two cuts.
+  // After an impact they cost a rebound more, because they would be one.
   const double few = 2.0 * per_cut_;
-  const bool told = n >= kTelling;
+  const bool told = n >= kMinFramesToJudge;
   const double before = told ? options_.unknown_cost : few;
   const double after =
       told ? options_.unknown_cost : few + options_.rebound_cost;
   const auto offer_other = [&](State from, State to, double ends) {
     Offer(fits, any, from, to, ends);
   };
-  // Twice as for a rebound: where the line is not known, or is not quite where
-  // the flights meet, it could stand for one.
-  // What is pressed down gives way by less than half of its size.
+  // A contact that lasts. What is pressed down gives way by less than half of
+  // its size. It costs twice as much as a rebound: where the line is not known,
+  // or is not quite where the flights meet, a contact could stand for one
+  // impact.
   if (fits.highest_px - fits.lowest_px < track_.half_short_px) {
     const double above = fits.gaps.y / fits.gaps.w;
     Offer(fits, {StretchKind::kContact, k, any.rss}, kTouched, kTouched,
@@ -326,18 +369,19 @@ void Segmenter::OfferAnyMotion(const Fits& fits) {
                                                   std::max<std::size_t>(n, 2),
                                                   kInfinity));
   }
-  offer_other(kAtStart, kOnGround, before);
-  if (told) offer_other(kOnGround, kOnGround, before);
+  offer_other(kAtStart, kBeforeFlights, before);
+  if (told) offer_other(kBeforeFlights, kBeforeFlights, before);
   if (!MayTouch(fits.begin)) return;
-  offer_other(kTouched, kEnded, after);
-  offer_other(kLeft, kEnded, after);
-  if (told) offer_other(kEnded, kEnded, after);
+  offer_other(kTouched, kAfterFlights, after);
+  offer_other(kInAir, kAfterFlights, after);
+  if (told) offer_other(kAfterFlights, kAfterFlights, after);
 }
 
 void Segmenter::GrowStretches(std::size_t begin) {
   double least = kInfinity;
   for (const PathStep& step : best_[begin]) least = std::min(least, step.cost);
   if (!(least < kInfinity)) return;
+  // No stretch may span the touchdown that a person states.
   const bool early = options_.touchdown && begin < *options_.touchdown;
   const std::size_t limit = early ? *options_.touchdown : samples_.size();
   Fits fits(*this, begin);
@@ -353,11 +397,13 @@ void Segmenter::GrowStretches(std::size_t begin) {
     // later frames only make worse, has lost to what leads there already.
     const double loosest = 0.5 * (fits.x.rss2 + fits.y.rss2 + fits.f.rss2);
     double leads = kInfinity;
-    for (const State state : {kOnGround, kTouched, kEnded}) {
+    for (const State state : {kBeforeFlights, kTouched, kAfterFlights}) {
       leads = std::min(leads, best_[end][state].cost);
     }
-    constexpr double kMargin = 80.0;  // end terms that may still be saved
-    if (least + loosest > leads + kMargin) return;
+    // ln odds. A later stretch may still save two end terms (off_line_cost
+    // each) and some cuts. More costs time only; less may prune the best path.
+    constexpr double kPruningMargin = 80.0;
+    if (least + loosest > leads + kPruningMargin) return;
   }
 }
 
@@ -375,7 +421,10 @@ double Segmenter::ComputeCost(const Stretch& stretch,
 }
 
 void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
-  constexpr int kReach = 3;  // frames
+  // Frames. The floor of u blurs where a cut lies; without the floor it is
+  // sought again within so many frames. More costs time, and may move a cut
+  // across a short stretch. Not studied.
+  constexpr int kMaxShift = 3;
   for (std::size_t k = 0; k + 1 < stretches.size(); ++k) {
     Stretch& a = stretches[k];
     Stretch& b = stretches[k + 1];
@@ -387,10 +436,10 @@ void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
     }
     std::size_t best = b.begin;
     double best_cost = kInfinity;
-    for (int shift = -kReach; shift <= kReach; ++shift) {
+    for (int shift = -kMaxShift; shift <= kMaxShift; ++shift) {
       const std::size_t cut =
           b.begin + static_cast<std::size_t>(shift);  // wraps: beyond an end
-      if (cut < a.begin + least_flight_ || cut > a.end + kReach ||
+      if (cut < a.begin + least_flight_ || cut > a.end + kMaxShift ||
           cut + least_flight_ > b.end) {
         continue;
       }
@@ -413,16 +462,21 @@ std::vector<Stretch> Segmenter::Run() {
   if (n < 2) return {};
   // Cuts at every few frames first; then at every frame beside those found,
   // until they stay. What a coarse cut cannot explain asks for cuts beside it.
-  constexpr std::size_t kExact = 120;  // boundaries: about a millisecond
-  const std::size_t step = (n + kExact - 1) / kExact;
+  // Boundaries. Up to so many frames each frame may be a cut, which takes about
+  // a millisecond; the time grows with the square of this number. Coarse to
+  // fine takes some milliseconds for 600 frames.
+  constexpr std::size_t kMaxCoarseCuts = 120;
+  const std::size_t step = (n + kMaxCoarseCuts - 1) / kMaxCoarseCuts;
   std::vector<bool> grid(n + 1, false);
   for (std::size_t i = 0; i <= n; i += step) grid[i] = true;
   grid[n] = true;
   if (options_.touchdown) grid[*options_.touchdown] = true;
   allowed_ = grid;
   std::vector<Stretch> stretches = BestPath();
-  constexpr int kRounds = 4;
-  for (int round = 0; round < kRounds && step > 1; ++round) {
+  // A bound on time only: the cuts found last stand if it is reached. Not
+  // studied.
+  constexpr int kMaxRefinements = 4;
+  for (int round = 0; round < kMaxRefinements && step > 1; ++round) {
     const std::vector<bool> before = allowed_;
     for (const Stretch& stretch : stretches) {
       const std::size_t reach = 2 * step;
@@ -437,6 +491,9 @@ std::vector<Stretch> Segmenter::Run() {
   return stretches;
 }
 
+// Dynamic programming over boundaries (Jackson et al. 2005): each boundary
+// offers all stretches that begin there, then the path is read backwards from
+// the cheapest state at the end.
 std::vector<Stretch> Segmenter::BestPath() {
   const std::size_t n = samples_.size();
   best_.assign(n + 1, {});
@@ -445,7 +502,7 @@ std::vector<Stretch> Segmenter::BestPath() {
     if (allowed_[begin]) GrowStretches(begin);
   }
   State state = kTouched;
-  for (const State other : {kOnGround, kLeft, kEnded}) {
+  for (const State other : {kBeforeFlights, kInAir, kAfterFlights}) {
     if (best_[n][other].cost < best_[n][state].cost) state = other;
   }
   std::vector<Stretch> stretches;

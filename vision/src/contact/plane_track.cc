@@ -25,6 +25,7 @@ Turned TurnedTrack(const Track& track, const calib::GroundLine& ground,
   // Image directions of the plane's horizontal; y points down.
   const Eigen::Vector2d right = view.along;
   const Eigen::Vector2d down = -view.up;
+  // Any two points give the line; 100 px apart no digit is lost.
   out.ground.p1 = {ground.reference.x_px - 100.0 * right.x(),
                    ground.reference.y_px - 100.0 * right.y()};
   out.ground.p2 = {ground.reference.x_px + 100.0 * right.x(),
@@ -44,6 +45,7 @@ Turned TurnedTrack(const Track& track, const calib::GroundLine& ground,
                    ground.reference.y_px + centre.y()};
     Eigen::Matrix2d covariance;
     const double xy = pose.correlation_xy * pose.u_x_px * pose.u_y_px;
+    // Place: C' = J C J^T, with the jacobian of the change of view.
     covariance << pose.u_x_px * pose.u_x_px, xy, xy, pose.u_y_px * pose.u_y_px;
     covariance = j * covariance * j.transpose();
     pose.u_x_px = std::sqrt(covariance(0, 0));
@@ -63,6 +65,7 @@ Turned TurnedTrack(const Track& track, const calib::GroundLine& ground,
     const double turned = std::atan2(along.y(), along.x());
     pose.angle_rad +=
         std::remainder(turned - pose.angle_rad, 2.0 * std::numbers::pi);
+    // A direction e turns by det(J) / |J e|^2 for each radian.
     pose.u_angle_rad *= j.determinant() / along.squaredNorm();
   }
   // The common size is a mean over the frames.
@@ -84,6 +87,9 @@ Turned TurnedTrack(const Track& track, const calib::GroundLine& ground,
   return out;
 }
 
+// The track in the plane's coordinates for a camera that looks straight at it:
+// a rotation by the line's angle, with y turned upward, and x' in the direction
+// of travel.
 PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   PlaneTrack plane;
   plane.kind = track.body.kind;
@@ -98,6 +104,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   plane.u_common_px = track.body.u_common_px;
   plane.u_common_face_rad = track.body.u_common_angle_rad;
   plane.is_predicted = track.is_predicted;
+  // Of a body that was followed in part, the whole size is known from
+  // elsewhere.
   plane.size_px = std::fmax(2.0 * plane.half_long_px, track.body.whole_px);
   plane.frame_interval_s = track.frame_interval_s;
   plane.last_frame = track.last_frame;
@@ -105,6 +113,7 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   if (track.poses.empty()) return plane;
 
   const double ground_angle = calib::ImageAngle(ground);
+  // x' points in the direction of travel, from the first pose to the last.
   const double displacement =
       calib::PositionOnLine(ground, track.poses.back().centre) -
       calib::PositionOnLine(ground, track.poses.front().centre);
@@ -122,6 +131,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
     const double xx = pose.u_x_px * pose.u_x_px;
     const double yy = pose.u_y_px * pose.u_y_px;
     const double xy = pose.correlation_xy * pose.u_x_px * pose.u_y_px;
+    // Variances along and across the line, with the correlation of x and y.
+    // Rounding may make a tiny variance negative.
     s.u_along_px = std::sqrt(std::fmax(
         0.0,
         cosine * cosine * xx + 2.0 * cosine * sine * xy + sine * sine * yy));
@@ -140,7 +151,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
         }
       }
       s.face_rad += turn;
-      // Where the angle was held, its u is what the centre's moves an end by.
+      // Where the angle was held, its u is what an error of the centre moves an
+      // end of the long side by.
       s.u_face_rad = pose.u_angle_rad > 0.0
                          ? pose.u_angle_rad
                          : std::hypot(pose.u_x_px, pose.u_y_px) /
@@ -161,6 +173,9 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
 PlaneTrack SeenFromGround(const Track& track, const calib::GroundLine& ground,
                           const std::optional<PlaneYaw>& yaw) {
   if (!yaw || track.poses.empty()) return SeenStraight(track, ground);
+  // The turned plane is first seen as if from straight ahead; the ground line
+  // of the picture stays with the result, since ToImage goes back through the
+  // yaw.
   const YawedView view = MakeYawedView(ground, *yaw);
   const Turned turned = TurnedTrack(track, ground, view);
   PlaneTrack plane = SeenStraight(turned.track, turned.ground);
@@ -188,6 +203,7 @@ core::PixelPoint ToImage(const PlaneTrack& track, double along_px,
 
 double SupportHeight(const PlaneTrack& track, double face_rad) {
   if (track.kind == core::BodyKind::kSphere) return track.half_long_px;
+  // S = a |sin face| + b |cos face|.
   return track.half_long_px * std::abs(std::sin(face_rad)) +
          track.half_short_px * std::abs(std::cos(face_rad));
 }
@@ -197,7 +213,8 @@ double LowestPointOffset(const PlaneTrack& track, double face_rad) {
   const double s = std::sin(face_rad);
   const double c = std::cos(face_rad);
   if (s == 0.0 || c == 0.0) return 0.0;
-  // The corner -sgn(s) a e1 - sgn(c) b e2 with e1 = (c, s), e2 = (-s, c).
+  // The lowest corner is -sgn(s) a e1 - sgn(c) b e2 with e1 = (c, s), e2 = (-s,
+  // c); this is its x'. On a face no corner is the lowest, and the offset is 0.
   return -std::copysign(track.half_long_px, s) * c +
          std::copysign(track.half_short_px, c) * s;
 }

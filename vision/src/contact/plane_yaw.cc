@@ -10,6 +10,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Image coordinates from the optical axis, along the level direction and up.
 Eigen::Vector2d FromAxis(const YawedView& view, core::PixelPoint p) {
   const Eigen::Vector2d off(p.x_px - view.axis.x_px, p.y_px - view.axis.y_px);
   return {view.along.dot(off), view.up.dot(off)};
@@ -18,8 +19,10 @@ Eigen::Vector2d FromAxis(const YawedView& view, core::PixelPoint p) {
 }  // namespace
 
 YawedView MakeYawedView(const calib::GroundLine& ground, const PlaneYaw& yaw) {
-  constexpr double kMost_rad = 60.0 * core::kDegree;
-  if (!(std::abs(yaw.yaw_rad) < kMost_rad)) {
+  // Beyond it the plane is seen at half of its length or less; a camera stands
+  // so only by mistake. Not studied.
+  constexpr double kMaxYaw_rad = 60.0 * core::kDegree;
+  if (!(std::abs(yaw.yaw_rad) < kMaxYaw_rad)) {
     throw std::invalid_argument(fmt::format(
         "yaw is {:g} deg, must be within 60", yaw.yaw_rad / core::kDegree));
   }
@@ -37,8 +40,9 @@ YawedView MakeYawedView(const calib::GroundLine& ground, const PlaneYaw& yaw) {
   double angle_rad = seen_rad;
   // A level line of the plane, Y D = const, is seen inclined by atan(k Y D /
   // cos(yaw)); each step gains the digits of k Y.
-  constexpr int kSteps = 40;
-  for (int step = 0; step < kSteps; ++step) {
+  // A bound only: the loop ends when the angle stays the same.
+  constexpr int kMaxSteps = 40;
+  for (int step = 0; step < kMaxSteps; ++step) {
     view.along = {std::cos(angle_rad), std::sin(angle_rad)};
     view.up = {std::sin(angle_rad), -std::cos(angle_rad)};
     const Eigen::Vector2d at = FromAxis(view, ground.reference);
@@ -59,6 +63,10 @@ YawedView MakeYawedView(const calib::GroundLine& ground, const PlaneYaw& yaw) {
   return view;
 }
 
+// Projective map of a plane turned by the yaw about the vertical: with c =
+// cos(yaw), k = sin(yaw)/f and image coordinates (x, y) from the axis, X = x /
+// (c - k x), depth D = c / (c - k x), Y = y D. Distances are divided by the
+// depth at the reference point, where one px of the plane is one px.
 InPlane ToPlane(const YawedView& view, core::PixelPoint image) {
   const Eigen::Vector2d p = FromAxis(view, image);
   const double towards = view.cosine - view.k_per_px * p.x();
@@ -69,6 +77,7 @@ InPlane ToPlane(const YawedView& view, core::PixelPoint image) {
   out.right_px = (right - view.reference_px) / d;
   out.height_px = (p.y() * depth - view.ground_px) / d;
   out.depth = depth / d;
+  // dX/dx = c / (c - k x)^2; dY/dx = y k times the same.
   const double stretch = view.cosine / (towards * towards);
   Eigen::Matrix2d to_axis;
   to_axis.row(0) = view.along;
@@ -79,6 +88,7 @@ InPlane ToPlane(const YawedView& view, core::PixelPoint image) {
   return out;
 }
 
+// The inverse of ToPlane: x = X c / (1 + k X), y = Y / (1 + k X).
 core::PixelPoint FromPlane(const YawedView& view, double right_px,
                            double height_px) {
   const double d = view.reference_depth;

@@ -13,11 +13,13 @@
 namespace touchdown::vision {
 namespace {
 
-// An edge of the ground seen in perspective differs from the contact line by so
-// much; more is another line, or none.
-constexpr double kMostInclined_rad = 1.0 * core::kDegree;
+// By how much an edge of the ground seen in perspective may differ in direction
+// from the line of contact; more is another line, or none. Larger: the path of
+// a body in flight passes for the ground. Not studied.
+constexpr double kMaxInclination_rad = 1.0 * core::kDegree;
 
-// Robust line or parabola (Tukey's weights) of v on x, which lies within -1..1.
+// Robust line or parabola of v on x, which lies within -1..1: iteratively
+// reweighted least squares with Tukey's weights (1 - (r/c)^2)^2.
 struct RobustFit {
   Polynomial terms;
   bool bent = false;
@@ -31,6 +33,8 @@ struct RobustFit {
 
 RobustFit FitRobustly(const std::vector<double>& x,
                       const std::vector<double>& v, bool bent) {
+  // Reweighting converges linearly: the last rounds change a fit by less than
+  // its u. More cost time only. Not studied.
   constexpr int kRounds = 15;
   RobustFit fit;
   fit.terms.level = Median(v);
@@ -47,6 +51,8 @@ RobustFit FitRobustly(const std::vector<double>& x,
     for (std::size_t i = 0; i < v.size(); ++i) {
       const double t = std::min(1.0, off[i] / cut);
       sums.Add(x[i], v[i], (1.0 - t * t) * (1.0 - t * t));
+      // Squares are bounded at the cut, so that outliers do not decide between
+      // line and parabola.
       fit.square += t * t * cut * cut;
     }
     fit.terms = Polynomial(sums);
@@ -84,15 +90,20 @@ struct Path {
     across = FitRobustly(time, off, true);
   }
 
-  // What carries a body leaves so much of its fall beside the acceleration
-  // along the ground, at most, and what noise makes of none.
+  // Whether the ground (or a ramp) carries the body: a body in flight
+  // accelerates across its path, a carried one along it. Of its acceleration
+  // along the path so much remains across it at most, or what noise makes of
+  // none.
   bool IsCarried() const {
-    constexpr double kCarried = 0.1;
-    constexpr double kNoise = 3.0;  // standard deviations
+    // Share of the acceleration along. Larger: a flat flight passes for a
+    // slide; smaller: a bent line refutes a real one. Not studied.
+    constexpr double kMaxShareAcross = 0.1;
+    // Standard deviations. Chosen by the normal distribution.
+    constexpr double kNoiseSigmas = 3.0;
     return along.good() && across.good() &&
            std::abs(across.terms.bend) <
-               std::max(kCarried * std::abs(along.terms.bend),
-                        kNoise * across.u_bend());
+               std::max(kMaxShareAcross * std::abs(along.terms.bend),
+                        kNoiseSigmas * across.u_bend());
   }
 
   double middle_px = 0.0;
@@ -102,25 +113,30 @@ struct Path {
   RobustFit along, across;  // of the line by time, in half paths
 };
 
+// Whether the path is bent as a lens without calibration bends a line: the bend
+// is small, the body is carried, and a parabola is far likelier than a line.
 bool AsksForBend(const PlaneTrack& track, const Path& path,
                  const RobustFit& bent) {
+  // A line that was stated or calibrated is straight.
   if (track.ground.source != calib::GroundSource::kContactPoints &&
       track.ground.source != calib::GroundSource::kDetected) {
     return false;
   }
-  // Barrel and pincushion of ordinary lenses bend a line by up to 1 %.
-  constexpr double kMostBend = 0.01;
+  // Of the path's length: barrel and pincushion of ordinary lenses bend a line
+  // by up to 1 %. Larger: a hop passes for a lens.
+  constexpr double kMaxBend = 0.01;
   if (!bent.good() ||
-      std::abs(bent.terms.bend) > kMostBend * 2.0 * path.half_px) {
+      std::abs(bent.terms.bend) > kMaxBend * 2.0 * path.half_px) {
     return false;
   }
-  // Positive evidence begins at 2, strong at 6 (Kass and Raftery 1995).
-  constexpr double kStrong = 6.0;
+  // Of twice the ln odds (here the change of n ln square less ln n): positive
+  // evidence begins at 2, strong at 6 (Kass and Raftery 1995).
+  constexpr double kStrongEvidence = 6.0;
   const auto n = static_cast<double>(path.gap.size());
   const double gain =
       n * std::log(path.line.square / std::max(bent.square, 1e-300)) -
       std::log(n);
-  return gain > kStrong && path.IsCarried();
+  return gain > kStrongEvidence && path.IsCarried();
 }
 
 // The middle of some poses.
@@ -136,9 +152,11 @@ core::PixelPoint MeanCentre(std::span<const Pose> poses) {
 }  // namespace
 
 std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
-  constexpr std::size_t kLeast = 8;
+  // Frames: enough for two parabolas of the path and a robust scatter. Not
+  // studied.
+  constexpr std::size_t kMinPoses = 8;
   const std::size_t n = track.poses.size();
-  if (n < kLeast) return std::nullopt;
+  if (n < kMinPoses) return std::nullopt;
   // Roughly: from the middle of the first third to that of the last.
   const std::span<const Pose> poses(track.poses);
   core::PixelPoint from = MeanCentre(poses.first(n / 3));
@@ -149,23 +167,28 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
   const bool sphere = track.body.kind == core::BodyKind::kSphere;
   const core::Estimate& half =
       sphere ? track.body.radius_px : track.body.half_long_px;
+  // A body that moves by less than its own size tells of no path.
   if (!(std::hypot(run_px, rise_px) > 2.0 * half.value)) return std::nullopt;
-  // Flight would accelerate down the picture.
-  constexpr double kRolled_rad = 15.0 * core::kDegree;
+  // How far the camera may be rolled: within it of the vertical the
+  // acceleration along the path may be gravity's, and flight cannot be told
+  // from a steep ramp. Larger refuses steep ramps. Not studied.
+  constexpr double kMaxRoll_rad = 15.0 * core::kDegree;
   const double to_vertical = std::atan2(run_px, rise_px);
-  if (to_vertical < kRolled_rad) return std::nullopt;
+  if (to_vertical < kMaxRoll_rad) return std::nullopt;
   const PlaneTrack plane =
       SeenFromGround(track, calib::MakeGroundLine(from, to));
   const Path path(plane);
   if (!path.line.good() || !path.IsCarried()) return std::nullopt;
   // As flight, an acceleration along the path would show as much across it as
   // the vertical lies across it; that must be clear of its own uncertainty.
-  constexpr double kClear = 5.0;
+  // Standard deviations: a ground found by mistake turns every angle, so that
+  // the limit is higher than for a warning. Not studied.
+  constexpr double kClearSigmas = 5.0;
   const double along = std::abs(path.along.terms.bend);
   const double as_flight =
-      along * std::abs(std::tan(to_vertical - kRolled_rad));
-  if (along < kClear * path.along.u_bend() ||
-      as_flight < kClear * path.across.u_bend()) {
+      along * std::abs(std::tan(to_vertical - kMaxRoll_rad));
+  if (along < kClearSigmas * path.along.u_bend() ||
+      as_flight < kClearSigmas * path.across.u_bend()) {
     return std::nullopt;
   }
   const auto at = [&](double place) {
@@ -177,11 +200,16 @@ std::optional<calib::GroundLine> GroundFromPath(const Track& track) {
                                : calib::MakeGroundLine(at(1.0), at(-1.0), 0.0);
   line.reference = at(0.0);
   line.source = calib::GroundSource::kContactPoints;
-  constexpr double kCounting = 0.25;
-  const double count = std::max(2.0, kCounting * static_cast<double>(n));
+  // Share of the poses that count as independent: neighbours have much of their
+  // error in common. Not studied.
+  constexpr double kIndependentShare = 0.25;
+  const double count =
+      std::max(2.0, kIndependentShare * static_cast<double>(n));
   const double scatter = path.line.scatter;
   const double u_size = sphere ? half.u : track.body.half_short_px.u;
   line.u_offset_px = std::hypot(scatter / std::sqrt(count), u_size);
+  // Slope of a line through points spread evenly over a length L: u = s
+  // sqrt(12/n) / L.
   line.u_angle_rad = scatter * std::sqrt(12.0 / count) / (2.0 * path.half_px);
   return line;
 }
@@ -198,8 +226,10 @@ PathTrend TakeOutTrend(PlaneTrack& track) {
     trend.bend_px = -bent.terms.bend;
   }
   trend.slope_rad = 0.5 * (fit.At(1.0) - fit.At(-1.0)) / path.half_px;
-  if (std::abs(trend.slope_rad) > kMostInclined_rad) return {};
+  if (std::abs(trend.slope_rad) > kMaxInclination_rad) return {};
   for (std::size_t i = 0; i < track.samples.size(); ++i) {
+    // The level at the middle of the path stays: only slope and bend are taken
+    // out.
     const double off = fit.At(path.place[i]) - fit.At(0.0);
     track.samples[i].gap_px -= off;
     track.samples[i].height_px -= off;

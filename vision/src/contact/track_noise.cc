@@ -11,6 +11,8 @@
 namespace touchdown::vision {
 namespace {
 
+// |x(i) - 3 x(i-m) + 3 x(i-2m) - x(i-3m)| for lag m: blind to any parabola,
+// thus to free flight. Only where no frame is missing between them.
 std::vector<double> ThirdDifferences(const std::vector<PlaneSample>& samples,
                                      double PlaneSample::*value,
                                      std::size_t lag) {
@@ -25,13 +27,16 @@ std::vector<double> ThirdDifferences(const std::vector<PlaneSample>& samples,
   return differences;
 }
 
-// Standard deviation of one pose's noise, from differences of poses `lag`
-// frames apart: what neighbours have in common shows at the longer lags.
+// Standard deviation of one pose's noise from its third differences: their
+// variance is 1 + 9 + 9 + 1 = 20 times a pose's. What neighbours have in common
+// shows at the longer lags.
 double PoseNoise(std::vector<double>& d) {
-  // An impact spoils three differences of neighbours: in short tracks too many
-  // for the median.
-  constexpr std::size_t kMany = 12;
-  const bool many = d.size() >= kMany;
+  // Differences. An impact spoils three differences of neighbours: in a short
+  // track that is too many for the median, and the lower third is taken. Not
+  // studied.
+  constexpr std::size_t kMinForMedian = 12;
+  const bool many = d.size() >= kMinForMedian;
+  // |normal| lies below 0.674 with probability 1/2, below 0.431 with 1/3.
   const double quantile = many ? 0.6744898 : 0.4307273;  // of |normal|
   const auto at =
       d.begin() + static_cast<std::ptrdiff_t>(d.size() / (many ? 2 : 3));
@@ -39,26 +44,32 @@ double PoseNoise(std::vector<double>& d) {
   return *at / quantile / std::sqrt(20.0);
 }
 
-// Returns the excess.
+// Widens the claims `u` of one coordinate to its scatter. Returns the excess as
+// a standard deviation of one pose.
 double WidenToNoise(std::vector<PlaneSample>& samples,
                     double PlaneSample::*value, double PlaneSample::*u) {
   std::vector<double> claims;
   claims.reserve(samples.size());
   for (const PlaneSample& s : samples) claims.push_back(s.*u);
-  constexpr double kLeastClaim = 1e-9;
-  const double claim = std::max(Median(std::move(claims)), kLeastClaim);
+  // px or rad: claims of zero have no ratio.
+  constexpr double kMinClaim = 1e-9;
+  const double claim = std::max(Median(std::move(claims)), kMinClaim);
   double factor = 1.0;
   double neighbours = 0.0;
-  // An impact spoils three differences for each frame of the lag: here a tenth
-  // of all, so that the median still tells beside a few impacts.
-  constexpr std::size_t kShare = 30;
-  constexpr std::size_t kLongest = 4;
+  // Samples for each frame of the lag. An impact spoils three differences for
+  // each frame of the lag: here a tenth of all, so that the median still tells
+  // beside a few impacts. Fewer see farther, but take impacts for noise.
+  constexpr std::size_t kSamplesPerLag = 30;
+  // Frames. More sees slower drifts, and takes more of a path's own bends for
+  // noise. Not studied.
+  constexpr std::size_t kMaxLag = 4;
   const std::size_t longest =
-      std::clamp<std::size_t>(samples.size() / kShare, 1, kLongest);
+      std::clamp<std::size_t>(samples.size() / kSamplesPerLag, 1, kMaxLag);
   for (std::size_t lag = 1; lag <= longest; lag *= 2) {
     std::vector<double> d = ThirdDifferences(samples, value, lag);
-    constexpr std::size_t kLeast = 5;
-    if (d.size() < kLeast) break;
+    // Differences: fewer have no median worth the name. Not studied.
+    constexpr std::size_t kMinDifferences = 5;
+    if (d.size() < kMinDifferences) break;
     const double ratio = PoseNoise(d) / claim;
     // An excess within the scatter's own uncertainty is none. Third differences
     // overlap, so that the relative uncertainty of their median is 1.8/sqrt(n),
@@ -68,8 +79,10 @@ double WidenToNoise(std::vector<PlaneSample>& samples,
         static_cast<double>(d.size()) / static_cast<double>(lag);
     // Neighbours share most of a drift; what differs by more over some frames
     // is the path's own: of a body that bounces every few frames.
-    constexpr double kMostDrift = 4.0;  // times what neighbours differ by
-    if (lag > 1 && ratio > kMostDrift * std::max(1.0, neighbours)) break;
+    // In units of what neighbours differ by. Larger: bounces widen u; smaller:
+    // a slow drift of the poses is missed. Not studied.
+    constexpr double kMaxDriftRatio = 4.0;
+    if (lag > 1 && ratio > kMaxDriftRatio * std::max(1.0, neighbours)) break;
     if (lag == 1) neighbours = ratio;
     if (ratio > 1.0 + 4.0 / std::sqrt(many)) factor = std::max(factor, ratio);
   }
@@ -96,12 +109,14 @@ double ComputeInflation(const std::vector<std::vector<double>>& runs,
   // together.
   const double noise = 4.0 / std::sqrt(static_cast<double>(n));
   double alike = 1.0;
-  constexpr std::size_t kShare = 3;  // lags beyond a third of a run: noise
+  // A run tells of lags up to a third of its length; beyond, too few products
+  // are left and the sum takes noise for correlation. Not studied.
+  constexpr std::size_t kRunPerLag = 3;
   for (std::size_t lag = 1;; ++lag) {
     double product = 0.0;
     bool any = false;
     for (const auto& run : runs) {
-      if (kShare * lag > run.size()) continue;
+      if (kRunPerLag * lag > run.size()) continue;
       any = true;
       for (std::size_t i = lag; i < run.size(); ++i) {
         product += run[i] * run[i - lag];
@@ -120,10 +135,13 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
   int flat_degrees = 0;  // of a straight line
   int bent_degrees = 0;  // of a parabola
   const bool turns = track.kind == core::BodyKind::kRectangle;
-  constexpr std::size_t kLeast = 8;  // frames
+
+  // Frames: residuals of shorter flights are mostly taken up by the fit. Not
+  // studied.
+  constexpr std::size_t kMinFlight = 8;
   for (const Stretch& stretch : stretches) {
     const std::size_t n = stretch.size();
-    if (stretch.kind != StretchKind::kFlight || n < kLeast) continue;
+    if (stretch.kind != StretchKind::kFlight || n < kMinFlight) continue;
     const auto samples = SelectSamples(track, stretch);
     const Flight flight = FitFlight(samples, options);
     std::vector<double> x, y, f;
@@ -144,6 +162,7 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
   const double by_height = ComputeInflation(height, bent_degrees);
   const double by_face = turns ? ComputeInflation(face, flat_degrees) : 1.0;
   for (PlaneSample& s : track.samples) {
+    // The gap's u: height and attitude, each with its own factor.
     const double arm = s.u_face_rad * LowestPointOffset(track, s.face_rad);
     s.u_along_px *= by_along;
     s.u_height_px *= by_height;
@@ -155,25 +174,28 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
 
 ExcessNoise WidenToScatter(PlaneTrack& track) {
   ExcessNoise excess;
-  constexpr std::size_t kLeast = 8;
+  // Frames: five third differences, as WidenToNoise asks for.
+  constexpr std::size_t kMinSamples = 8;
   auto& samples = track.samples;
-  if (samples.size() < kLeast) return excess;
+  if (samples.size() < kMinSamples) return excess;
   WidenToNoise(samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
   excess.height_px =
       WidenToNoise(samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
   if (track.kind == core::BodyKind::kRectangle) {
     excess.face_rad =
         WidenToNoise(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
-    // An attitude that was smoothed does not scatter, and is known no better
-    // than the ends of the long side are.
-    constexpr double kOfPlace = 0.25;  // about 1 where each frame has its own
+    // An attitude that was smoothed over frames does not scatter, and is known
+    // no better than this share of what moves an end of the long side by the u
+    // of place. Where each frame has its own attitude the ratio is about 1.
+    // Larger widens u of face angles. Not studied.
+    constexpr double kMinFaceShare = 0.25;
     for (PlaneSample& s : samples) {
-      s.u_face_rad = std::max(s.u_face_rad,
-                              kOfPlace * std::min(s.u_along_px, s.u_height_px) /
-                                  std::max(track.half_long_px, 1.0));
+      s.u_face_rad = std::max(
+          s.u_face_rad, kMinFaceShare * std::min(s.u_along_px, s.u_height_px) /
+                            std::max(track.half_long_px, 1.0));
     }
     excess.face_rad =
-        std::max(excess.face_rad, kOfPlace * excess.height_px /
+        std::max(excess.face_rad, kMinFaceShare * excess.height_px /
                                       std::max(track.half_long_px, 1.0));
   }
   WidenToNoise(samples, &PlaneSample::gap_px, &PlaneSample::u_gap_px);

@@ -10,6 +10,8 @@
 namespace touchdown::vision {
 namespace {
 
+// Median over the detections of a tracklet: a few blobs that merged with a
+// shadow do not count.
 template <class Get>
 double ComputeMedian(const Chain& chain, Get get) {
   std::vector<double> values;
@@ -18,6 +20,8 @@ double ComputeMedian(const Chain& chain, Get get) {
   return Median(std::move(values));
 }
 
+// Whether two blobs have contrast of one sign, and area and contrast within a
+// ratio.
 bool Alike(double area1, double contrast1, double area2, double contrast2,
            double ratio) {
   return contrast1 * contrast2 > 0.0 && area1 < ratio * area2 &&
@@ -30,28 +34,32 @@ double Distance(const core::PixelPoint& a, const core::PixelPoint& b) {
   return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
 }
 
-// How well `blob` continues `chain`: distance from the prediction over the
-// reach; 1 or more: not at all.
+// How well `blob` continues `chain`: distance from the predicted place over the
+// reach. At 1 or more it does not.
 double Misfit(const Chain& chain, std::int64_t frame, const Blob& blob) {
   const Link& last = chain.links.back();
   const auto dt = static_cast<double>(frame - last.frame);
   double vx = 0.0;
   double vy = 0.0;
   const double size = std::sqrt(std::max(last.blob.area_px2, blob.area_px2));
-  double reach =
-      3.0 * size + 5.0;  // without a velocity yet: three sizes a frame
+  // px. Without a velocity yet: three sizes a frame, and 5 px for small blobs.
+  // Larger links other things; smaller loses fast bodies. Not studied.
+  double reach = 3.0 * size + 5.0;
   if (chain.links.size() >= 2) {
     const Link& before = chain.links[chain.links.size() - 2];
     const auto gone = static_cast<double>(last.frame - before.frame);
     vx = (last.blob.centre.x_px - before.blob.centre.x_px) / gone;
     vy = (last.blob.centre.y_px - before.blob.centre.y_px) / gone;
-    // A bounce turns the velocity round between two frames: twice its length.
+    // An impact may turn the velocity round between two frames: the prediction
+    // is then off by twice the way, plus the blob's own size.
     reach = size + 2.0 * std::hypot(vx, vy) * dt + 3.0;
   }
-  constexpr double kAlike = 4.0;  // blur and shadow change a blob that much
+  // Ratio of areas and of contrasts: blur and shadow change a blob by so much
+  // from frame to frame. Not studied.
+  constexpr double kMaxLinkRatio = 4.0;
   if (!blob.at_border && !last.blob.at_border &&
       !Alike(last.blob.area_px2, last.blob.contrast_dn, blob.area_px2,
-             blob.contrast_dn, kAlike)) {
+             blob.contrast_dn, kMaxLinkRatio)) {
     return std::numeric_limits<double>::infinity();
   }
   const core::PixelPoint predicted{last.blob.centre.x_px + vx * dt,
@@ -59,11 +67,14 @@ double Misfit(const Chain& chain, std::int64_t frame, const Blob& blob) {
   return Distance(predicted, blob.centre) / reach;
 }
 
-// One body, interrupted: the next chain starts after the last has ended. In
-// order of their first frames.
+// Joins tracklets of one body that was lost between: the next begins after the
+// last has ended, and both are alike. `chains` is in the order of first frames.
 void JoinInterrupted(std::vector<Chain>& chains) {
-  constexpr double kSameBody = 1.8;  // ratio of areas and of contrasts
-  // Medians over links: found once a chain, not once a pair.
+  // Ratio of the medians of area and of contrast; medians are steadier than
+  // single blobs. Larger joins two bodies; smaller leaves one body in pieces.
+  // Not studied.
+  constexpr double kSameBodyRatio = 1.8;
+  // Medians are computed once for each tracklet, not once for each pair.
   struct Kind {
     double area = 0.0;
     double contrast = 0.0;
@@ -80,7 +91,7 @@ void JoinInterrupted(std::vector<Chain>& chains) {
       if (joined[j] ||
           chains[j].links.front().frame <= chains[i].links.back().frame ||
           !Alike(kinds[i].area, kinds[i].contrast, kinds[j].area,
-                 kinds[j].contrast, kSameBody)) {
+                 kinds[j].contrast, kSameBodyRatio)) {
         continue;
       }
       chains[i].links.insert(chains[i].links.end(), chains[j].links.begin(),
@@ -103,7 +114,8 @@ void JoinInterrupted(std::vector<Chain>& chains) {
 double Chain::Strength() const {
   double sum = 0.0;
   for (const Link& link : links) {
-    // Squared: a shadow may be larger and be seen longer, but it is fainter.
+    // The contrast counts squared: a shadow may be larger and be seen longer,
+    // but it is fainter.
     sum += link.blob.area_px2 * link.blob.contrast_dn * link.blob.contrast_dn;
   }
   return sum;
@@ -123,15 +135,25 @@ double Chain::Extent() const {
   return extent;
 }
 
+// Whether more than half of the frames are in flights: stretches in which the
+// blob goes straight along the picture and downward in a parabola that opens
+// downward. A stretch grows until it leaves the parabola.
 bool Chain::Falls() const {
-  constexpr double kStraight = 0.05;  // of the size: rms off the parabola
-  constexpr double kStraight_px = 1.0;
-  constexpr double kHigh = 0.5;  // of the size
-  constexpr std::size_t kLeast = 6;
+  // Root mean square off the parabola, as a share of the size and in px. Larger
+  // takes a swinging hand for a fall; smaller loses bodies whose blobs change.
+  // Set with the recorded table_tennis_door, where a hand was followed before.
+  constexpr double kMaxOffShare = 0.05;
+  constexpr double kMinMaxOff_px = 1.0;
+  // Sagitta of the parabola, as a share of the size: less is no clear fall. At
+  // thousands of frames a second no body falls by so much. Set with the same
+  // clip.
+  constexpr double kMinSagitta = 0.5;
+  // Frames: a parabola through fewer judges nothing.
+  constexpr std::size_t kMinFlightLinks = 6;
   const double size = std::sqrt(Area());
-  const double most_off = std::max(kStraight_px, kStraight * size);
+  const double most_off = std::max(kMinMaxOff_px, kMaxOffShare * size);
   std::size_t in_flight = 0;
-  for (std::size_t begin = 0; begin + kLeast <= links.size();) {
+  for (std::size_t begin = 0; begin + kMinFlightLinks <= links.size();) {
     Moments x, y;
     std::size_t end = begin;  // of the flight
     std::size_t at = begin;
@@ -140,11 +162,11 @@ bool Chain::Falls() const {
       const auto t = static_cast<double>(links[at].frame - first.frame);
       x.Add(t, links[at].blob.centre.x_px - first.blob.centre.x_px, 1.0);
       y.Add(t, links[at].blob.centre.y_px - first.blob.centre.y_px, 1.0);
-      if (at + 1 - begin < kLeast) continue;
+      if (at + 1 - begin < kMinFlightLinks) continue;
       const Polynomial across(x);
       const Polynomial down(y);
       if (std::max(across.rss1, down.rss2) > x.w * most_off * most_off) break;
-      if (0.25 * down.bend * t * t > kHigh * size) end = at + 1;
+      if (0.25 * down.bend * t * t > kMinSagitta * size) end = at + 1;
     }
     in_flight += end - begin;
     begin =
@@ -153,6 +175,9 @@ bool Chain::Falls() const {
   return 2 * in_flight > links.size();
 }
 
+// Links one frame's blobs: all pairs of tracklet and blob within reach, the
+// best first, each used once. A blob without a tracklet begins one; a tracklet
+// that missed too many frames is closed.
 void ChainBuilder::Add(std::int64_t frame, double time_s,
                        const std::vector<Blob>& blobs) {
   struct Pair {
@@ -164,7 +189,8 @@ void ChainBuilder::Add(std::int64_t frame, double time_s,
   for (std::size_t c = 0; c < open_.size(); ++c) {
     for (std::size_t b = 0; b < blobs.size(); ++b) {
       const double misfit = Misfit(open_[c], frame, blobs[b]);
-      // A long chain is the better home of two equally near ones.
+      // Ties go to the longer tracklet: up to 0.2 of the reach for ten
+      // detections and more. Not studied.
       const double lead =
           0.02 *
           std::min<double>(10.0, static_cast<double>(open_[c].links.size()));
@@ -196,6 +222,7 @@ std::vector<Chain> ChainBuilder::Finish() {
   for (Chain& chain : open_) chains.push_back(std::move(chain));
   open_.clear();
   closed_.clear();
+  // Two detections may be chance; three lie on a path.
   std::erase_if(chains, [](const Chain& c) { return c.links.size() < 3; });
   if (chains.size() > options_.most_chains) {
     left_out_ = chains.size() - options_.most_chains;
@@ -210,14 +237,17 @@ std::vector<Chain> ChainBuilder::Finish() {
   });
   JoinInterrupted(chains);
   std::erase_if(chains, [](const Chain& c) {
-    constexpr double kLeastMotion_px = 2.0;
-    constexpr double kLeastShareOfSize = 0.1;
+    // What moves by less, in px and as a share of its size, is flicker or noise
+    // of something at rest. Not studied.
+    constexpr double kMinMotion_px = 2.0;
+    constexpr double kMinMotionShare = 0.1;
     return c.Extent() <
-           std::max(kLeastMotion_px, kLeastShareOfSize * std::sqrt(c.Area()));
+           std::max(kMinMotion_px, kMinMotionShare * std::sqrt(c.Area()));
   });
-  // A hand, a person or a shadow may be the larger: what falls counts tenfold,
-  // which is a body of a third of the other's diameter.
-  constexpr double kFalls = 10.0;
+  // Factor on the strength of what falls: a hand, a person or a shadow may be
+  // larger. Tenfold stands for a body of a third of the other's diameter. Set
+  // with the recorded table_tennis_door.
+  constexpr double kFallWeight = 10.0;
   struct Ranked {
     double weight;
     std::size_t chain;
@@ -225,7 +255,7 @@ std::vector<Chain> ChainBuilder::Finish() {
   std::vector<Ranked> order;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     order.push_back(
-        {chains[i].Strength() * (chains[i].Falls() ? kFalls : 1.0), i});
+        {chains[i].Strength() * (chains[i].Falls() ? kFallWeight : 1.0), i});
   }
   std::stable_sort(
       order.begin(), order.end(),
@@ -235,6 +265,7 @@ std::vector<Chain> ChainBuilder::Finish() {
   return ranked;
 }
 
+// Whether two tracklets keep their distance while they move: parts of one body.
 bool MoveAsOne(const Chain& a, const Chain& b) {
   std::vector<double> dx;
   std::vector<double> dy;
@@ -250,8 +281,9 @@ bool MoveAsOne(const Chain& a, const Chain& b) {
     x.push_back(link.blob.centre.x_px);
     y.push_back(link.blob.centre.y_px);
   }
-  constexpr std::size_t kLeastTogether = 5;
-  if (dx.size() < kLeastTogether) return false;
+  // Frames that show both: fewer tell no spread. Not studied.
+  constexpr std::size_t kMinTogether = 5;
+  if (dx.size() < kMinTogether) return false;
   const auto spread = [](std::vector<double> values) {
     const double centre = Median(values);
     for (double& v : values) v = std::abs(v - centre);
@@ -260,15 +292,19 @@ bool MoveAsOne(const Chain& a, const Chain& b) {
   const double offset = std::hypot(spread(dx), spread(dy));
   const double path = std::hypot(spread(x), spread(y));
   const double size = std::sqrt(std::min(a.Area(), b.Area()));
-  constexpr double kShareOfSize = 0.15;
-  constexpr double kShareOfPath = 0.1;
-  return offset < std::max(2.0, kShareOfSize * size) &&
-         offset < kShareOfPath * path;
+  // Median spread of the distance, as a share of the smaller one's size (2 px
+  // at least) and of the path. Larger takes two bodies for one; smaller takes
+  // the ends of a turning block for two. Not studied.
+  constexpr double kMaxSpreadOfSize = 0.15;
+  constexpr double kMaxSpreadOfPath = 0.1;
+  return offset < std::max(2.0, kMaxSpreadOfSize * size) &&
+         offset < kMaxSpreadOfPath * path;
 }
 
 namespace {
 
-// Seen at the same time, alike in size and contrast, and moving.
+// Whether another tracklet may be a body of its own: seen at the same time,
+// alike in size and contrast, and moving.
 bool IsLike(const Chain& best, const Chain& other) {
   const std::int64_t from =
       std::max(best.links.front().frame, other.links.front().frame);
@@ -276,20 +312,25 @@ bool IsLike(const Chain& best, const Chain& other) {
       std::min(best.links.back().frame, other.links.back().frame);
   const auto shorter =
       static_cast<double>(std::min(best.links.size(), other.links.size()));
-  constexpr double kOverlap = 0.3;
-  constexpr double kLeastContrast = 0.7;
-  constexpr double kAreaRatio = 2.5;
-  return static_cast<double>(to - from + 1) > kOverlap * shorter &&
+  // Share of the shorter one's frames that both must be seen in; share of the
+  // contrast; ratio of the areas. Looser calls shadows a second body, and such
+  // a clip is not decided; stricter follows one of two. Not studied.
+  constexpr double kMinOverlap = 0.3;
+  constexpr double kMinContrastShare = 0.7;
+  constexpr double kMaxAreaRatio = 2.5;
+  return static_cast<double>(to - from + 1) > kMinOverlap * shorter &&
          other.links.size() >= 5 && other.Contrast() * best.Contrast() > 0.0 &&
          std::abs(other.Contrast()) >
-             kLeastContrast * std::abs(best.Contrast()) &&
-         other.Area() * kAreaRatio > best.Area() &&
-         other.Area() < kAreaRatio * best.Area() &&
+             kMinContrastShare * std::abs(best.Contrast()) &&
+         other.Area() * kMaxAreaRatio > best.Area() &&
+         other.Area() < kMaxAreaRatio * best.Area() &&
          other.Extent() > std::sqrt(other.Area());
 }
 
 }  // namespace
 
+// Extent of both parts along the line between them: median distance and half
+// the length of each.
 double LengthTogether(const Chain& best, const Chain& other) {
   if (!IsLike(best, other) || !MoveAsOne(best, other)) return 0.0;
   std::vector<double> distance;

@@ -10,6 +10,7 @@
 namespace touchdown::vision {
 namespace {
 
+// The part of the frame that is searched, in the frame's own pixels.
 cv::Rect SearchRegion(const core::Frame& frame, const core::PixelRect& wanted) {
   const cv::Rect all(0, 0, frame.width_px, frame.height_px);
   if (wanted.width <= 0 || wanted.height <= 0) return all;
@@ -18,14 +19,14 @@ cv::Rect SearchRegion(const core::Frame& frame, const core::PixelRect& wanted) {
                         wanted.height);
 }
 
-// Standard deviation of the smoothed difference: what the noise of single
-// pixels gives after a 3 x 3 mean, as many times as the frame's is larger.
+// Noise of the smoothed difference: a 3 x 3 mean divides a pixel's by three.
+// `noise` is the frame's factor on it (flicker, compression).
 double SmoothedSigma(const Background& background,
                      const DetectOptions& options) {
   return options.noise * std::sqrt(background.UsualVariance()) / 3.0;
 }
 
-// By area times contrast.
+// Keeps the strongest regions, by area times contrast.
 template <class Part>
 void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
@@ -45,13 +46,13 @@ struct ContourRegion {
   double contrast_dn = 0.0;
 };
 
-// A contour runs through pixel centres: the region reaches half a pixel
-// further.
+// Area of a region from its contour, which runs through pixel centres: the
+// region reaches half a pixel farther on all sides.
 double RegionArea(const std::vector<cv::Point>& contour) {
   return cv::contourArea(contour) + 0.5 * cv::arcLength(contour, true) + 1.0;
 }
 
-// The regions within some contours that are large enough.
+// Adds the regions within some contours that are large enough.
 void AddRegions(std::vector<std::vector<cv::Point>> contours,
                 const cv::Mat& difference, const DetectOptions& options,
                 std::vector<ContourRegion>& regions) {
@@ -68,6 +69,8 @@ void AddRegions(std::vector<std::vector<cv::Point>> contours,
   }
 }
 
+// Moments of the filled contour give the centre, the tightest rectangle around
+// it sides and angle.
 Blob MakeBlob(const ContourRegion& part, const cv::Size& searched,
               const core::PixelPoint& origin) {
   Blob blob;
@@ -97,7 +100,7 @@ Blob MakeBlob(const ContourRegion& part, const cv::Size& searched,
   return blob;
 }
 
-// Those of the strongest regions, which alone are worth a closer look.
+// The strongest regions as blobs: only those are worth moments and rectangles.
 std::vector<Blob> MakeBlobs(std::vector<ContourRegion> regions,
                             const cv::Rect& searched, const core::Frame& frame,
                             const DetectOptions& options) {
@@ -112,6 +115,9 @@ std::vector<Blob> MakeBlobs(std::vector<ContourRegion> regions,
   return blobs;
 }
 
+// Regions that differ from the background after a 3 x 3 mean. kDifference keeps
+// the strong part of each region, which leaves out penumbras and faint shadows;
+// kChange keeps all of it.
 std::vector<Blob> FromDifference(const core::Frame& frame,
                                  const Background& background,
                                  const DetectOptions& options) {
@@ -132,11 +138,13 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
   cv::Mat magnitude = cv::abs(smooth);
   cv::Mat mask = magnitude > threshold;
   if (options.detector == Detector::kChange) {
-    // Across the lines where body and background are alike, and without what
-    // is thin: penumbras, the body's wake in compressed pictures.
-    constexpr int kAcross_px = 5;
+    // px, diameter of the disc that closes and opens the mask: it bridges lines
+    // where body and background are alike, and removes what is thin (penumbras,
+    // the body's wake in compressed pictures). Larger merges neighbours. Set
+    // with the recorded hoops.
+    constexpr int kBridge_px = 5;
     const cv::Mat disc =
-        cv::getStructuringElement(cv::MORPH_ELLIPSE, {kAcross_px, kAcross_px});
+        cv::getStructuringElement(cv::MORPH_ELLIPSE, {kBridge_px, kBridge_px});
     cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, disc);
     std::vector<std::vector<cv::Point>> changed;
     cv::findContours(mask.clone(), changed, cv::RETR_EXTERNAL,
@@ -156,7 +164,8 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
     cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
     cv::drawContours(own, std::vector<std::vector<cv::Point>>{outer}, 0, 255,
                      cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
-    // The region's strong part: the 95th percentile of its difference.
+    // The region's strong level is the 95th percentile of its difference: a few
+    // specks or a highlight do not set it.
     std::vector<float> inside;
     for (int y = 0; y < box.height; ++y) {
       const float* row = magnitude.ptr<float>(box.y + y) + box.x;
@@ -180,6 +189,8 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
   return MakeBlobs(std::move(found), region, frame, options);
 }
 
+// Without a background: the picture's two levels by Otsu's threshold, and the
+// regions of either side.
 std::vector<Blob> FromLevels(const core::Frame& frame,
                              const DetectOptions& options) {
   const cv::Rect region = SearchRegion(frame, options.region);
@@ -204,11 +215,11 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
     std::vector<std::vector<cv::Point>> regions;
     cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
                      cv::CHAIN_APPROX_NONE);
-    // What spans most of the picture is background.
-    constexpr double kMostOfPicture = 0.5;
+    // Share of the picture: a region that spans more is background.
+    constexpr double kMaxShareOfPicture = 0.5;
     std::erase_if(regions, [&](const auto& outer) {
       return RegionArea(outer) >=
-             kMostOfPicture * static_cast<double>(region.area());
+             kMaxShareOfPicture * static_cast<double>(region.area());
     });
     AddRegions(std::move(regions), difference, options, found);
   }
@@ -237,8 +248,8 @@ Outline MakeStart(const Blob& blob, core::BodyKind kind) {
     start.radius_px = std::sqrt(blob.area_px2 / std::numbers::pi);
     return start;
   }
-  // The box around a blurred rectangle is a little larger than it: keep its
-  // proportions and take the size from the area.
+  // The box around a blurred rectangle is larger than it: it keeps its
+  // proportions and takes its size from the area.
   const double shrink = std::sqrt(std::min(1.0, blob.fill));
   start.half_long_px = 0.5 * blob.long_px * shrink;
   start.half_short_px = 0.5 * blob.short_px * shrink;

@@ -21,8 +21,8 @@ struct Range {
   std::int64_t last = 0;
 };
 
-// Which of every `step`-th frame of the range are worth a look: those within
-// four glimpses of one that saw anything. All, where none did.
+// Which of every `step`-th frame of the range to look at: those within four
+// sparse probes of one that saw a change. All, where no probe did.
 std::vector<bool> WorthALook(Clip& clip, const Watcher& watcher,
                              const Range& range, std::int64_t step,
                              const TrackOptions& options) {
@@ -30,10 +30,14 @@ std::vector<bool> WorthALook(Clip& clip, const Watcher& watcher,
       static_cast<std::size_t>((range.last - range.first + step - 1) / step);
   std::vector<bool> worth(count, true);
   if (!watcher.CanGlimpse(clip)) return worth;
+  // Probes whose rows together are those of a full look: each probe reads every
+  // fourth of them.
   constexpr std::size_t kPhases = 4;
-  constexpr std::int64_t kLargestStep = 32;  // frames
+  // Frames between probes. Larger reads less, and misses what is in view for
+  // less time. Set with the benchmark of raw clips (1.14 -> 0.55 of `cat`).
+  constexpr std::int64_t kMaxProbeStep = 32;
   const std::int64_t stride = std::clamp(
-      (range.last - range.first) / options.first_looks, step, kLargestStep);
+      (range.last - range.first) / options.first_looks, step, kMaxProbeStep);
   std::vector<char> glimpsed(static_cast<std::size_t>(
       (range.last - range.first + stride - 1) / stride));
   const auto glimpse = [&](Clip& reader, std::size_t k) {
@@ -65,14 +69,15 @@ std::vector<bool> WorthALook(Clip& clip, const Watcher& watcher,
   return any ? seen : worth;
 }
 
-// Bounds that were met: in `more` of `looks` frames there was more to follow
-// than is kept, and `left_out` chains were too many.
+// Warnings of bounds that were met: in `more` of `looks` frames there was more
+// to follow than is kept, and `left_out` tracklets were too many.
 std::vector<std::string> BoundsMet(std::size_t more, std::size_t looks,
                                    std::size_t left_out) {
-  // Fewer frames cost a chain a link here and there, as an occlusion does.
-  constexpr double kTold = 0.1;
+  // Share of the frames. In fewer the bound costs a tracklet a detection here
+  // and there, as an occlusion does, and no warning is given. Not studied.
+  constexpr double kMinToldShare = 0.1;
   std::vector<std::string> bounds;
-  if (static_cast<double>(more) > kTold * static_cast<double>(looks)) {
+  if (static_cast<double>(more) > kMinToldShare * static_cast<double>(looks)) {
     bounds.push_back(fmt::format(
         "in {} of {} frames looked at more than {} things move: the strongest "
         "were followed; give --region X,Y,W,H if the body is not among them",
@@ -87,8 +92,9 @@ std::vector<std::string> BoundsMet(std::size_t more, std::size_t looks,
   return bounds;
 }
 
-// Every `step`-th frame of the range, and its last one. `seen` receives the
-// range in which anything was seen. `first`: nothing is known of it yet.
+// Detects and links in every `step`-th frame of the range. `seen` receives the
+// range in which anything was seen. `first`: nothing is known of the range yet,
+// so that sparse probes may save frames.
 Detections DetectRange(Clip& clip, const Background& background,
                        const TrackOptions& options, Detector detector,
                        const Range& range, std::int64_t step, bool first,
@@ -117,7 +123,8 @@ Detections DetectRange(Clip& clip, const Background& background,
                   looks[i] = watcher.Look(reader, indices[i]);
                 });
     } catch (const core::InputError&) {
-      looks.clear();  // one by one: up to the damage
+      // A reader met damage: one frame after the other, up to it.
+      looks.clear();
     }
   }
   std::size_t more = 0;
@@ -151,12 +158,17 @@ Detections DetectRange(Clip& clip, const Background& background,
   return found;
 }
 
-// True if so few looks follow the body's path: between two of them it moves so
-// far that what lies between is no good start, or there are few of them.
+// Whether the sampled frames follow the body's path badly: it moves so far
+// between two of them that interpolated starts are bad, or there are few
+// detections.
 bool TooCoarse(const Chain& chain) {
-  constexpr std::size_t kEnough = 48;  // links
-  constexpr double kMostMotion = 0.6;  // of the size, in one step
-  if (chain.links.size() < kEnough) return true;
+  // Detections of the tracklet. More samples cost time; with fewer the path is
+  // known badly. Not studied.
+  constexpr std::size_t kMinLinks = 48;
+  // Of the size, in one step (90 % of the steps): farther, the next outline
+  // starts outside the body. Not studied.
+  constexpr double kMaxStepOfSize = 0.6;
+  if (chain.links.size() < kMinLinks) return true;
   std::vector<double> moved;
   for (std::size_t i = 1; i < chain.links.size(); ++i) {
     const core::PixelPoint& a = chain.links[i - 1].blob.centre;
@@ -166,18 +178,21 @@ bool TooCoarse(const Chain& chain) {
   const auto high =
       moved.begin() + static_cast<std::ptrdiff_t>(moved.size() * 9 / 10);
   std::nth_element(moved.begin(), high, moved.end());
-  return *high > kMostMotion * std::sqrt(chain.Area());
+  return *high > kMaxStepOfSize * std::sqrt(chain.Area());
 }
 
+// Coarse to fine: halves the step until the best tracklet is followed closely
+// enough, within the range in which anything was seen.
 Detections Detect(Clip& clip, const Background& background,
                   const TrackOptions& options, Detector detector,
                   std::int64_t last) {
-  constexpr std::int64_t kLargestStep = 8;
+  // Frames: a longer step misses bodies that cross the picture in a few frames.
+  // Not studied.
+  constexpr std::int64_t kMaxStep = 8;
   const std::int64_t frames = last - options.first;
   std::int64_t step = 1;
   if (IsLong(clip, options)) {
-    step =
-        std::clamp<std::int64_t>(frames / options.first_looks, 1, kLargestStep);
+    step = std::clamp<std::int64_t>(frames / options.first_looks, 1, kMaxStep);
   }
   Range range{options.first, last};
   Range seen;
@@ -200,16 +215,18 @@ Detections Detect(Clip& clip, const Background& background,
   return found;
 }
 
-// How badly an outline explains the pixels: residuals over noise, dearer where
-// many pixels had to be left out.
+// Cost of an outline: residual over noise, raised where many pixels had to be
+// left out (inliers squared).
 double Badness(const std::optional<Fitted>& fitted) {
-  constexpr double kNoFit = 50.0;
-  if (!fitted) return kNoFit;
+  // Cost of no outline: above that of any outline that was fitted. Not studied.
+  constexpr double kNoFitCost = 50.0;
+  if (!fitted) return kNoFitCost;
   const OutlineFit& fit = fitted->fit;
   return fit.misfit / std::max(0.05, fit.inliers * fit.inliers);
 }
 
-// Badness of the outlines; dearer where the body was seen in few frames.
+// Cost of a hypothesis: that of its outlines, over the square root of the
+// frames that saw the body.
 double LookCost(const Look& look) {
   if (look.found.chains.empty()) {
     return std::numeric_limits<double>::infinity();
@@ -218,26 +235,31 @@ double LookCost(const Look& look) {
          std::sqrt(static_cast<double>(look.found.chains.front().links.size()));
 }
 
-// Of two hypotheses a smoother one wins with so many of the other's outlines,
-// one that falls with half of them.
+// Share of the other hypothesis's outlines with which one may win: a smoother
+// one needs nearly as many, one that falls half of them. Set with the four
+// recordings measured by hand, and with table_tennis_door.
 constexpr double kAsManyFrames = 0.9;
 constexpr double kFewFrames = 0.5;
 
-// Outlines fitted to a ghost's edge jump about, however well they fit: a track
-// of as many frames that is four times smoother is the body's.
+// Whether a track is the body's because it is much smoother: outlines fitted to
+// a ghost's edge jump about, however well they fit.
 bool MuchSmoother(const Look& look, const Look& other) {
-  constexpr double kSmoother = 0.25;
-  return Roughness(look.fits) < kSmoother * Roughness(other.fits) &&
+  // Ratio of the position noises. Larger lets noise decide between two good
+  // tracks. Set with the four recordings measured by hand.
+  constexpr double kNoiseRatio = 0.25;
+  return Roughness(look.fits) < kNoiseRatio * Roughness(other.fits) &&
          static_cast<double>(look.fits.size()) >=
              kAsManyFrames * static_cast<double>(other.fits.size());
 }
 
-// What falls before what fits: a person in the picture may fit better.
+// A hypothesis that falls goes before one that fits: a person in the picture
+// may fit better.
 bool Falls(const Look& look) {
   return !look.found.chains.empty() && look.found.chains.front().Falls();
 }
 
-// Fewest outlines with which a hypothesis of known cost can win (IsBetter).
+// The fewest outlines with which a hypothesis of known cost can still win
+// (IsBetter); it need not be fitted further if a sample finds fewer.
 double CountFitsToWin(const Look& look, const Look& rival) {
   if (LookCost(look) < LookCost(rival)) return 0.0;
   const bool falls = Falls(look) && !Falls(rival);
@@ -245,13 +267,16 @@ double CountFitsToWin(const Look& look, const Look& rival) {
          static_cast<double>(rival.fits.size());
 }
 
-// The outlines of the best chain; none where fewer than `least` will be found,
-// by a sample of the links.
+// Outlines of the best tracklet; none where, by a sample of its detections,
+// fewer than `least` will be found. A wrong hypothesis is the dearest, because
+// none of its outlines converges.
 std::vector<Fitted> FitLinks(Clip& clip, const Look& look,
                              const TrackOptions& options, double least) {
-  constexpr std::size_t kSampled = 8;  // every eighth link
-  // A sample finds half as many by chance, or where they come in stretches.
-  constexpr double kUnlucky = 0.5;
+  // Every eighth detection is sampled. Not studied.
+  constexpr std::size_t kSampled = 8;
+  // Share of `least` that the sample must find: it may find half as many by
+  // chance, or where outlines come in stretches. Not studied.
+  constexpr double kSampleShare = 0.5;
   const Chain& chain = look.found.chains.front();
   const auto fit = [&](const LinkRange& range) {
     return FitChain(clip, look.background, chain, look.choice, options,
@@ -260,7 +285,7 @@ std::vector<Fitted> FitLinks(Clip& clip, const Look& look,
   if (least <= 0.0) return fit({});
   if (static_cast<double>(chain.links.size()) < least) return {};
   if (static_cast<double>(fit({0, kSampled}).size() * kSampled) <
-      kUnlucky * least) {
+      kSampleShare * least) {
     return {};
   }
   return fit({});
@@ -268,13 +293,18 @@ std::vector<Fitted> FitLinks(Clip& clip, const Look& look,
 
 }  // namespace
 
+// An eighth of the clip: short enough that the picture may be empty there.
 std::int64_t EndPart(std::int64_t first, std::int64_t last) {
   return std::max<std::int64_t>(3, (last - first) / 8);
 }
 
+// Fits both kinds in a few frames and takes the one that leaves the smaller
+// residuals. Frames are chosen symmetrically, so that a clip played backwards
+// gives the same.
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
                   const TrackOptions& options, Surround surround) {
-  constexpr std::size_t kProbes = 9;
+  // Frames: more cost time, fewer let one bad frame decide. Not studied.
+  constexpr std::size_t kKindProbes = 9;
   std::vector<const Link*> inside;
   for (const Link& link : chain.links) {
     if (!link.blob.at_border) inside.push_back(&link);
@@ -283,7 +313,7 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
     for (const Link& link : chain.links) inside.push_back(&link);
   }
   std::vector<const Link*> probes;
-  const std::size_t n = std::min(kProbes, inside.size());
+  const std::size_t n = std::min(kKindProbes, inside.size());
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t from_end = std::min(k, n - 1 - k);
     const std::size_t at = (2 * from_end + 1) * inside.size() / (2 * n);
@@ -310,8 +340,8 @@ Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
       badness.push_back(Badness(fit));
       if (fit) blur.push_back(fit->fit.blur_px);
     }
-    // The mean of the better half: a frame in contact or half hidden must not
-    // decide.
+    // The mean of the better half decides: a frame in contact, or one that is
+    // half hidden, must not.
     std::sort(badness.begin(), badness.end());
     badness.resize((badness.size() + 1) / 2);
     double sum = 0.0;
@@ -343,20 +373,25 @@ std::vector<Fitted> FitChain(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
+// More samples for short clips, whose frames are all decoded anyway.
 BackgroundOptions ChooseBackgroundOptions(const Clip& clip,
                                           const TrackOptions& options) {
-  constexpr int kOfShort = 64;  // frames
+  // Frames: noise of the background falls as 1/sqrt. Not studied.
+  constexpr int kShortClipSamples = 64;
   BackgroundOptions background;
   if (options.background_samples > 0) {
     background.samples = options.background_samples;
   } else if (!IsLong(clip, options) && !clip.info().has_colour) {
-    background.samples = kOfShort;
+    background.samples = kShortClipSamples;
   }
   background.among = options.still_frames;
   background.threads = options.threads;
   return background;
 }
 
+// One hypothesis: a background and a detector give tracklets; the best one
+// gives a kind and outlines. `rival`: the best so far; a hypothesis that cannot
+// win is not fitted to the end.
 Look TryHypothesis(Clip& clip, Background background,
                    const TrackOptions& options, Detector detector,
                    std::int64_t last, const Look* rival, double least_fits) {
@@ -385,12 +420,14 @@ Look TryHypothesis(Clip& clip, Background background,
 
 namespace {
 
-// Whether `look` follows something within the body that `other` follows: a
-// wheel's hole, a patch. It may fit better, and is not the body.
+// Whether one hypothesis follows something within the body of the other: a
+// wheel's hole, a patch. It may fit better and is not the body.
 bool IsWithin(const Look& look, const Look& other) {
-  constexpr double kSmaller = 0.8;
-  constexpr double kConcentric = 0.05;  // of the outer size
-  constexpr double kMostly = 0.8;       // of the frames that both saw
+  // Ratio of the sizes, distance of the centres as a share of the outer size,
+  // and share of the frames seen by both. Not studied.
+  constexpr double kMaxInnerRatio = 0.8;
+  constexpr double kMaxOffCentre = 0.05;
+  constexpr double kMinFrameShare = 0.8;
   std::size_t both = 0;
   std::size_t within = 0;
   for (const Fitted& f : look.fits) {
@@ -402,15 +439,18 @@ bool IsWithin(const Look& look, const Look& other) {
     const core::PixelPoint& a = f.fit.outline.centre;
     const core::PixelPoint& b = same->fit.outline.centre;
     const double size = OutlineSize(same->fit);
-    within += OutlineSize(f.fit) < kSmaller * size &&
-              std::hypot(a.x_px - b.x_px, a.y_px - b.y_px) < kConcentric * size;
+    within +=
+        OutlineSize(f.fit) < kMaxInnerRatio * size &&
+        std::hypot(a.x_px - b.x_px, a.y_px - b.y_px) < kMaxOffCentre * size;
   }
-  return within > 0 &&
-         static_cast<double>(within) > kMostly * static_cast<double>(both);
+  return within > 0 && static_cast<double>(within) >
+                           kMinFrameShare * static_cast<double>(both);
 }
 
 }  // namespace
 
+// The order of two hypotheses: one that falls, with half of the other's
+// outlines; then a much smoother one; then the cheaper one.
 bool IsBetter(const Look& look, const Look& other) {
   if (Falls(look) != Falls(other)) {
     const Look& falling = Falls(look) ? look : other;
@@ -426,9 +466,10 @@ bool IsBetter(const Look& look, const Look& other) {
 
 namespace {
 
-// Above this badness an outline is no good model of the body's picture, or the
-// background holds its ghost.
-constexpr double kWellFitted = 4.0;
+// Cost (Badness) above which an outline is no good model of the body's picture,
+// or the background holds its ghost: other hypotheses are tried then. Smaller
+// costs time; larger keeps a ghost. Not studied.
+constexpr double kMaxGoodCost = 4.0;
 
 const char* KindName(core::BodyKind kind) {
   return kind == core::BodyKind::kSphere ? "a sphere" : "a rectangle";
@@ -441,9 +482,12 @@ const char* KindName(core::BodyKind kind) {
 // own ghosts left 3.5 to 4.0 as spheres.
 std::string ReasonAgainstKind(Clip& clip, const Look& look,
                               const TrackOptions& options) {
-  constexpr double kClearly = 2.0;
+  // Ratio of the residuals in favour of the other kind. Smaller refuses blocks
+  // before their own ghosts; larger accepts wrong kinds. Set with 26 spheres
+  // that were called blocks.
+  constexpr double kClearRatio = 2.0;
   if (!options.kind || look.found.chains.empty() ||
-      look.choice.badness <= kWellFitted) {
+      look.choice.badness <= kMaxGoodCost) {
     return {};
   }
   TrackOptions otherwise = options;
@@ -453,9 +497,11 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
   const Choice other =
       ChooseKind(clip, look.background, look.found.chains.front(), otherwise,
                  look.surround);
-  constexpr double kWitness = 2.5;
-  if (other.badness > kWitness ||
-      kClearly * other.badness > look.choice.badness) {
+  // Cost up to which the other kind is a witness: 25 of the 26 spheres left 2.0
+  // and less, blocks before their ghosts 3.5 and more.
+  constexpr double kMaxWitnessCost = 2.5;
+  if (other.badness > kMaxWitnessCost ||
+      kClearRatio * other.badness > look.choice.badness) {
     return {};
   }
   return fmt::format(
@@ -468,10 +514,11 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
 
 }  // namespace
 
-// A body that stays long where it is leaves its ghost in the mean of all
-// frames, and outlines fit badly. Then the picture may be empty at the
-// beginning, or at the end; where it never is, the frame's own two levels must
-// do.
+// The best of five hypotheses. A body that stays long in one place leaves its
+// ghost in the background of all frames, and outlines fit badly. Then the
+// background of the beginning is tried, where the picture may be empty, and
+// that of the end; then the frame's own two levels; and last everything that
+// changes.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
                                std::int64_t last) {
   const BackgroundOptions still = ChooseBackgroundOptions(clip, options);
@@ -484,16 +531,19 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
     return core::AbsentBecause(std::move(reason));
   }
   const std::int64_t part = EndPart(options.first, last);
-  for (int attempt = 0; attempt < 4 && best.choice.badness > kWellFitted;
+  for (int attempt = 0; attempt < 4 && best.choice.badness > kMaxGoodCost;
        ++attempt) {
+    // The detector of each attempt; the comment above names their backgrounds.
     constexpr Detector kDetectors[] = {Detector::kDifference,
                                        Detector::kDifference, Detector::kLevels,
                                        Detector::kChange};
     const Detector detector = kDetectors[attempt];
-    // All that changes holds shadows, too: it must follow the body much farther
-    // than what was found, and is not tried where it cannot.
-    constexpr double kFarther = 1.5;
-    const double least = kFarther * static_cast<double>(best.fits.size());
+    // Ratio of frames. Everything that changes holds shadows, too: this
+    // hypothesis must follow the body through so many more frames, and is not
+    // tried where it cannot. Set with the recorded hoop at 45 deg (18 frames
+    // for 1).
+    constexpr double kMinFrameGain = 1.5;
+    const double least = kMinFrameGain * static_cast<double>(best.fits.size());
     const bool change = detector == Detector::kChange;
     if (change && static_cast<double>(best.found.last - options.first) <
                       least * static_cast<double>(best.found.step)) {
@@ -521,8 +571,9 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   if (auto reason = ReasonAgainstKind(clip, best, options); !reason.empty()) {
     return core::AbsentBecause(std::move(reason));
   }
-  constexpr std::size_t kLeastFrames = 3;
-  if (best.fits.size() < kLeastFrames) {
+  // Frames: fewer make no path.
+  constexpr std::size_t kMinFrames = 3;
+  if (best.fits.size() < kMinFrames) {
     std::string reason =
         "something moves, but no outline of a sphere or rectangle fits it";
     for (const std::string& bound : best.found.bounds) reason += "; " + bound;

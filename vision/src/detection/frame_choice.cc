@@ -10,6 +10,7 @@
 
 namespace touchdown::vision {
 
+// Whether each frame can be decoded without another one.
 bool AreStoredAlone(const Clip& clip, std::int64_t first, std::int64_t last) {
   for (std::int64_t i = first; i < last; ++i) {
     if (clip.EntryFrame(i) != i) return false;
@@ -17,6 +18,8 @@ bool AreStoredAlone(const Clip& clip, std::int64_t first, std::int64_t last) {
   return true;
 }
 
+// The frames at which decoding can begin, nearest before those that the
+// background's samples would be taken from.
 std::vector<std::int64_t> ChooseKeyFrames(const Clip& clip, std::int64_t first,
                                           std::int64_t last) {
   std::set<std::int64_t> keys;
@@ -29,6 +32,8 @@ std::vector<std::int64_t> ChooseKeyFrames(const Clip& clip, std::int64_t first,
   return {keys.begin(), keys.end()};
 }
 
+// Frames that backgrounds of the whole range, of its beginning and of its end
+// need, as far as three fifths of the memory reach.
 std::set<std::int64_t> FramesKeptWhole(const ClipInfo& info,
                                        const FrameStoreOptions& options) {
   const std::int64_t first = options.first;

@@ -10,8 +10,8 @@
 namespace touchdown::vision {
 namespace {
 
-// Every frame that is read is kept whole as long as there is room. Where frames
-// are stored one upon the other, those on the way are kept, too.
+// Keeps every frame that is read whole, as long as there is room. Where a frame
+// needs others to be decoded, those on the way are kept, too.
 class FrameStore final : public GrowingClip {
  public:
   FrameStore(std::unique_ptr<Clip> clip, std::int64_t last,
@@ -38,7 +38,7 @@ class FrameStore final : public GrowingClip {
     return kept_[static_cast<std::size_t>(index)];
   }
 
-  // True if frame `index` is kept now.
+  // Reads and keeps frame `index`; false where there is no room.
   bool Keep(std::int64_t index) {
     KeptPixels& kept = KeptFrame(index);
     const core::PixelRect whole = Whole(info());
@@ -82,9 +82,10 @@ std::unique_ptr<GrowingClip> GrowFrames(std::unique_ptr<Clip> clip,
   const ClipInfo& info = clip->info();
   const std::int64_t last = options.last < 0 ? info.frames : options.last;
   const auto frames = static_cast<std::size_t>(last - options.first);
-  // A few frames are decoded again rather than looked at for windows.
-  constexpr std::size_t kFew = 100;
-  if (frames <= kFew || FrameBytes(info) <= options.most_bytes / frames) {
+  // Frames. So few are decoded again rather than searched for windows: the
+  // search needs the background first. Not studied.
+  constexpr std::size_t kFewFrames = 100;
+  if (frames <= kFewFrames || FrameBytes(info) <= options.most_bytes / frames) {
     return std::make_unique<FrameStore>(std::move(clip), last,
                                         options.most_bytes);
   }

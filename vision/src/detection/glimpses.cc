@@ -7,6 +7,8 @@
 
 namespace touchdown::vision {
 
+// Whether a change of one probe meets one of the next frame: noise of
+// compression is in one only.
 bool AreInBoth(const Changes& changes, const Changes& next,
                std::int32_t margin_cells) {
   // With one of their two margins; at the picture's border one is cut off.
@@ -22,6 +24,9 @@ bool AreInBoth(const Changes& changes, const Changes& next,
   return false;
 }
 
+// Frames near probes that show something, and those between probes that are too
+// far apart to vouch for what lies between. All frames if no probe shows
+// anything.
 std::vector<std::int64_t> FramesWorthDecoding(
     std::int64_t first, std::int64_t last,
     const std::vector<std::int64_t>& glimpsed, const std::vector<bool>& shows,
@@ -32,8 +37,8 @@ std::vector<std::int64_t> FramesWorthDecoding(
     to = std::clamp(to, from, last);
     std::fill(worth.begin() + (from - first), worth.begin() + (to - first), 1);
   };
-  // What lies before the first glimpse and after the last is seen by one alone:
-  // it must be as near as a neighbour.
+  // A gap longer than most_between is decoded; so are the ends of the clip,
+  // which one probe alone sees.
   std::int64_t before = first;
   for (std::size_t k = 0; k <= glimpsed.size(); ++k) {
     const std::int64_t now = k < glimpsed.size() ? glimpsed[k] : last;

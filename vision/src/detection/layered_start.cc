@@ -18,13 +18,17 @@ namespace touchdown::vision {
 namespace {
 
 // Cells of the reduced picture across the short side, at least: the shape's
-// place is then known to a tenth of it. More cost time (their square).
+// place is then known to a tenth of it. More cost time (their square). Not
+// studied.
 constexpr double kCellsAcross = 8.0;
-constexpr std::int32_t kMostReduction = 4;  // px a cell
-// The same of the picture that the shape is sought in.
+// px of a cell's side, at most. Larger saves time and blurs the shape's edge.
+// Not studied.
+constexpr std::int32_t kMaxReduction = 4;
+// Cells across the short side in the picture that the shape is sought in. Not
+// studied.
 constexpr double kSearchedAcross = 5.0;
 
-// Cells inside of the shape, grown by `grow`.
+// Marks the cells inside the shape, grown by `grow` cells.
 cv::Mat MakeMask(const PlacedShape& at, const KnownShape& shape, double grow,
                  const cv::Size& size) {
   cv::Mat mask(size, CV_8U, cv::Scalar(0));
@@ -56,7 +60,7 @@ cv::Mat MakeMask(const PlacedShape& at, const KnownShape& shape, double grow,
   return mask;
 }
 
-// The part of the change that is searched, a cell the mean of by x by.
+// The searched part of the change, in cells that are means of by x by.
 std::vector<float> Coarsen(const cv::Mat& change, const cv::Rect& searched,
                            std::int32_t by) {
   cv::Mat coarse;
@@ -66,11 +70,12 @@ std::vector<float> Coarsen(const cv::Mat& change, const cv::Rect& searched,
   return {coarse.begin<float>(), coarse.end<float>()};
 }
 
-// Where anything changes in any frame, with `reach` to all sides; sides and
-// corner are multiples of `by`. Empty where nothing does.
+// The box of all cells that change in any picture, with `reach` to all sides.
+// Sides and corner are multiples of `by`. Empty where nothing changes.
 cv::Rect RegionOfChange(const ReducedFrames& sampled, const StillLayer& still,
                         const ChangeScale& scale, double reach,
                         std::int32_t by) {
+  // Change, 0..1: half of what counts as clear. Not studied.
   constexpr double kChanged = 0.5;
   cv::Mat most(still.level.size(), CV_32F, cv::Scalar(0));
   for (const cv::Mat& picture : sampled.pictures) {
@@ -99,7 +104,8 @@ double MedianScore(const std::vector<PlacedShape>& path) {
   return static_cast<double>(MedianInPlace(scores));
 }
 
-// One path of the shape through all pictures, in reduced px.
+// Finds one path of the shape through all pictures: the best places of each by
+// correlation, then the smoothest path through them (LinkPath).
 std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
                                   const StillLayer& still,
                                   const ChangeScale& scale,
@@ -107,6 +113,8 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
                                   const KnownShape& shape,
                                   const cv::Rect& searched, std::int32_t by,
                                   std::size_t every, int threads) {
+  // Places kept for each picture. More cost time (their cube); fewer lose the
+  // body where brighter things change. Not studied.
   constexpr std::size_t kMaxima = 6;
   std::vector<std::vector<PlacedShape>> candidates(sampled.pictures.size());
   core::InParallel(
@@ -132,11 +140,12 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
           }
         }
       });
-  // A place is known to about a cell; a turn of the flight within `step` frames
-  // moves it by some hundredths of the body's size.
-  constexpr double kFlight = 0.02;
+  // Of half the diagonal, for each frame of the sampling step: a place is known
+  // to about a cell, and a curved flight moves the body off a straight line by
+  // some hundredths of its size. Not studied.
+  constexpr double kBendShare = 0.02;
   PathCosts costs;
-  costs.scatter = by + kFlight * 0.5 *
+  costs.scatter = by + kBendShare * 0.5 *
                            std::hypot(shape.long_side, shape.short_side) *
                            static_cast<double>(sampled.step);
   costs.period_rad =
@@ -149,12 +158,13 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
   return path;
 }
 
-// Change outside of the masks over that inside.
+// Change outside the masks over the change inside them.
 double UnexplainedShare(const ReducedFrames& sampled, const StillLayer& still,
                         const std::vector<cv::Mat>& masks, ChangeScale scale,
                         double noise_dn) {
-  constexpr double kClearly = 2.5;
-  scale.from_dn = kClearly * noise_dn;
+  // In units of a cell's noise: less counts as no change here. Not studied.
+  constexpr double kClearNoises = 2.5;
+  scale.from_dn = kClearNoises * noise_dn;
   double outside = 0.0;
   double inside = 0.0;
   for (std::size_t t = 0; t < masks.size(); ++t) {
@@ -180,13 +190,14 @@ core::Expected<LayeredStart> FindLayeredStart(
   const std::int64_t last = options.last < 0
                                 ? clip.info().frames
                                 : std::min(options.last, clip.info().frames);
-  constexpr std::int64_t kLeastFrames = 4;
-  if (last - options.first < kLeastFrames) {
+  // Frames: a path of three has no residual.
+  constexpr std::int64_t kMinFrames = 4;
+  if (last - options.first < kMinFrames) {
     return core::AbsentBecause("fewer than four frames");
   }
   const auto reduction = static_cast<std::int32_t>(
       std::clamp(std::floor(shape.short_side / kCellsAcross), 1.0,
-                 static_cast<double>(kMostReduction)));
+                 static_cast<double>(kMaxReduction)));
   const ReducedFrames sampled =
       SampleReducedFrames(clip, options.first, last, options.frames, reduction);
   const KnownShape reduced = ReducedShape(shape, reduction);
@@ -195,10 +206,12 @@ core::Expected<LayeredStart> FindLayeredStart(
   const cv::Size size = sampled.pictures.front().size();
   const double noise_dn = EstimateCellNoise(sampled);
   const ChangeScale scale = ScaleOfChange(noise_dn, sampled.full_scale_dn);
-  // Beyond the outline the body's blur, and the path's error.
-  constexpr double kGrow = 0.12;  // of the short side
-  constexpr double kLeastGrow = 2.5;
-  const double grow = std::max(kLeastGrow, kGrow * reduced.short_side);
+  // Margin of the masks, as a share of the short side and in cells: the body's
+  // blur, and the path's error. Larger leaves less of the still layer
+  // uncovered; smaller mixes the body into it. Not studied.
+  constexpr double kGrowShare = 0.12;
+  constexpr double kMinGrow = 2.5;
+  const double grow = std::max(kMinGrow, kGrowShare * reduced.short_side);
 
   StillLayer still = MedianStill(sampled, options.threads);
   const cv::Mat median = still.level;
@@ -237,7 +250,8 @@ core::Expected<LayeredStart> FindLayeredStart(
                 static_cast<double>(masks.size());
   start.unexplained = UnexplainedShare(sampled, still, masks, scale, noise_dn);
   const double usual = MedianScore(path);
-  constexpr double kSeen = 0.35;  // of the usual score
+  // Of the median score: with less the body is hidden or away. Not studied.
+  constexpr double kMinScoreShare = 0.35;
   const double period =
       shape.kind == core::BodyKind::kSphere ? 0.0 : SymmetryPeriod(shape);
   double angle = path.front().angle_rad;
@@ -253,11 +267,13 @@ core::Expected<LayeredStart> FindLayeredStart(
       pose.angle_rad = angle;
     }
     pose.score = path[t].score;
-    pose.seen = path[t].score > kSeen * usual;
+    pose.seen = path[t].score > kMinScoreShare * usual;
     start.poses.push_back(pose);
   }
-  constexpr double kLeastScore = 0.1;  // mean change under the shape
-  if (usual < kLeastScore) {
+  // Mean change under the shape, 0..1. Smaller takes noise for a body. Not
+  // studied.
+  constexpr double kMinScore = 0.1;
+  if (usual < kMinScore) {
     return core::AbsentBecause(
         "nothing of the stated size changes in these frames");
   }
@@ -267,12 +283,15 @@ core::Expected<LayeredStart> FindLayeredStart(
         travel, std::hypot(pose.centre.x_px - start.poses.front().centre.x_px,
                            pose.centre.y_px - start.poses.front().centre.y_px));
   }
-  constexpr double kLeastTravel = 0.1;  // of the short side
-  if (travel < kLeastTravel * shape.short_side) {
+  // Of the short side: what moves by less is flicker. Not studied.
+  constexpr double kMinTravel = 0.1;
+  if (travel < kMinTravel * shape.short_side) {
     return core::AbsentBecause("nothing of the stated size moves");
   }
-  constexpr double kMostUnexplained = 0.6;
-  if (start.unexplained > kMostUnexplained) {
+  // Change outside over change inside. Larger follows a part of something
+  // larger; smaller loses bodies with a shadow. Not studied.
+  constexpr double kMaxUnexplained = 0.6;
+  if (start.unexplained > kMaxUnexplained) {
     return core::AbsentBecause(fmt::format(
         "most of what changes is not a body of the stated size ({:.0f} % of "
         "its own change lies outside of it)",

@@ -10,10 +10,13 @@
 namespace touchdown::vision {
 namespace {
 
-// Share of a scatter's cost for each scatter of way: of two paths that are as
-// smooth, the slower one.
+// Cost for each scatter of way, in units of the cost of one scatter off a
+// straight line: of two paths that are as smooth, the slower one. Not studied.
 constexpr double kWayCost = 0.02;
 
+// Cost of three successive places: squared second difference (acceleration)
+// over the scatter, the way, and the squared turn of a rectangle. The bound
+// costs.most lets an impact through.
 double TransitionCost(const PlacedShape& before, const PlacedShape& last,
                       const PlacedShape& next, const PathCosts& costs) {
   const double way_x = next.centre.x_px - last.centre.x_px;
@@ -35,8 +38,9 @@ double TransitionCost(const PlacedShape& before, const PlacedShape& last,
 
 LinkedPath LinkPath(std::span<const std::vector<PlacedShape>> frames,
                     const PathCosts& costs) {
-  constexpr std::size_t kLeastFrames = 3;
-  if (frames.size() < kLeastFrames) {
+  // A second difference takes three.
+  constexpr std::size_t kMinFrames = 3;
+  if (frames.size() < kMinFrames) {
     throw std::invalid_argument("LinkPath: " + std::to_string(frames.size()) +
                                 " frames; it takes 3 or more");
   }
@@ -49,8 +53,9 @@ LinkedPath LinkPath(std::span<const std::vector<PlacedShape>> frames,
   const auto own_cost = [&](const PlacedShape& shape) {
     return (1.0 - shape.score) / costs.score_variance;
   };
-  // cost[i * n + j]: the best path that ends with candidates i, j of the frames
-  // t - 1, t.
+  // Viterbi's algorithm with pairs of candidates as states: cost[i * n + j] is
+  // that of the best path that ends with candidates i and j of frames t - 1 and
+  // t.
   std::vector<double> cost;
   for (const PlacedShape& first : frames[0]) {
     for (const PlacedShape& second : frames[1]) {
@@ -82,6 +87,7 @@ LinkedPath LinkPath(std::span<const std::vector<PlacedShape>> frames,
     }
     cost = std::move(extended);
   }
+  // The cheapest end, then backwards.
   const auto best = std::min_element(cost.begin(), cost.end());
   const std::size_t width = frames.back().size();
   auto pair = static_cast<std::size_t>(best - cost.begin());

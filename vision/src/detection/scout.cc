@@ -14,10 +14,15 @@
 namespace touchdown::vision {
 namespace {
 
+// The header's, under a short name.
 constexpr std::int32_t kCell_px = Scout::kCell_px;
+// Samples of a row that are summed: a 64-bit word of bytes. More sees fainter
+// changes of larger bodies; fewer sees smaller bodies.
 constexpr std::int32_t kSegment_px = 8;
+// Rows 2, 6, 10, ... are read. More rows see smaller bodies and cost time in
+// proportion. Not studied.
 constexpr std::int32_t kRowStep_px = 4;
-constexpr std::int32_t kFirstRow_px = 2;  // rows 2, 6, 10, ...
+constexpr std::int32_t kFirstRow_px = 2;
 
 // Mostly none is.
 TOUCHDOWN_WIDEST
@@ -33,6 +38,8 @@ TOUCHDOWN_WIDEST
 void OffInRow(const std::uint8_t* __restrict row, std::size_t count,
               const float* __restrict sum, const float* __restrict per_u,
               float* __restrict off) {
+  // Every second byte: two halves of a word are added as four 16-bit numbers,
+  // in which sums of bytes cannot overflow.
   constexpr std::uint64_t kEven = 0x00FF00FF00FF00FFULL;
   for (std::size_t s = 0; s < count; ++s) {
     std::uint64_t eight = 0;
@@ -61,12 +68,13 @@ bool Meet(const core::PixelRect& a, const core::PixelRect& b) {
          b.y < a.y + a.height;
 }
 
+// A box of connected cells that differ.
 struct ChangedRegion {
   core::PixelRect rect;
   double strength = 0.0;  // sum of its differences, in standard deviations
 };
 
-// Until none meets another.
+// Joins regions that meet until none meets another.
 void Join(std::vector<ChangedRegion>& regions) {
   for (std::size_t i = 0; i < regions.size();) {
     const auto meets =
@@ -119,18 +127,22 @@ Scout::Scout(const Background& still, const ScoutOptions& options)
   }
 }
 
-// 1, or more where the differences are larger than the still picture's noise:
-// flicker, or noise that neighbours share (compression). Of every seventh sum:
-// the median, and the median over parts of the picture of the 98 % point, which
-// a body in a few of the parts does not change. Less than a tenth more is not
-// told from 1, so that counting is mostly enough.
+// The frame's noise over that of the still picture: 1, or more where all
+// differences are larger (flicker, compression). From every seventh sum:
+// `typical` is the median, `tail` the median over parts of the picture of the
+// 98 % point, which a body in a few of the parts does not change. Less than a
+// tenth more is not told from 1, so that counting is enough in most frames.
 Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
+  // Every seventh sum is enough for quantiles to 1 %. Not studied beyond that.
   constexpr std::size_t kStep = 7;
-  constexpr std::size_t kParts = 4;  // across and down
+  // Parts across and down: a body fills some of the 16.
+  constexpr std::size_t kParts = 4;
+  // Quantiles of |normal|: half, and 98 %.
   constexpr double kMedianOfNormal = 0.6745;
   constexpr double kHighOfNormal = 2.3263;
-  constexpr double kHigh = 0.98;
-  constexpr double kTold = 1.1;
+  constexpr double kHighShare = 0.98;
+  // Ratio below which the noise counts as 1. Smaller sorts in every frame.
+  constexpr double kMinToldRatio = 1.1;
   const std::size_t segments = At(segments_);
   const std::size_t all_rows = off.size() / std::max<std::size_t>(1, segments);
   std::array<std::vector<float>, kParts * kParts> parts;
@@ -144,7 +156,7 @@ Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
     for (; s < segments; s += kStep) {
       const float value = off[row * segments + s];
       parts[down + s * kParts / segments].push_back(value);
-      large += value > static_cast<float>(kTold * kMedianOfNormal);
+      large += value > static_cast<float>(kMinToldRatio * kMedianOfNormal);
       ++count;
     }
     s -= segments;
@@ -163,18 +175,20 @@ Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
     if (part.empty()) continue;
     const auto beyond =
         std::count_if(part.begin(), part.end(), [](float value) {
-          return value > static_cast<float>(kTold * kHighOfNormal);
+          return value > static_cast<float>(kMinToldRatio * kHighOfNormal);
         });
     const double share =
         static_cast<double>(beyond) / static_cast<double>(part.size());
-    high.push_back(
-        share < 1.0 - kHigh ? 1.0F : static_cast<float>(Quantile(part, kHigh)));
+    high.push_back(share < 1.0 - kHighShare
+                       ? 1.0F
+                       : static_cast<float>(Quantile(part, kHighShare)));
   }
   noise.tail = std::max(noise.typical, Quantile(high, 0.5) / kHighOfNormal);
   return noise;
 }
 
-// `row_of(y)`: a window whose first row is row y of the picture.
+// How far each sum of the rows looked at is off, in standard deviations.
+// `row_of(y)` gives a window whose first row is row y of the picture.
 template <class RowOf>
 std::vector<float> Scout::Off(const Rows& rows, const RowOf& row_of) const {
   const std::size_t segments = At(segments_);
@@ -196,6 +210,7 @@ std::vector<float> Scout::Off(const Rows& rows, const RowOf& row_of) const {
   return off;
 }
 
+// The next row to be read is fetched ahead.
 std::vector<float> Scout::Off(const core::Frame& frame,
                               const Rows& rows) const {
   const auto ahead = static_cast<std::int32_t>(rows.step) * kRowStep_px;
@@ -217,7 +232,7 @@ std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
     });
   }
   clip.WillRead(index, {0, 0, width_px_, height_px_});
-  // Rows alone where they must be unpacked and nothing else need be.
+  // Where rows must be unpacked, only those looked at are.
   if (clip.windows_are_cheap() && !clip.views_last()) {
     return Off(rows, [&](std::int32_t y) {
       return clip.Read(index, {0, y, width_px_, 1});
@@ -226,6 +241,8 @@ std::vector<float> Scout::Off(Clip& clip, std::int64_t index,
   return Off(clip.Read(index), rows);
 }
 
+// Sums that exceed the threshold mark their cell; the strength of a cell is
+// their sum.
 Changes Scout::FindChanges(const std::vector<float>& off) const {
   const Noise noise = MeasureNoise(off);
   const auto most = static_cast<float>(options_.threshold_sigmas * noise.tail);
@@ -252,6 +269,8 @@ Changes Scout::Look(Clip& clip, std::int64_t index) const {
 }
 
 bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
+  // A probe reads every fourth row, from `phase` on: four probes in turn read
+  // them all.
   constexpr std::size_t kPhases = 4;
   const std::vector<float> off =
       Off(clip, index, {static_cast<std::size_t>(phase) % kPhases, kPhases});
@@ -260,7 +279,8 @@ bool Scout::Glimpse(Clip& clip, std::int64_t index, int phase) const {
   return AnyExceeds(off.data(), off.size(), most);
 }
 
-// The boxes of connected cells, with their margin, joined where they meet.
+// Boxes of connected cells with their margin, joined where they meet, the
+// strongest first. Flood fill over eight neighbours.
 std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
   core::PixelRect all{0, 0, width_px_, height_px_};
   const core::PixelRect& wanted = options_.region;
@@ -319,6 +339,7 @@ std::vector<core::PixelRect> Scout::Regions(std::vector<float> cells) const {
   return rects;
 }
 
+// Whether two still pictures differ as if one held a body's ghost.
 bool Scout::Differs(const Scout& other) const {
   std::vector<float> off;
   for (std::size_t k = 0; k < sum_.size(); ++k) {
@@ -338,11 +359,12 @@ bool Scout::Differs(const Scout& other) const {
                     })) {
       continue;
     }
-    // Key frames of compressed video differ here and there from the others; a
-    // ghost does so in all of its area.
-    constexpr int kMany = 3;  // of the eight sums of a cell
+    // Of the eight sums of a cell. Key frames of compressed video differ here
+    // and there from the others; a ghost does so in all of its area. Smaller
+    // decodes clips again for nothing. Not studied.
+    constexpr int kMinDifferingSums = 3;
     if (++cells[static_cast<std::size_t>(y / kCell_px * columns_ +
-                                         x / kCell_px)] >= kMany) {
+                                         x / kCell_px)] >= kMinDifferingSums) {
       return true;
     }
   }

@@ -35,6 +35,9 @@ struct ScoutOptions {
 
 class Scout {
  public:
+  // px of a cell's side, in which changes are marked: as many as a codec's
+  // macroblock. Larger windows cost memory; smaller ones cost time to join. Not
+  // studied.
   static constexpr std::int32_t kCell_px = 16;
 
   Scout(const Background& still, const ScoutOptions& options = {});

@@ -11,12 +11,13 @@
 namespace touchdown::vision {
 namespace {
 
-// Share of a cell at distance `at` from the middle of a slab that the slab
-// covers, but for cells that hold both its edges.
+// Share of a cell, at distance `at` from the middle of a slab, that the slab
+// covers. Exact but for cells that hold both of its edges.
 double CoverOfSlab(double half, double at) {
   return std::clamp(half - std::abs(at) + 0.5, 0.0, 1.0);
 }
 
+// A disc, or the product of two slabs.
 double CoverOfShape(const KnownShape& shape, double x, double y, double cosine,
                     double sine) {
   if (shape.kind == core::BodyKind::kSphere) {
@@ -26,7 +27,7 @@ double CoverOfShape(const KnownShape& shape, double x, double y, double cosine,
          CoverOfSlab(0.5 * shape.short_side, -sine * x + cosine * y);
 }
 
-// Cells from a shape's centre to its farthest one.
+// Cells from the shape's centre to its farthest cell, and one more.
 std::int32_t ComputeReach(const KnownShape& shape) {
   const double half = shape.kind == core::BodyKind::kSphere
                           ? 0.5 * shape.long_side
@@ -44,20 +45,24 @@ cv::Mat WrapInMat(const std::vector<float>& values, std::int32_t width,
   return {height, width, CV_32F, const_cast<float*>(values.data())};
 }
 
+// Angles in half a turn at which a rectangle is sought.
 std::size_t CountAngles(const KnownShape& shape) {
   if (shape.kind == core::BodyKind::kSphere) return 1;
-  // Half a step turns the end of the long side by half_long * step / 2: 0.35 of
-  // the short side in a whole one. 12 at the least, for squares.
-  constexpr double kShare = 0.35;
-  constexpr double kLeast = 12.0;
-  constexpr double kMost = 48.0;  // longer bodies are sought at coarser angles
-  const double step = 2.0 * kShare * shape.short_side / shape.long_side;
+  // Of the short side: a whole step moves the end of the long side by so much,
+  // so that the best angle is never farther off than half of that. Smaller
+  // costs time. Not studied.
+  constexpr double kMaxEndMove = 0.35;
+  // At least, for squares; at most, so that longer bodies are sought at coarser
+  // angles. Not studied.
+  constexpr double kMinAngles = 12.0;
+  constexpr double kMaxAngles = 48.0;
+  const double step = 2.0 * kMaxEndMove * shape.short_side / shape.long_side;
   return static_cast<std::size_t>(
-      std::clamp(std::ceil(std::numbers::pi / step), kLeast, kMost));
+      std::clamp(std::ceil(std::numbers::pi / step), kMinAngles, kMaxAngles));
 }
 
-// Where a parabola through three values at -1, 0 and 1 has its top; within half
-// a step.
+// Place of the maximum of a parabola through three values at -1, 0 and 1;
+// within half a step.
 double TopOfParabola(double before, double at, double after) {
   const double bend = before - 2.0 * at + after;
   if (!(bend < 0.0)) return 0.0;
@@ -67,9 +72,12 @@ double TopOfParabola(double before, double at, double after) {
 }  // namespace
 
 double SymmetryPeriod(const KnownShape& shape) {
-  constexpr double kSquare = 1.05;  // sides nearer than 5 %
-  return shape.long_side < kSquare * shape.short_side ? 0.5 * std::numbers::pi
-                                                      : std::numbers::pi;
+  // Ratio of the sides below which a rectangle counts as a square: it looks the
+  // same after a quarter turn. Not studied.
+  constexpr double kSquareRatio = 1.05;
+  return shape.long_side < kSquareRatio * shape.short_side
+             ? 0.5 * std::numbers::pi
+             : std::numbers::pi;
 }
 
 ShapeSearch::ShapeSearch(const KnownShape& shape, std::int32_t width,
@@ -86,8 +94,8 @@ ShapeSearch::ShapeSearch(const KnownShape& shape, std::int32_t width,
         std::to_string(height) + " cells; it must have at least one");
   }
   const std::int32_t reach = ComputeReach(shape);
-  // Beyond the border nothing has changed: what a transform wraps around must
-  // meet zeros.
+  // Zeros beyond the border, as far as the shape reaches: a transform wraps
+  // around, and what it meets there must be "nothing has changed".
   padded_width_ = cv::getOptimalDFTSize(width + 2 * reach);
   padded_height_ = cv::getOptimalDFTSize(height + 2 * reach);
   const std::size_t count = CountAngles(shape);
@@ -120,12 +128,14 @@ ShapeSearch::ShapeSearch(const KnownShape& shape, std::int32_t width,
   }
 }
 
-// The scores of all places of the picture at one angle.
+// Mean change under the shape at each place, at one angle: correlation by
+// Fourier transform.
 std::vector<float> ShapeSearch::ScoreAngle(const std::vector<float>& spectrum,
                                            std::size_t angle) const {
   std::vector<float> product(spectrum.size());
   cv::Mat out = WrapInMat(product, padded_width_, padded_height_);
-  constexpr bool kConjugate = true;  // correlation, not convolution
+  // Correlation, not convolution.
+  constexpr bool kConjugate = true;
   cv::mulSpectrums(WrapInMat(spectrum, padded_width_, padded_height_),
                    WrapInMat(spectra_[angle], padded_width_, padded_height_),
                    out, 0, kConjugate);
@@ -168,18 +178,22 @@ std::vector<PlacedShape> ShapeSearch::FindMaxima(
     scores.push_back(ScoreAngle(padded, k));
     angles.push_back(static_cast<double>(k) * step_rad_);
   }
+  // At each place the best of all angles.
   std::vector<float> best = scores.front();
   for (std::size_t k = 1; k < scores.size(); ++k) {
     for (std::size_t i = 0; i < best.size(); ++i) {
       best[i] = std::max(best[i], scores[k][i]);
     }
   }
-  // Nearer maxima are one place; angles whose score is nearly the best one are
-  // kept, as the path knows better.
-  constexpr double kApart = 0.15;  // of the short side
-  constexpr float kNearlyAsGood = 0.97F;
-  constexpr float kNothing = 1e-3F;
-  const auto apart = static_cast<std::int32_t>(kApart * shape_.short_side) + 1;
+  // Of the short side: nearer maxima are one place. Not studied.
+  constexpr double kMinApart = 0.15;
+  // Share of the best score: angles that are nearly as good are kept, since the
+  // path knows better. Not studied.
+  constexpr float kNearlyBest = 0.97F;
+  // Score of a place where nothing changes.
+  constexpr float kNoScore = 1e-3F;
+  const auto apart =
+      static_cast<std::int32_t>(kMinApart * shape_.short_side) + 1;
   const auto at = [&](std::size_t k, std::int32_t x, std::int32_t y) {
     return static_cast<double>(
         scores[k][static_cast<std::size_t>(std::clamp(y, 0, height_ - 1)) *
@@ -191,13 +205,13 @@ std::vector<PlacedShape> ShapeSearch::FindMaxima(
        ++place) {
     const auto top = std::max_element(best.begin(), best.end());
     const float highest = *top;
-    if (!(highest > kNothing)) break;
+    if (!(highest > kNoScore)) break;
     const auto index = static_cast<std::int32_t>(top - best.begin());
     const std::int32_t x = index % width_;
     const std::int32_t y = index / width_;
     for (std::size_t k = 0; k < scores.size() && found.size() < 2 * most; ++k) {
       const double here = at(k, x, y);
-      if (here < static_cast<double>(kNearlyAsGood * highest)) continue;
+      if (here < static_cast<double>(kNearlyBest * highest)) continue;
       PlacedShape shape;
       shape.centre.x_px =
           x + TopOfParabola(at(k, x - 1, y), here, at(k, x + 1, y));

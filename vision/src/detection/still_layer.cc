@@ -12,6 +12,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Means of by x by pixels.
 template <class Sample>
 cv::Mat Reduce(const core::Frame& frame, std::int32_t by) {
   cv::Mat reduced(frame.height_px / by, frame.width_px / by, CV_32F,
@@ -47,24 +48,30 @@ ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
   return sampled;
 }
 
+// Noise of a cell, from differences of successive pictures: most cells do not
+// change, and the median is blind to those that do.
 double EstimateCellNoise(const ReducedFrames& sampled) {
-  constexpr int kEvery = 3;             // cells
-  constexpr double kLeastShare = 1e-3;  // of full scale: a quarter DN of 8 bits
+  // Every third cell across and down is enough for a median. Not studied.
+  constexpr int kCellStep = 3;
+  // Of full scale, a quarter DN of 8 bits: a synthetic picture has no noise.
+  constexpr double kMinNoiseShare = 1e-3;
   std::vector<float> differences;
   for (std::size_t t = 1; t < sampled.pictures.size(); ++t) {
     const cv::Mat& a = sampled.pictures[t - 1];
     const cv::Mat& b = sampled.pictures[t];
-    for (int y = 0; y < a.rows; y += kEvery) {
-      for (int x = 0; x < a.cols; x += kEvery) {
+    for (int y = 0; y < a.rows; y += kCellStep) {
+      for (int x = 0; x < a.cols; x += kCellStep) {
         differences.push_back(std::abs(a.at<float>(y, x) - b.at<float>(y, x)));
       }
     }
   }
   const double sigma = kSigmaPerMedian * std::numbers::sqrt2 / 2.0 *
                        static_cast<double>(MedianInPlace(differences));
-  return std::max(sigma, kLeastShare * sampled.full_scale_dn);
+  return std::max(sigma, kMinNoiseShare * sampled.full_scale_dn);
 }
 
+// Median over the pictures, for the first round: right wherever the body is in
+// fewer than half of them.
 StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
   const cv::Mat& first = sampled.pictures.front();
   cv::Mat median(first.size(), CV_32F);
@@ -83,15 +90,20 @@ StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
   return {median, cv::Mat(first.size(), CV_16U, cv::Scalar(1))};
 }
 
+// Still layer of what the masks leave uncovered: a mean, then weighted means
+// with Cauchy's weights 1 / (1 + r^2), which take out shadows and flicker.
+// Cells that are always covered keep the fallback.
 StillLayer LearnStill(const ReducedFrames& sampled,
                       const std::vector<cv::Mat>& masks,
                       const cv::Mat& fallback, double noise_dn, int threads) {
+  // Reweightings after the plain mean. Not studied.
   constexpr int kRobustPasses = 2;
-  constexpr float kCut = 3.0F;
+  // In units of the noise: the scale of Cauchy's weights. Not studied.
+  constexpr float kCauchyNoises = 3.0F;
   StillLayer still;
   still.level = fallback.clone();
   still.uncovered = cv::Mat(fallback.size(), CV_16U, cv::Scalar(0));
-  const float per_cut = 1.0F / (kCut * static_cast<float>(noise_dn));
+  const float per_cut = 1.0F / (kCauchyNoises * static_cast<float>(noise_dn));
   core::InParallel(
       fallback.rows, threads, [&](std::int64_t begin, std::int64_t end) {
         const auto width = static_cast<std::size_t>(fallback.cols);
@@ -127,17 +139,25 @@ StillLayer LearnStill(const ReducedFrames& sampled,
   return still;
 }
 
+// Change is 0 at the mean magnitude of noise and 1 where it is clear.
 ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn) {
+  // Mean of |normal|, sqrt(2/pi).
   constexpr double kMeanMagnitude = 0.8;
-  constexpr double kClear = 5.0;
-  constexpr double kUnsteady = 0.012;
+  // In units of the noise, and of full scale: the latter for flicker and for
+  // compression, which noise does not tell. Larger misses faint bodies. Not
+  // studied.
+  constexpr double kClearNoises = 5.0;
+  constexpr double kClearShare = 0.012;
   return {kMeanMagnitude * noise_dn,
-          kClear * noise_dn + kUnsteady * full_scale_dn};
+          kClearNoises * noise_dn + kClearShare * full_scale_dn};
 }
 
+// |picture - still|, smoothed over a cell and scaled to 0..1.
 cv::Mat ComputeChange(const StillLayer& still, const cv::Mat& picture,
                       const ChangeScale& scale) {
-  constexpr float kUnknown = 0.5F;
+  // Change of a cell that was never uncovered: neither for the body nor against
+  // it.
+  constexpr float kUnknownChange = 0.5F;
   cv::Mat change;
   cv::absdiff(picture, still.level, change);
   cv::GaussianBlur(change, change, {5, 5}, 1.0);
@@ -147,7 +167,8 @@ cv::Mat ComputeChange(const StillLayer& still, const cv::Mat& picture,
     for (int x = 0; x < change.cols; ++x) {
       const float value = (row[x] - static_cast<float>(scale.from_dn)) /
                           static_cast<float>(scale.range_dn);
-      row[x] = uncovered[x] == 0 ? kUnknown : std::clamp(value, 0.0F, 1.0F);
+      row[x] =
+          uncovered[x] == 0 ? kUnknownChange : std::clamp(value, 0.0F, 1.0F);
     }
   }
   return change;

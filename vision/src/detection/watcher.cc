@@ -6,31 +6,36 @@
 namespace touchdown::vision {
 namespace {
 
-// By which KeepLargest ranks.
+// The measure by which KeepLargest ranks.
 double Strength(const Blob& blob) {
   return blob.area_px2 * std::abs(blob.contrast_dn);
 }
 
-// One more than is kept shows whether there are more.
+// Asks for one blob more than is kept, which shows whether there are more.
 DetectOptions OneMore(DetectOptions detect) {
   ++detect.most_blobs;
   return detect;
 }
 
+// Keeps the strongest blobs, and notes whether one that could be a body was
+// left out.
 void KeepStrongestBlobs(const DetectOptions& detect, Seen& seen) {
-  // Of the strongest: specks of noise and of compression, of which there may be
-  // any number, are no body that was overlooked.
-  constexpr double kLikeABody = 0.1;
+  // Of the strongest blob's strength. Specks of noise and of compression, of
+  // which there may be any number, are no body that was overlooked. Set so that
+  // seven recordings give no new warning.
+  constexpr double kMinBodyShare = 0.1;
   KeepLargest(seen.blobs, OneMore(detect));
   const auto most = static_cast<std::size_t>(detect.most_blobs);
   if (seen.blobs.size() <= most) return;
   seen.more =
-      Strength(seen.blobs[most]) > kLikeABody * Strength(seen.blobs.front());
+      Strength(seen.blobs[most]) > kMinBodyShare * Strength(seen.blobs.front());
   seen.blobs.resize(most);
 }
 
 }  // namespace
 
+// Whether the clip is so large that only changed parts of some frames are
+// looked at.
 bool IsLong(const Clip& clip, const TrackOptions& options) {
   const ClipInfo& info = clip.info();
   const std::int64_t last = options.last < 0 ? info.frames : options.last;
@@ -53,6 +58,7 @@ Watcher::Watcher(const Clip& clip, const Background& background,
   }
 }
 
+// Blobs of one frame: of the whole frame, or of the windows around its changes.
 Seen Watcher::Look(Clip& clip, std::int64_t index) const {
   Seen seen;
   if (!scout_) {

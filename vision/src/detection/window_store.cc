@@ -19,8 +19,8 @@
 namespace touchdown::vision {
 namespace {
 
-// Windows of the frames of a range that are worth decoding, and some frames
-// whole.
+// Keeps windows around what changes, in the frames that are worth decoding, and
+// some frames whole (for backgrounds). Decodes once, in pieces or all at once.
 class WindowStore final : public GrowingClip {
  public:
   WindowStore(std::unique_ptr<Clip> clip, FrameStoreOptions options)
@@ -34,9 +34,11 @@ class WindowStore final : public GrowingClip {
     alone_ = AreStoredAlone(*clip_, options_.first, options_.last);
     left_bytes_ = Room();
     scout_.region = options_.region;
-    scout_.margin_cells = kMargin;
+    scout_.margin_cells = kMarginCells;
   }
 
+  // In pieces while the clip grows; the last piece ends as if all had been
+  // decoded at once, so that the result does not depend on the pieces.
   bool ExtendDecoding(std::int64_t last) override {
     last = std::min(last, options_.last);
     const bool in_pieces = last < options_.last;
@@ -82,8 +84,9 @@ class WindowStore final : public GrowingClip {
     for (std::int64_t i = options_.first; i < end_; ++i) {
       if (KeptFrame(i).state != State::kLeftOut) continue;
       // What was glimpsed at within a range is part of it.
-      constexpr std::int64_t kGlimpse = 2;  // frames
-      if (ranges.empty() || ranges.back().second + kGlimpse < i) {
+      // Frames: a probe and the frame after it.
+      constexpr std::int64_t kProbeFrames = 2;
+      if (ranges.empty() || ranges.back().second + kProbeFrames < i) {
         ranges.emplace_back(i, i);
       }
       ranges.back().second = i + 1;
@@ -105,8 +108,9 @@ class WindowStore final : public GrowingClip {
   }
 
  private:
-  // 32 px around what differs: what the fit of a body of 50 px looks at.
-  static constexpr std::int32_t kMargin = 2;
+  // Cells, 32 px, around what differs: what the fit of a body of 50 px looks
+  // at. More costs memory; less reads frames again. Not studied.
+  static constexpr std::int32_t kMarginCells = 2;
 
   // Left out: glimpses near it show nothing.
   enum class State { kUnknown, kLeftOut, kSeen };
@@ -133,7 +137,8 @@ class WindowStore final : public GrowingClip {
     return clip_->Read(index, window);
   }
 
-  // Sets still_ by the key frames, and which of them show anything beside it.
+  // Makes a first still picture of the key frames, and notes which of them show
+  // anything beside it.
   void LookAtKeyFrames() {
     keys_ = ChooseKeyFrames(*clip_, options_.first, options_.last);
     const bool fit = keys_.size() * FrameBytes(info()) <= options_.most_bytes;
@@ -144,14 +149,14 @@ class WindowStore final : public GrowingClip {
     BackgroundOptions background;
     background.threads = options_.threads;
     still_ = EstimateBackgroundFromFrames(*this, keys_, background);
-    // A mid-mean of up to three is a mean: where they differ, any of them may
-    // show the body, and all frames are kept there.
-    constexpr std::size_t kRobust = 4;
+    // Frames. An interquartile mean of up to three is a mean: where they
+    // differ, any of them may show the body, and all frames are kept there.
+    constexpr std::size_t kMinRobust = 4;
     const Scout scout(*still_, scout_);
     for (const std::int64_t frame : keys_) {
       const Changes changes = scout.Look(Read(frame));
       keys_changes_.push_back(changes);
-      if (keys_.size() >= kRobust) continue;
+      if (keys_.size() >= kMinRobust) continue;
       scout_.always.insert(scout_.always.end(), changes.where.begin(),
                            changes.where.end());
     }
@@ -166,6 +171,8 @@ class WindowStore final : public GrowingClip {
     return EstimateBackground(*this, options_.first, options_.last, background);
   }
 
+  // Whether windows that were cut by the first still picture would have been
+  // the same by a better one.
   bool IsRight(const Background& right) const {
     return !Scout(right, scout_).Differs(Scout(*still_, scout_));
   }
@@ -177,8 +184,8 @@ class WindowStore final : public GrowingClip {
   }
 
   // Frames kept whole while the clip grows, evenly over what was decoded, so
-  // that a background can be made of them wherever it stops: where there are
-  // too many, every second one is cut down to its windows.
+  // that a background can be made of them wherever decoding stops. Where there
+  // are too many, every second one is cut down to its windows.
   struct Grid {
     std::size_t most = 0;  // frames; 0: not begun
     std::size_t step = 1;
@@ -186,20 +193,23 @@ class WindowStore final : public GrowingClip {
     bool Begun() const { return most > 0; }
   };
 
-  // False where so few frames would fit that a body leaves its ghost. They take
-  // a third more than all else: while the clip grows, a third of the frames
-  // that stay whole, those at its end, are not there yet.
+  // Returns false where so few frames would fit that a body leaves its ghost.
+  // They take a third more memory than all else: while the clip grows, a third
+  // of the frames that stay whole, those at its end, are not there yet.
   bool BeginGrid() {
-    constexpr std::size_t kMost = 33;  // at least half of it at any time
-    constexpr std::size_t kLeast = 16;
+    // Frames: halving leaves at least half of them at any time. A background of
+    // fewer than 16 keeps a body's ghost. Not studied.
+    constexpr std::size_t kMaxGrid = 33;
+    constexpr std::size_t kMinGrid = 16;
     const std::size_t fit =
-        std::min(kMost, options_.most_bytes / 3 / FrameBytes(info()));
-    if (fit < kLeast || !whole_.contains(options_.first)) return false;
+        std::min(kMaxGrid, options_.most_bytes / 3 / FrameBytes(info()));
+    if (fit < kMinGrid || !whole_.contains(options_.first)) return false;
     grid_.most = fit;
     return true;
   }
 
-  // Every step-th of the frames that are decoded.
+  // Adds every step-th of the frames up to `last`; doubles the step when they
+  // are too many.
   void WidenGrid(std::int64_t last) {
     const std::size_t frames = CountEarlierFrames(last);
     while ((frames + grid_.step - 1) / grid_.step > grid_.most) grid_.step *= 2;
@@ -220,7 +230,8 @@ class WindowStore final : public GrowingClip {
         std::lower_bound(todo_.begin(), todo_.end(), index) - todo_.begin());
   }
 
-  // To its windows, unless it stays whole all the same.
+  // Cuts a whole frame down to its windows, unless it stays whole for a
+  // background.
   void CutDown(std::int64_t index) {
     if (whole_.contains(index)) return;
     Kept& kept = KeptFrame(index);
@@ -231,8 +242,9 @@ class WindowStore final : public GrowingClip {
                 std::max<std::size_t>(1, todo_.size() - next_), kept);
   }
 
-  // Piece by piece: what lies between key frames that show nothing is left out
-  // however far apart they are. All is decoded where nothing is decided.
+  // While the clip grows, key frames are the probes: what lies between two that
+  // show nothing is left out, however far apart they are. Where nothing is
+  // known to be still, all is decoded.
   void ChooseByKeys() {
     GlimpseRule rule;
     rule.most_between = options_.most_between_keys;
@@ -250,8 +262,8 @@ class WindowStore final : public GrowingClip {
         FramesWorthDecoding(options_.first, options_.last, keys_, show, rule));
   }
 
-  // All at once: glimpses, then what may show anything and what backgrounds are
-  // made of. What was seen before is not decoded again.
+  // All at once: probes, then the frames that may show anything and those that
+  // backgrounds are made of. What was seen before is not decoded again.
   void DecodeAll() {
     for (Kept& kept : frames_) {
       if (kept.state == State::kLeftOut) kept.state = State::kUnknown;
@@ -259,8 +271,8 @@ class WindowStore final : public GrowingClip {
     const GlimpseRule rule;
     const std::int64_t range = options_.last - options_.first;
     std::vector<std::int64_t> glimpsed;
-    // In vain where others would have to be decoded for them, or where it is
-    // not known what is still.
+    // Probes are in vain where other frames would have to be decoded for them,
+    // or where it is not known what is still.
     if (alone_ && scout_.always.empty()) {
       for (std::int64_t i = options_.first; i < options_.last;
            i += kGlimpseStride) {
@@ -282,10 +294,9 @@ class WindowStore final : public GrowingClip {
     LeaveOutFrames(options_.last);
   }
 
-  // Which of the glimpsed frames, whose changes are known, show something.
-  // Where frames are stored alone, the one after each that differs from the
-  // still picture is decoded, too; else it would cost one more decoding of the
-  // key.
+  // Which of the probed frames show something. Where frames are stored alone,
+  // the frame after each that differs is decoded, too, since noise differs in
+  // one only; else that would cost one more decoding from the key frame.
   std::vector<bool> Shows(const std::vector<std::int64_t>& glimpsed,
                           std::size_t range) {
     std::vector<std::int64_t> next;
@@ -303,7 +314,7 @@ class WindowStore final : public GrowingClip {
       shows.push_back(
           !alone_ || index + 1 == options_.last
               ? !changes.where.empty()
-              : AreInBoth(changes, KeptFrame(index + 1).changes, kMargin));
+              : AreInBoth(changes, KeptFrame(index + 1).changes, kMarginCells));
     }
     return shows;
   }
@@ -321,7 +332,7 @@ class WindowStore final : public GrowingClip {
     });
   }
 
-  // What was not decoded up to there will not be.
+  // Frames up to `last` that were not decoded will not be.
   void LeaveOutFrames(std::int64_t last) {
     for (; end_ < last; ++end_) {
       Kept& kept = KeptFrame(end_);
@@ -331,15 +342,15 @@ class WindowStore final : public GrowingClip {
     }
   }
 
-  // All is decoded: as if it had been at once.
+  // All is decoded. The still picture is made again of all samples: a body that
+  // waits where the key frames show it would not have been seen, and then all
+  // is decoded again.
   void Finish() {
     todo_.clear();
     next_ = 0;
     const std::set<std::int64_t> frames = std::move(grid_.frames);
     grid_ = {};
     for (const std::int64_t index : frames) CutDown(index);
-    // What is still by all samples: a body that waits where the key frames
-    // show it would not have been seen.
     Background right = StillPicture();
     if (!IsRight(right)) {
       scout_.always.clear();
@@ -360,7 +371,7 @@ class WindowStore final : public GrowingClip {
     DecodeAll();
   }
 
-  // On from end_.
+  // Decodes from end_ to `last`.
   void AdvanceDecoder(std::int64_t last) {
     const std::size_t end = CountEarlierFrames(last);
     Decode({todo_.begin() + static_cast<std::ptrdiff_t>(next_),
@@ -371,8 +382,9 @@ class WindowStore final : public GrowingClip {
     done_ = end_ - options_.first;
   }
 
-  // These frames, of `of` that share the room. Where frames are stored alone,
-  // in parts that do not depend on the number of threads.
+  // Decodes these frames, of `of` that share the room. Where frames are stored
+  // alone, in parts whose number does not depend on the number of threads: the
+  // same windows are kept with any number.
   void Decode(const std::vector<std::int64_t>& frames, std::size_t of) {
     if (frames.empty()) return;
     const Scout scout(*still_, scout_);
@@ -434,8 +446,8 @@ class WindowStore final : public GrowingClip {
     }
   }
 
-  // The strongest window in any case, the others as far as each frame's share
-  // of the part's bytes goes: those that are not kept are not changes.
+  // Keeps the strongest window in any case, the others as far as each frame's
+  // share of the part's bytes goes. Windows that are not kept are no changes.
   void KeepWindows(const core::Frame& frame, std::size_t& part_bytes,
                    std::size_t frames, Kept& kept) {
     std::size_t share = part_bytes / frames;
@@ -457,7 +469,8 @@ class WindowStore final : public GrowingClip {
     where = std::move(held);
   }
 
-  // Of the room of all parts; false if there is not so much.
+  // Takes bytes of the room that all parts share; false if there are not so
+  // many.
   bool TakeRoom(std::size_t bytes) {
     std::size_t left = left_bytes_;
     while (bytes <= left) {

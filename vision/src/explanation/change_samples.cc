@@ -13,18 +13,22 @@
 namespace touchdown::vision {
 namespace {
 
+// The stated region, or the whole picture.
 core::PixelRect ChooseRegion(const Clip& clip,
                              const ExplainedChangeOptions& options) {
   if (options.region.width > 0) return options.region;
   return {0, 0, clip.info().width_px, clip.info().height_px};
 }
 
-// Where the body would be at a steady pace beyond either end of the track. A
-// blow or gravity soon bends the path: nothing is said beyond so many
-// frames (a choice, not measured).
-constexpr std::int64_t kFarthestFrames = 10;
-constexpr std::size_t kPaceOver = 4;  // poses that the pace is of
+// Frames beyond the ends of the track in which the body is expected at a steady
+// pace: an impact or gravity soon bends the path. Larger takes another thing's
+// change for the body's. Chosen, not measured.
+constexpr std::int64_t kMaxExtrapolation = 10;
+// Poses that the pace is measured over: more average noise, and see the impact.
+// Not studied.
+constexpr std::size_t kPacePoses = 4;
 
+// Sets the pose that a frame is expected to show; false where none can be.
 bool Expect(const Track& track, SampledFrame& frame) {
   const std::vector<Pose>& poses = track.poses;
   if (const auto pose = InterpolatePose(track, frame.index)) {
@@ -32,28 +36,28 @@ bool Expect(const Track& track, SampledFrame& frame) {
     return true;
   }
   if (poses.size() < 2) return false;
-  const std::size_t reach = std::min(kPaceOver, poses.size() - 1);
+  const std::size_t reach = std::min(kPacePoses, poses.size() - 1);
   if (frame.index < poses.front().frame) {
-    if (poses.front().frame - frame.index > kFarthestFrames) return false;
+    if (poses.front().frame - frame.index > kMaxExtrapolation) return false;
     frame.pose = OnTheWay(poses.front(), poses[reach], frame.index);
   } else {
-    if (frame.index - poses.back().frame > kFarthestFrames) return false;
+    if (frame.index - poses.back().frame > kMaxExtrapolation) return false;
     frame.pose =
         OnTheWay(poses[poses.size() - 1 - reach], poses.back(), frame.index);
   }
   return true;
 }
 
-// How far from the outline a pixel counts as near: half the body's size, so
-// that what was followed at a wrong place still has the body near it, and what
-// the blur adds.
+// How far from the outline a pixel counts as near.
 double NearMargin(const BodyImage& body) {
   const double size = body.kind == core::BodyKind::kSphere
                           ? 2.0 * body.radius_px.value
                           : 2.0 * body.half_long_px.value;
-  constexpr double kShare = 0.5;
-  constexpr double kBlurs = 3.0;
-  return kShare * size + kBlurs * body.blur_px;
+  // Of the body's size: what was followed at a wrong place still has the body
+  // near it. Plus what the blur adds. Not studied.
+  constexpr double kMarginOfSize = 0.5;
+  constexpr double kMarginBlurs = 3.0;
+  return kMarginOfSize * size + kMarginBlurs * body.blur_px;
 }
 
 core::PixelRect Intersection(const core::PixelRect& a,
@@ -80,7 +84,7 @@ core::PixelRect OutlineBox(const Outline& outline, double margin) {
   return box;
 }
 
-// Marks of the lattice: 1 where the body is near in any of the frames.
+// Marks of the lattice: 1 where the body is near in any of the frames, else 0.
 std::vector<std::uint8_t> MarkNearPoints(
     const Track& track, const std::vector<SampledFrame>& frames,
     const LatticePoints& lattice) {
@@ -126,7 +130,7 @@ void SetLattice(const core::PixelRect& box, std::int32_t step,
   lattice.rows = (box.height + step - 1) / step;
 }
 
-// The places whose mark is `wanted`.
+// Numbers the lattice's points whose mark is `wanted`.
 void TakePoints(const std::vector<std::uint8_t>& marks, std::uint8_t wanted,
                 LatticePoints& lattice) {
   lattice.number.assign(marks.size(), -1);
@@ -141,6 +145,7 @@ void TakePoints(const std::vector<std::uint8_t>& marks, std::uint8_t wanted,
   }
 }
 
+// The lattice's step in px for about so many points.
 std::int32_t ChooseStep(double area, int points) {
   return std::max(
       1, static_cast<std::int32_t>(std::ceil(std::sqrt(area / points))));
@@ -161,9 +166,10 @@ std::vector<SampledFrame> ChooseFrames(const Clip& clip, const Track& track,
                                        const ExplainedChangeOptions& options) {
   const std::int64_t first_pose = track.poses.front().frame;
   const std::int64_t last_pose = track.poses.back().frame;
-  constexpr std::int64_t kLeastSpare = 8;  // frames
-  const std::int64_t spare =
-      std::max(kLeastSpare, (last_pose - first_pose) / 2);
+  // Frames before and after the track, besides half of its length: they show
+  // the picture without the body. Not studied.
+  constexpr std::int64_t kMinSpare = 8;
+  const std::int64_t spare = std::max(kMinSpare, (last_pose - first_pose) / 2);
   const std::int64_t from = std::max(track.first_frame, first_pose - spare);
   const std::int64_t to = std::min(track.last_frame, last_pose + spare + 1);
   std::set<std::int64_t> indices;
@@ -178,12 +184,14 @@ std::vector<SampledFrame> ChooseFrames(const Clip& clip, const Track& track,
     for (int k = 0; k < options.frames; ++k) {
       indices.insert(from + (2 * k + 1) * (to - from) / (2 * options.frames));
     }
-    constexpr std::int64_t kAround = 2;
+    // Frames on either side of the frame of interest, all of which are looked
+    // at. Not studied.
+    constexpr std::int64_t kFramesBeside = 2;
     if (options.frame_of_interest) {
       const auto at =
           static_cast<std::int64_t>(std::floor(*options.frame_of_interest));
-      for (std::int64_t index = std::max(from, at - kAround + 1);
-           index < std::min(to, at + kAround + 1); ++index) {
+      for (std::int64_t index = std::max(from, at - kFramesBeside + 1);
+           index < std::min(to, at + kFramesBeside + 1); ++index) {
         indices.insert(index);
       }
     }
@@ -233,11 +241,12 @@ LatticePoints FindNearPoints(const Clip& clip, const Track& track,
   }
   LatticePoints lattice;
   if (box.width == 0) return lattice;
-  // A coarse lattice first: it tells the area.
-  constexpr int kCoarse = 4000;
-  SetLattice(box,
-             ChooseStep(static_cast<double>(box.width) * box.height, kCoarse),
-             lattice);
+  // Points of a coarse lattice, which tells the area that is near. Not studied.
+  constexpr int kCoarsePoints = 4000;
+  SetLattice(
+      box,
+      ChooseStep(static_cast<double>(box.width) * box.height, kCoarsePoints),
+      lattice);
   std::vector<std::uint8_t> marks = MarkNearPoints(track, frames, lattice);
   const auto marked = std::count(marks.begin(), marks.end(), 1);
   const double area = static_cast<double>(marked) * lattice.step * lattice.step;
@@ -269,6 +278,7 @@ LatticeLevels ReadLevels(Clip& clip, const std::vector<SampledFrame>& frames,
   if (points.size() == 0) return levels;
   const auto take = [&](Clip& reader, std::size_t k) {
     float* of = levels.of(k);
+    // Rows alone where that is less than the whole window.
     const bool by_rows = reader.windows_are_cheap();
     core::Frame frame;
     if (!by_rows) frame = reader.Read(frames[k].index, points.box);

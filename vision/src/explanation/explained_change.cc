@@ -58,13 +58,14 @@ OverTime SumOverTime(const LatticeLevels& levels, std::size_t frames,
 
 // Variance of a pixel over time where nothing moves: the median over the points
 // far from the body's path, where there are enough of them (near it most pixels
-// are crossed by the body); corrected for the median of chi^2 of n - 1 degrees
-// of freedom, which is (n - 1) (1 - 2 / (9 (n - 1)))^3.
+// are crossed by the body). Divided by the median of chi^2 with n - 1 degrees
+// of freedom, (n - 1) (1 - 2 / (9 (n - 1)))^3 (Wilson and Hilferty 1931).
 double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
                      std::size_t frames) {
-  constexpr std::size_t kEnough = 200;  // the median is then known to 2 %
+  // Points: the median is then known to about 2 %. Not studied.
+  constexpr std::size_t kMinPoints = 200;
   std::vector<float> squares =
-      elsewhere.square.size() >= kEnough ? elsewhere.square : near.square;
+      elsewhere.square.size() >= kMinPoints ? elsewhere.square : near.square;
   const auto middle =
       squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
@@ -74,17 +75,20 @@ double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
                   Background::kVarianceFloor_dn2);
 }
 
-// Change beyond noise of the points whose own variance stands out of it.
+// Sum of the change beyond noise, over the points whose own variance stands out
+// of it.
 double ChangeBeyondNoise(const OverTime& over, double variance,
                          std::size_t frames) {
   const double freedom = static_cast<double>(frames) - 1.0;
   // Meant to leave out noise of other levels, of compression and of light that
-  // is not quite steady: three times the usual standard deviation (a choice,
-  // not measured yet), plus six standard deviations of the estimate itself.
-  constexpr double kOfNoise = 9.0;
+  // is not quite steady: three times the usual standard deviation (9 in
+  // variance), plus six standard deviations of the estimate itself. Larger
+  // misses faint things that move; smaller counts noise. Chosen, not measured
+  // yet.
+  constexpr double kNoiseFactor = 9.0;
   constexpr double kSigmas = 6.0;
   const double least =
-      variance * (kOfNoise * freedom + kSigmas * std::sqrt(2.0 * freedom));
+      variance * (kNoiseFactor * freedom + kSigmas * std::sqrt(2.0 * freedom));
   double sum = 0.0;
   for (const float square : over.square) {
     if (square > least) sum += square - variance * freedom;
@@ -92,17 +96,21 @@ double ChangeBeyondNoise(const OverTime& over, double variance,
   return sum;
 }
 
+// Sums of squared residuals, DN^2.
 struct Residuals {
   double square = 0.0;       // near
   double band_square = 0.0;  // where the edge is
   std::int64_t band = 0;
 };
 
-// Of a frame with a pose.
+// Adds the residuals of a frame with a pose: the two-layer model where it is
+// known, the mean over time elsewhere.
 void AddResiduals(const TwoLayers& layers, const CoveredPoints& covered,
                   const OverTime& over, const float* level,
                   std::vector<float>& residual, Residuals& sums) {
-  constexpr float kWhole = 0.95F;
+  // Coverage from which on the background counts for nothing (as in
+  // two_layers.cc); limits of the edge's band. Not studied.
+  constexpr float kWhollyCovered = 0.95F;
   constexpr float kBandFrom = 0.02F;
   constexpr float kBandTo = 0.98F;
   for (std::size_t p = 0; p < residual.size(); ++p) {
@@ -112,7 +120,7 @@ void AddResiduals(const TwoLayers& layers, const CoveredPoints& covered,
   for (std::size_t i = 0; i < covered.point.size(); ++i) {
     const auto p = static_cast<std::size_t>(covered.point[i]);
     const float m = covered.cover[i];
-    if (!layers.is_known(p) && m < kWhole) continue;
+    if (!layers.is_known(p) && m < kWhollyCovered) continue;
     const float behind = layers.is_known(p) ? layers.still(p) : 0.0F;
     residual[p] =
         level[p] - (1.0F - m) * behind - m * layers.picture(covered, i);
@@ -126,7 +134,8 @@ void AddResiduals(const TwoLayers& layers, const CoveredPoints& covered,
   }
 }
 
-// Of a frame without one: the mean or B, whichever is nearer.
+// Adds a frame without a pose: its deviation from the mean over time or from
+// the still layer, whichever is less.
 void AddUnexplained(const TwoLayers& layers, const OverTime& over,
                     const float* level, Residuals& sums) {
   double from_mean = 0.0;
@@ -145,15 +154,17 @@ void AddUnexplained(const TwoLayers& layers, const OverTime& over,
 core::Expected<ExplainedChange> MeasureExplainedChange(
     Clip& clip, const Track& track, const ExplainedChangeOptions& options) {
   CheckArguments(clip, track, options);
-  constexpr std::ptrdiff_t kLeastPoses = 3;
+  // Frames with a pose: with fewer the body's picture is the frame itself, and
+  // explains anything. Not studied.
+  constexpr std::ptrdiff_t kMinPoses = 3;
   if (track.poses.empty()) return core::AbsentBecause("no pose was measured");
   const std::vector<SampledFrame> frames = ChooseFrames(clip, track, options);
   if (std::count_if(frames.begin(), frames.end(), [](const SampledFrame& f) {
         return f.has_pose;
-      }) < kLeastPoses) {
+      }) < kMinPoses) {
     return core::AbsentBecause(
         fmt::format("of {} sampled frames fewer than {} have a pose",
-                    frames.size(), kLeastPoses));
+                    frames.size(), kMinPoses));
   }
   const LatticePoints near = FindNearPoints(clip, track, frames, options);
   const LatticePoints rest = PointsElsewhere(clip, track, frames, options);
@@ -189,13 +200,15 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
   for (const float square : over.square) all += square;
   // Both sums have lost a degree of freedom a pixel to the mean, or to B.
   const double noise = variance * static_cast<double>((n - 1) * near.size());
-  // Noise alone scatters by sqrt(2 N) s0^2; ten times that is a change.
-  constexpr double kSigmas = 10.0;
-  if (all - noise <
-      kSigmas * variance * std::sqrt(2.0 * static_cast<double>(out.pixels))) {
+  // Noise alone scatters the sum by sqrt(2 N) s0^2: ten times that is a change.
+  // Not studied.
+  constexpr double kChangeSigmas = 10.0;
+  if (all - noise < kChangeSigmas * variance *
+                        std::sqrt(2.0 * static_cast<double>(out.pixels))) {
     return core::AbsentBecause(
         "what changes near the body's path does not stand out of the noise");
   }
+  // Share of the change that the model explains, both with the noise taken out.
   out.near = 1.0 - (sums.square - noise) / (all - noise);
   const double change_near = ChangeBeyondNoise(over, variance, n) *
                              static_cast<double>(near.step) * near.step;

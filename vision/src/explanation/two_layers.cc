@@ -12,9 +12,11 @@
 namespace touchdown::vision {
 namespace {
 
-// Coverage below which a pixel shows nothing of the body.
+// Coverage below which a pixel shows nothing of the body: 0.1 % of any contrast
+// is below the noise.
 constexpr float kBarelyCovered = 1e-3F;
-// From there on it shows nothing but the body.
+// Coverage from which on a pixel shows nothing but the body. Larger loses small
+// blurred bodies; smaller mixes the background in. Not studied.
 constexpr float kWhollyCovered = 0.95F;
 
 // The body's picture: a grid around its outline, in its own coordinates.
@@ -26,13 +28,14 @@ struct BodyGrid {
   std::int32_t rows = 0;
 };
 
-// Cells as wide as the lattice's step: each frame then fills each cell about
-// once. The rim holds the blurred edge.
+// A grid over the body with a rim that holds the blurred edge. Cells are as
+// wide as the lattice's step: each frame then fills each cell about once.
 BodyGrid MakePictureGrid(const BodyImage& body, std::int32_t step) {
-  constexpr double kBlurs = 4.0;
+  // In units of blur_px: the edge's tail has ended there.
+  constexpr double kRimBlurs = 4.0;
   BodyGrid grid;
   grid.cell_px = step;
-  const double rim = kBlurs * body.blur_px + 2.0 * grid.cell_px;
+  const double rim = kRimBlurs * body.blur_px + 2.0 * grid.cell_px;
   const bool is_sphere = body.kind == core::BodyKind::kSphere;
   grid.half_x_px =
       rim + (is_sphere ? body.radius_px.value : body.half_long_px.value);
@@ -70,6 +73,8 @@ FrameMotion MeasureFrameMotion(const Track& track, std::int64_t frame) {
   return step;
 }
 
+// The lattice's points that the body covers in one frame: coverage, and the
+// place in the body's picture for bilinear interpolation.
 CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
                          const LatticePoints& lattice, const BodyGrid& grid) {
   CoveredPoints covered;
@@ -80,8 +85,9 @@ CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
   Smear smear(step.travel_px, step.turn_rad, extent);
   smear.Set(blur, track.body.shutter_fraction, false);
   const OutlineImage image(outline, smear);
-  constexpr double kBlurs = 3.5;  // coverage is below 1e-3 beyond
-  const double reach = extent + kBlurs * blur + 0.5 * smear.way_px();
+  // In units of blur_px: beyond it coverage is below 1e-3 (kBarelyCovered).
+  constexpr double kReachBlurs = 3.5;
+  const double reach = extent + kReachBlurs * blur + 0.5 * smear.way_px();
   const auto from = [&](double centre, std::int32_t origin) {
     return std::max(0, static_cast<std::int32_t>(std::ceil(
                            (centre - reach - origin) / lattice.step)));
@@ -194,6 +200,8 @@ float TwoLayers::picture(const CoveredPoints& covered, std::size_t i) const {
 void TwoLayers::LearnStill(const std::vector<SampledFrame>& frames,
                            const LatticeLevels& levels,
                            const std::vector<CoveredPoints>& covered) {
+  // Least squares of B in I = (1 - M) B + M T for each point. Frames before and
+  // after the track, in which the body is away, tell B where nothing else does.
   std::vector<float> sum(points_, 0.0F);
   weight_.assign(points_, 0.0F);
   std::vector<float> outside(points_, 0.0F);
@@ -242,7 +250,10 @@ void TwoLayers::LearnStill(const std::vector<SampledFrame>& frames,
 // the body's mean.
 void TwoLayers::LearnPicture(const LatticeLevels& levels,
                              const std::vector<CoveredPoints>& covered) {
-  constexpr float kPrior = 0.05F;  // of a pixel that is wholly covered
+  // Weight of the prior, in pixels that are wholly covered. Larger pulls the
+  // rim to the mean; smaller lets single pixels set it. Not studied.
+  constexpr float kPriorWeight = 0.05F;
+  // Rounds: the second takes back most of the first one's blur. Not studied.
   constexpr int kRounds = 2;
   const auto columns = static_cast<std::size_t>(columns_);
   if (!has_picture_) {
@@ -265,7 +276,7 @@ void TwoLayers::LearnPicture(const LatticeLevels& levels,
   std::vector<float> under(picture_.size());
   for (int round = 0; round < kRounds; ++round) {
     std::fill(over.begin(), over.end(), 0.0F);
-    std::fill(under.begin(), under.end(), kPrior);
+    std::fill(under.begin(), under.end(), kPriorWeight);
     for (std::size_t k = 0; k < covered.size(); ++k) {
       const CoveredPoints& here = covered[k];
       const float* level = levels.of(k);

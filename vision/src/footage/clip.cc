@@ -51,6 +51,7 @@ core::Frame Clip::Read(std::int64_t index) {
   return Read(index, {0, 0, info().width_px, info().height_px});
 }
 
+// Checks the arguments once for all formats, and fills in what all frames have.
 core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
   const ClipInfo& clip = info();
   if (index < 0 || index >= clip.frames) {
@@ -84,6 +85,7 @@ std::unique_ptr<Clip> Clip::OpenAnother() const {
   return another;
 }
 
+// Everything but .mraw is decoded by libraries, and is read by a process apart.
 bool IsForeign(const std::filesystem::path& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
@@ -96,6 +98,8 @@ std::unique_ptr<Clip> OpenClip(const std::filesystem::path& path,
   return OpenClipInMemory(path, options, nullptr);
 }
 
+// Chooses the reader by what the path is and how its name ends; each reader
+// then checks the content.
 std::unique_ptr<Clip> OpenClipInMemory(const std::filesystem::path& path,
                                        const ClipOptions& options,
                                        FrameMemory* memory) {

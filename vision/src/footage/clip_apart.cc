@@ -25,6 +25,8 @@ std::atomic<bool>& CanServe() {
   return can;
 }
 
+// A clip that another process reads: frames come through shared memory,
+// everything else as messages.
 class ApartClip final : public Clip {
  public:
   ApartClip(std::shared_ptr<ReaderProcess> process, Descriptor socket,
@@ -105,9 +107,11 @@ class ApartClip final : public Clip {
                                   const core::PixelRect& window) {
     const std::int64_t sample = shared.bit_depth > 8 ? 2 : 1;
     const std::int64_t row = sample * window.width;
-    constexpr std::int64_t kMostStride = std::int64_t{1} << 32;
+    // Bytes of a row: more is no answer of an honest reader, and the product
+    // below stays far from overflow.
+    constexpr std::int64_t kMaxStride = std::int64_t{1} << 32;
     if (shared.bit_depth != info_.bit_depth || shared.stride_bytes < row ||
-        shared.stride_bytes > kMostStride || shared.offset % sample != 0 ||
+        shared.stride_bytes > kMaxStride || shared.offset % sample != 0 ||
         shared.stride_bytes % sample != 0) {
       return nullptr;
     }

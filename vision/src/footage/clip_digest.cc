@@ -23,9 +23,12 @@
 namespace touchdown::vision {
 namespace {
 
+// Bytes of a block, and blocks that an id is made of. Both are part of the id's
+// definition (touchdown.clip/1): another number would give other ids.
 constexpr std::int64_t kBlockBytes = 1 << 20;
 constexpr std::int64_t kBlocks = 64;
 
+// SHA-256 of bytes that are added one after the other.
 class Sha {
  public:
   Sha() : context_(EVP_MD_CTX_new()) {
@@ -108,6 +111,7 @@ class Input {
   std::int64_t size_bytes_ = 0;
 };
 
+// All files of a recording, in a fixed order.
 std::vector<std::filesystem::path> ListFiles(
     const std::filesystem::path& path) {
   std::error_code ignored;
@@ -129,6 +133,7 @@ bool IsFolder(const std::filesystem::path& path) {
 std::string ClipId(const std::filesystem::path& path) {
   const auto files = ListFiles(path);
   Sha sha;
+  // The kind of digest is part of it: ids of another kind can never be equal.
   sha.Add("touchdown.clip/1\n");
   std::vector<std::int64_t> ends;  // of each file, laid end to end
   std::int64_t total = 0;

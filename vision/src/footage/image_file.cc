@@ -13,12 +13,13 @@
 namespace touchdown::vision {
 namespace {
 
-// A damaged header cannot make us allocate more than 512 MiB.
+// Pixels: a damaged header cannot make us allocate more than 512 MiB.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 // Pixels that a byte of a file can stand for: Deflate (PNG, TIFF) makes at most
 // 1032 bytes of one, a JPEG of one gray 4 bits for each 64 pixels and
-// component; LZW comes to 2700. More is a header that lies, found out before a
-// byte is allocated. What is added: pictures of the size of a thumbnail.
+// component; LZW comes to 2700. More is a header that lies, and is found out
+// before a byte is allocated. Pictures of the size of a thumbnail are always
+// allowed.
 constexpr std::int64_t kMaxPixelsPerByte = 4096;
 constexpr std::int64_t kAlwaysAllowedPixels = 1 << 16;
 
@@ -45,7 +46,9 @@ bool IsImageName(const std::filesystem::path& path) {
          extension == ".jpg" || extension == ".jpeg";
 }
 
+// Largest number of pixels that a file of this size can hold.
 std::int64_t MostPixels(std::size_t file_bytes) {
+  // Beyond it kMaxPixels decides; the product below does not overflow.
   constexpr std::int64_t kMaxBytes = kMaxPixels / kMaxPixelsPerByte;
   return kAlwaysAllowedPixels +
          kMaxPixelsPerByte *
@@ -79,6 +82,7 @@ void ReadImage(const std::filesystem::path& path, Image& image) {
   const FileBytes file(reinterpret_cast<const std::uint8_t*>(map.data()),
                        static_cast<std::size_t>(map.size_bytes()));
   const std::string name = path.string();
+  // The content decides, not the name.
   if (StartsWith(file, {0x89, 'P', 'N', 'G'})) {
     DecodePng(file, name, image);
   } else if (StartsWith(file, {0xFF, 0xD8, 0xFF})) {

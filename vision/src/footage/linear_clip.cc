@@ -9,10 +9,13 @@
 namespace touchdown::vision {
 namespace {
 
+// Bits of the linear levels: a gamma curve spreads dark levels, and undoing it
+// needs finer steps than the file's.
 std::int32_t LinearDepth(std::int32_t bit_depth) {
   return bit_depth <= 8 ? 12 : 16;
 }
 
+// light = (level / full)^(1 / gamma), for every level of the file.
 std::vector<std::uint16_t> MakeGammaTable(std::int32_t bit_depth,
                                           double gamma) {
   const auto levels = std::size_t{1} << static_cast<unsigned>(bit_depth);
@@ -27,6 +30,7 @@ std::vector<std::uint16_t> MakeGammaTable(std::int32_t bit_depth,
   return table;
 }
 
+// A clip whose levels were made linear in light by a table.
 class LinearClip final : public Clip {
  public:
   LinearClip(std::unique_ptr<Clip> clip, double gamma)

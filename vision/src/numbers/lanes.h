@@ -35,7 +35,7 @@ using EightBits = std::uint32_t __attribute__((vector_size(32)));
 // done to each number by itself; sums are kept in eight places.
 using Wide = float __attribute__((vector_size(64), may_alias));
 using WideBits = std::uint32_t __attribute__((vector_size(64)));
-inline constexpr std::size_t kWide = 16;
+inline constexpr std::size_t kWide = 16;  // numbers
 
 // Places that sums are kept in.
 inline constexpr std::size_t kSumPlaces = 8;
@@ -64,6 +64,7 @@ TOUCHDOWN_INLINE Wide& WideAt(float* first) {
 // Asks for a stretch of memory that is used soon: a mapped recording's rows lie
 // pages apart, and a fit would wait for one after another.
 inline void Prefetch(const void* begin, std::size_t bytes) {
+  // Bytes of a cache line (x86-64, most ARM).
   constexpr std::size_t kLine = 64;
   const char* const first = static_cast<const char*>(begin);
   for (std::size_t at = 0; at < bytes + kLine; at += kLine) {

@@ -49,8 +49,10 @@ struct Polynomial {
     const double seen = m.tt - m.t * middle;
     const double lean = m.ty - middle * m.y;
     rss1 = m.yy - level * m.y;
-    constexpr double kLeast = 1e-9;  // of the sum: one instant
-    if (seen > kLeast * (m.tt + m.w)) {
+    // Of the sum of squares: below it all frames are of one instant, to
+    // rounding.
+    constexpr double kOneInstant = 1e-9;
+    if (seen > kOneInstant * (m.tt + m.w)) {
       spread = seen;
       slope = lean / spread;
       rss1 -= slope * lean;
@@ -59,7 +61,7 @@ struct Polynomial {
       const double bowed =
           m.tttt - offset * m.tt - tilt * (m.ttt - middle * m.tt);
       const double bow = m.tty - offset * m.y - tilt * lean;
-      if (bowed > kLeast * m.tttt) {
+      if (bowed > kOneInstant * m.tttt) {
         third = bowed;
         bend = bow / third;
         rss2 = bend * bow;

@@ -9,11 +9,13 @@
 
 namespace touchdown::vision {
 
+// 1 / sqrt(2 pi): the normal density at 0.
 inline constexpr double kInverseSqrt2Pi = 0.3989422804014327;
 
 // exp(-y), 0 <= y <= 700, to 1e-9 of itself: 2^-n exp(-r), |r| <= ln(2)/2. The
 // sum with 1.5 * 2^52 rounds to a whole number, whose bits are then at hand.
 TOUCHDOWN_INLINE void ExpOfMinus(const Four& y, Four& result) {
+  // 1.5 * 2^52, see above.
   constexpr double kRound = 0x1.8p52;
   const Four shifted = y * std::numbers::log2e + kRound;
   const Four r = y - (shifted - kRound) * std::numbers::ln2;
@@ -26,6 +28,7 @@ TOUCHDOWN_INLINE void ExpOfMinus(const Four& y, Four& result) {
                           r * (-1.0 / 120 +
                                r * (1.0 / 720 +
                                     r * (-1.0 / 5040 + r * (1.0 / 40320))))))));
+  // The bits of 1.0: n is subtracted from its exponent.
   constexpr std::uint64_t kOne = std::bit_cast<std::uint64_t>(1.0);
   const FourBits scale = kOne - (__builtin_bit_cast(FourBits, shifted) << 52);
   result = series * __builtin_bit_cast(Four, scale);
@@ -50,6 +53,7 @@ TOUCHDOWN_INLINE void NormalAt(const Four& z, Four& cdf, Four& pdf) {
 // The same of short numbers, 0 <= y <= 85, to 2e-7 of the greatest. ln(2) in
 // two parts, of which the first has few digits: n times it is exact.
 TOUCHDOWN_INLINE void ExpOfMinus(const Wide& y, Wide& result) {
+  // 1.5 * 2^23, and ln(2) in two parts.
   constexpr float kRound = 0x1.8p23F;
   constexpr float kLn2High = 0.693359375F;
   constexpr float kLn2Low = -2.12194440e-4F;
@@ -62,6 +66,7 @@ TOUCHDOWN_INLINE void ExpOfMinus(const Wide& y, Wide& result) {
            r * (1.0F / 2 +
                 r * (-1.0F / 6 +
                      r * (1.0F / 24 + r * (-1.0F / 120 + r * (1.0F / 720))))));
+  // The bits of 1.0F.
   constexpr std::uint32_t kOne = std::bit_cast<std::uint32_t>(1.0F);
   const WideBits scale = kOne - (__builtin_bit_cast(WideBits, shifted) << 23);
   result = series * __builtin_bit_cast(Wide, scale);

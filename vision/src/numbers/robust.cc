@@ -6,8 +6,8 @@
 namespace touchdown::vision {
 namespace {
 
-// Leaves of many numbers those near their median, without a branch that nobody
-// can foretell; returns how many of those left out are less.
+// Keeps, of many numbers, those near their median, in a loop without branches.
+// Returns how many of those left out are less.
 std::size_t KeepNearMedian(std::vector<double>& values) {
   const auto [low, high] =
       BracketOfMedian(values.size(), [&](std::size_t i) { return values[i]; });
@@ -36,6 +36,8 @@ double Median(std::vector<double> values) {
   if (values.size() >= kManyNumbers) place -= KeepNearMedian(values);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(place);
   std::nth_element(values.begin(), middle, values.end());
+  // The lower of the two middle numbers is the largest of those before the
+  // upper one.
   if (odd) return *middle;
   return 0.5 * (*std::max_element(values.begin(), middle) + *middle);
 }

@@ -23,8 +23,11 @@ inline constexpr std::size_t kManyNumbers = 1000;
 // the i-th of them.
 template <class At>
 std::pair<double, double> BracketOfMedian(std::size_t count, const At& at) {
+  // Numbers sampled for the bracket, and places to either side of their
+  // median: 3.5 standard deviations, so that the bracket misses one time in
+  // 2000.
   constexpr std::size_t kSample = 128;
-  constexpr std::size_t kSpare = 20;  // places: 3.5 standard deviations
+  constexpr std::size_t kSpare = 20;
   std::vector<double> some;
   some.reserve(kSample);
   for (std::size_t k = 0; k < kSample; ++k) {

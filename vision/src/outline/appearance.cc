@@ -28,7 +28,7 @@ struct InsidePixel {
   std::size_t place = 0;  // columns and rows from the body's middle
 };
 
-// What all frames have in common.
+// What the frames have in common: mean sizes and blur of their fits.
 struct Common {
   double size_px = 0.0;    // half the smallest
   double extent_px = 0.0;  // to the farthest point
@@ -48,18 +48,22 @@ Common ComputeCommon(std::span<const SeenOutline> frames) {
   return common;
 }
 
+// The quadratic shading of a fit at (xi, eta), in units of the half sides.
 double EvaluateShading(const Shading& shading, double xi, double eta) {
   const auto& k = shading.level;
   return k[0] + xi * (k[1] + xi * k[3] + eta * k[4]) +
          eta * (k[2] + eta * k[5]);
 }
 
+// Steps along columns and rows from the body's middle: symmetric in a mirror.
 std::size_t StepsFromMiddle(const core::PixelPoint& centre, double x_px,
                             double y_px) {
   return static_cast<std::size_t>(std::abs(x_px - std::round(centre.x_px)) +
                                   std::abs(y_px - std::round(centre.y_px)));
 }
 
+// Collects the pixels clear inside the body in some frames, with the level that
+// the shading does not explain.
 class Collection {
  public:
   // `inner_px`: the greatest depth that is looked at; `frames`: so many are
@@ -101,10 +105,11 @@ void Collection::Add(const SeenOutline& seen) {
   Smear smear(seen.travel_px, seen.turn_rad, Extent(outline));
   smear.Set(seen.fit.blur_px, seen.fit.open, false);
   PixelBand band;
-  // Covered by 0.88 and more: an outline's error shows by less than half of
-  // what it does at the edge.
-  constexpr double kClear = 1.2;  // of the blur
-  band.margin_px = -(kClear * seen.fit.blur_px + 0.5 * smear.way_px());
+  // In units of blur_px inside the edge: pixels are covered by 0.88 and more,
+  // so that an outline's error shows by less than half of what it does at the
+  // edge. Larger loses small faces. Not studied.
+  constexpr double kClearBlurs = 1.2;
+  band.margin_px = -(kClearBlurs * seen.fit.blur_px + 0.5 * smear.way_px());
   band.inner_px = inner_px_;
   band.known_background = true;
   band.every = true;
@@ -119,7 +124,7 @@ void Collection::Add(const SeenOutline& seen) {
   Add(seen, OutlineImage(outline, smear), cosine, sine);
   ++frames_;
   if (seen.fit.shading) return;
-  // One level for the whole body.
+  // A fit without shading has one level for the whole body.
   std::vector<double> levels;
   for (std::size_t i = begin; i < all_.size(); ++i) {
     levels.push_back(all_[i].level_dn);
@@ -141,6 +146,7 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
       InsidePixel in;
       in.x_px = pixels_.x[i] - centre.x_px;
       in.y_px = pixels_.y[i] - centre.y_px;
+      // The body's own level: the pixel with the background's share taken out.
       in.level_dn = out + (pixels_.value[i] - out) / covered;
       if (seen.fit.shading) {
         in.level_dn -= EvaluateShading(*seen.fit.shading, cover.xi[i - begin],
@@ -157,14 +163,15 @@ void Collection::Add(const SeenOutline& seen, const OutlineImage& image,
   }
 }
 
+// A pixel in axes that turn with the body, or in the image's.
 SpotSample MakeSample(const InsidePixel& in, bool turns) {
   return {turns ? in.x_px * in.cosine + in.y_px * in.sine : in.x_px,
           turns ? in.y_px * in.cosine - in.x_px * in.sine : in.y_px,
           in.level_dn, in.variance_dn2};
 }
 
-// Means of samples in squares of this side, as many on either side of the
-// middle.
+// Means of the samples in squares of this side, laid out symmetrically about
+// the middle. Squares with fewer than two samples are left out.
 std::vector<SpotSample> AverageCells(const std::vector<SpotSample>& samples,
                                      double side_px, double reach_px) {
   const double half = std::ceil(reach_px / side_px) + 1.0;
@@ -194,8 +201,8 @@ std::vector<SpotSample> AverageCells(const std::vector<SpotSample>& samples,
   return cells;
 }
 
-// Whether it is so in most of the frames: what comes in front of the body in
-// some, such as an obstacle, is none of its looks.
+// Whether most of the frames show the spots: what comes in front of the body in
+// some frames, such as an obstacle, is none of its appearance.
 bool IsSeenThroughout(const std::vector<InsidePixel>& all, std::size_t frames,
                       const Appearance& look) {
   std::vector<double> fall(frames, 0.0);
@@ -205,17 +212,19 @@ bool IsSeenThroughout(const std::vector<InsidePixel>& all, std::size_t frames,
     fall[in.frame] +=
         (in.level_dn * in.level_dn - rest * rest) / in.variance_dn2;
   }
-  // A weak one is drowned by a frame's own shading now and then: of 60 shaded
-  // clips 0.70 of the frames and more showed theirs, of 60 with an obstacle
-  // 0.62 and less what was taken for one.
-  constexpr double kMost = 0.66;
+  // Share of the frames whose residuals the spots reduce. A weak spot is
+  // drowned by a frame's own shading now and then: of 60 shaded clips 0.70 of
+  // the frames and more showed theirs; of 60 with an obstacle 0.62 and less
+  // showed what was taken for one.
+  constexpr double kMinSeenShare = 0.66;
   const auto seen =
       std::count_if(fall.begin(), fall.end(), [](double f) { return f > 0.0; });
-  return static_cast<double>(seen) > kMost * static_cast<double>(frames);
+  return static_cast<double>(seen) >
+         kMinSeenShare * static_cast<double>(frames);
 }
 
-// Every `step`-th, in each frame others: the same ones in a mirror, and of a
-// clip that is played backwards.
+// Every `step`-th pixel, others in each frame. The choice is symmetric: it is
+// the same in a mirror, and in a clip that is played backwards.
 std::vector<InsidePixel> ThinnedPixels(const std::vector<InsidePixel>& all,
                                        std::size_t frames, std::size_t step) {
   std::vector<InsidePixel> some;
@@ -229,25 +238,30 @@ std::vector<InsidePixel> ThinnedPixels(const std::vector<InsidePixel>& all,
   return some;
 }
 
+// Finds spots in the pixels: first in cells, then in a part of the pixels
+// themselves.
 std::optional<Appearance> Described(const std::vector<InsidePixel>& all,
                                     bool turns, std::size_t frames,
                                     const Common& common) {
   std::vector<SpotSample> samples;
   samples.reserve(all.size());
   for (const InsidePixel& in : all) samples.push_back(MakeSample(in, turns));
-  // Some 400 cells, none smaller than half a pixel, and a few samples in each.
+  // Cells over the face, none smaller than half a pixel, with a few samples in
+  // each. More cells cost time in proportion; fewer blur small spots. Not
+  // studied.
   constexpr double kCells = 400.0;
   constexpr double kInCell = 5.0;
-  constexpr double kLeastSide_px = 0.5;
+  constexpr double kMinSide_px = 0.5;
   const auto n = static_cast<double>(frames);
   const double per_frame = static_cast<double>(all.size()) / n;
   const double side = std::max(
-      {kLeastSide_px, std::sqrt(per_frame / kCells), std::sqrt(kInCell / n)});
+      {kMinSide_px, std::sqrt(per_frame / kCells), std::sqrt(kInCell / n)});
   const std::vector<SpotSample> cells =
       AverageCells(samples, side, common.extent_px);
-  // Enough for a spot's place to a hundredth of a pixel.
-  constexpr std::size_t kSamples = 12000;
-  const std::size_t step = (samples.size() + kSamples - 1) / kSamples;
+  // Pixels: enough for a spot's place to a hundredth of a pixel. More cost
+  // time.
+  constexpr std::size_t kMaxSamples = 12000;
+  const std::size_t step = (samples.size() + kMaxSamples - 1) / kMaxSamples;
   double left_out = 1.0;  // how many there are for one that stays
   if (step > 1) {
     const std::vector<InsidePixel> some = ThinnedPixels(all, frames, step);
@@ -278,7 +292,8 @@ Appearance::Value Appearance::At(double x_px, double y_px, double cosine,
   SpotModel::Vector by(spots.parameters.size());
   Value value;
   value.level_dn = spots.At(x, y, &by);
-  // What a frame's own fit finds again.
+  // A frame's own fit finds its shading again: these terms leave the level, and
+  // the uncertainty.
   const int own = shaded ? SpotModel::kShading : 1;
   for (int i = 0; i < own; ++i) {
     value.level_dn -= spots.parameters[i] * by[i];
@@ -292,14 +307,18 @@ std::optional<Appearance> LearnAppearance(Clip& clip,
                                           const Background& background,
                                           std::span<const SeenOutline> frames,
                                           const OutlineOptions& options) {
-  constexpr std::size_t kLeast = 8;
-  constexpr std::size_t kEnough = 40;
-  if (frames.size() < kLeast) return std::nullopt;
-  const std::size_t step = (frames.size() + kEnough - 1) / kEnough;
+  // Frames: with fewer, what lies in front of the body in some is not told from
+  // a spot. Not studied.
+  constexpr std::size_t kMinFrames = 8;
+  // Frames that are looked at, evenly spread. More cost time. Not studied.
+  constexpr std::size_t kMaxFrames = 40;
+  if (frames.size() < kMinFrames) return std::nullopt;
+  const std::size_t step = (frames.size() + kMaxFrames - 1) / kMaxFrames;
   const std::vector<std::size_t> some = FromBothSides(frames.size(), step);
   const Common common = ComputeCommon(frames);
-  // First what the fits saw: of most bodies there is nothing to learn. Then the
-  // whole face, as a spot's middle tells more of it than its rim.
+  // px that the fits saw inside the edge (outline.cc). There most bodies show
+  // nothing to learn, and the work ends; else the whole face is looked at,
+  // since a spot's middle tells more of it than its rim.
   const double fitted = std::max(12.0, 6.0 * common.blur_px);  // outline.cc
   std::optional<Appearance> best;
   for (const bool whole : {false, true}) {

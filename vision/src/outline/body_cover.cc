@@ -18,6 +18,7 @@ void ForEachInnerPixel(const Outline& outline, const Use& use) {
   const double reach = outline.kind == core::BodyKind::kSphere
                            ? outline.radius_px
                            : outline.half_long_px;
+  // 30 % of half the smallest side inside the edge.
   const double depth =
       0.3 * (outline.kind == core::BodyKind::kSphere ? outline.radius_px
                                                      : outline.half_short_px);
@@ -33,7 +34,7 @@ void ForEachInnerPixel(const Outline& outline, const Use& use) {
   }
 }
 
-// Mean level of a frame there.
+// Mean level of a frame inside the outline.
 double MeanInnerLevel(Clip& clip, std::int64_t index, const Outline& outline) {
   const core::Frame frame =
       clip.Read(index, ChooseWindow(outline, {}, clip.info()));
@@ -49,8 +50,8 @@ double MeanInnerLevel(Clip& clip, std::int64_t index, const Outline& outline) {
   return count > 0.0 ? sum / count : 0.0;
 }
 
-// Mean coverage there: less than 1 where the body is not much wider than its
-// blur.
+// Mean coverage inside the outline: less than 1 where the body is not much
+// wider than its blur.
 double MeanCoverage(const Outline& outline, double blur_px) {
   Smear still({0.0, 0.0}, 0.0, 0.0);
   still.Set(blur_px, 0.0, false);
@@ -79,6 +80,7 @@ double MeanCoverage(const Outline& outline, double blur_px) {
 
 }  // namespace
 
+// Linear in time; outside of the two frames it extrapolates.
 Pose OnTheWay(const Pose& a, const Pose& b, std::int64_t frame) {
   const double share = static_cast<double>(frame - a.frame) /
                        static_cast<double>(b.frame - a.frame);
@@ -100,6 +102,8 @@ std::optional<Pose> InterpolatePose(const Track& track, std::int64_t frame) {
   return OnTheWay(*(after - 1), *after, frame);
 }
 
+// The body's level at both ends of the track is what tells whether it is still
+// there beyond them.
 BodyCover::BodyCover(Clip& clip, const Track& track)
     : clip_(clip), track_(track) {
   const Pose& first = track.poses.front();
@@ -112,7 +116,9 @@ BodyCover::BodyCover(Clip& clip, const Track& track)
       MeanCoverage(PlaceOutline(track.body, first), track.body.blur_px);
 }
 
-// Empty frames are the best background there is.
+// Whether the body is gone from its end of the track: the level there has
+// changed by more than half of its contrast. Empty frames are the best
+// background there is.
 bool BodyCover::IsAbsent(std::int64_t frame) const {
   const bool before = frame < track_.poses.front().frame;
   const Pose& end = before ? track_.poses.front() : track_.poses.back();
@@ -122,8 +128,8 @@ bool BodyCover::IsAbsent(std::int64_t frame) const {
          0.5 * cover_inside_ * std::abs(track_.body.contrast_dn);
 }
 
-// With a margin for blur, for the error of a first look and for the shadow's
-// rim.
+// The pixels that the body may cover: its outline with a margin of three blurs
+// and 3 px, for the error of a first outline and for the rim of its shadow.
 Cover BodyCover::ComputeCover(const Pose& pose) const {
   const Outline outline = PlaceOutline(track_.body, pose);
   const double margin = 3.0 * track_.body.blur_px + 3.0;
@@ -168,6 +174,8 @@ Cover BodyCover::CoverInFrame(std::int64_t frame) const {
   const bool before = frame < track_.poses.front().frame;
   Cover cover =
       ComputeCover(before ? track_.poses.front() : track_.poses.back());
+  // Beyond the ends the body is at rest where it was seen last, or has gone:
+  // not known.
   cover.known = false;
   return cover;
 }

@@ -13,13 +13,17 @@
 namespace touchdown::vision {
 namespace {
 
-// Over the part of the picture where the body may be.
+// Sums over the frames, for each pixel of the part of the picture where the
+// body may be.
 struct Sums {
   core::PixelRect box;
-  std::vector<float> shown;  // of the way from the still picture to the body
+  // Of (measured - background) / (body - background): 0 where the body should
+  // be and the background is seen, 1 where the body is.
+  std::vector<float> shown;
   std::vector<std::uint16_t> frames;
 };
 
+// Box around all outlines, with a margin.
 core::PixelRect JobsBox(std::span<const OutlineJob> jobs, double margin_px,
                         const ClipInfo& info) {
   double left = info.width_px;
@@ -45,19 +49,25 @@ core::PixelRect JobsBox(std::span<const OutlineJob> jobs, double margin_px,
   return box;
 }
 
-// Leaves out frames that show next to nothing of the body: it may not be there.
+// Adds one frame's pixels clear inside the outline. Frames that show next to
+// nothing of the body are left out: it may not be there.
 void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
               const HiderOptions& options, Sums& sums) {
-  constexpr double kClearOfBlur = 1.2;
-  constexpr double kSigmas = 4.0;
+  // In units of blur_px inside the edge: covered by 0.88 and more. Not studied.
+  constexpr double kClearBlurs = 1.2;
+  // Standard deviations of a pixel: where the body hardly differs from the
+  // background, nothing can be said. Not studied.
+  constexpr double kDifferSigmas = 4.0;
+  // A pixel shows the body from half of the way on.
   constexpr float kHalf = 0.5f;
-  constexpr double kLeastSeen = 0.2;  // of the pixels inside
+  // Share of the pixels inside that must show the body. Not studied.
+  constexpr double kMinSeenShare = 0.2;
   OutlineOptions window;
   window.blur_px = options.blur_px;
   const core::Frame frame =
       clip.Read(job.frame, ChooseWindow(job.start, window, clip.info()));
   const double clear =
-      kClearOfBlur * options.blur_px + 0.5 +
+      kClearBlurs * options.blur_px + 0.5 +
       0.5 * options.open * std::hypot(job.travel_px.x_px, job.travel_px.y_px);
   std::vector<std::pair<std::size_t, float>> shown;
   std::size_t seen = 0;
@@ -71,7 +81,7 @@ void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
       const double still = static_cast<double>(background.at(x, y));
       const double rise = options.body_dn - still;
       const double noise = std::sqrt(background.Variance(still));
-      if (std::abs(rise) < kSigmas * noise) continue;
+      if (std::abs(rise) < kDifferSigmas * noise) continue;
       const auto i = static_cast<std::size_t>(y - sums.box.y) *
                          static_cast<std::size_t>(sums.box.width) +
                      static_cast<std::size_t>(x - sums.box.x);
@@ -81,7 +91,7 @@ void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
     }
   }
   if (static_cast<double>(seen) <
-      kLeastSeen * static_cast<double>(shown.size())) {
+      kMinSeenShare * static_cast<double>(shown.size())) {
     return;
   }
   for (const auto& [i, share] : shown) {
@@ -90,7 +100,7 @@ void SumShown(Clip& clip, const Background& background, const OutlineJob& job,
   }
 }
 
-// Marks all within `reach` of the marked ones.
+// Marks all pixels within `reach` of the marked ones.
 void Dilate(int reach, Hider& hider) {
   const std::int32_t width = hider.box.width;
   const std::int32_t height = hider.box.height;
@@ -111,16 +121,20 @@ void Dilate(int reach, Hider& hider) {
   }
 }
 
-// The place at `frame` on the flight through these.
+// The outline at `frame` on the flight through some fits: straight along the
+// ground, a parabola normal to it, a steady turn. Nothing where they are not of
+// one flight.
 std::optional<OutlineJob> OnPath(std::span<const Fitted* const> fits,
                                  std::int64_t frame, double ground_angle_rad) {
   const auto [first, last] = std::minmax_element(
       fits.begin(), fits.end(),
       [](const Fitted* a, const Fitted* b) { return a->frame < b->frame; });
   const double span = static_cast<double>((*last)->frame - (*first)->frame);
-  constexpr double kFarthest = 2.0;  // of what they span
+  // Distance in units of what the fits span: farther, the parabola is
+  // guesswork. Not studied.
+  constexpr double kMaxExtrapolation = 2.0;
   if (static_cast<double>(std::abs(fits.front()->frame - frame)) >
-      kFarthest * span) {
+      kMaxExtrapolation * span) {
     return std::nullopt;
   }
   const double cosine = std::cos(ground_angle_rad);
@@ -133,6 +147,8 @@ std::optional<OutlineJob> OnPath(std::span<const Fitted* const> fits,
   for (Eigen::Index i = 0; i < n; ++i) {
     const Fitted& f = *fits[static_cast<std::size_t>(i)];
     const core::PixelPoint& centre = f.fit.outline.centre;
+    // Time from the frame sought, in units of the span: the constant terms are
+    // its place, the linear ones its motion.
     const double t = static_cast<double>(f.frame - frame) / span;
     powers.row(i) << 1.0, t, t * t;
     along[i] = cosine * centre.x_px + sine * centre.y_px;
@@ -149,8 +165,9 @@ std::optional<OutlineJob> OnPath(std::span<const Fitted* const> fits,
   const auto [x, off_x] = fit(along, 2);
   const auto [y, off_y] = fit(down, 3);
   const auto [turn, off_turn] = fit(angle, 2);
-  constexpr double kMostOff_px = 0.7;
-  if (std::max(off_x, off_y) > kMostOff_px) return std::nullopt;
+  // px of the worst residual: more, and an impact lies between. Not studied.
+  constexpr double kMaxOff_px = 0.7;
+  if (std::max(off_x, off_y) > kMaxOff_px) return std::nullopt;
   OutlineJob job;
   job.frame = frame;
   job.start = fits.front()->fit.outline;
@@ -172,6 +189,7 @@ bool Hider::Hides(double x_px, double y_px) const {
 }
 
 bool Hider::Touches(const Outline& outline) const {
+  // Points around the outline, one each 5 deg for a disc.
   constexpr int kProbes = 72;
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
@@ -187,9 +205,12 @@ std::shared_ptr<const Hider> FindHider(Clip& clip, const Background& background,
                                        std::span<const OutlineJob> jobs,
                                        const HiderOptions& options) {
   if (jobs.empty()) return nullptr;
-  // From clear inside the body to where the outer tail of its edge ends.
-  constexpr double kBlurs = 5.0;
-  const int reach = static_cast<int>(std::ceil(kBlurs * options.blur_px + 2.0));
+  // In units of blur_px, from clear inside the body (1.2) to where the outer
+  // tail of its edge ends. Larger loses pixels; smaller leaves the obstacle's
+  // blurred edge in the fits. Not studied.
+  constexpr double kDilateBlurs = 5.0;
+  const int reach =
+      static_cast<int>(std::ceil(kDilateBlurs * options.blur_px + 2.0));
   Sums sums;
   sums.box = JobsBox(jobs, reach, clip.info());
   if (sums.box.width < 1 || sums.box.height < 1) return nullptr;
@@ -200,23 +221,30 @@ std::shared_ptr<const Hider> FindHider(Clip& clip, const Background& background,
   for (const OutlineJob& job : jobs) {
     SumShown(clip, background, job, options, sums);
   }
-  constexpr int kLeastFrames = 2;
-  constexpr float kHidden = 0.25f;
-  constexpr double kLeastShare = 0.01;  // of the body
-  constexpr double kLeast = 4.0;
+  // Frames in which the body should be seen at a pixel: one may have another
+  // cause.
+  constexpr int kMinFrames = 2;
+  // Mean of `shown` up to which the pixel hides the body. Larger marks dark
+  // parts of the body; smaller misses half of an obstacle's rim. Set with the
+  // obstacle part of the accuracy design.
+  constexpr float kMaxShown = 0.25f;
+  // Pixels that an obstacle has at least, as a share of the body and in number.
+  // Not studied.
+  constexpr double kMinShare = 0.01;
+  constexpr double kMinPixels = 4.0;
   auto hider = std::make_shared<Hider>();
   hider->box = sums.box;
   hider->hides.assign(pixels, 0);
   std::size_t count = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
     const int n = sums.frames[i];
-    if (n < kLeastFrames) continue;
-    if (sums.shown[i] > kHidden * static_cast<float>(n)) continue;
+    if (n < kMinFrames) continue;
+    if (sums.shown[i] > kMaxShown * static_cast<float>(n)) continue;
     hider->hides[i] = 1;
     ++count;
   }
   if (static_cast<double>(count) <
-      std::max(kLeast, kLeastShare * Area(jobs[0].start))) {
+      std::max(kMinPixels, kMinShare * Area(jobs[0].start))) {
     return nullptr;
   }
   Dilate(reach, *hider);
@@ -231,7 +259,8 @@ std::optional<OutlineJob> Predict(std::span<const Fitted> fits,
   std::sort(near.begin(), near.end(), [&](const Fitted* a, const Fitted* b) {
     return std::abs(a->frame - frame) < std::abs(b->frame - frame);
   });
-  // Of the same flight as far as they agree with one.
+  // Fits of the same flight agree with one parabola: fewer and fewer of the
+  // nearest are tried until they do.
   for (const std::size_t most : {24, 12, 6}) {
     if (near.size() < std::min<std::size_t>(most, 6)) continue;
     const std::span<const Fitted* const> some(near.data(),

@@ -25,14 +25,19 @@ namespace {
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
 constexpr int kMaxParameters = kMostTerms;
-// Pixels that come and go at the band's borders as the outline moves by so much
-// tell nothing of its place, and residuals at its edge are no outliers yet.
+// px of movement. A fit from a near start that moves by less may keep its set
+// of pixels: those that come and go at the band's borders tell nothing of its
+// place, and residuals at its edge are no outliers yet. Larger: the result
+// depends on the start; smaller: more rounds. Not studied.
 constexpr double kNearStart_px = 0.05;
 using ParameterVector =
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
 using NormalMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                                    kMaxParameters, kMaxParameters>;
 
+// Iteratively reweighted Gauss-Newton on the pixels of one frame: predicted
+// level = out + coverage (in - behind), with Tukey's weights on residuals in
+// units of the noise.
 class Fitter {
  public:
   Fitter(const core::Frame& frame, const Background& background,
@@ -49,8 +54,9 @@ class Fitter {
         open_(options.open),
         smear_(options.travel_px, options.turn_rad, Extent(start)) {
     geometry_ = start.kind == core::BodyKind::kSphere ? 3 : 5;
-    // A body of a few pixels cannot tell shading from shape; one with a look of
-    // its own has a shading, too, which other frames tell.
+    // px, half the smallest side. A smaller body cannot tell shading from
+    // shape; with an appearance it has a shading, too, which other frames tell.
+    // Not studied.
     const double small_px = options.appearance != nullptr ? 3.0 : 5.0;
     const bool flat =
         inside == Inside::kOneLevel || SmallestHalf(start) < small_px;
@@ -64,18 +70,21 @@ class Fitter {
   bool Models() const {
     return options_.near_ground == OutlineOptions::NearGround::kModelled;
   }
-  // Where the ground's blurred edge has ended, by 2e-4, and half of nine pixels
-  // above that.
+  // Height above which the picture behind the body is free of the ground's
+  // blurred edge. That edge has ended, to 2e-4, after 3.5 blurs; half of the 3
+  // x 3 pixels that are averaged there comes on top.
   double Zone_px() const {
-    constexpr double kBlurs = 3.5;
+    // In units of blur_px, and px; see above.
+    constexpr double kZoneBlurs = 3.5;
     constexpr double kHalf_px = 1.5;
-    return kBlurs * options_.blur_px + kHalf_px;
+    return kZoneBlurs * options_.blur_px + kHalf_px;
   }
   void CollectPixels();
   std::string Gather();
   std::string Iterate(int& iterations);
   bool SetAsideUnexplained();
   void SetSmear() { smear_.Set(blur_, open_, options_.fit_open); }
+  // Share of the outline that lies in the picture and can be used.
   double Visible() const {
     return VisibleShare(frame_, outline_, cosine_, sine_, usable_);
   }
@@ -87,6 +96,7 @@ class Fitter {
   OutlineRound Round() const;
   NormalMatrix Regular() const;
   bool Step(double longer, double& geometric_step);
+  // Order of the parameters: geometry, blur, shutter, then the levels.
   int OpenIndex() const { return geometry_ + 1; }
   int LevelsBegin() const { return geometry_ + 2; }
   int Parameters() const { return LevelsBegin() + interior_ + outer_; }
@@ -128,8 +138,13 @@ class Fitter {
 void Fitter::CollectPixels() {
   SetSmear();
   PixelBand band;
-  constexpr double kBand = 3.0;  // in w; coverage beyond is < 0.2 %
-  band.margin_px = kBand * std::max(blur_, 0.5) + 1.0 + 0.5 * smear_.way_px();
+  // In units of blur_px: farther from the edge the coverage is within 0.2 % of
+  // 0 or 1. A wider band costs time; a narrower one loses the tail that tells
+  // the blur.
+  constexpr double kBandBlurs = 3.0;
+  band.margin_px =
+      kBandBlurs * std::max(blur_, 0.5) + 1.0 + 0.5 * smear_.way_px();
+  // Inside, so much is needed to tell shading from blur.
   band.inner_px = saturated_ ? Extent(outline_) : std::max(12.0, 6.0 * blur_);
   band.known_background = outer_ == 0;
   band.appearance = outer_ == 0 ? options_.appearance : nullptr;
@@ -137,10 +152,13 @@ void Fitter::CollectPixels() {
                        pixels_);
 }
 
-// Collects the pixels; why they are too few, or nothing.
+// Collects the pixels of the present outline. Returns why they are too few, or
+// an empty text.
 std::string Fitter::Gather() {
-  constexpr double kLeastVisible = 1.0 / 3.0;
-  if (Visible() < kLeastVisible) {
+  // Share of the outline: a third of a circle still tells its centre; less is
+  // known to a fraction of the size only. Not studied.
+  constexpr double kMinVisible = 1.0 / 3.0;
+  if (Visible() < kMinVisible) {
     return "less than a third of the outline is visible";
   }
   CollectPixels();
@@ -150,6 +168,8 @@ std::string Fitter::Gather() {
   return {};
 }
 
+// Which of the geometry's parameters, blur and shutter the fit may change. Held
+// ones become free for the sums that all frames share (tell_shared).
 bool Fitter::Free(int k) const {
   if (k == geometry_) return options_.fit_blur || telling_;
   if (k == OpenIndex()) {
@@ -159,8 +179,8 @@ bool Fitter::Free(int k) const {
   return !(k == 2 || (geometry_ == 5 && k == 3));
 }
 
-// Adds up the pixels and spreads the sums over all parameters: what is held has
-// no row.
+// Adds up the pixels and spreads the sums over all parameters; one that is held
+// has no row. A prior of the shading is added to the levels' diagonal.
 void Fitter::Sum(const OutlineRound& round) {
   sums_.SumPixels(pixels_, OutlineImage(outline_, smear_), round, residuals_);
   std::array<int, kMostTerms> at{};
@@ -198,8 +218,8 @@ OutlineRound Fitter::Round() const {
   return round;
 }
 
-// The levels that fit best at the present geometry: linear least squares, for a
-// start from which the joint iteration is tame.
+// Levels that fit best at the present geometry: linear least squares. They give
+// a start from which the joint iteration does not jump.
 void Fitter::SolveLevels() {
   Sum(Round());
   const int n = interior_ + outer_;
@@ -209,8 +229,8 @@ void Fitter::SolveLevels() {
   levels_ = a.ldlt().solve(gradient_.tail(n));
 }
 
-// Those that the other frames tell, and with them that half of the residuals
-// are those of the noise, where the start is near; false elsewhere.
+// Takes the levels that the other frames tell, where the start is near, and
+// assumes that residuals are of the noise's size. Returns false elsewhere.
 bool Fitter::NearLevels() {
   if (!options_.starts_near || !HasPrior() || outer_ != 0) return false;
   levels_ = Eigen::Map<const Eigen::Vector<double, 6>>(
@@ -219,7 +239,9 @@ bool Fitter::NearLevels() {
   return true;
 }
 
-// Builds the normal equations.
+// Builds the normal equations at the present parameters, and the misfit: the
+// rms of the inliers' residuals in units of the noise. Clipped pixels of a
+// saturated surround fit by themselves and count for nothing.
 void Fitter::Accumulate(bool robust) {
   OutlineRound round = Round();
   for (int k = 0; k < geometry_; ++k) {
@@ -239,7 +261,8 @@ void Fitter::Accumulate(bool robust) {
   misfit_ = spare > 0.0 ? std::sqrt(sums_.square / spare) : 0.0;
 }
 
-// The normal equations with what is held held, and a trace of ridge.
+// The normal equations with held parameters held, and a trace of ridge against
+// rounding.
 NormalMatrix Fitter::Regular() const {
   NormalMatrix a = normal_;
   for (int k = 0; k < Parameters(); ++k) {
@@ -249,13 +272,15 @@ NormalMatrix Fitter::Regular() const {
   return a;
 }
 
-// A step of Gauss and Newton, `longer` so many times.
+// Takes one Gauss-Newton step, made `longer` by a factor. Returns false where
+// the equations are degenerate or the body vanishes.
 bool Fitter::Step(double longer, double& geometric_step) {
   const Eigen::LDLT<NormalMatrix> factor(Regular());
   if (factor.info() != Eigen::Success) return false;
   ParameterVector step = longer * factor.solve(gradient_);
   if (!step.allFinite()) return false;
-  // No parameter may jump further than the linearisation holds.
+  // No parameter may jump farther than the linearisation holds: a quarter of
+  // half the smallest side, and half a pixel at least. Not studied.
   const double size = SmallestHalf(outline_);
   const double limit = std::max(0.5, 0.25 * size);
   double shrink = 1.0;
@@ -269,8 +294,10 @@ bool Fitter::Step(double longer, double& geometric_step) {
   outline_.centre.y_px += step[1];
   geometric_step = std::hypot(step[0], step[1]);
   Grow(step[2], geometry_ == 5 ? step[3] : 0.0, outline_);
-  constexpr double kLeast_px = 0.7;
-  if (!(SmallestHalf(outline_) > kLeast_px)) return false;
+  // px, half the smallest side: a smaller body lies within one or two pixels,
+  // which tell no shape. Not studied.
+  constexpr double kMinHalf_px = 0.7;
+  if (!(SmallestHalf(outline_) > kMinHalf_px)) return false;
   geometric_step = std::max(geometric_step, std::abs(step[2]));
   if (outline_.kind == core::BodyKind::kRectangle) {
     outline_.angle_rad += step[4];
@@ -279,10 +306,10 @@ bool Fitter::Step(double longer, double& geometric_step) {
     cosine_ = std::cos(outline_.angle_rad);
     sine_ = std::sin(outline_.angle_rad);
   }
-  // A pixel is a box of variance 1/12, so that no image is sharper than 0.29
-  // px.
-  constexpr double kSharpest_px = 0.25;
-  blur_ = std::clamp(blur_ + step[geometry_], kSharpest_px,
+  // px. A pixel is a box of variance 1/12, so that no image is sharper than
+  // 0.29 px; a little less lets the fit approach that from both sides.
+  constexpr double kMinBlur_px = 0.25;
+  blur_ = std::clamp(blur_ + step[geometry_], kMinBlur_px,
                      std::max(2.0 * options_.blur_px, 0.5 * size));
   open_ = std::clamp(open_ + step[OpenIndex()], 0.0, 1.0);
   levels_ += step.tail(interior_ + outer_);
@@ -290,7 +317,7 @@ bool Fitter::Step(double longer, double& geometric_step) {
   return true;
 }
 
-// Gauss-Newton to convergence; why it fails, or nothing.
+// Gauss-Newton to convergence. Returns why it fails, or an empty text.
 std::string Fitter::Iterate(int& iterations) {
   double step = std::numeric_limits<double>::infinity();
   converged_ = false;
@@ -300,7 +327,8 @@ std::string Fitter::Iterate(int& iterations) {
   bool near = NearLevels();
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     ++iterations;
-    // It was not near enough, or the body is crudely modelled.
+    // Back to the ordinary start: the near start was not near enough, or the
+    // body is crudely modelled.
     const auto begin_again = [&] {
       near = false;
       robust_rounds = 0;
@@ -308,25 +336,32 @@ std::string Fitter::Iterate(int& iterations) {
       step = std::numeric_limits<double>::infinity();
       SolveLevels();
     };
-    // Before the outline is nearly in place, its residuals are no outliers.
-    constexpr double kNear_px = 0.1;
-    const bool robust = near || iteration >= 2 || step < kNear_px;
+    // px of the last step: before the outline is so nearly in place its
+    // residuals are no outliers. After two rounds they are taken for such all
+    // the same. Not studied.
+    constexpr double kInPlace_px = 0.1;
+    const bool robust = near || iteration >= 2 || step < kInPlace_px;
     const double last_step = step;
     Accumulate(robust);
     robust_rounds += robust ? 1 : 0;
-    // At least the expected noise, more where the model is crude. Held after a
-    // few rounds: a scale that follows the weights never settles.
-    constexpr int kSettled = 5;
-    if (iteration < kSettled) {
+    // Rounds in which the robust scale follows the residuals: it is at least
+    // the expected noise, and more where the model is crude. A scale that
+    // follows the weights for longer never settles. Not studied.
+    constexpr int kScaleRounds = 5;
+    if (iteration < kScaleRounds) {
       robust_scale_ = RobustScale(residuals_);
     }
-    constexpr double kUsualScale = 1.25;  // of a good fit, noise being told
-    if (near && robust_scale_ > kUsualScale) {
+    // Robust scale, in units of the noise, that a good fit does not exceed.
+    // With more the near start is given up. Not studied.
+    constexpr double kMaxNearScale = 1.25;
+    if (near && robust_scale_ > kMaxNearScale) {
       begin_again();
       continue;
     }
-    // Weights change with the residuals: of normal ones Newton's step is longer
-    // by the mean of Tukey's weights over that of their influence's slope.
+    // Held weights make a step too short, since the weights change with the
+    // residuals. For normal residuals Newton's step is longer by the mean of
+    // Tukey's weights over the mean slope of the influence: 1.2. Without it
+    // each round gains a factor of five only.
     constexpr double kToNewton = 1.2;
     if (!Step(near ? kToNewton : 1.0, step)) {
       return "the outline's fit is degenerate";
@@ -335,57 +370,66 @@ std::string Fitter::Iterate(int& iterations) {
       begin_again();
       continue;
     }
-    // From near, with the shape held, the next step is smaller by as much as
-    // this one is.
+    // With the shape held and a near start, the next step is smaller than this
+    // one by the same factor as this one was: within so many tolerances that
+    // forecast is believed. It saves a round (3.8 rounds became 2.2 over 607
+    // fits).
     constexpr double kFewTolerances = 10.0;
-    constexpr double kSurer = 5.0;  // what is left is alike in all frames
+    // Factor of safety of the forecast: what is left is alike in all frames and
+    // does not average out. Not studied.
+    constexpr double kForecastSafety = 5.0;
     const double next_step =
         near && step < kFewTolerances * options_.tolerance_px
-            ? kSurer * step * (step / last_step)
+            ? kForecastSafety * step * (step / last_step)
             : step;
     if (std::min(step, next_step) < options_.tolerance_px &&
         robust_rounds >= 2) {
       converged_ = true;
       break;
     }
-    // Follow the body with the set of pixels while it still moves; at first
-    // closely, so that what is fitted to does not depend on the start.
-    const double kSamePlace_px = near ? kNearStart_px : 0.003;
-    // What is added to the shading moves with the body.
+    // The set of pixels follows the body while it still moves; in the first
+    // three rounds closely, so that the set does not depend on the start.
+    const double same_place_px = near ? kNearStart_px : 0.003;
+    // px. An appearance that was added to the shading moves with the body, and
+    // must be added anew. Not studied.
     const double far_px = options_.appearance != nullptr ? 0.02 : 0.5;
     const double moved = std::hypot(outline_.centre.x_px - collected.x_px,
                                     outline_.centre.y_px - collected.y_px);
     const double spread = std::abs(blur_ - collected_blur);
     if (moved > far_px ||
-        (iteration < 3 && std::max({moved, spread, step}) > kSamePlace_px)) {
+        (iteration < 3 && std::max({moved, spread, step}) > same_place_px)) {
       if (std::string why = Gather(); !why.empty()) return why;
       collected = outline_.centre;
       collected_blur = blur_;
     }
   }
-  // Oscillation of a hundredth of a pixel comes from robust weights; more is no
-  // outline.
-  constexpr double kUsableStep_px = 0.02;
-  if (!converged_ && !(step < kUsableStep_px)) {
+  // px of the last step. Robust weights may make the fit oscillate by a
+  // hundredth of a pixel; more is no outline. Not studied.
+  constexpr double kMaxOscillation_px = 0.02;
+  if (!converged_ && !(step < kMaxOscillation_px)) {
     return "the outline's fit does not converge";
   }
   return {};
 }
 
-// Marks what lies clear inside the body and is not explained by it, as what is
-// in front of it or a highlight. Whether there is enough of it to fit again
-// without its neighbourhood, which biases the edge.
+// Excludes what lies clear inside the body and is not explained by it: a thing
+// in front of it, or a highlight. Its neighbourhood goes as well, since its
+// blurred rim biases the edge. Returns whether there was enough of it to fit
+// again.
 bool Fitter::SetAsideUnexplained() {
   // A body that is crudely modelled has such pixels everywhere.
   if (robust_scale_ > kWellModelled) return false;
-  constexpr double kClear = 1.5;  // of the blur, inside the edge
-  constexpr double kReach = 4.0;  // of the blur: where its tail is 1e-4
+  // In units of blur_px, inside the edge: nearer to it a residual may be the
+  // edge's own. Not studied.
+  constexpr double kClearBlurs = 1.5;
+  // In units of blur_px around each such pixel: there its tail is 1e-4.
+  constexpr double kExcludeBlurs = 4.0;
   const std::vector<core::PixelPoint> unexplained =
       Unexplained(pixels_, residuals_, kTukeyCut * robust_scale_, outline_,
-                  cosine_, sine_, kClear * blur_ + 0.5 * smear_.way_px());
+                  cosine_, sine_, kClearBlurs * blur_ + 0.5 * smear_.way_px());
   if (unexplained.empty()) return false;
   before_aside_ = Visible();
-  usable_.ExcludePixels(unexplained, kReach * blur_ + 1.0);
+  usable_.ExcludePixels(unexplained, kExcludeBlurs * blur_ + 1.0);
   return true;
 }
 
@@ -394,9 +438,9 @@ core::Expected<OutlineFit> Fitter::Run() {
   sine_ = std::sin(outline_.angle_rad);
   std::string why = Gather();
   if (!why.empty()) return core::AbsentBecause(why);
-  // Where the surround is saturated, the outer half of the edge's tail is cut
-  // off; its inner half must then not pass for shading, which would shift the
-  // edge outwards: one level for the whole body.
+  // Before a saturated surround the outer half of the edge's tail is cut off.
+  // Its inner half must then not pass for shading, which would shift the edge
+  // outwards: the body gets one level.
   if (IsSurroundSaturated(pixels_, outline_, cosine_, sine_, full_scale())) {
     saturated_ = true;
     interior_ = 1;
@@ -410,25 +454,29 @@ core::Expected<OutlineFit> Fitter::Run() {
     if (why.empty()) why = Iterate(iterations);
   }
   if (!why.empty()) return core::AbsentBecause(why);
-  // What was summed a step of less than the tolerance ago is as good.
+  // The sums of the last round are good enough for the covariance: the step
+  // after them was below the tolerance.
   telling_ = options_.tell_shared;
   if (!converged_ || telling_) Accumulate(true);
   const double noise =
       std::sqrt(background_.Variance(pixels_.MeanBackground()));
-  constexpr double kLeastContrast = 3.0;  // in noise of one pixel
-  // Noise has blobs of a pixel or two as bright as that: all of the body
-  // together must stand out, too.
-  constexpr double kLeastOfAll = 12.0;
+  // In units of one pixel's noise. Less is a fluctuation of the background;
+  // more loses faint bodies. Not studied.
+  constexpr double kMinContrast = 3.0;
+  // The same for the whole body, contrast times the square root of its pixels:
+  // noise has blobs of a pixel or two that pass the limit above. Not studied.
+  constexpr double kMinTotalContrast = 12.0;
   const double area = Area(outline_);
-  if (!(std::abs(contrast_) > kLeastContrast * noise) ||
-      !(std::abs(contrast_) * std::sqrt(area) > kLeastOfAll * noise)) {
+  if (!(std::abs(contrast_) > kMinContrast * noise) ||
+      !(std::abs(contrast_) * std::sqrt(area) > kMinTotalContrast * noise)) {
     return core::AbsentBecause(
         fmt::format("contrast {:.1f} DN is below {:.0f} times the noise {:.1f}",
-                    std::abs(contrast_), kLeastContrast, noise));
+                    std::abs(contrast_), kMinContrast, noise));
   }
 
   const NormalMatrix covariance = Regular().ldlt().solve(
       NormalMatrix::Identity(Parameters(), Parameters()));
+  // Residuals beyond the noise widen all u (Birge's ratio).
   const double widen = std::max(1.0, misfit_);
   const auto u = [&](int k) {
     return k >= LevelsBegin() || Free(k)
@@ -438,6 +486,8 @@ core::Expected<OutlineFit> Fitter::Run() {
   OutlineFit fit;
   fit.outline = outline_;
   if (telling_) {
+    // Size, blur and shutter are eliminated of this frame's own parameters, for
+    // the joint step of all frames (shared_fit.h).
     const ParameterVector step = covariance * gradient_;
     Grow(step[2], geometry_ == 5 ? step[3] : 0.0, fit.outline);
     const auto row = [&](int k) { return Free(k) ? k : -1; };
@@ -477,7 +527,7 @@ core::Expected<OutlineFit> Fitter::Run() {
       LookNearGround(pixels_, residuals_, height_, options_.ground_margin_px);
   fit.pixels_near_ground = near.pixels;
   fit.excess_near_ground = near.excess;
-  // Known to no better than half its size it is no outline.
+  // An outline known to no better than half its size is none.
   const double vague = 0.5 * SmallestHalf(outline_);
   if (!(std::max({fit.u_x_px, fit.u_y_px, fit.u_size_px, fit.u_size_short_px}) <
         vague) ||

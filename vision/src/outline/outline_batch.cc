@@ -14,16 +14,17 @@
 namespace touchdown::vision {
 namespace {
 
-// Windows that are held at once: a few MiB for bodies of any size.
+// Windows in memory at once: a few MiB for bodies of any size. Not studied.
 constexpr std::size_t kBatch = 64;
 
+// The part of a frame that one fit reads.
 struct Window {
   core::Frame frame;
   core::PixelRect first;  // what the fit looks at before it moves
   KeptPixels copy;        // where the clip's own view does not last
 };
 
-// Within the picture, so far to all sides of the outline's centre.
+// The square of half width `reach_px` about a centre, clipped to the picture.
 core::PixelRect WindowReaching(const core::PixelPoint& centre, double reach_px,
                                const ClipInfo& info) {
   const auto from = [&](double at, std::int32_t end) {
@@ -42,19 +43,24 @@ core::PixelRect WindowReaching(const core::PixelPoint& centre, double reach_px,
   return rect;
 }
 
+// Half of the way that the body goes in a frame interval: it smears the edge so
+// far to either side.
 double HalfWay_px(const OutlineOptions& options) {
   return 0.5 * std::hypot(options.travel_px.x_px, options.travel_px.y_px);
 }
 
-// The outline and its blur where the fit begins (outline.cc).
+// What the fit reads in its first round: the outline, its blur and its motion
+// (the band of outline.cc).
 core::PixelRect FirstSeen(const Outline& start, const OutlineOptions& options,
                           const ClipInfo& info) {
-  constexpr double kBlurs = 3.0;
-  constexpr double kSpare_px = 2.0;
+  // As the band of outline.cc (kBandBlurs), and its rounding. A wrong value
+  // costs time only: this is what is fetched ahead.
+  constexpr double kFirstBlurs = 3.0;
+  constexpr double kFirstSpare_px = 2.0;
   return WindowReaching(start.centre,
                         Extent(start) +
-                            kBlurs * std::max(options.blur_px, 0.5) +
-                            HalfWay_px(options) + kSpare_px,
+                            kFirstBlurs * std::max(options.blur_px, 0.5) +
+                            HalfWay_px(options) + kFirstSpare_px,
                         info);
 }
 
@@ -63,7 +69,8 @@ Window Take(Clip& clip, const OutlineJob& job, const OutlineOptions& options) {
   const std::int64_t index = job.frame;
   Window window;
   window.first = FirstSeen(job.start, options, clip.info());
-  // Copied, all of it is read; else mostly nothing but this.
+  // A window that must be copied is read whole; of a lasting view mostly this
+  // part alone is touched.
   clip.WillRead(index, clip.views_last() ? window.first : rect);
   window.frame = clip.Read(index, rect);
   if (!clip.views_last()) {
@@ -73,6 +80,7 @@ Window Take(Clip& clip, const OutlineJob& job, const OutlineOptions& options) {
   return window;
 }
 
+// Asks for the next window's rows while this one is fitted.
 void PrefetchRows(const Window& window) {
   const core::Frame frame = CutWindow(window.frame, window.first);
   const std::size_t bytes = RowBytes(frame);
@@ -81,7 +89,7 @@ void PrefetchRows(const Window& window) {
   }
 }
 
-// The options of all, and a job's own.
+// The common options with the motion of one job.
 OutlineOptions OptionsOfJob(const OutlineJob& job,
                             const OutlineOptions& options) {
   OutlineOptions own = options;
@@ -90,7 +98,7 @@ OutlineOptions OptionsOfJob(const OutlineJob& job,
   return own;
 }
 
-// The fits of jobs [from, to) in their windows.
+// Fits jobs [from, to) in their windows.
 void FitThese(std::span<const OutlineJob> jobs, std::span<const Window> windows,
               const Background& background, const OutlineOptions& options,
               const core::Cancellation& until, std::size_t from, std::size_t to,
@@ -105,6 +113,7 @@ void FitThese(std::span<const OutlineJob> jobs, std::span<const Window> windows,
   }
 }
 
+// Reads the windows of all jobs, in the jobs' order.
 void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
              const OutlineOptions& options, std::vector<Window>& windows) {
   windows.clear();
@@ -113,17 +122,20 @@ void TakeAll(Clip& clip, std::span<const OutlineJob> jobs,
   }
 }
 
-// Each thread reads what it fits, by a reader of its own.
+// Each thread reads what it fits by a reader of its own, so that unpacking is
+// parallel, too.
 void FitApart(Clip& clip, const Background& background,
               std::span<const OutlineJob> jobs, const OutlineOptions& options,
               int threads, std::vector<std::optional<Fitted>>& fits) {
-  // Jobs: half a millisecond, or less where there are few.
-  constexpr std::size_t kMostAtOnce = 8;
-  constexpr std::size_t kTurns = 4;  // of each thread, at least
+  // Jobs that a thread takes at once, about half a millisecond. More leave
+  // threads idle at the end; fewer cost turns at the counter. Not studied.
+  constexpr std::size_t kMaxAtOnce = 8;
+  // Turns that each thread has at least.
+  constexpr std::size_t kMinTurns = 4;
   const std::size_t at_once = std::clamp<std::size_t>(
       jobs.size() /
-          (kTurns * static_cast<std::size_t>(core::CountThreads(threads))),
-      1, kMostAtOnce);
+          (kMinTurns * static_cast<std::size_t>(core::CountThreads(threads))),
+      1, kMaxAtOnce);
   std::atomic<std::size_t> next = 0;
   core::InParallel(
       core::CountThreads(threads), threads, [&](std::int64_t, std::int64_t) {
@@ -145,9 +157,11 @@ void FitApart(Clip& clip, const Background& background,
 core::PixelRect ChooseWindow(const Outline& start,
                              const OutlineOptions& options,
                              const ClipInfo& info) {
-  // The fit may move by a quarter of the size and double its blur, and looks
-  // three blurs and half the way beyond the edge (outline.cc).
+  // Of the extent: the fit may move by a quarter of the size and double its
+  // blur, and looks three blurs and half the way beyond the edge (outline.cc).
+  // A larger window costs memory; a smaller one ends fits at its border.
   constexpr double kMayMove = 0.5;
+  // Twice kBandBlurs, since the blur may double.
   constexpr double kBlurs = 6.0;
   constexpr double kSpare_px = 6.0;
   return WindowReaching(start.centre,

@@ -11,7 +11,7 @@
 namespace touchdown::vision {
 namespace {
 
-// A body at rest at one place of its way.
+// The body at one node of its motion blur, at rest there.
 struct Place {
   // What tells where pixels lie from the edge; differences are short numbers.
   double x_px = 0.0;
@@ -31,7 +31,8 @@ struct Place {
   float d_open_angle = 0.0F;
 };
 
-// Adds the numbers of a disc at kWide pixels from number i on.
+// The numbers of a disc at kWide pixels, and functions that add them from pixel
+// i on.
 struct WideOfDisc {
   Wide dx, dy;
   Wide outwards;  // minus the derivative by r, over r
@@ -56,9 +57,9 @@ TOUCHDOWN_INLINE void AddDisc(const Place& place, const WideOfDisc& disc,
   AddWide(place.first, disc.dy * (weight * place.per_long), &out.eta[i]);
 }
 
-// From the centre and from the edge. r - R is small beside r: as
-// (r^2 - R^2)/(r + R), of which only the numerator needs many digits, it is
-// good to 2e-7 of itself without a root of long numbers.
+// Distances of a block's pixels from the centre and from the edge. r - R is
+// small beside r: as (r^2 - R^2)/(r + R), of which only the numerator needs
+// many digits, it is good to 2e-7 of itself without a root in double precision.
 struct alignas(64) Distances {
   BlockColumn dx;
   BlockColumn dy;
@@ -84,7 +85,9 @@ TOUCHDOWN_INLINE void Measure(const Place& place, const double* x,
   }
 }
 
-constexpr float kAtCentre_px = 1e-12F;  // no direction there, and no edge
+// px, added to a radius before a division: at the centre there is no direction,
+// and no edge whose derivative would need one.
+constexpr float kAtCentre_px = 1e-12F;
 
 // A pixel is a square, and its part of the blur no Gaussian of its variance
 // 1/12: the next term of the series, -1/2880 (d^4/dx^4 + d^4/dy^4) of the
@@ -97,7 +100,8 @@ float SquareTerm(float w_px) {
   return 1.0F / (2880.0F * variance * variance);
 }
 
-// `term` times He_3 phi at z, and its slope -He_4 phi. Takes phi's place.
+// Adds `term` times He_3(z) phi(z) to the coverage, and its slope -He_4 phi to
+// the density, whose place it takes.
 TOUCHDOWN_INLINE void AddSquare(float term, const Wide& z, Wide& cdf, Wide& pdf,
                                 Wide& added) {
   const Wide square = z * z;
@@ -125,6 +129,7 @@ void AddLargeDisc(const Place& place, const double* x, const double* y,
     Wide cdf;
     Wide pdf;
     NormalAt(-s, cdf, pdf);
+    // The terms of the series and its derivatives by s and by e.
     const Wide third = 0.0625F * (1.0F + 5.0F * s * s);
     const Wide g = e * (-0.5F + e * (0.375F * s - e * third));
     const Wide g_s = e * e * (0.375F - 0.625F * e * s);
@@ -156,13 +161,16 @@ struct QuarterCircle {
   std::array<double, 10> sine;
   std::array<double, 10> weight;  // they add up to 1
 };
+// Nodes and weights on 0..1 (Abramowitz and Stegun, table 25.4), computed once.
 const QuarterCircle& Nodes() {
   static const QuarterCircle nodes = [] {
+    // Nodes and weights on 0..1.
     constexpr std::array<double, 10> kNode = {
         0.0130467357414141, 0.0674683166555077, 0.1602952158504878,
         0.2833023029353764, 0.4255628305091844, 0.5744371694908156,
         0.7166976970646236, 0.8397047841495122, 0.9325316833444923,
         0.9869532642585859};
+    // They add up to 1.
     constexpr std::array<double, 10> kWeight = {
         0.0333356721543441, 0.0747256745752903, 0.1095431812579910,
         0.1346333596549982, 0.1477621123573764, 0.1477621123573764,
@@ -223,6 +231,7 @@ void SmallDisc(double radius, double w, const QuarterCircle& nodes,
   FourAt(&table.d_radius[i]) = d_radius;
 }
 
+// Reads a small disc's profile from the table, in double precision.
 void AddSmallDisc(const Place& place, const SmallDiscTable& table,
                   const double* x, const double* y, CoverBlock& out) {
   Distances at;
@@ -247,6 +256,9 @@ void AddSmallDisc(const Place& place, const SmallDiscTable& table,
 }
 
 TOUCHDOWN_WIDEST
+// Coverage of a rectangle: the product of two blurred slabs, (Phi(u + a) -
+// Phi(u - a)) (Phi(v + b) - Phi(v - b)) in units of w, each edge with its
+// square term.
 void AddRectangle(const Place& place, const double* x, const double* y,
                   CoverBlock& out) {
   const float per_w = 1.0F / place.w_px;
@@ -322,40 +334,53 @@ void AddRectangle(const Place& place, const double* x, const double* y,
 
 }  // namespace
 
+// Length of the way of the outline's farthest point during the exposure.
 double Smear::way_px() const {
   return open_ * (std::hypot(travel_px_.x_px, travel_px_.y_px) +
                   std::abs(turn_rad_) * reach_px_);
 }
 
+// Motion blur is the mean of the still image over the exposure: by quadrature,
+// with as few nodes as the length of the way allows.
 void Smear::Set(double blur_px, double open, bool resolved) {
-  constexpr double kNegligible = 0.15;  // of the blur: its square adds 0.2 %
-  constexpr double kTwoNodes = 0.9;     // of the blur
-  constexpr double kPanel = 2.1;        // of the blur
-  constexpr double kMostPanels = 32.0;
-  constexpr double kOfTwo = 0.28867513459481287;    // 1/sqrt(12)
-  constexpr double kOfThree = 0.38729833462074170;  // sqrt(3/20)
+  // Lengths of the way, in units of the blur. Up to the first the body counts
+  // as still: the way's variance, 1/12 of its square, adds 0.2 % to the blur's.
+  constexpr double kStillWay = 0.15;
+  // Up to here two nodes with the way's own variance are enough.
+  constexpr double kTwoNodesWay = 0.9;
+  // Longer ways are cut into panels of this length, with three Gauss nodes
+  // each. Longer panels make ripples; shorter ones cost time. Not studied.
+  constexpr double kPanelWay = 2.1;
+  // A bound on time. Not studied.
+  constexpr double kMaxPanels = 32.0;
+  // Gauss-Legendre on -1/2..1/2: half the nodes' distance of two equal weights
+  // that keep the variance, 1/sqrt(12), and of three nodes, sqrt(3/20).
+  constexpr double kNodeOfTwo = 0.28867513459481287;
+  constexpr double kNodeOfThree = 0.38729833462074170;
   blur_px_ = blur_px;
   open_ = open;
   nodes_.clear();
   const double way = way_px() / blur_px;
-  if (way <= kNegligible && !resolved) {
+  if (way <= kStillWay && !resolved) {
     nodes_.push_back({0.0, 1.0});
     return;
   }
-  if (way <= kTwoNodes) {
-    nodes_ = {{-kOfTwo, 0.5}, {kOfTwo, 0.5}};
+  if (way <= kTwoNodesWay) {
+    nodes_ = {{-kNodeOfTwo, 0.5}, {kNodeOfTwo, 0.5}};
     return;
   }
   const auto panels =
-      static_cast<int>(std::min(kMostPanels, std::ceil(way / kPanel)));
+      static_cast<int>(std::min(kMaxPanels, std::ceil(way / kPanelWay)));
   for (int i = 0; i < panels; ++i) {
     const double middle = (i + 0.5) / panels - 0.5;
-    nodes_.push_back({middle - kOfThree / panels, 5.0 / 18.0 / panels});
+    nodes_.push_back({middle - kNodeOfThree / panels, 5.0 / 18.0 / panels});
     nodes_.push_back({middle, 8.0 / 18.0 / panels});
-    nodes_.push_back({middle + kOfThree / panels, 5.0 / 18.0 / panels});
+    nodes_.push_back({middle + kNodeOfThree / panels, 5.0 / 18.0 / panels});
   }
 }
 
+// Profile of a small disc at equal steps of the radius: the quadrature costs
+// too much for each pixel.
 SmallDiscTable::SmallDiscTable(double radius_px, double w_px)
     : per_step_(kPerBlur / w_px) {
   for (std::size_t i = 0; i < kCount; ++i) {
@@ -374,7 +399,8 @@ SmallDiscTable::Profile SmallDiscTable::At(double r_px) const {
   const auto between = [&](const std::array<double, kCount>& column) {
     return column[i] + t * (column[i + 1] - column[i]);
   };
-  // The value by cubics that have the slopes of both ends.
+  // The value by cubic Hermite interpolation, with the slopes of both ends; the
+  // derivatives linearly.
   const double low = columns_.value[i];
   const double rise = columns_.value[i + 1] - low;
   const double begin = columns_.d_r[i] / per_step_;
@@ -386,13 +412,17 @@ SmallDiscTable::Profile SmallDiscTable::At(double r_px) const {
 
 OutlineImage::OutlineImage(const Outline& outline, const Smear& smear)
     : outline_(outline), smear_(smear) {
-  constexpr double kSeriesFrom = 4.0;  // R/w; the series is good to 3e-4
+  // R/w. From here on the series in w/R is good to 3e-4 of the contrast; below
+  // it the quadrature takes over, at the cost of a table a fit.
+  constexpr double kSeriesFrom = 4.0;
   if (outline.kind == core::BodyKind::kSphere &&
       outline.radius_px < kSeriesFrom * smear.blur_px_) {
     small_.emplace(outline.radius_px, smear.blur_px_);
   }
 }
 
+// Coverage of a block of pixels with its derivatives: the weighted sum over the
+// nodes of the motion.
 void OutlineImage::Cover(const double* x, const double* y,
                          CoverBlock& out) const {
   const bool sphere = outline_.kind == core::BodyKind::kSphere;

@@ -14,6 +14,8 @@ bool UsablePart::IsHidden(double x_px, double y_px) const {
   return hider_->Hides(x_px, y_px);
 }
 
+// Distance to the edge, positive inside. Outside a corner it is the distance to
+// the corner; inside, that to the nearest side.
 double SignedDepth(const Outline& outline, double x_px, double y_px,
                    double cosine, double sine) {
   const double dx = x_px - outline.centre.x_px;
@@ -28,6 +30,8 @@ double SignedDepth(const Outline& outline, double x_px, double y_px,
                                     : -std::max(out_u, out_v);
 }
 
+// The height above the ground line is linear in the picture: its three
+// coefficients.
 Height::Height(const std::optional<calib::GroundLine>& ground) {
   if (!ground) return;
   offset_ = calib::HeightAboveLine(*ground, {0.0, 0.0});
@@ -35,6 +39,8 @@ Height::Height(const std::optional<calib::GroundLine>& ground) {
   y_ = calib::HeightAboveLine(*ground, {0.0, 1.0}) - offset_;
 }
 
+// Mean of 3 x 3 pixels of the background, `px` above the place that the body
+// hides: what lies behind it without the ground's blurred edge.
 double Behind::Raised(std::int32_t x, std::int32_t y, double px) const {
   if (std::min(background_.width_px, background_.height_px) < 3) {
     return static_cast<double>(background_.at(x, y));
@@ -54,6 +60,7 @@ double Behind::Raised(std::int32_t x, std::int32_t y, double px) const {
   return sum / 9.0;
 }
 
+// Excludes discs around pixels, as a mask over their box.
 void UsablePart::ExcludePixels(const std::vector<core::PixelPoint>& pixels,
                                double reach_px) {
   if (pixels.empty()) return;
@@ -87,6 +94,7 @@ void UsablePart::ExcludePixels(const std::vector<core::PixelPoint>& pixels,
   }
 }
 
+// Whether a place lies in an excluded disc.
 bool UsablePart::IsAside(double x_px, double y_px) const {
   const auto x = static_cast<std::int32_t>(std::lround(x_px)) - box_.x;
   const auto y = static_cast<std::int32_t>(std::lround(y_px)) - box_.y;
@@ -96,6 +104,7 @@ bool UsablePart::IsAside(double x_px, double y_px) const {
                 static_cast<std::size_t>(x)] != 0;
 }
 
+// Distance from the centre to the farthest point.
 double Extent(const Outline& o) {
   return o.kind == core::BodyKind::kSphere
              ? o.radius_px
@@ -106,6 +115,7 @@ double SmallestHalf(const Outline& o) {
   return o.kind == core::BodyKind::kSphere ? o.radius_px : o.half_short_px;
 }
 
+// Changes the radius, or both half sides.
 void Grow(double size_px, double other_px, Outline& outline) {
   if (outline.kind == core::BodyKind::kSphere) {
     outline.radius_px += size_px;
@@ -121,6 +131,7 @@ double Area(const Outline& o) {
              : 4.0 * o.half_long_px * o.half_short_px;
 }
 
+// Whether most pixels clear of the body, outside, are at full scale.
 bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
                          double cosine, double sine, double full_scale_dn) {
   const auto end =
@@ -129,6 +140,7 @@ bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
                    [&](double value) { return value >= full_scale_dn; })) {
     return false;
   }
+  // px outside the edge: nearer to it the blur mixes the body in. Not studied.
   constexpr double kClear_px = 2.0;
   double outside = 0.0;
   double full = 0.0;
@@ -143,23 +155,28 @@ bool IsSurroundSaturated(const OutlinePixels& pixels, const Outline& outline,
   return full > 0.5 * outside;
 }
 
+// Counts pixels at full scale that fit as if they had no noise: they say
+// nothing of it, and would make the misfit too small.
 double ClippedAsExpected(const OutlinePixels& pixels,
                          const std::vector<double>& residuals,
                          double full_scale_dn) {
-  constexpr double kNone = 0.5;  // of the noise
+  // In units of the noise; a pixel that is clipped has next to none. Not
+  // studied.
+  constexpr double kNoNoise = 0.5;
   double count = 0.0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
     count += static_cast<double>(pixels.value[i]) >= full_scale_dn &&
-             std::abs(residuals[i]) < kNone;
+             std::abs(residuals[i]) < kNoNoise;
   }
   return count;
 }
 
+// Mean square residual of the pixels near the ground, over that of the others.
 NearGroundPixels LookNearGround(const OutlinePixels& pixels,
                                 const std::vector<double>& residuals,
                                 const Height& height, double below_px) {
   NearGroundPixels result;
-  // Mostly none is.
+  // In most fits no pixel is so low: a loop without branches finds that out.
   int any = 0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
     any |= height.Of(pixels.x[i], pixels.y[i]) < below_px ? 1 : 0;
@@ -183,17 +200,20 @@ NearGroundPixels LookNearGround(const OutlinePixels& pixels,
   return result;
 }
 
+// Pixels clear inside the body whose residual exceeds the cut; none where they
+// are few.
 std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
                                           const std::vector<double>& residuals,
                                           double cut, const Outline& outline,
                                           double cosine, double sine,
                                           double clear_px) {
   std::vector<core::PixelPoint> unexplained;
-  constexpr std::size_t kLeast = 4;
+  // Pixels: noise has so many beyond the cut now and then. Not studied.
+  constexpr std::size_t kMinUnexplained = 4;
   const auto beyond = std::count_if(
       residuals.begin(), residuals.end(),
       [cut](double residual) { return std::abs(residual) > cut; });
-  if (beyond < static_cast<std::ptrdiff_t>(kLeast)) return unexplained;
+  if (beyond < static_cast<std::ptrdiff_t>(kMinUnexplained)) return unexplained;
   std::size_t inside = 0;
   for (std::size_t i = 0; i < pixels.size; ++i) {
     const core::PixelPoint p = {pixels.x[i], pixels.y[i]};
@@ -201,10 +221,11 @@ std::vector<core::PixelPoint> Unexplained(const OutlinePixels& pixels,
     ++inside;
     if (std::abs(residuals[i]) > cut) unexplained.push_back(p);
   }
-  constexpr double kLeastShare = 0.02;
+  // Share of the pixels clear inside: less does not bias the edge. Not studied.
+  constexpr double kMinShare = 0.02;
   const auto least = std::max(
-      kLeast,
-      static_cast<std::size_t>(kLeastShare * static_cast<double>(inside)));
+      kMinUnexplained,
+      static_cast<std::size_t>(kMinShare * static_cast<double>(inside)));
   if (unexplained.size() < least) unexplained.clear();
   return unexplained;
 }
@@ -218,6 +239,8 @@ double HalfWidth(double radius, double dy) {
   return std::sqrt(radius * radius - dy * dy);
 }
 
+// Takes pixels of a frame, with the background and what lies behind the body
+// there.
 class Collector {
  public:
   Collector(const core::Frame& frame, const Behind& behind,
@@ -230,14 +253,14 @@ class Collector {
         ask_known_(known_background && !background_.unknown.empty()),
         pixels_(pixels) {}
 
-  // All pixels that follow lie within `reach_px` of a point. Where each of them
-  // is usable and hides what is seen beside it, none need be asked.
+  // Promises that all pixels to come lie within `reach_px` of a point. If all
+  // of that disc is usable and clear of the ground, no pixel need be asked.
   void StayNearPoint(const core::PixelPoint& centre, double reach_px) {
     ask_ = ask_known_ || !usable_.HoldsDisc(centre, reach_px) ||
            !behind_.IsClearOfGround(centre, reach_px);
   }
 
-  // The pixels of row y from x to `end`.
+  // Takes the pixels of row y from x to `end`, both included.
   void TakeRun(std::int32_t x, std::int32_t end, std::int32_t y) {
     if (ask_) {
       for (; x <= end; ++x) Take(x, y);
@@ -281,8 +304,8 @@ class Collector {
   OutlinePixels& pixels_;
 };
 
-// As if it were added to the shading. Where it is not known well, the body's
-// pixels have less weight.
+// Adds the appearance to the shading, by taking it off what lies behind. Where
+// it is not known well, the body's pixels get less weight.
 void AddAppearance(const Appearance& appearance, const Outline& outline,
                    double cosine, double sine, OutlinePixels& pixels) {
   for (std::size_t i = 0; i < pixels.size; ++i) {
@@ -290,9 +313,10 @@ void AddAppearance(const Appearance& appearance, const Outline& outline,
         appearance.At(pixels.x[i] - outline.centre.x_px,
                       pixels.y[i] - outline.centre.y_px, cosine, sine);
     pixels.behind[i] -= static_cast<float>(value.level_dn);
-    constexpr double kEdge_px = 1.0;
+    // px: farther outside no pixel is the body's.
+    constexpr double kOutside_px = 1.0;
     if (SignedDepth(outline, pixels.x[i], pixels.y[i], cosine, sine) <
-        -kEdge_px) {
+        -kOutside_px) {
       continue;
     }
     const double u = value.u_dn * static_cast<double>(pixels.per_noise[i]);
@@ -393,6 +417,8 @@ void CollectOutlinePixels(const core::Frame& frame, const Behind& behind,
   }
 }
 
+// The point of the edge in the direction phi of the body's own axes: of a
+// rectangle the place where the ray leaves it.
 core::PixelPoint OutlinePoint(const Outline& outline, double cosine,
                               double sine, double phi) {
   double x = outline.radius_px * std::cos(phi);
@@ -412,7 +438,8 @@ core::PixelPoint OutlinePoint(const Outline& outline, double cosine,
 
 double VisibleShare(const core::Frame& frame, const Outline& outline,
                     double cosine, double sine, const UsablePart& usable) {
-  // Mostly all of it.
+  // Most outlines lie in the picture with all of their surroundings: then no
+  // point need be probed.
   const double reach = Extent(outline);
   const core::PixelPoint& centre = outline.centre;
   if (centre.x_px - reach >= frame.origin_x_px &&
@@ -422,6 +449,8 @@ double VisibleShare(const core::Frame& frame, const Outline& outline,
       usable.HoldsDisc(centre, reach)) {
     return 1.0;
   }
+  // Points probed around the outline, one each 5 deg for a disc: the share is
+  // known to 1.4 %. Not studied.
   constexpr int kProbes = 72;
   int seen = 0;
   for (int i = 0; i < kProbes; ++i) {
@@ -442,6 +471,7 @@ double SignedDepth(const Outline& outline, double x_px, double y_px) {
 double SupportHeight(const Outline& outline, double ground_angle_rad) {
   if (outline.kind == core::BodyKind::kSphere) return outline.radius_px;
   const double tilt = outline.angle_rad - ground_angle_rad;
+  // S = a |sin| + b |cos| of the angle to the ground.
   return outline.half_long_px * std::abs(std::sin(tilt)) +
          outline.half_short_px * std::abs(std::cos(tilt));
 }

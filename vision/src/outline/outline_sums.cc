@@ -20,6 +20,8 @@ double SumLanes(const std::array<float, kCount>& lanes) {
 
 }  // namespace
 
+// Keeps the columns from fit to fit and grows them only: allocation would take
+// longer than a small fit.
 void OutlinePixels::Clear(std::size_t room) {
   size = 0;
   if (x.size() >= room + kBlock) return;
@@ -30,6 +32,8 @@ void OutlinePixels::Clear(std::size_t room) {
   }
 }
 
+// Writes 1/noise of each pixel, and fills the last block with copies of the
+// last pixel of weight 0, so that loops need no remainder.
 void OutlinePixels::Finish(double floor_dn2, double slope_dn,
                            double least_dn2) {
   for (std::size_t i = 0; i < size; ++i) {
@@ -49,7 +53,8 @@ void OutlinePixels::Finish(double floor_dn2, double slope_dn,
 }
 
 double OutlinePixels::MeanBackground() const {
-  // No sum waits for the one before.
+  // Independent sums: no addition waits for the one before. The order is fixed,
+  // so that the result does not depend on the processor.
   constexpr std::size_t kSums = 8;
   std::array<double, kSums> sums{};
   std::size_t i = 0;
@@ -63,7 +68,8 @@ double OutlinePixels::MeanBackground() const {
          static_cast<double>(size);
 }
 
-// One block of a round.
+// One block of pixels in one round. All loops run over whole blocks of fixed
+// size, which the compiler turns into vector instructions.
 struct OutlineBlock {
   const float* value;
   const float* background;
@@ -73,6 +79,7 @@ struct OutlineBlock {
 
   using Lanes = OutlineSums::Lanes;
   using Totals = OutlineSums::Totals;
+  // Of outline_sums.h.
   static constexpr std::size_t kLanes = OutlineSums::kLanes;
   static constexpr std::size_t kPadded = OutlineSums::kPadded;
 
@@ -89,6 +96,7 @@ struct OutlineBlock {
     for (std::size_t j = 0; j < 4; ++j) EightAt(sums[j].data()) = s[j];
   }
 
+  // Adds a . b to one sum.
   TOUCHDOWN_INLINE static void AddProduct(const BlockColumn& a,
                                           const BlockColumn& b, Lanes& sum) {
     Eight s = EightAt(sum.data());
@@ -98,6 +106,7 @@ struct OutlineBlock {
     EightAt(sum.data()) = s;
   }
 
+  // Adds all numbers of a column.
   TOUCHDOWN_INLINE static void Add(const BlockColumn& from, Lanes& sum) {
     Eight s = EightAt(sum.data());
     for (std::size_t k = 0; k < kBlock; k += kLanes) s += EightAt(&from[k]);
@@ -112,7 +121,8 @@ struct OutlineBlock {
     }
   }
 
-  // 1, xi, eta, xi^2, xi eta, eta^2 times their levels.
+  // Polynomial level of each pixel: the terms 1, xi, eta, xi^2, xi eta, eta^2
+  // times their coefficients.
   TOUCHDOWN_INLINE static void Levels(const CoverBlock& cover,
                                       const float* level, std::size_t count,
                                       BlockColumn& sum) {
@@ -129,6 +139,7 @@ struct OutlineBlock {
     }
   }
 
+  // Derivatives by the coefficients: `factor` times each term.
   TOUCHDOWN_INLINE static void Terms(const CoverBlock& cover,
                                      const BlockColumn& factor,
                                      std::size_t count, BlockColumn* rows) {
@@ -152,6 +163,8 @@ struct OutlineBlock {
                                         Totals& totals) const;
 };
 
+// Residual, weight and derivatives of each pixel, then normal equations,
+// gradient and the sums that judge the fit.
 void OutlineBlock::AccumulateBlock(const OutlineRound& round,
                                    const CoverBlock& cover,
                                    Totals& totals) const {
@@ -182,12 +195,16 @@ void OutlineBlock::AccumulateBlock(const OutlineRound& round,
     const float covered = cover.value[i];
     const float noise = per_noise[i];
     const float rise = w.in[i] - w.behind[i];
+    // (measured - out - coverage (in - behind)) / noise.
     const float residual = (value[i] - w.out[i] - covered * rise) * noise;
     const float present = noise > 0.0F ? 1.0F : 0.0F;
     const float t = residual * per_cut;
+    // Tukey's biweight, 0 beyond the cut; padding has weight 0.
     const float inner = 1.0F - t * t;
     const float q = inner > 0.0F ? inner : 0.0F;
     const float weight = present * q * q;
+    // Coverage times (1 - coverage) picks the edge: the contrast is the mean
+    // rise there.
     const float edge = present * covered * (1.0F - covered);
     const float inlier = weight > 0.5F ? 1.0F : 0.0F;
     w.residual[i] = residual;
@@ -221,6 +238,7 @@ void OutlineBlock::AccumulateBlock(const OutlineRound& round,
   if (!known) {
     Terms(cover, w.outside, round.outer, rows + round.shapes + round.interior);
   }
+  // Four rows are multiplied at once: the last group is filled with zeros.
   for (std::size_t k = n; k < (n + 3) / 4 * 4; ++k) rows[k].fill(0.0F);
 
   for (std::size_t i = 0; i < n; ++i) {
@@ -276,9 +294,10 @@ void OutlineSums::SumPixels(const OutlinePixels& pixels,
                                 &pixels.behind[begin], &pixels.per_noise[begin],
                                 &residuals[begin]};
     block.AccumulateBlock(round, cover, totals_);
-    // So many short numbers still add up to 1e-6 of their sum.
-    constexpr std::size_t kTogether = 16 * kBlock;
-    if ((begin + kBlock) % kTogether == 0 ||
+    // Pixels whose products are added in single precision before they join the
+    // sums in double: so many still add up to 1e-6 of their sum.
+    constexpr std::size_t kFloatPixels = 16 * kBlock;
+    if ((begin + kBlock) % kFloatPixels == 0 ||
         begin + kBlock >= pixels.padded()) {
       AddTotals(n);
       Begin(n);
@@ -294,6 +313,8 @@ double OutlineSums::normal(std::size_t i, std::size_t j) const {
 
 double OutlineSums::gradient(std::size_t i) const { return gradient_[i]; }
 
+// Scaled median of |residual|, at least 1. Most residuals are below the one
+// that makes the median 1: only those above it are sorted.
 double RobustScale(const std::vector<double>& residuals) {
   const double one = 1.0 / kSigmaPerMedian;
   const auto larger = static_cast<std::size_t>(
@@ -302,7 +323,8 @@ double RobustScale(const std::vector<double>& residuals) {
   const std::size_t others = residuals.size() - larger;
   const std::size_t middle = residuals.size() / 2;
   if (middle < others) return 1.0;
-  // Mostly the median is not far beyond 1: few are so near to it.
+  // Mostly the median is not far beyond 1, and few residuals lie so near to it:
+  // a narrow bracket is tried first.
   std::vector<double> sizes(residuals.size());
   std::size_t count = 0;
   for (const double most :
@@ -310,7 +332,7 @@ double RobustScale(const std::vector<double>& residuals) {
     count = 0;
     for (const double r : residuals) {
       const double size = std::abs(r);
-      sizes[count] = size;  // without a branch that nobody can foretell
+      sizes[count] = size;  // written always, kept or not: no branch
       count += static_cast<std::size_t>(size > one) &
                static_cast<std::size_t>(size <= most * one);
     }

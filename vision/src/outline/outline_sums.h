@@ -89,6 +89,7 @@ struct OutlineRound {
   // Which derivatives: members of CoverBlock.
   std::array<std::size_t, kMostShape> shape{};  // 0..4 d_shape, 5, 6: below
   std::size_t shapes = 0;
+  // Values of `shape` for the derivatives by blur and by shutter.
   static constexpr std::size_t kBlur = 5;
   static constexpr std::size_t kOpen = 6;
 
@@ -116,6 +117,8 @@ class OutlineSums {
   double contrast_dn = 0.0;  // mean of in - out along the outline
 
  private:
+  // Single-precision sums kept side by side, one for each place of a 256-bit
+  // vector; rows of the normal matrix, filled up to whole fours.
   static constexpr std::size_t kLanes = 8;
   static constexpr std::size_t kPadded = (kMostTerms + 3) / 4 * 4;
   using Lanes = std::array<float, kLanes>;

@@ -10,54 +10,65 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr std::size_t kLeastSharing = 3;  // frames
+// Frames: with fewer there is no scatter to widen the u by.
+constexpr std::size_t kMinSharing = 3;
 
+// What one frame says of the shared parameters.
 struct FrameStep {
   const SharedTerms* terms = nullptr;
   double step = 0.0;  // of the size, by this frame alone
   double u = 0.0;
 };
 
-// What one frame says alone: blur and exposure no better known than this.
+// The step of the size by one frame alone. Blur and shutter, which one frame
+// may not tell, get a weak prior.
 FrameStep Alone(const SharedTerms& terms) {
-  constexpr double kVague = 1.0;  // px, and share
+  // px of blur, and share of the frame interval: the prior's u, far wider than
+  // what all frames tell.
+  constexpr double kVagueU = 1.0;
   Eigen::Matrix4d information = terms.information;
-  information.diagonal().array() += 1.0 / (kVague * kVague);
+  information.diagonal().array() += 1.0 / (kVagueU * kVagueU);
   const Eigen::Matrix4d covariance =
       information.ldlt().solve(Eigen::Matrix4d::Identity());
   return {&terms, covariance.row(0).dot(terms.gradient),
           std::sqrt(covariance(0, 0))};
 }
 
+// Frames that show the whole outline; all of them where those are too few.
 std::vector<FrameStep> Collect(std::span<const Fitted> all) {
-  constexpr double kWhole = 0.98;
+  // Share of the outline that is seen. Not studied.
+  constexpr double kWholeShare = 0.98;
   std::vector<FrameStep> told;
   for (const bool strict : {true, false}) {
     told.clear();
     for (const Fitted& f : all) {
-      if (!f.fit.shared || (strict && f.fit.visible < kWhole)) continue;
+      if (!f.fit.shared || (strict && f.fit.visible < kWholeShare)) continue;
       told.push_back(Alone(*f.fit.shared));
     }
-    if (told.size() >= kLeastSharing) break;
+    if (told.size() >= kMinSharing) break;
   }
   return told;
 }
 
+// Rejects frames whose own step lies far off the median.
 void DropFarOff(std::vector<FrameStep>& told) {
   std::vector<double> values;
   values.reserve(told.size());
   for (const FrameStep& t : told) values.push_back(t.step);
   const double centre = Median(values);
   for (double& v : values) v = std::abs(v - centre);
-  constexpr double kMost = 4.0;
+  // In units of the robust scatter. Chosen by the normal distribution.
+  constexpr double kMaxScatters = 4.0;
   const double scatter = kSigmaPerMedian * Median(std::move(values));
   std::erase_if(told, [&](const FrameStep& t) {
-    return std::abs(t.step - centre) > kMost * scatter;
+    return std::abs(t.step - centre) > kMaxScatters * scatter;
   });
 }
 
 }  // namespace
 
+// Schur complement: the shared block less what the frame's own parameters
+// explain of it, A_ss - A_so A_oo^-1 A_os, and the gradient alike.
 SharedTerms WithoutOwn(const Eigen::MatrixXd& normal,
                        const Eigen::VectorXd& gradient,
                        const std::array<int, 4>& at) {
@@ -95,10 +106,11 @@ SharedTerms WithoutOwn(const Eigen::MatrixXd& normal,
   return terms;
 }
 
+// The frames' reduced equations add up; their sum is solved for the joint step.
 std::optional<SharedStep> StepTogether(std::span<const Fitted> all) {
   std::vector<FrameStep> told = Collect(all);
   DropFarOff(told);
-  if (told.size() < kLeastSharing) return std::nullopt;
+  if (told.size() < kMinSharing) return std::nullopt;
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
   for (const FrameStep& t : told) {
@@ -119,6 +131,7 @@ std::optional<SharedStep> StepTogether(std::span<const Fitted> all) {
   SharedStep step;
   step.step = known * factor.solve(gradient).array();
   const Eigen::Matrix4d covariance = factor.solve(Eigen::Matrix4d::Identity());
+  // Scatter of the frames' own steps about the joint one widens its u.
   double chi2 = 0.0;
   for (const FrameStep& t : told) {
     const double z = (t.step - step.step[0]) / t.u;

@@ -15,11 +15,13 @@ namespace {
 
 using Samples = std::span<const SpotSample>;
 
-// A fall of the squares' sum by so much is no chance: six parameters, hundreds
-// of places.
-constexpr double kSureFall = 60.0;
+// Fall of the sum of squares, in units of the residual variance, that is no
+// chance: a spot has six parameters, and there are hundreds of places to try.
+// Smaller learns noise; larger misses weak highlights. Not studied.
+constexpr double kMinCostFall = 60.0;
 
-// Whether each spot falls off in all directions, from a place on the body.
+// Whether each spot falls off in all directions, from a place on the body: a
+// Gaussian that does not is a second shading.
 bool AreSpots(const SpotModel& model, double reach_px) {
   const SpotModel::Vector& k = model.parameters;
   for (int spot = 0; spot < model.spots; ++spot) {
@@ -29,9 +31,10 @@ bool AreSpots(const SpotModel& model, double reach_px) {
     const double off = std::hypot(0.5 * (k[at + 3] - k[at + 5]), k[at + 4]);
     const double narrow = mean + off;
     const double wide = mean - off;
-    constexpr double kLongest = 5.0;  // in widths
+    // Ratio of length and width: a longer spot is an edge. Not studied.
+    constexpr double kMaxAspect = 5.0;
     if (!(wide * reach_px * reach_px > 1.0) ||
-        !(wide * kLongest * kLongest > narrow) ||
+        !(wide * kMaxAspect * kMaxAspect > narrow) ||
         !(std::hypot(k[at + 1], k[at + 2]) < reach_px)) {
       return false;
     }
@@ -39,7 +42,7 @@ bool AreSpots(const SpotModel& model, double reach_px) {
   return k.allFinite();
 }
 
-// Over their noise.
+// (measured - model) / noise of each sample.
 std::vector<double> ComputeResiduals(Samples samples, const SpotModel& model) {
   std::vector<double> residuals;
   residuals.reserve(samples.size());
@@ -50,15 +53,19 @@ std::vector<double> ComputeResiduals(Samples samples, const SpotModel& model) {
   return residuals;
 }
 
-// Where Huber's squares end.
+// Where Huber's cost changes from squares to a straight line.
 double HuberCut(const std::vector<double>& residuals) {
   std::vector<double> sizes;
   sizes.reserve(residuals.size());
   for (const double r : residuals) sizes.push_back(std::abs(r));
-  constexpr double kSquares = 2.0;
-  return kSquares * std::max(1.0, kSigmaPerMedian * Median(std::move(sizes)));
+  // Robust standard deviations. Smaller is more robust; larger loses less of
+  // normal noise. Not studied.
+  constexpr double kHuberSigmas = 2.0;
+  return kHuberSigmas *
+         std::max(1.0, kSigmaPerMedian * Median(std::move(sizes)));
 }
 
+// r^2 / 2 up to the cut, cut (|r| - cut/2) beyond it (Huber 1964).
 double HuberCost(const std::vector<double>& residuals, double cut) {
   double cost = 0.0;
   for (const double r : residuals) {
@@ -73,6 +80,8 @@ struct SpotEquations {
   SpotModel::Vector gradient;
 };
 
+// Gauss-Newton equations with Huber's weights. Without curved shading its three
+// quadratic terms are held.
 SpotEquations MakeNormalEquations(Samples samples, const SpotModel& model,
                                   const std::vector<double>& residuals,
                                   double cut, bool curved) {
@@ -87,9 +96,10 @@ SpotEquations MakeNormalEquations(Samples samples, const SpotModel& model,
     sums.normal.noalias() += weight * by * by.transpose();
     sums.gradient.noalias() += weight * residuals[i] * by;
   }
-  constexpr int kLinear = 3;  // terms
-  for (int i = curved ? SpotModel::kShading : kLinear; i < SpotModel::kShading;
-       ++i) {
+  // Level and two slopes.
+  constexpr int kLinearTerms = 3;
+  for (int i = curved ? SpotModel::kShading : kLinearTerms;
+       i < SpotModel::kShading; ++i) {
     sums.normal.row(i).setZero();
     sums.normal.col(i).setZero();
     sums.normal(i, i) = 1.0;
@@ -98,15 +108,16 @@ SpotEquations MakeNormalEquations(Samples samples, const SpotModel& model,
   return sums;
 }
 
-// By how much the squares' sum is less with `after` than with `before`, in
-// units of what is left; what is in front of the body in some frames counts
-// little.
+// By how much the sum of squares is less with `after` than with `before`, in
+// units of the residual variance. Squares are bounded: what lies in front of
+// the body in some frames counts little.
 double CostReduction(Samples samples, const SpotModel& before,
                      const SpotModel& after) {
   const std::vector<double> old = ComputeResiduals(samples, before);
   const std::vector<double> now = ComputeResiduals(samples, after);
-  constexpr double kFarOut = 2.5;  // of Huber's cut: five standard deviations
-  const double cut = kFarOut * HuberCut(now);
+  // Of Huber's cut: five standard deviations. Not studied.
+  constexpr double kBoundCuts = 2.5;
+  const double cut = kBoundCuts * HuberCut(now);
   double fall = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     fall += std::min(old[i] * old[i], cut * cut) -
@@ -115,21 +126,25 @@ double CostReduction(Samples samples, const SpotModel& before,
   return fall / std::max(1.0, after.chi2);
 }
 
-// Levenberg and Marquardt from `model`.
+// Levenberg-Marquardt from `model`; writes parameters, chi^2 and covariance.
 void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
-  constexpr int kRounds = 40;
-  constexpr double kMostDamping = 1e6;
-  constexpr double kSettled = 1e-4;  // of the cost
+  // Rounds: a bound on time. Not studied.
+  constexpr int kMaxRounds = 40;
+  // Steps are vanishingly short from here on: no gain is left.
+  constexpr double kMaxDamping = 1e6;
+  // Relative gain of a round that ends the fit: far below kMinCostFall.
+  constexpr double kMinGain = 1e-4;
+  // Of the largest diagonal: against rounding only.
   constexpr double kRidge = 1e-12;
   double damping = 1e-3;
   std::vector<double> residuals = ComputeResiduals(samples, model);
   SpotEquations sums;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const double cut = HuberCut(residuals);
     const double cost = HuberCost(residuals, cut);
     sums = MakeNormalEquations(samples, model, residuals, cut, options.curved);
     double gain = 0.0;
-    while (gain <= 0.0 && damping < kMostDamping) {
+    while (gain <= 0.0 && damping < kMaxDamping) {
       SpotModel::Matrix a = sums.normal;
       a.diagonal() *= 1.0 + damping;
       a.diagonal().array() += kRidge * a.diagonal().maxCoeff();
@@ -145,7 +160,7 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
       }
       damping *= gain > 0.0 ? 0.2 : 5.0;
     }
-    if (!(gain > kSettled * (1.0 + cost))) break;
+    if (!(gain > kMinGain * (1.0 + cost))) break;
   }
   const double cut = HuberCut(residuals);
   double square = 0.0;
@@ -160,7 +175,7 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
                      a.ldlt().solve(SpotModel::Matrix::Identity(n, n));
 }
 
-// The spot of a width that would explain the most of the residuals.
+// A spot of given width that would explain the most of the residuals.
 struct Patch {
   double gain = 0.0;  // fall of the squares' sum
   double level_dn = 0.0;
@@ -168,9 +183,11 @@ struct Patch {
   double y_px = 0.0;
 };
 
-// About one of the cells that stand out the most.
+// Correlates the residuals with a round spot about each of the cells that stand
+// out the most.
 Patch FindPatch(Samples cells, const std::vector<double>& residuals,
                 double sigma_px) {
+  // Cells: more cost time; a spot's middle is among the first. Not studied.
   constexpr std::size_t kTried = 24;
   std::vector<std::size_t> order(cells.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -189,13 +206,15 @@ Patch FindPatch(Samples cells, const std::vector<double>& residuals,
       const double dx = (cells[i].x_px - centre.x_px) / sigma_px;
       const double dy = (cells[i].y_px - centre.y_px) / sigma_px;
       const double square = dx * dx + dy * dy;
-      constexpr double kReach = 9.0;  // beyond, the shape is below 1 %
-      if (square > kReach) continue;
+      // Squared distance in widths: beyond it the shape is below 1.2 %.
+      constexpr double kMaxSquare = 9.0;
+      if (square > kMaxSquare) continue;
       const double shape =
           std::exp(-0.5 * square) / std::sqrt(cells[i].variance_dn2);
       sum += shape * residuals[i];
       weights += shape * shape;
     }
+    // Matched filter: the fall of the sum of squares for the best level.
     const double gain = sum * sum / weights;
     if (gain > best.gain) {
       best = {gain, sum / weights, centre.x_px, centre.y_px};
@@ -204,18 +223,20 @@ Patch FindPatch(Samples cells, const std::vector<double>& residuals,
   return best;
 }
 
-// `model` with one spot more, or nothing.
+// `model` with one spot more, if that explains clearly more; else nothing.
 std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
                                   const SpotOptions& options,
                                   const SpotModel& model) {
   const std::vector<double> residuals = ComputeResiduals(cells, model);
-  constexpr std::array<double, 3> kWidths = {0.12, 0.25, 0.5};  // of the size
+  // Widths to start from, in units of the half size: a factor of two apart,
+  // from which the fit finds its own. Not studied.
+  constexpr std::array<double, 3> kWidths = {0.12, 0.25, 0.5};
   SpotModel best;
   best.chi2 = std::numeric_limits<double>::infinity();
   for (const double width : kWidths) {
     const double sigma = std::max(width * options.size_px, options.least_px);
     const Patch patch = FindPatch(cells, residuals, sigma);
-    if (patch.gain < kSureFall) continue;
+    if (patch.gain < kMinCostFall) continue;
     SpotModel tried = model;
     ++tried.spots;
     tried.parameters.resize(model.parameters.size() + SpotModel::kSpot);
@@ -230,7 +251,8 @@ std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
   FitSpots(samples, options, best);
   SpotModel without = model;
   FitSpots(samples, options, without);
-  if (!(CostReduction(samples, without, best) > kSureFall)) return std::nullopt;
+  if (!(CostReduction(samples, without, best) > kMinCostFall))
+    return std::nullopt;
   return best;
 }
 
@@ -252,6 +274,7 @@ double SpotModel::At(double x_px, double y_px, Vector* by) const {
     const int at = kShading + spot * kSpot;
     const double dx = x_px - k[at + 1];
     const double dy = y_px - k[at + 2];
+    // level exp(-(d^T S d) / 2), with S = (k3 k4; k4 k5), and its derivatives.
     const double along_x = k[at + 3] * dx + k[at + 4] * dy;
     const double along_y = k[at + 4] * dx + k[at + 5] * dy;
     const double shape = std::exp(-0.5 * (along_x * dx + along_y * dy));
@@ -271,8 +294,10 @@ double SpotModel::At(double x_px, double y_px, Vector* by) const {
 std::optional<SpotModel> FindSpots(std::span<const SpotSample> cells,
                                    std::span<const SpotSample> samples,
                                    const SpotOptions& options) {
-  constexpr std::size_t kLeastCells = 20;
-  if (cells.size() < kLeastCells) return std::nullopt;
+  // Cells: twelve parameters of shading and one spot, and some to judge them.
+  // Not studied.
+  constexpr std::size_t kMinCells = 20;
+  if (cells.size() < kMinCells) return std::nullopt;
   SpotModel model;
   model.size_px = options.size_px;
   FitSpots(cells, options, model);

@@ -11,6 +11,8 @@
 namespace touchdown::vision {
 
 struct SpotModel {
+  // Parameters of the shading and of one spot; spots at most (more are learnt
+  // from noise; not studied); parameters at most.
   static constexpr int kShading = 6;  // of q: 1, x, y, x^2, xy, y^2
   static constexpr int kSpot = 6;     // A, x, y, Sxx, Sxy, Syy
   static constexpr int kMostSpots = 3;

@@ -12,9 +12,12 @@
 namespace touchdown::vision {
 namespace {
 
+// Turn after which the outline looks the same.
 double Period(const BodyImage& body) {
-  constexpr double kSquare = 1.05;  // sides nearer than 5 %: a quarter turn
-  return body.half_long_px.value < kSquare * body.half_short_px.value
+  // Ratio of the sides below which a rectangle is a square: after a quarter
+  // turn it cannot be told from itself. Not studied.
+  constexpr double kSquareRatio = 1.05;
+  return body.half_long_px.value < kSquareRatio * body.half_short_px.value
              ? 0.5 * std::numbers::pi
              : std::numbers::pi;
 }
@@ -58,6 +61,7 @@ core::Estimate RobustMean(const std::vector<double>& values,
   double n = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::abs(values[i] - centre) > 4.0 * scatter + 1e-12) continue;
+    // No value weighs more than the typical one.
     const double u = std::max(us[i], typical);
     const double w = 1.0 / (u * u + 1e-12);
     sw += w;
@@ -77,28 +81,35 @@ void DropStrangers(std::vector<Fitted>& all) {
   }
   const double size = Median(sizes);
   const double misfit = Median(misfits);
-  constexpr double kSizeRatio = 1.35;
-  constexpr double kMisfitRatio = 4.0;
+  // Ratio to the median size, and to the median misfit (at least 1). Larger
+  // keeps outlines of other things; smaller loses free fits of noisy clips. Not
+  // studied.
+  constexpr double kMaxSizeRatio = 1.35;
+  constexpr double kMaxMisfitRatio = 4.0;
   std::erase_if(all, [&](const Fitted& f) {
-    return OutlineSize(f.fit) > kSizeRatio * size ||
-           OutlineSize(f.fit) * kSizeRatio < size ||
-           f.fit.misfit > kMisfitRatio * std::max(1.0, misfit);
+    return OutlineSize(f.fit) > kMaxSizeRatio * size ||
+           OutlineSize(f.fit) * kMaxSizeRatio < size ||
+           f.fit.misfit > kMaxMisfitRatio * std::max(1.0, misfit);
   });
-  constexpr std::size_t kLeast = 8;
+  // Frames that must remain. Not studied.
+  constexpr std::size_t kMinRemaining = 8;
   const auto is_hidden = [](const Fitted& f) {
     return f.fit.hidden > kMostHidden;
   };
   const auto hidden = static_cast<std::size_t>(
       std::count_if(all.begin(), all.end(), is_hidden));
-  if (all.size() >= kLeast + hidden && 2 * hidden <= all.size()) {
+  if (all.size() >= kMinRemaining + hidden && 2 * hidden <= all.size()) {
     std::erase_if(all, is_hidden);
   }
 }
 
 std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
-  constexpr std::size_t kLeast = 8;  // that remain
+  // Frames that must remain. Not studied.
+  constexpr std::size_t kMinRemaining = 8;
   std::vector<bool> hidden(all.size(), false);
-  if (all.size() < kLeast) return hidden;
+  if (all.size() < kMinRemaining) return hidden;
+  // The upper quartile of the sizes is the whole body's: a hidden body looks
+  // smaller, never larger.
   const auto quartile = [](std::vector<double> values) {
     const auto at =
         values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
@@ -109,10 +120,15 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
   misfits.reserve(all.size());
   for (const Fitted& f : all) misfits.push_back(f.fit.misfit);
   if (Median(std::move(misfits)) > kWellModelled) return hidden;
-  constexpr double kClearly = 5.0;  // standard uncertainties
-  constexpr double kMatters = 0.01;
-  constexpr double kProbably = 2.0;
-  constexpr double kMayMatter = 0.003;
+  // What the size must lack, in standard uncertainties and as a share of the
+  // whole, both. Fewer: noise is called hidden; more: frames that are hidden a
+  // little draw the path. Set with the obstacle part of the accuracy design,
+  // whose RMSE of the approach angle fell from 430 to 4.7 times the bound.
+  constexpr double kHiddenSigmas = 5.0;
+  constexpr double kHiddenShare = 0.01;
+  // The same beside a hidden frame.
+  constexpr double kBesideSigmas = 2.0;
+  constexpr double kBesideShare = 0.003;
   std::vector<bool> probably(all.size(), false);
   const auto compare = [&](const auto& size_of, double OutlineFit::*u_of) {
     std::vector<double> sizes;
@@ -126,9 +142,10 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double lack = whole - sizes[i];
       const double u = std::hypot(us[i], usual);
-      hidden[i] = hidden[i] || lack > std::max(kClearly * u, kMatters * whole);
-      probably[i] =
-          probably[i] || lack > std::max(kProbably * u, kMayMatter * whole);
+      hidden[i] =
+          hidden[i] || lack > std::max(kHiddenSigmas * u, kHiddenShare * whole);
+      probably[i] = probably[i] ||
+                    lack > std::max(kBesideSigmas * u, kBesideShare * whole);
     }
   };
   compare(OutlineSize, &OutlineFit::u_size_px);
@@ -136,6 +153,7 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
     compare([](const OutlineFit& fit) { return fit.outline.half_short_px; },
             &OutlineFit::u_size_short_px);
   }
+  // Spreads to neighbours, forwards and then backwards.
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (hidden[i - 1] && probably[i]) hidden[i] = true;
   }
@@ -144,9 +162,10 @@ std::vector<bool> FindHidden(const std::vector<Fitted>& all) {
   }
   const auto count =
       static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), true));
-  constexpr std::size_t kSeveral = 3;
-  if (count < kSeveral || 2 * count > all.size() ||
-      all.size() < count + kLeast) {
+  // Frames: one or two may be noise. Not studied.
+  constexpr std::size_t kMinHidden = 3;
+  if (count < kMinHidden || 2 * count > all.size() ||
+      all.size() < count + kMinRemaining) {
     hidden.assign(all.size(), false);
   }
   return hidden;
@@ -168,6 +187,7 @@ Pose ToPose(const Fitted& f) {
 
 void FollowSize(const std::vector<Fitted>& all, Track& track) {
   if (track.body.kind != core::BodyKind::kSphere || all.size() < 12) return;
+  // Weighted straight line of the radius over time.
   double sw = 0, st = 0, sr = 0, stt = 0, str = 0;
   for (const Fitted& f : all) {
     if (f.fit.visible < 0.98) continue;
@@ -190,12 +210,16 @@ void FollowSize(const std::vector<Fitted>& all, Track& track) {
     square += r * r;
   }
   const double scatter = std::sqrt(square / static_cast<double>(all.size()));
-  constexpr double kMatters = 0.01;
+  // Of the radius over the clip: less changes no answer by its u. The change
+  // must also be five times its noise. Not studied.
+  constexpr double kMinSizeChange = 0.01;
   const double noise = scatter / track.body.radius_px.value /
                        std::sqrt(static_cast<double>(all.size()) / 12.0);
-  if (std::abs(change) < kMatters || std::abs(change) < 5.0 * noise) return;
-  // A step is no growth: a blow changes the way that smears the image. Each
-  // half must show a good part of the slope.
+  if (std::abs(change) < kMinSizeChange || std::abs(change) < 5.0 * noise)
+    return;
+  // A step is no growth: an impact changes the motion that smears the image,
+  // and with it the size. Each half of the clip must show a good part of the
+  // slope.
   const auto half = [&](std::size_t begin, std::size_t end) {
     std::vector<double> early;
     std::vector<double> late;
@@ -208,10 +232,12 @@ void FollowSize(const std::vector<Fitted>& all, Track& track) {
         all[end - 1 - third / 2].time_s - all[begin + third / 2].time_s;
     return (Median(late) - Median(early)) / apart;
   };
-  constexpr double kGoodPart = 0.4;
+  // Share of the slope: a step lies in one half, the other shows nothing. Not
+  // studied.
+  constexpr double kMinHalfSlope = 0.4;
   const std::size_t middle = all.size() / 2;
-  if (half(0, middle) / slope < kGoodPart ||
-      half(middle, all.size()) / slope < kGoodPart) {
+  if (half(0, middle) / slope < kMinHalfSlope ||
+      half(middle, all.size()) / slope < kMinHalfSlope) {
     return;
   }
   for (Pose& pose : track.poses) {
@@ -225,6 +251,7 @@ void FollowSize(const std::vector<Fitted>& all, Track& track) {
                   kGrows, 100.0 * change));
 }
 
+// Each angle continues from the one before it, by less than half a period.
 void Unwrap(Track& track) {
   if (track.body.kind != core::BodyKind::kRectangle || track.poses.empty()) {
     return;
@@ -279,6 +306,8 @@ BodyImage EstimateShape(const std::vector<Fitted>& all, core::BodyKind kind) {
   return body;
 }
 
+// Third differences of the centre, which no parabola changes: their variance is
+// 20 times that of one position.
 double Roughness(const std::vector<Fitted>& all) {
   std::vector<double> jumps;
   for (std::size_t i = 3; i < all.size(); ++i) {
@@ -296,16 +325,22 @@ double Roughness(const std::vector<Fitted>& all) {
     jumps.push_back(std::hypot(third(&core::PixelPoint::x_px),
                                third(&core::PixelPoint::y_px)));
   }
-  constexpr std::size_t kLeast = 4;
+  // Differences: fewer have no median worth the name. Not studied.
+  constexpr std::size_t kMinJumps = 4;
+  // px: rougher than any track.
   constexpr double kUnknown_px = 1e3;
-  if (jumps.size() < kLeast) return kUnknown_px;
-  // Two coordinates: the median of their length is 1.18 standard deviations.
+  if (jumps.size() < kMinJumps) return kUnknown_px;
+  // The length of a vector of two normal numbers has the median sqrt(2 ln 2) =
+  // 1.18 standard deviations.
   return Median(std::move(jumps)) / 1.18 / std::sqrt(20.0);
 }
 
 bool Moves(const std::vector<Fitted>& all) {
+  // px: what stays within it is a part of the scene. Set with the recorded
+  // projectile, where a mark of the ruler was taken for a body.
   constexpr double kStill_px = 1.0;
-  // Not the farthest: a single outline may have slipped.
+  // The range of nine tenths, not the farthest: a single outline may have
+  // slipped.
   std::vector<double> x, y;
   for (const Fitted& f : all) {
     x.push_back(f.fit.outline.centre.x_px);

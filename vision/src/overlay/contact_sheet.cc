@@ -21,6 +21,7 @@ const cv::Scalar kBeforeColour(0, 200, 140);
 const cv::Scalar kAfterColour(230, 130, 190);
 const cv::Scalar kPathColour(255, 255, 255);
 const cv::Scalar kText(255, 255, 255);
+// Height of the title's line above the panels: one line of text.
 constexpr int kTitle_px = 34;
 
 // One panel: a square of the picture, enlarged.
@@ -54,10 +55,12 @@ class Panel {
                static_cast<int>(std::lround(radius_px * zoom_ * (1 << kShift))),
                colour, 1, cv::LINE_AA, kShift);
   }
+  // A dot of two pixels of the sheet.
   void Dot(core::PixelPoint p, const cv::Scalar& colour) {
     cv::circle(canvas_, At(p), 2 << kShift, colour, cv::FILLED, cv::LINE_AA,
                kShift);
   }
+  // Line 0 stands at the panel's top.
   void Text(const std::string& text, int line) {
     const cv::Point at(8, 20 + 18 * line);
     // A dark rim keeps the text readable on any picture.
@@ -68,7 +71,10 @@ class Panel {
   }
 
  private:
+  // Binary digits of OpenCV's fixed-point coordinates: a 16th of a pixel.
   static constexpr int kShift = 4;
+  // A place of the picture in the panel's fixed-point coordinates, within what
+  // OpenCV can draw.
   cv::Point At(core::PixelPoint p) const {
     // Nearest neighbour: the enlarged square of a pixel lies about its centre.
     const auto fixed = [&](double v) {
@@ -84,6 +90,7 @@ class Panel {
   double top_ = 0.0;
 };
 
+// The outline as it was fitted: a circle, or four sides.
 void DrawOutline(Panel& panel, const Outline& outline) {
   if (outline.kind == core::BodyKind::kSphere) {
     panel.Circle(outline.centre, outline.radius_px, kOutlineColour);
@@ -102,8 +109,11 @@ void DrawOutline(Panel& panel, const Outline& outline) {
   for (int i = 0; i < 4; ++i) panel.Line(p[i], p[(i + 1) % 4], kOutlineColour);
 }
 
+// A flight between two times as a polyline, seen through yaw and ground line
+// like the measurement.
 void DrawFlight(Panel& panel, const PlaneTrack& plane, const Flight& flight,
                 double from_s, double to_s, const cv::Scalar& colour) {
+  // Pieces: the parabola of a flight looks smooth.
   constexpr int kPieces = 40;
   for (int i = 0; i < kPieces; ++i) {
     const auto at = [&](int k) {
@@ -115,8 +125,9 @@ void DrawFlight(Panel& panel, const PlaneTrack& plane, const Flight& flight,
   }
 }
 
-// Frames to show: around contact, a quarter of the body apart (or each frame,
-// if the body moves more than that between two).
+// Frames to show: around the contact, about a quarter of the body apart, or
+// each frame if the body moves more than that between two. Without a contact,
+// evenly over the track.
 std::vector<std::int64_t> FramesToShow(const Track& track,
                                        const ContactResult& contacts,
                                        int count) {
@@ -152,6 +163,7 @@ std::vector<std::int64_t> FramesToShow(const Track& track,
   return frames;
 }
 
+// The pose of a frame, or null where none was measured.
 const Pose* MeasuredPose(const Track& track, std::int64_t frame) {
   const auto it = std::lower_bound(
       track.poses.begin(), track.poses.end(), frame,
@@ -183,8 +195,10 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
                             ? track.body.radius_px.value
                             : std::hypot(track.body.half_long_px.value,
                                          track.body.half_short_px.value);
-  constexpr double kBodiesWide = 4.5;
-  const double view_px = std::max(24.0, kBodiesWide * extent);
+  // Side of a panel in units of the body's extent: the body and its way beside
+  // it. Smaller enlarges more. Chosen by eye.
+  constexpr double kExtentsPerPanel = 4.5;
+  const double view_px = std::max(24.0, kExtentsPerPanel * extent);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const int column = static_cast<int>(k) % options.columns;
     const int row = static_cast<int>(k) / options.columns;
@@ -202,6 +216,7 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
     Panel panel(target, frame, centre, view_px);
     const calib::GroundLine& g = plane.ground;
     const double angle = calib::ImageAngle(g);
+    // Ends of the line far outside of any panel.
     const double far = 4.0 * (clip.info().width_px + clip.info().height_px);
     panel.Line({g.reference.x_px - far * std::cos(angle),
                 g.reference.y_px - far * std::sin(angle)},

@@ -8,11 +8,11 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;  // under a short name
 
-// The normal distribution function Phi and its antiderivative
-// F(t) = t Phi(t) + phi(t), by cubic Hermite interpolation in a table: ten
-// times faster than erf and exp, error below 2e-10.
+// The normal distribution function Phi and its antiderivative F(t) = t Phi(t) +
+// phi(t), by cubic Hermite interpolation in a table: ten times faster than erf
+// and exp, error below 2e-10.
 class NormalIntegrals {
  public:
   NormalIntegrals() {
@@ -40,6 +40,9 @@ class NormalIntegrals {
   }
 
  private:
+  // Nodes from -6 to 6 in steps of 1/64: beyond, Phi is 1e-9 off 0 or 1; a
+  // cubic over a step errs by step^4/384 times the fourth derivative, below
+  // 2e-10.
   static constexpr double kFirst = -6.0;
   static constexpr double kStep = 1.0 / 64.0;
   static constexpr int kSize = 12 * 64 + 1;
@@ -56,6 +59,8 @@ class NormalIntegrals {
     const double floor = std::min(std::floor(at), kSize - 2.0);
     return {static_cast<std::size_t>(floor), at - floor};
   }
+  // Cubic with values f0, f1 and slopes d0, d1 at both ends of a step; u in
+  // 0..1.
   static double Hermite(double f0, double f1, double d0, double d1, double u) {
     const double a = d0 * kStep - (f1 - f0);
     const double b = (f1 - f0) - d1 * kStep;
@@ -70,6 +75,7 @@ const NormalIntegrals& Integrals() {
   return table;
 }
 
+// Point of a piece at t in 0..1.
 core::PixelPoint EvaluatePoint(const OutlinePiece& piece, double t) {
   if (!piece.is_arc) {
     return {piece.from.x_px + t * (piece.to.x_px - piece.from.x_px),
@@ -100,6 +106,8 @@ void Crossings(const OutlinePiece& piece, bool of_x, std::vector<double>& out) {
   const double span = piece.end_rad - piece.begin_rad;
   lines(c - r, c + r, [&](double line) {
     const double ratio = std::clamp((line - c) / r, -1.0, 1.0);
+    // Both angles at which the circle meets the line; those within the arc
+    // count.
     const double first = of_x ? std::acos(ratio) : std::asin(ratio);
     const double second = of_x ? -first : kPi - first;
     for (const double angle : {first, second}) {
@@ -123,6 +131,7 @@ double IntegralXdY(const OutlinePiece& piece, double t0, double t1) {
          0.5 * r * r * ((b - a) + std::sin(b - a) * std::cos(b + a));
 }
 
+// Shoelace formula, relative to the first corner: a far origin costs no digits.
 double SignedArea(const std::vector<core::PixelPoint>& corners) {
   double twice = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -134,6 +143,7 @@ double SignedArea(const std::vector<core::PixelPoint>& corners) {
   return 0.5 * twice;
 }
 
+// Positive on the side that the normal points to.
 double SignedDistance(const HalfPlane& half, core::PixelPoint p) {
   return half.normal_x * (p.x_px - half.point.x_px) +
          half.normal_y * (p.y_px - half.point.y_px);
@@ -167,6 +177,7 @@ ShapeOutline PolygonOutline(const std::vector<core::PixelPoint>& corners) {
   ShapeOutline outline;
   const std::size_t n = corners.size();
   if (n < 3) return outline;
+  // All outlines run in one sense, so that what they enclose counts positive.
   const bool reverse = SignedArea(corners) < 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const auto& p = corners[i];
@@ -194,6 +205,7 @@ std::vector<core::PixelPoint> ClipPolygon(
   return kept;
 }
 
+// The part of a disc below a line: an arc and its chord.
 ShapeOutline ClipCircle(core::PixelPoint centre, double radius_px,
                         const HalfPlane& half) {
   const double height = SignedDistance(half, centre);
@@ -213,6 +225,8 @@ CoverageMap::CoverageMap(core::PixelRect window, double psf_sigma_px)
       sum_(static_cast<std::size_t>(std::max(0, window.width)) *
            static_cast<std::size_t>(std::max(0, window.height))) {}
 
+// Adds an outline: convolved with a Gaussian pixel by pixel, or its exact area
+// in each pixel without blur.
 void CoverageMap::Add(const ShapeOutline& outline, double weight) {
   if (sum_.empty()) return;
   for (const OutlinePiece& piece : outline.pieces) {
@@ -224,6 +238,7 @@ void CoverageMap::Add(const ShapeOutline& outline, double weight) {
   }
 }
 
+// Sums each row from the right: the nodes left differences only.
 void CoverageMap::Finish() {
   for (std::int32_t y = 0; y < window_.height; ++y) {
     double* row = mutable_row(window_.y + y);
@@ -231,6 +246,9 @@ void CoverageMap::Finish() {
   }
 }
 
+// Green's theorem turns the area integral of the blurred pixel into a line
+// integral over the outline: coverage at a pixel = integral of K(x, y) dy. One
+// quadrature node adds its share to all pixels within the kernel's reach.
 void CoverageMap::AddNode(double x, double y, double weighted_dy) {
   const double reach = 0.5 + kKernelReach * sigma_;
   const std::int32_t last_x = window_.x + window_.width - 1;
@@ -246,8 +264,9 @@ void CoverageMap::AddNode(double x, double y, double weighted_dy) {
   const auto i1 = static_cast<std::int32_t>(
       std::min<double>(last_x, std::floor(x + reach)));
   // Column i holds Q(x - i) - Q(x - i - 1), the last one Q(x - i): summed from
-  // the right they give Q(x - i) everywhere.
-  constexpr int kMaxColumns = 128;  // 2 (reach + 1) at the largest sigma, 10
+  // the right they give Q(x - i) everywhere. Columns: 2 (reach + 1) at the
+  // largest sigma that a scene may have, 10 px.
+  constexpr int kMaxColumns = 128;
   std::array<double, kMaxColumns> step;
   const int columns = i1 - i0 + 1;
   double upper = normal.Integral((x - i0 + 0.5) * scale);
@@ -296,7 +315,7 @@ void CoverageMap::AddSmooth(const OutlinePiece& piece, bool periodic,
     return;
   }
   // Gauss-Legendre, four nodes to a panel of at most 1.5 sigma (and, on an arc,
-  // 15 degrees).
+  // 15 degrees): nodes and weights on 0..1.
   constexpr std::array<double, 4> kNode{
       0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
       0.93056815579702629};
@@ -326,6 +345,8 @@ void CoverageMap::AddSmooth(const OutlinePiece& piece, bool periodic,
   }
 }
 
+// Cuts the piece at all pixel borders; each part lies in one pixel, whose share
+// is an integral of x dy.
 void CoverageMap::AddExact(const OutlinePiece& piece, double weight) {
   std::vector<double> cuts{0.0, 1.0};
   Crossings(piece, true, cuts);

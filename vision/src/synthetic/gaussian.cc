@@ -5,13 +5,15 @@
 namespace touchdown::vision {
 namespace {
 
-// Right end of the lowest layer's rectangle and the area of each layer, for 256
-// layers of exp(-x^2 / 2) (Marsaglia and Tsang, section 2).
+// Right end of the lowest layer's rectangle, and the area of each layer, for
+// 256 layers of exp(-x^2 / 2) (Marsaglia and Tsang, J. Stat. Softw. 5 (8),
+// 2000, section 2).
 constexpr double kTail = 3.6541528853610088;
 constexpr double kArea = 0.00492867323399;
 
 double Density(double x) { return std::exp(-0.5 * x * x); }
 
+// Right ends of all layers, from the base upward: each has the same area.
 GaussianSource::Table MakeTable() {
   GaussianSource::Table table{};
   table.x[0] = kArea / Density(kTail);  // the base layer, with its tail
@@ -37,6 +39,8 @@ GaussianSource::GaussianSource() {
   table_ = &table;
 }
 
+// The one draw in a hundred that the fast test does not accept: from the tail,
+// or from the wedge between rectangle and curve.
 float GaussianSource::Slow(std::mt19937_64& engine, unsigned layer,
                            double x) const {
   if (layer == 0) {

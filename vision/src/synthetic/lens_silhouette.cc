@@ -52,10 +52,13 @@ std::vector<core::PixelPoint> IdealOutline(const Scene& scene,
   // With a yaw it is drawn as a sphere, which is seen round, at its depth.
   const double r = 0.5 * scene.body.diameter_m->value * scene.camera.px_per_m /
                    RelativeDepth(scene.camera, pose.centre);
+  // px of a side: the polygon is off the circle by side^2 / (8 r).
   constexpr double kSide_px = 0.25;
   const int sides =
       std::max(64, static_cast<int>(2.0 * std::numbers::pi * r / kSide_px));
   const double step = 2.0 * std::numbers::pi / sides;
+  // A polygon on the circle is smaller than the disc: its corners move outward
+  // until the areas are equal.
   const double equal_area = r * std::sqrt(step / std::sin(step));
   for (int k = 0; k < sides; ++k) {
     corners.push_back({c.x_px + equal_area * std::cos(k * step),

@@ -18,6 +18,7 @@
 namespace touchdown::vision {
 namespace {
 
+// One quadrature node of the exposure.
 struct SubExposure {
   double time_s;
   double weight;
@@ -29,6 +30,8 @@ HalfPlane Ground(const SceneCamera& camera) {
   return {camera.ground_point, std::sin(angle), -std::cos(angle)};
 }
 
+// The body's outline in the picture, the part of it below the ground line, and
+// its box.
 Silhouette Draw(const Scene& scene, const ScenePose& pose) {
   const HalfPlane ground = Ground(scene.camera);
   if (scene.camera.lens) return DrawThroughLens(scene, pose, ground);
@@ -57,6 +60,7 @@ Silhouette Draw(const Scene& scene, const ScenePose& pose) {
           bottom->y_px};
 }
 
+// The scene's pose function, which the caller wrote, is checked at each use.
 ScenePose EvaluatePose(const Scene& scene, double time_s) {
   const ScenePose pose = scene.pose(time_s);
   if (!std::isfinite(pose.centre.x_m) || !std::isfinite(pose.centre.y_m) ||
@@ -67,7 +71,7 @@ ScenePose EvaluatePose(const Scene& scene, double time_s) {
   return pose;
 }
 
-// How far the image of the body's fastest point moves, in px.
+// How far the image of the body's fastest point moves between two poses, px.
 double MotionPx(const Scene& scene, const ScenePose& p, const ScenePose& q,
                 double radius_px) {
   const core::PixelPoint a = ToIdealImage(scene.camera, p.centre);
@@ -115,7 +119,7 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
   }
   const double motion = MotionPx(scene, first, middle, turning_radius) +
                         MotionPx(scene, middle, last, turning_radius);
-  // Without blur the pixel's own square is the blur.
+  // px. Without blur the pixel's own square is the blur.
   const double sigma = std::max(scene.camera.psf_sigma_px, 0.25);
   if (motion <= 0.05 * sigma) return {{middle_s, 1.0}};
   struct Rule {
@@ -123,6 +127,7 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
     std::array<double, 3> weight;
     int size;
   };
+  // Gauss-Legendre on 0..1 with two and with three nodes.
   constexpr Rule kTwo{
       {0.21132486540518712, 0.78867513459481288, 0.0}, {0.5, 0.5, 0.0}, 2};
   constexpr Rule kThree{{0.11270166537925831, 0.5, 0.88729833462074169},
@@ -157,6 +162,7 @@ core::PixelRect ClippedWindow(double min_x, double max_x, double min_y,
   return {x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)};
 }
 
+// Factor of a linear gradient of light, 1 in the middle of the picture.
 double Illumination(const SceneLook& look, const SceneCamera& camera, int x,
                     int y) {
   const double across =
@@ -166,7 +172,8 @@ double Illumination(const SceneLook& look, const SceneCamera& camera, int x,
   return std::max(0.0, 1.0 + look.gradient_x * across + look.gradient_y * down);
 }
 
-// A Gaussian random field of variance 1, by blurring white noise.
+// A Gaussian random field of variance 1: white noise, blurred along rows and
+// then along columns.
 std::vector<float> Texture(const SceneCamera& camera, const SceneLook& look) {
   std::mt19937_64 engine(look.texture_seed);
   const GaussianSource gaussian;
@@ -274,6 +281,7 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
         ground *=
             1.0 + look.texture_amplitude * static_cast<double>(texture[i]);
       }
+      // What the ground adds to the background where it covers a pixel wholly.
       const double contrast = light * (ground - look.background_level);
       light_[i] = static_cast<float>(light);
       if (trouble_) ground_share_[i] = static_cast<float>(covered[x]);
@@ -418,6 +426,8 @@ CleanImage RenderClean(const Scene& scene, std::int64_t index) {
   return SceneRenderer(scene).RenderClean(index);
 }
 
+// Variance = read^2 + shot * level; the normal distribution stands for the
+// photons' Poisson distribution.
 void AddSensorNoise(CleanImage& image, const SensorNoise& noise,
                     std::mt19937_64& engine) {
   const auto read = static_cast<float>(noise.read_dn * noise.read_dn);
@@ -430,6 +440,7 @@ void AddSensorNoise(CleanImage& image, const SensorNoise& noise,
   }
 }
 
+// Rounds to whole levels and clips at both ends, as a sensor does.
 SensorImage Quantize(const CleanImage& image, std::int32_t bit_depth) {
   if (bit_depth < 1 || bit_depth > 16) {
     throw std::invalid_argument(

@@ -9,6 +9,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Index of a pixel in the image's row-by-row list.
 std::size_t PixelIndex(const CleanImage& image, std::int32_t x,
                        std::int32_t y) {
   return static_cast<std::size_t>(y) *
@@ -40,6 +41,8 @@ double Covered(const CoverageMap& body, std::int32_t x, std::int32_t y) {
   return body.row(y)[x - w.x];
 }
 
+// `value` moved by whole spans into low..high: specks leave on one side and
+// come back on the other.
 double Wrapped(double value, double low, double high) {
   const double span = high - low;
   return low + (value - low) - span * std::floor((value - low) / span);
@@ -75,6 +78,7 @@ std::vector<core::PixelPoint> WavyGround(const SceneCamera& camera,
 TroubleRenderer::TroubleRenderer(const Scene& scene) {
   const SceneCamera& camera = scene.camera;
   const SceneTrouble& trouble = scene.trouble;
+  // Places and directions of the specks follow from the scene's seed alone.
   std::mt19937_64 engine(trouble.speck_seed);
   std::uniform_real_distribution<> unit(0.0, 1.0);
   for (std::int32_t i = 0; i < trouble.specks; ++i) {
@@ -102,12 +106,16 @@ void TroubleRenderer::DrawShadow(const Scene& scene, const ScenePose& pose,
                                  const Layers& layers,
                                  CleanImage& image) const {
   const SceneCamera& camera = scene.camera;
-  constexpr double kUnderBody = 0.8;  // standard deviation, of half the body
-  constexpr double kFlat = 0.35;      // the ground is seen at a slant
-  const double touching = kUnderBody * HalfSizes(scene).greatest;
+  // Standard deviation of the shadow along the ground at contact, in units of
+  // half the body; across it, flattened, since the ground is seen at a slant.
+  // Chosen by eye.
+  constexpr double kShadowWidth = 0.8;
+  constexpr double kShadowFlatness = 0.35;
+  const double touching = kShadowWidth * HalfSizes(scene).greatest;
   const double gap_px = std::max(0.0, camera.px_per_m * Gap(scene.body, pose));
+  // The higher the body, the wider and fainter its shadow.
   const double along = touching + 0.5 * gap_px;
-  const double below = kFlat * along;
+  const double below = kShadowFlatness * along;
   const double depth = scene.trouble.shadow_depth * touching / along;
   const core::PixelPoint foot = ToImage(camera, {pose.centre.x_m, 0.0});
   const double c = std::cos(camera.roll_rad);
@@ -131,6 +139,7 @@ void TroubleRenderer::DrawShadow(const Scene& scene, const ScenePose& pose,
   }
 }
 
+// Specks pass in front of ground and background, behind the body.
 void TroubleRenderer::DrawSpecks(const Scene& scene, double time_s,
                                  const Layers& layers,
                                  CleanImage& image) const {
@@ -167,6 +176,8 @@ void TroubleRenderer::DrawSpecks(const Scene& scene, double time_s,
   }
 }
 
+// A linear shading and one Gaussian highlight, both fixed to the light: they do
+// not turn with the body.
 void TroubleRenderer::DrawShading(const Scene& scene, const ScenePose& pose,
                                   const Layers& layers,
                                   CleanImage& image) const {
@@ -204,6 +215,7 @@ void TroubleRenderer::Draw(const Scene& scene, double time_s,
       trouble.highlight_level != 0.0) {
     DrawShading(scene, pose, layers, image);
   }
+  // The obstacle stands before everything.
   if (obstacle_) {
     for (std::int32_t y = 0; y < image.height_px; ++y) {
       for (std::int32_t x = 0; x < image.width_px; ++x) {
@@ -215,6 +227,7 @@ void TroubleRenderer::Draw(const Scene& scene, double time_s,
       }
     }
   }
+  // Flicker multiplies the whole picture.
   if (trouble.flicker_amplitude > 0.0) {
     const auto light =
         static_cast<float>(1.0 + trouble.flicker_amplitude *

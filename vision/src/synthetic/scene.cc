@@ -10,6 +10,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Throws for a value out of its range, with field, value and range.
 void Require(bool holds, const char* field, double value, const char* range) {
   if (holds) return;
   throw std::invalid_argument(
@@ -27,6 +28,7 @@ void RequireSize(const core::Measured& size, const char* field) {
           "positive and finite");
 }
 
+// Levels are shares of full scale.
 bool IsLevel(double value) { return value >= 0.0 && value <= 1.0; }
 
 void ValidateTrouble(const SceneTrouble& trouble, bool lens) {
@@ -75,6 +77,7 @@ bool HasTrouble(const SceneTrouble& t) {
          t.wave_amplitude_px > 0.0 || t.specks > 0 || t.obstacle;
 }
 
+// Checks every field against the range that scene.h states.
 void Validate(const Scene& scene) {
   const SceneCamera& camera = scene.camera;
   Require(camera.width_px >= 1 && camera.width_px <= 65536, "camera.width_px",
@@ -249,6 +252,8 @@ SceneTruth ComputeTruth(const Scene& scene, std::int64_t index) {
                               : 0.5 * std::hypot(scene.body.long_m->value,
                                                  scene.body.short_m->value);
   if (scene.camera.yaw_rad != 0.0) {
+    // m: a difference quotient for the direction in which the long side is
+    // seen.
     constexpr double kStep_m = 1e-6;
     const core::PlanePoint ahead{
         truth.pose.centre.x_m + kStep_m * std::cos(truth.pose.angle_rad),
@@ -260,6 +265,7 @@ SceneTruth ComputeTruth(const Scene& scene, std::int64_t index) {
     truth.image_angle_rad +=
         std::remainder(seen - truth.image_angle_rad, std::numbers::pi);
   }
+  // Distance to the farthest point of the body; for a sphere its radius.
   truth.radius_px = scene.camera.px_per_m * radius_m /
                     RelativeDepth(scene.camera, truth.pose.centre);
   truth.gap_px = scene.camera.px_per_m * Gap(scene.body, truth.pose);

@@ -33,6 +33,8 @@ class SceneClip final : public Clip {
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
     if (image_.samples.empty() || image_.index != index) {
+      // The seed and the frame's number give the noise: a frame is the same
+      // whenever, and in whatever order, it is read.
       const auto i = static_cast<std::uint64_t>(index);
       std::seed_seq seeds{seed_, seed_ >> 32, i, i >> 32};
       std::mt19937_64 engine(seeds);

@@ -5,6 +5,7 @@
 
 namespace touchdown::vision {
 
+// FollowSize sets relative sizes for all poses or for none.
 bool IsSteady(const Track& track) {
   return std::all_of(
       track.poses.begin(), track.poses.end(),

@@ -11,17 +11,20 @@
 namespace touchdown::vision {
 namespace {
 
-// A place that says something, in places from the middle.
+// A labelled cell, in cells from the middle. says: 1 moves along, -1 is still.
 struct TellingPlace {
   double x = 0.0;
   double y = 0.0;
   double says = 0.0;
 };
 
-// What says nothing: a pin's width of such places beside it is left out, a bar
-// like the wall between two ends is taken in.
-constexpr double kOfAll = 0.1;
+// Cost per cell within the outline, whatever its label: it leaves out a thin
+// strip of unlabelled cells beside the body, and takes in an unlabelled bar
+// between its two ends (the wall seen between them). Larger splits such bodies;
+// 0 lets the outline grow over what says nothing. Set with the recorded cart.
+constexpr double kCostPerCell = 0.1;
 
+// All cells that carry a label, isolated ones left out.
 std::vector<TellingPlace> CollectTold(const CoMoving& places) {
   std::vector<TellingPlace> told;
   const int n = places.size();
@@ -35,15 +38,16 @@ std::vector<TellingPlace> CollectTold(const CoMoving& places) {
     for (int column = 0; column < n; ++column) {
       const int says = at(column, row);
       if (says == 0) continue;
-      // What none of its neighbours says is noise.
-      constexpr int kLeastAlike = 3;
+      // Of the nine cells around and at a place, those of its own label: a
+      // label that at most two neighbours share is noise. Not studied.
+      constexpr int kMaxNoiseCells = 3;
       int alike = 0;
       for (int v = -1; v <= 1; ++v) {
         for (int u = -1; u <= 1; ++u) {
           alike += at(column + u, row + v) == says;
         }
       }
-      if (alike <= kLeastAlike) continue;
+      if (alike <= kMaxNoiseCells) continue;
       told.push_back({static_cast<double>(column - places.half),
                       static_cast<double>(row - places.half),
                       static_cast<double>(says)});
@@ -52,9 +56,11 @@ std::vector<TellingPlace> CollectTold(const CoMoving& places) {
   return told;
 }
 
-// Without the still places that no outline of what moves along would hold.
+// Drops still cells so far from all moving ones that no outline of the body
+// would hold them: they cost time and say nothing.
 void LeaveOutFar(std::vector<TellingPlace>& told) {
-  constexpr double kBeyond = 0.25;  // of the box around what moves along
+  // Of the longer side of the box around the moving cells. Not studied.
+  constexpr double kMarginShare = 0.25;
   const double far = std::numeric_limits<double>::infinity();
   double left = far;
   double right = -far;
@@ -67,21 +73,23 @@ void LeaveOutFar(std::vector<TellingPlace>& told) {
     top = std::min(top, t.y);
     bottom = std::max(bottom, t.y);
   }
-  const double margin = kBeyond * std::max(right - left, bottom - top);
+  const double margin = kMarginShare * std::max(right - left, bottom - top);
   std::erase_if(told, [&](const TellingPlace& t) {
     return t.x < left - margin || t.x > right + margin || t.y < top - margin ||
            t.y > bottom + margin;
   });
 }
 
-// How much of a place lies within an edge so deep.
+// Share of a cell inside an edge that lies `depth` cells beyond its centre:
+// linear over one cell, so that the merit is continuous.
 double InsideShare(double depth) { return std::clamp(depth + 0.5, 0.0, 1.0); }
 
+// Merit = (moving cells inside) - (still cells inside) - kCostPerCell area.
 double ComputeMerit(const std::vector<TellingPlace>& told,
                     const Outline& outline) {
   const double cosine = std::cos(outline.angle_rad);
   const double sine = std::sin(outline.angle_rad);
-  double merit = -kOfAll * Area(outline);
+  double merit = -kCostPerCell * Area(outline);
   for (const TellingPlace& t : told) {
     const double depth = SignedDepth(outline, t.x, t.y, cosine, sine);
     if (depth > -0.5) merit += InsideShare(depth) * t.says;
@@ -89,10 +97,11 @@ double ComputeMerit(const std::vector<TellingPlace>& told,
   return merit;
 }
 
-// By the moments of what moves along.
+// Start of the search, from the first and second moments of the moving cells.
 std::optional<Outline> EstimateStart(const std::vector<TellingPlace>& told,
                                      core::BodyKind kind) {
-  constexpr double kLeast = 30.0;  // places
+  // Cells: fewer give no second moments worth a start. Not studied.
+  constexpr double kMinCells = 30.0;
   double n = 0.0;
   double x = 0.0;
   double y = 0.0;
@@ -102,7 +111,7 @@ std::optional<Outline> EstimateStart(const std::vector<TellingPlace>& told,
     x += t.x;
     y += t.y;
   }
-  if (n < kLeast) return std::nullopt;
+  if (n < kMinCells) return std::nullopt;
   x /= n;
   y /= n;
   double xx = 0.0;
@@ -120,17 +129,19 @@ std::optional<Outline> EstimateStart(const std::vector<TellingPlace>& told,
   start.kind = kind;
   start.centre = {x, y};
   if (kind == core::BodyKind::kSphere) {
-    start.radius_px = std::sqrt(2.0 * middle);  // of a disc: R^2/4 each way
+    // A disc's variance is R^2/4 in each direction.
+    start.radius_px = std::sqrt(2.0 * middle);
     return start;
   }
-  // Of a rectangle: a^2/3 along the half side a.
+  // A rectangle's variance is a^2/3 along the half side a.
   start.half_long_px = std::sqrt(3.0 * (middle + apart));
   start.half_short_px = std::sqrt(std::max(1.0, 3.0 * (middle - apart)));
   start.angle_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
   return start;
 }
 
-// Outlines next to one, a step away: each side, and turned.
+// The outlines one step away: moved along each axis, each side alone moved, and
+// turned by one step at the ends of the long side.
 std::vector<Outline> Neighbours(const Outline& outline, double step) {
   std::vector<Outline> next;
   const double cosine = std::cos(outline.angle_rad);
@@ -166,13 +177,15 @@ std::vector<Outline> Neighbours(const Outline& outline, double step) {
   return next;
 }
 
-// To the best of the outlines next to it, as long as there is a better one;
-// false where there still is one when the bound of turns is met.
+// Moves to the best of the outlines next to it for as long as one is better
+// (pattern search). Returns false if there still was a better one at the bound.
 bool Climb(const std::vector<TellingPlace>& told, double step,
            const core::Cancellation& until, Outline& outline) {
-  constexpr int kMostTurns = 60;
+  // Turns of one step size: with 16 cells a step, across the whole square. A
+  // bound on time; the result then says that it has not settled.
+  constexpr int kMaxTurns = 60;
   double best = ComputeMerit(told, outline);
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  for (int turn = 0; turn < kMaxTurns; ++turn) {
     const double before = best;
     for (const Outline& other : Neighbours(outline, step)) {
       until.Check();
@@ -187,7 +200,7 @@ bool Climb(const std::vector<TellingPlace>& told, double step,
   return false;
 }
 
-// Some of them, each standing for as many as make up all.
+// Every n-th cell, with n-fold weight: a subset for the coarse search.
 std::vector<TellingPlace> ThinnedPlaces(const std::vector<TellingPlace>& told,
                                         std::size_t most) {
   const std::size_t step = (told.size() + most - 1) / most;
@@ -209,13 +222,17 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
   const auto start = EstimateStart(told, kind);
   if (!start) return std::nullopt;
   // Few places do to come near.
-  constexpr std::size_t kFew = 4000;
-  const std::vector<TellingPlace> few = ThinnedPlaces(told, kFew);
-  // From two sides: what lies between two parts costs first, and gains later.
-  constexpr double kLarger = 1.3;
+  // Cells of the coarse search. More cost time; the fine search takes all. Not
+  // studied.
+  constexpr std::size_t kCoarseCells = 4000;
+  const std::vector<TellingPlace> few = ThinnedPlaces(told, kCoarseCells);
+  // The search starts from a smaller and a larger outline than the moments':
+  // what lies between two parts costs first and gains later, so that one start
+  // may end in a part. Set with the recorded cart.
+  constexpr double kStartFactor = 1.3;
   BestOutline best;
   best.merit = -std::numeric_limits<double>::infinity();
-  for (const double times : {1.0 / kLarger, kLarger}) {
+  for (const double times : {1.0 / kStartFactor, kStartFactor}) {
     Outline outline = *start;
     bool settled = true;
     outline.radius_px *= times;
@@ -238,6 +255,8 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
   best.merit = ComputeMerit(told, best.outline);
   const double cosine = std::cos(best.outline.angle_rad);
   const double sine = std::sin(best.outline.angle_rad);
+  // holds: recall, the moving cells that lie within. pure: precision, the
+  // labelled cells within that move.
   double moving = 0.0;
   double moving_within = 0.0;
   double within = 0.0;
@@ -252,6 +271,7 @@ std::optional<BestOutline> FindBestOutline(const CoMoving& places,
   best.holds = moving_within / std::max(moving, 1.0);
   best.pure = moving_within / std::max(within, 1.0);
   Outline& o = best.outline;
+  // The search may have exchanged the sides.
   if (o.half_short_px > o.half_long_px) {
     std::swap(o.half_short_px, o.half_long_px);
     o.angle_rad += 0.5 * std::numbers::pi;

@@ -14,11 +14,15 @@
 namespace touchdown::vision {
 namespace {
 
+// A place that no frame shows.
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kLeastStacked = 8;  // frames
-constexpr std::size_t kMostStacked = 80;  // frames
+// Frames in the stack. Fewer give no medians of both layers; more cost time and
+// memory, and the medians gain only by their square root. Not studied.
+constexpr std::size_t kMinStacked = 8;
+constexpr std::size_t kMaxStacked = 80;
 
-// The frames' pictures along the path, of means of bin x bin pixels.
+// The frames' pictures of the box around the path, as means of bin x bin
+// pixels.
 struct Stack {
   core::PixelRect rect;  // of the clip's picture
   int bin = 1;
@@ -31,7 +35,7 @@ struct Stack {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   }
-  // Where a place of the stack is in the picture, and the reverse.
+  // From the stack's coordinates to the clip's, and back.
   core::PixelPoint Of(const core::PixelPoint& p) const {
     const double middle = 0.5 * (bin - 1);
     return {rect.x + middle + bin * p.x_px, rect.y + middle + bin * p.y_px};
@@ -42,6 +46,7 @@ struct Stack {
   }
 };
 
+// Box around all centres, widened by the reach and clipped to the picture.
 core::PixelRect PathBox(const std::vector<Pose>& poses, double reach_px,
                         const ClipInfo& info) {
   double left = poses.front().centre.x_px;
@@ -66,12 +71,12 @@ core::PixelRect PathBox(const std::vector<Pose>& poses, double reach_px,
 }
 
 Stack ReadStack(Clip& clip, const Track& path, double reach_px) {
-  // 8 million samples are 32 MB; so many places are looked at in a second.
-  constexpr double kMostSamples = 8e6;
-  constexpr double kMostPlaces = 300.0;  // across
+  // Samples in the stack: as floats 32 MB. Not studied beyond that.
+  constexpr double kMaxSamples = 8e6;
+  // Cells across the square: so many are labelled in about a second.
+  constexpr double kMaxCellsAcross = 300.0;
   Stack stack;
-  const std::size_t step =
-      (path.poses.size() + kMostStacked - 1) / kMostStacked;
+  const std::size_t step = (path.poses.size() + kMaxStacked - 1) / kMaxStacked;
   for (const std::size_t i : FromBothSides(path.poses.size(), step)) {
     stack.poses.push_back(path.poses[i]);
   }
@@ -79,8 +84,10 @@ Stack ReadStack(Clip& clip, const Track& path, double reach_px) {
   const double samples = static_cast<double>(stack.rect.width) *
                          static_cast<double>(stack.rect.height) *
                          static_cast<double>(stack.poses.size());
-  stack.bin = static_cast<int>(std::ceil(std::max(
-      {1.0, std::sqrt(samples / kMostSamples), 2.0 * reach_px / kMostPlaces})));
+  // The coarsest of both bounds; 1 leaves the pixels as they are.
+  stack.bin = static_cast<int>(
+      std::ceil(std::max({1.0, std::sqrt(samples / kMaxSamples),
+                          2.0 * reach_px / kMaxCellsAcross})));
   stack.width = stack.rect.width / stack.bin;
   stack.height = stack.rect.height / stack.bin;
   for (const Pose& pose : stack.poses) {
@@ -126,14 +133,15 @@ class MotionLayers {
 
   const CoMoving& places() const { return places_; }
 
-  // The still picture without what covers it, then what moves before it.
+  // One round: the still picture without what covers it, then a label for each
+  // cell.
   void Round(const std::vector<unsigned char>& covered, double least_share) {
     EstimateUncovered(covered);
     Judge(least_share);
   }
 
  private:
-  // Place (column, row) of frame k, in the stack.
+  // Place of a cell in frame k, in the stack's coordinates.
   core::PixelPoint At(std::size_t k, int column, int row) const {
     const core::PixelPoint c = stack_.ToStack(stack_.poses[k].centre);
     const double x = column - places_.half;
@@ -141,6 +149,7 @@ class MotionLayers {
     return {c.x_px + x * cosine_[k] - y * sine_[k],
             c.y_px + x * sine_[k] + y * cosine_[k]};
   }
+  // Bilinear; kUnseen outside.
   float Interpolate(const std::vector<float>& picture,
                     const core::PixelPoint& p) const {
     const double left = std::floor(p.x_px);
@@ -158,6 +167,8 @@ class MotionLayers {
            y * ((1.0F - x) * picture[below] + x * picture[below + 1]);
   }
 
+  // Whether a place lies below the ground line: what moves there is a shadow or
+  // a reflection.
   bool IsBelow(const core::PixelPoint& p) const {
     const core::PixelPoint at = stack_.Of(p);
     return height_.Of(at.x_px, at.y_px) < 0.0;
@@ -197,9 +208,12 @@ bool MotionLayers::IsCovered(const std::vector<unsigned char>& covered,
                  static_cast<std::size_t>(column)] != 0;
 }
 
+// Still layer: for each pixel the median of the frames in which it is not
+// covered.
 void MotionLayers::EstimateUncovered(
     const std::vector<unsigned char>& covered) {
-  constexpr std::size_t kLeastSeen = 3;  // frames
+  // Frames: the median of fewer is no better than one of them.
+  constexpr std::size_t kMinSeen = 3;
   const std::size_t count = stack_.Index(0, stack_.height);
   still_.assign(count, kUnseen);
   core::InParallel(
@@ -215,16 +229,24 @@ void MotionLayers::EstimateUncovered(
                 values.push_back(stack_.frames[k][i]);
               }
             }
-            if (values.size() >= kLeastSeen) still_[i] = MedianInPlace(values);
+            if (values.size() >= kMinSeen) still_[i] = MedianInPlace(values);
           }
         }
       });
 }
 
+// The label of one cell: the moving layer is the median of the frames along the
+// path; each frame in which both layers differ clearly votes for the nearer
+// one. `differs`: mean difference of the layers there.
 signed char MotionLayers::Say(std::size_t place, std::vector<float>& values,
                               double least_share, float& differs) const {
-  constexpr double kMostSeen = 0.5;  // of the frames must show a place
-  constexpr double kClear = 4.0;     // of the noise
+  // Share of the frames that must show a cell; also: a cell below the ground in
+  // more of them is the ground's. Not studied.
+  constexpr double kMinSeenShare = 0.5;
+
+  // Standard deviations of a sample. Fewer: noise votes; more: faint bodies
+  // have no votes. Not studied.
+  constexpr double kClearSigmas = 4.0;
   differs = 0.0F;
   const auto n = static_cast<std::size_t>(places_.size());
   const auto column = static_cast<int>(place % n);
@@ -241,8 +263,8 @@ signed char MotionLayers::Say(std::size_t place, std::vector<float>& values,
     }
   }
   const auto frames = static_cast<double>(stack_.frames.size());
-  if (below > kMostSeen * frames) return -1;
-  if (static_cast<double>(values.size()) < kMostSeen * frames) return 0;
+  if (below > kMinSeenShare * frames) return -1;
+  if (static_cast<double>(values.size()) < kMinSeenShare * frames) return 0;
   const float moving = MedianInPlace(values);
   const double noise = std::sqrt(noise_.Variance(static_cast<double>(moving)));
   double moves = 0.0;
@@ -253,16 +275,21 @@ signed char MotionLayers::Say(std::size_t place, std::vector<float>& values,
     const float value = Interpolate(stack_.frames[k], p);
     const float still = Interpolate(still_, p);
     if (!std::isfinite(value) || !std::isfinite(still)) continue;
-    if (std::abs(static_cast<double>(moving - still)) < kClear * noise)
+    if (std::abs(static_cast<double>(moving - still)) < kClearSigmas * noise)
       continue;
     told += 1.0;
     differs += std::abs(moving - still);
     moves += std::abs(value - moving) < std::abs(value - still) ? 1.0 : 0.0;
   }
+  // At least three votes.
   if (told < std::max(3.0, least_share * frames)) return 0;
   differs /= static_cast<float>(told);
-  constexpr double kMost = 0.7;  // of the frames that tell
-  return moves > kMost * told ? 1 : moves < (1.0 - kMost) * told ? -1 : 0;
+  // Majority of the votes; in between the cell stays without a label. Not
+  // studied.
+  constexpr double kMajority = 0.7;
+  return moves > kMajority * told           ? 1
+         : moves < (1.0 - kMajority) * told ? -1
+                                            : 0;
 }
 
 void MotionLayers::Judge(double least_share) {
@@ -280,12 +307,16 @@ void MotionLayers::Judge(double least_share) {
   LeaveOutRim(differs);
 }
 
-// A blurred edge differs clearly long before it is half body.
+// Takes the label from moving cells at a blurred rim: there the layers differ
+// clearly long before the cell is half body, and the outline would be too
+// large.
 void MotionLayers::LeaveOutRim(const std::vector<float>& differs) {
-  constexpr double kBlur_px = 2.0;  // from nothing to all
+  // px over which a usual edge goes from nothing to all. Not studied.
+  constexpr double kEdgeWidth_px = 2.0;
+  // Of the greatest difference near it: the middle of the edge.
   constexpr float kHalf = 0.5F;
-  const int reach =
-      std::max(1, static_cast<int>(std::lround(kBlur_px / places_.spacing_px)));
+  const int reach = std::max(
+      1, static_cast<int>(std::lround(kEdgeWidth_px / places_.spacing_px)));
   const int n = places_.size();
   const std::vector<signed char> says = places_.says;
   for (int row = reach; row < n - reach; ++row) {
@@ -309,16 +340,18 @@ void MotionLayers::LeaveOutRim(const std::vector<float>& differs) {
 CoMoving FindCoMoving(Clip& clip, const Background& noise, const Track& path,
                       const CoverOfPlaces& cover,
                       const CoMovingOptions& options) {
-  if (path.poses.size() < kLeastStacked) return {};
+  if (path.poses.size() < kMinStacked) return {};
   MotionLayers layers(ReadStack(clip, path, options.reach_px), noise, options,
                       clip.cancellation());
+  // Labels and still layer in turns. Not studied.
   constexpr int kRounds = 4;
-  // At first much of what is behind is not known.
-  constexpr double kLeastAtFirst = 0.1;  // of the frames must tell
-  constexpr double kLeastLater = 0.2;
+  // Share of the frames that must vote on a cell. It is smaller in the first
+  // rounds, while much of the still layer is not known. Not studied.
+  constexpr double kFirstVoteShare = 0.1;
+  constexpr double kLastVoteShare = 0.2;
   for (int round = 0; round < kRounds; ++round) {
     layers.Round(cover(layers.places()),
-                 round + 1 < kRounds ? kLeastAtFirst : kLeastLater);
+                 round + 1 < kRounds ? kFirstVoteShare : kLastVoteShare);
   }
   return layers.places();
 }

@@ -19,16 +19,24 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr std::size_t kLeastFollowed = 8;    // frames
-constexpr std::size_t kPatternFrames = 120;  // that a pattern is learnt from
-constexpr int kLearningRounds = 12;  // of a pattern; most settle in five
-constexpr double kSlack_px = 6.0;    // that a pose may move within its view
+// Frames: with fewer the template is hardly better than any one of them, and
+// the scatter of third differences tells nothing. Not studied.
+constexpr std::size_t kMinFollowed = 8;
+// Frames that a template is learnt from, evenly spread. More cost time and
+// memory; the template's noise falls as 1/sqrt. Not studied.
+constexpr std::size_t kPatternFrames = 120;
+// Most templates settle in five rounds; one that does not is reported.
+constexpr int kLearningRounds = 12;
+// px that a pose may move within the part of the frame that was read. More
+// costs memory; less loses poses whose start was worse. Not studied.
+constexpr double kSlack_px = 6.0;
 
 double GreatestHalf(const BodyImage& body) {
   return body.kind == core::BodyKind::kSphere ? body.radius_px.value
                                               : body.half_long_px.value;
 }
 
+// The body's outline at its median angle.
 Outline MiddleOutline(const Track& track) {
   Pose pose;
   std::vector<double> angles;
@@ -38,7 +46,8 @@ Outline MiddleOutline(const Track& track) {
   return PlaceOutline(track.body, pose);
 }
 
-// Of what moves as one it is known whether it turns.
+// Of a whole that moves as one, whole_body.cc decided whether it turns: its
+// poses then have different angles.
 bool HasTurned(const Track& track) {
   return std::any_of(track.poses.begin(), track.poses.end(),
                      [&](const Pose& pose) {
@@ -54,7 +63,8 @@ struct Learnt {
   bool settled = false;  // within the bound of rounds
 };
 
-// What all poses have moved by, which the pattern has, too.
+// Takes the median move of all poses out: the template has moved by it, too,
+// and would drift from round to round.
 void TakeOutCommonMove(const std::vector<PatternPose>& before,
                        std::vector<PatternPose>& after) {
   std::vector<double> x, y, turn;
@@ -75,13 +85,17 @@ void TakeOutCommonMove(const std::vector<PatternPose>& before,
   }
 }
 
-// In turns, the pattern of the frames and where it lies in each.
+// Template and poses in turns: the template is the frames' robust mean at their
+// poses, and each frame is registered to it again. Frames that cannot be
+// registered leave.
 std::optional<Learnt> LearnPattern(std::vector<PatternView> views,
                                    std::vector<PatternPose> poses,
                                    Pattern pattern,
                                    const core::Cancellation& until,
                                    int threads) {
-  constexpr double kStill_px = 0.01;
+  // px: median move of the poses in a round. Smaller costs rounds; the poses' u
+  // are larger. Not studied.
+  constexpr double kSettled_px = 0.01;
   bool settled = false;
   for (int round = 0; round < kLearningRounds; ++round) {
     if (!pattern.Learn(views, poses)) return std::nullopt;
@@ -103,7 +117,7 @@ std::optional<Learnt> LearnPattern(std::vector<PatternView> views,
       before.push_back(poses[k]);
       after.push_back(*found[k]);
     }
-    if (kept.size() < kLeastFollowed) return std::nullopt;
+    if (kept.size() < kMinFollowed) return std::nullopt;
     TakeOutCommonMove(before, after);
     std::vector<double> moved;
     for (std::size_t k = 0; k < after.size(); ++k) {
@@ -113,7 +127,7 @@ std::optional<Learnt> LearnPattern(std::vector<PatternView> views,
     }
     views = std::move(kept);
     poses = std::move(after);
-    settled = Median(std::move(moved)) < kStill_px;
+    settled = Median(std::move(moved)) < kSettled_px;
     if (settled) break;
   }
   if (!pattern.Learn(views, poses)) return std::nullopt;
@@ -124,8 +138,9 @@ std::optional<Learnt> LearnPattern(std::vector<PatternView> views,
   return Learnt{std::move(pattern), std::move(learnt), misfit, settled};
 }
 
-// Where the path of three poses leads: what falls goes farther in a frame than
-// in the one before.
+// Extrapolates with the acceleration of three poses (second difference), where
+// they are neighbours: a body that falls goes farther in each frame than in the
+// one before.
 Pose Ahead(const Pose& end, const Pose& next, const Pose& third,
            std::int64_t frame) {
   Pose pose = OnTheWay(end, next, frame);
@@ -137,7 +152,7 @@ Pose Ahead(const Pose& end, const Pose& next, const Pose& third,
   return pose;
 }
 
-// The scatter of third differences is that of the poses (Roughness).
+// Position noise of poses, from third differences of their centres (Roughness).
 double PathRoughness(const std::vector<Pose>& poses) {
   std::vector<Fitted> all(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -147,7 +162,7 @@ double PathRoughness(const std::vector<Pose>& poses) {
   return Roughness(all);
 }
 
-// What poses tell of the path: frames over the square of their scatter.
+// Information of the poses about the path: their number over their variance.
 double Telling(const std::vector<Pose>& poses) {
   const double rough = PathRoughness(poses);
   return static_cast<double>(poses.size()) / (rough * rough);
@@ -165,8 +180,10 @@ class Follower {
   std::vector<std::optional<PatternPose>> At(const std::vector<Pose>& starts,
                                              double within_px) const;
   bool IsGood(const Pose& pose) const {
-    constexpr double kUsual = 3.0;
-    return pose.misfit <= kUsual * learnt_.misfit;
+    // In units of the misfit that the template was learnt with: a worse frame
+    // shows something else. Not studied.
+    constexpr double kMaxMisfitRatio = 3.0;
+    return pose.misfit <= kMaxMisfitRatio * learnt_.misfit;
   }
 
   Clip& clip_;
@@ -175,12 +192,14 @@ class Follower {
   int threads_;
 };
 
+// Registers the template in many frames, in portions that bound the memory.
 std::vector<std::optional<PatternPose>> Follower::At(
     const std::vector<Pose>& starts, double within_px) const {
-  constexpr std::size_t kAtOnce = 64;  // views
+  // Frames in memory at once. Not studied.
+  constexpr std::size_t kViewsAtOnce = 64;
   std::vector<std::optional<PatternPose>> found(starts.size());
-  for (std::size_t begin = 0; begin < starts.size(); begin += kAtOnce) {
-    const std::size_t end = std::min(starts.size(), begin + kAtOnce);
+  for (std::size_t begin = 0; begin < starts.size(); begin += kViewsAtOnce) {
+    const std::size_t end = std::min(starts.size(), begin + kViewsAtOnce);
     std::vector<PatternView> views;
     for (std::size_t i = begin; i < end; ++i) {
       views.push_back(
@@ -203,8 +222,8 @@ std::vector<std::optional<PatternPose>> Follower::At(
 std::vector<Pose> Follower::All() const {
   std::vector<Pose> poses;
   std::vector<Pose> starts;
-  // Nearer to where the pattern lies than its own outline, if it was learnt
-  // from.
+  // A pose that the template was learnt from is nearer to it than the
+  // outline's.
   for (const Pose& pose : track_.poses) {
     const auto known =
         std::find_if(learnt_.poses.begin(), learnt_.poses.end(),
@@ -214,9 +233,11 @@ std::vector<Pose> Follower::All() const {
   for (const auto& found : At(starts, 0.0)) {
     if (found && IsGood(found->pose)) poses.push_back(found->pose);
   }
-  if (poses.size() < kLeastFollowed) return poses;
-  // Frames within the track that have none, from both neighbours; then frame by
-  // frame beyond its ends, as long as it is found where it should be.
+  if (poses.size() < kMinFollowed) return poses;
+  // Then the frames within the track that have none, started from both
+  // neighbours; then frame by frame beyond its ends, for as long as the body is
+  // found where it should be: within 3 px or 15 % of its greatest half side.
+  // Larger jumps to other things; smaller loses it at an impact. Not studied.
   const double near = std::max(3.0, 0.15 * GreatestHalf(track_.body));
   Track now = track_;
   now.poses = poses;
@@ -251,12 +272,13 @@ std::vector<Pose> Follower::All() const {
       if (frame < track_.first_frame || frame >= track_.last_frame) break;
       const std::size_t beyond = on ? at + 1 : at - 1;
       if (beyond < poses.size() && poses[beyond].frame == frame) continue;
-      // Straight on, or where a blow stopped it or turned it round.
       const Pose last = end;
       const std::size_t third_at = on ? at - 2 : at + 2;
       const Pose straight = third_at < poses.size()
                                 ? Ahead(end, next, poses[third_at], frame)
                                 : OnTheWay(end, next, frame);
+      // The path goes straight on; or an impact stopped the body, or turned it
+      // round.
       for (const double way : {1.0, 0.0, -1.0}) {
         Pose start = straight;
         start.centre.x_px =
@@ -282,7 +304,7 @@ std::vector<Pose> Follower::All() const {
 Track FollowPattern(Clip& clip, const Background& background,
                     const Track& track, int threads) {
   if (!track.known_background || track.step > 1 || !IsSteady(track) ||
-      track.poses.size() < kLeastFollowed) {
+      track.poses.size() < kMinFollowed) {
     return track;
   }
   if (!(MedianMisfit(track.poses) > kCrude)) return track;
@@ -318,16 +340,20 @@ Track FollowPattern(Clip& clip, const Background& background,
       poses = std::move(all);
     }
   }
-  constexpr double kNearlyAll = 0.9;
+  // Share of the track's frames that the template must be found in. Not
+  // studied.
+  constexpr double kMinFoundShare = 0.9;
   if (!best || static_cast<double>(poses.size()) <
-                   kNearlyAll * static_cast<double>(track.poses.size())) {
+                   kMinFoundShare * static_cast<double>(track.poses.size())) {
     return track;
   }
-  // Outlines of a crude body wander with what lies behind it, which neighbours
-  // in time do not show: the picture is taken unless it tells clearly less of
-  // the path; a dozen frames tell that to a half.
-  constexpr double kMuchLess = 0.5;
-  if (!(Telling(poses) > kMuchLess * Telling(track.poses))) return track;
+  // Ratio of what template and outlines tell of the path. Outlines of a crude
+  // body wander with what lies behind it, which neighbouring frames share and
+  // their scatter does not show: the template is taken unless it tells clearly
+  // less. A dozen frames tell the ratio to a half. Set with 16 copies of the
+  // recorded hoops, of which 14 were right and none wrong.
+  constexpr double kMinTellingRatio = 0.5;
+  if (!(Telling(poses) > kMinTellingRatio * Telling(track.poses))) return track;
   Track patterned = track;
   patterned.poses = std::move(poses);
   patterned.patterned = true;
@@ -358,6 +384,8 @@ Track AlignToOutlines(const Track& outlines, const Track& patterned) {
     u_y.push_back(same->u_y_px);
   }
   if (x.empty()) return outlines;
+  // A template has no centre of its own: the outlines' mean tells where the
+  // body's centre lies in it.
   const core::Estimate dx = RobustMean(x, u_x);
   const core::Estimate dy = RobustMean(y, u_y);
   const double dt = Median(std::move(turn));

@@ -17,6 +17,8 @@ bool HiddenFrames::Has(std::int64_t frame) const {
   });
 }
 
+// A hidden frame casts doubt on all frames up to its sampled neighbours: they
+// were not looked at.
 void HiddenFrames::LeaveOut(std::vector<Fitted>& sized) {
   const std::vector<bool> hidden = FindHidden(sized);
   std::vector<Fitted> whole;
@@ -34,6 +36,9 @@ void HiddenFrames::LeaveOut(std::vector<Fitted>& sized) {
   sized = std::move(whole);
 }
 
+// Frames that may show the body in part: those found hidden, and up to `most`
+// frames before and after the track where the body comes into view within the
+// picture rather than at its border.
 std::vector<std::int64_t> HiddenFrames::FindPartialFrames(
     const std::vector<Fitted>& whole, std::int64_t most) const {
   std::vector<std::int64_t> frames;
@@ -42,8 +47,10 @@ std::vector<std::int64_t> HiddenFrames::FindPartialFrames(
   }
   const ClipInfo& info = clip_.info();
   const auto is_inside = [&](const Outline& outline) {
-    constexpr double kClear = 1.5;  // of its size, from the picture's border
-    const double reach = kClear * Extent(outline);
+    // In units of the body's greatest extent: nearer to the border the border
+    // hides it, not an obstacle. Not studied.
+    constexpr double kBorderReach = 1.5;
+    const double reach = kBorderReach * Extent(outline);
     return outline.centre.x_px > reach && outline.centre.y_px > reach &&
            outline.centre.x_px < info.width_px - reach &&
            outline.centre.y_px < info.height_px - reach;
@@ -64,6 +71,8 @@ std::vector<std::int64_t> HiddenFrames::FindPartialFrames(
   return frames;
 }
 
+// The outline that the flight through nearby fits predicts, at the body's size;
+// nothing outside the picture.
 std::optional<OutlineJob> HiddenFrames::Expect(const BodyImage& body,
                                                std::span<const Fitted> fits,
                                                const OutlineOptions& options,
@@ -88,9 +97,10 @@ bool HiddenFrames::LookForHider(const std::vector<Fitted>& whole,
                                 std::span<const std::optional<Fitted>> own,
                                 const OutlineOptions& options) {
   if (!track_.known_background || whole.empty()) return false;
-  constexpr std::int64_t kMostBeyond = 12;
-  const std::vector<std::int64_t> beyond =
-      FindPartialFrames(whole, kMostBeyond);
+  // Frames beyond the track's ends: enough to see the obstacle's edge. A
+  // prediction is worse the farther it reaches. Not studied.
+  constexpr std::int64_t kMaxBeyond = 12;
+  const std::vector<std::int64_t> beyond = FindPartialFrames(whole, kMaxBeyond);
   if (beyond.empty()) return false;  // it comes and goes by the border
   std::vector<OutlineJob> jobs;
   const auto expect = [&](std::int64_t frame) {
@@ -104,6 +114,8 @@ bool HiddenFrames::LookForHider(const std::vector<Fitted>& whole,
   for (const auto& fit : own) {
     if (fit) jobs.push_back({fit->frame, fit->fit.outline, {}, 0.0});
   }
+  // The median level of the body's face: what an obstacle shows instead is
+  // another.
   std::vector<double> levels;
   for (const Fitted& f : whole) {
     if (f.fit.shading) levels.push_back(f.fit.shading->level[0]);
@@ -122,8 +134,11 @@ bool HiddenFrames::LookForHider(const std::vector<Fitted>& whole,
 void HiddenFrames::AddFits(std::vector<Fitted>& fits, const BodyImage& body,
                            const OutlineOptions& options) const {
   if (fits.empty()) return;
-  constexpr std::int64_t kMostBeyond = 60;
-  std::vector<std::int64_t> frames = FindPartialFrames(fits, kMostBeyond);
+  // Frames beyond the track's ends, nearest first, so that each prediction
+  // starts from a fit beside it. A bound on time. Not studied.
+  constexpr std::int64_t kMaxBeyond = 60;
+  std::vector<std::int64_t> frames = FindPartialFrames(fits, kMaxBeyond);
+  // Distance, in frames, to the nearest fit.
   const auto from_whole = [&](std::int64_t frame) {
     const auto next = std::lower_bound(
         fits.begin(), fits.end(), frame,
@@ -141,18 +156,22 @@ void HiddenFrames::AddFits(std::vector<Fitted>& fits, const BodyImage& body,
     nearest_first.emplace_back(from_whole(frame), frame);
   }
   std::sort(nearest_first.begin(), nearest_first.end());
-  constexpr double kMostMisfit = 1.5;  // of the usual one
-  constexpr double kMostOff_px = 1.0;  // from where it was expected
+
+  // In units of the median misfit: a fit that is worse is of the obstacle's
+  // edge. Not studied.
+  constexpr double kMaxMisfitRatio = 1.5;
+  // px from the prediction. Too little of a body may hold it badly; larger
+  // takes such fits, smaller loses frames beside an impact. Not studied.
+  constexpr double kMaxOff_px = 1.0;
   const double usual = std::max(1.0, MedianMisfit(fits));
   for (const auto& [apart, frame] : nearest_first) {
     const auto job = Expect(body, fits, options, frame);
     if (!job) continue;
     const auto fit = FitOutlines(clip_, background_, {&*job, 1}, options, 1);
-    if (!fit[0] || fit[0]->fit.misfit > kMostMisfit * usual) continue;
-    // Too little of a body may hold it badly.
+    if (!fit[0] || fit[0]->fit.misfit > kMaxMisfitRatio * usual) continue;
     const core::PixelPoint& centre = fit[0]->fit.outline.centre;
     if (std::hypot(centre.x_px - job->start.centre.x_px,
-                   centre.y_px - job->start.centre.y_px) > kMostOff_px) {
+                   centre.y_px - job->start.centre.y_px) > kMaxOff_px) {
       continue;
     }
     const auto at = std::lower_bound(

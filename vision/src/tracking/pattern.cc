@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kNoLevel = std::numeric_limits<double>::quiet_NaN();
 
-// Weights of Keys' cubic convolution (1981), a = -1/2, at `t` beyond the second
-// of four samples.
+// Keys' cubic convolution (IEEE Trans. Acoust. Speech Signal Process. 29, 1981,
+// 1153), a = -1/2: weights of four samples at `t` beyond the second.
 std::array<double, 4> KeysWeights(double t) {
   const double t2 = t * t;
   const double t3 = t2 * t;
@@ -25,10 +25,13 @@ std::array<double, 4> KeysWeights(double t) {
           0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)};
 }
 
+// Tukey's biweight (1 - t^2)^2; t in units of the cut.
 double Tukey(double t) {
   return std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
 }
 
+// Directions of the template's axes in the picture: the body's, or the
+// picture's own.
 struct Axes {
   double cosine = 1.0;
   double sine = 0.0;
@@ -38,13 +41,14 @@ Axes BodyAxes(const Pose& pose, bool turns) {
   return {std::cos(pose.angle_rad), std::sin(pose.angle_rad)};
 }
 
+// Place of a template node in the picture.
 core::PixelPoint LocatePlace(const Pose& pose, const Axes& axes, double x,
                              double y) {
   return {pose.centre.x_px + x * axes.cosine - y * axes.sine,
           pose.centre.y_px + x * axes.sine + y * axes.cosine};
 }
 
-// How much the still picture changes in a pixel.
+// Gradient of the still picture at a pixel, DN per px.
 double LocalSlope(const Background& background, std::int32_t x,
                   std::int32_t y) {
   const auto at = [&](std::int32_t column, std::int32_t row) {
@@ -56,8 +60,8 @@ double LocalSlope(const Background& background, std::int32_t x,
          std::hypot(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1));
 }
 
-// Of a few values: the mean with Tukey's weights about the median, and their
-// robust scatter.
+// Robust level of a few values: one step of a mean with Tukey's weights about
+// the median, and the scatter as the scaled median deviation.
 struct Usual {
   double level = 0.0;
   double scatter = 0.0;
@@ -127,8 +131,9 @@ PatternView ReadView(Clip& clip, std::int64_t frame,
 Pattern::Pattern(const Outline& outline, bool turns,
                  const Background& background)
     : background_(&background), turns_(turns) {
-  // The blurred edge, and no shadow beyond.
-  constexpr double kBeyond_px = 2.0;
+  // px to either side of the outline: the blurred edge belongs to the template,
+  // a shadow beyond it does not. Not studied.
+  constexpr double kRim_px = 2.0;
   Outline own = outline;
   own.centre = {0.0, 0.0};
   if (turns) own.angle_rad = 0.0;
@@ -142,11 +147,12 @@ Pattern::Pattern(const Outline& outline, bool turns,
     half_y = own.half_long_px * std::abs(sine) +
              own.half_short_px * std::abs(cosine);
   }
-  half_x += kBeyond_px;
-  half_y += kBeyond_px;
-  // Of large bodies every other pixel, or fewer, is enough.
-  constexpr double kMostNodes = 20000.0;
-  spacing_px_ = std::max(1.0, std::sqrt(4.0 * half_x * half_y / kMostNodes));
+  half_x += kRim_px;
+  half_y += kRim_px;
+  // Nodes: of large bodies every other pixel, or fewer, is enough. More cost
+  // time in proportion. Not studied.
+  constexpr double kMaxNodes = 20000.0;
+  spacing_px_ = std::max(1.0, std::sqrt(4.0 * half_x * half_y / kMaxNodes));
   const int left = static_cast<int>(std::ceil(half_x / spacing_px_));
   const int up = static_cast<int>(std::ceil(half_y / spacing_px_));
   columns_ = 2 * left + 1;
@@ -157,8 +163,8 @@ Pattern::Pattern(const Outline& outline, bool turns,
       node.x_px = column * spacing_px_;
       node.y_px = row * spacing_px_;
       const double depth = SignedDepth(own, node.x_px, node.y_px, cosine, sine);
-      node.inside = depth > -kBeyond_px;
-      node.at_rim = depth < kBeyond_px;
+      node.inside = depth > -kRim_px;
+      node.at_rim = depth < kRim_px;
       nodes_.push_back(node);
     }
   }
@@ -168,6 +174,8 @@ double Pattern::reach_px() const {
   return std::hypot(nodes_.back().x_px, nodes_.back().y_px);
 }
 
+// Central differences of the template along its axes; nodes at its border keep
+// a slope of 0.
 void Pattern::SetSlopes() {
   const auto at = [&](int row, int column) -> Node& {
     return nodes_[static_cast<std::size_t>(row * columns_ + column)];
@@ -183,13 +191,23 @@ void Pattern::SetSlopes() {
   }
 }
 
+// The template's level at each node is the robust mean over the frames, with
+// each frame's light undone. A node belongs to the body only where the picture
+// behind it is clearly another in enough frames: an edge along the path would
+// look as if it went with the body.
 bool Pattern::Learn(const std::vector<PatternView>& views,
                     const std::vector<PatternPose>& poses) {
-  constexpr double kMostSeen = 0.5;  // of the frames must show a node
-  // At least so often something else is behind a node of the body.
-  constexpr double kOften = 0.25;
-  constexpr double kClear = 4.0;  // of the noise
-  constexpr double kSteep = 2.0;  // of the noise, in a pixel
+  // Share of the frames that must show a node. Not studied.
+  constexpr double kMinSeenShare = 0.5;
+  // Share of the frames in which something else must lie behind a node of the
+  // body. Smaller takes the picture behind for the body's; larger loses the
+  // parts that are mostly like it. Set with the recorded hoops.
+  constexpr double kDifferentShare = 0.25;
+  // Standard deviations of the noise by which it must differ. Not studied.
+  constexpr double kClearSigmas = 4.0;
+  // Slope of the background, in noise per px, at which a node of the rim mixes
+  // the body with an edge behind it. Not studied.
+  constexpr double kSteepSigmas = 2.0;
   own_.clear();
   std::vector<double> values;
   std::vector<double> changes;
@@ -218,27 +236,30 @@ bool Pattern::Learn(const std::vector<PatternView>& views,
       }
     }
     if (static_cast<double>(values.size()) <
-        std::max(3.0, kMostSeen * static_cast<double>(views.size()))) {
+        std::max(3.0, kMinSeenShare * static_cast<double>(views.size()))) {
       continue;
     }
     const Usual usual = ComputeUsual(values);
+    // Nodes that are not the body's keep their level, too: slopes need
+    // neighbours.
     node.level = usual.level;
     if (!node.inside || changes.size() * 2 < values.size()) continue;
     const double noise = std::sqrt(background_->Variance(usual.level));
     node.u = std::max(noise, usual.scatter);
     const auto often =
         changes.begin() +
-        static_cast<std::ptrdiff_t>((1.0 - kOften) *
+        static_cast<std::ptrdiff_t>((1.0 - kDifferentShare) *
                                     static_cast<double>(changes.size()));
     std::nth_element(changes.begin(), often, changes.end());
-    if (*often < kClear * noise || *often < usual.scatter) continue;
-    // Half body, half an edge behind it.
-    if (!slopes.empty() && Median(slopes) > kSteep * noise) continue;
+    if (*often < kClearSigmas * noise || *often < usual.scatter) continue;
+    // A rim node before a strong edge of the background is left out.
+    if (!slopes.empty() && Median(slopes) > kSteepSigmas * noise) continue;
     own_.push_back(i);
   }
   SetSlopes();
-  constexpr std::size_t kLeast = 60;  // nodes: seven parameters, and outliers
-  return own_.size() >= kLeast;
+  // Nodes: seven parameters, and outliers. Not studied.
+  constexpr std::size_t kMinNodes = 60;
+  return own_.size() >= kMinNodes;
 }
 
 double Pattern::ComputeMisfit(const std::vector<double>& rest,
@@ -249,6 +270,8 @@ double Pattern::ComputeMisfit(const std::vector<double>& rest,
     const Node& node = nodes_[own_[k]];
     const double w = Tukey(rest[k] / (kTukeyCut * scale));
     if (!(w > 0.0)) continue;
+    // `rest` is in units of the node's scatter, which holds the template's own
+    // errors; the misfit is in units of the pixels' noise.
     const double off_dn = rest[k] * node.u;
     sw += w;
     sum += w * off_dn * off_dn / background_->Variance(node.level);
@@ -262,11 +285,13 @@ double Pattern::Mismatch(const PatternView& view, const Pose& at,
   const Axes axes = BodyAxes(at, turns_);
   double sum = 0.0;
   double seen = 0.0;
-  // Were all nodes seen and the others without any mismatch, it would still be
-  // no less: a place that is far off is known as such by its first nodes.
+  // If all nodes were seen and the rest had no mismatch at all, it would still
+  // not be below `least`: a bad place is known by its first nodes. The factor
+  // covers the rounding of the sum.
   constexpr double kRounding = 1.0 + 1e-12;
   const double enough =
       kRounding * least * static_cast<double>((own_.size() + 2) / 3);
+  // Every third node chooses a start well enough.
   for (std::size_t k = 0; k < own_.size() && sum < enough; k += 3) {
     const Node& node = nodes_[own_[k]];
     const core::PixelPoint p = LocatePlace(at, axes, node.x_px, node.y_px);
@@ -282,7 +307,7 @@ double Pattern::Mismatch(const PatternView& view, const Pose& at,
 std::optional<PatternPose> Pattern::Register(const PatternView& view,
                                              const Pose& start,
                                              double within_px) const {
-  // Gain, offset and slopes of the light; x, y and turn of the pattern.
+  // Parameters: gain, offset and slopes of the light, then x, y and turn.
   constexpr int kLight = 4;
   constexpr int kShiftX = kLight;
   constexpr int kShiftY = kLight + 1;
@@ -291,11 +316,12 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
   using Vector = Eigen::Matrix<double, kLight + 3, 1>;
   Pose pose = start;
   if (within_px > 0.0) {
-    constexpr double kStep_px = 1.0;
+    // px: the fit converges from a start this near. Not studied.
+    constexpr double kSearchStep_px = 1.0;
     double least =
         Mismatch(view, start, std::numeric_limits<double>::infinity());
-    for (double y = -within_px; y <= within_px; y += kStep_px) {
-      for (double x = -within_px; x <= within_px; x += kStep_px) {
+    for (double y = -within_px; y <= within_px; y += kSearchStep_px) {
+      for (double x = -within_px; x <= within_px; x += kSearchStep_px) {
         Pose other = start;
         other.centre.x_px += x;
         other.centre.y_px += y;
@@ -310,14 +336,20 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
   std::vector<double> value(n);
   std::vector<double> rest(n);
   std::vector<double> sizes;
-  constexpr int kRounds = 20;
-  constexpr double kFine_px = 1e-3;
-  // Robust weights may go to and fro for ever, by much less than they tell.
-  constexpr double kToAndFro_px = 0.02;
-  constexpr double kMostStep_px = 1.5;
-  constexpr double kMostSeen = 0.5;
+  // A bound; without convergence there is no pose. Not studied.
+  constexpr int kMaxRounds = 20;
+  // px: a smaller step ends the iteration, far below any u of a pose.
+  constexpr double kConverged_px = 1e-3;
+  // px: reweighting may cycle. After half of the rounds steps so small are
+  // accepted. Set with the recorded cart.
+  constexpr double kCycle_px = 0.02;
+  // px (at the far end of the template for the turn): beyond it the linearised
+  // picture is another. Not studied.
+  constexpr double kMaxStep_px = 1.5;
+  // Share of the body's nodes that must lie in the picture. Not studied.
+  constexpr double kMinInPicture = 0.5;
   double scale = 0.0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const Axes axes = BodyAxes(pose, turns_);
     for (std::size_t k = 0; k < n; ++k) {
       const Node& node = nodes_[own_[k]];
@@ -326,8 +358,10 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
     }
     Matrix normal;
     Vector p;
-    // The light first, robustly; then all of it with these weights.
+    // First the light alone, reweighted; then light and pose together with
+    // these weights. Fitted at once, a wrong light would pull the pose.
     PatternLight light;
+    // Reweightings of the light. Not studied.
     constexpr int kLightRounds = 3;
     for (int part = 0; part <= kLightRounds; ++part) {
       const bool last = part == kLightRounds;
@@ -341,7 +375,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         sizes.push_back(std::abs(rest[k]));
       }
       if (static_cast<double>(sizes.size()) <
-          kMostSeen * static_cast<double>(n)) {
+          kMinInPicture * static_cast<double>(n)) {
         return std::nullopt;
       }
       scale = std::max(1.0, kSigmaPerMedian * Median(sizes));
@@ -355,6 +389,8 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         const double w =
             Tukey(rest[k] / (kTukeyCut * scale)) / (node.u * node.u);
         Vector row;
+        // Derivatives of g T + b + s q by the light, and of the picture by
+        // shift and turn: -grad T and its moment.
         row << node.level, 1.0, node.x_px, node.y_px, -sx, -sy,
             sx * node.y_px - sy * node.x_px;
         if (!last) row.tail<3>().setZero();
@@ -363,30 +399,33 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
         right += w * value[k] * row;
       }
       normal = Matrix(normal.selfadjointView<Eigen::Lower>());
+      // Parameters that are held get a unit diagonal.
       if (!last) normal(kShiftX, kShiftX) = normal(kShiftY, kShiftY) = 1.0;
       if (!last || !turns_) normal(kTurn, kTurn) = 1.0;
       const Eigen::LDLT<Matrix> factor(normal);
       p = factor.solve(right);
       if (!p.allFinite()) return std::nullopt;
       light = {p[0], p[1], p[2], p[3]};
-      constexpr double kLeastGain = 0.3;  // the light's changes are smaller
-      if (!(light.gain > kLeastGain && light.gain < 1.0 / kLeastGain)) {
+      // Factor of the light, either way: no lamp's changes are larger. Beyond
+      // it the template lies on something else. Not studied.
+      constexpr double kMinGain = 0.3;
+      if (!(light.gain > kMinGain && light.gain < 1.0 / kMinGain)) {
         return std::nullopt;
       }
     }
     const double dx =
-        std::clamp(p[kShiftX] / light.gain, -kMostStep_px, kMostStep_px);
+        std::clamp(p[kShiftX] / light.gain, -kMaxStep_px, kMaxStep_px);
     const double dy =
-        std::clamp(p[kShiftY] / light.gain, -kMostStep_px, kMostStep_px);
+        std::clamp(p[kShiftY] / light.gain, -kMaxStep_px, kMaxStep_px);
     const double reach = reach_px();
     const double turn =
-        turns_ ? std::clamp(p[kTurn] / light.gain, -kMostStep_px / reach,
-                            kMostStep_px / reach)
+        turns_ ? std::clamp(p[kTurn] / light.gain, -kMaxStep_px / reach,
+                            kMaxStep_px / reach)
                : 0.0;
     pose.centre = LocatePlace(pose, axes, dx, dy);
     pose.angle_rad += turn;
     if (std::max({std::abs(dx), std::abs(dy), std::abs(turn) * reach}) <
-        (2 * round < kRounds ? kFine_px : kToAndFro_px)) {
+        (2 * round < kMaxRounds ? kConverged_px : kCycle_px)) {
       const Matrix covariance =
           Eigen::LDLT<Matrix>(normal).solve(Matrix::Identity()) *
           (scale * scale) / (light.gain * light.gain);
@@ -399,6 +438,8 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       const double xy = covariance(kShiftX, kShiftY);
       const double c = axes.cosine;
       const double s = axes.sine;
+      // Covariance of the shift, turned from the template's axes to the
+      // picture's.
       const double vx = c * c * xx + s * s * yy - 2.0 * c * s * xy;
       const double vy = s * s * xx + c * c * yy + 2.0 * c * s * xy;
       pose.u_x_px = std::sqrt(vx);

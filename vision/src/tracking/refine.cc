@@ -15,6 +15,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Displacement and turn per frame at each pose, as the exposure smears them.
 std::vector<Motion> MotionAtPoses(const std::vector<Pose>& poses) {
   std::vector<layers::LayerPose> path;
   std::vector<std::int64_t> frames;
@@ -43,26 +44,37 @@ Refiner::Refiner(Clip& clip, const Background& background, const Track& track,
                           : OutlineOptions::Surround::kPolynomial;
   options_.blur_px = track.body.blur_px;
   options_.ground = refine.ground;
-  // The blurred edges of body and ground do not superpose: clear of both, as
-  // long as half of the body is left.
-  constexpr double kBlurs = 2.5;
-  constexpr double kMostOfHalf = 1.0;
+  // In units of blur_px (sigma): nearer to the ground its blurred edge adds to
+  // the body's, and the two do not superpose. Larger loses the lower edge of
+  // flat bodies; at 2.5 less than 1 % of an edge's step is left (normal
+  // distribution).
+  constexpr double kMarginBlurs = 2.5;
+  // Share of half the short side: half of the body is always left. From
+  // geometry.
+  constexpr double kMaxMarginShare = 1.0;
   const double half = track.body.kind == core::BodyKind::kSphere
                           ? track.body.radius_px.value
                           : track.body.half_short_px.value;
-  options_.ground_margin_px =
-      std::max(options_.ground_margin_px,
-               std::min(kBlurs * track.body.blur_px, kMostOfHalf * half));
+  options_.ground_margin_px = std::max(
+      options_.ground_margin_px,
+      std::min(kMarginBlurs * track.body.blur_px, kMaxMarginShare * half));
   motion_ = MotionAtPoses(track.poses);
 }
 
+// Near the ground the picture is modelled as out + c (in - behind), where
+// `behind` is the background above the ground's blurred edge. That is exact
+// while the body is above the line and nothing else changes there; a shadow
+// refutes it. Whether it holds is asked of the residuals near the ground.
 void Refiner::LookNearGround(Track& refined) {
   refined.near_ground_modelled = false;
-  // What a body on a wavy edge hides is no level line.
-  constexpr double kEven_px = 0.1;
-  if (!track_.known_background || options_.ground->wave_px > kEven_px) return;
-  // Of the poses that reach down there, evenly.
-  constexpr std::size_t kEnough = 40;  // some thousand pixels in all
+  // px of the ground's wave: what a body hides of a wavier edge is no level
+  // line. Not studied.
+  constexpr double kMaxWave_px = 0.1;
+  if (!track_.known_background || options_.ground->wave_px > kMaxWave_px)
+    return;
+  // Poses that reach down to the ground, evenly spread: some thousand pixels in
+  // all, which is enough for the test below. More cost time.
+  constexpr std::size_t kMaxLowPoses = 40;
   std::vector<std::size_t> low;
   for (std::size_t i = 0; i < track_.poses.size(); ++i) {
     const Pose& pose = track_.poses[i];
@@ -72,7 +84,7 @@ void Refiner::LookNearGround(Track& refined) {
         SupportHeight(outline, calib::ImageAngle(*options_.ground));
     if (gap < options_.ground_margin_px) low.push_back(i);
   }
-  const std::size_t step = (low.size() + kEnough - 1) / kEnough;
+  const std::size_t step = (low.size() + kMaxLowPoses - 1) / kMaxLowPoses;
   std::vector<OutlineJob> jobs;
   for (const std::size_t i : FromBothSides(low.size(), step)) {
     jobs.push_back(MakeJob(track_.body, low[i]));
@@ -88,12 +100,15 @@ void Refiner::LookNearGround(Track& refined) {
     excess += fit->fit.pixels_near_ground * fit->fit.excess_near_ground;
     near.push_back(*fit);
   }
-  // A mean square of n residuals scatters by sqrt(2/n); in 1000 clips of even
-  // ground it lay between 0.87 and 1.2, of those with a shadow at 2 and more.
-  constexpr double kMostExcess = 1.25;
-  constexpr double kSigmas = 4.0;
-  // A body that is crudely modelled says nothing of what is near it.
-  if (excess > kMostExcess * pixels + kSigmas * std::sqrt(2.0 * pixels) ||
+  // Mean square of the residuals near the ground over that of the others.
+  // Smaller leaves the lower edge out without need; larger takes a shadow for
+  // body. In 1000 clips of even ground it lay between 0.87 and 1.2, with a
+  // shadow at 2 and more.
+  constexpr double kMaxExcess = 1.25;
+  // A mean square of n residuals scatters by sqrt(2/n): so many times that is
+  // allowed in addition, for few pixels. Chosen by the normal distribution.
+  constexpr double kScatterSigmas = 4.0;
+  if (excess > kMaxExcess * pixels + kScatterSigmas * std::sqrt(2.0 * pixels) ||
       near.empty() || MedianMisfit(near) > kWellModelled) {
     options_.near_ground = OutlineOptions::NearGround::kLeftOut;
     return;
@@ -117,15 +132,21 @@ std::vector<std::optional<Fitted>> Refiner::FitPoses(const BodyImage& body,
   return FitOutlines(clip_, background_, jobs, options_, threads_);
 }
 
+// Fits of frames spread evenly over the track, enough for what all frames
+// share.
 std::vector<Fitted> Refiner::Sample(const BodyImage& body) {
-  constexpr std::size_t kEnough = 80;  // frames; u falls as 1/sqrt
+  // Frames. The u of what they share falls as 1/sqrt of their number; the time
+  // grows with it. Not studied.
+  constexpr std::size_t kSampleFrames = 80;
   const std::size_t step =
-      std::max<std::size_t>(1, track_.poses.size() / kEnough);
+      std::max<std::size_t>(1, track_.poses.size() / kSampleFrames);
   std::vector<Fitted> all = Found(FitPoses(body, step));
   DropStrangers(all);
   return all;
 }
 
+// The last fit of each frame: size, blur and exposure are known and held, the
+// place and attitude are free.
 void Refiner::MeasurePoses(Track& refined) {
   options_.fit_size = false;
   options_.fit_blur = false;
@@ -133,7 +154,7 @@ void Refiner::MeasurePoses(Track& refined) {
   refined.body.shutter_fraction = options_.open;
   refined.poses.clear();
   std::vector<Fitted> fits = Found(FitPoses(refined.body, 1));
-  // Between two looks none has been asked yet whether it is of the body.
+  // Interpolated frames have not been tested for outliers yet.
   if (track_.step > 1) DropStrangers(fits);
   std::erase_if(fits, [&](const Fitted& f) { return hidden_.Has(f.frame); });
   options_.starts_near = false;
@@ -152,8 +173,8 @@ void Refiner::MeasurePoses(Track& refined) {
 
 Track Refine(Clip& clip, const Background& background, const Track& given,
              const RefineOptions& refine) {
-  // An outline of one face would sit on this part or that; layers leave nothing
-  // to refine.
+  // Outlines of one face would sit on this part or that of a body of several
+  // parts, and a layered track leaves nothing to refine.
   if (!given.outlined || given.layered) return given;
   clip.cancellation().Enter("outlines are fitted with the ground known");
   const Track track = Bridged(given);
@@ -163,8 +184,9 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
   if (IsSteady(track)) {
     refiner.LearnShape(refined);
   } else {
-    // A body that comes to the ground seems to change where the ground's edge
-    // was taken for its own.
+    // A body that comes to the ground seems to change its size where the
+    // ground's edge was taken for its own: the change is measured once more
+    // with the ground left out. If none is left, the track is steady.
     Track again = track;
     KeepSize(again);
     FollowSize(refiner.Sample(track.body), again);
@@ -174,6 +196,7 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
       track.body.whole_px == 0.0) {
     const core::Estimate& a = refined.body.half_long_px;
     const core::Estimate& ratio = *refine.aspect;
+    // The stated ratio of the sides is a second measurement of the short side.
     refined.body.half_short_px = core::Combined(
         refined.body.half_short_px,
         {a.value * ratio.value,

@@ -7,6 +7,8 @@
 
 namespace touchdown::vision {
 
+// Learns what the face shows beyond its smooth shading (highlights), if the
+// outlines then fit better; else the face stays smooth.
 void Refiner::LearnLook(Track& refined, std::vector<Fitted>& sized) {
   if (!track_.known_background) return;
   if (!LearnSpots(refined.body, sized)) {
@@ -19,10 +21,11 @@ void Refiner::LearnLook(Track& refined, std::vector<Fitted>& sized) {
 }
 
 bool Refiner::LearnSpots(const BodyImage& body, std::vector<Fitted>& sized) {
-  // The first outlines are drawn aside by what they do not know; after the
-  // third round nothing changes any more.
+  // Outlines and appearance in turns: the first outlines are drawn aside by
+  // what they do not know. After the third round nothing changes any more.
   constexpr int kRounds = 3;
-  constexpr double kNearlyAll = 0.8;  // of the frames
+  // Share of the frames that must still have an outline. Not studied.
+  constexpr double kMinKeptShare = 0.8;
   look_.reset();
   std::vector<Fitted> again = sized;
   for (int round = 0; round < kRounds; ++round) {
@@ -34,7 +37,8 @@ bool Refiner::LearnSpots(const BodyImage& body, std::vector<Fitted>& sized) {
   }
   if (!look_ ||
       static_cast<double>(again.size()) <
-          kNearlyAll * static_cast<double>(sized.size()) ||
+
+          kMinKeptShare * static_cast<double>(sized.size()) ||
       MedianMisfit(again) > std::max(kWellModelled, MedianMisfit(sized))) {
     return false;
   }
@@ -42,6 +46,7 @@ bool Refiner::LearnSpots(const BodyImage& body, std::vector<Fitted>& sized) {
   return true;
 }
 
+// The fits with the motion of the nearest pose at or after each.
 std::vector<SeenOutline> Refiner::Seen(const std::vector<Fitted>& fits) const {
   std::vector<SeenOutline> seen;
   std::size_t i = 0;  // both are in the frames' order

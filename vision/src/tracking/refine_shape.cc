@@ -9,10 +9,11 @@
 namespace touchdown::vision {
 namespace {
 
-constexpr std::size_t kLeastSized = 3;  // frames that tell a size
+// Frames that tell a size: with fewer there is no scatter to give its u.
+constexpr std::size_t kMinSized = 3;
 
-// One coefficient over the frames: its median, and how far a frame's own may
-// lie from it beyond the fits' noise.
+// Prior of one shading coefficient: its median over the frames, and how far the
+// coefficient of one frame may lie from it beyond the noise of the fits.
 void EstimatePrior(const std::vector<double>& values,
                    const std::vector<double>& us, double& level, double& u) {
   level = Median(values);
@@ -22,20 +23,23 @@ void EstimatePrior(const std::vector<double>& values,
   const double scatter = kSigmaPerMedian * Median(off);
   const double noise = Median(us);
   const double own = std::max(0.0, scatter * scatter - noise * noise);
-  // The median's own uncertainty, pi/2 times the mean's variance.
+  // Variance of a median: pi/2 times the mean's.
   const double n = static_cast<double>(values.size());
   u = std::sqrt(own + 1.5708 * noise * noise / n);
 }
 
-// The body's shading as the frames that show it whole agree on.
+// The shading that frames which show the body whole agree on; nothing where
+// these are few.
 std::optional<Shading> AverageShading(const std::vector<Fitted>& all) {
-  constexpr double kWhole = 0.98;
-  constexpr std::size_t kLeast = 8;
+  // Share of the outline that is seen. Not studied.
+  constexpr double kWholeShare = 0.98;
+  // Frames: fewer give no scatter for EstimatePrior. Not studied.
+  constexpr std::size_t kMinWhole = 8;
   std::vector<const OutlineFit*> whole;
   for (const Fitted& f : all) {
-    if (f.fit.visible >= kWhole && f.fit.shading) whole.push_back(&f.fit);
+    if (f.fit.visible >= kWholeShare && f.fit.shading) whole.push_back(&f.fit);
   }
-  if (whole.size() < kLeast) return std::nullopt;
+  if (whole.size() < kMinWhole) return std::nullopt;
   Shading shading;
   for (std::size_t k = 0; k < shading.level.size(); ++k) {
     std::vector<double> values;
@@ -50,7 +54,8 @@ std::optional<Shading> AverageShading(const std::vector<Fitted>& all) {
   return shading;
 }
 
-// What all frames share of the camera.
+// Robust mean over the frames of what they share of the camera (blur,
+// exposure).
 std::optional<double> Shared(const std::vector<Fitted>& all,
                              double OutlineFit::*value, double OutlineFit::*u) {
   std::vector<double> values;
@@ -64,14 +69,16 @@ std::optional<double> Shared(const std::vector<Fitted>& all,
   return RobustMean(values, us).value;
 }
 
-// A body that is no sphere or rectangle, or lies behind others, may lose its
-// size in a free fit: what was found is kept then.
+// Whether a free fit kept the size: a body that is no sphere or rectangle, or
+// lies behind others, may lose it, and what was found first is kept then.
 bool IsSameSize(const BodyImage& again, const BodyImage& found) {
-  constexpr double kMost = 0.2;    // change
-  constexpr double kMostU = 0.05;  // both relative to the size
+  // Relative change of a half side, and its relative u. Larger lets a lost size
+  // through. Not studied.
+  constexpr double kMaxChange = 0.2;
+  constexpr double kMaxRelativeU = 0.05;
   const auto same = [&](const core::Estimate& a, const core::Estimate& b) {
-    return std::abs(a.value - b.value) <= kMost * b.value &&
-           a.u <= kMostU * b.value;
+    return std::abs(a.value - b.value) <= kMaxChange * b.value &&
+           a.u <= kMaxRelativeU * b.value;
   };
   if (found.kind == core::BodyKind::kSphere) {
     return same(again.radius_px, found.radius_px);
@@ -88,32 +95,38 @@ void TakeSize(const BodyImage& from, BodyImage& to) {
 
 }  // namespace
 
+// Size, blur, exposure and shading that all frames share, in this order: blur
+// and exposure from separate fits; the size by one joint fit where the model
+// explains the pixels, else by the mean of the frames; frames that an obstacle
+// hides in part leave, and the joint fit is made again; the shading last.
 void Refiner::LearnShape(Track& refined) {
   std::vector<Fitted> sized = LearnBlur(refined);
   BodyImage body = refined.body;
   const double open = options_.open;
-  // Frames that a crude model shows say each something else: no joint fit of
-  // them is better than their mean.
+  // A crude model errs otherwise in each frame: no joint fit of such frames is
+  // better than their mean.
   const bool crude =
-      sized.size() < kLeastSized || MedianMisfit(sized) > kWellModelled;
+      sized.size() < kMinSized || MedianMisfit(sized) > kWellModelled;
   if (!crude) {
-    // From where the frames' own sizes are: a step is short then.
+    // Start where the frames' own sizes are: the joint fit then needs a short
+    // step.
     const BodyImage shape = EstimateShape(sized, body.kind);
     if (IsSameSize(shape, track_.body)) TakeSize(shape, body);
   }
   sized = crude ? SizeByFrames(body) : SizeTogether(body);
-  // Where frames that it hides a little still passed for whole, the next look
-  // knows their place better.
-  constexpr int kLooks = 3;
-  for (int look = 0; look < kLooks && !crude && LookForHider(sized, body);
+  // Frames that an obstacle hides a little may still pass for whole: each
+  // search knows their place better than the one before. Not studied.
+  constexpr int kMaxSearches = 3;
+  for (int look = 0; look < kMaxSearches && !crude && LookForHider(sized, body);
        ++look) {
     sized = SizeTogether(body);
-    if (sized.size() < kLeastSized) break;
+    if (sized.size() < kMinSized) break;
   }
-  // Not with the shading held: its error is common to all frames, and what it
-  // does to the size would not show in their scatter.
-  if (sized.size() >= kLeastSized) options_.shading = AverageShading(sized);
-  if (sized.size() >= kLeastSized && IsSameSize(body, track_.body)) {
+  // The size is not fitted with the shading held: an error of the shading is
+  // common to all frames, and what it does to the size would not show in their
+  // scatter.
+  if (sized.size() >= kMinSized) options_.shading = AverageShading(sized);
+  if (sized.size() >= kMinSized && IsSameSize(body, track_.body)) {
     refined.body = body;
   } else {
     options_.blur_px = refined.body.blur_px;
@@ -122,22 +135,24 @@ void Refiner::LearnShape(Track& refined) {
 }
 
 std::vector<Fitted> Refiner::LearnBlur(Track& refined) {
-  // The exposure, where the body moves by enough of its blur to show it.
+  // The exposure can be fitted only where the body moves by enough of its blur
+  // in a frame interval: half of the frames by one blur_px.
   std::vector<double> ways;
   for (const Motion& motion : motion_) {
     ways.push_back(std::hypot(motion.x_px, motion.y_px));
   }
   options_.fit_blur = true;
   options_.fit_open = Median(ways) > track_.body.blur_px;
-  constexpr double kStart = 0.3;  // of the frame interval
-  if (options_.fit_open) options_.open = kStart;
+  // Share of the frame interval: start value of the fit. Not studied.
+  constexpr double kStartShutter = 0.3;
+  if (options_.fit_open) options_.open = kStartShutter;
   std::vector<Fitted> sized = Sample(refined.body);
   LearnLook(refined, sized);
   const double open = std::clamp(
       Shared(sized, &OutlineFit::open, &OutlineFit::u_open).value_or(0.0), 0.0,
       1.0);
   options_.open = 0.0;
-  if (sized.size() >= kLeastSized &&
+  if (sized.size() >= kMinSized &&
       IsSameSize(EstimateShape(sized, track_.body.kind), track_.body)) {
     if (options_.fit_open) options_.open = open;
     refined.body.blur_px =
@@ -157,14 +172,18 @@ std::vector<Fitted> Refiner::SizeByFrames(BodyImage& body) {
   return sized;
 }
 
+// Gauss-Newton on what all frames share: each round fits every frame with the
+// shared parameters held, then takes one joint step of them (shared_fit.h).
 std::vector<Fitted> Refiner::SizeTogether(BodyImage& body) {
   options_.fit_size = false;
   options_.tell_shared = true;
-  constexpr int kRounds = 3;
-  constexpr double kNegligible = 0.1;  // of the uncertainty
+  // A bound on time; the step that is left is below its u. Not studied.
+  constexpr int kMaxRounds = 3;
+  // In units of the size's u: a smaller step changes nothing that is reported.
+  constexpr double kNegligibleStep = 0.1;
   std::vector<Fitted> sized;
   double step = 1.0;
-  for (int round = 0; round < kRounds && step > kNegligible; ++round) {
+  for (int round = 0; round < kMaxRounds && step > kNegligibleStep; ++round) {
     sized = Sample(body);
     if (round == 0) hidden_.LeaveOut(sized);
     std::erase_if(sized, [&](const Fitted& f) { return hidden_.Has(f.frame); });
@@ -181,6 +200,7 @@ std::vector<Fitted> Refiner::SizeTogether(BodyImage& body) {
   return sized;
 }
 
+// Takes the joint step: sizes, blur and shutter (held within 0..1).
 void Refiner::Follow(const SharedStep& step, BodyImage& body) {
   const auto follow = [&](core::Estimate& value, int k) {
     value.value += step.step[k];
@@ -197,6 +217,8 @@ void Refiner::Follow(const SharedStep& step, BodyImage& body) {
   options_.open = std::clamp(options_.open + step.step[3], 0.0, 1.0);
 }
 
+// Fits hidden frames at the body's size, which shows where the body is there,
+// and seeks the obstacle before it.
 bool Refiner::LookForHider(const std::vector<Fitted>& whole,
                            const BodyImage& body) {
   std::vector<OutlineJob> own;

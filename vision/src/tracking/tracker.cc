@@ -20,8 +20,8 @@
 namespace touchdown::vision {
 namespace {
 
-// Where the body should be: between two measured poses, or straight on from the
-// ends of the track.
+// Where the body should be in a frame: interpolated between two measured poses,
+// or extrapolated along a straight line from the ends of the track.
 Pose ExpectedPose(const Track& track, std::int64_t frame) {
   if (const auto pose = InterpolatePose(track, frame)) return *pose;
   const auto& poses = track.poses;
@@ -31,7 +31,7 @@ Pose ExpectedPose(const Track& track, std::int64_t frame) {
   return OnTheWay(end, next, frame);
 }
 
-// Fits again from the track's own poses.
+// Fits outlines again, each fit started from the pose that the track expects.
 std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
                                  const Track& track,
                                  const TrackOptions& options,
@@ -47,17 +47,21 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
-// A rigid body has one size: an outline of another sits on another edge of it,
-// such as the rim behind its face.
+// Rejects outlines of another size than the median: a rigid body has one size,
+// and an outline of another sits on another edge of it, such as the rim behind
+// its face.
 void DropOtherSizes(std::vector<Fitted>& all) {
-  constexpr double kRatio = 1.05;
+  // Ratio of a size to the median. Larger: outlines of a rim stay; smaller:
+  // honest outlines of a small body go. Set with the recorded hoops, whose face
+  // and rim differ by more.
+  constexpr double kMaxSizeRatio = 1.05;
   std::vector<double> sizes;
   sizes.reserve(all.size());
   for (const Fitted& f : all) sizes.push_back(OutlineSize(f.fit));
   const double size = Median(std::move(sizes));
   std::erase_if(all, [&](const Fitted& f) {
-    return OutlineSize(f.fit) > kRatio * size ||
-           kRatio * OutlineSize(f.fit) < size;
+    return OutlineSize(f.fit) > kMaxSizeRatio * size ||
+           kMaxSizeRatio * OutlineSize(f.fit) < size;
   });
 }
 
@@ -69,6 +73,8 @@ std::vector<std::int64_t> ListFrames(std::int64_t first, std::int64_t last,
   return frames;
 }
 
+// The pixels around the outline are the background's where that is known, else
+// a polynomial.
 OutlineOptions MakeFitOptions(const Track& track) {
   OutlineOptions fit_options;
   fit_options.surround =
@@ -77,8 +83,9 @@ OutlineOptions MakeFitOptions(const Track& track) {
   return fit_options;
 }
 
-// Where only every `step`-th frame was looked at, all frames now, and those at
-// the ends that the looks may have missed. Returns a warning, or nothing.
+// Fits all frames where so far only every `step`-th frame was fitted, and those
+// at the ends that the coarse sampling may have missed. Returns a warning, or
+// nothing.
 std::string FitSkippedFrames(Clip& clip, const Background& background,
                              const TrackOptions& options, std::int64_t step,
                              bool one_size, Track& track) {
@@ -92,6 +99,8 @@ std::string FitSkippedFrames(Clip& clip, const Background& background,
   try {
     all = FitFromTrack(clip, background, track, options, fit_options,
                        ListFrames(first, last, 1));
+    // A damaged file: the track ends at the first frame that cannot be read,
+    // with a warning, rather than be lost.
   } catch (const core::InputError&) {
     std::string reason;
     const std::int64_t bad = FirstUnreadable(clip, first, last + 1, reason);
@@ -102,16 +111,20 @@ std::string FitSkippedFrames(Clip& clip, const Background& background,
   }
   DropStrangers(all);
   if (one_size) DropOtherSizes(all);
-  constexpr std::size_t kLeast = 8;
-  if (all.size() >= track.poses.size() || (one_size && all.size() >= kLeast)) {
+  // Frames. With one size asked for, fewer fits than poses are taken if they
+  // are at least so many: the others sat on another edge. Not studied.
+  constexpr std::size_t kMinOneSize = 8;
+  if (all.size() >= track.poses.size() ||
+      (one_size && all.size() >= kMinOneSize)) {
     track.warnings.clear();
     FillTrack(all, track.body.kind, track);
   }
   return warning;
 }
 
-// Frames within the track in which the outline was lost or sat on another edge:
-// the body of one size is sought once more where the path leads.
+// Seeks the body once more in frames within the track that have no outline, or
+// had one on another edge: its size is held, and the fit starts where the path
+// leads.
 void FitMissing(Clip& clip, const Background& background,
                 const TrackOptions& options, Track& track) {
   if (track.step > 1 || !IsSteady(track)) return;
@@ -125,10 +138,13 @@ void FitMissing(Clip& clip, const Background& background,
   if (missing.empty()) return;
   OutlineOptions fit_options = MakeFitOptions(track);
   fit_options.fit_size = false;
-  // Twice as bad as usual is another thing; so is what is off the path.
-  constexpr double kUsual = 2.0;
-  constexpr double kOff = 0.1;  // of the body's size
-  const double most_misfit = kUsual * MedianMisfit(track.poses);
+  // In units of the track's median misfit: an outline that fits twice as badly
+  // is of another thing. Not studied.
+  constexpr double kMaxMisfitRatio = 2.0;
+  // Of the body's size: how far off the path an outline may lie. Larger takes
+  // the edges beside it; smaller loses frames beside an impact. Not studied.
+  constexpr double kMaxOffPath = 0.1;
+  const double most_misfit = kMaxMisfitRatio * MedianMisfit(track.poses);
   for (const Fitted& fit :
        FitFromTrack(clip, background, track, options, fit_options, missing)) {
     const Pose there = ExpectedPose(track, fit.frame);
@@ -137,7 +153,7 @@ void FitMissing(Clip& clip, const Background& background,
                    fit.fit.outline.centre.y_px - there.centre.y_px);
     if (!IsMeasured(fit.fit) || fit.fit.misfit > most_misfit ||
         fit.fit.hidden > kMostHidden ||
-        off > kOff * 2.0 * OutlineSize(fit.fit)) {
+        off > kMaxOffPath * 2.0 * OutlineSize(fit.fit)) {
       continue;
     }
     const auto at = std::lower_bound(
@@ -148,11 +164,14 @@ void FitMissing(Clip& clip, const Background& background,
   Unwrap(track);
 }
 
-// The same only where the path is not smooth, beside the `looks` that the track
-// was made of; false, and nothing done, where the frames between do matter.
+// Fits the frames between coarse samples only where the path is not smooth
+// (between_looks.h); Refine starts the others on the cubic. `looks`: the
+// outlines that the track was made of. Returns false, and does nothing, where
+// the frames between are needed.
 bool FitWhereNotSmooth(Clip& clip, const Background& background,
                        const TrackOptions& options, std::int64_t step,
                        const std::vector<Fitted>& looks, Track& track) {
+  // A body whose size changes needs all frames: each tells its own.
   if (!track.known_background || !IsSteady(track) || MayChangeSize(looks)) {
     return false;
   }
@@ -184,7 +203,7 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
         all.begin(), all.end(), look,
         [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
   };
-  // A bridge needs its ends.
+  // Interpolation needs both ends of each gap.
   if (!std::all_of(looks.begin(), looks.end(), is_there)) return false;
   Track filled = track;
   filled.warnings.clear();
@@ -195,8 +214,8 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
   return true;
 }
 
-// The track of a look's best chain. Warnings and the length of the whole come
-// later.
+// Makes the track of a hypothesis's strongest tracklet. Warnings, and the
+// length of the whole, come later.
 Track MakeTrack(const Look& look, const Clip& clip,
                 const TrackOptions& options) {
   Track track;
@@ -212,6 +231,8 @@ Track MakeTrack(const Look& look, const Clip& clip,
   return track;
 }
 
+// Which pixels the body covers, and how often: the background is estimated
+// without them.
 Covers FindTrackCovers(Clip& clip, const TrackOptions& options,
                        const Track& track) {
   const BodyCover cover(clip, track);
@@ -221,25 +242,30 @@ Covers FindTrackCovers(Clip& clip, const TrackOptions& options,
       ChooseBackgroundOptions(clip, options));
 }
 
-// Whether the body may have been lost where it passed its own ghost.
+// Whether the body may have been lost where it passed its own ghost: where a
+// body is in the background's samples often, the estimated background shows it
+// faintly, and a difference to that background is small.
 bool IsTorn(const Look& look) {
-  constexpr double kMost = 0.9;  // of the links have an outline
+  // Share of the detections that have an outline. Larger repeats the search in
+  // clips that are right, at the cost of time only. Not studied.
+  constexpr double kWholeShare = 0.9;
   return look.found.chains.size() > 1 ||
          static_cast<double>(look.fits.size()) <
-             kMost *
+             kWholeShare *
                  static_cast<double>(look.found.chains.front().links.size());
 }
 
+// Whether outlines explain the pixels to about their noise.
 bool IsWellModelled(const Track& track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
-// Where outlines explain the body badly (as badly as for its picture,
-// follow_pattern.h: noise of compression is no part), it may be a part of what
-// moves as one.
-// Not a disc that stands out by its levels alone: what moves with a ball before
-// an unknown background is its shadow. And not where a sphere was stated: its
-// whole outline is the circle that was fitted.
+// Where outlines explain the body badly, what was followed may be a part of
+// what moves as one: the whole is sought and followed by its template
+// (follow_pattern.h has the limit, which compression noise does not reach). Not
+// for a disc that stands out by its levels alone: what moves with a ball before
+// an unknown background is its shadow. Not where a sphere was stated: its whole
+// outline is the circle that was fitted.
 void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
                  TrackResult& result, double& whole_px) {
   Track& track = result.track;
@@ -252,9 +278,11 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   }
   auto whole = FindWhole(clip, result.background, track, options);
   const Chain& chain = look.found.chains.front();
-  constexpr double kFew = 0.5;  // of what was seen
+  // Share of the detections that have a pose. With fewer poses the path of the
+  // blobs is tried, too. Not studied.
+  constexpr double kFewPoses = 0.5;
   if (!whole && static_cast<double>(track.poses.size()) <
-                    kFew * static_cast<double>(chain.links.size())) {
+                    kFewPoses * static_cast<double>(chain.links.size())) {
     whole = FindWhole(clip, result.background, MakePath(chain, track), options);
   }
   if (!whole) return;
@@ -264,7 +292,8 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   Background behind = EstimateMaskedBackground(
       clip, FindTrackCovers(clip, options, *whole), result.background,
       ChooseBackgroundOptions(clip, options));
-  // What does not move as one picture was none.
+  // What cannot be followed as one picture does not move as one: the candidate
+  // is discarded.
   Track followed = FollowPattern(clip, behind, *whole, options.threads);
   if (!followed.patterned) return;
   track = std::move(followed);
@@ -272,13 +301,13 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
   whole_px = 0.0;
 }
 
-// Frames of the stated body that a result shows.
+// How many frames of the stated body a result explains; 0 without a result.
 double CountExplained(const core::Expected<TrackResult>& result,
                       const TrackOptions& options) {
   return result ? CountExplainedFrames(result->track, *options.size) : 0.0;
 }
 
-// A result measured again by layers.
+// Measures a result again by the two-layer model.
 core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
                                      TrackResult result) {
   auto track = FollowInLayers(clip, result.background, result.track,
@@ -288,8 +317,8 @@ core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
   return result;
 }
 
-// The told body in two layers in place of the result's own outlines, from
-// these or, where they may be those of a ghost, from a layered start.
+// Replaces the result's outlines of a stated body by the two-layer fit: from
+// these outlines or, where they may be those of a ghost, from a layered start.
 bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
                 TrackResult& result) {
   core::Expected<TrackResult> best = core::AbsentBecause("not of the size");
@@ -302,23 +331,33 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
     auto started = TrackFromLayers(clip, options, result.track.last_frame,
                                    result.background);
     if (started) started = InLayers(clip, options, std::move(*started));
-    // Equally good ones differ by noise. But where the body was part of the
-    // background, a path that is drawn to its ghost explains as many frames.
+    // The layered start must explain 5 % more frames: results that are equally
+    // good differ by noise. Where the body was part of the background it may
+    // explain 5 % fewer, since a path that is drawn to the body's ghost
+    // explains as many frames. Not studied.
     const double more = IsTheBackground(most_covered) ? 0.95 : 1.05;
     if (started && CountExplained(started, options) >
                        more * CountExplained(best, options)) {
       best = std::move(started);
     }
   }
-  constexpr double kAsMany = 0.9;
-  if (!best || static_cast<double>(best->track.poses.size()) <
-                   kAsMany * static_cast<double>(result.track.poses.size())) {
+  // Share of the outlines' frames that layers must keep. Smaller: frames are
+  // lost for nothing; larger: a few bad frames refuse the better model. Not
+  // studied.
+  constexpr double kMinKeptShare = 0.9;
+  if (!best ||
+      static_cast<double>(best->track.poses.size()) <
+          kMinKeptShare * static_cast<double>(result.track.poses.size())) {
     return false;
   }
   result = std::move(*best);
   return true;
 }
 
+// From frames to a track, in this order: the first hypothesis (detection), the
+// background without the body, the same hypothesis before that background where
+// the body was lost, the kind of body once more, outlines of all frames, and at
+// last layers or a template where outlines do not explain the body.
 core::Expected<TrackResult> FollowBody(Clip& clip,
                                        const TrackOptions& options) {
   std::int64_t last = options.last < 0
@@ -358,17 +397,21 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   until.Enter("the background behind the body is estimated");
   Track& track = result.track;
   track = MakeTrack(*first, clip, options);
-  // Now that the body's place is known, the background without it.
+  // The body's place is known now: the background is estimated without it.
   Covers covers = FindTrackCovers(clip, options, track);
   const auto look_behind = [&](Background fallback) {
     return EstimateMaskedBackground(clip, covers, std::move(fallback),
                                     ChooseBackgroundOptions(clip, options));
   };
-  // Mostly that with the body is not needed again.
+  // In most clips the body covers no pixel often, and the background that it
+  // was found before is not needed again: its memory is given away.
   const bool once = covers.most <= kUntouched && track.known_background &&
                     IsWellModelled(track);
   Background behind =
       look_behind(once ? std::move(first->background) : first->background);
+  // The body was in the background often, and may have been lost there: once
+  // more before the background without it. It must find more frames than
+  // before.
   if (covers.most > kUntouched && IsTorn(*first)) {
     const auto more = static_cast<double>(first->fits.size() + 1);
     Look again = TryHypothesis(clip, behind, options, Detector::kDifference,
@@ -390,12 +433,15 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
           std::max(whole_px, LengthTogether(chain, first->found.chains[i]));
     }
   }
+  // A background that held the body, or was not known, may have misled the
+  // choice of the kind: both are chosen again, and kept if enough outlines are
+  // as smooth.
   if (covers.most > kUntouched || !track.known_background) {
     const Choice again =
         ChooseKind(clip, behind, chain, options, Surround::kBackground);
     if (again.badness < first->choice.badness || track.known_background) {
       std::swap(result.background, behind);
-      // So many fits must not get lost.
+      // At least half of the outlines must remain.
       const auto enough = [&](const std::vector<Fitted>& fits) {
         return fits.size() * 2 >= first->fits.size();
       };
@@ -408,15 +454,18 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
             ListFrames(track.poses.front().frame, track.poses.back().frame,
                        first->found.step));
       }
-      // From the blobs, if the track's outlines are those of the ghost.
+      // The track's outlines may be those of the ghost: start from the blobs.
       if (!enough(better)) {
         better = FitChain(clip, result.background, chain, again, options,
                           Surround::kBackground);
       }
       DropStrangers(better);
-      constexpr double kAsSmooth = 1.5;
+      // Ratio of position noise (plus 0.01 px, below which it says nothing).
+      // The new background is right in itself, so that a little more noise is
+      // allowed. Set with the recorded ball_12bit.
+      constexpr double kMaxNoiseRatio = 1.5;
       if (enough(better) &&
-          Roughness(better) <= kAsSmooth * Roughness(first->fits) + 0.01) {
+          Roughness(better) <= kMaxNoiseRatio * Roughness(first->fits) + 0.01) {
         track.known_background = true;
         track.warnings.clear();
         FillTrack(better, again.kind, track);
@@ -430,8 +479,8 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     result.background = std::move(behind);
   }
   until.Enter("outlines are fitted");
-  // Now the frames between say where each fit begins. From rough starts, what
-  // that finds is a better beginning again.
+  // The frames between tell where each fit begins. After rough starts the
+  // outlines that one pass finds are better starts for a second.
   int passes = first->rough_starts ? 2 : first->found.step > 1 ? 1 : 0;
   if (passes == 1 && !options.every_frame && clip.windows_are_cheap() &&
       FitWhereNotSmooth(clip, result.background, options, first->found.step,
@@ -444,7 +493,7 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
                          first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
-  // Of a ball the outline is a circle whatever it shows; of a block it must be
+  // A ball's outline is a circle whatever its face shows. Of a block it must be
   // known that what was followed is the whole of it.
   const bool is_told =
       options.size ||

@@ -16,7 +16,8 @@
 namespace touchdown::vision {
 namespace {
 
-// The outline as its pose has it, its axes being `turns` or not the pose's.
+// The part's outline about its centre: at angle 0 where the axes are those of
+// the poses, else at its median angle.
 Outline PartOutline(const Track& part, bool turns) {
   std::vector<double> angles;
   angles.reserve(part.poses.size());
@@ -26,8 +27,8 @@ Outline PartOutline(const Track& part, bool turns) {
   return PlaceOutline(part.body, pose);
 }
 
-// What an outline covers of the places, and of those around it that move
-// along.
+// What hides the still layer: the cells within `margin_px` of the outline, and
+// those around each moving cell.
 std::vector<unsigned char> ComputeCover(const CoMoving& places,
                                         const Outline& outline,
                                         double margin_px) {
@@ -59,6 +60,7 @@ std::vector<unsigned char> ComputeCover(const CoMoving& places,
   return cover;
 }
 
+// The better of rectangle and disc, unless the kind is stated.
 std::optional<BestOutline> FindOutlineOfBestKind(
     const CoMoving& places, const std::optional<core::BodyKind>& kind,
     bool finely, const core::Cancellation& until) {
@@ -72,12 +74,17 @@ std::optional<BestOutline> FindOutlineOfBestKind(
   return best;
 }
 
-// What moves along within a reach of the path, its first guess being `guess`.
+// Labels the cells within a reach of the path and fits an outline to them.
+// `guess`: the outline that hides the still layer until labels tell a better
+// one.
 std::optional<BestOutline> FindOutlineInReach(
     Clip& clip, const Background& background, const Track& part,
     const Outline& guess, const std::optional<core::BodyKind>& kind,
     const CoMovingOptions& options) {
-  constexpr double kMargin_px = 4.0;  // blur, and what a part's poses wander
+  // px: blur, and how far a part's poses wander. Smaller puts the body's rim
+  // into the still layer; larger leaves that layer unknown beside it. Not
+  // studied.
+  constexpr double kMargin_px = 4.0;
   const CoMoving places = FindCoMoving(
       clip, background, part,
       [&](const CoMoving& seen) {
@@ -91,20 +98,29 @@ std::optional<BestOutline> FindOutlineInReach(
   return FindOutlineOfBestKind(places, kind, true, clip.cancellation());
 }
 
-// One outline holds what moves along, and little else.
+// Whether one outline holds most of what moves along, and little else.
 bool IsOne(const BestOutline& best) {
-  constexpr double kHolds = 0.7;
-  constexpr double kPure = 0.7;
-  return best.holds > kHolds && best.pure > kPure;
+  // Recall and precision of the labelled cells. Larger loses bodies with large
+  // parts like the wall behind; smaller takes two bodies for one. Set with the
+  // recorded cart.
+  constexpr double kMinRecall = 0.7;
+  constexpr double kMinPrecision = 0.7;
+  return best.holds > kMinRecall && best.pure > kMinPrecision;
 }
 
+// Searches in growing squares around the path, so that a small body costs
+// little, then once more at full resolution.
 std::optional<BestOutline> FindOutlineNearPath(Clip& clip,
                                                const Background& background,
                                                const Track& part,
                                                const TrackOptions& wanted,
                                                bool turns) {
-  // Of an end the other one is ten of its sizes away.
-  constexpr double kReaches[] = {3.0, 6.0, 12.0};  // of the part's
+  // Reaches in units of the part's greatest extent: of a part that is one end
+  // of a bar, the other end is ten of its sizes away. Set with the recorded
+  // cart.
+  constexpr double kReaches[] = {3.0, 6.0, 12.0};
+  // px of still surroundings beside the outline in the last search: without
+  // them nothing bounds the outline. Not studied.
   constexpr double kBeside_px = 12.0;
   const Outline own = PartOutline(part, turns);
   const double most = std::max(clip.info().width_px, clip.info().height_px);
@@ -124,7 +140,7 @@ std::optional<BestOutline> FindOutlineNearPath(Clip& clip,
     }
   }
   if (!best) return std::nullopt;
-  // Once more, as finely as it goes.
+  // Once more at the finest cells that the smaller reach allows.
   const Outline& rough = best->outline;
   options.reach_px = std::hypot(rough.centre.x_px, rough.centre.y_px) +
                      Extent(rough) + kBeside_px;
@@ -133,11 +149,15 @@ std::optional<BestOutline> FindOutlineNearPath(Clip& clip,
   return found && IsOne(*found) ? found : std::nullopt;
 }
 
-// Whether the part's direction changes, by what can be seen and is no noise.
+// Whether the part's direction changes by what can be seen and is not noise.
 bool Turns(const Track& part) {
   if (part.body.kind == core::BodyKind::kSphere) return false;
-  constexpr double kSeen_px = 2.0;  // at its far end
-  constexpr double kNoNoise = 4.0;  // where noise alone gives 2.7
+  // px at the part's far end. Less leaves its picture as sharp with axes that
+  // do not turn. Not studied.
+  constexpr double kMinTurn_px = 2.0;
+  // Range of the angles (10 % to 90 %) over their median step from pose to
+  // pose: noise alone gives 2.7. Not studied.
+  constexpr double kMinRangePerStep = 4.0;
   std::vector<double> angles;
   std::vector<double> steps;
   for (const Pose& pose : part.poses) {
@@ -149,8 +169,8 @@ bool Turns(const Track& part) {
   std::sort(angles.begin(), angles.end());
   const std::size_t tenth = angles.size() / 10;
   const double range = angles[angles.size() - 1 - tenth] - angles[tenth];
-  return range * Extent(PartOutline(part, false)) > kSeen_px &&
-         range > kNoNoise * Median(std::move(steps));
+  return range * Extent(PartOutline(part, false)) > kMinTurn_px &&
+         range > kMinRangePerStep * Median(std::move(steps));
 }
 
 }  // namespace
@@ -159,7 +179,9 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
                                const Track& part, const TrackOptions& options) {
   if (part.step > 1 || !IsSteady(part)) return std::nullopt;
   clip.cancellation().Enter("the whole of the body is looked for");
-  constexpr double kLarger = 1.5;  // than the part
+  // Ratio of the areas: a whole that is hardly larger than the part is the
+  // part. Not studied.
+  constexpr double kMinAreaRatio = 1.5;
   std::optional<BestOutline> best;
   bool best_turns = false;
   for (const bool turns : {false, true}) {
@@ -172,8 +194,8 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
       best_turns = turns;
     }
   }
-  if (!best ||
-      Area(best->outline) < kLarger * Area(PartOutline(part, best_turns))) {
+  if (!best || Area(best->outline) <
+                   kMinAreaRatio * Area(PartOutline(part, best_turns))) {
     return std::nullopt;
   }
   Track whole = part;
@@ -188,19 +210,21 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
   whole.body.kind = outline.kind;
   whole.body.blur_px = part.body.blur_px;
   whole.body.contrast_dn = part.body.contrast_dn;
-  constexpr double kOfPlaces = 0.5;  // px, what a place's edge tells
+  // px: u of an edge that was found by cells. Not studied.
+  constexpr double kCellU_px = 0.5;
   if (outline.kind == core::BodyKind::kSphere) {
-    whole.body.radius_px = {outline.radius_px, kOfPlaces, std::nullopt};
+    whole.body.radius_px = {outline.radius_px, kCellU_px, std::nullopt};
   } else {
-    whole.body.half_long_px = {outline.half_long_px, kOfPlaces, std::nullopt};
-    whole.body.half_short_px = {outline.half_short_px, kOfPlaces, std::nullopt};
-    whole.body.u_common_angle_rad = kOfPlaces / outline.half_long_px;
+    whole.body.half_long_px = {outline.half_long_px, kCellU_px, std::nullopt};
+    whole.body.half_short_px = {outline.half_short_px, kCellU_px, std::nullopt};
+    whole.body.u_common_angle_rad = kCellU_px / outline.half_long_px;
   }
-  whole.body.u_common_px = kOfPlaces;
+  whole.body.u_common_px = kCellU_px;
   for (Pose& pose : whole.poses) {
     const double cosine = best_turns ? std::cos(pose.angle_rad) : 1.0;
     const double sine = best_turns ? std::sin(pose.angle_rad) : 0.0;
     const core::PixelPoint& from = outline.centre;
+    // The whole's centre lies at a fixed place in the part's axes.
     pose.centre.x_px += from.x_px * cosine - from.y_px * sine;
     pose.centre.y_px += from.x_px * sine + from.y_px * cosine;
     pose.angle_rad = outline.kind == core::BodyKind::kSphere ? 0.0
@@ -213,10 +237,12 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
 Track MakePath(const Chain& chain, const Track& like) {
   Track path = like;
   path.step = 1;
+  // A disc of the blobs' area stands for the body.
   path.body.kind = core::BodyKind::kSphere;
   path.body.radius_px = {std::sqrt(chain.Area() / std::numbers::pi), 0.0,
                          std::nullopt};
-  constexpr double kOfBlob_px = 1.0;  // what a blob's centre tells
+  // px: u of a blob's centre. Not studied.
+  constexpr double kBlobU_px = 1.0;
   const double misfit = MedianMisfit(like.poses);
   path.poses.clear();
   for (const Link& link : chain.links) {
@@ -224,7 +250,7 @@ Track MakePath(const Chain& chain, const Track& like) {
     pose.frame = link.frame;
     pose.time_s = link.time_s;
     pose.centre = link.blob.centre;
-    pose.u_x_px = pose.u_y_px = kOfBlob_px;
+    pose.u_x_px = pose.u_y_px = kBlobU_px;
     pose.misfit = misfit;
     path.poses.push_back(pose);
   }

@@ -26,6 +26,7 @@ namespace {
 
 std::string ErrorWords() { return std::strerror(errno); }
 
+// Lowers a resource limit; it is never raised.
 void Lower(int what, rlim_t most) {
   rlimit limit = {};
   if (getrlimit(what, &limit) != 0) return;
@@ -36,6 +37,7 @@ void Lower(int what, rlim_t most) {
 
 // --- Landlock ----------------------------------------------------------------
 
+// Allows kinds of access to a file or folder, and to what is below it.
 bool Allow(int rules, const std::filesystem::path& path, std::uint64_t what) {
   landlock_path_beneath_attr rule = {};
   rule.allowed_access = what;
@@ -47,6 +49,8 @@ bool Allow(int rules, const std::filesystem::path& path, std::uint64_t what) {
   return added == 0;
 }
 
+// A folder of images may hold links to files elsewhere: each of those is
+// allowed by itself.
 bool AllowFolder(int rules, const std::filesystem::path& folder) {
   if (!Allow(rules, folder,
              LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR)) {
@@ -64,14 +68,17 @@ bool AllowFolder(int rules, const std::filesystem::path& folder) {
 
 // --- seccomp -----------------------------------------------------------------
 
+// The architecture whose call numbers the filter knows; 0: none is applied.
 #if defined(__x86_64__)
-constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;  // see above
 #elif defined(__aarch64__)
-constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;  // see above
 #else
 constexpr std::uint32_t kArchitecture = 0;  // not written for this processor
 #endif
 
+// A refused call fails with EPERM, as if the user had no right to it: libraries
+// then go on or give up in an orderly way, where a signal would end the reader.
 constexpr std::uint32_t kRefuse = SECCOMP_RET_ERRNO | EPERM;
 
 // Calls that a reader makes, whatever their arguments.
@@ -180,6 +187,8 @@ class Filter {
     Add(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 1);
     Return(SECCOMP_RET_ALLOW);
   }
+  // Ends the program with refusal, and applies it to this thread and those it
+  // starts.
   bool Apply() {
     Return(kRefuse);
     const sock_fprog program = {
@@ -254,6 +263,7 @@ std::string ConfineCalls() {
   if (kArchitecture == 0) return "not known for this processor";
   Filter filter;
   for (const int call : kAllowed) filter.Allow(call);
+  // Flags of open that ask for more than reading.
   constexpr std::uint32_t kWrites =
       O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
   filter.AllowWhere(SYS_openat, 2, kWrites, 0);

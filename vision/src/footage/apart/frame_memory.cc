@@ -13,12 +13,14 @@
 namespace touchdown::vision {
 namespace {
 
-// The first page tells that work goes on; frames follow.
+// Bytes. The first page holds the counter that tells that work goes on; frames
+// follow.
 constexpr std::size_t kPage = 4096;
-// Of a piece: what the widest vector instructions want.
+// Bytes to which pieces are aligned: what the widest vector instructions want.
 constexpr std::size_t kPieceAlign = 64;
-// What a process with little address space is still given.
-constexpr std::size_t kLeastMemory = std::size_t{32} << 20;
+// Bytes that a process with little address space (`ulimit -v`) is still given;
+// below it reading fails with a message. Not studied.
+constexpr std::size_t kMinMemory = std::size_t{32} << 20;
 
 std::size_t RoundUp(std::size_t bytes, std::size_t to) {
   return (bytes + to - 1) / to * to;
@@ -29,9 +31,11 @@ std::size_t RoundUp(std::size_t bytes, std::size_t to) {
 FrameMemory::FrameMemory(std::size_t most_bytes)
     : descriptor_(memfd_create("frames", MFD_CLOEXEC | MFD_ALLOW_SEALING)),
       most_bytes_(most_bytes) {
+  // Address space is taken once and for all, memory as it is used; where the
+  // process may not have so much, half of it is tried.
   void* mapped = MAP_FAILED;
   while (descriptor_ >= 0 && mapped == MAP_FAILED &&
-         most_bytes_ >= kLeastMemory) {
+         most_bytes_ >= kMinMemory) {
     mapped = mmap(nullptr, most_bytes_, PROT_READ | PROT_WRITE,
                   MAP_SHARED | MAP_NORESERVE, descriptor_, 0);
     if (mapped == MAP_FAILED) most_bytes_ /= 2;
@@ -40,6 +44,8 @@ FrameMemory::FrameMemory(std::size_t most_bytes)
     throw core::InputError("no memory for frames; raise `ulimit -v`");
   }
   data_ = static_cast<std::byte*>(mapped);
+  // The seal promises the other side that the memory cannot shrink under it,
+  // which would raise SIGBUS there.
   fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK);
   if (!Enlarge(kPage)) {
     throw core::InputError(
@@ -63,6 +69,8 @@ bool FrameMemory::Enlarge(std::size_t bytes) {
 
 std::byte* FrameMemory::Take(std::size_t bytes) {
   Beat();
+  // Pieces are never returned to the system: a recording's frames are of one
+  // size and use the same pieces again.
   const std::size_t wanted =
       RoundUp(std::max<std::size_t>(bytes, 1), kPieceAlign);
   const std::lock_guard lock(mutex_);
@@ -123,7 +131,10 @@ bool FrameMemoryView::MapBytes(std::size_t bytes) {
   return true;
 }
 
+// Null where the offset lies beyond the memory: the reader's numbers are not
+// believed.
 const std::byte* FrameMemoryView::At(std::size_t offset, std::size_t bytes) {
+  // The sum overflows.
   if (offset > offset + bytes) return nullptr;
   if (offset + bytes > mapped_bytes_ && !MapBytes(offset + bytes))
     return nullptr;

@@ -8,10 +8,13 @@
 namespace touchdown::vision {
 namespace {
 
-// Of a text, bytes; with some of them a message still fits a datagram.
-constexpr std::size_t kMostText = 8000;
-constexpr std::uint32_t kMostWarnings = 16;
+// Bytes of a text, and number of warnings: with some of them a message still
+// fits a datagram of 32 KiB (socket_pair.cc). Longer texts are cut.
+constexpr std::size_t kMaxText = 8000;
+constexpr std::uint32_t kMaxWarnings = 16;
 
+// A reader works on hostile files and may be taken over: what it says is
+// checked like a file.
 [[noreturn]] void Refuse() {
   throw core::InputError("the reader's answer is not understood");
 }
@@ -31,11 +34,12 @@ std::optional<T> GetMaybe(Packed& from) {
 }  // namespace
 
 void Packed::PutText(std::string_view text) {
-  text = text.substr(0, kMostText);
+  text = text.substr(0, kMaxText);
   Put(static_cast<std::uint32_t>(text.size()));
   bytes_.append(text);
 }
 
+// Throws where the message is shorter than what is asked of it.
 const char* Packed::Need(std::size_t bytes) {
   if (bytes > bytes_.size() - at_) Refuse();
   const char* const here = bytes_.data() + at_;
@@ -77,11 +81,11 @@ void PutInfo(Packed& to, const ClipInfo& info) {
   to.Put<std::uint8_t>(info.time_base.uniform);
   to.Put<std::uint8_t>(info.time_base.trusted);
   const auto warnings =
-      std::min<std::size_t>(kMostWarnings, info.warnings.size());
+      std::min<std::size_t>(kMaxWarnings, info.warnings.size());
   to.Put(static_cast<std::uint32_t>(warnings));
   for (std::size_t i = 0; i < warnings; ++i) {
-    to.PutText(std::string_view(info.warnings[i])
-                   .substr(0, kMostText / kMostWarnings));
+    to.PutText(
+        std::string_view(info.warnings[i]).substr(0, kMaxText / kMaxWarnings));
   }
 }
 
@@ -101,10 +105,11 @@ ClipInfo GetInfo(Packed& from) {
   info.time_base.uniform = from.GetFlag();
   info.time_base.trusted = from.GetFlag();
   const auto warnings = from.Get<std::uint32_t>();
-  if (warnings > kMostWarnings) Refuse();
+  if (warnings > kMaxWarnings) Refuse();
   for (std::uint32_t i = 0; i < warnings; ++i) {
     info.warnings.push_back(from.GetText());
   }
+  // Facts that the program computes with are checked here, once.
   const auto is_side = [](std::int32_t side_px) {
     return side_px >= 1 && side_px <= kMostSide_px;
   };

@@ -24,10 +24,11 @@
 namespace touchdown::vision {
 namespace {
 
-// Of memory for frames: a quarter of the reader's.
+// A quarter of the reader's memory is for frames; decoders need the rest.
 constexpr std::size_t kFrameShare = 4;
-// Pairs of numbers in one answer about where reading can begin.
-constexpr std::size_t kMostEntries = 1024;
+// Pairs of numbers in one answer about where reading can begin: 16 KiB, half of
+// what a message holds.
+constexpr std::size_t kMaxEntries = 1024;
 
 // One clip and its line. Pieces for frames that lie elsewhere are its own.
 class Line {
@@ -52,6 +53,7 @@ class Line {
   }
 
  private:
+  // Every failure becomes an answer: no exception ends the thread.
   bool Answer(Packed question) {
     std::uint32_t number = 0;
     const auto refuse = [&](Said said, const std::string& what) {
@@ -81,6 +83,7 @@ class Line {
     }
   }
 
+  // Calls what the question asks for.
   void Do(Packed& question, Packed& answer, Descriptor& descriptor) {
     const auto ask = question.Get<Ask>();
     if (ask == Ask::kOpen) return Open(question, answer);
@@ -181,7 +184,7 @@ class Line {
     std::vector<std::pair<std::int64_t, std::int64_t>> found;
     std::int64_t last = -1;
     std::int64_t index = std::max<std::int64_t>(0, from);
-    for (; index < frames && found.size() < kMostEntries; ++index) {
+    for (; index < frames && found.size() < kMaxEntries; ++index) {
       const std::int64_t entry = clip_->EntryFrame(index);
       if (entry != last) found.emplace_back(index, entry);
       last = entry;
@@ -204,6 +207,7 @@ class Line {
 }  // namespace
 
 int ServeReader() {
+  // Named for `ps`; and nothing but both lines stays open.
   prctl(PR_SET_NAME, "reader");
   close_range(kFirstLine + 1, ~0u, 0);
   Received first = ReceiveMessage(kLifeLine);

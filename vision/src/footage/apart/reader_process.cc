@@ -19,7 +19,8 @@
 namespace touchdown::vision {
 namespace {
 
-// How often a wait looks whether the work is to end.
+// How often a wait looks whether the work is to end: Ctrl-C is answered within
+// that. Shorter costs wake-ups.
 constexpr std::chrono::milliseconds kLookEvery{50};
 
 std::string SignalName(int signal) {
@@ -28,16 +29,16 @@ std::string SignalName(int signal) {
                          : fmt::format("signal {}", signal);
 }
 
-// The program's name, then what makes it a reader; both lines as descriptors
-// that it expects; no output; signals of the terminal's keys go to another
-// group.
+// Starts this program again as a reader: its name, then the argument that makes
+// it one; both lines as the descriptors that it expects; no output. A process
+// group of its own keeps the terminal's signals from it.
 pid_t Spawn(int life_line, int first_line) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     posix_spawn_file_actions_addopen(&files, standard, "/dev/null", O_RDWR, 0);
   }
-  // Neither takes the other's place before it has moved.
+  // Neither line takes the other's place before that one has moved.
   posix_spawn_file_actions_adddup2(&files, first_line, kFirstLine);
   posix_spawn_file_actions_adddup2(&files, life_line, kLifeLine);
   posix_spawnattr_t how;
@@ -93,6 +94,7 @@ ReaderProcess::ReaderProcess(const std::filesystem::path& path,
 
 ReaderProcess::~ReaderProcess() { End(); }
 
+// Ends the process at most once, and returns its status.
 int ReaderProcess::End() {
   const std::lock_guard lock(mutex_);
   if (process_ < 0) return status_;
@@ -103,6 +105,7 @@ int ReaderProcess::End() {
   return status_;
 }
 
+// Throws the reason why the reader is gone, as one line.
 void ReaderProcess::Lose(const std::string& why) {
   const int status = End();
   const std::string how =
@@ -154,6 +157,8 @@ Answered ReaderLine::Wait(std::uint32_t number,
     if (received.what == Received::What::kNothingYet) {
       until.Check();
       const std::uint64_t now = memory_ ? memory_->beats() : 0;
+      // A reader that decodes lets its counter run: only one that does nothing
+      // at all is given up.
       silent = now == beats ? silent + kLookEvery : kLookEvery;
       beats = now;
       if (std::chrono::duration<double>(silent).count() >

@@ -13,9 +13,12 @@
 namespace touchdown::vision {
 namespace {
 
-// Of one message, bytes: all that one side says at a time fits.
-constexpr std::size_t kMostBytes = std::size_t{32} << 10;
+// Bytes of one message. A datagram holds all that one side says at a time:
+// texts (messages.cc) and one answer about entries are smaller. A longer
+// message would be cut, and refused as not understood.
+constexpr std::size_t kMaxMessageBytes = std::size_t{32} << 10;
 
+// Room for one descriptor beside the bytes, aligned as the kernel asks for.
 union Control {
   cmsghdr header;
   std::array<char, CMSG_SPACE(sizeof(int))> space;
@@ -27,6 +30,7 @@ Descriptor::~Descriptor() {
   if (number_ >= 0) close(number_);
 }
 
+// SOCK_SEQPACKET keeps messages apart and tells when the other end is gone.
 std::pair<Descriptor, Descriptor> MakeSocketPair() {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
@@ -52,13 +56,14 @@ bool SendMessage(int socket, const std::string& bytes, int descriptor) {
     std::memcpy(CMSG_DATA(header), &descriptor, sizeof descriptor);
   }
   for (;;) {
+    // No SIGPIPE: a reader that has died must not end the program.
     if (sendmsg(socket, &message, MSG_NOSIGNAL) >= 0) return true;
     if (errno != EINTR) return false;
   }
 }
 
 Received ReceiveMessage(int socket) {
-  std::array<char, kMostBytes> buffer;
+  std::array<char, kMaxMessageBytes> buffer;
   iovec part = {buffer.data(), buffer.size()};
   Control control = {};
   msghdr message = {};
@@ -82,12 +87,14 @@ Received ReceiveMessage(int socket) {
     std::memcpy(&descriptor, CMSG_DATA(header), sizeof descriptor);
     received.descriptor = Descriptor(descriptor);
   }
+  // 0: the other end is closed.
   if (n <= 0) return received;
   received.what = Received::What::kMessage;
   received.bytes.assign(buffer.data(), static_cast<std::size_t>(n));
   return received;
 }
 
+// A receive that waits for longer returns with "nothing yet".
 void SetPatience(int socket, std::chrono::milliseconds patience) {
   const auto count = patience.count();
   const timeval time = {static_cast<time_t>(count / 1000),

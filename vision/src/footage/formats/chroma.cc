@@ -8,6 +8,7 @@ namespace touchdown::vision {
 
 bool ChromaReader::Reads(AVPixelFormat format) {
   const AVPixFmtDescriptor* const d = Libav().av_pix_fmt_desc_get(format);
+  // Formats that hold no planes of Cb and Cr.
   constexpr std::uint64_t kOther =
       AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_HWACCEL |
       AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT;

@@ -6,15 +6,19 @@
 namespace touchdown::vision {
 namespace {
 
+// Levels of the linear 12-bit scale: white, and saturation.
 constexpr std::int32_t kWhiteLevel = 4064;
 constexpr std::int32_t kSaturated = (1 << kCineLinearBits) - 1;
-// Fitted; see the header.
+// Black and range of the linear and of the coded scale, in levels. Fitted; see
+// the header.
 constexpr double kBlack = 63.999;
 constexpr double kRange = 4034.445;
 constexpr double kCodeBlack = 63.527;
 constexpr double kCodeRange = 954.376;
 
 std::int32_t EncodeLevel(std::int32_t x) {
+  // The curve is that of ITU-R BT.709: linear below 0.018, else a power of
+  // 0.45.
   constexpr double kLinearBelow = 0.018;
   const double light = (x - kBlack) / kRange;
   const double v = light < kLinearBelow ? 4.5 * light
@@ -26,6 +30,7 @@ std::int32_t EncodeLevel(std::int32_t x) {
 
 }  // namespace
 
+// The inverse: for each code the middle of the levels that give it.
 CineCurve CineLinearOfCode() {
   CineCurve linear{};
   const std::int32_t last = EncodeLevel(kWhiteLevel);

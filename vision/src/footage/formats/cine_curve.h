@@ -20,6 +20,7 @@
 
 namespace touchdown::vision {
 
+// Bits of a packed sample, and of the linear level that it stands for.
 inline constexpr std::int32_t kCineCodeBits = 10;
 inline constexpr std::int32_t kCineLinearBits = 12;
 

@@ -11,8 +11,10 @@
 namespace touchdown::vision {
 namespace {
 
+// Stamps and exposures are 32.32 fixed-point seconds.
 constexpr double kTwoTo32 = 4294967296.0;
-// No camera misses frames for so long and goes on with the same recording.
+// Seconds: no camera misses frames for so long and goes on with the same
+// recording.
 constexpr double kLongestGapS = 3600.0;
 constexpr std::uint64_t kStampFlags = 3;  // IRIG in step, event input
 constexpr std::uint32_t kPacked10 = 256;  // biCompression
@@ -90,6 +92,8 @@ void TakeStamps(const std::vector<std::uint64_t>& stamps, CineHeader& header) {
 // the pictures.
 void ReadBlocks(const Reader& reader, std::uint64_t at, std::uint64_t end,
                 CineHeader& header) {
+  // Bytes of a block's head (size, type, reserved), and types of blocks, as the
+  // Cine file format numbers them.
   constexpr std::uint64_t kBlockHead = 8;
   constexpr std::uint16_t kTimes = 1002;
   constexpr std::uint16_t kExposures = 1003;
@@ -131,6 +135,7 @@ CineHeader ParseCineHeader(std::span<const std::uint8_t> file,
       reader.Number<std::uint32_t>(picture + 16, "biCompression") == kPacked10;
   if (!reader.Marked(setup + 140, "ST")) return header;  // of older software
   const auto length = reader.Number<std::uint16_t>(setup + 142, "Length");
+  // Bytes of a SETUP structure that reaches to the field FrameRate.
   constexpr std::uint16_t kHasFrameRate = 772;
   if (length >= kHasFrameRate) {
     header.stated_fps = reader.Number<std::uint32_t>(setup + 768, "FrameRate");

@@ -23,7 +23,7 @@ std::string FileKind(const std::filesystem::path& path) {
 
 // The last number in a file's name, if it fits: img_0012.png -> 12.
 std::optional<std::int64_t> FileNumber(const std::filesystem::path& path) {
-  constexpr std::string_view kDigits = "0123456789";
+  constexpr std::string_view kDigits = "0123456789";  // in any locale
   const std::string stem = path.stem().string();
   const auto last = stem.find_last_of(kDigits);
   if (last == std::string::npos) return std::nullopt;
@@ -35,6 +35,8 @@ std::optional<std::int64_t> FileNumber(const std::filesystem::path& path) {
   return error == std::errc{} ? std::optional(number) : std::nullopt;
 }
 
+// A folder of pictures. One of them is held in memory; going back decodes
+// again.
 class ImageFolderClip final : public Clip {
  public:
   ImageFolderClip(const std::filesystem::path& folder,
@@ -160,6 +162,7 @@ std::vector<std::filesystem::path> ListImages(
     throw core::InputError(fmt::format(
         "{}: no PNG, TIFF or JPEG in this folder", folder.string()));
   }
+  // In the order of the numbers in their names: img_9 before img_10.
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
     return NaturalLess(a.filename().string(), b.filename().string());
   });

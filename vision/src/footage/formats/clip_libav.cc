@@ -34,6 +34,8 @@ std::vector<std::uint8_t> GrayRamp() {
   return palette;
 }
 
+// A video through libav. Decoding goes forward as long as it can; going back,
+// or far ahead, means a seek to the key packet before the frame.
 class VideoClip final : public Clip {
  public:
   VideoClip(const std::filesystem::path& path, const ClipOptions& options,
@@ -268,6 +270,8 @@ class VideoClip final : public Clip {
   }
 
   // Decodes one more frame into frame_ and sets current_; false at the end.
+  // Frames are known by their timestamp in the index, or by counting where they
+  // have none.
   bool DecodeNext() {
     for (;;) {
       // Up to a key frame's distance of them for one that is asked for.
@@ -296,6 +300,8 @@ class VideoClip final : public Clip {
     }
   }
 
+  // Decodes up to frame `index`. Throws where it, or a frame that it depends
+  // on, is damaged or missing.
   void AdvanceDecoder(std::int64_t index) {
     trouble_.clear();
     while (current_ < index) {
@@ -328,6 +334,8 @@ class VideoClip final : public Clip {
     }
   }
 
+  // Takes size, depth and orientation from the first decoded frame: containers
+  // are often wrong about them.
   void LookAtFirstFrame(Channel channel) {
     const auto pixel_format = static_cast<AVPixelFormat>(frame_->format);
     if (!LumaReader::Reads(pixel_format)) {

@@ -26,6 +26,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "16-bit samples are handed out in place");
 
+// Bytes of a stream of packed samples, the last one filled up.
 std::int64_t PackedBytes(std::int64_t samples, std::int32_t bits) {
   return (samples * bits + 7) / 8;
 }
@@ -43,6 +44,8 @@ void Unpack12Eights(const std::uint8_t*& bytes, std::int32_t& samples,
                     std::uint16_t*& to) {
   using Bytes = std::uint8_t __attribute__((vector_size(16)));
   using Words = std::uint16_t __attribute__((vector_size(16)));
+  // Even and odd samples of eight: the former lie in the upper, the latter in
+  // the lower 12 bits of their 16-bit window.
   constexpr Words kEven = {0xFFF, 0, 0xFFF, 0, 0xFFF, 0, 0xFFF, 0};
   constexpr Words kOdd = {0, 0xFFF, 0, 0xFFF, 0, 0xFFF, 0, 0xFFF};
   const std::uint8_t* p = bytes;
@@ -61,6 +64,8 @@ void Unpack12Eights(const std::uint8_t*& bytes, std::int32_t& samples,
   samples = left;
 }
 
+// Unpacks samples from number `first` on, which may be the second of a pair: by
+// eights, by fours, by pairs, and one.
 void UnpackRow12(const std::uint8_t* stream, std::int64_t first,
                  std::int32_t count, std::uint16_t* out) {
   if (count > 0 && first % 2 != 0) {
@@ -89,6 +94,8 @@ void UnpackRow12(const std::uint8_t* stream, std::int64_t first,
   if (count % 2 != 0) *out = static_cast<std::uint16_t>(p[0] << 4 | p[1] >> 4);
 }
 
+// A Photron recording. 8-bit samples and right-aligned words are views of the
+// mapped file; everything else is unpacked window by window.
 class MrawClip final : public Clip {
  public:
   MrawClip(const std::filesystem::path& path, const ClipOptions& options)
@@ -131,6 +138,8 @@ class MrawClip final : public Clip {
     file_->WillRead(rows.begin, rows.end);
     copied_ = {};
   }
+  // A copy by pread costs less than the faults of mapped pages that are looked
+  // at once.
   void WillReadOnce(std::int64_t index,
                     const core::PixelRect& window) override {
     const Bytes rows = WindowRows(index, window);
@@ -250,6 +259,8 @@ class MrawClip final : public Clip {
     }
     const auto* const samples =
         reinterpret_cast<const std::uint16_t*>(file_->data());
+    // The first frame shows whether the header's word on the signal's bits can
+    // be right.
     std::uint32_t bits = 0;
     for (std::int64_t i = 0; i < samples_per_frame(); ++i) bits |= samples[i];
     if (bits >> depth == 0) return depth;
@@ -317,6 +328,7 @@ class MrawClip final : public Clip {
   Bytes copied_;                       // where it lies in the file
 };
 
+// Extensions as cameras and users write them.
 std::filesystem::path FirstThatExists(
     const std::filesystem::path& path,
     std::initializer_list<const char*> extensions) {

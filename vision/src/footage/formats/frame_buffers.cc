@@ -8,8 +8,9 @@
 namespace touchdown::vision {
 namespace {
 
+// Planes that libav's picture functions handle.
 constexpr std::size_t kPlanes = 4;
-// Decoders may write a vector's width beyond a plane's end.
+// Bytes beyond a plane: decoders may write a vector's width beyond its end.
 constexpr std::size_t kSpareBytes = 128;
 
 struct PlaneLayout {
@@ -23,6 +24,7 @@ bool LayOut(AVCodecContext& decoder, const AVFrame& frame,
             PlaneLayout& layout) {
   const auto format = static_cast<AVPixelFormat>(frame.format);
   const AVPixFmtDescriptor* const about = Libav().av_pix_fmt_desc_get(format);
+  // Formats whose planes are no rows of samples.
   constexpr std::uint64_t kOtherwise =
       AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM;
   if (about == nullptr || (about->flags & kOtherwise) != 0) return false;
@@ -51,6 +53,7 @@ void GiveBack(void* memory, std::uint8_t* data) {
 }
 
 std::size_t Padded(std::size_t bytes) {
+  // Bytes: what the widest vector instructions want.
   constexpr std::size_t kAlign = 64;
   return (bytes + kSpareBytes + kAlign - 1) / kAlign * kAlign;
 }

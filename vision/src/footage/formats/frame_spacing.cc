@@ -10,15 +10,15 @@
 namespace touchdown::vision {
 namespace {
 
-// Times that leave the even grid by less than this part of a frame period
-// count as rounded by the container (1 ms ticks at 20 to 30 fps reach 1.5 %);
-// cameras that vary their rate leave it by far more.
+// Frame periods. Times that leave the even grid by less count as rounded by the
+// container (1 ms ticks at 20 to 30 fps reach 1.5 %); cameras that vary their
+// rate leave it by far more.
 constexpr double kRoundingPeriods = 0.02;
-// A gap is a whole number of periods to this part of one: half of it is what
+// Frame periods. A gap is a whole number of periods to this: half of it is what
 // two frames may each have come early or late and still be told from the next.
 constexpr double kGapPeriods = 0.25;
-// More than that is no gap but a damaged time.
-constexpr double kMostPeriods = 1e9;
+// Frame periods: more is no gap but a damaged time.
+constexpr double kMaxPeriods = 1e9;
 
 // Whether `last` periods stay on whole numbers of ticks.
 bool TicksAreExact(double period_s, std::int64_t last,
@@ -27,8 +27,9 @@ bool TicksAreExact(double period_s, std::int64_t last,
   const double ticks = period_s / errors.tick_s;
   const double drift =
       std::abs(ticks - std::round(ticks)) * static_cast<double>(last);
-  constexpr double kNothing = 0.01;  // of a tick
-  return std::round(ticks) >= 1.0 && drift < kNothing;
+  // Of a tick: so much drift over the clip rounds no time to another tick.
+  constexpr double kMaxDrift = 0.01;
+  return std::round(ticks) >= 1.0 && drift < kMaxDrift;
 }
 
 // What the clock's resolution and jitter may put a time off by.
@@ -92,7 +93,7 @@ std::optional<std::vector<std::int64_t>> FindSlots(
   for (std::size_t i = 1; i < times_s.size(); ++i) {
     const double interval = (times_s[i] - times_s[i - 1]) / period;
     const double periods = std::max(1.0, std::round(interval));
-    if (periods > kMostPeriods || std::abs(interval - periods) > allowed) {
+    if (periods > kMaxPeriods || std::abs(interval - periods) > allowed) {
       return std::nullopt;
     }
     slots.push_back(slots.back() + static_cast<std::int64_t>(periods));
@@ -178,6 +179,7 @@ std::string DescribeSpacing(const FrameSpacing& spacing) {
         spacing.fps);
   }
   if (spacing.gaps.empty()) return text;
+  // Gaps that the warning names; the others are counted.
   constexpr std::size_t kShown = 3;
   std::int64_t missing = 0;
   std::string where;

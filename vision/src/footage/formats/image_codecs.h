@@ -32,6 +32,8 @@ void Allocate(std::int64_t width_px, std::int64_t height_px,
 // Rec. ITU-R BT.601 luma of samples of up to 16 bits, rounded to the nearest;
 // the weights times 2^16, which sum to 2^16, so that gray stays what it is.
 inline std::uint32_t Luma(std::uint32_t r, std::uint32_t g, std::uint32_t b) {
+  // Weights of ITU-R BT.601 (0.299, 0.587, 0.114) times 2^16, and half for
+  // rounding.
   constexpr std::uint32_t kR = 19595, kG = 38470, kB = 7471, kHalf = 1u << 15;
   static_assert(kR + kG + kB == 1u << 16);
   return (kR * r + kG * g + kB * b + kHalf) >> 16;

@@ -39,6 +39,7 @@ struct RowLayout {
 template <class Sample>
 void ConvertRow(const std::uint8_t* row, const RowLayout& layout,
                 std::uint8_t* out) {
+  // All bits set.
   constexpr std::uint32_t kWhite = static_cast<Sample>(~Sample{0});
   for (std::int32_t x = 0; x < layout.width_px; ++x) {
     Sample pixel[3] = {};
@@ -111,7 +112,7 @@ bool EachRow(TIFF* tiff, const Kind& kind, std::size_t file_bytes,
   }
   const auto wide = Tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH, 0);
   const auto high = Tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH, 0);
-  // A tile is at most a picture rounded up; more is a damaged directory.
+  // px: a tile is at most a picture rounded up; more is a damaged directory.
   constexpr std::uint32_t kMaxTilePx = 1 << 14;
   const std::size_t tile_row = wide * pixel;
   if (wide < 1 || high < 1 || wide > kMaxTilePx || high > kMaxTilePx ||

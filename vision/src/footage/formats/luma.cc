@@ -87,6 +87,7 @@ std::optional<Orientation> ReadOrientation(const std::int32_t matrix[9]) {
   const std::int32_t b = matrix[1];
   const std::int32_t c = matrix[3];
   const std::int32_t d = matrix[4];
+  // Turns by whole quarters only: the matrix has zeros on one diagonal.
   if (b == 0 && c == 0 && a != 0 && d != 0) return {{false, a < 0, d < 0}};
   if (a == 0 && d == 0 && b != 0 && c != 0) return {{true, c < 0, b < 0}};
   return std::nullopt;
@@ -146,6 +147,7 @@ core::Frame LumaReader::View(const AVFrame& frame,
   view.bit_depth = bit_depth_;
   view.origin_x_px = window.x;
   view.origin_y_px = window.y;
+  // Where samples lie as a Frame has them, they are handed out in place.
   const bool aligned =
       reinterpret_cast<std::uintptr_t>(y.origin) % 2 == 0 && y.dy % 2 == 0;
   if (!palette && !rgb && !curve_ && shift_ == 0 && y.dy > 0 &&

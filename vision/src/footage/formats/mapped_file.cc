@@ -25,8 +25,7 @@ namespace {
                                      std::generic_category().message(error)));
 }
 
-// --- SIGBUS
-// -------------------------------------------------------------------
+// --- SIGBUS: a mapped file that becomes shorter -----------------------------
 
 // What is mapped now, for the handler. A slot is free where `begin` is 0; it is
 // filled before its memory can be touched, and freed after.
@@ -39,13 +38,17 @@ static_assert(std::atomic<std::uintptr_t>::is_always_lock_free &&
               std::atomic<std::atomic<bool>*>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free);
 
-// One recording has at most two files mapped, and there are fewer recordings
-// open at once than cores.
+// Files that can be mapped at once. One recording has at most two, and there
+// are fewer recordings open at once than cores. The handler may not allocate,
+// hence a fixed number.
 constexpr std::size_t kSlots = 1024;
 std::array<Slot, kSlots> slots;
 struct sigaction before_us = {};
 std::atomic<std::uintptr_t> page_bytes = 0;
 
+// A page of a mapped file that is no longer there raises SIGBUS. The handler
+// maps zeros in its place, and notes that the file has lost a part: the reader
+// then throws. Only functions that are safe in a signal handler are called.
 void OnBusError(int signal, siginfo_t* info, void* context) {
   const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
   for (Slot& slot : slots) {
@@ -182,10 +185,10 @@ void MappedFile::Copy(std::int64_t begin, std::int64_t end,
 
 void MappedFile::WillRead(std::int64_t begin, std::int64_t end) const {
 #ifdef MADV_POPULATE_READ
-  // A fault costs many times what a page costs that is got in advance, above
-  // all on virtual machines. With one page the system maps those about it that
-  // are in memory, in stretches of this size; to ask for each of them takes as
-  // long again. An older kernel refuses; nothing is lost.
+  // Bytes. A fault costs many times what a page costs that is got in advance,
+  // above all on virtual machines. With one page the system maps those about it
+  // that are in memory, in stretches of this size; to ask for each of them
+  // takes as long again. An older kernel refuses; nothing is lost.
   constexpr std::uintptr_t kStretch = std::uintptr_t{64} << 10;
   static const std::int64_t page = ::sysconf(_SC_PAGESIZE);
   begin = std::max<std::int64_t>(begin, 0) / page * page;

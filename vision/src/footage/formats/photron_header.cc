@@ -15,12 +15,16 @@
 namespace touchdown::vision {
 namespace {
 
-// Real headers are 8 to 20 kB; a preview picture in a .cihx may add to that.
+// Bytes: real headers are 8 to 20 kB; a preview picture in a .cihx may add to
+// that. Frames and frame numbers beyond any recording, with which no product
+// overflows.
 constexpr std::int64_t kMaxHeaderBytes = 64 << 20;
 constexpr std::int64_t kMaxFrames = std::int64_t{1} << 40;
 constexpr std::int64_t kMaxFrameNumber = std::int64_t{1} << 60;
 
+// Without blanks at both ends.
 std::string_view Trim(std::string_view text) {
+  // In any locale.
   constexpr std::string_view kBlank = " \t\r\n";
   const auto first = text.find_first_not_of(kBlank);
   if (first == std::string_view::npos) return {};
@@ -96,11 +100,13 @@ struct Names {
   std::string_view width, height, frames, start, step, rate, bits, depth, side,
       type, format;
 };
+// Lines of a .cih.
 constexpr Names kCih = {
     "Image Width", "Image Height",       "Total Frame",
     "Start Frame", "Save Step",          "Record Rate(fps)",
     "Color Bit",   "EffectiveBit Depth", "EffectiveBit Side",
     "Color Type",  "File Format"};
+// Paths of elements in the XML of a .cihx.
 constexpr Names kCihx = {"imageDataInfo/resolution/width",
                          "imageDataInfo/resolution/height",
                          "frameInfo/totalFrame",
@@ -113,6 +119,7 @@ constexpr Names kCihx = {"imageDataInfo/resolution/width",
                          "imageDataInfo/colorInfo/type",
                          "imageFileInfo/fileFormat"};
 
+// The same entries with the same ranges, from either form of header.
 PhotronHeader Interpret(const Entries& entries, const Names& names) {
   PhotronHeader header;
   if (const auto format = entries.find(names.format);
@@ -192,6 +199,7 @@ std::optional<std::string_view> Child(std::string_view parent,
   return std::nullopt;
 }
 
+// The element at a path of names, separated by slashes.
 std::optional<std::string_view> Find(std::string_view root,
                                      std::string_view names) {
   std::optional<std::string_view> element = root;
@@ -236,6 +244,7 @@ PhotronHeader ParseCihx(std::string_view bytes, const std::string& name) {
   const Entries entries{
       name, [root](std::string_view entry) { return Find(root, entry); }};
   PhotronHeader header = Interpret(entries, kCihx);
+  // Where the picture lies on the sensor; newer cameras write it.
   constexpr std::string_view kSensorX = "imageDataInfo/segmentPos/sensorXpos";
   constexpr std::string_view kSensorY = "imageDataInfo/segmentPos/sensorYpos";
   if (entries.find(kSensorX) && entries.find(kSensorY)) {

@@ -31,6 +31,7 @@ enum TiffTag : std::uint16_t {
   kTileByteCounts = 325,
   kSampleFormat = 339,
 };
+// Values of the fields above.
 constexpr std::uint64_t kReducedPicture = 1;  // bit of NewSubfileType
 constexpr std::uint64_t kTransparency = 4;    // another: a mask
 constexpr std::uint64_t kUncompressed = 1;
@@ -38,6 +39,7 @@ constexpr std::uint64_t kBlackIsZero = 1;
 constexpr std::uint64_t kLeftToRight = 1;  // of FillOrder
 constexpr std::uint64_t kUnsigned = 1;     // of SampleFormat
 
+// The file's bytes with its byte order; nothing is read beyond the end.
 class Bytes {
  public:
   explicit Bytes(FileBytes file) : file_(file) {
@@ -177,6 +179,7 @@ std::optional<Directory> ReadDirectory(const Bytes& file, std::uint64_t at) {
   return directory;
 }
 
+// The number-th value of a field, or `fallback` where it is absent or cut.
 std::uint64_t Value(const Bytes& file, const std::optional<Field>& field,
                     std::uint64_t fallback, std::uint64_t number = 0) {
   if (!field || number >= field->count) return fallback;
@@ -200,6 +203,8 @@ TiffPage DescribePage(const Bytes& file, std::uint64_t at,
                       const Directory& directory) {
   TiffPage page;
   page.directory = at;
+  // A side that no TIFF has: larger claims are cut to it, so that products of
+  // sides do not overflow.
   constexpr std::uint64_t kNoPicture = std::uint64_t{1} << 32;
   const std::uint64_t width =
       std::min(Value(file, directory.width, 0), kNoPicture);
@@ -245,6 +250,7 @@ std::uint64_t ImagesOfImageJ(const Bytes& file, const Directory& directory) {
   if (!directory.description) return 0;
   const std::string_view text =
       file.Text(directory.description->at, directory.description->count);
+  // As ImageJ writes it.
   constexpr std::string_view kCount = "\nimages=";
   const std::size_t at = text.find(kCount);
   if (!text.starts_with("ImageJ=") || at == std::string_view::npos) return 0;
@@ -288,6 +294,7 @@ std::uint64_t FirstDirectory(const Bytes& file) {
 
 bool IsTiff(FileBytes file) { return Bytes(file).is_tiff(); }
 
+// Follows the chain of directories; one that leads back ends the list.
 TiffPages ListTiffPages(FileBytes bytes, const std::string& name) {
   const Bytes file(bytes);
   if (!file.is_tiff()) {
@@ -327,7 +334,8 @@ TiffPages ListTiffPages(FileBytes bytes, const std::string& name) {
 bool HasSeveralTiffPages(FileBytes bytes) {
   const Bytes file(bytes);
   if (!file.is_tiff()) return false;
-  // Thumbnails of the first picture may stand before the second.
+  // Directories: thumbnails of the first picture may stand before the second. A
+  // bound, since this is asked of every file.
   constexpr int kMaxLooks = 8;
   int pictures = 0;
   std::uint64_t at = FirstDirectory(file);

@@ -126,6 +126,7 @@ VideoPacket Describe(const AVPacket& packet) {
           (packet.flags & AV_PKT_FLAG_KEY) != 0};
 }
 
+// Number of the frame with this time; nothing where there is none.
 std::optional<std::int64_t> VideoIndex::FindFrame(std::int64_t time) const {
   const auto found = std::lower_bound(pts.begin(), pts.end(), time);
   if (found == pts.end() || *found != time) return std::nullopt;
@@ -150,6 +151,8 @@ std::int64_t VideoIndex::NextKeyFrame(std::int64_t index) const {
   return after;
 }
 
+// Lists all packets of the video, by the container's own list or by reading the
+// file once: frame numbers are then exact whatever the container's seek does.
 VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
                       AVRational declared) {
   if (auto listed = IndexByList(format, stream, declared)) return *listed;
@@ -230,9 +233,12 @@ VideoIndex IndexVideo(AVFormatContext& format, AVStream& stream,
 }
 
 bool IsPlaybackRate(double fps) {
+  // Frame rates of film and television: a file with one of them may have been
+  // recorded faster.
   constexpr double kRates[] = {24000.0 / 1001.0, 24.0, 25.0,
                                30000.0 / 1001.0, 30.0, 50.0,
                                60000.0 / 1001.0, 60.0};
+  // Relative: 23.976 counts as 24000/1001, and 24 does, too.
   constexpr double kTolerance = 1e-3;
   return std::any_of(std::begin(kRates), std::end(kRates), [&](double rate) {
     return std::abs(fps / rate - 1.0) <= kTolerance;

@@ -144,6 +144,8 @@ std::string FormatName(const AVFormatContext& format) {
   return name.substr(0, name.find(','));
 }
 
+// Whether the file is shorter than its own head says: RIFF (.avi) and Matroska
+// state their length.
 bool IsCut(const std::filesystem::path& path) {
   std::error_code trouble;
   const std::uintmax_t size = std::filesystem::file_size(path, trouble);
@@ -167,6 +169,7 @@ bool IsCut(const std::filesystem::path& path) {
     }
     return value;
   };
+  // Ids of the elements that a Matroska file begins with.
   constexpr std::array<std::uint8_t, 4> kEbml = {0x1A, 0x45, 0xDF, 0xA3};
   constexpr std::array<std::uint8_t, 4> kSegment = {0x18, 0x53, 0x80, 0x67};
   if (std::memcmp(head.data(), kEbml.data(), 4) != 0) return false;

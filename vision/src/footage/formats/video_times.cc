@@ -17,7 +17,9 @@ void WarnOfExposures(const CineHeader& header, std::size_t frames,
   const auto [shortest, longest] = std::minmax_element(
       header.exposures_s.begin(),
       header.exposures_s.begin() + static_cast<std::ptrdiff_t>(frames));
-  constexpr double kSameExposure = 0.02;  // of the exposure
+  // Relative: exposures that differ by less are those of one setting. Not
+  // studied.
+  constexpr double kSameExposure = 0.02;
   constexpr double kUsPerS = 1e6;
   if (*longest <= (1.0 + kSameExposure) * *shortest) return;
   info.warnings.push_back(
@@ -46,11 +48,13 @@ bool TakeCineHeader(const std::filesystem::path& path,
   index.spacing = FindSpacing(header.times_s, {header.stated_fps},
                               {.jitter_s = kCineJitterS});
   WarnOfExposures(header, frames, info);
-  // FrameRate is a whole number, in truth a part in a thousand off at most.
-  constexpr double kOfAnotherRate = 0.01;
+  // Relative. FrameRate is a whole number, in truth a part in a thousand off at
+  // most: beyond ten times that the header and the camera's stamps contradict
+  // each other.
+  constexpr double kMaxRateError = 0.01;
   const double fps = index.spacing.fps;
   if (index.spacing.even && header.stated_fps > 0.0 && !options.fps &&
-      std::abs(header.stated_fps / fps - 1.0) > kOfAnotherRate) {
+      std::abs(header.stated_fps / fps - 1.0) > kMaxRateError) {
     info.warnings.push_back(fmt::format(
         "the header says {:.6g} fps, the camera's times of the frames {:.6g} "
         "fps: the times are believed; if they are wrong, give the rate with "

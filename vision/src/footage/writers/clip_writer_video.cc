@@ -90,8 +90,8 @@ class VideoWriter {
         packet_(Libav().av_packet_alloc()),
         picture_(Libav().av_frame_alloc()) {
     CheckFps(options.fps);
-    // libav writes faster ones as 600 fps in .avi, and to the nearest
-    // millisecond in .mkv.
+    // Frames per second: libav writes faster ones as 600 fps in .avi, and to
+    // the nearest millisecond in .mkv.
     constexpr double kMaxCoarseFps = 1000.0;
     const std::string_view container = container_;
     if ((container == "avi" || container == "matroska") &&
@@ -125,6 +125,7 @@ class VideoWriter {
     }
     for (const int plane : {1, 2}) {
       if (picture_->data[plane] == nullptr) continue;
+      // Cb and Cr of gray.
       constexpr int kNoColour = 128;
       std::memset(picture_->data[plane], kNoColour,
                   static_cast<std::size_t>(picture_->linesize[plane]) *
