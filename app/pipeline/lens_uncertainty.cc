@@ -1,10 +1,10 @@
 #include "app/pipeline/lens_uncertainty.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
 
 #include "app/pipeline/shared_uncertainty.h"
+#include "touchdown/calib/lens_directions.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -16,15 +16,15 @@ std::vector<calib::LensVector> Directions(const calib::LensCovariance& c) {
   const calib::LensVector deviation = c.diagonal().cwiseSqrt();
   const calib::LensVector unit =
       deviation.unaryExpr([](double v) { return v > 0.0 ? 1.0 / v : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<calib::LensCovariance> solver(
-      unit.asDiagonal() * c * unit.asDiagonal());
+  const calib::LensDirections own =
+      calib::DecomposeLensCovariance(unit.asDiagonal() * c * unit.asDiagonal());
   std::vector<calib::LensVector> directions;
   for (int k = 0; k < calib::kLensParameters; ++k) {
-    const double variance = solver.eigenvalues()[k];
+    const double variance = own.variances[k];
     constexpr double kRounding = 1e-9;
     if (!(variance > kRounding)) continue;
-    directions.emplace_back(deviation.cwiseProduct(
-        std::sqrt(variance) * solver.eigenvectors().col(k)));
+    directions.emplace_back(
+        deviation.cwiseProduct(std::sqrt(variance) * own.directions.col(k)));
   }
   return directions;
 }

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "touchdown/calib/lens_directions.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/output_file.h"
 #include "touchdown/core/units.h"
@@ -145,9 +145,7 @@ LensRecord ReadLens(const Object& object, const Picture& picture) {
   constexpr double kRounding = 1e-6;
   if (!c.allFinite() || c.diagonal().minCoeff() < 0.0 ||
       (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > kRounding ||
-      Eigen::SelfAdjointEigenSolver<LensCovariance>(scaled)
-              .eigenvalues()
-              .minCoeff() < -kRounding) {
+      DecomposeLensCovariance(scaled).variances.minCoeff() < -kRounding) {
     object.Fail("covariance", square);
   }
   record.board = object.Word("board");
