@@ -12,10 +12,11 @@
 #include "app/cli/condition_flags.h"
 #include "app/cli/kept_memory.h"
 #include "app/cli/progress.h"
-#include "app/pipeline/analysis_text.h"
-#include "app/pipeline/analyze.h"
-#include "app/pipeline/evidence.h"
-#include "app/pipeline/log_analysis.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/analysis_text.h"
+#include "app/documents/evidence.h"
+#include "app/documents/log_analysis.h"
+#include "app/measure/analyze.h"
 
 namespace touchdown::cli {
 namespace {

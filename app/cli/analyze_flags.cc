@@ -8,7 +8,7 @@
 
 #include "app/cli/calibrate_file.h"
 #include "app/cli/values.h"
-#include "app/pipeline/dates.h"
+#include "app/text/dates.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

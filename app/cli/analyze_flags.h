@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/batch.h"
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/condition_flags.h"
@@ -21,10 +22,9 @@
 #include "app/cli/progress.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
-#include "app/pipeline/batch.h"
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/recordings.h"
-#include "app/report/text_file.h"
+#include "app/documents/log_analysis.h"
+#include "app/text/text_file.h"
+#include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/maintenance.h"

@@ -12,18 +12,18 @@
 
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
-#include "app/pipeline/pictures.h"
-#include "app/pipeline/report_input.h"
-#include "app/pipeline/report_pictures.h"
-#include "app/pipeline/rig_prediction.h"
+#include "app/documents/pictures.h"
 #include "app/report/boundary_json.h"
 #include "app/report/eln_file.h"
 #include "app/report/evidence_page.h"
-#include "app/report/format.h"
 #include "app/report/group.h"
 #include "app/report/print_pdf.h"
 #include "app/report/report.h"
 #include "app/report/sentences.h"
+#include "app/report_input/report_input.h"
+#include "app/report_input/report_pictures.h"
+#include "app/shots/rig_prediction.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

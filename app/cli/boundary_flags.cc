@@ -13,9 +13,9 @@
 
 #include "app/cli/messages.h"
 #include "app/cli/store_text.h"
-#include "app/pipeline/looks.h"
-#include "app/pipeline/report_input.h"
-#include "app/pipeline/thrower.h"
+#include "app/report_input/report_input.h"
+#include "app/shots/thrower.h"
+#include "app/trials/looks.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/plan.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "app/pipeline/trial_selection.h"
 #include "app/report/group.h"
 #include "app/report/report.h"
+#include "app/trials/trial_selection.h"
 #include "touchdown/analysis/statistics/boundary_study.h"
 #include "touchdown/core/estimate.h"
 

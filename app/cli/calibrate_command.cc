@@ -14,7 +14,7 @@
 #include "app/cli/command.h"
 #include "app/cli/progress.h"
 #include "app/cli/rig_print.h"
-#include "app/pipeline/board_pictures.h"
+#include "app/measure/board_pictures.h"
 #include "touchdown/calib/board.h"
 #include "touchdown/calib/lens_calibration.h"
 #include "touchdown/core/errors.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "app/cli/values.h"
-#include "app/pipeline/new_calibration.h"
+#include "app/measure/new_calibration.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::cli {

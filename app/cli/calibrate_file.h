@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/cli/command.h"
-#include "app/pipeline/board_pictures.h"
-#include "app/pipeline/new_calibration.h"
+#include "app/measure/board_pictures.h"
+#include "app/measure/new_calibration.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/calib/references.h"
 

@@ -15,8 +15,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/report/text.h"
-#include "app/report/text_file.h"
+#include "app/text/text.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::cli {

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
-#include "app/pipeline/statement.h"
-#include "app/pipeline/typed_values.h"
+#include "app/trials/statement.h"
+#include "app/trials/typed_values.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::cli {

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "app/report/text_file.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::cli {

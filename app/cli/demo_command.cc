@@ -10,7 +10,7 @@
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/progress.h"
-#include "app/pipeline/demo.h"
+#include "app/demo/demo.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

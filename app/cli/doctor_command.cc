@@ -10,7 +10,7 @@
 #include "app/cli/command.h"
 #include "app/cli/doctor_flags.h"
 #include "app/cli/messages.h"
-#include "app/pipeline/dates.h"
+#include "app/text/dates.h"
 
 namespace touchdown::cli {
 namespace {

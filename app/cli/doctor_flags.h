@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/pipeline/doctor.h"
+#include "app/doctor/doctor.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;

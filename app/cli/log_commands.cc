@@ -12,7 +12,7 @@
 #include "app/cli/condition_flags.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
-#include "app/pipeline/statement.h"
+#include "app/trials/statement.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::cli {

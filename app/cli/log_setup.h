@@ -1,4 +1,4 @@
-// Where the journal goes (pipeline/journal.h).
+// Where the journal goes (measure/journal.h).
 #pragma once
 
 #include <string>

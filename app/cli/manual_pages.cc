@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/pipeline/version.h"
+#include "app/text/version.h"
 
 namespace touchdown::cli {
 namespace {

@@ -18,7 +18,7 @@
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/cli/values.h"
-#include "app/report/register_json.h"
+#include "app/exchange/register_json.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/core/edge_unit.h"
 #include "touchdown/db/names.h"

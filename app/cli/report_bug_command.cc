@@ -12,8 +12,8 @@
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/messages.h"
-#include "app/pipeline/bug_report.h"
-#include "app/pipeline/dates.h"
+#include "app/doctor/bug_report.h"
+#include "app/text/dates.h"
 
 namespace touchdown::cli {
 namespace {

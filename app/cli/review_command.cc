@@ -18,8 +18,8 @@
 #include "app/cli/interruption.h"
 #include "app/cli/messages.h"
 #include "app/cli/store_flags.h"
-#include "app/pipeline/thrower.h"
 #include "app/review/server.h"
+#include "app/shots/thrower.h"
 
 namespace touchdown::cli {
 namespace {

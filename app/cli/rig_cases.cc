@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/cli/case_file.h"
-#include "app/report/text.h"
+#include "app/text/text.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/flight.h"

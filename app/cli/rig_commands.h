@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/command.h"
-#include "app/report/json.h"
+#include "app/text/json.h"
 #include "touchdown/rig/predict.h"
 
 namespace touchdown::cli {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/json.h"
+#include "app/text/json.h"
 #include "touchdown/rig/predict.h"
 #include "touchdown/rig/spring.h"
 

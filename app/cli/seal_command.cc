@@ -19,7 +19,7 @@
 #include "app/cli/messages.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
-#include "app/report/text_file.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/seal.h"
 

@@ -10,8 +10,8 @@
 
 #include "app/cli/command.h"
 #include "app/cli/progress.h"
-#include "app/pipeline/scene_file.h"
-#include "app/pipeline/simulate.h"
+#include "app/simulate/scene_file.h"
+#include "app/simulate/simulate.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

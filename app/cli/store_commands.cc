@@ -8,14 +8,14 @@
 #include <string>
 #include <tuple>
 
+#include "app/batch/triage.h"
 #include "app/cli/command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
-#include "app/pipeline/statement.h"
-#include "app/pipeline/triage.h"
-#include "app/report/json.h"
-#include "app/report/trial_json.h"
-#include "app/report/trial_list.h"
+#include "app/exchange/trial_json.h"
+#include "app/exchange/trial_list.h"
+#include "app/text/json.h"
+#include "app/trials/statement.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"

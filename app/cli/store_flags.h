@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "app/pipeline/campaign_entry.h"
+#include "app/trials/campaign_entry.h"
 #include "touchdown/core/body.h"
 #include "touchdown/core/trial.h"
 #include "touchdown/db/store.h"

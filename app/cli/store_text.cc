@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/cli/store_flags.h"
-#include "app/report/format.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {

@@ -10,7 +10,7 @@
 #include "app/cli/case_file.h"
 #include "app/cli/theory_cases.h"
 #include "app/cli/theory_options.h"
-#include "app/report/json.h"
+#include "app/text/json.h"
 #include "touchdown/analysis/theory/boundary_models.h"
 
 namespace touchdown::cli {

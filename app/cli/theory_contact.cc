@@ -11,7 +11,7 @@
 #include "app/cli/theory_cases.h"
 #include "app/cli/theory_options.h"
 #include "app/cli/theory_words.h"
-#include "app/report/json.h"
+#include "app/text/json.h"
 #include "touchdown/analysis/theory/contact.h"
 #include "touchdown/analysis/theory/flat_contact.h"
 #include "touchdown/analysis/theory/impact.h"

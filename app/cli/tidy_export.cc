@@ -5,8 +5,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/report/text.h"
-#include "app/report/trial_csv.h"
+#include "app/exchange/trial_csv.h"
+#include "app/text/text.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/output_file.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/pipeline/typed_values.h"
+#include "app/trials/typed_values.h"
 #include "touchdown/core/points.h"
 
 namespace touchdown::cli {

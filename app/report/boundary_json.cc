@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "app/report/campaign_checks.h"
+#include "app/facts/campaign_checks.h"
 #include "app/report/check_shots.h"
 #include "app/report/document.h"
 #include "app/report/sentences.h"

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "app/report/group.h"
-#include "app/report/json.h"
 #include "app/report/report.h"
+#include "app/text/json.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::report {

@@ -7,8 +7,8 @@
 
 #include "app/report/content.h"
 #include "app/report/control_plot.h"
-#include "app/report/format.h"
 #include "app/report/set_points.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "app/report/campaign_checks.h"
+#include "app/facts/campaign_checks.h"
 #include "app/report/content.h"
-#include "app/report/format.h"
+#include "app/text/format.h"
 
 namespace touchdown::report {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/text.h"
+#include "app/text/text.h"
 
 namespace touchdown::report {
 namespace {

@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
-#include "app/report/analysis_facts.h"
+#include "app/facts/analysis_facts.h"
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/tally.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/register.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
+#include "app/text/format.h"
 #include "touchdown/analysis/statistics/score_tests.h"
 #include "touchdown/analysis/statistics/set_angles.h"
 #include "touchdown/core/units.h"

@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "app/report/document.h"
-#include "app/report/format.h"
 #include "app/report/page_style.h"
-#include "app/report/text.h"
+#include "app/text/format.h"
+#include "app/text/text.h"
 
 namespace touchdown::report {
 namespace {

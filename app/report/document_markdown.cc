@@ -3,7 +3,7 @@
 #include <string>
 
 #include "app/report/document.h"
-#include "app/report/text.h"
+#include "app/text/text.h"
 
 namespace touchdown::report {
 namespace {

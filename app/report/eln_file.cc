@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/report/evidence_page.h"
-#include "app/report/json.h"
-#include "app/report/text_file.h"
 #include "app/report/zip_file.h"
+#include "app/text/json.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::report {

@@ -8,13 +8,13 @@
 #include <iterator>
 #include <system_error>
 
-#include "app/report/analysis_facts.h"
+#include "app/facts/analysis_facts.h"
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/group.h"
 #include "app/report/set_points.h"
-#include "app/report/text.h"
-#include "app/report/text_file.h"
+#include "app/text/format.h"
+#include "app/text/text.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 

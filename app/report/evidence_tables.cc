@@ -7,11 +7,11 @@
 #include <map>
 #include <string>
 
-#include "app/report/analysis_facts.h"
+#include "app/facts/analysis_facts.h"
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/set_points.h"
 #include "app/report/tally.h"
+#include "app/text/format.h"
 #include "touchdown/analysis/statistics/agreement_statistics.h"
 #include "touchdown/core/units.h"
 

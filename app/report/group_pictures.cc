@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/set_points.h"
 #include "app/report/tally.h"
 #include "app/report/trajectory_plot.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

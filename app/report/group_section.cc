@@ -6,8 +6,8 @@
 #include <set>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/sentences.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

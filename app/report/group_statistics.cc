@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/sentences.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
+#include "app/text/format.h"
 #include "touchdown/analysis/statistics/boundary_fit.h"
 #include "touchdown/analysis/statistics/boundary_study.h"
 #include "touchdown/analysis/statistics/paper_table1.h"

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
+#include "app/text/format.h"
 #include "touchdown/analysis/statistics/paper_table1.h"
 #include "touchdown/core/units.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/set_points.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

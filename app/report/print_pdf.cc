@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/report/text_file.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/unfinished.h"
 

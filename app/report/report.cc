@@ -10,9 +10,9 @@
 #include "app/report/boundary_json.h"
 #include "app/report/content.h"
 #include "app/report/document.h"
-#include "app/report/format.h"
-#include "app/report/text.h"
-#include "app/report/text_file.h"
+#include "app/text/format.h"
+#include "app/text/text.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "app/report/content.h"
-#include "app/report/json.h"
-#include "app/report/text.h"
+#include "app/text/json.h"
+#include "app/text/text.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "app/report/content.h"
-#include "app/report/text.h"
+#include "app/text/text.h"
 
 namespace touchdown::report {
 

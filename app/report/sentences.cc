@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "app/report/format.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "app/report/evidence_page.h"
-#include "app/report/format.h"
+#include "app/text/format.h"
 #include "touchdown/analysis/statistics/agreement_statistics.h"
 #include "touchdown/core/units.h"
 

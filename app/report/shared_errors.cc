@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/report/analysis_facts.h"
+#include "app/facts/analysis_facts.h"
 
 namespace touchdown::report {
 namespace {

@@ -1,5 +1,5 @@
 // What the rig was expected to do in a trial, beside what was measured: plain
-// data, made by app/pipeline/rig_prediction.h.
+// data, made by app/shots/rig_prediction.h.
 #pragma once
 
 #include <map>

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/campaign_checks.h"
+#include "app/facts/campaign_checks.h"
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/sentences.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "app/report/content.h"
-#include "app/report/format.h"
 #include "app/report/set_points.h"
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/pipeline/batch.h"
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/options_hash.h"
-#include "app/report/format.h"
+#include "app/batch/batch.h"
+#include "app/documents/log_analysis.h"
+#include "app/measure/options_hash.h"
+#include "app/text/format.h"
 #include "touchdown/core/cancellation.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/store.h"

@@ -2,7 +2,7 @@
 // which they were asked for, with progress; each can be cancelled.
 //
 // One that is to be logged goes the way of `touchdown batch`
-// (pipeline/batch.h): what the store knows is not analysed again, and until the
+// (batch/batch.h): what the store knows is not analysed again, and until the
 // trial is on the disk nothing is. A test of settings is kept here and written
 // nowhere (setup.h).
 #pragma once
@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "app/review/recordings.h"
 #include "touchdown/core/campaign.h"
 #include "touchdown/core/conditions.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
-#include "app/report/format.h"
-#include "app/report/json.h"
 #include "app/review/words.h"
+#include "app/text/format.h"
+#include "app/text/json.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"

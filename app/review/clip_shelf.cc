@@ -4,7 +4,7 @@
 #include <exception>
 #include <vector>
 
-#include "app/pipeline/open_recording.h"
+#include "app/measure/open_recording.h"
 #include "app/review/thumbnail.h"
 #include "touchdown/vision/footage/encode_image.h"
 #include "touchdown/vision/footage/image_file.h"

@@ -6,15 +6,15 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "app/pipeline/judge.h"
-#include "app/pipeline/pictures.h"
-#include "app/pipeline/replay.h"
-#include "app/pipeline/statement.h"
-#include "app/pipeline/whole_number.h"
-#include "app/report/json.h"
+#include "app/documents/pictures.h"
+#include "app/documents/replay.h"
+#include "app/measure/judge.h"
 #include "app/review/changes.h"
 #include "app/review/fields.h"
 #include "app/review/trial_view.h"
+#include "app/text/json.h"
+#include "app/text/whole_number.h"
+#include "app/trials/statement.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "app/pipeline/journal.h"
-#include "app/pipeline/looks.h"
+#include "app/measure/journal.h"
+#include "app/trials/looks.h"
 
 namespace touchdown::review {
 

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "app/pipeline/statement.h"
+#include "app/trials/statement.h"
 
 namespace touchdown::review {
 namespace {

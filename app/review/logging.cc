@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/replay.h"
-#include "app/pipeline/report_input.h"
-#include "app/pipeline/report_pictures.h"
-#include "app/pipeline/statement.h"
-#include "app/pipeline/typed_values.h"
+#include "app/documents/log_analysis.h"
+#include "app/documents/replay.h"
+#include "app/report_input/report_input.h"
+#include "app/report_input/report_pictures.h"
 #include "app/review/fields.h"
+#include "app/trials/statement.h"
+#include "app/trials/typed_values.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/register.h"
 

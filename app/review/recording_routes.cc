@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "app/pipeline/open_recording.h"
-#include "app/pipeline/recordings.h"
-#include "app/report/format.h"
-#include "app/report/json.h"
+#include "app/measure/open_recording.h"
 #include "app/review/answers.h"
 #include "app/review/fields.h"
 #include "app/review/logging.h"
 #include "app/review/setup.h"
+#include "app/text/format.h"
+#include "app/text/json.h"
+#include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {

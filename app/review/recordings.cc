@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "app/pipeline/board_pictures.h"
-#include "app/pipeline/recordings.h"
-#include "app/pipeline/statement.h"
-#include "app/pipeline/whole_number.h"
+#include "app/measure/board_pictures.h"
 #include "app/review/fields.h"
+#include "app/text/whole_number.h"
+#include "app/trials/recordings.h"
+#include "app/trials/statement.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/pipeline/relink.h"
 #include "app/review/fields.h"
+#include "app/trials/relink.h"
 
 namespace touchdown::review {
 

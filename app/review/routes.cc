@@ -7,12 +7,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "app/pipeline/replay.h"
-#include "app/pipeline/statement.h"
-#include "app/report/json.h"
+#include "app/documents/replay.h"
+#include "app/exchange/trial_list.h"
 #include "app/report/report.h"
-#include "app/report/text_file.h"
-#include "app/report/trial_list.h"
 #include "app/review/answers.h"
 #include "app/review/changes.h"
 #include "app/review/corrections.h"
@@ -23,6 +20,9 @@
 #include "app/review/thumbnail.h"
 #include "app/review/trajectory.h"
 #include "app/review/trial_view.h"
+#include "app/text/json.h"
+#include "app/text/text_file.h"
+#include "app/trials/statement.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::review {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "app/pipeline/journal.h"
+#include "app/measure/journal.h"
 #include "app/review/desk.h"
 #include "app/review/guard.h"
 #include "app/review/http_server.h"

@@ -4,14 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "app/pipeline/report_input.h"
 #include "app/report/boundary_json.h"
 #include "app/report/check_shots.h"
 #include "app/report/content.h"
 #include "app/report/group.h"
-#include "app/report/json.h"
 #include "app/report/report.h"
 #include "app/report/sentences.h"
+#include "app/report_input/report_input.h"
+#include "app/text/json.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::review {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "app/pipeline/replay.h"
+#include "app/documents/replay.h"
 
 namespace touchdown::review {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "app/report/stored_document.h"
+#include "app/facts/stored_document.h"
 
 namespace touchdown::review {
 namespace {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "app/report/json.h"
-#include "app/report/trial_list.h"
+#include "app/exchange/trial_list.h"
+#include "app/text/json.h"
 
 namespace touchdown::review {
 namespace {

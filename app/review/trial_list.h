@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "app/pipeline/triage.h"
+#include "app/batch/triage.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::review {

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/report/format.h"
-#include "app/report/json.h"
 #include "app/review/words.h"
+#include "app/text/format.h"
+#include "app/text/json.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::review {
@@ -11,7 +11,7 @@ namespace touchdown::review {
 // What is drawn and plotted of an analysis, in px of the recorded picture:
 // ground line, outlines, flights, point of contact; gap over time and residuals
 // of the flights, in mm where there is a scale; the bounce height; the checks
-// of the answer (pipeline/answer_check.h).
+// of the answer (measure/answer_check.h).
 nlohmann::ordered_json ViewJson(const pipeline::Analysis& analysis);
 
 // The checks alone.

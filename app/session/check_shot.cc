@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "app/report/format.h"
+#include "app/text/format.h"
 
 namespace touchdown::session {
 namespace {

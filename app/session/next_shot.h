@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "app/pipeline/thrower.h"
+#include "app/shots/thrower.h"
 #include "touchdown/core/expected.h"
 #include "touchdown/rig/setpoints.h"
 

@@ -10,14 +10,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/options_hash.h"
-#include "app/pipeline/recordings.h"
-#include "app/pipeline/set_aside.h"
-#include "app/pipeline/triage.h"
-#include "app/report/format.h"
+#include "app/batch/set_aside.h"
+#include "app/batch/triage.h"
+#include "app/documents/log_analysis.h"
+#include "app/exchange/trial_json.h"
+#include "app/measure/options_hash.h"
 #include "app/report/sentences.h"
-#include "app/report/trial_json.h"
+#include "app/text/format.h"
+#include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/plan.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "app/report/group.h"
 #include "app/session/check_shot.h"
 #include "app/session/next_shot.h"
@@ -37,7 +37,7 @@ struct SessionOptions {
   core::Conditions conditions;
   // Nothing: none is asked for.
   std::optional<CheckShot> check;
-  // Take also what is set aside (pipeline/set_aside.h).
+  // Take also what is set aside (batch/set_aside.h).
   bool again = false;
 };
 

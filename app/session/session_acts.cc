@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/pipeline/statement.h"
-#include "app/pipeline/typed_values.h"
 #include "app/session/session.h"
+#include "app/trials/statement.h"
+#include "app/trials/typed_values.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/register.h"

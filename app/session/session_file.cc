@@ -12,7 +12,7 @@
 #include <fstream>
 #include <utility>
 
-#include "app/report/text_file.h"
+#include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/identity.h"

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "app/pipeline/clip_calibration.h"
-#include "app/pipeline/judge.h"
+#include "app/measure/clip_calibration.h"
+#include "app/measure/judge.h"
 #include "tests/vision/synthetic_track.h"
 #include "touchdown/core/units.h"
 

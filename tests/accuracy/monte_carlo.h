@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "touchdown/core/trial.h"
 
 namespace touchdown::accuracy {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "tests/accuracy/bound.h"
 #include "tests/accuracy/design.h"
 #include "touchdown/core/trial.h"

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/pipeline/paper_trials.h"
-#include "app/pipeline/trials_csv.h"
+#include "app/trials/paper_trials.h"
+#include "app/trials/trials_csv.h"
 #include "tests/support/run_program.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"

@@ -1,4 +1,4 @@
-#include "app/report/campaign_checks.h"
+#include "app/facts/campaign_checks.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "app/report/text_file.h"
 #include "app/report/zip_file.h"
+#include "app/text/text_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "app/report/analysis_facts.h"
-#include "app/report/text.h"
+#include "app/facts/analysis_facts.h"
+#include "app/text/text.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"

@@ -35,7 +35,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/text_file.h"
+#include "app/text/text_file.h"
 #include "tests/db/old_store.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/board_files.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/truth_file.h"
+#include "app/text/truth_file.h"
 #include "tests/db/fixture.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/busy_clip.h"

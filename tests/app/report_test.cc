@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "app/report/gnuplot.h"
-#include "app/report/text.h"
+#include "app/text/text.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 

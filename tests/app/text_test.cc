@@ -1,4 +1,4 @@
-#include "app/report/text.h"
+#include "app/text/text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,15 @@
-// Trials to files and back: app/report/trial_json.h, app/report/trial_csv.h.
+// Trials to files and back: app/exchange/trial_json.h,
+// app/exchange/trial_csv.h.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/report/plan_json.h"
-#include "app/report/register_json.h"
-#include "app/report/trial_csv.h"
-#include "app/report/trial_json.h"
+#include "app/exchange/plan_json.h"
+#include "app/exchange/register_json.h"
+#include "app/exchange/trial_csv.h"
+#include "app/exchange/trial_json.h"
 #include "tests/db/fixture.h"
 #include "tests/support/random_trials.h"
 #include "touchdown/core/errors.h"

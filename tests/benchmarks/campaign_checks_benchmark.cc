@@ -12,8 +12,9 @@
 #include <random>
 #include <vector>
 
-#include "app/pipeline/analyze.h"
-#include "app/report/campaign_checks.h"
+#include "app/documents/analysis_json.h"
+#include "app/facts/campaign_checks.h"
+#include "app/measure/analyze.h"
 #include "tests/accuracy/design.h"
 #include "touchdown/vision/synthetic/render.h"
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/pipeline/replay.h"
+#include "app/documents/replay.h"
 #include "app/review/trial_view.h"
 #include "tests/fuzz/fuzz.h"
 

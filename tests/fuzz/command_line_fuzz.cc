@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "app/batch/batch.h"
 #include "app/cli/values.h"
-#include "app/pipeline/batch.h"
-#include "app/pipeline/campaign_entry.h"
+#include "app/trials/campaign_entry.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace touchdown::fuzz {

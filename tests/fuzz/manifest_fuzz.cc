@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "app/pipeline/manifest.h"
+#include "app/batch/manifest.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,

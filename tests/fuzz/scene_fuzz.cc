@@ -1,7 +1,7 @@
 // Scene files: what was accepted can be written and read back.
 #include <string>
 
-#include "app/pipeline/scene_file.h"
+#include "app/simulate/scene_file.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,

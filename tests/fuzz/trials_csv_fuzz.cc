@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/trial_csv.h"
+#include "app/exchange/trial_csv.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace touchdown::fuzz {

@@ -2,8 +2,8 @@
 #include <sstream>
 #include <string>
 
-#include "app/report/register_json.h"
-#include "app/report/trial_json.h"
+#include "app/exchange/register_json.h"
+#include "app/exchange/trial_json.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,

@@ -1,17 +1,27 @@
 # The rooms of a module: an include from one room into another needs an arrow in
 # the link lists of the module's CMakeLists.txt (those that arrive through
-# PUBLIC lists of others count), and no arrows go round.
+# PUBLIC lists of others count), and no arrows go round. The rooms of app are
+# its folders, each of which may have its list in a file of its own.
 # Usage: cmake -D ROOT=<source tree> -P rooms.cmake
 cmake_minimum_required(VERSION 3.25)
 set(breaches "")
 file(GLOB lists RELATIVE "${ROOT}" "${ROOT}/*/CMakeLists.txt")
 foreach(list IN LISTS lists)
   file(READ "${ROOT}/${list}" text)
+  get_filename_component(module "${list}" DIRECTORY)
+  if(module STREQUAL "app")
+    file(GLOB own_lists "${ROOT}/app/*/CMakeLists.txt")
+    foreach(own_list IN LISTS own_lists)
+      file(READ "${own_list}" own_text)
+      string(APPEND text "${own_text}")
+    endforeach()
+    string(REPLACE "touchdown_app_room(" "touchdown_room(app " text "${text}")
+    string(REPLACE "function(touchdown_room(app " "function(" text "${text}")
+  endif()
   string(REGEX MATCHALL "touchdown_room\\([^)]*\\)" calls "${text}")
   if(NOT calls)
     continue()
   endif()
-  get_filename_component(module "${list}" DIRECTORY)
 
   set(rooms "")
   foreach(call IN LISTS calls)
@@ -57,15 +67,24 @@ foreach(list IN LISTS lists)
     file(GLOB_RECURSE files RELATIVE "${ROOT}"
          "${ROOT}/${module}/src/${room}/*"
          "${ROOT}/${module}/include/touchdown/${module}/${room}/*")
+    if(module STREQUAL "app")
+      file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/app/${room}/*.h"
+           "${ROOT}/app/${room}/*.cc")
+    endif()
     foreach(file IN LISTS files)
       file(STRINGS "${ROOT}/${file}" includes REGEX "^#include \"")
       foreach(line IN LISTS includes)
-        if(line MATCHES "\"(touchdown/${module}/)?([a-z_]+)/"
-           AND CMAKE_MATCH_2 IN_LIST rooms
-           AND NOT CMAKE_MATCH_2 STREQUAL room
-           AND NOT CMAKE_MATCH_2 IN_LIST reached_${room})
+        if(NOT line MATCHES "\"(touchdown/${module}/|app/)?([a-z_]+)/")
+          continue()
+        endif()
+        set(from "${CMAKE_MATCH_1}")
+        set(other "${CMAKE_MATCH_2}")
+        if(NOT from STREQUAL "app/" AND NOT other IN_LIST rooms)
+          continue()
+        endif()
+        if(NOT other STREQUAL room AND NOT other IN_LIST reached_${room})
           list(APPEND breaches
-               "${file}: ${line} (${room} has no arrow to ${CMAKE_MATCH_2})")
+               "${file}: ${line} (${room} has no arrow to ${other})")
         endif()
       endforeach()
     endforeach()
@@ -75,6 +94,13 @@ foreach(list IN LISTS lists)
   file(GLOB loose RELATIVE "${ROOT}" "${ROOT}/${module}/src/*.cc"
        "${ROOT}/${module}/src/*.h"
        "${ROOT}/${module}/include/touchdown/${module}/*.h")
+  if(module STREQUAL "app")
+    # The commands may use every room, and no room uses them.
+    file(GLOB loose RELATIVE "${ROOT}" "${ROOT}/app/*.cc" "${ROOT}/app/*.h"
+         "${ROOT}/app/*/*.cc" "${ROOT}/app/*/*.h")
+    list(JOIN rooms "|" named)
+    list(FILTER loose EXCLUDE REGEX "^app/(cli|${named})/")
+  endif()
   foreach(file IN LISTS loose)
     list(APPEND breaches "${file}: stands in no room")
   endforeach()

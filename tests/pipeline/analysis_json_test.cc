@@ -6,9 +6,10 @@
 #include <random>
 #include <string>
 
-#include "app/pipeline/analysis_text.h"
-#include "app/pipeline/analyze.h"
-#include "app/pipeline/log_analysis.h"
+#include "app/documents/analysis_text.h"
+#include "app/documents/log_analysis.h"
+#include "app/documents/replay.h"
+#include "app/measure/analyze.h"
 #include "tests/pipeline/analyzed_film.h"
 #include "tests/pipeline/document.h"
 #include "tests/pipeline/filmed.h"

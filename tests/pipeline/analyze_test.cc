@@ -1,5 +1,5 @@
 // A clip in, a trial out: rendered clips against their truth, and the document.
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/analysis_text.h"
-#include "app/pipeline/evidence.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/analysis_text.h"
+#include "app/documents/evidence.h"
 #include "tests/pipeline/analyzed_film.h"
 #include "tests/pipeline/document.h"
 #include "tests/pipeline/filmed.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "tests/pipeline/filmed.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/vision/synthetic/scene.h"

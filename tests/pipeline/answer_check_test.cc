@@ -1,14 +1,15 @@
-#include "app/pipeline/answer_check.h"
+#include "app/measure/answer_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "app/pipeline/judge.h"
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/replay.h"
-#include "app/pipeline/triage.h"
+#include "app/batch/triage.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/log_analysis.h"
+#include "app/documents/replay.h"
+#include "app/measure/judge.h"
 #include "tests/pipeline/analyzed_film.h"
 
 namespace touchdown::pipeline {

@@ -1,6 +1,6 @@
 // Many recordings into the store: the same as one by one, whatever the jobs,
 // the killing and the bad ones among them.
-#include "app/pipeline/batch.h"
+#include "app/batch/batch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/recordings.h"
-#include "app/report/trial_json.h"
+#include "app/documents/log_analysis.h"
+#include "app/exchange/trial_json.h"
+#include "app/trials/recordings.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"

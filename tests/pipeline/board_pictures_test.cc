@@ -1,5 +1,5 @@
 // A lens from pictures of a board, as files.
-#include "app/pipeline/board_pictures.h"
+#include "app/measure/board_pictures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What is stated of the body beside what is seen of it.
-#include "app/pipeline/body_size.h"
+#include "app/measure/body_size.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

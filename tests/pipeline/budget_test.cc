@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "app/pipeline/clip_calibration.h"
-#include "app/pipeline/judge.h"
+#include "app/measure/clip_calibration.h"
+#include "app/measure/judge.h"
 #include "tests/accuracy/monte_carlo.h"
 #include "tests/pipeline/filmed.h"
 #include "touchdown/core/units.h"

@@ -1,9 +1,9 @@
 // Bodies and campaigns as they are typed.
-#include "app/pipeline/campaign_entry.h"
+#include "app/trials/campaign_entry.h"
 
 #include <gtest/gtest.h>
 
-#include "app/pipeline/statement.h"
+#include "app/trials/statement.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::pipeline {

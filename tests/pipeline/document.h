@@ -9,8 +9,9 @@
 #include <set>
 #include <string>
 
-#include "app/pipeline/analysis_text.h"
-#include "app/pipeline/analyze.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/analysis_text.h"
+#include "app/measure/analyze.h"
 
 namespace touchdown::pipeline::filmed {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "tests/support/shared_data.h"
 #include "touchdown/core/units.h"
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <utility>
 
-#include "app/pipeline/analyze.h"
+#include "app/measure/analyze.h"
 #include "tests/pipeline/analyzed_film.h"
 #include "tests/pipeline/changed_clip.h"
 #include "tests/pipeline/document.h"

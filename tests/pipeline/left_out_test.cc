@@ -1,4 +1,4 @@
-#include "app/pipeline/left_out.h"
+#include "app/measure/left_out.h"
 
 #include <gtest/gtest.h>
 

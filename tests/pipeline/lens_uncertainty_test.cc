@@ -1,6 +1,6 @@
 // What a lens does to an analysis: rendered clips seen through one, with and
 // without its calibration.
-#include "app/pipeline/lens_uncertainty.h"
+#include "app/measure/lens_uncertainty.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/pipeline/analyze.h"
-#include "app/pipeline/evidence.h"
-#include "app/pipeline/scene_file.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/evidence.h"
+#include "app/measure/analyze.h"
+#include "app/simulate/scene_file.h"
 #include "tests/pipeline/filmed.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/calib/calibration_file.h"

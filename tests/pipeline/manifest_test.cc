@@ -1,5 +1,5 @@
 // Manifests: what each column means, and where a mistake is.
-#include "app/pipeline/manifest.h"
+#include "app/batch/manifest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

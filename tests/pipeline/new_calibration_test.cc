@@ -1,11 +1,11 @@
 // A calibration as it begins.
-#include "app/pipeline/new_calibration.h"
+#include "app/measure/new_calibration.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "app/pipeline/dates.h"
+#include "app/text/dates.h"
 
 namespace touchdown::pipeline {
 namespace {

@@ -1,11 +1,11 @@
-#include "app/pipeline/pictures.h"
+#include "app/documents/pictures.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "app/pipeline/log_analysis.h"
+#include "app/documents/log_analysis.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"

@@ -1,5 +1,5 @@
 // What counts as a recording, and when it is complete. Time is the test's own.
-#include "app/pipeline/recordings.h"
+#include "app/trials/recordings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "app/pipeline/relink.h"
+#include "app/trials/relink.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "app/pipeline/analyze.h"
-#include "app/pipeline/log_analysis.h"
+#include "app/documents/log_analysis.h"
+#include "app/measure/analyze.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/campaign.h"

@@ -1,6 +1,6 @@
 // An analysis out of its document again: the same numbers from the stored
 // track, and corrections of it judged by the same code as a fresh analysis.
-#include "app/pipeline/replay.h"
+#include "app/documents/replay.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/pipeline/judge.h"
-#include "app/pipeline/log_analysis.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/log_analysis.h"
+#include "app/measure/judge.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/db/quantities.h"

@@ -1,4 +1,4 @@
-#include "app/pipeline/report_pictures.h"
+#include "app/report_input/report_pictures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/pipeline/log_analysis.h"
+#include "app/documents/log_analysis.h"
+#include "app/documents/replay.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/rig_prediction.h"
+#include "app/shots/rig_prediction.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

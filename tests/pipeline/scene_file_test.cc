@@ -1,4 +1,4 @@
-#include "app/pipeline/scene_file.h"
+#include "app/simulate/scene_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

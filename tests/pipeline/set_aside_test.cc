@@ -1,4 +1,4 @@
-#include "app/pipeline/set_aside.h"
+#include "app/batch/set_aside.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <vector>
 
-#include "app/pipeline/batch.h"
+#include "app/batch/batch.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/simulate.h"
+#include "app/simulate/simulate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/pipeline/scene_file.h"
+#include "app/simulate/scene_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"

@@ -1,6 +1,6 @@
 // With --stop-early the first contact is the same as without, and what comes
 // after the decision is not read.
-#include "app/pipeline/stop_early.h"
+#include "app/measure/stop_early.h"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/footage.h"
-#include "app/pipeline/log_analysis.h"
-#include "app/pipeline/options_hash.h"
-#include "app/pipeline/replay.h"
+#include "app/documents/analysis_json.h"
+#include "app/documents/log_analysis.h"
+#include "app/documents/replay.h"
+#include "app/measure/footage.h"
+#include "app/measure/options_hash.h"
 #include "tests/pipeline/document.h"
 #include "tests/vision/long_clip.h"
 #include "touchdown/vision/background/background.h"

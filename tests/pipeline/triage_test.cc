@@ -1,5 +1,5 @@
 // The order in which a person should look.
-#include "app/pipeline/triage.h"
+#include "app/batch/triage.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "app/pipeline/zip_file.h"
+#include "app/text/zip_file.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/pipeline/statement.h"
+#include "app/trials/statement.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 

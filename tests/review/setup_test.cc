@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "app/pipeline/statement.h"
 #include "app/review/routes.h"
+#include "app/trials/statement.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/board_files.h"
 #include "tests/support/temporary_folder.h"

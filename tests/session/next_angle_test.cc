@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/thrower.h"
 #include "app/review/statistics.h"
 #include "app/session/session.h"
+#include "app/shots/thrower.h"
 #include "tests/session/bench.h"
 #include "tests/support/run_program.h"
 #include "touchdown/core/units.h"

@@ -1,0 +1,409 @@
+#include "app/documents/replay.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/documents/analysis_json.h"
+#include "app/measure/judge.h"
+#include "app/text/json.h"
+#include "app/text/version.h"
+#include "app/text/whole_number.h"
+#include "touchdown/core/errors.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using report::Json;
+
+constexpr const char* kColumns =
+    "frame time_s x_px y_px u_x_px u_y_px correlation angle_rad u_angle_rad "
+    "relative_size misfit";
+
+// --- values that may be absent ----------------------------------------------
+
+Json EstimateJson(const core::Estimate& e) {
+  Json json = {{"value", e.value}, {"u", e.u}};
+  if (e.interval95)
+    json["interval95"] = {e.interval95->low, e.interval95->high};
+  return json;
+}
+
+core::Estimate ReadEstimate(const Json& json) {
+  core::Estimate e{json.at("value"), json.at("u"), std::nullopt};
+  if (json.contains("interval95")) {
+    e.interval95 =
+        core::Interval{json["interval95"].at(0), json["interval95"].at(1)};
+  }
+  return e;
+}
+
+void Put(Json& json, const char* name, const std::optional<double>& value) {
+  if (value) json[name] = *value;
+}
+void Put(Json& json, const char* name,
+         const std::optional<core::Estimate>& value) {
+  if (value) json[name] = EstimateJson(*value);
+}
+
+std::optional<core::Estimate> OptionalEstimate(const Json& json,
+                                               const char* name) {
+  if (!json.contains(name)) return std::nullopt;
+  return ReadEstimate(json.at(name));
+}
+template <class T>
+std::optional<T> Optional(const Json& json, const char* name) {
+  if (!json.contains(name) || json.at(name).is_null()) return std::nullopt;
+  return json.at(name).get<T>();
+}
+
+std::int32_t Int32(const Json& json, const char* name) {
+  return WholeNumber<std::int32_t>(json, name);
+}
+
+// --- ground, options ---------------------------------------------------------
+
+Json GroundJson(const calib::GroundLine& g) {
+  return {{"p1_px", {g.p1.x_px, g.p1.y_px}},
+          {"p2_px", {g.p2.x_px, g.p2.y_px}},
+          {"reference_px", {g.reference.x_px, g.reference.y_px}},
+          {"u_offset_px", g.u_offset_px},
+          {"u_angle_rad", g.u_angle_rad},
+          {"source", calib::Name(g.source)}};
+}
+
+core::PixelPoint ReadPoint(const Json& json) {
+  return {json.at(0), json.at(1)};
+}
+
+// `name` is what Name() gives for one of `values`.
+template <class T, std::size_t N>
+T Named(const std::string& name, const T (&values)[N]) {
+  for (const T value : values) {
+    if (Name(value) == name) return value;
+  }
+  return values[0];
+}
+
+calib::GroundLine ReadGroundLine(const Json& json) {
+  using enum calib::GroundSource;
+  calib::GroundLine g;
+  g.p1 = ReadPoint(json.at("p1_px"));
+  g.p2 = ReadPoint(json.at("p2_px"));
+  g.reference = ReadPoint(json.at("reference_px"));
+  g.u_offset_px = json.at("u_offset_px");
+  g.u_angle_rad = json.at("u_angle_rad");
+  g.source = Named(json.at("source").get<std::string>(),
+                   {kUser, kCalibration, kDetected, kContactPoints});
+  return g;
+}
+
+Json OptionsJson(const AnalyzeOptions& o) {
+  Json json = Json::object();
+  Put(json, "fps", o.fps);
+  Put(json, "gamma", o.gamma);
+  Put(json, "scale_px_per_m", o.scale_px_per_m);
+  if (o.body_kind) json["body_kind"] = core::Name(*o.body_kind);
+  Put(json, "diameter_m", o.diameter_m);
+  Put(json, "long_m", o.long_m);
+  Put(json, "short_m", o.short_m);
+  if (o.ground) json["ground"] = GroundJson(*o.ground);
+  if (o.contact_frame) json["contact_frame"] = *o.contact_frame;
+  json["frames"] = {o.first_frame, o.last_frame};
+  json["region"] = {o.region.x, o.region.y, o.region.width, o.region.height};
+  if (o.angle_kind) json["angle_kind"] = core::Name(*o.angle_kind);
+  Put(json, "bounce_height_m", o.bounce_height_m);
+  if (o.calibration) {
+    json["calibration"] = Json::parse(calib::CalibrationText(*o.calibration));
+  }
+  if (o.crop) json["crop"] = {o.crop->x_px, o.crop->y_px};
+  if (o.stop_early) json["stop_early"] = true;
+  return json;
+}
+
+AnalyzeOptions ReadOptions(const Json& json) {
+  AnalyzeOptions o;
+  o.fps = Optional<double>(json, "fps");
+  o.gamma = Optional<double>(json, "gamma");
+  o.scale_px_per_m = OptionalEstimate(json, "scale_px_per_m");
+  if (json.contains("body_kind")) {
+    o.body_kind = core::ParseBodyKind(json["body_kind"].get<std::string>());
+  }
+  o.diameter_m = OptionalEstimate(json, "diameter_m");
+  o.long_m = OptionalEstimate(json, "long_m");
+  o.short_m = OptionalEstimate(json, "short_m");
+  if (json.contains("ground")) o.ground = ReadGroundLine(json["ground"]);
+  if (json.contains("contact_frame")) {
+    o.contact_frame = WholeNumber(json["contact_frame"], "contact_frame");
+  }
+  o.first_frame = WholeNumber(json.at("frames").at(0), "frames");
+  o.last_frame = WholeNumber(json.at("frames").at(1), "frames");
+  const Json& r = json.at("region");
+  o.region = {Int32(r.at(0), "region"), Int32(r.at(1), "region"),
+              Int32(r.at(2), "region"), Int32(r.at(3), "region")};
+  if (json.contains("angle_kind")) {
+    o.angle_kind = core::ParseAngleKind(json["angle_kind"].get<std::string>());
+  }
+  o.bounce_height_m = Optional<double>(json, "bounce_height_m");
+  if (json.contains("calibration")) {
+    o.calibration = calib::ParseCalibration(json["calibration"].dump(),
+                                            "the calibration of the analysis");
+  }
+  if (json.contains("crop")) {
+    o.crop = calib::SensorCorner{Int32(json["crop"].at(0), "crop"),
+                                 Int32(json["crop"].at(1), "crop")};
+  }
+  o.stop_early = Optional<bool>(json, "stop_early").value_or(false);
+  return o;
+}
+
+// --- track -------------------------------------------------------------------
+
+Json TrackJson(const vision::Track& track) {
+  const vision::BodyImage& body = track.body;
+  Json json = {{"radius_px", EstimateJson(body.radius_px)},
+               {"half_long_px", EstimateJson(body.half_long_px)},
+               {"half_short_px", EstimateJson(body.half_short_px)},
+               {"whole_px", body.whole_px},
+               {"blur_px", body.blur_px},
+               {"contrast_dn", body.contrast_dn},
+               {"u_common_px", body.u_common_px},
+               {"u_common_angle_rad", body.u_common_angle_rad},
+               {"frames", {track.first_frame, track.last_frame}},
+               {"frame_interval_s", track.frame_interval_s},
+               {"known_background", track.known_background},
+               {"is_predicted", track.is_predicted},
+               {"several_bodies", track.several_bodies},
+               {"columns", kColumns}};
+  Json rows = Json::array();
+  for (const vision::Pose& p : track.poses) {
+    rows.push_back(fmt::format(
+        "{} {} {:.5f} {:.5f} {:.4g} {:.4g} {:.4g} {:.7g} {:.4g} {:.6g} {:.4g}",
+        p.frame, p.time_s, p.centre.x_px, p.centre.y_px, p.u_x_px, p.u_y_px,
+        p.correlation_xy, p.angle_rad, p.u_angle_rad, p.relative_size,
+        p.misfit));
+  }
+  json["rows"] = std::move(rows);
+  return json;
+}
+
+vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
+  vision::Track track;
+  track.body.kind = kind;
+  track.body.radius_px = ReadEstimate(json.at("radius_px"));
+  track.body.half_long_px = ReadEstimate(json.at("half_long_px"));
+  track.body.half_short_px = ReadEstimate(json.at("half_short_px"));
+  track.body.whole_px = json.at("whole_px");
+  track.body.blur_px = json.at("blur_px");
+  track.body.contrast_dn = json.at("contrast_dn");
+  // Earlier documents have none.
+  track.body.u_common_px = json.value("u_common_px", 0.0);
+  track.body.u_common_angle_rad = json.value("u_common_angle_rad", 0.0);
+  track.first_frame = WholeNumber(json.at("frames").at(0), "frames");
+  track.last_frame = WholeNumber(json.at("frames").at(1), "frames");
+  track.frame_interval_s = json.at("frame_interval_s");
+  track.known_background = json.at("known_background");
+  track.is_predicted = json.value("is_predicted", false);
+  track.several_bodies = json.at("several_bodies");
+  for (const Json& row : json.at("rows")) {
+    std::istringstream in(row.get<std::string>());
+    in.imbue(std::locale::classic());
+    vision::Pose p;
+    in >> p.frame >> p.time_s >> p.centre.x_px >> p.centre.y_px >> p.u_x_px >>
+        p.u_y_px >> p.correlation_xy >> p.angle_rad >> p.u_angle_rad >>
+        p.relative_size >> p.misfit;
+    if (!in) throw std::invalid_argument("a row of the track is damaged");
+    track.poses.push_back(p);
+  }
+  return track;
+}
+
+// --- the rest of an analysis, from the document's own fields
+// ------------------
+
+vision::ClipInfo ReadClipInfo(const Json& json) {
+  using enum vision::FpsSource;
+  vision::ClipInfo clip;
+  clip.path = json.at("path").get<std::string>();
+  clip.format = json.at("format");
+  clip.width_px = Int32(json.at("width_px"), "width_px");
+  clip.height_px = Int32(json.at("height_px"), "height_px");
+  clip.bit_depth = Int32(json.at("bit_depth"), "bit_depth");
+  clip.frames = WholeNumber(json.at("frames"), "frames");
+  clip.first_camera_frame =
+      WholeNumber(json.at("first_camera_frame"), "first_camera_frame");
+  const Json& time = json.at("time_base");
+  clip.time_base.fps = time.at("fps");
+  clip.time_base.source =
+      Named(time.at("source").get<std::string>(), {kContainer, kHeader, kUser});
+  clip.time_base.uniform = time.at("uniform");
+  clip.time_base.trusted = time.at("trusted");
+  return clip;
+}
+
+// As it was stored: there are no pixels to measure it anew.
+core::Expected<vision::ExplainedChange> ReadExplained(const Json& document) {
+  if (!document.contains("explained")) {
+    return core::AbsentBecause("an earlier program did not compare the clip");
+  }
+  const Json& json = document["explained"];
+  if (json.is_null()) {
+    return core::AbsentBecause(
+        document.at("absent").at("explained").get<std::string>());
+  }
+  vision::ExplainedChange explained;
+  explained.near = json.at("near");
+  explained.elsewhere = json.at("elsewhere");
+  explained.band_chi2 = json.at("band_chi2");
+  explained.noise_dn = json.at("noise_dn");
+  explained.frames = Int32(json.at("frames"), "explained.frames");
+  explained.lost = Int32(json.at("lost_frames"), "explained.lost_frames");
+  explained.pixels = WholeNumber(json.at("pixels"), "explained.pixels");
+  return explained;
+}
+
+Analysis RestoreAnalysis(const core::Trial& trial, const Json& document) {
+  using enum calib::ScaleSource;
+  using enum vision::Channel;
+  const Json& replay = document.at("replay");
+  Analysis a;
+  a.clip = ReadClipInfo(document.at("clip"));
+  a.channel = Named(document["clip"].at("channel").get<std::string>(),
+                    {kLuma, kBlueDifference, kRedDifference});
+  a.clip_id = trial.clip.id;
+  a.simulated = trial.origin == core::Origin::kSimulated;
+  a.options = ReadOptions(replay.at("options"));
+  if (replay.contains("sensor_origin")) {
+    const Json& corner = replay["sensor_origin"];
+    a.clip.sensor_origin =
+        vision::SensorOrigin{Int32(corner.at(0), "sensor_origin"),
+                             Int32(corner.at(1), "sensor_origin")};
+  }
+  if (const Json& scale = document.at("scale"); !scale.is_null()) {
+    a.scale = calib::Scale{ReadEstimate(scale.at("px_per_m")),
+                           Named(scale.at("source").get<std::string>(),
+                                 {kUser, kCalibration, kBodySize})};
+  } else {
+    a.no_scale_reason = document.at("absent").at("scale");
+  }
+  if (replay.contains("ground")) a.ground = ReadGroundLine(replay["ground"]);
+  a.body = trial.body;
+  a.angle_kind = trial.angle_kind;
+  a.track = ReadTrack(replay.at("track"), trial.body.kind);
+  a.scene_model.used =
+      document.at("scene_model").at("used").get<std::vector<std::string>>();
+  a.scene_model.left_out = document["scene_model"]
+                               .at("left_out")
+                               .get<std::map<std::string, std::string>>();
+  a.warnings = document.at("warnings").get<std::vector<std::string>>();
+  if (document.contains("stopped_at_frame")) {
+    a.stopped_at =
+        WholeNumber(document["stopped_at_frame"], "stopped_at_frame");
+  }
+  a.explained = ReadExplained(document);
+  if (a.explained) {
+    a.outlines_corrected =
+        document["explained"].value("outlines_corrected", false);
+  }
+  if (document.contains("corrections")) {
+    a.corrections = document["corrections"].get<std::vector<std::string>>();
+  }
+  return a;
+}
+
+}  // namespace
+
+Json ReplayJson(const Analysis& analysis) {
+  Json json = {{"options", OptionsJson(analysis.options)}};
+  if (const auto& corner = analysis.clip.sensor_origin) {
+    json["sensor_origin"] = {corner->x_px, corner->y_px};
+  }
+  if (analysis.ground) json["ground"] = GroundJson(*analysis.ground);
+  if (analysis.track) json["track"] = TrackJson(*analysis.track);
+  return json;
+}
+
+core::Trial ToTrial(const Analysis& analysis) {
+  core::Trial trial;
+  trial.origin =
+      analysis.simulated ? core::Origin::kSimulated : core::Origin::kRecorded;
+  trial.clip.path = analysis.clip.path.string();
+  trial.clip.id = analysis.clip_id;
+  if (analysis.body) trial.body = *analysis.body;
+  trial.angle_kind = analysis.angle_kind;
+  trial.first = analysis.contacts.first;
+  trial.later = analysis.contacts.later;
+  trial.author = "touchdown";
+  trial.software_version = std::string(Version());
+  trial.options_hash = analysis.options_hash;
+  trial.document_json = ToJson(analysis);
+  return trial;
+}
+
+core::Expected<Analysis> Replay(const core::Trial& trial) {
+  if (trial.document_json.empty()) {
+    return core::AbsentBecause("the trial was logged by hand");
+  }
+  try {
+    const Json document = Json::parse(trial.document_json);
+    if (!document.contains("replay")) {
+      return core::AbsentBecause(
+          "an earlier program analysed it and kept no track; analyse the clip "
+          "again");
+    }
+    if (!document["replay"].contains("track")) {
+      return core::AbsentBecause("the analysis saw no body");
+    }
+    Analysis analysis = RestoreAnalysis(trial, document);
+    if (analysis.track->several_bodies) {
+      return core::AbsentBecause("several bodies move in it");
+    }
+    if (!analysis.ground) return analysis;
+    return Rejudge(std::move(analysis), {});
+  } catch (const Json::exception& error) {
+    return core::AbsentBecause(
+        fmt::format("its document cannot be read: {}", error.what()));
+  } catch (const std::invalid_argument& error) {
+    return core::AbsentBecause(
+        fmt::format("its document cannot be read: {}", error.what()));
+  } catch (const core::InputError& error) {
+    return core::AbsentBecause(error.what());
+  }
+}
+
+std::optional<AnalyzeOptions> ReadCameraOptions(const core::Trial& trial) {
+  const Json document = Json::parse(trial.document_json, nullptr, false);
+  if (!document.is_object() || !document.contains("replay")) {
+    return std::nullopt;
+  }
+  try {
+    const AnalyzeOptions all = ReadOptions(document["replay"].at("options"));
+    AnalyzeOptions camera;
+    camera.fps = all.fps;
+    camera.gamma = all.gamma;
+    camera.scale_px_per_m = all.scale_px_per_m;
+    camera.calibration = all.calibration;
+    camera.crop = all.crop;
+    return camera;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  } catch (const core::InputError&) {
+    return std::nullopt;
+  }
+}
+
+core::Trial WithAnalysis(const core::Trial& seen, const Analysis& analysis) {
+  core::Trial trial = seen;
+  const core::Trial judged = ToTrial(analysis);
+  trial.first = judged.first;
+  trial.later = judged.later;
+  trial.software_version = judged.software_version;
+  trial.options_hash = judged.options_hash;
+  trial.document_json = judged.document_json;
+  return trial;
+}
+
+}  // namespace touchdown::pipeline

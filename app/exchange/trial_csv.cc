@@ -1,0 +1,189 @@
+#include "app/exchange/trial_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <istream>
+#include <optional>
+#include <ostream>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "app/exchange/trial_csv_columns.h"
+#include "app/text/csv_record.h"
+#include "app/text/text.h"
+#include "touchdown/core/edge_unit.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/db/quantities.h"
+
+namespace touchdown::report {
+namespace {
+
+using core::Trial;
+
+constexpr const char* kNotRecorded = "not recorded";
+
+// "diameter_m" where "diameter_mm" is known: the same quantity, another unit.
+std::string Hint(const std::string& unknown) {
+  const auto stem = [](std::string_view text) {
+    const auto cut = text.rfind('_');
+    return cut == std::string_view::npos ? text : text.substr(0, cut);
+  };
+  for (const auto& column : AllColumns()) {
+    if (stem(column.about.name) == stem(unknown) ||
+        column.about.name == stem(unknown) ||
+        stem(column.about.name) == unknown) {
+      return fmt::format("; this table has it as '{}'", column.about.name);
+    }
+  }
+  return "; see `touchdown import --columns`";
+}
+
+std::vector<const TrialColumn*> ReadHeader(std::istream& in,
+                                           const std::string& name) {
+  SkipByteOrderMark(in);
+  const auto header = ReadCsvRecord(in, name, 1);
+  if (!header) {
+    throw core::InputError(
+        fmt::format("{}: the file is empty; a header row was expected", name));
+  }
+  std::vector<const TrialColumn*> columns;
+  std::set<std::string> seen;
+  for (const auto& cell : *header) {
+    const TrialColumn* column = FindColumn(cell);
+    if (column == nullptr) {
+      throw core::InputError(fmt::format("{}: row 1: there is no column '{}'{}",
+                                         name, cell, Hint(cell)));
+    }
+    if (!seen.insert(cell).second) {
+      throw core::InputError(
+          fmt::format("{}: row 1: column '{}' comes twice", name, cell));
+    }
+    columns.push_back(column);
+  }
+  for (const char* required : {"body_kind", "state"}) {
+    if (!seen.contains(required)) {
+      throw core::InputError(
+          fmt::format("{}: row 1: column '{}' is missing, it must be there",
+                      name, required));
+    }
+  }
+  return columns;
+}
+
+Trial EmptyTrial(const std::string& author) {
+  Trial trial;
+  trial.origin = core::Origin::kManual;
+  trial.author = author;
+  trial.first.contact.found = true;
+  for (std::size_t i = 0; i < db::kContactQuantities.size(); ++i) {
+    ContactMeasured(trial, i) = core::AbsentBecause(kNotRecorded);
+  }
+  for (std::size_t i = 0; i < db::kBodyQuantities.size(); ++i) {
+    BodyMeasured(trial, i) = core::AbsentBecause(kNotRecorded);
+  }
+  return trial;
+}
+
+}  // namespace
+
+const std::vector<CsvColumn>& TrialCsvColumns() {
+  static const std::vector<CsvColumn> columns = [] {
+    std::vector<CsvColumn> about;
+    for (const auto& column : AllColumns()) about.push_back(column.about);
+    return about;
+  }();
+  return columns;
+}
+
+void WriteTrialsCsv(std::ostream& out, std::span<const Trial> trials) {
+  const auto& columns = AllColumns();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    out << (i == 0 ? "" : ",") << columns[i].about.name;
+  }
+  out << "\r\n";
+  for (const Trial& trial : trials) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      out << (i == 0 ? "" : ",") << CsvCell(columns[i].write(trial));
+    }
+    out << "\r\n";
+  }
+}
+
+CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
+                        const std::string& author) {
+  const auto columns = ReadHeader(in, name);
+  const bool has_angle_kind =
+      std::ranges::any_of(columns, [](const TrialColumn* column) {
+        return column->about.name == "angle_kind";
+      });
+  CsvTrials result;
+  std::size_t row = 1;
+  while (const auto cells = ReadCsvRecord(in, name, ++row)) {
+    if (cells->size() == 1 && cells->front().empty()) continue;  // blank line
+    const std::size_t errors_before = result.errors.size();
+    const auto fail = [&](std::string_view column, std::string_view cell,
+                          std::string_view what) {
+      result.errors.push_back(fmt::format("{}: row {}, column {}: '{}': {}",
+                                          name, row, column, cell, what));
+    };
+    if (cells->size() != columns.size()) {
+      result.errors.push_back(
+          fmt::format("{}: row {}: {} cells, {} as in the header were expected",
+                      name, row, cells->size(), columns.size()));
+      continue;
+    }
+    Trial trial = EmptyTrial(author);
+    bool kind_given = false;
+    // Values before their uncertainties, whatever the order of the columns.
+    for (const bool uncertainties : {false, true}) {
+      // One mistake is told once: a bad value has no uncertainty to speak of.
+      if (result.errors.size() != errors_before) break;
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto& about = columns[i]->about;
+        const std::string cell = CsvCellText((*cells)[i]);
+        if (columns[i]->is_uncertainty != uncertainties) continue;
+        if (cell.empty()) {
+          if (about.name == "body_kind" || about.name == "state") {
+            fail(about.name, cell, "a word was expected");
+          }
+          continue;
+        }
+        kind_given = kind_given || about.name == "angle_kind";
+        try {
+          columns[i]->read(trial, cell);
+        } catch (const std::invalid_argument& error) {
+          fail(about.name, cell, error.what());
+        }
+      }
+    }
+    const auto require_u = [&](std::string_view quantity,
+                               const core::Measured& measured) {
+      if (measured && measured->u < 0 &&
+          result.errors.size() == errors_before) {
+        const core::EdgeUnit unit = core::AtTheEdge(quantity);
+        fail(unit.stem + "_u" + unit.suffix, "",
+             "a standard uncertainty was expected beside the value");
+      }
+    };
+    for (const auto& quantity : db::kBodyQuantities) {
+      require_u(quantity.name, trial.body.*quantity.member);
+    }
+    for (const auto& quantity : db::kContactQuantities) {
+      require_u(quantity.name, db::At(trial.first, quantity));
+    }
+    if (trial.author.empty()) {
+      fail("author", "", "who states this was expected (or give --by)");
+    }
+    if (!has_angle_kind || !kind_given) {
+      trial.angle_kind = core::DefaultAngleKind(trial.body.kind);
+    }
+    if (result.errors.size() == errors_before) {
+      result.trials.push_back({row, std::move(trial)});
+    }
+  }
+  return result;
+}
+
+}  // namespace touchdown::report

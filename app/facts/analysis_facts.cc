@@ -1,0 +1,135 @@
+#include "app/facts/analysis_facts.h"
+
+#include <fmt/core.h>
+
+#include "app/facts/stored_document.h"
+#include "app/text/format.h"
+
+namespace touchdown::report {
+namespace {
+
+std::string ScalarText(const nlohmann::json& json) {
+  if (json.is_string()) return json.get<std::string>();
+  if (json.is_number_integer()) {
+    return fmt::format("{}", json.get<std::int64_t>());
+  }
+  return json.is_number() ? fmt::format("{:.6g}", json.get<double>()) : "";
+}
+
+std::string EstimateText(const nlohmann::json& json, const char* unit) {
+  const nlohmann::json& value = EvaluateSpline(json, {"value"});
+  const nlohmann::json& u = EvaluateSpline(json, {"u"});
+  if (!value.is_number() || !u.is_number()) return "";
+  return WithU({value.get<double>(), u.get<double>(), {}}, 1.0) + " " + unit;
+}
+
+std::string Joined(std::initializer_list<std::string> parts) {
+  std::string out;
+  for (const std::string& part : parts) {
+    if (part.empty()) continue;
+    out += (out.empty() ? "" : ", ") + part;
+  }
+  return out;
+}
+
+std::string Enclose(const char* before, const std::string& text,
+                    const char* after = "") {
+  return text.empty() ? "" : before + text + after;
+}
+
+std::string FramesPerSecond(const nlohmann::json& json) {
+  const nlohmann::json& base = EvaluateSpline(json, {"clip", "time_base"});
+  const nlohmann::json& fps = EvaluateSpline(base, {"fps"});
+  if (!fps.is_number()) return "";
+  const std::string source = ScalarText(EvaluateSpline(base, {"source"}));
+  return fmt::format("{:g} frames/s, from the {}", fps.get<double>(),
+                     source.empty() ? "file" : source);
+}
+
+std::string CalibrationText(const nlohmann::json& json) {
+  const nlohmann::json& calibration = EvaluateSpline(json, {"calibration"});
+  if (calibration.is_object()) {
+    const std::string rms =
+        ScalarText(EvaluateSpline(calibration, {"lens_rms_px"}));
+    return Joined(
+        {Enclose("camera ",
+                 ScalarText(EvaluateSpline(calibration, {"camera"}))),
+         Enclose("of ", ScalarText(EvaluateSpline(calibration, {"date"}))),
+         rms.empty() ? "no lens" : "lens to " + rms + " px rms"});
+  }
+  return EvaluateSpline(json, {"clip"}).is_object() ? "none" : "";
+}
+
+std::string ListText(const nlohmann::json& json) {
+  std::string out;
+  if (json.is_array()) {
+    for (const nlohmann::json& item : json) {
+      out += Enclose(out.empty() ? "" : "; ", ScalarText(item));
+    }
+  } else if (json.is_object()) {
+    for (const auto& [name, why] : json.items()) {
+      out += (out.empty() ? "" : "; ") + name + " (" + ScalarText(why) + ")";
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<NameValue> AnalysisSources(const core::Trial& trial) {
+  const auto json = StoredDocument(trial);
+  if (json.is_null()) return {};
+  return {{"scale from", ScalarText(EvaluateSpline(json, {"scale", "source"}))},
+          {"ground line from",
+           ScalarText(EvaluateSpline(json, {"ground", "source"}))},
+          {"calibration", CalibrationText(json)},
+          {"time base", FramesPerSecond(json)}};
+}
+
+std::vector<NameValue> AnalysisFacts(const core::Trial& trial) {
+  const auto json = StoredDocument(trial);
+  if (json.is_null()) return {};
+  const nlohmann::json& clip = EvaluateSpline(json, {"clip"});
+  const std::string width = ScalarText(EvaluateSpline(clip, {"width_px"}));
+  const nlohmann::json& scale = EvaluateSpline(json, {"scale"});
+  const nlohmann::json& ground = EvaluateSpline(json, {"ground"});
+  return {
+      {"recording",
+       Joined({ScalarText(EvaluateSpline(clip, {"format"})),
+               width.empty() ? ""
+                             : fmt::format("{} x {} px", width,
+                                           ScalarText(EvaluateSpline(
+                                               clip, {"height_px"}))),
+               Enclose("", ScalarText(EvaluateSpline(clip, {"bit_depth"})),
+                       " bit"),
+               Enclose("", ScalarText(EvaluateSpline(clip, {"frames"})),
+                       " frames")})},
+      {"time base", FramesPerSecond(json)},
+      {"scale",
+       Joined(
+           {EstimateText(EvaluateSpline(scale, {"px_per_m"}), "px/m"),
+            Enclose("from ", ScalarText(EvaluateSpline(scale, {"source"})))})},
+      {"calibration", CalibrationText(json)},
+      {"ground line",
+       Joined({Enclose("from ", ScalarText(EvaluateSpline(ground, {"source"}))),
+               Enclose("u of its angle ",
+                       ScalarText(EvaluateSpline(ground, {"u_angle_deg"})),
+                       " deg"),
+               Enclose("u of its height ",
+                       ScalarText(EvaluateSpline(ground, {"u_offset_px"})),
+                       " px")})},
+      {"model of the scene",
+       ListText(EvaluateSpline(json, {"scene_model", "used"}))},
+      {"left out of it",
+       ListText(EvaluateSpline(json, {"scene_model", "left_out"}))},
+      {"warnings", ListText(EvaluateSpline(json, {"warnings"}))}};
+}
+
+const core::Budget& AngleBudget(const core::Trial& trial) {
+  const core::Contact& contact = trial.first.contact;
+  return trial.angle_kind == core::AngleKind::kApproach
+             ? contact.approach_budget
+             : contact.attitude_budget;
+}
+
+}  // namespace touchdown::report

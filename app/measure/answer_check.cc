@@ -1,0 +1,212 @@
+#include "app/measure/answer_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/measure/analyze.h"
+#include "touchdown/core/units.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+// Of the frames in view some are not explained because no outline was found.
+std::string LostFrames(const vision::ExplainedChange& explained) {
+  if (explained.lost == 0) return {};
+  return fmt::format("; in {} of {} sampled frames the body was not found",
+                     explained.lost, explained.frames);
+}
+
+AnswerCheck CheckExplained(const Analysis& analysis,
+                           const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "explained";
+  if (!analysis.explained) {
+    check.reason = analysis.explained.error().reason;
+    return check;
+  }
+  if (analysis.outlines_corrected) {
+    check.reason = "a person moved outlines after the clip was compared";
+    return check;
+  }
+  const vision::ExplainedChange& explained = *analysis.explained;
+  const bool patterned = analysis.track && analysis.track->patterned;
+  const double least =
+      patterned ? limits.least_near_patterned : limits.least_near;
+  if (!(explained.near >= least)) {
+    check.verdict = Verdict::kRefused;
+    check.reason = fmt::format(
+        "the answer's outline explains {} of what changes near it (Q = {:.2f}, "
+        "must be at least {:g}): it follows something else than the body, or "
+        "lost it{}; give --region X,Y,W,H or the body's size",
+        explained.near > 0.0 ? "only a part" : "none", explained.near, least,
+        LostFrames(explained));
+  } else if (!(explained.near >= limits.usual_near)) {
+    check.verdict = Verdict::kDoubtful;
+    check.reason = fmt::format(
+        "the answer's outline explains only part of what changes near it (Q = "
+        "{:.2f}, usually above {:g}){}",
+        explained.near, limits.usual_near, LostFrames(explained));
+  } else {
+    check.verdict = Verdict::kPassed;
+  }
+  return check;
+}
+
+// The flights that measure the first contact, against their own poses.
+AnswerCheck CheckPath(const Analysis& analysis,
+                      const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "path";
+  const vision::ContactResult& contacts = analysis.contacts;
+  if (contacts.evidence.empty()) {
+    check.reason = "no flight was measured";
+    return check;
+  }
+  check.verdict = Verdict::kPassed;
+  const vision::ContactEvidence& first = contacts.evidence.front();
+  for (const auto* flight : {&first.before, &first.after}) {
+    if (!*flight) continue;
+    for (const vision::PathStretch& stretch : contacts.path) {
+      const bool measures = stretch.first_frame <= (*flight)->first_frame &&
+                            stretch.last_frame >= (*flight)->last_frame;
+      if (!measures || stretch.degrees < limits.least_degrees ||
+          stretch.chi2 <= limits.most_reduced_chi2 * stretch.degrees) {
+        continue;
+      }
+      // u of the answer has grown by its square root; ten times as much is not
+      // a body that comes nearer, but another motion.
+      constexpr double kAnotherMotion = 10.0;
+      check.verdict = stretch.chi2 > kAnotherMotion * limits.most_reduced_chi2 *
+                                         stretch.degrees
+                          ? Verdict::kRefused
+                          : Verdict::kDoubtful;
+      check.reason = fmt::format(
+          "the path from frame {} to {} is no free flight: chi^2 per degree of "
+          "freedom is {:.1f}, usually at most {:g}",
+          stretch.first_frame, stretch.last_frame,
+          stretch.chi2 / stretch.degrees, limits.most_reduced_chi2);
+      return check;
+    }
+  }
+  return check;
+}
+
+// The body that was stated beside the one that was followed. A person who
+// corrected the answer has looked at it.
+AnswerCheck CheckSize(const Analysis& analysis,
+                      const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "size";
+  check.verdict = Verdict::kPassed;
+  if (!analysis.size_conflict) return check;
+  check.reason = analysis.size_conflict->reason;
+  check.verdict =
+      analysis.size_conflict->relative > limits.most_size_conflict &&
+              analysis.corrections.empty()
+          ? Verdict::kRefused
+          : Verdict::kDoubtful;
+  return check;
+}
+
+// What is measured beside what nature allows.
+AnswerCheck CheckRestitution(const Analysis& analysis,
+                             const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "restitution";
+  const core::Measured& e = analysis.contacts.first.motion.restitution;
+  if (!e) {
+    check.reason = e.error().reason;
+    return check;
+  }
+  const double beyond = std::max(-e->value, e->value - 1.0);
+  check.verdict = Verdict::kPassed;
+  if (beyond > limits.most_sigmas * e->u) {
+    // It comes out below the line: no rebound at all. Above 1 the film may run
+    // backwards, or a second corner have struck between two frames.
+    check.verdict =
+        -e->value > limits.most_beyond ? Verdict::kRefused : Verdict::kDoubtful;
+    check.reason = fmt::format(
+        "the restitution is {:.3f} +- {:.3f}, must be in 0 .. 1: the frames "
+        "beside the contact show no rebound from this line; check --ground",
+        e->value, e->u);
+  }
+  return check;
+}
+
+AnswerCheck CheckGravity(const Analysis& analysis,
+                         const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "gravity";
+  const core::Measured& g = analysis.contacts.first.motion.gravity_check_mps2;
+  if (!g) {
+    check.reason = g.error().reason;
+    return check;
+  }
+  const core::Estimate known{core::kStandardGravity_mps2,
+                             0.002 * core::kStandardGravity_mps2};
+  check.verdict = Verdict::kPassed;
+  if (core::Disagreement(*g, known) > limits.most_sigmas) {
+    check.verdict = Verdict::kDoubtful;
+    const double ratio = g->value / known.value;
+    check.reason = fmt::format(
+        "gravity fitted freely is {:.3f} +- {:.3f} m/s2 for {:.3f}: a scale of "
+        "{:.1f} px/m or {:.1f} frames/s would explain it",
+        g->value, g->u, known.value, analysis.scale->px_per_m.value * ratio,
+        analysis.clip.time_base.fps / std::sqrt(std::max(ratio, 1e-6)));
+  }
+  return check;
+}
+
+// Contacts and state as they are where there is no answer.
+void Withhold(const std::string& reason, Analysis& analysis) {
+  analysis.contacts = {};
+  analysis.contacts.first.contact.reason = reason;
+  analysis.contacts.first.state.reason = reason;
+}
+
+}  // namespace
+
+std::string_view Name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kPassed:
+      return "passed";
+    case Verdict::kDoubtful:
+      return "doubtful";
+    case Verdict::kRefused:
+      return "refused";
+    case Verdict::kNotMade:
+      break;
+  }
+  return "not made";
+}
+
+std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
+                                         const AnswerCheckLimits& limits) {
+  return {CheckExplained(analysis, limits), CheckSize(analysis, limits),
+          CheckPath(analysis, limits), CheckRestitution(analysis, limits),
+          CheckGravity(analysis, limits)};
+}
+
+void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {
+  analysis.checks = RunAnswerChecks(analysis, limits);
+  const auto refused =
+      std::find_if(analysis.checks.begin(), analysis.checks.end(),
+                   [](const AnswerCheck& check) {
+                     return check.verdict == Verdict::kRefused;
+                   });
+  if (refused != analysis.checks.end() &&
+      analysis.contacts.first.contact.found) {
+    Withhold(refused->reason, analysis);
+  }
+  for (const AnswerCheck& check : analysis.checks) {
+    if (check.verdict != Verdict::kDoubtful) continue;
+    if (std::find(analysis.warnings.begin(), analysis.warnings.end(),
+                  check.reason) == analysis.warnings.end()) {
+      analysis.warnings.push_back(check.reason);
+    }
+  }
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,37 @@
+#include "app/measure/footage.h"
+
+#include <utility>
+
+#include "touchdown/vision/background/steady_light.h"
+
+namespace touchdown::pipeline {
+
+Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
+                      const AnalyzeOptions& options) {
+  Footage footage;
+  footage.begun = std::chrono::steady_clock::now();
+  footage.info = clip->info();
+  const std::int64_t last =
+      options.last_frame < 0 ? footage.info.frames : options.last_frame;
+  vision::SteadyLightOptions light_options;
+  light_options.threads = options.decoder_threads;
+  vision::SteadyLight light = vision::Deflicker(
+      std::move(clip), options.first_frame, last, light_options);
+  footage.clip = std::move(light.clip);
+  footage.light_told = light.told;
+  if (light.corrected) footage.light_spread = light.spread;
+  return footage;
+}
+
+vision::FrameStoreOptions MakeKeepOptions(const AnalyzeOptions& options,
+                                          const vision::ClipInfo& clip) {
+  vision::FrameStoreOptions keep;
+  keep.first = options.first_frame;
+  keep.last = options.last_frame < 0 ? clip.frames : options.last_frame;
+  keep.region = options.region;
+  keep.threads = options.decoder_threads;
+  keep.progress = options.progress;
+  return keep;
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,30 @@
+// A recording as a lens without distortion would have shown it: for people to
+// look at, with straight lines and flights drawn in. Nothing is measured in it.
+#pragma once
+
+#include <memory>
+
+#include "app/measure/analyze.h"
+#include "touchdown/calib/lens.h"
+#include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/track/track.h"
+
+namespace touchdown::pipeline {
+
+// Levels between pixels are interpolated linearly; what the camera did not see
+// is 0. Windows are not read faster than whole pictures.
+std::unique_ptr<vision::Clip> UndistortedClip(
+    std::unique_ptr<vision::Clip> clip, const calib::Lens& lens);
+
+// A recording with its track as lines are drawn into it: undistorted, where a
+// lens was undone.
+struct Drawable {
+  std::unique_ptr<vision::Clip> clip;
+  vision::Track track;
+};
+
+// Opens the analysis's recording again; it must have a track. Throws
+// core::InputError where that cannot be read.
+Drawable OpenToDraw(const Analysis& analysis);
+
+}  // namespace touchdown::pipeline

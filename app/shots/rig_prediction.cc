@@ -1,0 +1,184 @@
+#include "app/shots/rig_prediction.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "app/text/format.h"
+#include "touchdown/core/units.h"
+#include "touchdown/rig/launch.h"
+#include "touchdown/rig/predict.h"
+#include "touchdown/rig/setpoints.h"
+#include "touchdown/vision/footage/clip_digest.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using core::kDegree;
+using core::kMillimetre;
+
+// Draws of the Monte Carlo beside the first order: u to 2 %, which E_n shows to
+// two digits.
+constexpr std::size_t kDraws = 2000;
+
+// The setting whose body leaves the muzzle at `launch_mps`: the speed at
+// touchdown, which set-points begin from, is found by iteration. Each turn
+// makes good what the launch was too slow or too fast; the share that is left
+// is sin^2 of the approach angle, so that steep angles need many.
+core::Expected<rig::Setting> SettingAtLaunch(const rig::Description& rig,
+                                             rig::ContactWish wish,
+                                             double launch_mps) {
+  constexpr int kTurns = 2000;
+  constexpr double kClose = 1e-9;
+  wish.speed_mps = launch_mps;
+  for (int i = 0; i < kTurns; ++i) {
+    auto setting = rig::FindSetting(rig, wish);
+    if (!setting) return setting;
+    const auto muzzle = rig::LaunchSpeed(
+        rig::MakeLaunch(rig, setting->elevation_rad), setting->compression_m);
+    if (!muzzle) return core::AbsentBecause(muzzle.error().reason);
+    const double v = muzzle->speed_mps;
+    if (std::abs(v - launch_mps) <= kClose * launch_mps) return setting;
+    const double square =
+        wish.speed_mps * wish.speed_mps + launch_mps * launch_mps - v * v;
+    if (!(square > 0.0)) break;
+    wish.speed_mps = std::sqrt(square);
+  }
+  return core::AbsentBecause(
+      "the rig has no setting with this angle at this launch speed");
+}
+
+// What of a prediction is the same for all trials of one set-point.
+struct Planned {
+  report::ShotPrediction prediction;
+  double fall_m = 0.0;
+  bool possible = false;
+};
+
+Planned Refused(const std::string& reason) {
+  Planned out;
+  out.prediction = {core::AbsentBecause(reason), core::AbsentBecause(reason),
+                    core::AbsentBecause(reason)};
+  return out;
+}
+
+Planned Plan(const rig::Description& rig, const core::Trial& trial) {
+  if (!trial.set_angle_rad) return Refused("no set-point of the angle");
+  if (!trial.set_speed_mps || !(*trial.set_speed_mps > 0.0)) {
+    return Refused("no set-point of the launch speed");
+  }
+  if (rig.body && rig.body->kind != trial.body.kind) {
+    return Refused(
+        fmt::format("the rig throws a {}", core::Name(rig.body->kind)));
+  }
+  rig::ContactWish wish;
+  wish.kind = trial.angle_kind;
+  wish.angle_rad = *trial.set_angle_rad;
+  wish.corner = trial.first.contact.corner;
+  const double highest = std::numbers::pi / 2;
+  const double lowest = wish.kind == core::AngleKind::kFace ? -highest : 0.0;
+  if (!(wish.angle_rad >= lowest && wish.angle_rad <= highest)) {
+    return Refused("the set-point is no angle of this kind");
+  }
+  const auto setting = SettingAtLaunch(rig, wish, *trial.set_speed_mps);
+  if (!setting) return Refused(setting.error().reason);
+  std::mt19937_64 engine(1);
+  const auto contact = rig::Predict(rig, *setting, {kDraws}, engine);
+  Planned out;
+  out.prediction.launch_speed_mps = contact.launch_speed_mps.first_order;
+  out.prediction.approach_angle_rad = contact.approach_angle_rad.first_order;
+  const auto& launch = contact.launch_speed_mps.first_order;
+  const auto& impact = contact.impact_speed_mps.first_order;
+  if (!launch || !impact) return Refused("the body would not reach the ground");
+  out.fall_m = (impact->value * impact->value - launch->value * launch->value) /
+               (2 * rig.gravity_mps2.value);
+  out.possible = true;
+  return out;
+}
+
+core::Measured LaunchFromTouchdown(const rig::Description& rig, double fall_m,
+                                   const core::Measured& touchdown_mps) {
+  if (!touchdown_mps) return touchdown_mps;
+  const double g = rig.gravity_mps2.value;
+  const double square =
+      touchdown_mps->value * touchdown_mps->value - 2 * g * fall_m;
+  if (!(square > 0.0)) {
+    return core::AbsentBecause("slower at touchdown than the fall alone");
+  }
+  const double v = std::sqrt(square);
+  return core::Estimate{
+      v,
+      std::hypot(touchdown_mps->value * touchdown_mps->u,
+                 g * rig.u_muzzle_height_m, fall_m * rig.gravity_mps2.u) /
+          v,
+      {}};
+}
+
+report::ShotPrediction ForTrial(const rig::Description& rig,
+                                const Planned& planned,
+                                const core::Trial& trial) {
+  report::ShotPrediction out = planned.prediction;
+  if (planned.possible) {
+    out.measured_launch_speed_mps = LaunchFromTouchdown(
+        rig, planned.fall_m, trial.first.motion.before_speed_mps);
+  }
+  return out;
+}
+
+}  // namespace
+
+report::ShotPrediction PredictShot(const rig::Description& rig,
+                                   const core::Trial& trial) {
+  return ForTrial(rig, Plan(rig, trial), trial);
+}
+
+report::RigUsed PredictTrials(const std::filesystem::path& rig_file,
+                              std::span<const core::Trial> trials) {
+  const rig::Description rig = rig::ReadDescription(rig_file);
+  report::RigUsed out;
+  const auto fact = [&](const char* name, std::string value) {
+    out.facts.emplace_back(name, std::move(value));
+  };
+  fact("rig", rig.name.empty() ? "without a name" : rig.name);
+  fact("its description",
+       fmt::format("{}, SHA-256 {}", rig_file.filename().string(),
+                   vision::Sha256(rig_file)));
+  std::mt19937_64 engine(1);
+  const auto stiffness = rig::PredictStiffness(rig, {kDraws}, engine);
+  if (stiffness.first_order) {
+    fact("its springs", fmt::format("{}, {} N/m together", rig.springs.count,
+                                    report::WithU(*stiffness.first_order, 1)));
+  }
+  fact("its elevation",
+       fmt::format("{} to {} deg",
+                   report::Plain(rig.elevation_min_rad / kDegree),
+                   report::Plain(rig.elevation_max_rad / kDegree)));
+  fact("its muzzle height",
+       fmt::format("{} to {} mm",
+                   report::Plain(rig.muzzle_height_min_m / kMillimetre),
+                   report::Plain(rig.muzzle_height_max_m / kMillimetre)));
+  if (rig.body) {
+    fact("its body", std::string(core::Name(rig.body->kind)));
+  }
+  // One plan for all trials of one set-point: a campaign has few.
+  std::map<std::tuple<double, double, core::AngleKind, core::BodyKind, int>,
+           Planned>
+      plans;
+  for (const core::Trial& trial : trials) {
+    if (!trial.set_angle_rad && !trial.set_speed_mps) continue;
+    const auto& corner = trial.first.contact.corner;
+    const std::tuple key(trial.set_angle_rad.value_or(-1.0),
+                         trial.set_speed_mps.value_or(-1.0), trial.angle_kind,
+                         trial.body.kind,
+                         corner ? static_cast<int>(*corner) : -1);
+    auto plan = plans.find(key);
+    if (plan == plans.end()) plan = plans.emplace(key, Plan(rig, trial)).first;
+    out.predictions[trial.id] = ForTrial(rig, plan->second, trial);
+  }
+  return out;
+}
+
+}  // namespace touchdown::pipeline

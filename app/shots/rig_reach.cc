@@ -1,0 +1,55 @@
+#include "app/shots/rig_reach.h"
+
+#include <cmath>
+
+#include "touchdown/core/units.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using core::kDegree;
+
+constexpr int kDegrees = 90;
+constexpr double kMiddle_rad = 45.0 * kDegree;
+constexpr double kEnd_rad = 0.01 * kDegree;
+
+}  // namespace
+
+core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
+                                               rig::ContactWish wish) {
+  const auto can = [&](double angle_rad) {
+    wish.angle_rad = angle_rad;
+    return rig::FindSetting(rig, wish).has_value();
+  };
+  // Between an angle that can be thrown and one that cannot.
+  const auto edge = [&](double good, double bad) {
+    while (std::abs(good - bad) > kEnd_rad) {
+      const double middle = (good + bad) / 2;
+      (can(middle) ? good : bad) = middle;
+    }
+    return good;
+  };
+  int best_first = 0;
+  int best_count = 0;
+  int count = 0;
+  for (int degree = 0; degree <= kDegrees; ++degree) {
+    count = can(degree * kDegree) ? count + 1 : 0;
+    if (count > best_count) {
+      best_count = count;
+      best_first = degree - count + 1;
+    }
+  }
+  if (best_count == 0) {
+    wish.angle_rad = kMiddle_rad;
+    const auto refused = rig::FindSetting(rig, wish);
+    return core::AbsentBecause(refused ? "no whole degree can be thrown"
+                                       : refused.error().reason);
+  }
+  const int last = best_first + best_count - 1;
+  core::Interval out{best_first * kDegree, last * kDegree};
+  if (best_first > 0) out.low = edge(out.low, (best_first - 1) * kDegree);
+  if (last < kDegrees) out.high = edge(out.high, (last + 1) * kDegree);
+  return out;
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,183 @@
+#include "app/text/json_fields.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace touchdown::report {
+namespace {
+
+bool IsUtf8(std::string_view text) {
+  std::size_t i = 0;
+  while (i < text.size()) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    std::size_t more = 0;
+    unsigned code = 0;
+    if (byte < 0x80) {
+      ++i;
+      continue;
+    }
+    if (byte >= 0xc2 && byte <= 0xdf) {
+      more = 1;
+      code = byte & 0x1fU;
+    } else if (byte >= 0xe0 && byte <= 0xef) {
+      more = 2;
+      code = byte & 0x0fU;
+    } else if (byte >= 0xf0 && byte <= 0xf4) {
+      more = 3;
+      code = byte & 0x07U;
+    } else {
+      return false;
+    }
+    if (i + more >= text.size()) return false;
+    for (std::size_t k = 1; k <= more; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      if ((next & 0xc0U) != 0x80U) return false;
+      code = (code << 6U) | (next & 0x3fU);
+    }
+    const bool overlong =
+        (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
+    if (overlong || code > 0x10ffff || (code >= 0xd800 && code <= 0xdfff)) {
+      return false;
+    }
+    i += more + 1;
+  }
+  return true;
+}
+
+double NumberOrInfinity(const Json& field, const std::string& name) {
+  if (field.is_number()) return field.get<double>();
+  if (field == "inf") return std::numeric_limits<double>::infinity();
+  if (field == "-inf") return -std::numeric_limits<double>::infinity();
+  WrongField(name, "a number");
+}
+
+}  // namespace
+
+Json TextJson(const std::string& text) {
+  if (IsUtf8(text)) return text;
+  std::string hex;
+  for (const char c : text) {
+    hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  }
+  return {{"bytes", hex}};
+}
+
+Json NumberJson(double value) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+Json OptionalNumberJson(const std::optional<double>& value) {
+  return value ? NumberJson(*value) : Json(nullptr);
+}
+
+Json MeasuredJson(const core::Measured& measured) {
+  if (!measured) return {{"absent", TextJson(measured.error().reason)}};
+  Json json = {{"value", NumberJson(measured->value)},
+               {"u", NumberJson(measured->u)}};
+  if (measured->interval95) {
+    json["interval95"] = Json::array({NumberJson(measured->interval95->low),
+                                      NumberJson(measured->interval95->high)});
+  }
+  return json;
+}
+
+const Json& Field(const Json& json, const std::string& name) {
+  const auto it = json.is_object() ? json.find(name) : json.end();
+  if (!json.is_object() || it == json.end()) {
+    throw std::invalid_argument(fmt::format("field '{}' is missing", name));
+  }
+  return *it;
+}
+
+[[noreturn]] void WrongField(const std::string& name,
+                             std::string_view expected) {
+  throw std::invalid_argument(
+      fmt::format("field '{}' must be {}", name, expected));
+}
+
+std::string ReadTextField(const Json& json, const std::string& name) {
+  const Json& field = Field(json, name);
+  if (field.is_string()) return field.get<std::string>();
+  const auto bytes = field.is_object() ? field.find("bytes") : field.end();
+  if (!field.is_object() || bytes == field.end() || !bytes->is_string()) {
+    WrongField(name, "a text");
+  }
+  const auto hex = bytes->get<std::string>();
+  std::string text;
+  if (hex.size() % 2 != 0 ||
+      hex.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    WrongField(name, "bytes in hexadecimal");
+  }
+  for (std::size_t i = 0; i < hex.size(); i += 2) {
+    text += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  }
+  return text;
+}
+
+bool ReadFlag(const Json& json, const std::string& name) {
+  const Json& field = Field(json, name);
+  if (!field.is_boolean()) WrongField(name, "true or false");
+  return field.get<bool>();
+}
+
+std::int64_t ReadInteger(const Json& json, const std::string& name) {
+  const Json& field = Field(json, name);
+  if (!field.is_number_integer()) WrongField(name, "a whole number");
+  return field.get<std::int64_t>();
+}
+
+double ReadNumberField(const Json& json, const std::string& name) {
+  return NumberOrInfinity(Field(json, name), name);
+}
+
+std::optional<double> ReadOptionalNumber(const Json& json,
+                                         const std::string& name) {
+  const Json& field = Field(json, name);
+  if (field.is_null()) return std::nullopt;
+  return NumberOrInfinity(field, name);
+}
+
+core::Measured ReadMeasured(const Json& json, const std::string& name) {
+  const Json& field = Field(json, name);
+  if (field.is_object() && field.contains("absent")) {
+    return core::AbsentBecause(ReadTextField(field, "absent"));
+  }
+  if (!field.is_object()) WrongField(name, "a value with u, or absent");
+  core::Estimate estimate;
+  estimate.value = NumberOrInfinity(Field(field, "value"), name + ".value");
+  estimate.u = NumberOrInfinity(Field(field, "u"), name + ".u");
+  if (const auto interval = field.find("interval95"); interval != field.end()) {
+    if (!interval->is_array() || interval->size() != 2) {
+      WrongField(name + ".interval95", "[low, high]");
+    }
+    estimate.interval95 =
+        core::Interval{NumberOrInfinity((*interval)[0], name),
+                       NumberOrInfinity((*interval)[1], name)};
+  }
+  return estimate;
+}
+
+Json ParsedLine(std::string_view line, std::string_view schema) {
+  Json json = Json::parse(line, nullptr, false);
+  if (json.is_discarded()) {
+    throw std::invalid_argument("this is not JSON");
+  }
+  const Json& found = Field(json, "schema");
+  if (found != Json(schema)) {
+    throw std::invalid_argument(
+        fmt::format("field 'schema' must be \"{}\"", schema));
+  }
+  return json;
+}
+
+std::string ReadSchema(std::string_view line) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object() || !json.contains("schema")) return "";
+  const Json& schema = json["schema"];
+  return schema.is_string() ? schema.get<std::string>() : "";
+}
+
+}  // namespace touchdown::report

@@ -1,0 +1,11 @@
+#include "app/text/version.h"
+
+#include "commit.h"
+
+namespace touchdown::pipeline {
+
+std::string_view Version() { return TOUCHDOWN_VERSION; }
+
+std::string_view Commit() { return TOUCHDOWN_COMMIT; }
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,206 @@
+#include "app/trials/recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "touchdown/core/errors.h"
+#include "touchdown/vision/footage/image_file.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Extensions of containers that vision/clip.h reads.
+constexpr std::array<std::string_view, 19> kVideos = {
+    ".avi",  ".mov", ".mp4", ".m4v",  ".3gp", ".mkv", ".webm",
+    ".cine", ".ts",  ".mpg", ".mpeg", ".asf", ".wmv", ".flv",
+    ".ogv",  ".nut", ".y4m", ".mxf",  ".dv"};
+
+// Of the folder that a store keeps its pictures in (pictures.h).
+constexpr const char* kEvidence = ".evidence";
+
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+bool IsRecordingFile(const fs::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".mraw" ||
+         std::find(kVideos.begin(), kVideos.end(), extension) != kVideos.end();
+}
+
+bool IsHidden(const fs::path& path) {
+  return path.filename().string().starts_with('.');
+}
+
+// One that cannot be opened is no stack here; opening it will say why.
+bool IsStack(const fs::path& path) {
+  try {
+    return vision::IsTiffStack(path);
+  } catch (const core::InputError&) {
+    return false;
+  }
+}
+
+struct Inside {
+  std::vector<fs::path> recordings;
+  std::vector<fs::path> folders;  // to be looked through, too
+};
+
+Inside ListFolder(const fs::path& folder, const Admit& admit) {
+  Inside inside;
+  std::error_code trouble;
+  std::vector<fs::path> files;
+  std::vector<fs::path> images;
+  fs::directory_iterator entry(folder, trouble);
+  for (; !trouble && entry != fs::directory_iterator();
+       entry.increment(trouble)) {
+    const fs::path& path = entry->path();
+    std::error_code ignored;
+    if (IsHidden(path)) continue;
+    if (path.filename() == "analysis.json") return {};  // evidence
+    if (entry->is_directory(ignored)) {
+      if (!entry->is_symlink(ignored) && path.extension() != kEvidence) {
+        inside.folders.push_back(path);
+      }
+    } else if (entry->is_regular_file(ignored) && (!admit || admit(path))) {
+      if (IsRecordingFile(path)) {
+        files.push_back(path);
+      } else if (vision::IsImageName(path)) {
+        images.push_back(path);
+      }
+    }
+  }
+  if (trouble) {
+    throw core::InputError(
+        fmt::format("{}: {}", folder.string(), trouble.message()));
+  }
+  // A TIFF of several pages is a recording of its own. Whether the folder holds
+  // such ones its first picture tells: thousands need not be opened.
+  if (!images.empty() && IsStack(*std::ranges::min_element(images))) {
+    const auto stacks = std::stable_partition(
+        images.begin(), images.end(),
+        [](const fs::path& image) { return !IsStack(image); });
+    files.insert(files.end(), stacks, images.end());
+    images.erase(stacks, images.end());
+  }
+  // Pictures beside a video are somebody's notes; alone they are a recording.
+  if (!images.empty() && files.empty()) inside.recordings.push_back(folder);
+  inside.recordings.insert(inside.recordings.end(), files.begin(), files.end());
+  return inside;
+}
+
+void Collect(const fs::path& folder, const Admit& admit,
+             std::vector<fs::path>& recordings) {
+  const Inside inside = ListFolder(folder, admit);
+  recordings.insert(recordings.end(), inside.recordings.begin(),
+                    inside.recordings.end());
+  for (const fs::path& below : inside.folders) {
+    Collect(below, admit, recordings);
+  }
+}
+
+void AddFile(const fs::path& file, Extent& extent) {
+  std::error_code trouble;
+  const std::uintmax_t bytes = fs::file_size(file, trouble);
+  if (trouble) return;
+  const auto written = fs::last_write_time(file, trouble);
+  if (trouble) return;
+  ++extent.files;
+  extent.bytes += bytes;
+  extent.written = std::max(extent.written, written);
+}
+
+}  // namespace
+
+std::vector<fs::path> FindRecordings(const fs::path& folder,
+                                     const Admit& admit) {
+  std::vector<fs::path> recordings;
+  Collect(folder, admit, recordings);
+  std::sort(recordings.begin(), recordings.end());
+  return recordings;
+}
+
+bool IsRecording(const fs::path& path) {
+  std::error_code trouble;
+  if (fs::is_directory(path, trouble)) {
+    const auto found = ListFolder(path, {}).recordings;
+    return !found.empty() && found.front() == path;
+  }
+  return fs::is_regular_file(path, trouble) && !IsHidden(path) &&
+         (IsRecordingFile(path) ||
+          (vision::IsImageName(path) && IsStack(path)));
+}
+
+std::vector<fs::path> ListFiles(const fs::path& recording) {
+  std::vector<fs::path> files;
+  std::error_code trouble;
+  if (fs::is_directory(recording, trouble)) {
+    fs::directory_iterator entry(recording, trouble);
+    for (; !trouble && entry != fs::directory_iterator();
+         entry.increment(trouble)) {
+      if (vision::IsImageName(entry->path())) files.push_back(entry->path());
+    }
+    return files;
+  }
+  files.push_back(recording);
+  if (LowerExtension(recording) == ".mraw") {
+    for (const char* header : {".cih", ".cihx", ".CIH", ".CIHX"}) {
+      fs::path beside = recording;
+      beside.replace_extension(header);
+      if (fs::exists(beside, trouble)) files.push_back(std::move(beside));
+    }
+  }
+  return files;
+}
+
+Extent MeasureExtent(const fs::path& recording) {
+  Extent extent;
+  for (const fs::path& file : ListFiles(recording)) AddFile(file, extent);
+  return extent;
+}
+
+std::vector<fs::path> Settling::Look(const Extents& there, Instant now) {
+  std::vector<fs::path> complete;
+  waiting_ = false;
+  std::erase_if(seen_,
+                [&](const auto& one) { return !there.contains(one.first); });
+  for (const auto& [path, extent] : there) {
+    auto [at, is_new] = seen_.try_emplace(path, Seen{extent, now, false});
+    Seen& seen = at->second;
+    if (!is_new && seen.extent != extent) seen = {extent, now, false};
+    if (seen.told) continue;
+    if (now - seen.since >= quiet_) {
+      seen.told = true;
+      complete.push_back(path);
+    } else {
+      waiting_ = true;
+    }
+  }
+  return complete;
+}
+
+void Watch(const fs::path& folder, const WatchOptions& options,
+           const std::function<void(const std::vector<fs::path>&)>& take) {
+  Settling settling(options.quiet);
+  do {
+    Settling::Extents there;
+    for (const fs::path& recording : FindRecordings(folder)) {
+      there.emplace(recording, MeasureExtent(recording));
+    }
+    const auto complete = settling.Look(there, options.now());
+    if (!complete.empty()) take(complete);
+  } while (options.wait(settling.waiting()));
+}
+
+}  // namespace touchdown::pipeline

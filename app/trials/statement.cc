@@ -1,0 +1,159 @@
+#include "app/trials/statement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/text/version.h"
+#include "touchdown/core/errors.h"
+#include "touchdown/core/units.h"
+#include "touchdown/db/names.h"
+#include "touchdown/db/quantities.h"
+#include "touchdown/db/register.h"
+
+namespace touchdown::pipeline {
+namespace {
+
+using core::kDegree;
+
+template <class T>
+T RequireWord(const char* field, const std::string& text,
+              std::optional<T> (*parse)(std::string_view), const char* words) {
+  if (const auto word = parse(text)) return *word;
+  throw FieldError(field, fmt::format("is '{}', must be {}", text, words));
+}
+
+void RequireAngle(const char* field, double angle_deg, double low_deg) {
+  if (!(angle_deg >= low_deg && angle_deg <= 90.0)) {
+    throw FieldError(
+        field, fmt::format("is {}, must be in {} .. 90", angle_deg, low_deg));
+  }
+}
+
+core::Trial ManualTrial() {
+  core::Trial trial;
+  trial.origin = core::Origin::kManual;
+  trial.software_version = Version();
+  trial.first.contact.found = true;
+  for (const auto& quantity : db::kContactQuantities) {
+    db::At(trial.first, quantity) = core::AbsentBecause("not recorded by hand");
+  }
+  return trial;
+}
+
+}  // namespace
+
+void Apply(const Statement& statement, core::Trial& trial) {
+  core::Contact& contact = trial.first.contact;
+  if (statement.angle_deg.has_value() != statement.angle_u_deg.has_value()) {
+    const bool has_angle = statement.angle_deg.has_value();
+    throw FieldError(
+        has_angle ? "angle-u-deg" : "angle-deg",
+        "is missing: an angle and its uncertainty go together (a good "
+        "protractor reads to 0.5 deg)");
+  }
+  if (!statement.angle_kind.empty()) {
+    trial.angle_kind = RequireWord<core::AngleKind>(
+        "angle-kind", statement.angle_kind, core::ParseAngleKind,
+        "approach, radius or face");
+  }
+  if (statement.angle_deg) {
+    const bool face = trial.angle_kind == core::AngleKind::kFace;
+    RequireAngle("angle-deg", *statement.angle_deg, face ? -90.0 : 0.0);
+    RequireAngle("angle-u-deg", *statement.angle_u_deg, 0.0);
+    core::Angle(contact, trial.angle_kind) =
+        core::Estimate{*statement.angle_deg * kDegree,
+                       *statement.angle_u_deg * kDegree, std::nullopt};
+  }
+  if (!statement.state.empty()) {
+    trial.first.state.label = RequireWord<core::MotionState>(
+        "state", statement.state, core::ParseMotionState, kStateWords);
+    trial.first.state.p_bounce.reset();
+    trial.first.state.reason = "stated by hand";
+  }
+  if (!statement.note.empty()) trial.first.state.reason = statement.note;
+  if (!statement.corner.empty()) {
+    contact.corner =
+        RequireWord<core::Corner>("corner", statement.corner, core::ParseCorner,
+                                  "leading, trailing or flush");
+  }
+  if (statement.set_angle_deg) {
+    RequireAngle("set-angle-deg", *statement.set_angle_deg, -90.0);
+    trial.set_angle_rad = *statement.set_angle_deg * kDegree;
+  }
+  if (statement.set_speed_mps) {
+    if (!(*statement.set_speed_mps >= 0.0) ||
+        !std::isfinite(*statement.set_speed_mps)) {
+      throw FieldError("set-speed-mps",
+                       fmt::format("is {}, must be at least 0 and finite",
+                                   *statement.set_speed_mps));
+    }
+    trial.set_speed_mps = *statement.set_speed_mps;
+  }
+  if (statement.conditions) trial.conditions = statement.conditions;
+}
+
+core::Trial Restated(const std::string& field,
+                     const std::vector<db::Revision>& history,
+                     const core::Trial& seen, std::int64_t number) {
+  const auto found = std::find_if(
+      history.begin(), history.end(),
+      [&](const auto& revision) { return revision.trial.revision == number; });
+  if (found == history.end()) {
+    throw FieldError(field, fmt::format("is {}, must be a revision in 1 .. {}",
+                                        number, history.size()));
+  }
+  core::Trial trial = found->trial;
+  trial.revision = seen.revision;
+  return trial;
+}
+
+db::Logged LogByHand(const std::filesystem::path& path,
+                     const ManualEntry& entry) {
+  core::Trial trial = ManualTrial();
+  if (entry.statement.state.empty()) {
+    throw FieldError("state",
+                     fmt::format("is missing, must be {}", kStateWords));
+  }
+  trial.campaign = entry.campaign;
+  trial.author = entry.by;
+  const auto& body = entry.body;
+  if (entry.campaign.empty() && !body) {
+    throw FieldError(
+        "body",
+        "is missing, must be sphere or rectangle (or give --campaign, whose "
+        "body it is)");
+  }
+  // A store is made only for what has been found right.
+  core::Trial rehearsal = trial;
+  if (body) {
+    rehearsal.body = *body;
+    rehearsal.angle_kind = core::DefaultAngleKind(body->kind);
+  }
+  Apply(entry.statement, rehearsal);
+  db::RequireStorable(rehearsal);
+  // Campaigns and entries of the register are in a store that exists.
+  const bool refers =
+      !entry.campaign.empty() ||
+      (rehearsal.conditions && db::NameEntries(*rehearsal.conditions));
+  auto store = db::Store::Open(
+      path, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
+  if (!entry.campaign.empty()) {
+    const core::Campaign campaign = db::RequireCampaign(store, entry.campaign);
+    trial.body = campaign.body;
+    trial.angle_kind = campaign.angle_kind;
+    trial.first.state.bounce_height_m =
+        core::Estimate{campaign.bounce_height_m, 0.0, std::nullopt};
+  }
+  if (body) {
+    trial.body = *body;
+    if (entry.campaign.empty()) {
+      trial.angle_kind = core::DefaultAngleKind(body->kind);
+    }
+  }
+  Apply(entry.statement, trial);
+  return store.LogTrial(trial);
+}
+
+}  // namespace touchdown::pipeline

@@ -1,0 +1,1 @@
+// A file without a room: a planted breach.

@@ -1,0 +1,2 @@
+// An arrow that goes back: a planted breach.
+#include "app/report/report.h"
