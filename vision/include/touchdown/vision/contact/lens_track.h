@@ -17,7 +17,7 @@ namespace touchdown::vision {
 //
 // Poses where the lens has no ideal point are left out, with a warning. The
 // uncertainty of the lens itself is not in the result: it is common to all
-// frames (app/pipeline/lens_uncertainty.h).
+// frames (app/measure/lens_uncertainty.h).
 Track Undistorted(const Track& track, const calib::Lens& lens);
 
 }  // namespace touchdown::vision
