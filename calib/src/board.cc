@@ -13,6 +13,7 @@
 namespace touchdown::calib {
 namespace {
 
+// How a board is written; part of every message about one that is not.
 constexpr const char* kForm =
     "must be chessboard:COLUMNSxROWS:SQUARE as in chessboard:9x6:25mm (inner "
     "corners), circles:7x5:20mm or acircles:4x11:20mm (centres)";
@@ -265,10 +266,11 @@ Board ParseBoard(std::string_view text) {
   const auto rows = ReadNumber<int>(rest.substr(times + 1, second - times - 1));
   const auto pitch = ReadLength(rest.substr(second + 1));
   if (!columns || !rows || !pitch) Refuse(text);
-  constexpr int kMost = 100;
-  if (*columns < 3 || *rows < 3 || *columns > kMost || *rows > kMost) {
+  // Columns and rows: more are a typing error. Not studied.
+  constexpr int kMaxCount = 100;
+  if (*columns < 3 || *rows < 3 || *columns > kMaxCount || *rows > kMaxCount) {
     throw std::invalid_argument(fmt::format(
-        "board is '{}', columns and rows must be 3 to {}", text, kMost));
+        "board is '{}', columns and rows must be 3 to {}", text, kMaxCount));
   }
   board.columns = *columns;
   board.rows = *rows;
@@ -298,8 +300,9 @@ std::vector<core::PlanePoint> ListBoardPoints(const Board& board) {
 
 core::Expected<std::vector<core::PixelPoint>> FindBoard(
     const core::Frame& picture, const Board& board) {
-  constexpr std::int32_t kLeastSide_px = 32;
-  if (picture.width_px < kLeastSide_px || picture.height_px < kLeastSide_px) {
+  // px: a smaller picture shows no board's corners. Not studied.
+  constexpr std::int32_t kMinSide_px = 32;
+  if (picture.width_px < kMinSide_px || picture.height_px < kMinSide_px) {
     return core::AbsentBecause("the picture is smaller than 32 x 32 px");
   }
   const Levels levels = MeasureLevels(picture);

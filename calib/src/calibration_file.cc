@@ -18,6 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The file's kind and version; another is refused.
 constexpr const char* kSchema = "touchdown.calibration/1";
 
 // One object of the file and where it stands.
@@ -67,11 +68,13 @@ class Object {
   }
   std::int32_t Whole(const std::string& name, std::int32_t least) const {
     const Json& member = Member(name);
-    constexpr std::int64_t kMost = 1 << 20;
+    // Beyond any camera's sides and any number of pictures: larger numbers are
+    // damage.
+    constexpr std::int64_t kMaxWhole = 1 << 20;
     if (!member.is_number_integer() || member.get<std::int64_t>() < least ||
-        member.get<std::int64_t>() > kMost) {
+        member.get<std::int64_t>() > kMaxWhole) {
       Fail(name, fmt::format("is {}, must be a whole number of {} .. {}",
-                             member.dump(), least, kMost));
+                             member.dump(), least, kMaxWhole));
     }
     return member.get<std::int32_t>();
   }
@@ -235,6 +238,7 @@ std::string SizeText(const Picture& picture) {
 bool IsDate(std::string_view text) {
   if (text.size() != 10 || text[4] != '-' || text[7] != '-') return false;
   int numbers[3] = {0, 0, 0};
+  // Places and lengths of year, month and day in YYYY-MM-DD.
   constexpr std::size_t kFirst[3] = {0, 5, 8};
   constexpr std::size_t kDigits[3] = {4, 2, 2};
   for (std::size_t part = 0; part < 3; ++part) {

@@ -100,12 +100,16 @@ std::optional<EdgeTexture> LearnTexture(const StillImage& image,
   EdgeTexture texture;
   texture.below = below_dn2 > above_dn2;
   const Strip& rough = texture.below ? *below : *above;
-  constexpr double kTwice = 2.0;
-  constexpr double kRounding_dn2 = 1e-4;
+  // Ratio of the variances beyond which the rougher side counts as textured.
+  // Larger leaves faint texture in the noise; smaller takes noise for texture.
+  // Not studied.
+  constexpr double kMinVarianceRatio = 2.0;
+  // DN^2: a synthetic picture has no noise, and a variance of 0 no inverse.
+  constexpr double kMinVariance_dn2 = 1e-4;
   texture.variance_dn2 =
-      std::max(std::min(below_dn2, above_dn2), kRounding_dn2);
+      std::max(std::min(below_dn2, above_dn2), kMinVariance_dn2);
   const double rough_dn2 = std::max(below_dn2, above_dn2);
-  if (rough_dn2 < kTwice * texture.variance_dn2) return std::nullopt;
+  if (rough_dn2 < kMinVarianceRatio * texture.variance_dn2) return std::nullopt;
   texture.covariance_dn2.push_back(rough_dn2 - texture.variance_dn2);
   for (std::int32_t lag = 1; lag < kRows; ++lag) {
     texture.covariance_dn2.push_back(LagCovariance(image, rough, lag));
@@ -117,12 +121,14 @@ std::optional<EdgeTexture> LearnTexture(const StillImage& image,
 EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
                        std::int32_t x, double y0, double blur_px) {
   EdgePoint edge{static_cast<double>(x), y0, 0.0};
-  constexpr double kBlurs = 3.0;
-  const double reach = kBlurs * blur_px + 2.0;
+  // In units of blur_px (and 2 px): the edge's tail has ended there.
+  constexpr double kReachBlurs = 3.0;
+  const double reach = kReachBlurs * blur_px + 2.0;
   const double side = texture.below ? 1.0 : -1.0;
   const double ground = texture.ground_dn[static_cast<std::size_t>(x)];
-  constexpr int kIterations = 8;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  // A bound: the loop ends at the limit below. Not studied.
+  constexpr int kMaxIterations = 8;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const auto from = static_cast<std::int32_t>(std::ceil(edge.y - reach));
     const auto to = static_cast<std::int32_t>(std::floor(edge.y + reach));
     if (from < 0 || to >= image.height_px) return {edge.x, edge.y, 0.0};
@@ -164,6 +170,7 @@ EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
     edge.strength = side * (ground - a);
     edge.y += std::clamp(step[1], -1.0, 1.0);
     if (std::abs(edge.y - y0) > reach) return {edge.x, edge.y, 0.0};
+    // px of the last step, far below an edge point's u.
     constexpr double kSettled_px = 1e-4;
     if (std::abs(step[1]) < kSettled_px) break;
   }

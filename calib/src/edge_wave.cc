@@ -55,9 +55,13 @@ double TakeOutWave(const Line& line, double middle,
     off.w.push_back(weights[i]);
     squares += weights[i] * off.r.back() * off.r.back();
   }
-  constexpr std::size_t kLeast = 32;
-  if (off.x.size() < kLeast) return 0.0;
+
+  // Points: a wave has three parameters, and is sought at many wavelengths. Not
+  // studied.
+  constexpr std::size_t kMinPoints = 32;
+  if (off.x.size() < kMinPoints) return 0.0;
   const double span = off.x.back() - off.x.front();
+  // px of a wave: shorter ones are the pixels' own pattern. Not studied.
   constexpr double kShortest_px = 8.0;
   constexpr double kLeastSeen = 2.0;  // waves in the span
   constexpr double kPerWidth = 6.0;   // tried within the width of a peak
@@ -75,8 +79,11 @@ double TakeOutWave(const Line& line, double middle,
   };
   const int tried = static_cast<int>((last - first) / step);
   for (int i = 0; i <= tried; ++i) look(first + i * step);
-  constexpr double kMostRemains = 0.25;
-  if (!(least < kMostRemains * squares)) return 0.0;
+  // Share of the squares that one wave may leave: it must explain three
+  // quarters of them. Larger takes noise for a wave; smaller leaves a wavy edge
+  // to a straight line. Chosen with the wavy edges of the accuracy design.
+  constexpr double kMaxRemaining = 0.25;
+  if (!(least < kMaxRemaining * squares)) return 0.0;
   // Finer about the best one.
   constexpr int kHalvings = 12;
   for (int i = 0; i < kHalvings; ++i) {

@@ -124,6 +124,8 @@ struct Votes {
 Votes CountVotes(double slope, const std::vector<EdgePoint>& points,
                  const std::vector<bool>& used, int sign,
                  const StillImage& image) {
+  // px of height in one bin. Larger merges
+  // neighbouring lines; smaller spreads the votes of one. Not studied.
   constexpr double kBin_px = 2.0;
   const double middle = 0.5 * (image.width_px - 1);
   const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
@@ -157,6 +159,8 @@ Votes CountVotes(double slope, const std::vector<EdgePoint>& points,
 Votes Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
            int sign, const StillImage& image,
            const GroundLineOptions& options) {
+  // Tilts from the steepest downward to the steepest upward. More cost time in
+  // proportion; fewer lose votes at the picture's sides. Not studied.
   constexpr int kTilts = 121;
   std::vector<Votes> of_tilt(kTilts);
   core::InParallel(
@@ -307,14 +311,15 @@ constexpr double kFarther_px = 4.0;
 // The edge's blur: the one that explains a sample of columns best.
 double EstimateBlur(const StillImage& image, const GroundLineOptions& options,
                     const Line& line, double middle) {
-  constexpr std::array<double, 12> kTried = {0.4, 0.5, 0.6, 0.7, 0.85, 1.0,
-                                             1.2, 1.5, 1.9, 2.4, 3.0,  4.0};
-  double best = kTried[0];
+  // px: blurs of lenses in and out of focus. Not studied.
+  constexpr std::array<double, 12> kTriedBlurs_px = {
+      0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0, 4.0};
+  double best = kTriedBlurs_px[0];
   double least = 0.0;
   bool any = false;
   const std::vector<std::int32_t> columns =
       FromBothSides(2, 1 + image.width_px / 120, image.width_px);
-  for (const double blur : kTried) {
+  for (const double blur : kTriedBlurs_px) {
     std::vector<double> residuals;
     for (const ColumnFit& fit : ColumnEdges(image, options, columns, line,
                                             middle, blur, ComputeReach(blur))) {
@@ -421,8 +426,9 @@ core::Estimate SlopeOfTexture(const StillImage& image,
   for (std::size_t x = 0; x < seen.size(); ++x) {
     seen[x] = SeenRow(lens, plain.line, middle, static_cast<double>(x));
   }
-  constexpr double kBlurs = 3.0;
-  const auto texture = LearnTexture(image, seen, kBlurs * blur);
+  // In units of the edge's blur: beyond it the strip shows the ground alone.
+  constexpr double kClearBlurs = 3.0;
+  const auto texture = LearnTexture(image, seen, kClearBlurs * blur);
   if (!texture) return plain.slope;
   std::vector<EdgePoint> edge;
   for (std::int32_t x = 0; x < image.width_px; ++x) {
@@ -440,8 +446,9 @@ core::Estimate SlopeOfTexture(const StillImage& image,
 std::vector<GroundLine> FindGroundLines(const StillImage& image,
                                         const GroundLineOptions& options) {
   std::vector<GroundLine> lines;
-  constexpr std::int32_t kLeastSide_px = 16;
-  if (image.width_px < kLeastSide_px || image.height_px < kLeastSide_px) {
+  // px: a smaller picture has no columns enough for a line. Not studied.
+  constexpr std::int32_t kMinSide_px = 16;
+  if (image.width_px < kMinSide_px || image.height_px < kMinSide_px) {
     return lines;
   }
   const double middle = 0.5 * (image.width_px - 1);
@@ -466,6 +473,8 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double off =
           points[i].y - best.offset - best.slope * (points[i].x - middle);
+      // px: points so near to a line that was found are its own, and vote for
+      // no other. Not studied.
       constexpr double kSameLine_px = 4.0;
       if (std::abs(off) < kSameLine_px) used[i] = true;
     }

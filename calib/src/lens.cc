@@ -36,6 +36,7 @@ Normal Bend(const Lens& lens, Normal at, Eigen::Matrix2d* derivative) {
 // The picture's border and diagonals, in steps of a fiftieth.
 template <class Visit>
 void AlongBorder(std::int32_t width_px, std::int32_t height_px, Visit visit) {
+  // Points on each side. Not studied.
   constexpr int kSteps = 50;
   const double w = width_px - 0.5;
   const double h = height_px - 0.5;
@@ -81,9 +82,10 @@ std::optional<IdealPoint> Undistort(const Lens& lens, core::PixelPoint image) {
                     (image.y_px - lens.cy_px) / lens.fy_px};
   Normal at = seen;
   Eigen::Matrix2d derivative;
-  constexpr int kMostSteps = 50;
+  // Newton's steps; a bound, since each doubles the digits.
+  constexpr int kMaxSteps = 50;
   const double enough = 1e-11 / f;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Normal bent = Bend(lens, at, &derivative);
     // Beyond the radius at which the model folds back the determinant is no
     // longer positive: that branch is not the picture.
@@ -96,7 +98,7 @@ std::optional<IdealPoint> Undistort(const Lens& lens, core::PixelPoint image) {
     at.y += move.y();
     if (!(move.norm() < 1e6)) return std::nullopt;
     if (move.norm() < enough) break;
-    if (step + 1 == kMostSteps) return std::nullopt;
+    if (step + 1 == kMaxSteps) return std::nullopt;
   }
   Bend(lens, at, &derivative);
   if (!(derivative.determinant() > 0.0)) return std::nullopt;
@@ -120,6 +122,7 @@ bool IsInvertible(const Lens& lens, std::int32_t width_px,
     }
     // No fold on the way from the axis to the border.
     const double f = IdealFocal(lens);
+    // Places between axis and border. Not studied.
     constexpr int kSteps = 40;
     for (int i = 1; i <= kSteps; ++i) {
       const double t = static_cast<double>(i) / kSteps;

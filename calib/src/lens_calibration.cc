@@ -243,8 +243,10 @@ bool Judge(const LensFit& fit, const std::vector<BoardView>& views,
 }
 
 void Warn(const LensCalibration& c, std::vector<std::string>& warnings) {
-  constexpr std::size_t kWanted = 10;
-  if (c.views.size() < kWanted) {
+  // Views: with fewer the scatter between views, which gives u, is known badly.
+  // For a warning.
+  constexpr std::size_t kWantedViews = 10;
+  if (c.views.size() < kWantedViews) {
     warnings.push_back(
         fmt::format("only {} views; ten or more make the uncertainties good",
                     c.views.size()));
@@ -252,18 +254,20 @@ void Warn(const LensCalibration& c, std::vector<std::string>& warnings) {
   std::vector<double> rms;
   for (const ViewResult& view : c.views) rms.push_back(view.rms_px);
   const double median = Median(rms);
-  constexpr double kMuchWorse = 3.0;
+  // Ratio to the median view's rms. For a warning. Not studied.
+  constexpr double kMaxRmsRatio = 3.0;
   for (const ViewResult& view : c.views) {
-    if (view.rms_px > kMuchWorse * median) {
+    if (view.rms_px > kMaxRmsRatio * median) {
       warnings.push_back(fmt::format(
           "{}: its corners are off by {:.2f} px rms, the others' by {:.2f}; "
           "look at it, and leave it out if it is blurred",
           view.name, view.rms_px, median));
     }
   }
-  constexpr double kGood = 0.6;
+  // Share of the picture that corners cover. For a warning. Not studied.
+  constexpr double kGoodCoverage = 0.6;
   const std::string sides = EmptySides(c);
-  if (c.coverage < kGood || !sides.empty()) {
+  if (c.coverage < kGoodCoverage || !sides.empty()) {
     warnings.push_back(fmt::format(
         "corners cover {:.0f} % of the picture{}; distortion elsewhere is "
         "extrapolated",

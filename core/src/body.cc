@@ -42,6 +42,9 @@ Measured Size(const Body& body) {
 
 double DefaultBounceHeight(double size_m) {
   RequirePositive("size", size_m, "m");
+  // The campaign's default convention: the larger of 0.5 mm and 2 % of the
+  // size. Another bounce height is another definition of "bounce", hence
+  // declared before the first trial.
   constexpr double kFloor_m = 0.5e-3;
   constexpr double kShareOfSize = 0.02;
   return std::fmax(kFloor_m, kShareOfSize * size_m);

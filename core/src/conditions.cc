@@ -6,6 +6,7 @@
 namespace touchdown::core {
 namespace {
 
+// Words of columns, commands and documents: they are never changed.
 constexpr std::array<std::pair<Anomaly, std::string_view>, 10> kAnomalies{{
     {Anomaly::kNotRecorded, "not recorded"},
     {Anomaly::kNone, "none"},

@@ -27,6 +27,7 @@ namespace {
 
 // 64 bits of the system's own randomness.
 std::string Unforeseeable() {
+  // Hexadecimal, in any locale.
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::random_device random;
   std::string text;

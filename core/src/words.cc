@@ -9,20 +9,25 @@ namespace {
 template <class T, std::size_t N>
 using Table = std::array<std::pair<T, std::string_view>, N>;
 
+// The words of columns, commands and documents, one table for each kind: they
+// are never changed, since stored trials bear them.
 constexpr Table<BodyKind, 2> kBodyKinds{{
     {BodyKind::kSphere, "sphere"},
     {BodyKind::kRectangle, "rectangle"},
 }};
+// Which angle a protocol names.
 constexpr Table<AngleKind, 3> kAngleKinds{{
     {AngleKind::kApproach, "approach"},
     {AngleKind::kRadius, "radius"},
     {AngleKind::kFace, "face"},
 }};
+// Which corner of a rectangle touched.
 constexpr Table<Corner, 3> kCorners{{
     {Corner::kLeading, "leading"},
     {Corner::kTrailing, "trailing"},
     {Corner::kFlush, "flush"},
 }};
+// Motion states.
 constexpr Table<MotionState, 7> kMotionStates{{
     {MotionState::kBounce, "bounce"},
     {MotionState::kSlide, "slide"},
@@ -32,11 +37,13 @@ constexpr Table<MotionState, 7> kMotionStates{{
     {MotionState::kStaysDown, "stays-down"},
     {MotionState::kUndecided, "undecided"},
 }};
+// Origins of a trial.
 constexpr Table<Origin, 3> kOrigins{{
     {Origin::kRecorded, "recorded"},
     {Origin::kSimulated, "simulated"},
     {Origin::kManual, "manual"},
 }};
+// Verdicts on a theory.
 constexpr Table<Verdict, 3> kVerdicts{{
     {Verdict::kConfirmed, "confirmed"},
     {Verdict::kContradicted, "contradicted"},

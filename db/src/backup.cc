@@ -51,6 +51,7 @@ class TemporaryFile {
   const fs::path& path() const { return path_; }
 
  private:
+  // The files that SQLite may keep beside a database.
   static constexpr const char* kSuffixes[] = {"", "-wal", "-shm", "-journal"};
 
   fs::path path_;

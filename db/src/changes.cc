@@ -30,6 +30,8 @@ std::string RegisteredText(const core::Registered& entry) {
 
 namespace {
 
+// Words of the column: stored revisions bear them, so that they are never
+// changed.
 constexpr std::array<std::pair<RevisionKind, std::string_view>, 6> kKinds{{
     {RevisionKind::kLogged, "logged"},
     {RevisionKind::kCorrected, "corrected"},

@@ -43,6 +43,7 @@ void CheckFile(Connection& connection, std::vector<std::string>& problems) {
 // wrote it, and no trigger of another's.
 void CheckSchema(Connection& connection, std::vector<std::string>& problems) {
   const std::string schema = SchemaSql();
+  // How each statement of the schema begins.
   constexpr std::string_view kCreate = "CREATE ";
   std::set<std::string> triggers;
   for (std::size_t at = 0; at != std::string::npos;) {

@@ -12,6 +12,7 @@
 namespace touchdown::db {
 namespace {
 
+// Characters: 32 digits and four dashes (RFC 9562).
 constexpr std::size_t kUuidLength = 36;
 
 bool IsDash(std::size_t i) { return i == 8 || i == 13 || i == 18 || i == 23; }
@@ -82,6 +83,7 @@ std::string UtcStamp(std::chrono::system_clock::time_point instant) {
 }
 
 bool IsUtcStamp(std::string_view text) {
+  // 0 stands for any digit; the rest is as it is.
   constexpr std::string_view kPattern = "0000-00-00T00:00:00.000Z";
   if (text.size() != kPattern.size()) return false;
   for (std::size_t i = 0; i < text.size(); ++i) {

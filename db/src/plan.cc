@@ -13,6 +13,7 @@
 namespace touchdown::db {
 namespace {
 
+// In the order in which TakePlanEvent reads them.
 constexpr std::string_view kColumns =
     "e.uuid, c.name, e.kind, e.design, e.stopping_rule, e.error_rates, "
     "e.trials, e.author, e.reason, e.at_utc";

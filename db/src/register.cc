@@ -86,6 +86,7 @@ Entry Record(Store& store, Entry entry, std::int64_t number) {
   return *InForce(store.connection(), entry.kind, entry.name);
 }
 
+// Total: equal names and versions differ in time or identity.
 constexpr std::string_view kOldestFirst =
     "ORDER BY name, version, recorded_at_utc, uuid";
 

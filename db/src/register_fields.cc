@@ -15,6 +15,7 @@ namespace {
 using enum FieldType;
 using Kind = RegisterKind;
 
+// Each kind of entry with the word for it and its table.
 constexpr std::array<std::pair<Kind, RegisterTable>, 7> kTables{{
     {Kind::kRig, {"rig", "rigs"}},
     {Kind::kCamera, {"camera", "cameras"}},
@@ -30,11 +31,13 @@ constexpr std::array<std::pair<Kind, RegisterTable>, 7> kTables{{
 constexpr RegisterField kNote{"note", kText, "whatever else is to be known"};
 constexpr RegisterField kDigest{"sha256", kText, "of that file"};
 
+// Fields of each kind, in the order of columns and questions.
 constexpr std::array kRig{
     RegisterField{"document", kText, "the whole text of its rig.toml"},
     kDigest,
     kNote,
 };
+// Of a camera.
 constexpr std::array kCamera{
     RegisterField{"maker", kText, "who made it"},
     RegisterField{"model", kText, "as its plate says"},
@@ -43,6 +46,7 @@ constexpr std::array kCamera{
     RegisterField{"lens", kText, "maker, focal length, number"},
     kNote,
 };
+// Of a spring.
 constexpr std::array kSpring{
     RegisterField{"rig", kEntry, "of the register, in which it sits", "",
                   Kind::kRig},
@@ -55,6 +59,7 @@ constexpr std::array kSpring{
     RegisterField{"stiffness_n_per_m", kMeasured, "as measured"},
     kNote,
 };
+// Of a calibration.
 constexpr std::array kCalibration{
     RegisterField{"camera", kEntry, "of the register, that it is of", "",
                   Kind::kCamera},
@@ -65,6 +70,7 @@ constexpr std::array kCalibration{
     kDigest,
     kNote,
 };
+// Of a body.
 constexpr std::array kBody{
     RegisterField{"shape", kWord, "of the body", "sphere, rectangle"},
     RegisterField{"material", kWord, "what it is made of",
@@ -76,6 +82,7 @@ constexpr std::array kBody{
     RegisterField{"mass_kg", kMeasured, "weighed"},
     kNote,
 };
+// Of a surface.
 constexpr std::array kSurface{
     RegisterField{"condition", kWord, "when the shots are made",
                   "dry, damp, wet, icy, loose"},
@@ -83,8 +90,10 @@ constexpr std::array kSurface{
     RegisterField{"friction_method", kText, "how that was measured"},
     kNote,
 };
+// Of an operator.
 constexpr std::array kOperator{kNote};
 
+// What every coded word may also be.
 constexpr std::array<std::string_view, 3> kOpen{"other", "not applicable",
                                                 "not recorded"};
 

@@ -115,6 +115,8 @@ const std::string& ContactNames() {
   }();
   return names;
 }
+// Eight of the contact itself, five for each quantity (value, u, interval,
+// reason).
 constexpr std::size_t kContactColumns = 8 + 5 * kContactQuantities.size();
 
 void InsertBudgets(Connection& connection, std::int64_t revision_id,

@@ -9,6 +9,7 @@
 namespace touchdown::db {
 namespace {
 
+// As CHECK constraints list them.
 constexpr std::string_view kAngleKinds = "'approach', 'radius', 'face'";
 
 std::string Evidence() {

@@ -6,6 +6,7 @@
 
 namespace touchdown::db {
 
+// Column of every table whose rows are named outside.
 inline constexpr std::string_view kUuid =
     "uuid TEXT NOT NULL UNIQUE CHECK (length(uuid) = 36)";
 

@@ -350,6 +350,7 @@ std::string_view Name(ColumnType type) {
 }
 
 std::string FindUnit(std::string_view edge_name) {
+  // Endings of names and their units; the longer of two endings stands first.
   static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
       {"_n_per_m", "N/m"}, {"_rad_per_s", "rad/s"},
       {"_mps2", "m/s2"},   {"_mps", "m/s"},

@@ -13,6 +13,7 @@
 namespace touchdown::db {
 namespace {
 
+// The kind and version of the document.
 constexpr std::string_view kFirstLine = "touchdown seal 1";
 
 bool IsSha256(std::string_view text) {

@@ -372,6 +372,8 @@ std::vector<core::Trial> Store::Trials(const TrialFilter& filter) const {
 }
 
 std::optional<core::Trial> Store::Find(std::string_view id_or_prefix) const {
+  // Characters of an id that a person may type: a shorter one is soon that of
+  // several trials. Not studied.
   constexpr std::size_t kShortestPrefix = 4;
   std::string prefix(id_or_prefix);
   for (char& c : prefix) {

@@ -7,6 +7,7 @@
 
 namespace touchdown::rig {
 
+// rad: 90 deg.
 inline constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 // Rounding at limits given in degrees.
 inline constexpr double kAngleSlack_rad = 1e-9;

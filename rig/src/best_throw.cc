@@ -22,7 +22,7 @@ using core::AbsentBecause;
 using core::AngleKind;
 using core::Expected;
 
-constexpr double kLengthSlack_m = 1e-9;
+constexpr double kLengthSlack_m = 1e-9;      // rounding at limits of length
 constexpr double kSlowestLaunch_mps = 1e-6;  // slower is a drop from rest
 // How many standard uncertainties of its height a muzzle keeps the body off
 // the ground where it can: nearer, some shots begin in it.
@@ -46,10 +46,12 @@ bool Bears(const Description& rig, double compression_m) {
 // The greatest compression that the springs and the trigger allow; each check
 // is one of the compression's size, so that one bisection finds it.
 double GreatestCompression(const Description& rig) {
-  constexpr double kLongest_m = 10.0;
-  if (Bears(rig, kLongest_m)) return kInf;
+  // m: springs that bear so much compression have no limit that a rig would
+  // meet.
+  constexpr double kUnlimited_m = 10.0;
+  if (Bears(rig, kUnlimited_m)) return kInf;
   double good = 0.0;
-  double bad = kLongest_m;
+  double bad = kUnlimited_m;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (good + bad);
     (Bears(rig, middle) ? good : bad) = middle;

@@ -114,8 +114,9 @@ void WarnOfScatter(const LineFit& fit, bool sigma_known,
 
 // t value of a quadratic term added to the line; 0 with too few points.
 double CurvatureT(const std::vector<Row>& rows, bool sigma_known) {
-  constexpr std::size_t kLeast = 5;
-  if (rows.size() < kLeast) return 0.0;
+  // Points: three parameters, and two degrees of freedom for their scatter.
+  constexpr std::size_t kMinForCurvature = 5;
+  if (rows.size() < kMinForCurvature) return 0.0;
   // Residuals of y and of x^2 after constant and slope, then one unknown.
   std::vector<Row> square = rows;
   for (Row& r : square) r.y = r.a[0] * r.a[0];
@@ -150,6 +151,8 @@ double CurvatureT(const std::vector<Row>& rows, bool sigma_known) {
 double StudentT975(std::size_t dof) {
   if (dof < 1) core::Refuse("dof", 0.0, "at least 1");
   constexpr double kTail = 0.05;  // both sides together
+  // Closed forms for one and two degrees of freedom; else Hill's series (Comm.
+  // ACM 13, 1970, algorithm 396).
   constexpr double kHalfPi = std::numbers::pi / 2.0;
   if (dof == 1) return 1.0 / std::tan(kTail * kHalfPi);
   if (dof == 2) return std::sqrt(2.0 / (kTail * (2.0 - kTail)) - 2.0);
@@ -185,11 +188,13 @@ core::Expected<StiffnessFit> FitStiffness(std::span<const ForcePoint> points,
   core::RequireNotNegative("u_compression_m", options.u_compression_m);
   const bool u_given = AllBearU(points, "force_n",
                                 [](const ForcePoint& p) { return p.force_n; });
-  constexpr std::size_t kLeast = 3;
-  if (points.size() < kLeast) {
+
+  // Points: two parameters, and one degree of freedom for their scatter.
+  constexpr std::size_t kMinPoints = 3;
+  if (points.size() < kMinPoints) {
     return core::AbsentBecause(
         fmt::format("{} points, a line with its uncertainty needs {}",
-                    points.size(), kLeast));
+                    points.size(), kMinPoints));
   }
   const bool sigma_known = u_given || options.u_compression_m > 0.0;
   std::vector<Row> rows;

@@ -5,6 +5,7 @@
 
 namespace touchdown::rig {
 
+// A limit that is none.
 inline constexpr double kInf = std::numeric_limits<double>::infinity();
 
 }  // namespace touchdown::rig

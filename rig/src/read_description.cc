@@ -29,6 +29,7 @@ struct Range {
   }
 };
 
+// Ranges of values in the file's own units, with the words that messages use.
 constexpr Range kAny{};
 constexpr Range kPositive{0.0, kInf, true, "positive"};
 constexpr Range kAtLeastZero{0.0, kInf, false, "at least 0"};
@@ -144,6 +145,7 @@ class Section {
 };
 
 SpringGeometry ReadGeometry(const Section& in) {
+  // GPa to Pa.
   constexpr double kGiga = 1e9;
   SpringGeometry out;
   out.shear_modulus_pa = in.Measured("shear_modulus_gpa", kPositive, kGiga);
@@ -184,12 +186,13 @@ Springs ReadSprings(const Section& in) {
   Springs out;
   if (in.Has("count")) {
     const double count = in.Plain("count", kPositive, 1.0);
-    constexpr double kMost = 1000.0;
-    if (count != std::floor(count) || count > kMost) {
+    // Springs: more are a typing error. Not studied.
+    constexpr double kMaxSprings = 1000.0;
+    if (count != std::floor(count) || count > kMaxSprings) {
       in.Fail(in.At("count"),
               fmt::format("springs.count is {:g}, must be a whole number, 1 .. "
                           "{:g}",
-                          count, kMost));
+                          count, kMaxSprings));
     }
     out.count = static_cast<int>(count);
   }
@@ -314,6 +317,7 @@ Description ParseDescription(std::string_view text, std::string_view name) {
   const Section root(name, "", table);
   root.Allow(
       {"schema", "name", "springs", "ejector", "muzzle", "body", "site"});
+  // The file's kind and version; another is refused.
   constexpr std::string_view kSchema = "touchdown.rig/1";
   if (const std::string schema = root.Text("schema"); schema != kSchema) {
     root.Fail(

@@ -125,6 +125,7 @@ void Search::Root(const ThrowFamily& family, std::size_t limit, double from,
 // extremum, and the roots on its sides.
 void Search::Extremum(const ThrowFamily& family, std::size_t limit, double from,
                       double to) {
+  // Golden-section search: (sqrt(5) - 1) / 2.
   constexpr double kGolden = 0.6180339887498949;
   const auto first = FindSlacks(family, from);
   const auto last = FindSlacks(family, to);

@@ -6,10 +6,16 @@
 # Usage: cmake -D ROOT=<source tree> -P constants.cmake
 cmake_minimum_required(VERSION 3.25)
 set(folders
+    analysis/src
+    calib/src
+    core/src
+    db/src
+    rig/src
     vision/src/background
     vision/src/contact
     vision/src/detection
     vision/src/explanation
+    vision/src/footage
     vision/src/numbers
     vision/src/outline
     vision/src/overlay

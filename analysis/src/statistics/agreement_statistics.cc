@@ -14,6 +14,7 @@
 namespace touchdown::analysis {
 namespace {
 
+// For a statistic that the table does not define.
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void CheckProportion(int x, int n, double level) {

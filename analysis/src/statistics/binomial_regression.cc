@@ -239,11 +239,12 @@ VectorXd ScaledCoefficients(const Regression& fit, const VectorXd& scale) {
 // 0, by steps that grow.
 double End(double from, double step, double half_quantile,
            const std::function<std::optional<double>(double)>& fall) {
-  constexpr int kSteps = 60;
+  // Steps that grow: beyond them the interval has no end.
+  constexpr int kMaxSteps = 60;
   double inside = from;
   double outside = from;
   for (int i = 0;; ++i) {
-    if (i == kSteps) return std::copysign(HUGE_VAL, step);
+    if (i == kMaxSteps) return std::copysign(HUGE_VAL, step);
     outside = inside + step;
     const auto f = fall(outside);
     if (!f) return std::copysign(HUGE_VAL, step);

@@ -11,6 +11,7 @@
 namespace touchdown::analysis {
 namespace {
 
+// Logarithm of no weight.
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 // The fine part of the grid, in margins on either side of the theory: truths
 // farther off are told apart from it long before their exact place matters.

@@ -35,6 +35,8 @@ class HermiteTable {
   }
 
  private:
+  // Nodes in a unit of the argument: a cubic errs by step^4 / 384 times the
+  // fourth derivative, 1.6e-10 of it.
   static constexpr int kPerUnit = 64;
   struct Node {
     double value = 0.0;

@@ -35,6 +35,8 @@ struct Key {
 
 // log Phi: 0 above kCertain_z, the exact function below the table.
 double FastLogNormalCdf(double z) {
+  // Lower end of the table, in standard deviations: the exact function, which
+  // takes longer, is rarely asked for below it.
   constexpr int kLow = -25;
   static const HermiteTable table(kLow, 9, LogNormalCdf, [](double x) {
     return std::exp(std::log(NormalDensity(x)) - LogNormalCdf(x));
@@ -56,6 +58,8 @@ HermiteTable LapseTable(double lapse) {
 // log(p P + (1 - p)(1 - P)) with P = lapse + (1 - 2 lapse) Phi(z). Near the
 // ends of Phi, where a label of probability 1e-9 matters, Phi must be exact.
 double LogSoft(double z, double p_bounce, double lapse) {
+  // Standard deviations within which the table's absolute error is far below
+  // the tails.
   constexpr double kEnds = 3.5;
   const double phi = std::abs(z) < kEnds ? FastNormalCdf(z) : NormalCdf(z);
   const double not_phi = std::abs(z) < kEnds ? 1.0 - phi : NormalCdf(-z);
@@ -150,6 +154,7 @@ double LogLikelihood(std::span<const Cell> cells, double angle_rad,
 }
 
 double FastNormalCdf(double z) {
+  // Standard deviations: 1 - Phi(9) is 1e-19, below a double's last digit.
   constexpr int kEnd = 9;
   static const HermiteTable table(-kEnd, kEnd, NormalCdf, NormalDensity);
   if (z <= -kCertain_z) return 0.0;
@@ -187,6 +192,7 @@ void GridLikelihood::At(double angle_rad, std::span<double> out) const {
       }
     } else if (hard) {
       const HermiteTable& table = with_lapse_.front();
+      // The table's end: beyond it nothing changes.
       constexpr double kEnd = kCertain_z;
       for (std::size_t j = 0; j < levels_; ++j) {
         out[j] +=

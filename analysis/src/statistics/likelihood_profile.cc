@@ -31,6 +31,7 @@ constexpr double kBinWidth_rad = 0.05 * core::kDegree;
 template <class F>
 std::pair<double, double> Maximize(const F& f, double a, double b,
                                    double tolerance) {
+  // Golden-section search: (sqrt(5) - 1) / 2.
   constexpr double kGolden = 0.6180339887498949;
   double x1 = b - kGolden * (b - a);
   double x2 = a + kGolden * (b - a);
@@ -134,6 +135,7 @@ double Cross(const Profile& pl, double in, double out, double level,
 // The greatest pl: from the best of a coarse grid and the ends of the bracket.
 double FindTop(const Profile& pl, std::span<const Observation> observations,
                const ProfileOptions& options, double tolerance) {
+  // Steps of the coarse grid: 2 deg on a range of 90 deg. Not studied.
   constexpr int kSteps = 45;
   std::vector<double> starts;
   for (int i = 0; i <= kSteps; ++i) {

@@ -48,6 +48,7 @@ std::string WhyNoProbability(const core::StateDecision& state) {
   std::string why = "undecided, without a P(bounce)";
   if (!state.reason.empty()) why += ": " + state.reason;
   if (state.extrapolated_gap_m) {
+    // m to mm.
     constexpr double kMm = 1.0 / core::kMillimetre;
     why += fmt::format("; the flight would reach {:.3g} +- {:.2g} mm",
                        state.extrapolated_gap_m->value * kMm,

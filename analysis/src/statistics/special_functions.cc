@@ -10,6 +10,7 @@
 namespace touchdown::analysis {
 namespace {
 
+// Of Phi(z) = erfc(-z / sqrt(2)) / 2, and of the normal density.
 constexpr double kSqrtHalf = std::numbers::sqrt2 / 2;
 const double kLogSqrtTwoPi = 0.5 * std::log(2 * std::numbers::pi);
 
@@ -19,6 +20,7 @@ constexpr double kSeriesBelow = -30.0;
 
 // Lentz's method for the continued fraction of I_x(a, b).
 double BetaFraction(double a, double b, double x) {
+  // Lentz's method: a denominator of 0 is taken for this.
   constexpr double kTiny = 1e-300;
   constexpr int kMaxTerms = 10000;  // ~ sqrt(max(a, b)) terms are needed
   double c = 1.0;

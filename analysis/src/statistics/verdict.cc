@@ -191,6 +191,8 @@ DecidingShot FindDecidingShot(const BoundaryPosterior& posterior,
                               core::Interval candidates, double set_u_rad) {
   core::RequirePositive("margin_rad", margin_rad);
   core::RequireNotNegative("set_u_rad", set_u_rad);
+  // rad between candidate angles. Smaller costs time in proportion. Not
+  // studied.
   constexpr double kStep_rad = 0.5 * kDegree;
   // Outcomes are forecast under fewer cells than the posterior has: the ones
   // without weight are passed over.

@@ -5,6 +5,7 @@
 namespace touchdown::analysis {
 namespace {
 
+// What each theory assumes, where it holds and where it is from.
 constexpr std::array<BoundaryModelCard, 5> kCards = {{
     {BoundaryModel::kPublished, "published", "Published boundary angles",
      "none: the numbers are quoted as printed, 11.8 deg for the sphere and 7.8 "

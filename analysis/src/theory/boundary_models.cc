@@ -22,6 +22,7 @@ using core::AngleKind;
 using core::BodyKind;
 using core::kDegree;
 
+// rad: 90 deg.
 constexpr double kRightAngle = std::numbers::pi / 2.0;
 
 // The paper's numbers and what stands behind their last digit.
@@ -33,6 +34,7 @@ constexpr double kPublishedGrain_rad = 0.1 * kDegree;
 // place of mu. 9.7417 to 9.8234 give both digits.
 constexpr double kReplicationFriction = 9.8;
 
+// Reason of the two models in which a sphere has no boundary.
 constexpr const char* kSphereNeverDetaches =
     "a sphere touches below its centre: A = 1/m and b = -g at every angle, "
     "spin "

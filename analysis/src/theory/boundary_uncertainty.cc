@@ -21,9 +21,12 @@ struct Uncertain {
   double high;
 };
 
+// Ends of ranges: above 0, and no end.
 constexpr double kLeastPositive = std::numeric_limits<double>::min();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
+// The inputs that may bear an uncertainty, with the ranges that a step must
+// stay within.
 constexpr std::array<Uncertain, 9> kUncertain = {{
     {"kappa", &BoundaryInputs::kappa, 0.0, kHuge},
     {"radius_m", &BoundaryInputs::radius_m, kLeastPositive, kHuge},
@@ -87,6 +90,8 @@ bool IsFarFromThreshold(BoundaryModel model, const BoundaryInputs& in,
   const double u_w =
       w * std::hypot(relative(in.radius_m), 2.0 * relative(in.omega_rad_per_s),
                      relative(in.gravity_mps2));
+  // Standard uncertainties between w and its limit 1, where the slope is
+  // infinite: nearer, first order means nothing.
   constexpr double kSafety = 10.0;
   return w - 1.0 > kSafety * u_w;
 }

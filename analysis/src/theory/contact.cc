@@ -182,6 +182,7 @@ QuickContact SolveSlidingContact(const ContactProblem& p) {
       p.radius_m * p.omega_rad_per_s * p.omega_rad_per_s * s;
   const double a = 1.0 + kappa_c * (c - slip_mu_s);
   const double b = centripetal_s - p.gravity_mps2;
+  // A few roundings of each term: what is nearer to zero than this may be zero.
   constexpr double kTolerance = 8 * kUlp;
   const double a_tolerance =
       kTolerance *

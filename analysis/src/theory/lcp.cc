@@ -17,6 +17,8 @@ using Vector = std::array<Wide, kLcpMaxSize>;
 using Matrix = std::array<Vector, kLcpMaxSize>;
 using Subset = unsigned;  // bit i: index i belongs to it
 
+// 64 units in the last place of a double: matrices come in doubles, and what is
+// below that share of their terms may be zero.
 constexpr Wide kRoundOff = 64 * 0x1p-53L;
 
 bool Has(Subset set, std::size_t i) { return (set >> i & 1U) != 0; }
@@ -130,6 +132,7 @@ class Enumeration {
     }
     Vector row{};
     Vector column{};
+    // A bound on time. Not studied.
     constexpr int kMaxPasses = 100;
     constexpr Wide kRest = 0.25L;  // of a power of two
     Wide change = 2 * kRest;

@@ -16,7 +16,7 @@
 namespace touchdown::analysis {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;  // under a short name
 
 // Contacts slower than this many rest speeds are hops: not listed as events.
 constexpr double kHopSpeeds = 5.0;
@@ -349,6 +349,7 @@ GreatestGap ComputeGreatestGap(const RigidMotion& motion, double from_s,
     }
     double low = begin + std::max(0, top - 1) * step;
     double high = begin + std::min(n, top + 1) * step;
+    // Golden-section search: (sqrt(5) - 1) / 2.
     constexpr double kGolden = 0.6180339887498949;
     while (high - low > 1e-9) {
       const double a = high - kGolden * (high - low);

@@ -115,6 +115,8 @@ SpinBoundaryUncertainty SpinBoundaryOfUncertainOmega(double radius_m,
     out.first_order_u_rad = std::abs(mean.d_omega) * u_omega;
     out.second_order_mean_rad =
         mean.alpha_rad + 0.5 * mean.d2_omega * u_omega * u_omega;
+    // Standard uncertainties between w and its limit 1 (as in
+    // boundary_uncertainty.cc).
     constexpr double kSafety = 10.0;
     const double u_w = 2.0 * mean.w / omega * u_omega;
     out.first_order_is_valid = mean.w_minus_1 > kSafety * u_w;
@@ -122,6 +124,7 @@ SpinBoundaryUncertainty SpinBoundaryOfUncertainOmega(double radius_m,
   const double above = UpperTail(threshold, omega, u_omega);
   const double below = UpperTail(threshold, -omega, u_omega);
   const double p_exists = above + below;
+  // Probability below which no boundary exists for this spin.
   constexpr double kNegligible = 1e-12;
   if (p_exists < kNegligible) return out;
   Moments moments;

@@ -11,6 +11,7 @@
 namespace touchdown::rig {
 namespace {
 
+// Answer of every command after a stop, until the operator resets the rig.
 constexpr const char* kStopped =
     "the rig was stopped; look at it, then reset it";
 

@@ -9,6 +9,7 @@
 namespace touchdown::rig {
 namespace {
 
+// Reason where the dialogue ended without an answer.
 constexpr const char* kNoAnswer = "nobody answered at the rig";
 
 std::optional<double> Number(const std::string& text) {

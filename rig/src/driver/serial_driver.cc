@@ -11,6 +11,7 @@
 namespace touchdown::rig {
 namespace {
 
+// The protocol's name and version.
 constexpr const char* kVersion = "touchdown-rig/2";
 
 // On the wire angles are in millidegrees and lengths in micrometres, whole

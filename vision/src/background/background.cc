@@ -42,6 +42,7 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
           __builtin_prefetch(windows[k].row<Sample>(y) + x + width);
           LoadLanes(windows[k], x, y, &lanes[k * kLanes]);
         }
+        // Only as far as the middle needs it.
         network.Sort(lanes.data());
         AddSamples(lanes.data(), cut, n - cut, sums.data());
         const auto count =
@@ -51,6 +52,7 @@ void MidMeanOfRows(FrameSamples::Reader& reader, const SortingNetwork& network,
               static_cast<double>(sums[i]) / static_cast<double>(n - 2 * cut));
         }
       }
+      // The samples are at hand here: what tells the noise is taken in passing.
       if (pairs.Has(top + y)) pairs.Take<Sample>(windows, y, top + y);
     }
   }
@@ -151,6 +153,7 @@ Background EstimateBackgroundFromFrames(Clip& clip,
   Background background;
   background.width_px = info.width_px;
   background.height_px = info.height_px;
+  // Full scale of right-aligned samples.
   background.full_scale_dn = static_cast<double>((1u << info.bit_depth) - 1u);
   background.level.resize(static_cast<std::size_t>(info.width_px) *
                           static_cast<std::size_t>(info.height_px));

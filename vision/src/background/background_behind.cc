@@ -118,6 +118,8 @@ void MaskedMidMean(const FrameSamples& samples, const Covers& covers,
           ++(down ? low : high)[i];
         });
       }
+      // A full order: how many of the samples count differs from pixel to
+      // pixel.
       network.Sort(lanes.data());
       for (std::size_t i = 0; i < count; ++i) {
         if (touched[i] == 0) continue;
@@ -187,6 +189,8 @@ Covers FindCovers(std::int64_t first, std::int64_t last,
     all.most = *std::max_element(all.counts.begin(), all.counts.end()) /
                static_cast<double>(all.of.size());
   }
+  // Samples in which it is not known whether the body is there are not used,
+  // but their pixels are estimated anew as well.
   for (const Cover& cover : doubtful) Count(cover, all);
   return all;
 }
@@ -194,6 +198,7 @@ Covers FindCovers(std::int64_t first, std::int64_t last,
 Background EstimateMaskedBackground(Clip& clip, const Covers& covers,
                                     Background fallback,
                                     const BackgroundOptions& options) {
+  // Nothing is known of the background without the body.
   if (covers.frames.size() < 2) return fallback;
   Background background = std::move(fallback);
   const std::size_t pixels = background.level.size();

@@ -12,7 +12,7 @@ namespace touchdown::vision {
 
 NoisePairs::NoisePairs(std::int32_t width_px, std::int32_t height_px,
                        const FrameSamples& samples)
-    : apart_(std::max<std::size_t>(1, samples.size() / kEnough)),
+    : apart_(std::max<std::size_t>(1, samples.size() / kEnoughSamples)),
       per_point_(samples.size() / apart_ / 2) {
   // From both ends of the clip to its middle; of an odd number that are all
   // taken the last stays out.

@@ -55,7 +55,7 @@ class NoisePairs {
 
   // So many samples tell. Of more every second one: frames of compressed video
   // that follow each other share their noise.
-  static constexpr std::size_t kEnough = 32;
+  static constexpr std::size_t kEnoughSamples = 32;
 
   std::int32_t row_step_ = 1;
   std::size_t apart_;  // samples from one to the next that is taken

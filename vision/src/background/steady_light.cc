@@ -93,6 +93,7 @@ class Grid {
         under += is_light ? r * r : 0.0;
       }
       if (under <= 0.0) return 1.0;
+      // Least squares through the origin.
       gain = over / under;
       most_off = MostOff(points, gain);
       if (gain == gain_before && most_off == most_before) break;
@@ -184,8 +185,9 @@ class Grid {
     if (off.empty()) return 0.0;
     // Robust standard deviations, of at least half a level, which rounding
     // alone leaves. Not studied.
-    constexpr double kSigmas = 4.0;
-    return kSigmas * std::max(0.5, kSigmaPerMedian * Median(std::move(off)));
+    constexpr double kMaxOffSigmas = 4.0;
+    return kMaxOffSigmas *
+           std::max(0.5, kSigmaPerMedian * Median(std::move(off)));
   }
 
   void AddRow(const core::Frame& frame, std::int32_t row,
@@ -340,6 +342,8 @@ SteadyLight Deflicker(std::unique_ptr<Clip> clip, std::int64_t first,
                     info.frames));
   }
   Grid grid(info, options.points);
+  // As many frames as the stated time holds, between a least and a greatest
+  // number.
   const auto frames = static_cast<std::int64_t>(
       std::clamp<double>(std::ceil(options.look_s * info.time_base.fps),
                          options.least_frames, options.most_frames));

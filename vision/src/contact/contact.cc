@@ -250,8 +250,8 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
                     "calibration bends a line; its gap is taken from the path",
                     std::abs(trend.bend_px)));
   }
-  // Standard deviations of the line's direction; for a warning only. Chosen by
-  // the normal distribution.
+  // Standard deviations of the line's direction; for a warning only. Not
+  // studied.
   constexpr double kNotableSigmas = 3.0;
   if (std::abs(trend.slope_rad) > kNotableSigmas * track.ground.u_angle_rad) {
     warnings.push_back(
@@ -293,8 +293,8 @@ bool BeginsAtImpact(const PlaneTrack& track,
   // px: common error of the outlines beside the ground's edge, up to 0.07 px in
   // clips of known truth.
   constexpr double kEdgeBias_px = 0.05;
-  // Standard deviations by which the flight may start above the line. Chosen by
-  // the normal distribution.
+  // Standard deviations by which the flight may start above the line. Not
+  // studied.
   constexpr double kAboveLineSigmas = 3.0;
   return before.rate > 0.0 &&
          before.gap_px <

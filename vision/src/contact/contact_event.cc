@@ -100,10 +100,10 @@ bool LeavesFlight(const PlaneSample& s, const Flight& flight) {
   // Standard deviations. Fewer: a frame of the flight after the impact passes
   // for one before it, and the contact is a frame too late; more: contacts of
   // few frames are absent. Not studied.
-  constexpr double kSigmas = 4.0;
+  constexpr double kOffFlightSigmas = 4.0;
   const FlightState at = flight.At(s.time_s);
   const auto off = [](double difference, double u1, double u2) {
-    return std::abs(difference) > kSigmas * std::hypot(u1, u2);
+    return std::abs(difference) > kOffFlightSigmas * std::hypot(u1, u2);
   };
   return off(s.height_px - at.height_px, at.u_height_px, s.u_height_px) ||
          off(s.along_px - at.along_px, at.u_along_px, s.u_along_px) ||

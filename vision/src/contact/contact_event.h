@@ -33,7 +33,7 @@ struct Event {
 // Standard deviations, of Event::disagreement: beyond it flights and line
 // contradict each other, and the flights are believed. Larger: a line that is
 // off biases the instant; smaller: an honest line is dropped (3: in 0.3 % of
-// contacts). Chosen by the normal distribution.
+// contacts). Not studied.
 inline constexpr double kDisagree = 3.0;
 
 // Measures the contact between the flight of `before_frames` and what follows;

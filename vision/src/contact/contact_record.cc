@@ -278,8 +278,8 @@ void FillMotion(const RecordContext& context, const Event& event,
     if (event.after) add(event.after_frames);
     if (sw > 0.0) {
       const Measured g_si = InMetres(context, {swx / sw, 1.0 / std::sqrt(sw)});
-      // Relative u, by the document's definition (DESIGN: below 3 %): a frame
-      // rate or a scale that is off by less would not show.
+      // Relative u, by the document's definition: a frame rate or a scale that
+      // is off by less would not show.
       constexpr double kMaxInformativeU = 0.03;
       if (g_si->u < kMaxInformativeU * std::abs(g_si->value)) {
         m.gravity_check_mps2 = g_si;
@@ -365,9 +365,9 @@ void FillState(const RecordContext& context, std::size_t from,
       fmt::format("greatest gap {} at frame {}, bounce height {}",
                   LengthText(context, gap.value, gap.u), greatest->frame,
                   LengthText(context, height_px, 0.0));
-  // DESIGN's rule: where the film ends while the body rises below the bounce
-  // height, the state is undecided, and the extrapolated height is a field of
-  // its own.
+  // The rule of the motion state: where the film ends while the body rises
+  // below the bounce height, the state is undecided, and the extrapolated
+  // height is a field of its own.
   if (state.label != core::MotionState::kBounce && greatest->reaches_px) {
     Estimate reaches = *greatest->reaches_px;
     reaches.u =
@@ -403,7 +403,7 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
   const double turned = std::abs(b.face_rad - a.face_rad);
   const double u_turned = std::hypot(a.u_face_rad, b.u_face_rad);
   // Standard deviations of path and turn. Fewer: noise of a body at rest is
-  // called a slide. Chosen by the normal distribution.
+  // called a slide. Not studied.
   constexpr double kClearSigmas = 3.0;
   // rad: 45 deg. Beyond it another face comes down; a rocking block turns back
   // before. From geometry (a square's).
@@ -496,9 +496,6 @@ namespace {
 // ground line can be inclined to each other, and more than its attitude is
 // known.
 bool TurnsWhileDown(std::span<const PlaneSample> down) {
-  // As far as the path and the visible edge of the ground may differ in
-  // direction (as in motion_segments.cc). Not studied.
-  constexpr double kInclined_rad = 0.5 * core::kDegree;
   // Standard deviations of one frame: the range of a hundred normal values is
   // about five, of a thousand six and a half. Fewer: noise is called a turn.
   constexpr double kRangeSigmas = 8.0;
@@ -507,7 +504,7 @@ bool TurnsWhileDown(std::span<const PlaneSample> down) {
         return a.face_rad < b.face_rad;
       });
   return most->face_rad - least->face_rad >
-         std::max(kInclined_rad,
+         std::max(kMaxEdgeTilt_rad,
                   kRangeSigmas * std::max(least->u_face_rad, most->u_face_rad));
 }
 

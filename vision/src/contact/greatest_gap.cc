@@ -129,7 +129,7 @@ void Finder::LookAtFrames(const SampleRange& range) {
   const auto [begin, end] = range;
   // Frames. At 7 the noise of the middle one falls to 0.58 (a parabola's), and
   // a hop of as many frames is followed exactly. More flattens short hops;
-  // fewer offers noise as a gap. Chosen by these two figures.
+  // fewer offers noise as a gap. Not studied.
   constexpr std::size_t kWindow = 7;
   // Three frames pass through any parabola; a frame then speaks for itself.
   constexpr std::size_t kMinWindow = 4;

@@ -201,13 +201,8 @@ Segmenter::Segmenter(const PlaneTrack& track,
   const auto precision = [](double u) { return 1.0 / std::max(u * u, 1e-12); };
   level_precision_ = precision(std::hypot(
       track.ground.u_offset_px, track.u_half_px, options.edge_bias_px));
-  // By how much an edge of the ground seen in perspective may differ in
-  // direction from the line of contact. With more, a slow descent passes for
-  // rest; with less, rest along a line that is off is cut into flights. Not
-  // studied.
-  constexpr double kInclined_rad = 0.5 * core::kDegree;
   slope_precision_ =
-      precision(std::hypot(track.ground.u_angle_rad, kInclined_rad));
+      precision(std::hypot(track.ground.u_angle_rad, kMaxEdgeTilt_rad));
   // The floor of the attitude moves an end of the long side by the floor of
   // place.
   const double floor_rad = floor_px / std::max(track.half_long_px, 1.0);

@@ -17,6 +17,7 @@
 #include <optional>
 #include <vector>
 
+#include "touchdown/core/units.h"
 #include "touchdown/vision/contact/path.h"
 #include "touchdown/vision/contact/plane_track.h"
 
@@ -27,6 +28,12 @@ struct Stretch : SampleRange {
   double chi2 = 0.0;  // of its poses about it
   int degrees = 0;    // of freedom
 };
+
+// rad: by how much an edge of the ground seen in perspective may differ in
+// direction from the line of contact. With more, a slow descent or a turn
+// passes for rest; with less, rest along a line that is off is cut into
+// flights. Not studied.
+inline constexpr double kMaxEdgeTilt_rad = 0.5 * core::kDegree;
 
 struct SegmentationOptions {
   // Along the ground's normal, px/s^2; nothing: one more parameter a flight.

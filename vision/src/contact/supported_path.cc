@@ -98,7 +98,7 @@ struct Path {
     // Share of the acceleration along. Larger: a flat flight passes for a
     // slide; smaller: a bent line refutes a real one. Not studied.
     constexpr double kMaxShareAcross = 0.1;
-    // Standard deviations. Chosen by the normal distribution.
+    // Standard deviations. Not studied.
     constexpr double kNoiseSigmas = 3.0;
     return along.good() && across.good() &&
            std::abs(across.terms.bend) <

@@ -173,6 +173,7 @@ std::vector<SampledFrame> ChooseFrames(const Clip& clip, const Track& track,
   const std::int64_t from = std::max(track.first_frame, first_pose - spare);
   const std::int64_t to = std::min(track.last_frame, last_pose + spare + 1);
   std::set<std::int64_t> indices;
+  // Where decoding is dear, only frames that are kept whole are looked at.
   if (clip.KnownChanges(track.first_frame) != nullptr) {
     BackgroundOptions background;
     background.among = options.still_frames;
@@ -250,6 +251,7 @@ LatticePoints FindNearPoints(const Clip& clip, const Track& track,
   std::vector<std::uint8_t> marks = MarkNearPoints(track, frames, lattice);
   const auto marked = std::count(marks.begin(), marks.end(), 1);
   const double area = static_cast<double>(marked) * lattice.step * lattice.step;
+  // The step that gives the wanted number of points on that area.
   const std::int32_t step = ChooseStep(area, options.points_near);
   if (step != lattice.step) {
     SetLattice(box, step, lattice);
@@ -259,6 +261,7 @@ LatticePoints FindNearPoints(const Clip& clip, const Track& track,
   return lattice;
 }
 
+// Points that the body is never near, over the whole region.
 LatticePoints PointsElsewhere(const Clip& clip, const Track& track,
                               const std::vector<SampledFrame>& frames,
                               const ExplainedChangeOptions& options) {
@@ -272,6 +275,8 @@ LatticePoints PointsElsewhere(const Clip& clip, const Track& track,
   return lattice;
 }
 
+// Levels of all points in all frames; row by row, since a window of a row costs
+// least.
 LatticeLevels ReadLevels(Clip& clip, const std::vector<SampledFrame>& frames,
                          const LatticePoints& points, int threads) {
   LatticeLevels levels(frames.size(), points.size());

@@ -13,6 +13,7 @@
 namespace touchdown::vision {
 namespace {
 
+// With fewer frames or points no variance is known.
 void CheckArguments(const Clip& clip, const Track& track,
                     const ExplainedChangeOptions& options) {
   const auto check = [](const char* field, int value, int least) {
@@ -86,9 +87,9 @@ double ChangeBeyondNoise(const OverTime& over, double variance,
   // misses faint things that move; smaller counts noise. Chosen, not measured
   // yet.
   constexpr double kNoiseFactor = 9.0;
-  constexpr double kSigmas = 6.0;
-  const double least =
-      variance * (kNoiseFactor * freedom + kSigmas * std::sqrt(2.0 * freedom));
+  constexpr double kEstimateSigmas = 6.0;
+  const double least = variance * (kNoiseFactor * freedom +
+                                   kEstimateSigmas * std::sqrt(2.0 * freedom));
   double sum = 0.0;
   for (const float square : over.square) {
     if (square > least) sum += square - variance * freedom;
@@ -108,9 +109,7 @@ struct Residuals {
 void AddResiduals(const TwoLayers& layers, const CoveredPoints& covered,
                   const OverTime& over, const float* level,
                   std::vector<float>& residual, Residuals& sums) {
-  // Coverage from which on the background counts for nothing (as in
-  // two_layers.cc); limits of the edge's band. Not studied.
-  constexpr float kWhollyCovered = 0.95F;
+  // Coverage between which a pixel belongs to the edge's band. Not studied.
   constexpr float kBandFrom = 0.02F;
   constexpr float kBandTo = 0.98F;
   for (std::size_t p = 0; p < residual.size(); ++p) {
@@ -166,6 +165,8 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
         fmt::format("of {} sampled frames fewer than {} have a pose",
                     frames.size(), kMinPoses));
   }
+  // Two sets of points: near the path the model must explain what changes;
+  // elsewhere nothing should change.
   const LatticePoints near = FindNearPoints(clip, track, frames, options);
   const LatticePoints rest = PointsElsewhere(clip, track, frames, options);
   if (near.size() == 0) {
@@ -190,6 +191,7 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
       AddResiduals(layers, covered[k], over, levels.of(k), residual, sums);
     } else {
       AddUnexplained(layers, over, levels.of(k), sums);
+      // A frame within the track without a pose: the body was lost there.
       out.lost += frames[k].is_within ? 1 : 0;
     }
   }
@@ -214,9 +216,12 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
                              static_cast<double>(near.step) * near.step;
   const double change_rest = ChangeBeyondNoise(over_rest, variance, n) *
                              static_cast<double>(rest.step) * rest.step;
+  // Both changes are scaled to areas, since the lattices have different steps.
   out.elsewhere = change_near + change_rest > 0.0
                       ? change_rest / (change_near + change_rest)
                       : 0.0;
+  // Mean square over the edge's band in units of the noise: 1 where outline and
+  // blur are right.
   out.band_chi2 =
       sums.band > 0
           ? sums.band_square / (static_cast<double>(sums.band) * variance)

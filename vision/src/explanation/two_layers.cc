@@ -15,9 +15,6 @@ namespace {
 // Coverage below which a pixel shows nothing of the body: 0.1 % of any contrast
 // is below the noise.
 constexpr float kBarelyCovered = 1e-3F;
-// Coverage from which on a pixel shows nothing but the body. Larger loses small
-// blurred bodies; smaller mixes the background in. Not studied.
-constexpr float kWhollyCovered = 0.95F;
 
 // The body's picture: a grid around its outline, in its own coordinates.
 struct BodyGrid {
@@ -79,6 +76,7 @@ CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
                          const LatticePoints& lattice, const BodyGrid& grid) {
   CoveredPoints covered;
   const Outline outline = PlaceOutline(track.body, frame.pose);
+  // The same motion blur as in the fits.
   const FrameMotion step = MeasureFrameMotion(track, frame.index);
   const double extent = Extent(outline);
   const double blur = std::max(track.body.blur_px, 0.3);
@@ -116,9 +114,11 @@ CoveredPoints CoverFrame(const Track& track, const SampledFrame& frame,
     image.Cover(xs.data(), ys.data(), block);
     for (std::size_t i = 0; i < filled; ++i) {
       const float cover = block.value[i];
+      // Most points of the box are not covered.
       if (!(cover > kBarelyCovered)) continue;
       const double dx = xs[i] - outline.centre.x_px;
       const double dy = ys[i] - outline.centre.y_px;
+      // Place in the body's picture, in cells; clamped to its border cells.
       const double u = std::clamp(
           (cosine * dx + sine * dy) * per_cell + 0.5 * (grid.columns - 1), 0.0,
           grid.columns - 1.001);
@@ -300,6 +300,7 @@ void TwoLayers::LearnPicture(const LatticeLevels& levels,
         }
       }
     }
+    // Each cell moves by the weighted mean of what its pixels lack.
     for (std::size_t c = 0; c < picture_.size(); ++c) {
       picture_[c] += over[c] / under[c];
     }

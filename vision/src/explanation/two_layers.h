@@ -21,6 +21,10 @@ struct CoveredPoints {
   std::vector<float> below;
 };
 
+// Coverage from which on a pixel shows nothing but the body. Larger loses small
+// blurred bodies; smaller mixes the background in. Not studied.
+inline constexpr float kWhollyCovered = 0.95F;
+
 // Of each sampled frame; empty where it has no pose.
 std::vector<CoveredPoints> CoverPoints(const Track& track,
                                        const std::vector<SampledFrame>& frames,
@@ -48,7 +52,9 @@ class TwoLayers {
   void LearnPicture(const LatticeLevels& levels,
                     const std::vector<CoveredPoints>& covered);
 
-  // Sum of (1 - M)^2 below which a pixel was never seen uncovered.
+  // Sum of (1 - M)^2 below which a pixel was never seen uncovered. Larger
+  // leaves more pixels to the mean over time; smaller divides by noise. Not
+  // studied.
   static constexpr float kLeastSeen = 0.3F;
 
   std::size_t points_ = 0;

@@ -162,11 +162,11 @@ core::PixelRect ChooseWindow(const Outline& start,
   // A larger window costs memory; a smaller one ends fits at its border.
   constexpr double kMayMove = 0.5;
   // Twice kBandBlurs, since the blur may double.
-  constexpr double kBlurs = 6.0;
+  constexpr double kWindowBlurs = 6.0;
   constexpr double kSpare_px = 6.0;
   return WindowReaching(start.centre,
                         (1.0 + kMayMove) * Extent(start) +
-                            kBlurs * std::max(options.blur_px, 0.5) +
+                            kWindowBlurs * std::max(options.blur_px, 0.5) +
                             HalfWay_px(options) + kSpare_px,
                         info);
 }

@@ -36,13 +36,11 @@ FrameStep Alone(const SharedTerms& terms) {
 
 // Frames that show the whole outline; all of them where those are too few.
 std::vector<FrameStep> Collect(std::span<const Fitted> all) {
-  // Share of the outline that is seen. Not studied.
-  constexpr double kWholeShare = 0.98;
   std::vector<FrameStep> told;
   for (const bool strict : {true, false}) {
     told.clear();
     for (const Fitted& f : all) {
-      if (!f.fit.shared || (strict && f.fit.visible < kWholeShare)) continue;
+      if (!f.fit.shared || (strict && f.fit.visible < kWhollySeen)) continue;
       told.push_back(Alone(*f.fit.shared));
     }
     if (told.size() >= kMinSharing) break;
@@ -57,7 +55,7 @@ void DropFarOff(std::vector<FrameStep>& told) {
   for (const FrameStep& t : told) values.push_back(t.step);
   const double centre = Median(values);
   for (double& v : values) v = std::abs(v - centre);
-  // In units of the robust scatter. Chosen by the normal distribution.
+  // In units of the robust scatter. Not studied.
   constexpr double kMaxScatters = 4.0;
   const double scatter = kSigmaPerMedian * Median(std::move(values));
   std::erase_if(told, [&](const FrameStep& t) {

@@ -16,10 +16,11 @@ struct SpotModel {
   static constexpr int kShading = 6;  // of q: 1, x, y, x^2, xy, y^2
   static constexpr int kSpot = 6;     // A, x, y, Sxx, Sxy, Syy
   static constexpr int kMostSpots = 3;
-  static constexpr int kMost = kShading + kMostSpots * kSpot;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
-  using Matrix =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+  static constexpr int kMaxSpotParameters = kShading + kMostSpots * kSpot;
+  using Vector =
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSpotParameters, 1>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                               kMaxSpotParameters, kMaxSpotParameters>;
 
   double size_px = 1.0;
   int spots = 0;

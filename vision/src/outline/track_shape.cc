@@ -190,7 +190,7 @@ void FollowSize(const std::vector<Fitted>& all, Track& track) {
   // Weighted straight line of the radius over time.
   double sw = 0, st = 0, sr = 0, stt = 0, str = 0;
   for (const Fitted& f : all) {
-    if (f.fit.visible < 0.98) continue;
+    if (f.fit.visible < kWhollySeen) continue;
     const double w = 1.0 / (f.fit.u_size_px * f.fit.u_size_px + 1e-6);
     sw += w;
     st += w * f.time_s;
@@ -280,7 +280,7 @@ BodyImage EstimateShape(const std::vector<Fitted>& all, core::BodyKind kind) {
   // Only outlines that are wholly seen tell the size.
   for (const bool strict : {true, false}) {
     for (const Fitted& f : all) {
-      if (strict && f.fit.visible < 0.98) continue;
+      if (strict && f.fit.visible < kWhollySeen) continue;
       size.push_back(OutlineSize(f.fit));
       size_u.push_back(f.fit.u_size_px);
       shorter.push_back(f.fit.outline.half_short_px);

@@ -46,6 +46,12 @@ double MedianMisfit(const std::vector<Pose>& poses);
 core::Estimate RobustMean(const std::vector<double>& values,
                           const std::vector<double>& us);
 
+// Share of an outline that is seen from which on it counts as seen wholly: what
+// it shows is then not drawn aside by an edge of the picture or of an obstacle.
+// Larger loses frames beside the border; smaller takes sizes from parts. Not
+// studied.
+inline constexpr double kWhollySeen = 0.98;
+
 // Share of an outline that may be hidden while it still counts as free. Larger
 // lets the obstacle's edge draw the body; smaller loses frames. Not studied.
 inline constexpr double kMostHidden = 0.02;

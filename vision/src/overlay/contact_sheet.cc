@@ -198,6 +198,7 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
   // Side of a panel in units of the body's extent: the body and its way beside
   // it. Smaller enlarges more. Chosen by eye.
   constexpr double kExtentsPerPanel = 4.5;
+  // At least 24 px, so that a small body is not enlarged without end.
   const double view_px = std::max(24.0, kExtentsPerPanel * extent);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const int column = static_cast<int>(k) % options.columns;
@@ -211,6 +212,7 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
     } else if (evidence != nullptr) {
       centre = evidence->centre;
     }
+    // The whole frame: a panel shows whatever of it lies in view.
     const core::Frame frame = clip.Read(frames[k]);
     cv::Mat target = canvas(at);
     Panel panel(target, frame, centre, view_px);
@@ -223,6 +225,7 @@ ColourImage DrawContactSheet(Clip& clip, const Track& track,
                {g.reference.x_px + far * std::cos(angle),
                 g.reference.y_px + far * std::sin(angle)},
                kGroundColour);
+    // Both flights as fitted; where no contact was found, the poses alone.
     if (evidence != nullptr && evidence->before) {
       const double dt = plane.frame_interval_s;
       DrawFlight(

@@ -70,6 +70,7 @@ class NormalIntegrals {
   std::array<Node, kSize> nodes_{};
 };
 
+// Computed once, at the first use.
 const NormalIntegrals& Integrals() {
   static const NormalIntegrals table;
   return table;
@@ -122,6 +123,7 @@ void Crossings(const OutlinePiece& piece, bool of_x, std::vector<double>& out) {
 double IntegralXdY(const OutlinePiece& piece, double t0, double t1) {
   const core::PixelPoint p = EvaluatePoint(piece, t0);
   const core::PixelPoint q = EvaluatePoint(piece, t1);
+  // Exact for a straight piece: the trapezoid.
   if (!piece.is_arc) return 0.5 * (p.x_px + q.x_px) * (q.y_px - p.y_px);
   const double a = piece.begin_rad + t0 * (piece.end_rad - piece.begin_rad);
   const double b = piece.begin_rad + t1 * (piece.end_rad - piece.begin_rad);
@@ -211,6 +213,7 @@ ShapeOutline ClipCircle(core::PixelPoint centre, double radius_px,
   const double height = SignedDistance(half, centre);
   if (height >= radius_px) return {};
   if (height <= -radius_px) return CircleOutline(centre, radius_px);
+  // The arc lies about the direction into the half plane.
   const double middle = std::atan2(-half.normal_y, -half.normal_x);
   const double spread = std::acos(height / radius_px);
   const OutlinePiece arc =
@@ -285,6 +288,7 @@ void CoverageMap::AddNode(double x, double y, double weighted_dy) {
   const auto j1 = static_cast<std::int32_t>(
       std::min<double>(last_y, std::floor(y + reach)));
   double above = normal.Phi((y - j0 + 0.5) * scale);
+  // The kernel is a product: one share for each row, one step for each column.
   for (std::int32_t j = j0; j <= j1; ++j) {
     const double below = normal.Phi((y - j - 0.5) * scale);
     const double share = above - below;
@@ -338,6 +342,7 @@ void CoverageMap::AddSmooth(const OutlinePiece& piece, bool periodic,
     for (std::size_t k = 0; k < kNode.size(); ++k) {
       const double t = (panel + kNode[k]) * width;
       const core::PixelPoint p = EvaluatePoint(piece, t);
+      // dy/dt of the piece at the node.
       const double slope =
           piece.is_arc ? span * (p.x_px - piece.centre.x_px) : dy;
       AddNode(p.x_px, p.y_px, weight * kWeight[k] * width * slope);
@@ -363,6 +368,7 @@ void CoverageMap::AddExact(const OutlinePiece& piece, double weight) {
     const double dy = EvaluatePoint(piece, cuts[k + 1]).y_px -
                       EvaluatePoint(piece, cuts[k]).y_px;
     double* row = mutable_row(static_cast<std::int32_t>(line));
+    // Right of the window: the whole row is covered to its end.
     if (column > last_x) {
       row[window_.width - 1] += weight * dy;
       continue;

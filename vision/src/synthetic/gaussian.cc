@@ -45,6 +45,7 @@ float GaussianSource::Slow(std::mt19937_64& engine, unsigned layer,
                            double x) const {
   if (layer == 0) {
     for (;;) {  // the tail beyond kTail
+      // Marsaglia's tail: exponential draws, accepted under the curve.
       const double a = -std::log(Uniform(engine)) / kTail;
       const double b = -std::log(Uniform(engine));
       if (2.0 * b > a * a) {

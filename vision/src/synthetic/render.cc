@@ -121,6 +121,7 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
                         MotionPx(scene, middle, last, turning_radius);
   // px. Without blur the pixel's own square is the blur.
   const double sigma = std::max(scene.camera.psf_sigma_px, 0.25);
+  // One node is good to 3e-5 of the contrast there.
   if (motion <= 0.05 * sigma) return {{middle_s, 1.0}};
   struct Rule {
     std::array<double, 3> node;
@@ -133,6 +134,7 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
   constexpr Rule kThree{{0.11270166537925831, 0.5, 0.88729833462074169},
                         {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0},
                         3};
+  // Two nodes err by 2e-5 at 0.6 sigma; three, in panels of 2 sigma, by 8e-5.
   const Rule& rule = motion <= 0.6 * sigma ? kTwo : kThree;
   const int panels =
       std::max(1, static_cast<int>(std::ceil(motion / (2.0 * sigma))));
@@ -187,6 +189,7 @@ std::vector<float> Texture(const SceneCamera& camera, const SceneLook& look) {
     squares += value * value;
     kernel.push_back(static_cast<float>(value));
   }
+  // Unit sum of squares: white noise of variance 1 keeps it.
   for (float& value : kernel) value /= static_cast<float>(std::sqrt(squares));
 
   const int wide = camera.width_px + 2 * reach;
@@ -341,6 +344,7 @@ struct SceneRenderer::Covers {
     for (const Exposed::Part& part : exposed.parts) {
       body.Add(part.body.body, part.weight);
       if (exposed.dips) below.Add(part.body.below, part.weight);
+      // A hole is a disc of negative weight.
       if (part.hole) {
         body.Add(part.hole->body, -part.weight);
         if (exposed.dips) below.Add(part.hole->below, -part.weight);
@@ -374,6 +378,8 @@ void SceneRenderer::DrawBody(const Covers& covers, bool dips,
                               static_cast<std::size_t>(window.x);
     for (std::int32_t x = 0; x < window.width; ++x) {
       const std::size_t i = first + static_cast<std::size_t>(x);
+      // As if the body hid background everywhere; then the ground that it hides
+      // is taken away.
       double change = static_cast<double>(light_[i]) * contrast * covered[x];
       // Where the body hides ground instead of background.
       if (wavy) {
@@ -395,6 +401,7 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
   const SceneCamera& camera = scene_.camera;
   const double middle_s = static_cast<double>(index) / camera.fps;
   const double margin = kKernelReach * camera.psf_sigma_px + 1.0;
+  // The still picture is drawn once; a frame adds the body to a copy.
   CleanImage image = background_;
   if (camera.row_delay_s > 0.0) {
     // Each row at its own time.
@@ -471,6 +478,7 @@ SensorImage Quantize(const CleanImage& image, std::int32_t bit_depth) {
   return out;
 }
 
+// Clean picture, noise, levels: what a camera would have given.
 SensorImage RenderFrame(const SceneRenderer& renderer, std::int64_t index,
                         std::mt19937_64& engine) {
   CleanImage clean = renderer.RenderClean(index);

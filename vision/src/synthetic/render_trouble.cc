@@ -50,6 +50,7 @@ double Wrapped(double value, double low, double high) {
 
 }  // namespace
 
+// The ground below a sine, as a polygon.
 std::vector<core::PixelPoint> WavyGround(const SceneCamera& camera,
                                          const SceneTrouble& trouble,
                                          double margin) {
@@ -68,6 +69,7 @@ std::vector<core::PixelPoint> WavyGround(const SceneCamera& camera,
     outline.push_back({camera.ground_point.x_px + along * c + up * s,
                        camera.ground_point.y_px + along * s - up * c});
   }
+  // Closed far below the picture.
   outline.push_back({camera.ground_point.x_px + reach * (c - s),
                      camera.ground_point.y_px + reach * (s + c)});
   outline.push_back({camera.ground_point.x_px - reach * (c + s),
@@ -94,6 +96,8 @@ TroubleRenderer::TroubleRenderer(const Scene& scene) {
     const core::PixelRect& r = *trouble.obstacle;
     obstacle_.emplace(core::PixelRect{0, 0, camera.width_px, camera.height_px},
                       camera.psf_sigma_px);
+    // Pixel centres are at integers: the obstacle's edges lie half a pixel
+    // outside of them.
     const double x0 = r.x - 0.5, x1 = r.x + r.width - 0.5;
     const double y0 = r.y - 0.5, y1 = r.y + r.height - 0.5;
     obstacle_->Add(PolygonOutline({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}),
@@ -146,6 +150,7 @@ void TroubleRenderer::DrawSpecks(const Scene& scene, double time_s,
   const SceneCamera& camera = scene.camera;
   const double radius = 0.5 * scene.trouble.speck_diameter_px;
   const double margin = radius + kKernelReach * camera.psf_sigma_px + 1.0;
+  // Speeds are in px a frame.
   const double frame = time_s * camera.fps;
   for (const Speck& speck : specks_) {
     const double x = Wrapped(speck.start.x_px + frame * speck.velocity.x_px,

@@ -31,6 +31,8 @@ void RequireSize(const core::Measured& size, const char* field) {
 // Levels are shares of full scale.
 bool IsLevel(double value) { return value >= 0.0 && value <= 1.0; }
 
+// What each disturbance may be; lens and wavy ground or shadow are not drawn
+// together.
 void ValidateTrouble(const SceneTrouble& trouble, bool lens) {
   Require(std::abs(trouble.shading_x) <= 1.0, "trouble.shading_x",
           trouble.shading_x, "-1 .. 1");
@@ -197,6 +199,8 @@ core::PixelPoint ToIdealImage(const SceneCamera& camera,
           camera.lens->cy_px + right * s - up * c};
 }
 
+// Depth over that of the ground point: 1 where the camera looks straight at the
+// plane.
 double RelativeDepth(const SceneCamera& camera, core::PlanePoint point) {
   if (camera.yaw_rad == 0.0) return 1.0;
   const double right = camera.travels_left ? -point.x_m : point.x_m;
@@ -204,6 +208,7 @@ double RelativeDepth(const SceneCamera& camera, core::PlanePoint point) {
                    calib::IdealFocal(*camera.lens);
 }
 
+// In turn around the body, from the one ahead and above.
 std::array<core::PlanePoint, 4> Corners(const core::Body& body,
                                         const ScenePose& pose) {
   if (body.kind != core::BodyKind::kRectangle) {
@@ -223,6 +228,7 @@ std::array<core::PlanePoint, 4> Corners(const core::Body& body,
   return corners;
 }
 
+// Height of the lowest outline point above the ground, m.
 double Gap(const core::Body& body, const ScenePose& pose) {
   if (body.kind == core::BodyKind::kSphere) {
     RequireSize(body.diameter_m, "body.diameter_m");
@@ -272,6 +278,7 @@ SceneTruth ComputeTruth(const Scene& scene, std::int64_t index) {
   return truth;
 }
 
+// Direction of the ground in the picture that an ideal lens would give.
 double IdealGroundAngle(const SceneCamera& camera) {
   if (camera.yaw_rad == 0.0) return camera.roll_rad;
   // A straight line is seen straight: two points of it, a pixel apart.

@@ -32,6 +32,7 @@ class SceneClip final : public Clip {
  protected:
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
+    // The last frame is kept: windows of it cost nothing more.
     if (image_.samples.empty() || image_.index != index) {
       // The seed and the frame's number give the noise: a frame is the same
       // whenever, and in whatever order, it is read.

@@ -68,9 +68,6 @@ std::vector<bool> CanBeBridged(const std::vector<Fitted>& fits,
   // Poses: two on either side of the one that is tested.
   constexpr std::size_t kMinPoses = 5;
   if (n < kMinPoses || fits.size() != n) return bridged;
-  // Share of the outline that is seen. Beside an edge of the picture or an
-  // obstacle all frames are needed. Not studied.
-  constexpr double kWholeShare = 0.98;
   // In a step, 29 deg: a rectangle looks the same after half a turn, which
   // would be hidden between two frames. A sixth of that. Not studied.
   constexpr double kMaxTurn_rad = 0.5;
@@ -83,7 +80,7 @@ std::vector<bool> CanBeBridged(const std::vector<Fitted>& fits,
   const double most_misfit = kMaxMisfitRatio * std::max(1.0, Median(misfits));
   const auto is_good = [&](std::size_t i) {
     const OutlineFit& fit = fits[i].fit;
-    return fit.visible >= kWholeShare && fit.hidden == 0.0 &&
+    return fit.visible >= kWhollySeen && fit.hidden == 0.0 &&
            fit.misfit <= most_misfit;
   };
   const auto is_step = [&](std::size_t i) {  // to the next

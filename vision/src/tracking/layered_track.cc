@@ -19,7 +19,7 @@ namespace {
 // body for it; smaller loses small bodies (3 % of 33 px are two half pixels).
 // Not studied.
 constexpr double kMaxSizeDifference = 0.03;
-// A difference of so many u passes always. Chosen by the normal distribution.
+// A difference of so many u passes always. Not studied.
 constexpr double kSizeSigmas = 4.0;
 
 bool IsStatedLength(double found_px, const core::Estimate& stated) {

@@ -106,7 +106,7 @@ void Refiner::LookNearGround(Track& refined) {
   // shadow at 2 and more.
   constexpr double kMaxExcess = 1.25;
   // A mean square of n residuals scatters by sqrt(2/n): so many times that is
-  // allowed in addition, for few pixels. Chosen by the normal distribution.
+  // allowed in addition, for few pixels. Not studied.
   constexpr double kScatterSigmas = 4.0;
   if (excess > kMaxExcess * pixels + kScatterSigmas * std::sqrt(2.0 * pixels) ||
       near.empty() || MedianMisfit(near) > kWellModelled) {

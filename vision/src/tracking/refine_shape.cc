@@ -31,13 +31,11 @@ void EstimatePrior(const std::vector<double>& values,
 // The shading that frames which show the body whole agree on; nothing where
 // these are few.
 std::optional<Shading> AverageShading(const std::vector<Fitted>& all) {
-  // Share of the outline that is seen. Not studied.
-  constexpr double kWholeShare = 0.98;
   // Frames: fewer give no scatter for EstimatePrior. Not studied.
   constexpr std::size_t kMinWhole = 8;
   std::vector<const OutlineFit*> whole;
   for (const Fitted& f : all) {
-    if (f.fit.visible >= kWholeShare && f.fit.shading) whole.push_back(&f.fit);
+    if (f.fit.visible >= kWhollySeen && f.fit.shading) whole.push_back(&f.fit);
   }
   if (whole.size() < kMinWhole) return std::nullopt;
   Shading shading;

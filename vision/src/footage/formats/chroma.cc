@@ -23,6 +23,9 @@ ChromaReader::ChromaReader(AVPixelFormat format, Orientation orientation,
       orientation_(orientation),
       component_(channel == Channel::kBlueDifference ? 1 : 2) {}
 
+// The colour difference at each luma pixel, bilinearly between chroma samples,
+// whose places the format tells: centred, to the left, or at the top left of
+// their luma pixels.
 core::Frame ChromaReader::View(const AVFrame& frame,
                                const core::PixelRect& window) {
   const AVPixFmtDescriptor& d = *Libav().av_pix_fmt_desc_get(format_);

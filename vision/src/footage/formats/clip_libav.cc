@@ -106,11 +106,14 @@ class VideoClip final : public Clip {
 
   const ClipInfo& info() const override { return info_; }
 
+  // Another decoder pays only where it can start at any frame: elsewhere each
+  // would decode from a key frame on.
   std::unique_ptr<Clip> Another() const override {
     return can_seek_ && are_alone_ ? std::make_unique<VideoClip>(*this)
                                    : nullptr;
   }
 
+  // The frame at which decoding must begin for frame `index`.
   std::int64_t EntryFrame(std::int64_t index) const override {
     if (index_.pts.empty()) return 0;
     const std::size_t key = index_.FindKeyPacket(index);
@@ -211,6 +214,8 @@ class VideoClip final : public Clip {
     const auto end = begin + static_cast<std::ptrdiff_t>(key) + 1;
     const auto found =
         std::find_if(begin, end, [&](const auto& p) { return p.Is(got); });
+    // Only a packet of the list, no later than the wanted one and a key (or the
+    // first), is believed.
     if (found == end || (found != begin && !found->key)) return false;
     sent_ = static_cast<std::size_t>(found - begin);
     expected_ = index_.FindFrame(found->pts).value_or(0);

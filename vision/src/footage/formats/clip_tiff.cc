@@ -32,6 +32,8 @@ std::string Geometry(const TiffPage& page) {
                      page.bit_depth);
 }
 
+// One page a frame. Plain pages (one uncompressed piece of gray samples) are
+// read in place; others are decoded one by one.
 class TiffStackClip final : public Clip {
  public:
   TiffStackClip(const std::filesystem::path& path, const ClipOptions& options)

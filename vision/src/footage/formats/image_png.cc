@@ -132,6 +132,8 @@ struct Rows {
   bool rgb;
 };
 
+// Gray in 8 or 16 bits, or RGB. Depths in between are stored scaled, with their
+// significant bits (sBIT), so that other programs show them right.
 bool WritePngRows(png_structp png, png_infop png_info, const Rows& rows) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   const bool wide = rows.bit_depth > 8;
@@ -231,6 +233,7 @@ void DecodePng(FileBytes file, const std::string& name, Image& image) {
                      stride, layout)) {
       throw fail();
     }
+    // Undoes the scaling of significant bits.
     if (image.bit_depth > 8 && image.bit_depth < 16) {
       auto* const samples =
           reinterpret_cast<std::uint16_t*>(image.pixels.data());

@@ -18,6 +18,7 @@ struct Lattice {
   std::ptrdiff_t dy = 0;
 };
 
+// Rotation and mirroring cost nothing: they are strides of either sign.
 Lattice MakeLattice(const AVFrame& frame,
                     const AVComponentDescriptor& component,
                     const Orientation& orientation,
@@ -93,6 +94,7 @@ std::optional<Orientation> ReadOrientation(const std::int32_t matrix[9]) {
   return std::nullopt;
 }
 
+// Whether a pixel format is one of whole samples of 8 to 16 bits.
 bool LumaReader::Reads(AVPixelFormat format) {
   const AVPixFmtDescriptor* const d = Libav().av_pix_fmt_desc_get(format);
   if (d == nullptr || Has(*d, AV_PIX_FMT_FLAG_HWACCEL) ||
@@ -114,6 +116,8 @@ bool LumaReader::Reads(AVPixelFormat format) {
   return true;
 }
 
+// Bits that a camera does not use are shifted out, so that a Frame is
+// right-aligned.
 LumaReader::LumaReader(AVPixelFormat format, Orientation orientation,
                        std::int32_t significant_bits)
     : format_(format), orientation_(orientation), stored_bits_(0) {

@@ -23,6 +23,8 @@ std::string_view WithoutZeros(std::string_view digits) {
 
 }  // namespace
 
+// Compares runs of digits as numbers of any length, everything else by bytes;
+// names that are equal but for leading zeros keep a fixed order.
 bool NaturalLess(std::string_view a, std::string_view b) {
   const std::string_view whole_a = a;
   const std::string_view whole_b = b;

@@ -43,6 +43,7 @@ tmsize_t OnTiffWrite(thandle_t handle, void* bytes, tmsize_t count) {
   return count;
 }
 
+// Beyond the end is allowed: reads there return nothing.
 toff_t OnSeek(thandle_t handle, toff_t offset, int whence) {
   auto* const memory = static_cast<TiffMemory*>(handle);
   if (whence == SEEK_CUR) offset += memory->at;
@@ -59,6 +60,7 @@ toff_t OnSize(thandle_t handle) {
 
 }  // namespace
 
+// libtiff on memory, with its messages kept instead of printed.
 TiffHandle OpenTiff(TiffMemory& memory, const char* mode) {
   TIFFOpenOptions* const options = TIFFOpenOptionsAlloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options, OnTiffError, &memory);

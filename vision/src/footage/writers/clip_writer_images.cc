@@ -24,6 +24,8 @@ std::int64_t WriteImageFolder(const std::filesystem::path& folder,
         fmt::format("{}: exists already; name a new folder or empty this one",
                     target.string()));
   }
+  // Written under another name and renamed when complete: an interrupted writer
+  // leaves no folder that looks whole.
   core::TemporaryName name(target);
   std::filesystem::create_directory(name.path(), trouble);
   if (trouble) {

@@ -98,6 +98,8 @@ std::string Cihx(const Facts& facts, const MrawOptions& options) {
       options.save_step, rate);
 }
 
+// The form in the file: the smallest that holds the depth, unless the options
+// say otherwise.
 int StoredBits(const core::Frame& frame, const MrawOptions& options) {
   const MrawBits bits =
       options.bits.value_or(frame.bit_depth <= 8    ? MrawBits::k8

@@ -56,6 +56,8 @@ CodecChoice ChooseEncoder(VideoCodec codec) {
   return {"", 0, 0};
 }
 
+// Lossy codecs take 8 bits with empty colour planes; lossless ones gray as it
+// is.
 AVPixelFormat ChoosePixelFormat(VideoCodec codec, std::int32_t bit_depth) {
   const bool lossy = codec == VideoCodec::kMjpeg || codec == VideoCodec::kH264;
   if (lossy && bit_depth == 8) return AV_PIX_FMT_YUVJ420P;
@@ -81,6 +83,7 @@ AVPixelFormat ChoosePixelFormat(VideoCodec codec, std::int32_t bit_depth) {
       bit_depth));
 }
 
+// Encodes frame by frame; the file gets its name when it is complete.
 class VideoWriter {
  public:
   VideoWriter(const std::filesystem::path& path, const VideoOptions& options)

@@ -1,8 +1,7 @@
 // Slide or bounce: the one rule.
 //
-//   bounce     the 95 % interval of the greatest gap between release and the
-//   end
-//              of what was filmed lies above the bounce height
+//   bounce     the 95 % interval of the greatest gap, between release and the
+//              end of what was filmed, lies above the bounce height
 //   not        it lies below
 //   undecided  neither; or the rebound was not filmed
 #pragma once
@@ -25,9 +24,8 @@ double DetectableGap(double gap_noise_m, double frames_per_s, double u_ground_m,
 
 // Applies the rule. `gap` and `height` in the same unit.
 struct StateEvidence {
-  core::MotionState label =
-      core::MotionState::kUndecided;  // kBounce,
-                                      // kStaysDown or kUndecided
+  // kBounce, kStaysDown or kUndecided.
+  core::MotionState label = core::MotionState::kUndecided;
   double p_bounce = 0.5;
 };
 StateEvidence DecideBounce(const core::Estimate& gap, double height);
