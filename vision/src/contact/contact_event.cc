@@ -224,9 +224,12 @@ bool MeasureRebound(const PlaneTrack& track, const FlightOptions& options,
   input.ground_px.u = on_line.u;
   TryLasting(track, input, t1, t2, fit, event);
   event.fit = fit;
-  if (fit && !in_contact && std::abs(event.disagreement) > kDisagree) {
+  if (fit && !in_contact && !track.yaw &&
+      std::abs(event.disagreement) > kDisagree) {
     // The flights were cut a frame off, or there were two impacts between two
     // frames: nothing they tell is known better than the line is missed by.
+    // Where the plane is turned the line's place hangs on the yaw, whose u has
+    // a budget of its own.
     const double square = event.disagreement * event.disagreement;
     event.fit->covariance *= square;
     event.fit->information /= square;
