@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "app/cli/command.h"
 #include "app/cli/condition_flags.h"
 #include "app/cli/kept_memory.h"
+#include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/documents/analysis_json.h"
 #include "app/documents/analysis_text.h"
@@ -108,30 +108,25 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
 
 void AddAnalyze(CLI::App& app, Action& action) {
   auto flags = std::make_shared<AnalyzeCommandFlags>();
-  CLI::App* command = app.add_subcommand(
-      "analyze",
+  CLI::App* command = AddCommand(
+      app, "analyze",
       "At what angle did it touch down, and did it slide or bounce?");
-  command
-      ->add_option("CLIP", flags->clip,
-                   "a video, an .mraw (or its .cih/.cihx), a TIFF of several "
-                   "pages, or a folder of PNG, TIFF or JPEG images")
-      ->required();
+  AddOption(*command, "CLIP", flags->clip,
+            "a video, an .mraw (or its .cih/.cihx), a TIFF of several pages, "
+            "or a folder of PNG, TIFF or JPEG images")
+      .Require();
   AddAnalyzeFlags(*command, flags->analyze);
-  command->add_option(
-      "--out", flags->out,
-      "write track.csv, contact.png and analysis.json into this folder");
-  command->add_option("--db", flags->db, "log the trial in this store");
-  command->add_option(
-      "--campaign", flags->campaign,
-      "the campaign the trial belongs to (with --db); body, sizes, "
-      "angle kind and bounce height are then the campaign's "
-      "where not given");
+  AddOption(*command, "--out", flags->out,
+            "write track.csv, contact.png and analysis.json into this folder");
+  AddOption(*command, "--db", flags->db, "log the trial in this store");
+  AddOption(*command, "--campaign", flags->campaign,
+            "the campaign the trial belongs to (with --db); body, sizes, angle "
+            "kind and bounce height are then the campaign's where not given");
   AddConditionFlag(*command, flags->conditions);
-  command->add_flag("--no-digest", flags->no_digest,
-                    "leave clip.id out: nothing is read but what is measured");
-  command->add_flag("--json", flags->json, "one JSON document on stdout");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunAnalyze(*flags); }; });
+  AddFlag(*command, "--no-digest", flags->no_digest,
+          "leave clip.id out: nothing is read but what is measured");
+  AddFlag(*command, "--json", flags->json, "one JSON document on stdout");
+  SetAction(*command, action, [flags] { return RunAnalyze(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <tuple>
 
 #include "app/cli/calibrate_file.h"
+#include "app/cli/options.h"
 #include "app/cli/values.h"
 #include "app/text/dates.h"
 #include "touchdown/core/units.h"
@@ -86,59 +86,56 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
 }
 
 void AddLimitFlag(CLI::App& command, double& limit_s) {
-  command
-      .add_option("--limit-s", limit_s,
-                  "an analysis that takes longer is ended, with how far it got "
-                  "(seconds of wall time for one clip)")
-      ->capture_default_str();
+  AddOption(command, "--limit-s", limit_s,
+            "an analysis that takes longer is ended, with how far it got "
+            "(seconds of wall time for one clip)")
+      .ShowDefault();
 }
 
 void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
-  command.add_option("--calibration", flags.calibration,
-                     "a file of `touchdown calibrate`: the lens, and scale "
-                     "and ground where they are in it and not given here");
-  command.add_option("--crop", flags.crop,
-                     "where the picture lies on the calibrated sensor, X,Y in "
-                     "pixels, where the file does not say");
-  command.add_option("--scale-px-per-m", flags.scale,
-                     "pixels per metre in the plane of travel, e.g. 1000 or "
-                     "1000+-0.8 (u 0.1 % where not given)");
-  command.add_option("--body", flags.body, "sphere, rectangle or auto");
-  command.add_option("--diameter-mm", flags.diameter,
-                     "the sphere's, e.g. 40 or 40+-0.02; tells the scale too");
-  command.add_option("--sides-mm", flags.sides,
-                     "the rectangle's in the image plane, e.g. 60x20; tells "
-                     "the scale too");
-  command.add_option("--fps", flags.fps,
-                     "frames per second of the recording, not of playback");
-  command.add_option("--gamma", flags.gamma,
-                     "the camera's: its levels are light to this power (1: a "
-                     "linear camera; most that make pictures to look at: "
-                     "0.45); default: 1, or what a block's outlines say");
-  command.add_option("--ground", flags.ground,
-                     "ground line through two points, X1,Y1,X2,Y2 in pixels");
-  command
-      .add_option("--ground-u-px", flags.ground_u_px,
-                  "standard uncertainty of each of these points, px")
-      ->capture_default_str();
-  command.add_option("--contact-frame", flags.contact_frame,
-                     "touchdown is between this frame and the next, whatever "
-                     "else looks like a blow");
-  command.add_option("--frames", flags.frames,
-                     "only frames A up to but not including B, as A:B");
-  command.add_option("--region", flags.region,
-                     "search only this part of the picture, X,Y,W,H");
-  command.add_option("--angle-kind", flags.angle_kind,
-                     "the contact angle: approach, radius or face (default: "
-                     "approach for spheres, radius for rectangles)");
-  command.add_option("--bounce-height-mm", flags.bounce_height_mm,
-                     "rising above it is what bounce means (default: the "
-                     "larger of 0.5 mm and 2 % of the body's size)");
-  command.add_flag("--stop-early", flags.stop_early,
-                   "decode from the key frame before the body is seen until "
-                   "the first contact's state is decided beyond doubt; the "
-                   "rest is not looked at (raw recordings are always looked "
-                   "at whole)");
+  AddOption(command, "--calibration", flags.calibration,
+            "a file of `touchdown calibrate`: the lens, and scale and ground "
+            "where they are in it and not given here");
+  AddOption(command, "--crop", flags.crop,
+            "where the picture lies on the calibrated sensor, X,Y in pixels, "
+            "where the file does not say");
+  AddOption(command, "--scale-px-per-m", flags.scale,
+            "pixels per metre in the plane of travel, e.g. 1000 or 1000+-0.8 "
+            "(u 0.1 % where not given)");
+  AddOption(command, "--body", flags.body, "sphere, rectangle or auto");
+  AddOption(command, "--diameter-mm", flags.diameter,
+            "the sphere's, e.g. 40 or 40+-0.02; tells the scale too");
+  AddOption(
+      command, "--sides-mm", flags.sides,
+      "the rectangle's in the image plane, e.g. 60x20; tells the scale too");
+  AddOption(command, "--fps", flags.fps,
+            "frames per second of the recording, not of playback");
+  AddOption(command, "--gamma", flags.gamma,
+            "the camera's: its levels are light to this power (1: a linear "
+            "camera; most that make pictures to look at: 0.45); default: 1, or "
+            "what a block's outlines say");
+  AddOption(command, "--ground", flags.ground,
+            "ground line through two points, X1,Y1,X2,Y2 in pixels");
+  AddOption(command, "--ground-u-px", flags.ground_u_px,
+            "standard uncertainty of each of these points, px")
+      .ShowDefault();
+  AddOption(command, "--contact-frame", flags.contact_frame,
+            "touchdown is between this frame and the next, whatever else looks "
+            "like a blow");
+  AddOption(command, "--frames", flags.frames,
+            "only frames A up to but not including B, as A:B");
+  AddOption(command, "--region", flags.region,
+            "search only this part of the picture, X,Y,W,H");
+  AddOption(command, "--angle-kind", flags.angle_kind,
+            "the contact angle: approach, radius or face (default: approach "
+            "for spheres, radius for rectangles)");
+  AddOption(command, "--bounce-height-mm", flags.bounce_height_mm,
+            "rising above it is what bounce means (default: the larger of 0.5 "
+            "mm and 2 % of the body's size)");
+  AddFlag(command, "--stop-early", flags.stop_early,
+          "decode from the key frame before the body is seen until the first "
+          "contact's state is decided beyond doubt; the rest is not looked at "
+          "(raw recordings are always looked at whole)");
   AddLimitFlag(command, flags.limit_s);
 }
 

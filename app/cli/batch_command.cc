@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -19,6 +18,7 @@
 #include "app/cli/condition_flags.h"
 #include "app/cli/folder_watch.h"
 #include "app/cli/interruption.h"
+#include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
@@ -290,44 +290,40 @@ int RunBatch(const BatchFlags& flags) {
 
 void AddBatch(CLI::App& app, Action& action) {
   auto flags = std::make_shared<BatchFlags>();
-  CLI::App* command = app.add_subcommand(
-      "batch",
+  CLI::App* command = AddCommand(
+      app, "batch",
       "analyse and log many recordings; can be killed and started again");
-  command->add_option("FOLDER", flags->source,
-                      "a folder of recordings (looked through with all below "
-                      "it), or a manifest.csv that lists them with their "
-                      "set-points");
-  command->add_option("--db", flags->db,
-                      "the trial store; what it knows is not analysed again");
-  command->add_option("--campaign", flags->campaign,
-                      "the campaign of the trials; body, sizes, angle kind and "
-                      "bounce height are then the campaign's where not given");
-  command->add_option("--campaign-from", flags->campaign_from,
-                      "another store that has the campaign: its conventions "
-                      "are copied where --db lacks it");
-  command
-      ->add_option("--jobs", flags->jobs,
-                   "analyses at a time; 0: one on each core")
-      ->capture_default_str();
-  command->add_option("--shard", flags->shard,
-                      "only part k of n, as 2/8; use one --db a part, then "
-                      "`db merge`");
-  command->add_flag("--again", flags->again,
-                    "analyse also what is known (a further revision of each) "
-                    "and what failed twice");
-  command->add_flag("--watch", flags->watch,
-                    "go on with new recordings of the folder, each when it has "
-                    "stopped growing; ends with Ctrl-C");
-  command->add_option("--out", flags->out,
-                      "write triage.csv, and each recording's evidence in a "
-                      "folder of its name");
-  command->add_flag("--json", flags->json, "one JSON document on stdout");
-  command->add_flag("--columns", flags->columns,
-                    "print the columns of a manifest");
+  AddOption(*command, "FOLDER", flags->source,
+            "a folder of recordings (looked through with all below it), or a "
+            "manifest.csv that lists them with their set-points");
+  AddOption(*command, "--db", flags->db,
+            "the trial store; what it knows is not analysed again");
+  AddOption(*command, "--campaign", flags->campaign,
+            "the campaign of the trials; body, sizes, angle kind and bounce "
+            "height are then the campaign's where not given");
+  AddOption(*command, "--campaign-from", flags->campaign_from,
+            "another store that has the campaign: its conventions are copied "
+            "where --db lacks it");
+  AddOption(*command, "--jobs", flags->jobs,
+            "analyses at a time; 0: one on each core")
+      .ShowDefault();
+  AddOption(*command, "--shard", flags->shard,
+            "only part k of n, as 2/8; use one --db a part, then `db merge`");
+  AddFlag(*command, "--again", flags->again,
+          "analyse also what is known (a further revision of each) and what "
+          "failed twice");
+  AddFlag(*command, "--watch", flags->watch,
+          "go on with new recordings of the folder, each when it has stopped "
+          "growing; ends with Ctrl-C");
+  AddOption(*command, "--out", flags->out,
+            "write triage.csv, and each recording's evidence in a folder of "
+            "its name");
+  AddFlag(*command, "--json", flags->json, "one JSON document on stdout");
+  AddFlag(*command, "--columns", flags->columns,
+          "print the columns of a manifest");
   AddConditionFlag(*command, flags->conditions);
   AddAnalyzeFlags(*command, flags->analyze);
-  command->callback(
-      [flags, &action] { action = [flags] { return RunBatch(*flags); }; });
+  SetAction(*command, action, [flags] { return RunBatch(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,7 +1,6 @@
 // touchdown boundary, report: from trials to a boundary angle.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/documents/pictures.h"
 #include "app/report/boundary_json.h"
 #include "app/report/eln_file.h"
@@ -211,61 +211,56 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
 
 void AddBoundary(CLI::App& app, Action& action) {
   auto flags = std::make_shared<BoundaryFlags>();
-  CLI::App* command = app.add_subcommand(
-      "boundary", "Estimate the boundary angle and compare it with theory");
+  CLI::App* command =
+      AddCommand(app, "boundary",
+                 "Estimate the boundary angle and compare it with theory");
   AddBoundaryFlags(*command, *flags);
-  command->callback([flags, &action] {
-    action = [flags] { return AnswerBoundary(*flags); };
-  });
+  SetAction(*command, action, [flags] { return AnswerBoundary(*flags); });
 }
 
 void AddReport(CLI::App& app, Action& action) {
   auto flags = std::make_shared<BoundaryFlags>();
-  CLI::App* command = app.add_subcommand(
-      "report", "Write the report: table1.html, .md, .csv, .tex and .json");
+  CLI::App* command =
+      AddCommand(app, "report",
+                 "Write the report: table1.html, .md, .csv, .tex and .json");
   AddBoundaryFlags(*command, *flags);
-  command->add_option("--out", flags->out, "folder for the report")
-      ->capture_default_str();
-  command->add_option("--title", flags->title, "title of the report");
-  command->add_option("--details", flags->details,
-                      "report.toml: laboratory, customer, order, equipment, "
-                      "signatures (default: the one beside the store)");
-  command->add_flag("--details-example", flags->details_example,
-                    "print a commented report.toml, and nothing else");
-  command->add_flag("--no-pictures", flags->no_pictures,
-                    "no pictures of the contacts and no trajectories: the "
-                    "recordings are not opened");
-  command->add_flag("--pdf", flags->pdf,
-                    "also table1.pdf, tagged, printed by chromium");
-  command->add_flag("--eln", flags->eln,
-                    "also table1.eln, all of it for a laboratory notebook "
-                    "(RO-Crate in a zip archive)");
-  command->add_option("--bin-deg", flags->bin_deg,
-                      "width of the bins of the angle in Table 1 (default: one "
-                      "row an angle, bins where there are many)");
-  CLI::Option* evidence =
-      command
-          ->add_option("--evidence", flags->evidence_pictures,
-                       "a page of evidence for every trial, in evidence/; with "
-                       "a folder, with the pictures that analyze or batch put "
-                       "there (--out)")
-          ->expected(0, 1)
-          ->type_name("[FOLDER]");
-  command->callback([flags, command, evidence, &action] {
-    flags->evidence = evidence->count() > 0;
+  AddOption(*command, "--out", flags->out, "folder for the report")
+      .ShowDefault();
+  AddOption(*command, "--title", flags->title, "title of the report");
+  AddOption(*command, "--details", flags->details,
+            "report.toml: laboratory, customer, order, equipment, signatures "
+            "(default: the one beside the store)");
+  AddFlag(*command, "--details-example", flags->details_example,
+          "print a commented report.toml, and nothing else");
+  AddFlag(*command, "--no-pictures", flags->no_pictures,
+          "no pictures of the contacts and no trajectories: the recordings are "
+          "not opened");
+  AddFlag(*command, "--pdf", flags->pdf,
+          "also table1.pdf, tagged, printed by chromium");
+  AddFlag(*command, "--eln", flags->eln,
+          "also table1.eln, all of it for a laboratory notebook (RO-Crate in a "
+          "zip archive)");
+  AddOption(*command, "--bin-deg", flags->bin_deg,
+            "width of the bins of the angle in Table 1 (default: one row an "
+            "angle, bins where there are many)");
+  const Option evidence =
+      AddOption(
+          *command, "--evidence", flags->evidence_pictures,
+          "a page of evidence for every trial, in evidence/; with a folder, "
+          "with the pictures that analyze or batch put there (--out)")
+          .AllowNoValue()
+          .NameType("[FOLDER]");
+  SetAction(*command, action, [flags, command, evidence] {
+    flags->evidence = evidence.IsGiven();
     // The options as asked for, without where the report goes.
     std::string options;
-    for (const CLI::Option* option : command->get_options()) {
-      if (option->count() == 0 || option->check_name("--out") ||
-          option->check_name("--json")) {
-        continue;
-      }
-      options += (options.empty() ? "" : " ") + option->get_name(false, true);
-      for (const std::string& result : option->results()) {
-        if (result != "true") options += " " + result;
-      }
+    for (const GivenOption& option : ListGiven(*command)) {
+      if (option.name == "--out" || option.name == "--json") continue;
+      options += (options.empty() ? "" : " ") + option.name;
+      if (option.is_flag) continue;
+      for (const std::string& value : option.values) options += " " + value;
     }
-    action = [flags, options] { return RunReport(*flags, options); };
+    return RunReport(*flags, options);
   });
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <string_view>
 
 #include "app/cli/messages.h"
+#include "app/cli/options.h"
 #include "app/cli/store_text.h"
 #include "app/report_input/report_input.h"
 #include "app/shots/thrower.h"
@@ -257,63 +257,58 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
 }
 
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
-  command.add_option("--db", flags.store, "trial store");
-  command.add_option("--trials", flags.csv,
-                     "CSV file with angle_deg, u_deg, p_bounce and, where "
-                     "there were set-points, set_angle_deg; where trials share "
-                     "an error, its common_u_deg, and the calibration that "
-                     "tells one set-up from another");
-  command.add_flag("--paper-table1", flags.paper_table1,
-                   "the paper's own Table 1");
-  command
-      .add_option("--paper-u-deg", flags.paper_u_deg,
-                  "assumed u of the paper's angles")
-      ->capture_default_str();
-  command.add_option("--campaign", flags.campaign, "only this campaign");
-  command.add_option("--surface", flags.surface, "only this surface");
-  command.add_option("--body", flags.body, "sphere or rectangle");
-  command.add_option("--angle-kind", flags.angle_kind,
-                     "approach, radius or face");
-  command.add_option("--origin", flags.origin, "recorded, simulated or manual");
-  command.add_option("--from", flags.from, "logged at this UTC time or later");
-  command.add_option("--until", flags.until, "logged before this UTC time");
-  command.add_flag("--reviewed", flags.reviewed,
-                   "only trials that a person has corrected");
-  command.add_option("--theory-deg", flags.theory,
-                     "a theory's boundary, D or D+-u: of --trials the declared "
-                     "one, else for information");
-  command.add_option("--theory-u-deg", flags.theory_u_deg,
-                     "its standard uncertainty: enters E_n and the verdict, "
-                     "with U = 2 u (default 0, the value is exact)");
-  command.add_option("--theory-name", flags.theory_name, "its name");
-  command.add_option("--margin-deg", flags.margin_deg,
-                     "equivalence margin, of --trials (default 1)");
-  command.add_option("--feasible-deg", flags.feasible,
-                     "angles the rig can throw, LOW:HIGH");
-  command.add_option("--support-deg", flags.support,
-                     "angles at which the boundary can be, LOW:HIGH, or rig: "
-                     "those it can throw; the support of the prior (default "
-                     "0:90)");
-  command
-      .add_option("--set-u-deg", flags.set_u_deg,
-                  "repeatability of the ejector")
-      ->capture_default_str();
-  command
-      .add_option("--target-deg", flags.target_deg,
-                  "half-width of the 95 % interval to reach")
-      ->capture_default_str();
-  command.add_option("--max-trials", flags.max_trials, "stop there")
-      ->capture_default_str();
-  command.add_option("--rig", flags.rig,
-                     "rig.toml: the next angle stays within its reach; `next` "
-                     "prints its set-points, `report` its predictions");
-  command.add_option("--speed-mps", flags.speed_mps,
-                     "with --rig: speed at touchdown (default: the middle of "
-                     "the campaign's band)");
-  command.add_option("--corner", flags.corner,
-                     "with --rig: corner that lands first, leading, trailing "
-                     "or flush");
-  command.add_flag("--json", flags.json, "one JSON document");
+  AddOption(command, "--db", flags.store, "trial store");
+  AddOption(
+      command, "--trials", flags.csv,
+      "CSV file with angle_deg, u_deg, p_bounce and, where there were "
+      "set-points, set_angle_deg; where trials share an error, its "
+      "common_u_deg, and the calibration that tells one set-up from another");
+  AddFlag(command, "--paper-table1", flags.paper_table1,
+          "the paper's own Table 1");
+  AddOption(command, "--paper-u-deg", flags.paper_u_deg,
+            "assumed u of the paper's angles")
+      .ShowDefault();
+  AddOption(command, "--campaign", flags.campaign, "only this campaign");
+  AddOption(command, "--surface", flags.surface, "only this surface");
+  AddOption(command, "--body", flags.body, "sphere or rectangle");
+  AddOption(command, "--angle-kind", flags.angle_kind,
+            "approach, radius or face");
+  AddOption(command, "--origin", flags.origin, "recorded, simulated or manual");
+  AddOption(command, "--from", flags.from, "logged at this UTC time or later");
+  AddOption(command, "--until", flags.until, "logged before this UTC time");
+  AddFlag(command, "--reviewed", flags.reviewed,
+          "only trials that a person has corrected");
+  AddOption(command, "--theory-deg", flags.theory,
+            "a theory's boundary, D or D+-u: of --trials the declared one, "
+            "else for information");
+  AddOption(command, "--theory-u-deg", flags.theory_u_deg,
+            "its standard uncertainty: enters E_n and the verdict, with U = 2 "
+            "u (default 0, the value is exact)");
+  AddOption(command, "--theory-name", flags.theory_name, "its name");
+  AddOption(command, "--margin-deg", flags.margin_deg,
+            "equivalence margin, of --trials (default 1)");
+  AddOption(command, "--feasible-deg", flags.feasible,
+            "angles the rig can throw, LOW:HIGH");
+  AddOption(command, "--support-deg", flags.support,
+            "angles at which the boundary can be, LOW:HIGH, or rig: those it "
+            "can throw; the support of the prior (default 0:90)");
+  AddOption(command, "--set-u-deg", flags.set_u_deg,
+            "repeatability of the ejector")
+      .ShowDefault();
+  AddOption(command, "--target-deg", flags.target_deg,
+            "half-width of the 95 % interval to reach")
+      .ShowDefault();
+  AddOption(command, "--max-trials", flags.max_trials, "stop there")
+      .ShowDefault();
+  AddOption(command, "--rig", flags.rig,
+            "rig.toml: the next angle stays within its reach; `next` prints "
+            "its set-points, `report` its predictions");
+  AddOption(command, "--speed-mps", flags.speed_mps,
+            "with --rig: speed at touchdown (default: the middle of the "
+            "campaign's band)");
+  AddOption(command, "--corner", flags.corner,
+            "with --rig: corner that lands first, leading, trailing or flush");
+  AddFlag(command, "--json", flags.json, "one JSON document");
 }
 
 std::string DegreesText(double angle_rad) {

@@ -1,7 +1,6 @@
 // touchdown calibrate lens; scale and ground are in calibrate_references.cc
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 
 #include "app/cli/calibrate_file.h"
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/cli/rig_print.h"
 #include "app/measure/board_pictures.h"
@@ -157,24 +157,25 @@ int RunLens(const LensFlags& flags) {
 }  // namespace
 
 void AddCalibrate(CLI::App& app, Action& action) {
-  CLI::App* calibrate = app.add_subcommand(
-      "calibrate", "what turns pixels into metres: a dated calibration file");
-  calibrate->require_subcommand(1);
+  CLI::App* calibrate =
+      AddCommand(app, "calibrate",
+                 "what turns pixels into metres: a dated calibration file");
+  RequireSubcommand(*calibrate);
   auto flags = std::make_shared<LensFlags>();
-  CLI::App* lens = calibrate->add_subcommand(
-      "lens", "the lens's distortion, from ten or more pictures of a board");
-  lens->add_option("IMAGES", flags->images,
-                   "pictures of the board, tilted to different sides, all over "
-                   "the picture; or a folder of them")
-      ->required();
-  lens->add_option("--board", flags->board,
-                   "chessboard:9x6:25mm (inner corners, side of a square), "
-                   "circles:7x5:20mm or acircles:4x11:20mm (centres)")
-      ->required();
+  CLI::App* lens =
+      AddCommand(*calibrate, "lens",
+                 "the lens's distortion, from ten or more pictures of a board");
+  AddOption(*lens, "IMAGES", flags->images,
+            "pictures of the board, tilted to different sides, all over the "
+            "picture; or a folder of them")
+      .Require();
+  AddOption(*lens, "--board", flags->board,
+            "chessboard:9x6:25mm (inner corners, side of a square), "
+            "circles:7x5:20mm or acircles:4x11:20mm (centres)")
+      .Require();
   AddFileFlags(*lens, flags->file, false);
-  lens->add_flag("--json", flags->json, "one JSON document on stdout");
-  lens->callback(
-      [flags, &action] { action = [flags] { return RunLens(*flags); }; });
+  AddFlag(*lens, "--json", flags->json, "one JSON document on stdout");
+  SetAction(*lens, action, [flags] { return RunLens(*flags); });
   AddCalibrateScale(*calibrate, action);
   AddCalibrateGround(*calibrate, action);
 }

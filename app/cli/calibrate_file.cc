@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <stdexcept>
 
+#include "app/cli/options.h"
 #include "app/cli/values.h"
 #include "app/measure/new_calibration.h"
 #include "touchdown/core/errors.h"
@@ -13,25 +13,23 @@
 namespace touchdown::cli {
 
 void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
-  command
-      .add_option("--out", flags.out,
-                  "the calibration file to write, e.g. camera.json")
-      ->required();
-  command.add_option("--camera", flags.camera, "the camera's name");
-  command.add_option("--date", flags.date,
-                     "day of the pictures, as in 2026-11-21 (default: today)");
-  command
-      .add_option("--valid-days", flags.valid_days,
-                  "after so many days `analyze` warns that it is old")
-      ->check(CLI::Range(1, 36500))
-      ->capture_default_str();
-  command.add_option("--sensor-origin", flags.sensor_origin,
-                     "where the picture lies on the sensor, X,Y in pixels "
-                     "(default: as the file says, else 0,0)");
+  AddOption(command, "--out", flags.out,
+            "the calibration file to write, e.g. camera.json")
+      .Require();
+  AddOption(command, "--camera", flags.camera, "the camera's name");
+  AddOption(command, "--date", flags.date,
+            "day of the pictures, as in 2026-11-21 (default: today)");
+  AddOption(command, "--valid-days", flags.valid_days,
+            "after so many days `analyze` warns that it is old")
+      .Between(1, 36500)
+      .ShowDefault();
+  AddOption(command, "--sensor-origin", flags.sensor_origin,
+            "where the picture lies on the sensor, X,Y in pixels (default: as "
+            "the file says, else 0,0)");
   if (add) {
-    command.add_option("--calibration", flags.calibration,
-                       "a calibration of this camera to add to: its lens is "
-                       "used, and all of it goes into --out");
+    AddOption(command, "--calibration", flags.calibration,
+              "a calibration of this camera to add to: its lens is used, and "
+              "all of it goes into --out");
   }
 }
 

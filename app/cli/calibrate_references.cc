@@ -1,7 +1,6 @@
 // touchdown calibrate scale|ground
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "app/cli/calibrate_file.h"
+#include "app/cli/options.h"
 #include "app/cli/rig_print.h"
 #include "app/cli/values.h"
 #include "touchdown/calib/ground_lines.h"
@@ -232,61 +232,55 @@ int RunGround(const ReferenceFlags& flags) {
 }
 
 void AddPictureFlags(CLI::App& command, ReferenceFlags& flags) {
-  command
-      .add_option("PICTURE", flags.picture,
-                  "a picture, or a clip of which one frame is looked at")
-      ->required();
-  command.add_option("--frame", flags.frame, "of a clip")
-      ->capture_default_str();
-  command
-      .add_option("--u-point-px", flags.u_point_px,
-                  "standard uncertainty of each marked point, px")
-      ->capture_default_str();
+  AddOption(command, "PICTURE", flags.picture,
+            "a picture, or a clip of which one frame is looked at")
+      .Require();
+  AddOption(command, "--frame", flags.frame, "of a clip").ShowDefault();
+  AddOption(command, "--u-point-px", flags.u_point_px,
+            "standard uncertainty of each marked point, px")
+      .ShowDefault();
   AddFileFlags(command, flags.file, true);
-  command.add_flag("--json", flags.json, "the calibration file on stdout");
+  AddFlag(command, "--json", flags.json, "the calibration file on stdout");
 }
 
 }  // namespace
 
 void AddCalibrateScale(CLI::App& calibrate, Action& action) {
   auto flags = std::make_shared<ReferenceFlags>();
-  CLI::App* command = calibrate.add_subcommand(
-      "scale", "pixels per metre, from a known length in the plane of travel");
+  CLI::App* command = AddCommand(
+      calibrate, "scale",
+      "pixels per metre, from a known length in the plane of travel");
   AddPictureFlags(*command, *flags);
-  command
-      ->add_option("--points", flags->points,
-                   "its two ends, X1,Y1,X2,Y2 in pixels")
-      ->required();
-  command
-      ->add_option("--length-mm", flags->length,
-                   "the length, e.g. 500 or 500+-0.2 (u 0.1 % where not given)")
-      ->required();
-  command->add_option("--check-points", flags->check_points,
-                      "the ends of another known length");
-  command->add_option("--check-length-mm", flags->check_length,
-                      "that length; how far the scale is off it is reported");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunScale(*flags); }; });
+  AddOption(*command, "--points", flags->points,
+            "its two ends, X1,Y1,X2,Y2 in pixels")
+      .Require();
+  AddOption(*command, "--length-mm", flags->length,
+            "the length, e.g. 500 or 500+-0.2 (u 0.1 % where not given)")
+      .Require();
+  AddOption(*command, "--check-points", flags->check_points,
+            "the ends of another known length");
+  AddOption(*command, "--check-length-mm", flags->check_length,
+            "that length; how far the scale is off it is reported");
+  SetAction(*command, action, [flags] { return RunScale(*flags); });
 }
 
 void AddCalibrateGround(CLI::App& calibrate, Action& action) {
   auto flags = std::make_shared<ReferenceFlags>();
-  CLI::App* command = calibrate.add_subcommand(
-      "ground",
-      "the ground line: two points, a board that lies on it, or (neither "
-      "given) the straightest edge in the picture");
+  CLI::App* command =
+      AddCommand(calibrate, "ground",
+                 "the ground line: two points, a board that lies on it, or "
+                 "(neither given) the straightest edge in the picture");
   AddPictureFlags(*command, *flags);
-  command->add_option("--points", flags->points,
-                      "two points on it, X1,Y1,X2,Y2 in pixels");
-  command->add_option("--board", flags->board,
-                      "a board flat on the ground, rows along the direction of "
-                      "travel, middle row under the body's path: tells the "
-                      "plane's yaw and the scale, too; needs --calibration");
-  command->add_option("--plumb", flags->plumb,
-                      "a plumb line, X1,Y1,X2,Y2 in pixels: tells the ground's "
-                      "slope, and so the direction of gravity");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunGround(*flags); }; });
+  AddOption(*command, "--points", flags->points,
+            "two points on it, X1,Y1,X2,Y2 in pixels");
+  AddOption(*command, "--board", flags->board,
+            "a board flat on the ground, rows along the direction of travel, "
+            "middle row under the body's path: tells the plane's yaw and the "
+            "scale, too; needs --calibration");
+  AddOption(*command, "--plumb", flags->plumb,
+            "a plumb line, X1,Y1,X2,Y2 in pixels: tells the ground's slope, "
+            "and so the direction of gravity");
+  SetAction(*command, action, [flags] { return RunGround(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,7 +1,6 @@
 // campaign new|list|show: conventions, fixed before the first trial.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/exchange/trial_json.h"
@@ -44,14 +44,13 @@ db::Plan UpdatePlan(const CampaignFlags& flags, db::Plan plan) {
 }
 
 void AddPlanFlags(CLI::App& command, CampaignFlags& flags) {
-  command.add_option(
-      "--design", flags.plan.design,
-      "how angles are chosen, in words: '2 deg steps, ascending'");
-  command.add_option("--stopping-rule", flags.plan.stopping_rule,
-                     "when to stop, in words: 'after 40 trials'");
-  command.add_option("--error-rates", flags.plan.error_rates,
-                     "in words: 'false verdicts below 5 %, at every look'");
-  command.add_option("--by", flags.by, "who declares it");
+  AddOption(command, "--design", flags.plan.design,
+            "how angles are chosen, in words: '2 deg steps, ascending'");
+  AddOption(command, "--stopping-rule", flags.plan.stopping_rule,
+            "when to stop, in words: 'after 40 trials'");
+  AddOption(command, "--error-rates", flags.plan.error_rates,
+            "in words: 'false verdicts below 5 %, at every look'");
+  AddOption(command, "--by", flags.by, "who declares it");
 }
 
 int NewCampaign(const CampaignFlags& flags) {
@@ -151,58 +150,56 @@ int ShowCampaign(const CampaignFlags& flags) {
 }  // namespace
 
 void AddCampaign(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "campaign", "trials of one body on one surface, with its conventions");
-  command->require_subcommand(1);
+  CLI::App* command =
+      AddCommand(app, "campaign",
+                 "trials of one body on one surface, with its conventions");
+  RequireSubcommand(*command);
   auto flags = std::make_shared<CampaignFlags>();
-  CLI::App* make = command->add_subcommand(
-      "new", "declare a campaign before its first trial");
-  make->add_option("NAME", flags->entry.name, "of the campaign")->required();
+  CLI::App* make =
+      AddCommand(*command, "new", "declare a campaign before its first trial");
+  AddOption(*make, "NAME", flags->entry.name, "of the campaign").Require();
   AddDbFlag(*make, flags->db);
   AddBodyFlags(*make, flags->entry.body);
-  make->add_option("--surface", flags->entry.surface, "e.g. 'asphalt, dry'");
-  make->add_option("--angle-kind", flags->entry.angle_kind,
-                   "the varied angle: approach (default for spheres), radius "
-                   "(rectangles) or face");
-  make->add_option("--bounce-height-mm", flags->entry.bounce_height_mm,
-                   "default: the larger of 0.5 and 2 % of the body's size");
-  make->add_option("--speed-mps", flags->entry.speed_mps,
-                   "band of the speed at touchdown, LOW:HIGH");
-  make->add_option("--theory", flags->entry.theory,
-                   "the one theory that gets a verdict");
-  make->add_option("--theory-boundary-deg", flags->entry.theory_boundary_deg,
-                   "its boundary angle");
-  make->add_option("--theory-u-deg", flags->entry.theory_u_deg,
-                   "standard uncertainty of that");
-  make->add_option("--margin-deg", flags->entry.margin_deg,
-                   "equivalence margin of the verdict")
-      ->capture_default_str();
+  AddOption(*make, "--surface", flags->entry.surface, "e.g. 'asphalt, dry'");
+  AddOption(*make, "--angle-kind", flags->entry.angle_kind,
+            "the varied angle: approach (default for spheres), radius "
+            "(rectangles) or face");
+  AddOption(*make, "--bounce-height-mm", flags->entry.bounce_height_mm,
+            "default: the larger of 0.5 and 2 % of the body's size");
+  AddOption(*make, "--speed-mps", flags->entry.speed_mps,
+            "band of the speed at touchdown, LOW:HIGH");
+  AddOption(*make, "--theory", flags->entry.theory,
+            "the one theory that gets a verdict");
+  AddOption(*make, "--theory-boundary-deg", flags->entry.theory_boundary_deg,
+            "its boundary angle");
+  AddOption(*make, "--theory-u-deg", flags->entry.theory_u_deg,
+            "standard uncertainty of that");
+  AddOption(*make, "--margin-deg", flags->entry.margin_deg,
+            "equivalence margin of the verdict")
+      .ShowDefault();
   AddPlanFlags(*make, *flags);
-  make->add_flag("--change", flags->change,
-                 "change a campaign that has no trials yet");
-  make->callback(
-      [flags, &action] { action = [flags] { return NewCampaign(*flags); }; });
-  CLI::App* plan = command->add_subcommand(
-      "plan", "declare or change design, stopping rule and error rates");
-  plan->add_option("NAME", flags->entry.name, "of the campaign")->required();
+  AddFlag(*make, "--change", flags->change,
+          "change a campaign that has no trials yet");
+  SetAction(*make, action, [flags] { return NewCampaign(*flags); });
+  CLI::App* plan =
+      AddCommand(*command, "plan",
+                 "declare or change design, stopping rule and error rates");
+  AddOption(*plan, "NAME", flags->entry.name, "of the campaign").Require();
   AddDbFlag(*plan, flags->db);
   AddPlanFlags(*plan, *flags);
-  plan->add_option("--why", flags->why,
-                   "reason of the change; needed after the first trial");
-  plan->callback(
-      [flags, &action] { action = [flags] { return ChangePlan(*flags); }; });
-  CLI::App* list = command->add_subcommand("list", "all campaigns of a store");
+  AddOption(*plan, "--why", flags->why,
+            "reason of the change; needed after the first trial");
+  SetAction(*plan, action, [flags] { return ChangePlan(*flags); });
+  CLI::App* list = AddCommand(*command, "list", "all campaigns of a store");
   AddDbFlag(*list, flags->db);
-  list->add_flag("--json", flags->json, "one JSON line for each");
-  list->callback(
-      [flags, &action] { action = [flags] { return ListCampaigns(*flags); }; });
-  CLI::App* show = command->add_subcommand("show", "one campaign");
-  show->add_option("NAME", flags->entry.name,
-                   "of the campaign; not needed where there is only one");
+  AddFlag(*list, "--json", flags->json, "one JSON line for each");
+  SetAction(*list, action, [flags] { return ListCampaigns(*flags); });
+  CLI::App* show = AddCommand(*command, "show", "one campaign");
+  AddOption(*show, "NAME", flags->entry.name,
+            "of the campaign; not needed where there is only one");
   AddDbFlag(*show, flags->db);
-  show->add_flag("--json", flags->json, "one JSON document");
-  show->callback(
-      [flags, &action] { action = [flags] { return ShowCampaign(*flags); }; });
+  AddFlag(*show, "--json", flags->json, "one JSON document");
+  SetAction(*show, action, [flags] { return ShowCampaign(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
 
+#include "app/cli/options.h"
 #include "app/trials/statement.h"
 #include "app/trials/typed_values.h"
 #include "touchdown/db/register.h"
@@ -25,11 +25,10 @@ std::string Form() {
 }  // namespace
 
 void AddConditionFlag(CLI::App& command, ConditionFlags& flags) {
-  command
-      .add_option("--condition", flags,
-                  "of the shot, " + Form() + "; may be given several times")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddOption(command, "--condition", flags,
+            "of the shot, " + Form() + "; may be given several times")
+      .NameType("KEY=VALUE")
+      .OneAtATime();
 }
 
 void ApplyCondition(const std::string& text, core::Conditions& conditions) {

@@ -1,7 +1,6 @@
 // db check|seal|backup|merge|migrate|columns|relink: care of the store.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/seal_command.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
@@ -177,61 +177,55 @@ int Migrate(const DbFlags& flags) {
 }  // namespace
 
 void AddDb(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("db", "care of the trial store");
-  command->require_subcommand(1);
+  CLI::App* command = AddCommand(app, "db", "care of the trial store");
+  RequireSubcommand(*command);
   auto flags = std::make_shared<DbFlags>();
-  CLI::App* check = command->add_subcommand(
-      "check",
+  CLI::App* check = AddCommand(
+      *command, "check",
       "pages, tables, the hash chain over all that was recorded, the clips");
   AddDbFlag(*check, flags->db);
-  check->add_flag("--no-clips", flags->no_clips,
-                  "do not read the clips again (it takes as long as reading "
-                  "all their bytes)");
-  check->add_option("--against", flags->against,
-                    "a seal that was kept apart, its file or its head: names "
-                    "the first row that is not as it was sealed");
-  check->callback(
-      [flags, &action] { action = [flags] { return Check(*flags); }; });
+  AddFlag(*check, "--no-clips", flags->no_clips,
+          "do not read the clips again (it takes as long as reading all their "
+          "bytes)");
+  AddOption(*check, "--against", flags->against,
+            "a seal that was kept apart, its file or its head: names the first "
+            "row that is not as it was sealed");
+  SetAction(*check, action, [flags] { return Check(*flags); });
   AddSeal(*command, action);
   CLI::App* backup =
-      command->add_subcommand("backup", "a whole copy, while others write");
+      AddCommand(*command, "backup", "a whole copy, while others write");
   AddDbFlag(*backup, flags->db);
-  backup->add_option("TO", flags->to, "a file that does not exist yet")
-      ->required();
-  backup->callback(
-      [flags, &action] { action = [flags] { return Backup(*flags); }; });
-  CLI::App* columns = command->add_subcommand(
-      "columns",
+  AddOption(*backup, "TO", flags->to, "a file that does not exist yet")
+      .Require();
+  SetAction(*backup, action, [flags] { return Backup(*flags); });
+  CLI::App* columns = AddCommand(
+      *command, "columns",
       "the views that other programs read (docs/reading-the-store.md): every "
       "column with its unit and meaning");
-  columns->callback([&action] { action = [] { return Columns(); }; });
-  CLI::App* pictures = command->add_subcommand(
-      "pictures",
-      "draw the contact of every trial that has no picture yet, from its "
-      "recording, into DB.evidence");
+  SetAction(*columns, action, [] { return Columns(); });
+  CLI::App* pictures =
+      AddCommand(*command, "pictures",
+                 "draw the contact of every trial that has no picture yet, "
+                 "from its recording, into DB.evidence");
   AddDbFlag(*pictures, flags->db);
-  pictures->callback(
-      [flags, &action] { action = [flags] { return Pictures(*flags); }; });
-  CLI::App* merge = command->add_subcommand(
-      "merge", "add what other stores hold; can be repeated");
+  SetAction(*pictures, action, [flags] { return Pictures(*flags); });
+  CLI::App* merge = AddCommand(*command, "merge",
+                               "add what other stores hold; can be repeated");
   AddDbFlag(*merge, flags->db);
-  merge->add_option("FROM", flags->from, "the other stores")->required();
-  merge->callback(
-      [flags, &action] { action = [flags] { return Merge(*flags); }; });
-  CLI::App* relink = command->add_subcommand(
-      "relink",
-      "find recordings that were moved, by what they are and not by their "
-      "names; nothing else of the store changes");
+  AddOption(*merge, "FROM", flags->from, "the other stores").Require();
+  SetAction(*merge, action, [flags] { return Merge(*flags); });
+  CLI::App* relink =
+      AddCommand(*command, "relink",
+                 "find recordings that were moved, by what they are and not by "
+                 "their names; nothing else of the store changes");
   AddDbFlag(*relink, flags->db);
-  relink->add_option("FOLDER", flags->folder, "where they are, or above")
-      ->required();
-  relink->callback(
-      [flags, &action] { action = [flags] { return Relink(*flags); }; });
-  CLI::App* migrate = command->add_subcommand(
-      "migrate", "bring a store of an older touchdown to this one");
+  AddOption(*relink, "FOLDER", flags->folder, "where they are, or above")
+      .Require();
+  SetAction(*relink, action, [flags] { return Relink(*flags); });
+  CLI::App* migrate = AddCommand(
+      *command, "migrate", "bring a store of an older touchdown to this one");
   AddDbFlag(*migrate, flags->db);
-  migrate->callback(
-      [flags, &action] { action = [flags] { return Migrate(*flags); }; });
+  SetAction(*migrate, action, [flags] { return Migrate(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +8,7 @@
 
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/demo/demo.h"
 #include "touchdown/core/units.h"
@@ -71,17 +71,15 @@ int RunDemo(const DemoFlags& flags) {
 
 void AddDemo(CLI::App& app, Action& action) {
   auto flags = std::make_shared<DemoFlags>();
-  CLI::App* command = app.add_subcommand(
-      "demo", "Table 1, end to end, on rendered clips with known truth");
-  command
-      ->add_option("--out", flags->out,
-                   "folder for clips, evidence, store and report")
-      ->capture_default_str();
-  command->add_option("--seed", flags->seed, "of the clips' noise")
-      ->capture_default_str();
+  CLI::App* command = AddCommand(
+      app, "demo", "Table 1, end to end, on rendered clips with known truth");
+  AddOption(*command, "--out", flags->out,
+            "folder for clips, evidence, store and report")
+      .ShowDefault();
+  AddOption(*command, "--seed", flags->seed, "of the clips' noise")
+      .ShowDefault();
   AddLimitFlag(*command, flags->limit_s);
-  command->callback(
-      [flags, &action] { action = [flags] { return RunDemo(*flags); }; });
+  SetAction(*command, action, [flags] { return RunDemo(*flags); });
 }
 
 }  // namespace touchdown::cli

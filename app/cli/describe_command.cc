@@ -1,6 +1,5 @@
 // touchdown describe: manual pages and completions, written when the program is
 // built. A tool of the build; no --help shows it.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 #include "app/cli/command_tree.h"
 #include "app/cli/completions.h"
 #include "app/cli/manual_pages.h"
+#include "app/cli/options.h"
 #include "touchdown/core/output_file.h"
 
 namespace touchdown::cli {
@@ -37,12 +37,11 @@ int WriteDescriptions(const CLI::App& app, const std::filesystem::path& out) {
 void AddDescribe(CLI::App& app, Action& action) {
   auto out = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("describe", "manual pages and completions");
-  command->group("");
-  command->add_option("OUT", *out, "a folder")->required();
-  command->callback([&app, out, &action] {
-    action = [&app, out] { return WriteDescriptions(app, *out); };
-  });
+      AddCommand(app, "describe", "manual pages and completions");
+  Hide(*command);
+  AddOption(*command, "OUT", *out, "a folder").Require();
+  SetAction(*command, action,
+            [&app, out] { return WriteDescriptions(app, *out); });
 }
 
 }  // namespace touchdown::cli

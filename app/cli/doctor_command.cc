@@ -1,7 +1,6 @@
 // touchdown doctor: what stands in the way of a measurement, before it does.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include "app/cli/command.h"
 #include "app/cli/doctor_flags.h"
 #include "app/cli/messages.h"
+#include "app/cli/options.h"
 #include "app/text/dates.h"
 
 namespace touchdown::cli {
@@ -44,12 +44,12 @@ int RunDoctor(const DoctorCommandFlags& flags) {
 }  // namespace
 
 void AddDoctorFlags(CLI::App& command, DoctorFlags& flags) {
-  command.add_option("--db", flags.store, "a trial store to look at");
-  command.add_option("--camera", flags.calibration,
-                     "a calibration file to look at");
-  command.add_option("--recordings", flags.recordings,
-                     "the folder that the camera writes into: its newest "
-                     "recording is opened");
+  AddOption(command, "--db", flags.store, "a trial store to look at");
+  AddOption(command, "--camera", flags.calibration,
+            "a calibration file to look at");
+  AddOption(
+      command, "--recordings", flags.recordings,
+      "the folder that the camera writes into: its newest recording is opened");
 }
 
 pipeline::DoctorOptions ToOptions(const DoctorFlags& flags) {
@@ -64,14 +64,13 @@ pipeline::DoctorOptions ToOptions(const DoctorFlags& flags) {
 
 void AddDoctor(CLI::App& app, Action& action) {
   auto flags = std::make_shared<DoctorCommandFlags>();
-  CLI::App* command = app.add_subcommand(
-      "doctor",
-      "what of this machine, its store and its camera would stand in the way "
-      "(exit status 3 where something will not work)");
+  CLI::App* command =
+      AddCommand(app, "doctor",
+                 "what of this machine, its store and its camera would stand "
+                 "in the way (exit status 3 where something will not work)");
   AddDoctorFlags(*command, flags->doctor);
-  command->add_flag("--json", flags->json, "one JSON document on stdout");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunDoctor(*flags); }; });
+  AddFlag(*command, "--json", flags->json, "one JSON document on stdout");
+  SetAction(*command, action, [flags] { return RunDoctor(*flags); });
 }
 
 }  // namespace touchdown::cli

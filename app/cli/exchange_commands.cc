@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <string>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/cli/tidy_export.h"
@@ -374,40 +374,36 @@ int Import(const ImportFlags& flags) {
 
 void AddExport(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ExportFlags>();
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "trials as CSV (flat, with its schema beside it), tidy CSV (a table for "
-      "each view) or JSON lines (lossless)");
+  CLI::App* command =
+      AddCommand(app, "export",
+                 "trials as CSV (flat, with its schema beside it), tidy CSV (a "
+                 "table for each view) or JSON lines (lossless)");
   AddDbFlag(*command, flags->db);
-  command->add_option("--out", flags->out,
-                      "FILE.csv or FILE.jsonl; or stdout; of tidy, a folder");
-  command->add_option("--format", flags->format, "csv, jsonl or tidy");
-  command->add_option("--campaign", flags->campaign, "only of this campaign");
-  command->callback(
-      [flags, &action] { action = [flags] { return Export(*flags); }; });
+  AddOption(*command, "--out", flags->out,
+            "FILE.csv or FILE.jsonl; or stdout; of tidy, a folder");
+  AddOption(*command, "--format", flags->format, "csv, jsonl or tidy");
+  AddOption(*command, "--campaign", flags->campaign, "only of this campaign");
+  SetAction(*command, action, [flags] { return Export(*flags); });
 }
 
 void AddImport(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ImportFlags>();
-  CLI::App* command = app.add_subcommand(
-      "import", "trials from CSV, or what `export` wrote as JSON lines");
-  command->add_option("FILE", flags->file, "FILE.csv or FILE.jsonl");
-  command->add_option("--db", flags->db, "the trial store, e.g. lab.db");
-  command->add_option("--format", flags->format, "csv or jsonl");
-  command->add_option("--by", flags->by,
-                      "who states rows without an author (CSV)");
-  command->add_flag("--partial", flags->partial,
-                    "import the rows that are right, report the others (CSV)");
-  command->add_flag("--columns", flags->columns, "print the columns of a CSV");
-  command->add_flag("--paper-table1", flags->paper_table1,
-                    "the eighteen trials of the paper's Table 1, in place of "
-                    "FILE");
-  command
-      ->add_option("--paper-u-deg", flags->paper_u_deg,
-                   "assumed u of the paper's angles")
-      ->capture_default_str();
-  command->callback(
-      [flags, &action] { action = [flags] { return Import(*flags); }; });
+  CLI::App* command = AddCommand(
+      app, "import", "trials from CSV, or what `export` wrote as JSON lines");
+  AddOption(*command, "FILE", flags->file, "FILE.csv or FILE.jsonl");
+  AddOption(*command, "--db", flags->db, "the trial store, e.g. lab.db");
+  AddOption(*command, "--format", flags->format, "csv or jsonl");
+  AddOption(*command, "--by", flags->by,
+            "who states rows without an author (CSV)");
+  AddFlag(*command, "--partial", flags->partial,
+          "import the rows that are right, report the others (CSV)");
+  AddFlag(*command, "--columns", flags->columns, "print the columns of a CSV");
+  AddFlag(*command, "--paper-table1", flags->paper_table1,
+          "the eighteen trials of the paper's Table 1, in place of FILE");
+  AddOption(*command, "--paper-u-deg", flags->paper_u_deg,
+            "assumed u of the paper's angles")
+      .ShowDefault();
+  SetAction(*command, action, [flags] { return Import(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,7 +1,6 @@
 // log, correct: what people state of a trial.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/condition_flags.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/trials/statement.h"
@@ -36,19 +36,18 @@ pipeline::Statement ReadStatement(const StatementFlags& flags,
 
 void AddStatementFlags(CLI::App& command, StatementFlags& all) {
   pipeline::Statement& flags = all.said;
-  command.add_option("--angle-deg", flags.angle_deg, "the contact angle");
-  command.add_option("--angle-u-deg", flags.angle_u_deg,
-                     "its standard uncertainty");
-  command.add_option(
-      "--angle-kind", flags.angle_kind,
-      "approach, radius or face; the campaign's where not given");
-  command.add_option("--state", flags.state, pipeline::kStateWords);
-  command.add_option("--corner", flags.corner, "leading, trailing or flush");
-  command.add_option("--set-angle-deg", flags.set_angle_deg,
-                     "set-point of the varied angle");
-  command.add_option("--set-speed-mps", flags.set_speed_mps,
-                     "set-point of the launch speed");
-  command.add_option("--note", flags.note, "what was seen");
+  AddOption(command, "--angle-deg", flags.angle_deg, "the contact angle");
+  AddOption(command, "--angle-u-deg", flags.angle_u_deg,
+            "its standard uncertainty");
+  AddOption(command, "--angle-kind", flags.angle_kind,
+            "approach, radius or face; the campaign's where not given");
+  AddOption(command, "--state", flags.state, pipeline::kStateWords);
+  AddOption(command, "--corner", flags.corner, "leading, trailing or flush");
+  AddOption(command, "--set-angle-deg", flags.set_angle_deg,
+            "set-point of the varied angle");
+  AddOption(command, "--set-speed-mps", flags.set_speed_mps,
+            "set-point of the launch speed");
+  AddOption(command, "--note", flags.note, "what was seen");
   AddConditionFlag(command, all.conditions);
 }
 
@@ -131,37 +130,35 @@ int Correct(const CorrectFlags& flags) {
 void AddLog(CLI::App& app, Action& action) {
   auto flags = std::make_shared<LogByHandFlags>();
   CLI::App* command =
-      app.add_subcommand("log", "a trial by hand (origin: manual)");
+      AddCommand(app, "log", "a trial by hand (origin: manual)");
   AddDbFlag(*command, flags->db);
-  command->add_option("--campaign", flags->campaign, "its campaign");
+  AddOption(*command, "--campaign", flags->campaign, "its campaign");
   AddBodyFlags(*command, flags->body);
   AddStatementFlags(*command, flags->statement);
-  command->add_option("--by", flags->by, "who states this")->required();
-  command->add_flag("--json", flags->json, "one JSON document");
-  command->callback(
-      [flags, &action] { action = [flags] { return Log(*flags); }; });
+  AddOption(*command, "--by", flags->by, "who states this").Require();
+  AddFlag(*command, "--json", flags->json, "one JSON document");
+  SetAction(*command, action, [flags] { return Log(*flags); });
 }
 
 void AddCorrect(CLI::App& app, Action& action) {
   auto flags = std::make_shared<CorrectFlags>();
-  CLI::App* command = app.add_subcommand(
-      "correct", "a person's revision of a trial; nothing is overwritten");
-  command->add_option("ID", flags->id, "of the trial, or the beginning of it")
-      ->required();
+  CLI::App* command = AddCommand(
+      app, "correct", "a person's revision of a trial; nothing is overwritten");
+  AddOption(*command, "ID", flags->id, "of the trial, or the beginning of it")
+      .Require();
   AddDbFlag(*command, flags->db);
   AddStatementFlags(*command, flags->statement);
-  command->add_option("--accept", flags->accept,
-                      "state again what this revision states, such as an "
-                      "analysis that was proposed");
-  command->add_option("--by", flags->by, "who corrects")->required();
-  command->add_option("--why", flags->why, "the reason")->required();
-  CLI::Option* exclude = command->add_flag("--exclude", flags->exclude,
-                                           "the trial no longer counts");
-  command->add_flag("--include", flags->include, "it counts again")
-      ->excludes(exclude);
-  command->add_flag("--json", flags->json, "one JSON document");
-  command->callback(
-      [flags, &action] { action = [flags] { return Correct(*flags); }; });
+  AddOption(*command, "--accept", flags->accept,
+            "state again what this revision states, such as an analysis that "
+            "was proposed");
+  AddOption(*command, "--by", flags->by, "who corrects").Require();
+  AddOption(*command, "--why", flags->why, "the reason").Require();
+  const Option exclude = AddFlag(*command, "--exclude", flags->exclude,
+                                 "the trial no longer counts");
+  AddFlag(*command, "--include", flags->include, "it counts again")
+      .Exclude(exclude);
+  AddFlag(*command, "--json", flags->json, "one JSON document");
+  SetAction(*command, action, [flags] { return Correct(*flags); });
 }
 
 }  // namespace touchdown::cli

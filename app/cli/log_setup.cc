@@ -6,13 +6,13 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 #include <vector>
 
+#include "app/cli/options.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::cli {
@@ -45,13 +45,12 @@ spdlog::sink_ptr FileSink(const std::string& name) {
 }  // namespace
 
 void AddLogFlags(CLI::App& app, LogFlags& flags) {
-  app.add_flag("--verbose", flags.verbose,
-               "say on stderr what is done, how long it takes and why");
-  app.add_option("--log", flags.file,
-                 fmt::format("say it in this file (after {} MB a new one is "
-                             "begun, {} older ones are kept)",
-                             kFileBytes >> 20, kOlderFiles));
-  app.fallthrough();
+  AddFlag(app, "--verbose", flags.verbose,
+          "say on stderr what is done, how long it takes and why");
+  AddOption(app, "--log", flags.file,
+            fmt::format("say it in this file (after {} MB a new one is begun, "
+                        "{} older ones are kept)",
+                        kFileBytes >> 20, kOlderFiles));
 }
 
 void SetUpLog(const LogFlags& flags) {

@@ -161,6 +161,7 @@ int main(int argc, char** argv) {
   touchdown::cli::SetUpLog({});
   touchdown::cli::LogFlags log;
   touchdown::cli::AddLogFlags(app, log);
+  app.fallthrough();
   app.require_subcommand(1);
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");

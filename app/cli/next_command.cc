@@ -1,7 +1,6 @@
 // touchdown next: the angle to throw, and the rig's settings for it.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 
 #include "app/cli/boundary_flags.h"
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/rig_print.h"
 #include "app/report/boundary_json.h"
 #include "app/report/group.h"
@@ -205,26 +205,21 @@ int RunNext(const BoundaryFlags& flags) {
 void AddNext(CLI::App& app, Action& action) {
   auto flags = std::make_shared<BoundaryFlags>();
   CLI::App* command =
-      app.add_subcommand("next", "The angle to throw next, and when to stop");
+      AddCommand(app, "next", "The angle to throw next, and when to stop");
   AddBoundaryFlags(*command, *flags);
-  command
-      ->add_option("--rule", flags->rule,
-                   "expected-variance, neyer, 3pod or up-down")
-      ->capture_default_str();
-  command->add_option(
-      "--guess-deg", flags->guess,
-      "neyer, 3pod: LOW:HIGH, between which the boundary should "
-      "lie");
-  command
-      ->add_option("--guess-scatter-deg", flags->guess_scatter_deg,
-                   "neyer, 3pod: guessed scatter")
-      ->capture_default_str();
-  command->add_option("--start-deg", flags->start_deg, "up-down: first angle")
-      ->capture_default_str();
-  command->add_option("--step-deg", flags->step_deg, "up-down: step")
-      ->capture_default_str();
-  command->callback(
-      [flags, &action] { action = [flags] { return RunNext(*flags); }; });
+  AddOption(*command, "--rule", flags->rule,
+            "expected-variance, neyer, 3pod or up-down")
+      .ShowDefault();
+  AddOption(*command, "--guess-deg", flags->guess,
+            "neyer, 3pod: LOW:HIGH, between which the boundary should lie");
+  AddOption(*command, "--guess-scatter-deg", flags->guess_scatter_deg,
+            "neyer, 3pod: guessed scatter")
+      .ShowDefault();
+  AddOption(*command, "--start-deg", flags->start_deg, "up-down: first angle")
+      .ShowDefault();
+  AddOption(*command, "--step-deg", flags->step_deg, "up-down: step")
+      .ShowDefault();
+  SetAction(*command, action, [flags] { return RunNext(*flags); });
 }
 
 }  // namespace touchdown::cli

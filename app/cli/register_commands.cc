@@ -2,7 +2,6 @@
 // surfaces, operators.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/cli/values.h"
@@ -264,63 +264,58 @@ int ShowEntry(const LookFlags& flags) {
 void AddEntryCommands(CLI::App& parent, const std::string& verb,
                       const std::string& about, Action& action,
                       int (*run)(const EntryFlags&, RegisterKind)) {
-  CLI::App* command = parent.add_subcommand(verb, about);
-  command->require_subcommand(1);
+  CLI::App* command = AddCommand(parent, verb, about);
+  RequireSubcommand(*command);
   for (const RegisterKind kind : db::kRegisterKinds) {
     auto flags = std::make_shared<EntryFlags>();
-    CLI::App* one = command->add_subcommand(
-        std::string(Name(kind)), fmt::format("{} a {}", verb, Name(kind)));
-    one->add_option("NAME", flags->name, "as the lab calls it")->required();
+    CLI::App* one = AddCommand(*command, std::string(Name(kind)),
+                               fmt::format("{} a {}", verb, Name(kind)));
+    AddOption(*one, "NAME", flags->name, "as the lab calls it").Require();
     AddDbFlag(*one, flags->db);
-    one->add_option("--by", flags->by, "who states this")->required();
-    one->add_option("--why", flags->why, "the reason")
-        ->required(verb == "change");
+    AddOption(*one, "--by", flags->by, "who states this").Require();
+    AddOption(*one, "--why", flags->why, "the reason")
+        .Require(verb == "change");
     for (const RegisterField& field : db::ListFields(kind)) {
       if (IsOfFile(field)) continue;
-      one->add_option(FlagName(field), flags->fields[std::string(field.name)],
-                      Help(field));
+      AddOption(*one, FlagName(field), flags->fields[std::string(field.name)],
+                Help(field));
     }
     if (HasFile(kind)) {
-      one->add_option("--file", flags->file,
-                      kind == RegisterKind::kRig
-                          ? "its rig.toml, which is kept whole"
-                          : "a file of `touchdown calibrate`, which is kept "
-                            "whole");
+      AddOption(*one, "--file", flags->file,
+                kind == RegisterKind::kRig
+                    ? "its rig.toml, which is kept whole"
+                    : "a file of `touchdown calibrate`, which is kept whole");
     }
-    one->add_flag("--json", flags->json, "one JSON line");
-    one->callback([flags, kind, run, &action] {
-      action = [flags, kind, run] { return run(*flags, kind); };
-    });
+    AddFlag(*one, "--json", flags->json, "one JSON line");
+    SetAction(*one, action, [flags, kind, run] { return run(*flags, kind); });
   }
 }
 
 }  // namespace
 
 void AddRegister(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "register",
-      "the lab's rigs, cameras, springs, calibrations, bodies, surfaces and "
-      "operators");
-  command->require_subcommand(1);
+  CLI::App* command =
+      AddCommand(app, "register",
+                 "the lab's rigs, cameras, springs, calibrations, bodies, "
+                 "surfaces and operators");
+  RequireSubcommand(*command);
   AddEntryCommands(*command, "add", "a new entry", action, AddToRegister);
   AddEntryCommands(*command, "change",
                    "a further version of an entry; nothing is overwritten",
                    action, ChangeInRegister);
   auto flags = std::make_shared<LookFlags>();
-  CLI::App* list = command->add_subcommand("list", "what is in the register");
-  list->add_option("KIND", flags->kind, kKindWords);
+  CLI::App* list = AddCommand(*command, "list", "what is in the register");
+  AddOption(*list, "KIND", flags->kind, kKindWords);
   AddDbFlag(*list, flags->db);
-  list->add_flag("--json", flags->json, "one JSON line for each");
-  list->callback(
-      [flags, &action] { action = [flags] { return ListRegister(*flags); }; });
-  CLI::App* show = command->add_subcommand("show", "one entry");
-  show->add_option("KIND", flags->kind, kKindWords)->required();
-  show->add_option("NAME", flags->name, "of the entry")->required();
+  AddFlag(*list, "--json", flags->json, "one JSON line for each");
+  SetAction(*list, action, [flags] { return ListRegister(*flags); });
+  CLI::App* show = AddCommand(*command, "show", "one entry");
+  AddOption(*show, "KIND", flags->kind, kKindWords).Require();
+  AddOption(*show, "NAME", flags->name, "of the entry").Require();
   AddDbFlag(*show, flags->db);
-  show->add_flag("--history", flags->history, "who changed what, when and why");
-  show->add_flag("--json", flags->json, "one JSON line for each version");
-  show->callback(
-      [flags, &action] { action = [flags] { return ShowEntry(*flags); }; });
+  AddFlag(*show, "--history", flags->history, "who changed what, when and why");
+  AddFlag(*show, "--json", flags->json, "one JSON line for each version");
+  SetAction(*show, action, [flags] { return ShowEntry(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,10 +1,10 @@
 // touchdown report-bug: an archive for who is to find out what went wrong.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +12,7 @@
 #include "app/cli/analyze_flags.h"
 #include "app/cli/command.h"
 #include "app/cli/messages.h"
+#include "app/cli/options.h"
 #include "app/doctor/bug_report.h"
 #include "app/text/dates.h"
 
@@ -27,15 +28,14 @@ struct ReportBugFlags {
   bool yes = false;
 };
 
-// The flags of `analyze` as they were typed.
-std::vector<std::string> ListTyped(const std::vector<CLI::Option*>& options) {
+// The flags of `analyze` as they were typed: all but the command's own.
+std::vector<std::string> ListTyped(const CLI::App& command) {
+  const std::set<std::string> own = {"CLIP", "--out", "--pictures", "--yes"};
   std::vector<std::string> typed;
-  for (const CLI::Option* option : options) {
-    if (option->count() == 0) continue;
-    const std::string name = "--" + option->get_lnames().front();
-    typed.push_back(option->get_items_expected_max() == 0
-                        ? name  // a flag
-                        : name + "=" + option->results().back());
+  for (const GivenOption& option : ListGiven(command)) {
+    if (own.contains(option.name)) continue;
+    typed.push_back(option.is_flag ? option.name
+                                   : option.name + "=" + option.values.back());
   }
   return typed;
 }
@@ -85,24 +85,20 @@ int RunReportBug(const ReportBugFlags& flags) {
 
 void AddReportBug(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ReportBugFlags>();
-  CLI::App* command = app.add_subcommand(
-      "report-bug",
+  CLI::App* command = AddCommand(
+      app, "report-bug",
       "analyse a recording and put the answer, the log, the options, the "
       "machine and some frames into one ZIP file, after showing what is in it");
   AddAnalyzeFlags(*command, flags->analyze);
-  const std::vector<CLI::Option*> of_analyze = command->get_options(
-      [](const CLI::Option* option) { return option->get_name() != "--help"; });
-  command->add_option("CLIP", flags->clip, "the recording")->required();
-  command->add_option("--out", flags->out, "the ZIP file")
-      ->capture_default_str();
-  command
-      ->add_option("--pictures", flags->pictures,
-                   "frames of the recording in it, at most; 0: none")
-      ->capture_default_str();
-  command->add_flag("--yes", flags->yes, "write it without asking");
-  command->callback([flags, of_analyze, &action] {
-    flags->typed = ListTyped(of_analyze);
-    action = [flags] { return RunReportBug(*flags); };
+  AddOption(*command, "CLIP", flags->clip, "the recording").Require();
+  AddOption(*command, "--out", flags->out, "the ZIP file").ShowDefault();
+  AddOption(*command, "--pictures", flags->pictures,
+            "frames of the recording in it, at most; 0: none")
+      .ShowDefault();
+  AddFlag(*command, "--yes", flags->yes, "write it without asking");
+  SetAction(*command, action, [flags, command] {
+    flags->typed = ListTyped(*command);
+    return RunReportBug(*flags);
   });
 }
 

@@ -3,7 +3,6 @@
 #include <pthread.h>
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <filesystem>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "app/cli/command.h"
 #include "app/cli/interruption.h"
 #include "app/cli/messages.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/review/server.h"
 #include "app/shots/thrower.h"
@@ -100,32 +100,29 @@ int RunReview(const ReviewFlags& flags) {
 
 void AddReview(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ReviewFlags>();
-  CLI::App* command = app.add_subcommand(
-      "review", "a local web page: look at trials, correct, log, report");
+  CLI::App* command = AddCommand(
+      app, "review", "a local web page: look at trials, correct, log, report");
   AddDbFlag(*command, flags->db);
-  command->add_option("--port", flags->port,
-                      "of 127.0.0.1 (default: any that is free)");
-  command->add_flag("--no-open", flags->no_open,
-                    "do not show the page in a browser");
-  command->add_option("--reports", flags->reports,
-                      "folder for reports built on the page (default: "
-                      "`report` beside the store)");
-  command
-      ->add_option("--recordings", flags->recordings,
-                   "a folder that recordings are chosen from on the page, with "
-                   "all below it; may be given several times")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  command->add_option("--rig", flags->rig,
-                      "rig.toml: the next angle stays within its reach");
-  command->add_option("--speed-mps", flags->speed_mps,
-                      "with --rig: speed at touchdown (default: the middle of "
-                      "the campaign's band)");
-  command->add_option("--corner", flags->corner,
-                      "with --rig: corner that lands first, leading, trailing "
-                      "or flush");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunReview(*flags); }; });
+  AddOption(*command, "--port", flags->port,
+            "of 127.0.0.1 (default: any that is free)");
+  AddFlag(*command, "--no-open", flags->no_open,
+          "do not show the page in a browser");
+  AddOption(*command, "--reports", flags->reports,
+            "folder for reports built on the page (default: `report` beside "
+            "the store)");
+  AddOption(*command, "--recordings", flags->recordings,
+            "a folder that recordings are chosen from on the page, with all "
+            "below it; may be given several times")
+      .NameType("DIR")
+      .OneAtATime();
+  AddOption(*command, "--rig", flags->rig,
+            "rig.toml: the next angle stays within its reach");
+  AddOption(*command, "--speed-mps", flags->speed_mps,
+            "with --rig: speed at touchdown (default: the middle of the "
+            "campaign's band)");
+  AddOption(*command, "--corner", flags->corner,
+            "with --rig: corner that lands first, leading, trailing or flush");
+  SetAction(*command, action, [flags] { return RunReview(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,7 +1,6 @@
 // touchdown rig calibrate
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/case_file.h"
+#include "app/cli/options.h"
 #include "app/cli/rig_commands.h"
 #include "app/cli/rig_flags.h"
 #include "app/cli/rig_print.h"
@@ -167,23 +167,21 @@ int RunCalibrate(const CalibrateFlags& flags) {
 
 void AddRigCalibrate(CLI::App& rig, Action& action) {
   auto calibrate = std::make_shared<CalibrateFlags>();
-  CLI::App* one = rig.add_subcommand(
-      "calibrate", "stiffness from forces, efficiency from launch speeds");
+  CLI::App* one = AddCommand(
+      rig, "calibrate", "stiffness from forces, efficiency from launch speeds");
   AddSpringFlags(*one, calibrate->rig);
   AddLaunchFlags(*one, calibrate->rig);
-  one->add_option("--force", calibrate->force,
-                  "CSV: compression_mm, force_n[, u_force_n], all springs");
-  one->add_option("--speeds", calibrate->speeds,
-                  "CSV: compression_mm, speed_mps[, u_speed_mps]");
-  one->add_option("--losses", calibrate->losses,
-                  "fitted besides: none, per-shot or friction")
-      ->capture_default_str();
-  one->add_option("--elevation-deg", calibrate->elevation_deg,
-                  "of the barrel during the shots [0]");
-  one->add_flag("--json", calibrate->json, "one JSON document");
-  one->callback([&action, calibrate] {
-    action = [calibrate] { return RunCalibrate(*calibrate); };
-  });
+  AddOption(*one, "--force", calibrate->force,
+            "CSV: compression_mm, force_n[, u_force_n], all springs");
+  AddOption(*one, "--speeds", calibrate->speeds,
+            "CSV: compression_mm, speed_mps[, u_speed_mps]");
+  AddOption(*one, "--losses", calibrate->losses,
+            "fitted besides: none, per-shot or friction")
+      .ShowDefault();
+  AddOption(*one, "--elevation-deg", calibrate->elevation_deg,
+            "of the barrel during the shots [0]");
+  AddFlag(*one, "--json", calibrate->json, "one JSON document");
+  SetAction(*one, action, [calibrate] { return RunCalibrate(*calibrate); });
 }
 
 }  // namespace touchdown::cli

@@ -1,19 +1,17 @@
 // touchdown rig spring|launch|plan|calibrate|example
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
 
+#include "app/cli/options.h"
 #include "app/cli/rig_commands.h"
 #include "touchdown/rig/description.h"
 
 namespace touchdown::cli {
 
 void AddDrawFlags(CLI::App& app, DrawFlags& flags) {
-  app.add_option("--draws", flags.draws, "Monte Carlo draws")
-      ->capture_default_str();
-  app.add_option("--seed", flags.seed, "of the Monte Carlo")
-      ->capture_default_str();
+  AddOption(app, "--draws", flags.draws, "Monte Carlo draws").ShowDefault();
+  AddOption(app, "--seed", flags.seed, "of the Monte Carlo").ShowDefault();
 }
 
 void RequireDraws(std::size_t draws) {
@@ -27,20 +25,18 @@ void RequireDraws(std::size_t draws) {
 void Print(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 void AddRig(CLI::App& app, Action& action) {
-  CLI::App* rig = app.add_subcommand(
-      "rig", "the ejector: springs, launch, set-points, calibration");
-  rig->require_subcommand(1);
+  CLI::App* rig = AddCommand(
+      app, "rig", "the ejector: springs, launch, set-points, calibration");
+  RequireSubcommand(*rig);
   AddRigSpring(*rig, action);
   AddRigLaunch(*rig, action);
   AddRigPlan(*rig, action);
   AddRigCalibrate(*rig, action);
-  rig->add_subcommand("example", "print a commented rig.toml")
-      ->callback([&action] {
-        action = [] {
-          fmt::print("{}", rig::ExampleDescription());
-          return 0;
-        };
-      });
+  SetAction(*AddCommand(*rig, "example", "print a commented rig.toml"), action,
+            [] {
+              fmt::print("{}", rig::ExampleDescription());
+              return 0;
+            });
 }
 
 }  // namespace touchdown::cli

@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 
+#include "app/cli/options.h"
 #include "app/cli/values.h"
 #include "touchdown/core/units.h"
 
@@ -76,42 +76,44 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
 
 }  // namespace
 
-void AddSpringFlags(CLI::App& app, RigFlags& flags) {
-  app.add_option("--rig", flags.rig,
-                 "rig description (`touchdown rig example` prints one); the "
-                 "flags below correct it. Numbers: VALUE or VALUE+-U");
-  app.add_option("--springs", flags.count, "equal springs side by side [2]");
-  app.add_option("--shear-modulus-gpa", flags.shear_modulus_gpa,
-                 "G of the wire");
-  app.add_option("--wire-mm", flags.wire_mm, "wire diameter d");
-  app.add_option("--coil-mm", flags.coil_mm, "coil diameter D");
-  app.add_option("--coil-diameter", flags.coil_diameter,
-                 "which diameter that is: mean, outer or inner");
-  app.add_option("--active-coils", flags.active_coils, "n");
-  app.add_option("--total-coils", flags.total_coils, "[active + 2]");
-  app.add_option("--density-kg-per-m3", flags.density_kg_per_m3,
-                 "of the wire [7850]");
-  app.add_option("--free-length-mm", flags.free_length_mm,
-                 "L0, for coil clearance and buckling");
-  app.add_option("--allowable-shear-mpa", flags.allowable_shear_mpa,
-                 "for the stress");
-  app.add_option("--stiffness-n-per-m", flags.stiffness_n_per_m,
-                 "measured, all springs together; replaces Eq. (11)");
-  app.add_option("--spring-mass-g", flags.spring_mass_g,
-                 "weighed, all springs together");
-  app.add_option("--preload-mm", flags.preload_mm, "X0 [0]");
+Option AddSpringFlags(CLI::App& app, RigFlags& flags) {
+  const Option rig =
+      AddOption(app, "--rig", flags.rig,
+                "rig description (`touchdown rig example` prints one); the "
+                "flags below correct it. Numbers: VALUE or VALUE+-U");
+  AddOption(app, "--springs", flags.count, "equal springs side by side [2]");
+  AddOption(app, "--shear-modulus-gpa", flags.shear_modulus_gpa,
+            "G of the wire");
+  AddOption(app, "--wire-mm", flags.wire_mm, "wire diameter d");
+  AddOption(app, "--coil-mm", flags.coil_mm, "coil diameter D");
+  AddOption(app, "--coil-diameter", flags.coil_diameter,
+            "which diameter that is: mean, outer or inner");
+  AddOption(app, "--active-coils", flags.active_coils, "n");
+  AddOption(app, "--total-coils", flags.total_coils, "[active + 2]");
+  AddOption(app, "--density-kg-per-m3", flags.density_kg_per_m3,
+            "of the wire [7850]");
+  AddOption(app, "--free-length-mm", flags.free_length_mm,
+            "L0, for coil clearance and buckling");
+  AddOption(app, "--allowable-shear-mpa", flags.allowable_shear_mpa,
+            "for the stress");
+  AddOption(app, "--stiffness-n-per-m", flags.stiffness_n_per_m,
+            "measured, all springs together; replaces Eq. (11)");
+  AddOption(app, "--spring-mass-g", flags.spring_mass_g,
+            "weighed, all springs together");
+  AddOption(app, "--preload-mm", flags.preload_mm, "X0 [0]");
+  return rig;
 }
 
 void AddLaunchFlags(CLI::App& app, RigFlags& flags) {
-  app.add_option("--mass-g", flags.mass_g, "of the body");
-  app.add_option("--efficiency", flags.efficiency, "[1]");
-  app.add_option("--barrel-friction", flags.barrel_friction, "coefficient [0]");
-  app.add_option("--loss-j", flags.loss_j, "energy lost in each shot [0]");
-  app.add_option("--gravity-mps2", flags.gravity_mps2, "[9.80665+-0.015]");
-  app.add_option("--u-compression-mm", flags.u_compression_mm,
-                 "standard uncertainty of the compression [0]");
-  app.add_option("--u-elevation-deg", flags.u_elevation_deg, "[0]");
-  app.add_option("--u-height-mm", flags.u_height_mm, "[0]");
+  AddOption(app, "--mass-g", flags.mass_g, "of the body");
+  AddOption(app, "--efficiency", flags.efficiency, "[1]");
+  AddOption(app, "--barrel-friction", flags.barrel_friction, "coefficient [0]");
+  AddOption(app, "--loss-j", flags.loss_j, "energy lost in each shot [0]");
+  AddOption(app, "--gravity-mps2", flags.gravity_mps2, "[9.80665+-0.015]");
+  AddOption(app, "--u-compression-mm", flags.u_compression_mm,
+            "standard uncertainty of the compression [0]");
+  AddOption(app, "--u-elevation-deg", flags.u_elevation_deg, "[0]");
+  AddOption(app, "--u-height-mm", flags.u_height_mm, "[0]");
 }
 
 rig::Description MakeDescription(const RigFlags& flags) {

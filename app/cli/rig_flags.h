@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "touchdown/core/estimate.h"
 #include "touchdown/rig/description.h"
 
@@ -25,8 +26,8 @@ struct RigFlags {
   std::string mass_g, gravity_mps2;
 };
 
-// Adds --rig and a flag for each value of the springs.
-void AddSpringFlags(CLI::App& app, RigFlags& flags);
+// Adds --rig, which it returns, and a flag for each value of the springs.
+Option AddSpringFlags(CLI::App& app, RigFlags& flags);
 
 // Adds a flag for each value of ejector, muzzle and body's mass.
 void AddLaunchFlags(CLI::App& app, RigFlags& flags);

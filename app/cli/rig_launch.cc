@@ -1,11 +1,11 @@
 // touchdown rig launch
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
+#include "app/cli/options.h"
 #include "app/cli/rig_commands.h"
 #include "app/cli/rig_flags.h"
 #include "app/cli/rig_print.h"
@@ -105,21 +105,21 @@ int RunLaunch(const LaunchFlags& flags) {
 
 void AddRigLaunch(CLI::App& rig, Action& action) {
   auto launch = std::make_shared<LaunchFlags>();
-  CLI::App* one = rig.add_subcommand(
-      "launch", "speed from compression or back, Eq. (10) and its corrections");
+  CLI::App* one = AddCommand(
+      rig, "launch",
+      "speed from compression or back, Eq. (10) and its corrections");
   AddSpringFlags(*one, launch->rig);
   AddLaunchFlags(*one, launch->rig);
-  one->add_option("--compression-mm", launch->compression_mm,
-                  "X, beyond the preload");
-  one->add_option("--speed-mps", launch->speed_mps, "wanted at the muzzle");
-  one->add_option("--elevation-deg", launch->elevation_deg,
-                  "barrel above horizontal [0]");
-  one->add_option("--height-mm", launch->height_mm,
-                  "of the body's centre at the muzzle; gives the contact too");
+  AddOption(*one, "--compression-mm", launch->compression_mm,
+            "X, beyond the preload");
+  AddOption(*one, "--speed-mps", launch->speed_mps, "wanted at the muzzle");
+  AddOption(*one, "--elevation-deg", launch->elevation_deg,
+            "barrel above horizontal [0]");
+  AddOption(*one, "--height-mm", launch->height_mm,
+            "of the body's centre at the muzzle; gives the contact too");
   AddDrawFlags(*one, launch->draw);
-  one->add_flag("--json", launch->json, "one JSON document");
-  one->callback(
-      [&action, launch] { action = [launch] { return RunLaunch(*launch); }; });
+  AddFlag(*one, "--json", launch->json, "one JSON document");
+  SetAction(*one, action, [launch] { return RunLaunch(*launch); });
 }
 
 }  // namespace touchdown::cli

@@ -1,13 +1,13 @@
 // touchdown rig plan
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "app/cli/options.h"
 #include "app/cli/rig_commands.h"
 #include "app/cli/rig_flags.h"
 #include "app/cli/rig_print.h"
@@ -127,27 +127,24 @@ int RunPlan(const PlanFlags& flags) {
 
 void AddRigPlan(CLI::App& rig, Action& action) {
   auto plan = std::make_shared<PlanFlags>();
-  CLI::App* one = rig.add_subcommand(
-      "plan", "settings for wanted contact angles and speed at touchdown");
-  AddSpringFlags(*one, plan->rig);
+  CLI::App* one = AddCommand(
+      rig, "plan", "settings for wanted contact angles and speed at touchdown");
+  AddSpringFlags(*one, plan->rig).Require();
   AddLaunchFlags(*one, plan->rig);
-  one->get_option("--rig")->required();
-  one->add_option("--angle-kind", plan->angle_kind,
-                  "approach, radius or face [sphere approach, rectangle "
-                  "radius]");
-  one->add_option("--angle-deg", plan->angles_deg, "one or more, A,B,C")
-      ->required()
-      ->delimiter(',');
-  one->add_option("--speed-mps", plan->speed_mps, "at touchdown")->required();
-  one->add_option("--corner", plan->corner,
-                  "that lands first: leading, trailing or flush");
-  one->add_option("--height-mm", plan->height_mm, "muzzle height to keep");
+  AddOption(*one, "--angle-kind", plan->angle_kind,
+            "approach, radius or face [sphere approach, rectangle radius]");
+  AddOption(*one, "--angle-deg", plan->angles_deg, "one or more, A,B,C")
+      .Require()
+      .SplitAtCommas();
+  AddOption(*one, "--speed-mps", plan->speed_mps, "at touchdown").Require();
+  AddOption(*one, "--corner", plan->corner,
+            "that lands first: leading, trailing or flush");
+  AddOption(*one, "--height-mm", plan->height_mm, "muzzle height to keep");
   AddDrawFlags(*one, plan->draw);
-  one->add_flag("--all", plan->all,
-                "speeds, angles, flight time and range of each, with their u");
-  one->add_flag("--json", plan->json, "one JSON document");
-  one->callback(
-      [&action, plan] { action = [plan] { return RunPlan(*plan); }; });
+  AddFlag(*one, "--all", plan->all,
+          "speeds, angles, flight time and range of each, with their u");
+  AddFlag(*one, "--json", plan->json, "one JSON document");
+  SetAction(*one, action, [plan] { return RunPlan(*plan); });
 }
 
 }  // namespace touchdown::cli

@@ -1,12 +1,12 @@
 // touchdown rig spring
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cli/options.h"
 #include "app/cli/rig_cases.h"
 #include "app/cli/rig_commands.h"
 #include "app/cli/rig_flags.h"
@@ -28,8 +28,10 @@ struct SpringFlags {
 int RunSpring(const SpringFlags& flags, const CLI::App& app) {
   if (!flags.cases.empty()) {
     RigCasesOptions options;
-    if (app.count("--draws") > 0) options.draws = flags.draw.draws;
-    if (app.count("--seed") > 0) options.seed = flags.draw.seed;
+    for (const GivenOption& option : ListGiven(app)) {
+      if (option.name == "--draws") options.draws = flags.draw.draws;
+      if (option.name == "--seed") options.seed = flags.draw.seed;
+    }
     RequireDraws(options.draws);
     fmt::print("{}", RigCases(flags.cases, options));
     return 0;
@@ -78,19 +80,17 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
 
 void AddRigSpring(CLI::App& rig, Action& action) {
   auto spring = std::make_shared<SpringFlags>();
-  CLI::App* one = rig.add_subcommand(
-      "spring", "stiffness, Eq. (11), stress, clearance, surge");
+  CLI::App* one = AddCommand(rig, "spring",
+                             "stiffness, Eq. (11), stress, clearance, surge");
   AddSpringFlags(*one, spring->rig);
-  one->add_option("--compression-mm", spring->compression_mm,
-                  "beyond the preload [rig's greatest]");
-  one->add_option("--cases", spring->cases,
-                  "CSV of rigs -> CSV of their numbers (2000000 draws, seed "
-                  "12345 unless given)");
+  AddOption(*one, "--compression-mm", spring->compression_mm,
+            "beyond the preload [rig's greatest]");
+  AddOption(*one, "--cases", spring->cases,
+            "CSV of rigs -> CSV of their numbers (2000000 draws, seed 12345 "
+            "unless given)");
   AddDrawFlags(*one, spring->draw);
-  one->add_flag("--json", spring->json, "one JSON document");
-  one->callback([&action, spring, one] {
-    action = [spring, one] { return RunSpring(*spring, *one); };
-  });
+  AddFlag(*one, "--json", spring->json, "one JSON document");
+  SetAction(*one, action, [spring, one] { return RunSpring(*spring, *one); });
 }
 
 }  // namespace touchdown::cli

@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "app/cli/messages.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/text/text_file.h"
@@ -178,19 +178,18 @@ void CheckSeal(const db::Store& store, const std::string& seal) {
 
 void AddSeal(CLI::App& db, Action& action) {
   auto flags = std::make_shared<SealFlags>();
-  CLI::App* seal = db.add_subcommand(
-      "seal",
-      "print the head of the hash chain, to be kept apart from the store: "
-      "`db check --against` finds what was altered since, whoever did it");
+  CLI::App* seal = AddCommand(
+      db, "seal",
+      "print the head of the hash chain, to be kept apart from the store: `db "
+      "check --against` finds what was altered since, whoever did it");
   AddDbFlag(*seal, flags->db);
-  seal->add_option("--out", flags->out,
-                   "write the whole seal, by which the first row that changed "
-                   "is named; a new file");
-  seal->add_option("--key", flags->key,
-                   "sign that file with this private key: of minisign, "
-                   "ssh-keygen or openssl (PEM)");
-  seal->callback(
-      [flags, &action] { action = [flags] { return MakeSeal(*flags); }; });
+  AddOption(*seal, "--out", flags->out,
+            "write the whole seal, by which the first row that changed is "
+            "named; a new file");
+  AddOption(*seal, "--key", flags->key,
+            "sign that file with this private key: of minisign, ssh-keygen or "
+            "openssl (PEM)");
+  SetAction(*seal, action, [flags] { return MakeSeal(*flags); });
 }
 
 }  // namespace touchdown::cli

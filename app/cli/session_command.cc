@@ -1,7 +1,6 @@
 // session: a technician at the rig, a folder that recordings appear in.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include "app/cli/condition_flags.h"
 #include "app/cli/folder_watch.h"
 #include "app/cli/interruption.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/cli/terminal_lines.h"
@@ -308,56 +308,47 @@ int RunSession(const SessionFlags& flags) {
 
 void AddSession(CLI::App& app, Action& action) {
   auto flags = std::make_shared<SessionFlags>();
-  CLI::App* command = app.add_subcommand(
-      "session",
-      "at the rig: set-points, new recording, answer, next angle; can be "
-      "killed and started again");
+  CLI::App* command =
+      AddCommand(app, "session",
+                 "at the rig: set-points, new recording, answer, next angle; "
+                 "can be killed and started again");
   AddDbFlag(*command, flags->db);
-  command->add_option("--campaign", flags->campaign, "what is thrown for")
-      ->required();
-  command
-      ->add_option("--rig", flags->rig,
-                   "rig.toml, which is kept in the register; or the name of a "
-                   "rig there")
-      ->required();
+  AddOption(*command, "--campaign", flags->campaign, "what is thrown for")
+      .Require();
+  AddOption(
+      *command, "--rig", flags->rig,
+      "rig.toml, which is kept in the register; or the name of a rig there")
+      .Require();
   AddConditionFlag(*command, flags->conditions);
-  command
-      ->add_option("--watch", flags->watch,
-                   "the folder that recordings appear in")
-      ->required();
-  command->add_option("--operator", flags->operator_name,
-                      "who is at the rig (as last time where not given)");
-  command->add_option("--speed-mps", flags->speed_mps,
-                      "speed at touchdown (default: the middle of the "
-                      "campaign's band)");
-  command->add_option("--corner", flags->corner,
-                      "corner that lands first, leading, trailing or flush");
-  command
-      ->add_option("--check-height-mm", flags->check_height,
-                   "daily check shot: the height that a body is dropped from, "
-                   "below it to the ground")
-      ->capture_default_str();
-  command->add_option("--check-diameter-mm", flags->check_diameter,
-                      "the sphere that is dropped (default: the campaign's "
-                      "body)");
-  command->add_flag("--no-check", flags->no_check, "ask for no check shot");
-  command
-      ->add_option("--driver", flags->driver,
-                   "manual, or the serial port of the rig's controller "
-                   "(/dev/ttyUSB0)")
-      ->capture_default_str();
-  command->add_option("--baud", flags->baud, "of the serial port")
-      ->capture_default_str();
-  command
-      ->add_option("--quiet-s", flags->quiet_s,
-                   "a recording is complete when it has not grown for so long; "
-                   "one taken too early is taken again")
-      ->capture_default_str();
-  command->add_flag("--again", flags->again,
-                    "take also recordings that failed twice");
+  AddOption(*command, "--watch", flags->watch,
+            "the folder that recordings appear in")
+      .Require();
+  AddOption(*command, "--operator", flags->operator_name,
+            "who is at the rig (as last time where not given)");
+  AddOption(*command, "--speed-mps", flags->speed_mps,
+            "speed at touchdown (default: the middle of the campaign's band)");
+  AddOption(*command, "--corner", flags->corner,
+            "corner that lands first, leading, trailing or flush");
+  AddOption(*command, "--check-height-mm", flags->check_height,
+            "daily check shot: the height that a body is dropped from, below "
+            "it to the ground")
+      .ShowDefault();
+  AddOption(*command, "--check-diameter-mm", flags->check_diameter,
+            "the sphere that is dropped (default: the campaign's body)");
+  AddFlag(*command, "--no-check", flags->no_check, "ask for no check shot");
+  AddOption(*command, "--driver", flags->driver,
+            "manual, or the serial port of the rig's controller (/dev/ttyUSB0)")
+      .ShowDefault();
+  AddOption(*command, "--baud", flags->baud, "of the serial port")
+      .ShowDefault();
+  AddOption(*command, "--quiet-s", flags->quiet_s,
+            "a recording is complete when it has not grown for so long; one "
+            "taken too early is taken again")
+      .ShowDefault();
+  AddFlag(*command, "--again", flags->again,
+          "take also recordings that failed twice");
   AddAnalyzeFlags(*command, flags->analyze);
-  command->callback(
-      [flags, &action] { action = [flags] { return RunSession(*flags); }; });
+  SetAction(*command, action, [flags] { return RunSession(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/simulate/scene_file.h"
 #include "app/simulate/simulate.h"
@@ -105,25 +105,21 @@ int RunSimulate(const SimulateFlags& flags) {
 
 void AddSimulate(CLI::App& app, Action& action) {
   auto flags = std::make_shared<SimulateFlags>();
-  CLI::App* command =
-      app.add_subcommand("simulate", "Footage with known truth");
-  command->add_option("SCENE", flags->scene,
-                      "a scene, JSON of schema touchdown.scene/1");
-  command->add_flag("--table1", flags->table1,
-                    "the 18 clips of the paper's Table 1");
-  command->add_flag("--example", flags->example, "print a scene and end");
-  command->add_option("--out", flags->out,
-                      "folder for the clips and, beside each, its "
-                      "NAME.truth.json");
-  command
-      ->add_option("--format", flags->format,
-                   "mraw, png, tiff (folders of images) or mp4 (8 bit, lossy)")
-      ->capture_default_str();
-  command->add_option("--seed", flags->seed, "of the sensor noise")
-      ->capture_default_str();
-  command->add_flag("--json", flags->json, "one JSON document on stdout");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunSimulate(*flags); }; });
+  CLI::App* command = AddCommand(app, "simulate", "Footage with known truth");
+  AddOption(*command, "SCENE", flags->scene,
+            "a scene, JSON of schema touchdown.scene/1");
+  AddFlag(*command, "--table1", flags->table1,
+          "the 18 clips of the paper's Table 1");
+  AddFlag(*command, "--example", flags->example, "print a scene and end");
+  AddOption(*command, "--out", flags->out,
+            "folder for the clips and, beside each, its NAME.truth.json");
+  AddOption(*command, "--format", flags->format,
+            "mraw, png, tiff (folders of images) or mp4 (8 bit, lossy)")
+      .ShowDefault();
+  AddOption(*command, "--seed", flags->seed, "of the sensor noise")
+      .ShowDefault();
+  AddFlag(*command, "--json", flags->json, "one JSON document on stdout");
+  SetAction(*command, action, [flags] { return RunSimulate(*flags); });
 }
 
 }  // namespace touchdown::cli

@@ -1,7 +1,6 @@
 // list, show: what is in the store.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "app/batch/triage.h"
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/exchange/trial_json.h"
@@ -280,61 +280,55 @@ struct ShowFlags {
 
 void AddList(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ListFlags>();
-  CLI::App* command = app.add_subcommand("list", "the trials of a store");
+  CLI::App* command = AddCommand(app, "list", "the trials of a store");
   AddDbFlag(*command, flags->db);
-  CLI::Option* campaign =
-      command->add_option("--campaign", flags->campaign,
-                          "only of this campaign ('' for trials in none)");
-  command->add_option("--origin", flags->origin,
-                      "recorded, simulated or manual");
-  command->add_option("--body", flags->body, "sphere or rectangle");
-  command->add_option("--state", flags->state, pipeline::kStateWords);
-  command->add_option("--from", flags->from,
-                      "first logged at or after, UTC, e.g. 2026-08-01");
-  command->add_option("--until", flags->until, "first logged before, UTC");
-  CLI::Option* counting = command->add_flag("--counting", flags->counting,
-                                            "leave excluded trials out");
-  command->add_flag("--excluded", flags->excluded, "only excluded trials")
-      ->excludes(counting);
-  command->add_flag("--json", flags->json, "one JSON document");
-  command->callback([flags, campaign, &action] {
-    const bool campaign_given = campaign->count() != 0;
-    action = [flags, campaign_given] {
-      const auto filter = MakeFilter(*flags, campaign_given);
-      const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
-      const auto trials = store.Trials(filter);
-      fmt::print("{}",
-                 flags->json ? ListJson(trials) + '\n' : ListText(trials));
-      return 0;
-    };
+  const Option campaign =
+      AddOption(*command, "--campaign", flags->campaign,
+                "only of this campaign ('' for trials in none)");
+  AddOption(*command, "--origin", flags->origin,
+            "recorded, simulated or manual");
+  AddOption(*command, "--body", flags->body, "sphere or rectangle");
+  AddOption(*command, "--state", flags->state, pipeline::kStateWords);
+  AddOption(*command, "--from", flags->from,
+            "first logged at or after, UTC, e.g. 2026-08-01");
+  AddOption(*command, "--until", flags->until, "first logged before, UTC");
+  const Option counting = AddFlag(*command, "--counting", flags->counting,
+                                  "leave excluded trials out");
+  AddFlag(*command, "--excluded", flags->excluded, "only excluded trials")
+      .Exclude(counting);
+  AddFlag(*command, "--json", flags->json, "one JSON document");
+  SetAction(*command, action, [flags, campaign] {
+    const auto filter = MakeFilter(*flags, campaign.IsGiven());
+    const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
+    const auto trials = store.Trials(filter);
+    fmt::print("{}", flags->json ? ListJson(trials) + '\n' : ListText(trials));
+    return 0;
   });
 }
 
 void AddShow(CLI::App& app, Action& action) {
   auto flags = std::make_shared<ShowFlags>();
-  CLI::App* command = app.add_subcommand("show", "one trial, all of it");
-  command->add_option("ID", flags->id, "of the trial, or the beginning of it")
-      ->required();
+  CLI::App* command = AddCommand(app, "show", "one trial, all of it");
+  AddOption(*command, "ID", flags->id, "of the trial, or the beginning of it")
+      .Require();
   AddDbFlag(*command, flags->db);
-  command->add_flag("--history", flags->history,
-                    "who changed what, when and why");
-  command->add_flag("--json", flags->json, "one JSON document");
-  command->callback([flags, &action] {
-    action = [flags] {
-      const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
-      const core::Trial trial = RequireTrial(store, flags->id);
-      const auto history = store.History(trial.id);
-      if (flags->json) {
-        fmt::print("{}\n", report::HistoryJson(history));
-        return 0;
-      }
-      fmt::print("{}", ShowText(trial));
-      if (const db::Revision* proposal = db::OpenProposal(history)) {
-        fmt::print("{}", ProposalText(trial, proposal->trial));
-      }
-      if (flags->history) fmt::print("{}", TrialHistoryText(history));
+  AddFlag(*command, "--history", flags->history,
+          "who changed what, when and why");
+  AddFlag(*command, "--json", flags->json, "one JSON document");
+  SetAction(*command, action, [flags] {
+    const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);
+    const core::Trial trial = RequireTrial(store, flags->id);
+    const auto history = store.History(trial.id);
+    if (flags->json) {
+      fmt::print("{}\n", report::HistoryJson(history));
       return 0;
-    };
+    }
+    fmt::print("{}", ShowText(trial));
+    if (const db::Revision* proposal = db::OpenProposal(history)) {
+      fmt::print("{}", ProposalText(trial, proposal->trial));
+    }
+    if (flags->history) fmt::print("{}", TrialHistoryText(history));
+    return 0;
   });
 }
 

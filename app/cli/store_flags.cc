@@ -2,30 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "app/cli/options.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
 
 void AddDbFlag(CLI::App& command, std::string& db) {
-  command.add_option("--db", db, "the trial store, e.g. lab.db")
-      ->required()
-      ->type_name("FILE");
+  AddOption(command, "--db", db, "the trial store, e.g. lab.db")
+      .Require()
+      .NameType("FILE");
 }
 
 void AddBodyFlags(CLI::App& command, pipeline::BodyEntry& flags) {
-  command.add_option("--body", flags.kind, "sphere or rectangle")
-      ->type_name("KIND");
-  command
-      .add_option("--diameter-mm", flags.diameter_mm,
-                  "of a sphere; 40 or 40+-0.02 (u; 0.02 mm where not given)")
-      ->type_name("D");
-  command
-      .add_option("--sides-mm", flags.sides_mm,
-                  "of a rectangle; 60x20 or 60+-0.02x20+-0.02")
-      ->type_name("AxB");
+  AddOption(command, "--body", flags.kind, "sphere or rectangle")
+      .NameType("KIND");
+  AddOption(command, "--diameter-mm", flags.diameter_mm,
+            "of a sphere; 40 or 40+-0.02 (u; 0.02 mm where not given)")
+      .NameType("D");
+  AddOption(command, "--sides-mm", flags.sides_mm,
+            "of a rectangle; 60x20 or 60+-0.02x20+-0.02")
+      .NameType("AxB");
 }
 
 core::Trial RequireTrial(const db::Store& store, const std::string& id) {

@@ -1,11 +1,11 @@
 // `touchdown theory`: its commands and flags.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <stdexcept>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/theory_options.h"
 
 namespace touchdown::cli {
@@ -15,70 +15,65 @@ using SharedFlags = std::shared_ptr<TheoryFlags>;
 
 void AddResult(CLI::App* command, const SharedFlags& flags,
                const char* columns) {
-  command->add_flag("--json", flags->result.json, "one JSON document");
-  command->add_option(
-      "--cases", flags->result.cases,
-      std::string("CSV of cases to answer, as CSV: ") + columns);
-  command->add_option("--out", flags->result.out,
-                      "file for the answer (default: standard output)");
+  AddFlag(*command, "--json", flags->result.json, "one JSON document");
+  AddOption(*command, "--cases", flags->result.cases,
+            std::string("CSV of cases to answer, as CSV: ") + columns);
+  AddOption(*command, "--out", flags->result.out,
+            "file for the answer (default: standard output)");
 }
 
 void AddShape(CLI::App* command, CornerFlags& f) {
-  auto* body = command
-                   ->add_option("--body", f.body,
-                                "mass layout: rectangle (kappa 3), hoop (1, "
-                                "the paper's sphere), shell (3/2), "
-                                "solid-sphere (5/2)")
-                   ->check(CLI::IsMember(
-                       {"rectangle", "hoop", "shell", "solid-sphere"}));
-  command->add_option("--kappa", f.kappa, "R^2/k^2 instead of --body")
-      ->excludes(body);
-  command->add_option("--radius-m", f.radius_m,
-                      "R: from the centre of mass to the contact point");
-  command->add_option("--mu", f.mu, "friction coefficient");
-  command
-      ->add_option("--corner", f.corner,
-                   "which corner lands: leading (ahead of the centre; "
-                   "thrown nose-down) or trailing (thrown nose-up; the "
-                   "paper's sign)")
-      ->check(CLI::IsMember({"leading", "trailing"}));
-  command->add_option("--gravity-mps2", f.gravity_mps2, "gravity")
-      ->capture_default_str();
+  const Option body =
+      AddOption(*command, "--body", f.body,
+                "mass layout: rectangle (kappa 3), hoop (1, the paper's "
+                "sphere), shell (3/2), solid-sphere (5/2)")
+          .OneOf({"rectangle", "hoop", "shell", "solid-sphere"});
+  AddOption(*command, "--kappa", f.kappa, "R^2/k^2 instead of --body")
+      .Exclude(body);
+  AddOption(*command, "--radius-m", f.radius_m,
+            "R: from the centre of mass to the contact point");
+  AddOption(*command, "--mu", f.mu, "friction coefficient");
+  AddOption(*command, "--corner", f.corner,
+            "which corner lands: leading (ahead of the centre; thrown "
+            "nose-down) or trailing (thrown nose-up; the paper's sign)")
+      .OneOf({"leading", "trailing"});
+  AddOption(*command, "--gravity-mps2", f.gravity_mps2, "gravity")
+      .ShowDefault();
 }
 
 void AddAngle(CLI::App* command, CornerFlags& f) {
-  auto* degrees = command->add_option(
-      "--alpha-deg", f.alpha_deg,
+  const Option degrees = AddOption(
+      *command, "--alpha-deg", f.alpha_deg,
       "radius angle: from the ground to the line centre - contact point");
-  command->add_option("--alpha-rad", f.alpha_rad, "the same in radians")
-      ->excludes(degrees);
+  AddOption(*command, "--alpha-rad", f.alpha_rad, "the same in radians")
+      .Exclude(degrees);
 }
 
 void AddSpin(CLI::App* command, CornerFlags& f, const char* what) {
-  command->add_option("--omega-rad-per-s", f.omega_rad_per_s, what);
+  AddOption(*command, "--omega-rad-per-s", f.omega_rad_per_s, what);
 }
 
 void AddRegimeCommand(CLI::App& theory, const SharedFlags& flags,
                       Action& action) {
-  auto* command = theory.add_subcommand(
-      "regime", "what a corner on the ground can do: every solution");
+  auto* command = AddCommand(
+      theory, "regime", "what a corner on the ground can do: every solution");
   CornerFlags& f = flags->corner;
   AddAngle(command, f);
   AddShape(command, f);
   AddSpin(command, f, "spin at the contact, after the impact (default 0)");
-  command->add_option("--mass-kg", f.mass_kg, "mass (default 1)");
-  command->add_flag("--at-rest", f.at_rest,
-                    "the contact point does not slide (instead of --corner)");
+  AddOption(*command, "--mass-kg", f.mass_kg, "mass (default 1)");
+  AddFlag(*command, "--at-rest", f.at_rest,
+          "the contact point does not slide (instead of --corner)");
   AddResult(command, flags,
             "id, alpha_rad, mu, slip_sign, m, R, omega, g, kappa_in or k_in");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunRegime(*flags); }; });
+  SetAction(*command, action, [flags] { return RunRegime(*flags); });
 }
 
 void AddImpactCommand(CLI::App& theory, const SharedFlags& flags,
                       Action& action) {
-  auto* command = theory.add_subcommand(
-      "impact", "velocities and spin after one corner has hit the ground");
+  auto* command =
+      AddCommand(theory, "impact",
+                 "velocities and spin after one corner has hit the ground");
   CornerFlags& f = flags->corner;
   AddAngle(command, f);
   AddShape(command, f);
@@ -86,125 +81,123 @@ void AddImpactCommand(CLI::App& theory, const SharedFlags& flags,
           "spin before, counter-clockwise seen with the motion to the right "
           "(default 0)");
   ImpactFlags& impact = flags->impact;
-  command->add_option("--restitution", impact.restitution,
-                      "ratio of impulses e, 0 to 1");
-  command->add_option("--speed-mps", impact.speed_mps,
-                      "speed of the centre before, with --approach-deg");
-  command->add_option("--approach-deg", impact.approach_deg,
-                      "approach angle: of the velocity to the ground");
-  command->add_option("--tangential-mps", impact.tangential_mps,
-                      "instead: velocity of the contact point along the "
-                      "ground, in the frame that has it ahead of the centre");
-  command->add_option("--normal-mps", impact.normal_mps,
-                      "and away from the ground (negative: approaching; 0: "
-                      "impact without collision)");
+  AddOption(*command, "--restitution", impact.restitution,
+            "ratio of impulses e, 0 to 1");
+  AddOption(*command, "--speed-mps", impact.speed_mps,
+            "speed of the centre before, with --approach-deg");
+  AddOption(*command, "--approach-deg", impact.approach_deg,
+            "approach angle: of the velocity to the ground");
+  AddOption(*command, "--tangential-mps", impact.tangential_mps,
+            "instead: velocity of the contact point along the ground, in the "
+            "frame that has it ahead of the centre");
+  AddOption(*command, "--normal-mps", impact.normal_mps,
+            "and away from the ground (negative: approaching; 0: impact "
+            "without collision)");
   AddResult(command, flags, "id, alpha, mu, kappa, R, vT0, vN0, alphadot0, e");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunImpact(*flags); }; });
+  SetAction(*command, action, [flags] { return RunImpact(*flags); });
 }
 
 void AddFlatCommand(CLI::App& theory, const SharedFlags& flags,
                     Action& action) {
-  auto* command = theory.add_subcommand(
-      "flat", "a rectangle that slides on its side: forces on both edges");
-  command->add_option("--length-m", flags->flat.length_m, "side on the ground");
-  command->add_option("--height-m", flags->flat.height_m, "the other side");
-  command->add_option("--mu", flags->corner.mu, "friction coefficient");
-  command->add_option("--mass-kg", flags->corner.mass_kg, "mass (default 1)");
-  command->add_option("--gravity-mps2", flags->corner.gravity_mps2, "gravity")
-      ->capture_default_str();
+  auto* command =
+      AddCommand(theory, "flat",
+                 "a rectangle that slides on its side: forces on both edges");
+  AddOption(*command, "--length-m", flags->flat.length_m, "side on the ground");
+  AddOption(*command, "--height-m", flags->flat.height_m, "the other side");
+  AddOption(*command, "--mu", flags->corner.mu, "friction coefficient");
+  AddOption(*command, "--mass-kg", flags->corner.mass_kg, "mass (default 1)");
+  AddOption(*command, "--gravity-mps2", flags->corner.gravity_mps2, "gravity")
+      .ShowDefault();
   AddResult(command, flags, "id, a, b, mu, slip_sign, m, g");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunFlat(*flags); }; });
+  SetAction(*command, action, [flags] { return RunFlat(*flags); });
 }
 
 void AddBoundaryCommand(CLI::App& theory, const SharedFlags& flags,
                         Action& action) {
-  auto* command = theory.add_subcommand(
-      "boundary", "the boundary angle by each model, with its assumptions");
+  auto* command =
+      AddCommand(theory, "boundary",
+                 "the boundary angle by each model, with its assumptions");
   CornerFlags& f = flags->corner;
   TheoryBoundaryFlags& b = flags->boundary;
-  command
-      ->add_option("--model", b.model, "one model (default: all side by side)")
-      ->check(CLI::IsMember({"published", "printed-equations", "corrected-lcp",
-                             "paper-replication", "detectable-bounce"}));
+  AddOption(*command, "--model", b.model,
+            "one model (default: all side by side)")
+      .OneOf({"published", "printed-equations", "corrected-lcp",
+              "paper-replication", "detectable-bounce"});
   AddShape(command, f);
   AddSpin(command, f, "spin at the contact, after the impact (default 0)");
-  command->add_option("--restitution", b.restitution, "e, 0 to 1");
-  command->add_option("--speed-mps", b.speed_mps,
-                      "speed of the centre at touchdown");
-  command->add_option("--bounce-height-m", b.bounce_height_m,
-                      "h_c: rising above it is a bounce");
-  auto* approach = command->add_option(
-      "--approach-deg", b.approach_deg,
+  AddOption(*command, "--restitution", b.restitution, "e, 0 to 1");
+  AddOption(*command, "--speed-mps", b.speed_mps,
+            "speed of the centre at touchdown");
+  AddOption(*command, "--bounce-height-m", b.bounce_height_m,
+            "h_c: rising above it is a bounce");
+  const Option approach = AddOption(
+      *command, "--approach-deg", b.approach_deg,
       "rectangles: the approach angle, held while the radius angle varies");
-  command
-      ->add_option(
-          "--radius-angle-deg", b.radius_angle_deg,
-          "rectangles: the radius angle, held while the approach angle varies")
-      ->excludes(approach);
-  command->add_option("--u-held-angle-deg", b.u_held_angle_deg,
-                      "of the angle that is held");
-  command->add_option("--u-kappa", b.u_kappa, "standard uncertainty of kappa");
-  command->add_option("--u-radius-m", b.u_radius_m, "of the radius");
-  command->add_option("--u-mu", b.u_mu, "of the friction coefficient");
-  command->add_option("--u-omega-rad-per-s", b.u_omega_rad_per_s,
-                      "of the spin");
-  command->add_option("--u-gravity-mps2", b.u_gravity_mps2, "of gravity");
-  command->add_option("--u-restitution", b.u_restitution, "of restitution");
-  command->add_option("--u-speed-mps", b.u_speed_mps, "of the speed");
-  command->add_option("--u-bounce-height-m", b.u_bounce_height_m,
-                      "of the bounce height");
-  command->add_option("--draws", b.draws, "draws of the Monte Carlo")
-      ->capture_default_str();
-  command->add_option("--seed", b.seed, "seed of the Monte Carlo")
-      ->capture_default_str();
+  AddOption(
+      *command, "--radius-angle-deg", b.radius_angle_deg,
+      "rectangles: the radius angle, held while the approach angle varies")
+      .Exclude(approach);
+  AddOption(*command, "--u-held-angle-deg", b.u_held_angle_deg,
+            "of the angle that is held");
+  AddOption(*command, "--u-kappa", b.u_kappa, "standard uncertainty of kappa");
+  AddOption(*command, "--u-radius-m", b.u_radius_m, "of the radius");
+  AddOption(*command, "--u-mu", b.u_mu, "of the friction coefficient");
+  AddOption(*command, "--u-omega-rad-per-s", b.u_omega_rad_per_s,
+            "of the spin");
+  AddOption(*command, "--u-gravity-mps2", b.u_gravity_mps2, "of gravity");
+  AddOption(*command, "--u-restitution", b.u_restitution, "of restitution");
+  AddOption(*command, "--u-speed-mps", b.u_speed_mps, "of the speed");
+  AddOption(*command, "--u-bounce-height-m", b.u_bounce_height_m,
+            "of the bounce height");
+  AddOption(*command, "--draws", b.draws, "draws of the Monte Carlo")
+      .ShowDefault();
+  AddOption(*command, "--seed", b.seed, "seed of the Monte Carlo")
+      .ShowDefault();
   AddResult(command, flags, "id, R, omega, g and perhaps u_omega");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunBoundary(*flags); }; });
+  SetAction(*command, action, [flags] { return RunBoundary(*flags); });
 }
 
 void AddLcpCommand(CLI::App& theory, const SharedFlags& flags, Action& action) {
-  auto* command = theory.add_subcommand(
-      "lcp", "every solution of a small linear complementarity problem");
-  command->add_option("--matrix", flags->lcp.m,
-                      "M row by row, e.g. \"2,1;1,2\"; fractions are allowed");
-  command->add_option("--vector", flags->lcp.q, "q, e.g. \"-5,-6\"");
+  auto* command =
+      AddCommand(theory, "lcp",
+                 "every solution of a small linear complementarity problem");
+  AddOption(*command, "--matrix", flags->lcp.m,
+            "M row by row, e.g. \"2,1;1,2\"; fractions are allowed");
+  AddOption(*command, "--vector", flags->lcp.q, "q, e.g. \"-5,-6\"");
   AddResult(command, flags, "name or id, M, q");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunLcp(*flags); }; });
+  SetAction(*command, action, [flags] { return RunLcp(*flags); });
 }
 
 void AddMapCommand(CLI::App& theory, const SharedFlags& flags, Action& action) {
-  auto* command = theory.add_subcommand(
-      "map", "regimes over angle and friction or spin: CSV and drawings");
+  auto* command =
+      AddCommand(theory, "map",
+                 "regimes over angle and friction or spin: CSV and drawings");
   CornerFlags& f = flags->corner;
   MapFlags& map = flags->map;
-  command->add_option("--over", map.over, "second axis: mu or omega")
-      ->check(CLI::IsMember({"mu", "omega"}))
-      ->capture_default_str();
-  command->add_option("--max", map.max,
-                      "its end (default 6 for mu; 3 sqrt(g/R) for omega)");
-  command->add_option("--alpha-points", map.alpha_points, "0 to 90 deg")
-      ->capture_default_str();
-  command->add_option("--axis-points", map.axis_points, "on the second axis")
-      ->capture_default_str();
+  AddOption(*command, "--over", map.over, "second axis: mu or omega")
+      .OneOf({"mu", "omega"})
+      .ShowDefault();
+  AddOption(*command, "--max", map.max,
+            "its end (default 6 for mu; 3 sqrt(g/R) for omega)");
+  AddOption(*command, "--alpha-points", map.alpha_points, "0 to 90 deg")
+      .ShowDefault();
+  AddOption(*command, "--axis-points", map.axis_points, "on the second axis")
+      .ShowDefault();
   AddShape(command, f);
   AddSpin(command, f, "spin, for --over mu (default 0)");
-  command->add_flag("--no-plots", map.no_plots, "only the CSV");
-  command->add_flag("--json", flags->result.json, "one JSON document");
-  command->add_option("--out", flags->result.out,
-                      "folder for regime_map.csv and the drawings");
-  command->callback(
-      [flags, &action] { action = [flags] { return RunMap(*flags); }; });
+  AddFlag(*command, "--no-plots", map.no_plots, "only the CSV");
+  AddFlag(*command, "--json", flags->result.json, "one JSON document");
+  AddOption(*command, "--out", flags->result.out,
+            "folder for regime_map.csv and the drawings");
+  SetAction(*command, action, [flags] { return RunMap(*flags); });
 }
 
 }  // namespace
 
 void AddTheory(CLI::App& app, Action& action) {
-  auto* theory = app.add_subcommand(
-      "theory", "contact theory: regimes, boundary angles, impacts");
-  theory->require_subcommand(1);
+  auto* theory = AddCommand(
+      app, "theory", "contact theory: regimes, boundary angles, impacts");
+  RequireSubcommand(*theory);
   const auto flags = std::make_shared<TheoryFlags>();
   AddRegimeCommand(*theory, flags, action);
   AddBoundaryCommand(*theory, flags, action);

@@ -1,7 +1,6 @@
 // touchdown use lab.db "asphalt, block": what the next commands are about.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/defaults.h"
+#include "app/cli/options.h"
 #include "touchdown/core/nearest.h"
 #include "touchdown/db/store.h"
 
@@ -44,17 +44,15 @@ int RunUse(const Defaults& defaults) {
 
 void AddUse(CLI::App& app, Action& action) {
   auto defaults = std::make_shared<Defaults>();
-  CLI::App* command = app.add_subcommand(
-      "use",
+  CLI::App* command = AddCommand(
+      app, "use",
       "Write touchdown.toml: the store and campaign that commands in this "
       "folder mean where they name no --db. TOUCHDOWN_DB and "
       "TOUCHDOWN_CAMPAIGN go before it; `analyze` logs only where told to");
-  command->add_option("store", defaults->store, "the trial store, e.g. lab.db")
-      ->required();
-  command->add_option("campaign", defaults->campaign, "one of its campaigns");
-  command->callback([defaults, &action] {
-    action = [defaults] { return RunUse(*defaults); };
-  });
+  AddOption(*command, "store", defaults->store, "the trial store, e.g. lab.db")
+      .Require();
+  AddOption(*command, "campaign", defaults->campaign, "one of its campaigns");
+  SetAction(*command, action, [defaults] { return RunUse(*defaults); });
 }
 
 }  // namespace touchdown::cli
