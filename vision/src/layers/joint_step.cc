@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "numbers/lanes.h"
 #include "touchdown/core/parallel.h"
@@ -17,12 +18,42 @@ constexpr std::size_t kParts = 4;
 using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 
-// All unknowns.
+// The pixels that some sample shows, by row, and which of them each sample
+// does. The body passes over a small share of all (a fifteenth where it crosses
+// the picture once): no equation joins the others, and each is solved by
+// itself.
+struct ShownPixels {
+  std::vector<std::size_t> pixel;
+  std::vector<std::vector<std::uint32_t>> of_samples;  // by frame
+
+  ShownPixels(const std::vector<FrameSamples>& frames, std::size_t pixels) {
+    std::vector<std::uint32_t> place(pixels);
+    for (const FrameSamples& samples : frames) {
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        place[static_cast<std::size_t>(samples.pixel[i])] = 1;
+      }
+    }
+    for (std::size_t x = 0; x < pixels; ++x) {
+      if (place[x] == 0) continue;
+      place[x] = static_cast<std::uint32_t>(pixel.size());
+      pixel.push_back(x);
+    }
+    for (const FrameSamples& samples : frames) {
+      std::vector<std::uint32_t>& shown = of_samples.emplace_back();
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        shown.push_back(place[static_cast<std::size_t>(samples.pixel[i])]);
+      }
+    }
+  }
+  std::size_t size() const { return pixel.size(); }
+};
+
+// All unknowns but the still picture where no sample shows it.
 struct Unknowns {
   std::vector<double> poses;  // x, y, angle of each frame
   std::array<double, kShared> shared{};
   std::vector<float> picture;
-  std::vector<float> still;
+  std::vector<float> still;   // of each shown pixel
   std::vector<float> change;  // of each sample: a part's own
 
   Unknowns(std::size_t frames, std::size_t cells, std::size_t pixels)
@@ -102,19 +133,24 @@ void AddColumn(const std::vector<float>& column, double factor,
   for (std::size_t i = 0; i < n; ++i) to[i] += by * column[i];
 }
 
+// B of a pixel that nothing tells keeps its level: as if a hundredth of a frame
+// had shown it.
+constexpr float kLeastStill = 0.01F;
+
 class NormalEquations {
  public:
   NormalEquations(const Layers& layers, const std::vector<FrameSamples>& frames,
-                  const StillEvidence& evidence, const FreePart& free,
-                  const JointStepOptions& options)
+                  const ShownPixels& shown, const StillEvidence& evidence,
+                  const FreePart& free, const JointStepOptions& options)
       : layers_(layers),
         frames_(frames),
+        shown_(shown),
         evidence_(evidence),
         free_(free),
         options_(options),
         cells_(CountCells(layers)),
         columns_(layers.flat ? kShared : std::size_t{kQuadratic}),
-        parts_(kParts, Unknowns(0, cells_, layers.still.size())),
+        parts_(kParts, Unknowns(0, cells_, shown.size())),
         outside_(cells_) {
     const double variance = layers.noise_dn * layers.noise_dn;
     const double texture = std::max(layers.texture_dn, 1e-2 * layers.noise_dn);
@@ -132,9 +168,6 @@ class NormalEquations {
 
  private:
   static constexpr double kHeld = 1e15;
-  // B of a pixel that nothing tells keeps its level: as if a hundredth of a
-  // frame had shown it.
-  static constexpr float kLeastStill = 0.01F;
 
   // work(samples, frame, part) over all frames, part by part.
   template <class Work>
@@ -143,6 +176,7 @@ class NormalEquations {
 
   const Layers& layers_;
   const std::vector<FrameSamples>& frames_;
+  const ShownPixels& shown_;
   const StillEvidence& evidence_;
   const FreePart& free_;
   const JointStepOptions& options_;
@@ -200,8 +234,8 @@ void NormalEquations::Fill(Unknowns& right) {
   pose_inverse_.assign(n, Eigen::Matrix3d::Identity());
   std::vector<SharedMatrix> shared(kParts, SharedMatrix::Zero());
   std::vector<std::vector<float>> picture(kParts, std::vector<float>(cells_));
-  std::vector<std::vector<float>> still(
-      kParts, std::vector<float>(layers_.still.size()));
+  std::vector<std::vector<float>> still(kParts,
+                                        std::vector<float>(shown_.size()));
   AccumulateParts([&](const FrameSamples& samples, std::size_t t,
                       Unknowns& sums) {
     const auto part = static_cast<std::size_t>(&sums - parts_.data());
@@ -227,7 +261,7 @@ void NormalEquations::Fill(Unknowns& right) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const float w = samples.weight[i];
       const float wr = w * samples.residual[i];
-      const auto pixel = static_cast<std::size_t>(samples.pixel[i]);
+      const std::size_t pixel = shown_.of_samples[t][i];
       sums.still[pixel] += samples.open[i] * wr;
       still[part][pixel] += w * samples.open[i] * samples.open[i];
       for (std::size_t k = 0; k < samples.nodes; ++k) {
@@ -274,12 +308,12 @@ void NormalEquations::Fill(Unknowns& right) {
     right.picture[c] -= stiffness_ * outside_[c];
     picture_inverse_[c] = 1.0F / (sum + stiffness_ + 1e-3F);
   }
-  still_inverse_.assign(layers_.still.size(), 0.0F);
-  for (std::size_t x = 0; x < still_inverse_.size(); ++x) {
-    float sum = evidence_.weight[x] + kLeastStill;
-    for (const auto& part : still) sum += part[x];
-    right.still[x] += evidence_.residual[x];
-    still_inverse_[x] = 1.0F / sum;
+  still_inverse_.assign(shown_.size(), 0.0F);
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    float sum = evidence_.weight[shown_.pixel[i]] + kLeastStill;
+    for (const auto& part : still) sum += part[i];
+    right.still[i] += evidence_.residual[shown_.pixel[i]];
+    still_inverse_[i] = 1.0F / sum;
   }
 }
 
@@ -288,11 +322,11 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
                       Unknowns& sums) {
     // Column by column, so that the loops become vector instructions.
     const std::size_t n = samples.size();
+    const std::uint32_t* const shown = shown_.of_samples[t].data();
     std::vector<float>& change = sums.change;
     change.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-      change[i] = samples.open[i] *
-                  in.still[static_cast<std::size_t>(samples.pixel[i])];
+      change[i] = samples.open[i] * in.still[shown[i]];
     }
     for (std::size_t a = 0; a < kPose; ++a) {
       AddColumn(samples.by_pose[a], in.poses[kPose * t + a], change);
@@ -319,8 +353,7 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
     }
     for (std::size_t i = 0; i < n; ++i) {
       change[i] *= samples.weight[i];
-      sums.still[static_cast<std::size_t>(samples.pixel[i])] +=
-          samples.open[i] * change[i];
+      sums.still[shown[i]] += samples.open[i] * change[i];
     }
     for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
       for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
@@ -337,8 +370,9 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
   for (std::size_t c = 0; c < cells_; ++c) {
     out.picture[c] += stiffness_ * outside_[c] + 1e-3F * in.picture[c];
   }
-  for (std::size_t x = 0; x < out.still.size(); ++x) {
-    out.still[x] += (evidence_.weight[x] + kLeastStill) * in.still[x];
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    out.still[i] +=
+        (evidence_.weight[shown_.pixel[i]] + kLeastStill) * in.still[i];
   }
 }
 
@@ -470,11 +504,12 @@ JointStep SolveJointStep(const Layers& layers,
                          const StillEvidence& evidence, const FreePart& free,
                          const JointStepOptions& options) {
   const std::size_t n = frames.size();
-  NormalEquations equations(layers, frames, evidence, free, options);
+  const ShownPixels shown(frames, layers.still.size());
+  NormalEquations equations(layers, frames, shown, evidence, free, options);
   const std::size_t cells = CountCells(layers);
-  Unknowns residual(n, cells, layers.still.size());
+  Unknowns residual(n, cells, shown.size());
   equations.Fill(residual);
-  Unknowns step(n, cells, layers.still.size());
+  Unknowns step(n, cells, shown.size());
   Unknowns scaled = step;
   equations.Precondition(residual, scaled);
   Unknowns direction = scaled;
@@ -501,7 +536,13 @@ JointStep SolveJointStep(const Layers& layers,
   }
   out.shared = step.shared;
   out.picture = std::move(step.picture);
-  out.still = std::move(step.still);
+  out.still.resize(layers.still.size());
+  for (std::size_t x = 0; x < out.still.size(); ++x) {
+    out.still[x] = evidence.residual[x] / (evidence.weight[x] + kLeastStill);
+  }
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    out.still[shown.pixel[i]] = step.still[i];
+  }
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "layers/shape_cover.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,22 +64,32 @@ ShapeCover::ShapeCover(const Shape& shape, double blur)
       half_short_(static_cast<float>(shape.half_short)),
       per_blur_(static_cast<float>(1.0 / blur)),
       bend_(static_cast<float>(
-          shape.disc ? 0.5 * blur / std::max(shape.half_long, blur) : 0.0)) {}
+          shape.disc ? 0.5 * blur / std::max(shape.half_long, blur) : 0.0)) {
+  const float narrow = disc_ ? half_long_ : half_short_;
+  const float rim = (NormalTable::kReach + bend_) / per_blur_;
+  const float inside = std::max(0.0F, narrow - rim);
+  const float outside = disc_ ? half_long_ + rim
+                              : std::hypot(half_long_ + rim, half_short_ + rim);
+  inside_ = inside * inside;
+  outside_ = outside * outside;
+}
 
-CoverAt ShapeCover::At(float x, float y) const {
+CoverAt ShapeCover::CoverOfDisc(float x, float y) const {
   CoverAt at;
-  if (disc_) {
-    const float distance = std::sqrt(x * x + y * y) + 1e-6F;
-    const float z = (half_long_ - distance) * per_blur_ - bend_;
-    float density = 0.0F;
-    table_.Look(z, at.value, density);
-    const float slope = density * per_blur_;
-    at.by_x = -slope * x / distance;
-    at.by_y = -slope * y / distance;
-    at.by_long = slope * (1.0F + bend_ / (half_long_ * per_blur_));
-    at.by_blur = -slope * (z + 2.0F * bend_);
-    return at;
-  }
+  const float distance = std::sqrt(x * x + y * y) + 1e-6F;
+  const float z = (half_long_ - distance) * per_blur_ - bend_;
+  float density = 0.0F;
+  table_.Look(z, at.value, density);
+  const float slope = density * per_blur_;
+  at.by_x = -slope * x / distance;
+  at.by_y = -slope * y / distance;
+  at.by_long = slope * (1.0F + bend_ / (half_long_ * per_blur_));
+  at.by_blur = -slope * (z + 2.0F * bend_);
+  return at;
+}
+
+CoverAt ShapeCover::CoverOfRectangle(float x, float y) const {
+  CoverAt at;
   const Span along = CoverSpan(table_, x, half_long_, per_blur_);
   const Span across = CoverSpan(table_, y, half_short_, per_blur_);
   at.value = along.value * across.value;

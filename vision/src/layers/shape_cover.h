@@ -38,6 +38,7 @@ struct CoverAt {
 // Phi and its density from a table: 1e-6 off at most.
 class NormalTable {
  public:
+  static constexpr float kReach = 5.0F;
   NormalTable();
   // Below -5 and above 5 the ends' values.
   void Look(float z, float& phi, float& density) const {
@@ -59,7 +60,6 @@ class NormalTable {
   }
 
  private:
-  static constexpr float kReach = 5.0F;
   static constexpr float kPerUnit = 200.0F;
   static constexpr std::size_t kCells = 2000;
   std::array<float, kCells + 2> phi_{};
@@ -77,14 +77,27 @@ struct Product {
 class ShapeCover {
  public:
   ShapeCover(const Shape& shape, double blur);
-  CoverAt At(float x, float y) const;
+  CoverAt At(float x, float y) const {
+    // Most pixels are far from the edges, which the table ends at.
+    const float square = x * x + y * y;
+    if (square < inside_) return {.value = 1.0F};
+    if (square > outside_) return {};
+    return disc_ ? CoverOfDisc(x, y) : CoverOfRectangle(x, y);
+  }
   // `cosine`, `sine`: of the body's direction, in which x and y are.
   Product WithEdge(float x, float y, const StillEdge& edge, float cosine,
                    float sine) const;
 
  private:
+  CoverAt CoverOfDisc(float x, float y) const;
+  CoverAt CoverOfRectangle(float x, float y) const;
+
   const NormalTable& table_;
   bool disc_;
+  // Squared distances from the centre, px^2: nearer all is covered, farther
+  // nothing.
+  float inside_ = 0.0F;
+  float outside_ = 0.0F;
   float half_long_;
   float half_short_;
   float per_blur_;
