@@ -116,6 +116,17 @@ vision::ContactOptions MakeContactOptions(
   return out;
 }
 
+namespace {
+
+// For a result that differs from the analysis' own by a number only.
+vision::ContactOptions KeepPath(const Analysis& analysis,
+                                vision::ContactOptions options) {
+  options.path = analysis.contacts.path;
+  return options;
+}
+
+}  // namespace
+
 void AddLens(Analysis& analysis, const ClipCalibration& camera,
              const vision::ContactOptions& contact_options) {
   if (!camera.lens || !analysis.plane ||
@@ -126,6 +137,7 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
   const calib::GroundLine& ideal = analysis.plane->ground;
   const auto seen =
       SeenPoints(ideal, *camera.lens, camera.ideal_ground ? 2 : 33);
+  const vision::ContactOptions same_path = KeepPath(analysis, contact_options);
   AddLensUncertainty(
       analysis.contacts, *camera.lens, analysis.calibration->lens->covariance,
       [&](const calib::Lens& lens) {
@@ -138,7 +150,7 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
                 WithStatedSize(vision::Undistorted(*analysis.track, lens),
                                analysis.options),
                 *ground, yaw),
-            contact_options);
+            same_path);
       });
 }
 
@@ -158,7 +170,7 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
     moved.push_back({FindPlaneContacts(vision::SeenFromGround(
                                            seen, analysis.plane->ground,
                                            MakePlaneYaw(yaw_rad, camera.lens)),
-                                       contact_options),
+                                       KeepPath(analysis, contact_options)),
                      kHalf});
   }
   AddShared(analysis.contacts, "yaw", moved);
@@ -188,8 +200,9 @@ void DescribeBudget(Analysis& analysis,
   if (analysis.plane && angle && !analysis.contacts.first.contact.from_start) {
     // All speeds follow the rate; the angle feels it through gravity alone.
     constexpr double kPerCent = 0.01;
-    const auto faster = FindPlaneContacts(
-        AtRate(*analysis.plane, 1.0 + kPerCent), contact_options);
+    const auto faster =
+        FindPlaneContacts(AtRate(*analysis.plane, 1.0 + kPerCent),
+                          KeepPath(analysis, contact_options));
     const auto& other = faster.first.contact.approach_angle_rad;
     if (other) {
       reason += fmt::format(

@@ -325,6 +325,24 @@ double HeightAboveGround(const PlaneTrack& track, const Stretch& stretch) {
   return std::abs(gap) > near ? gap : 0.0;
 }
 
+// The stretches of a path of the same frames.
+std::vector<Stretch> CutAs(const std::vector<PathStretch>& path,
+                           const PlaneTrack& track) {
+  std::vector<Stretch> stretches;
+  std::size_t begin = 0;
+  for (const PathStretch& given : path) {
+    std::size_t end = begin;
+    while (end < track.samples.size() &&
+           track.samples[end].frame <= given.last_frame) {
+      ++end;
+    }
+    if (end == begin) continue;
+    stretches.push_back({{begin, end}, given.kind, given.chi2, given.degrees});
+    begin = end;
+  }
+  return stretches;
+}
+
 }  // namespace
 
 ContactResult FindContacts(const PlaneTrack& given,
@@ -353,8 +371,10 @@ ContactResult FindContacts(const PlaneTrack& given,
   const FlightOptions flight = MakeFlightOptions(options);
   const SegmentationOptions segmentation =
       MakeSegmentationOptions(track, options, flight);
-  std::vector<Stretch> stretches = SegmentMotion(track, segmentation);
-  if (WidenToCorrelation(stretches, flight, track)) {
+  const bool cut = options.path.empty();
+  std::vector<Stretch> stretches =
+      cut ? SegmentMotion(track, segmentation) : CutAs(options.path, track);
+  if (WidenToCorrelation(stretches, flight, track) && cut) {
     stretches = SegmentMotion(track, segmentation);
   }
   RecordContext context{track,     options,     flight,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "numbers/moments.h"
@@ -57,6 +58,10 @@ enum State : std::size_t {
   kStates
 };
 
+// What a flight, or a stretch on the ground, may follow.
+constexpr std::initializer_list<State> kMayLand = {kAtStart, kBeforeFlights,
+                                                   kTouched};
+
 // The cheapest way to one boundary in one state, and its last stretch.
 struct PathStep {
   double cost = kInfinity;
@@ -94,10 +99,14 @@ class Segmenter {
   struct Fits;
   std::vector<Stretch> BestPath();
   double ComputeCost(const Stretch& stretch, bool touches_at_end) const;
+  double ComputeCost(const Fits& fits, const MotionFit& motion) const;
   void GrowStretches(std::size_t begin);
   void OfferFlight(const Fits& fits);
   void OfferSupport(const Fits& fits);
   void OfferAnyMotion(const Fits& fits);
+  bool MayWin(const Fits& fits, const MotionFit& motion,
+              std::initializer_list<State> from,
+              std::initializer_list<State> to) const;
   void Offer(const Fits& fits, const MotionFit& motion, State from, State to,
              double ends);
   double FlightGap(const Fits& fits, std::size_t at) const;
@@ -268,6 +277,29 @@ double Segmenter::EndCost(const Fits& fits) const {
   return last + OffGround(FlightGap(fits, end), end, fits.frames, most);
 }
 
+// Cost of a stretch without its ends.
+double Segmenter::ComputeCost(const Fits& fits, const MotionFit& motion) const {
+  return 0.5 * motion.rss + per_parameter_ * motion.parameters +
+         (fits.begin > 0 ? per_cut_ : 0.0);
+}
+
+// Whether the stretch could be the best way from one of `from` to one of `to`
+// if its ends cost nothing: if not, what they cost need not be computed.
+bool Segmenter::MayWin(const Fits& fits, const MotionFit& motion,
+                       std::initializer_list<State> from,
+                       std::initializer_list<State> to) const {
+  double before = kInfinity;
+  for (const State state : from) {
+    before = std::min(before, best_[fits.begin][state].cost);
+  }
+  if (!(before < kInfinity)) return false;
+  const double cost = before + ComputeCost(fits, motion);
+  for (const State state : to) {
+    if (cost < best_[fits.end()][state].cost) return true;
+  }
+  return false;
+}
+
 // Takes the frames of `fits` as one stretch that leads from state `from` to
 // state `to`, if that is cheaper than what leads there already. `ends`: cost of
 // its start and its end.
@@ -276,8 +308,7 @@ void Segmenter::Offer(const Fits& fits, const MotionFit& motion, State from,
   const PathStep& before = best_[fits.begin][from];
   if (!(before.cost < kInfinity)) return;
   const auto [kind, parameters, rss] = motion;
-  const double cost = before.cost + 0.5 * rss + per_parameter_ * parameters +
-                      (fits.begin > 0 ? per_cut_ : 0.0) + ends;
+  const double cost = before.cost + ComputeCost(fits, motion) + ends;
   PathStep& best = best_[fits.end()][to];
   if (!(cost < best.cost)) return;
   const int values = static_cast<int>(fits.frames) * per_frame_;
@@ -302,8 +333,9 @@ void Segmenter::OfferFlight(const Fits& fits) {
   const int free = 2 * per_frame_ + (options_.gravity_px_per_s2 ? 0 : 1);
   const MotionFit flight =
       fits.As(StretchKind::kFlight, std::min(values, free), *this);
+  if (!MayWin(fits, flight, kMayLand, {kTouched, kInAir})) return;
   const double ending = tail ? 0.0 : EndCost(fits);
-  for (const State from : {kAtStart, kBeforeFlights, kTouched}) {
+  for (const State from : kMayLand) {
     double starting = from == kAtStart ? 0.0 : options_.rebound_cost;
     if (from == kTouched && !tail) starting += StartCost(fits);
     if (MayTouch(fits.end())) {
@@ -322,16 +354,17 @@ void Segmenter::OfferSupport(const Fits& fits) {
   const bool last = fits.begin > 0 && fits.end() == samples_.size();
   if ((fits.frames < kMinSupportedFrames && !last) || !MayTouch(fits.begin))
     return;
-  const double off =
-      std::min(options_.off_line_cost,
-               0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
-                      RssOfLine(fits.gaps, 0.0, slope_precision_)));
   // Along the ground it may accelerate (three numbers), and so may its
   // attitude; the level of the gap is one more.
   const int along = static_cast<int>(std::min<std::size_t>(fits.frames, 3));
   const MotionFit down = fits.As(StretchKind::kSupported,
                                  turns_ ? 1 + 2 * along : 1 + along, *this);
-  for (const State from : {kAtStart, kBeforeFlights, kTouched}) {
+  if (!MayWin(fits, down, kMayLand, {kTouched})) return;
+  const double off =
+      std::min(options_.off_line_cost,
+               0.5 * (RssOfLine(fits.gaps, level_precision_, slope_precision_) -
+                      RssOfLine(fits.gaps, 0.0, slope_precision_)));
+  for (const State from : kMayLand) {
     Offer(fits, down, from, kTouched, off);
   }
 }

@@ -43,6 +43,12 @@ struct ContactOptions {
   // the body, whatever else looks like a blow before or beside it. Its instant
   // is still where the flight meets the ground.
   std::optional<std::int64_t> contact_frame;
+
+  // How another result cut the path of the same frames (ContactResult::path);
+  // empty: it is cut here. What other numbers (a lens, a yaw, a rate) would
+  // change of an answer is a difference of one reading of the clip: where the
+  // path was cut anew it could be that of two contacts.
+  std::vector<PathStretch> path;
 };
 
 // How one contact was measured; for drawings and tests.
