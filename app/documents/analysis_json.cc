@@ -11,6 +11,7 @@
 #include "app/measure/analyze.h"
 #include "app/measure/judge.h"
 #include "app/text/json.h"
+#include "app/text/number_row.h"
 #include "app/text/version.h"
 #include "touchdown/core/units.h"
 
@@ -280,13 +281,18 @@ Json PathField(const Analysis& analysis) {
       1.0 / PxPerMetre(plane, *analysis.scale).value / core::kMillimetre;
   Json rows = Json::array();
   for (const vision::PlaneSample& s : plane.samples) {
-    const std::string face =
-        plane.kind == core::BodyKind::kRectangle
-            ? fmt::format("{:.4f}", s.face_rad / core::kDegree)
-            : "null";
-    rows.push_back(fmt::format("{} {} {:.4f} {:.4f} {:.4f} {}", s.frame,
-                               s.time_s, s.along_px * mm, s.height_px * mm,
-                               s.gap_px * mm, face));
+    constexpr int kDecimals = 4;  // a tenth of a micrometre, 2 microradian
+    report::NumberRow row;
+    row.AddWhole(s.frame).AddShortest(s.time_s);
+    for (const double px : {s.along_px, s.height_px, s.gap_px}) {
+      row.AddFixed(px * mm, kDecimals);
+    }
+    if (plane.kind == core::BodyKind::kRectangle) {
+      row.AddFixed(s.face_rad / core::kDegree, kDecimals);
+    } else {
+      row.AddWord("null");
+    }
+    rows.push_back(row.text());
   }
   return {{"columns", "frame time_s x_mm y_mm gap_mm face_angle_deg"},
           {"rows", std::move(rows)}};

@@ -8,6 +8,7 @@
 #include "app/documents/analysis_json.h"
 #include "app/measure/judge.h"
 #include "app/text/json.h"
+#include "app/text/number_row.h"
 #include "app/text/version.h"
 #include "app/text/whole_number.h"
 #include "touchdown/core/errors.h"
@@ -178,11 +179,15 @@ Json TrackJson(const vision::Track& track) {
                {"columns", kColumns}};
   Json rows = Json::array();
   for (const vision::Pose& p : track.poses) {
-    rows.push_back(fmt::format(
-        "{} {} {:.5f} {:.5f} {:.4g} {:.4g} {:.4g} {:.7g} {:.4g} {:.6g} {:.4g}",
-        p.frame, p.time_s, p.centre.x_px, p.centre.y_px, p.u_x_px, p.u_y_px,
-        p.correlation_xy, p.angle_rad, p.u_angle_rad, p.relative_size,
-        p.misfit));
+    report::NumberRow row;
+    row.AddWhole(p.frame).AddShortest(p.time_s);
+    row.AddFixed(p.centre.x_px, 5).AddFixed(p.centre.y_px, 5);
+    row.AddGeneral(p.u_x_px, 4)
+        .AddGeneral(p.u_y_px, 4)
+        .AddGeneral(p.correlation_xy, 4);
+    row.AddGeneral(p.angle_rad, 7).AddGeneral(p.u_angle_rad, 4);
+    row.AddGeneral(p.relative_size, 6).AddGeneral(p.misfit, 4);
+    rows.push_back(row.text());
   }
   json["rows"] = std::move(rows);
   return json;
