@@ -78,13 +78,19 @@ core::PixelPoint ReadPoint(const Json& json) {
   return {json.at(0), json.at(1)};
 }
 
-// `name` is what Name() gives for one of `values`.
+// `name` is what Name() gives for one of `values`. Throws std::invalid_argument
+// where it is another word: a fact of unknown source is none.
 template <class T, std::size_t N>
 T Named(const std::string& name, const T (&values)[N]) {
   for (const T value : values) {
     if (Name(value) == name) return value;
   }
-  return values[0];
+  std::string known;
+  for (const T value : values) {
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", Name(value));
+  }
+  throw std::invalid_argument(
+      fmt::format("'{}' is unknown, must be one of {}", name, known));
 }
 
 calib::GroundLine ReadGroundLine(const Json& json) {
@@ -169,14 +175,21 @@ Json TrackJson(const vision::Track& track) {
                {"whole_px", body.whole_px},
                {"blur_px", body.blur_px},
                {"contrast_dn", body.contrast_dn},
+               {"shutter_fraction", body.shutter_fraction},
                {"u_common_px", body.u_common_px},
                {"u_common_angle_rad", body.u_common_angle_rad},
                {"frames", {track.first_frame, track.last_frame}},
                {"frame_interval_s", track.frame_interval_s},
                {"known_background", track.known_background},
+               {"step", track.step},
+               {"near_ground_modelled", track.near_ground_modelled},
+               {"patterned", track.patterned},
+               {"layered", track.layered},
+               {"outlined", track.outlined},
                {"is_predicted", track.is_predicted},
                {"several_bodies", track.several_bodies},
                {"columns", kColumns}};
+  Put(json, "gamma", body.gamma);
   Json rows = Json::array();
   for (const vision::Pose& p : track.poses) {
     report::NumberRow row;
@@ -205,6 +218,13 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   // Earlier documents have none.
   track.body.u_common_px = json.value("u_common_px", 0.0);
   track.body.u_common_angle_rad = json.value("u_common_angle_rad", 0.0);
+  track.body.shutter_fraction = json.value("shutter_fraction", 0.0);
+  track.body.gamma = Optional<double>(json, "gamma");
+  if (json.contains("step")) track.step = WholeNumber(json["step"], "step");
+  track.near_ground_modelled = json.value("near_ground_modelled", false);
+  track.patterned = json.value("patterned", false);
+  track.layered = json.value("layered", false);
+  track.outlined = json.value("outlined", true);
   track.first_frame = WholeNumber(json.at("frames").at(0), "frames");
   track.last_frame = WholeNumber(json.at("frames").at(1), "frames");
   track.frame_interval_s = json.at("frame_interval_s");
@@ -224,8 +244,7 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   return track;
 }
 
-// --- the rest of an analysis, from the document's own fields
-// ------------------
+// --- the rest of an analysis, from the document's own fields -----------------
 
 vision::ClipInfo ReadClipInfo(const Json& json) {
   using enum vision::FpsSource;

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <tuple>
 
 #include "app/documents/analysis_json.h"
 #include "app/documents/log_analysis.h"
@@ -250,6 +252,134 @@ TEST(Replay, FramesAreWholeNumbers) {
     EXPECT_THAT(replayed.error().reason,
                 ::testing::HasSubstr("frames is " + wrong.dump() +
                                      ", must be a whole number"));
+  }
+}
+
+// The fields of a struct, in the order of its declaration: where one is added,
+// these no longer compile, and the document has to learn it.
+auto ListFields(const vision::Pose& pose) {
+  const auto& [frame, time, centre, angle, u_x, u_y, correlation, u_angle, size,
+               misfit] = pose;
+  return std::make_tuple(frame, time, centre, angle, u_x, u_y, correlation,
+                         u_angle, size, misfit);
+}
+
+auto ListFields(const vision::BodyImage& body) {
+  const auto& [kind, radius, half_long, half_short, whole, blur, shutter,
+               u_common, u_common_angle, gamma, contrast] = body;
+  return std::make_tuple(kind, radius, half_long, half_short, whole, blur,
+                         shutter, u_common, u_common_angle, gamma, contrast);
+}
+
+// All but its warnings, which stand among those of the analysis.
+auto ListFields(const vision::Track& track) {
+  const auto& [body, poses, first, last, interval, background, step, modelled,
+               patterned, layered, outlined, predicted, several, warnings] =
+      track;
+  return std::make_tuple(ListFields(body), poses.size(), first, last, interval,
+                         background, step, modelled, patterned, layered,
+                         outlined, predicted, several);
+}
+
+TEST(Replay, KeepsEveryFieldOfTheTrack) {
+  Shot shot(core::BodyKind::kRectangle);
+  vision::Track& track = *shot.analysis.track;
+  // No field has the value that it begins with.
+  track.body.radius_px = {1.5, 0.25, core::Interval{1.0, 2.0}};
+  track.body.half_long_px = {20.5, 0.125, std::nullopt};
+  track.body.half_short_px = {8.5, 0.125, std::nullopt};
+  track.body.whole_px = 44.5;
+  track.body.blur_px = 0.75;
+  track.body.shutter_fraction = 0.5;
+  track.body.u_common_px = 0.0625;
+  track.body.u_common_angle_rad = 0.03125;
+  track.body.gamma = 2.25;
+  track.body.contrast_dn = 100.5;
+  track.first_frame = 2;
+  track.last_frame = 90;
+  track.frame_interval_s = 0.00025;
+  track.known_background = false;
+  track.step = 4;
+  track.near_ground_modelled = true;
+  track.patterned = true;
+  track.layered = true;
+  track.outlined = false;
+  track.is_predicted = true;
+  track.poses = {
+      {7, 0.0035, {12.5, 30.25}, 0.5, 0.25, 0.125, 0.75, 0.0625, 1.25, 1.5}};
+  shot.analysis.ground.reset();  // else it would be judged again
+  const auto again = Replay(ToTrial(shot.analysis));
+  ASSERT_TRUE(again) << again.error().reason;
+  EXPECT_EQ(ListFields(*again->track), ListFields(track));
+  ASSERT_EQ(again->track->poses.size(), 1U);
+  EXPECT_EQ(ListFields(again->track->poses[0]), ListFields(track.poses[0]));
+
+  // With several bodies there is nothing to replay.
+  track.several_bodies = true;
+  EXPECT_FALSE(Replay(ToTrial(shot.analysis)));
+}
+
+// All but what decides no answer: progress, threads, limits, digest, today.
+TEST(Replay, KeepsTheOptionsThatDecideTheAnswer) {
+  Shot shot(core::BodyKind::kRectangle);
+  AnalyzeOptions& told = shot.analysis.options;
+  told.fps = 2000.5;
+  told.gamma = 2.25;
+  told.scale_px_per_m = core::Estimate{1000.5, 0.5, std::nullopt};
+  told.diameter_m = core::Estimate{0.5, 0.25, std::nullopt};
+  told.ground = calib::MakeGroundLine({10.0, 97.5}, {230.0, 98.5}, 0.5);
+  told.contact_frame = 5;
+  told.first_frame = 2;
+  told.last_frame = 90;
+  told.region = {1, 2, 30, 40};
+  told.angle_kind = core::AngleKind::kFace;
+  told.bounce_height_m = 0.125;
+  told.stop_early = true;
+  told.crop = calib::SensorCorner{16, 32};
+  shot.analysis.ground.reset();
+  const auto again = Replay(ToTrial(shot.analysis));
+  ASSERT_TRUE(again) << again.error().reason;
+  const AnalyzeOptions& kept = again->options;
+  EXPECT_EQ(kept.fps, told.fps);
+  EXPECT_EQ(kept.gamma, told.gamma);
+  EXPECT_EQ(kept.scale_px_per_m, told.scale_px_per_m);
+  EXPECT_EQ(kept.body_kind, told.body_kind);
+  EXPECT_EQ(kept.diameter_m, told.diameter_m);
+  EXPECT_EQ(kept.long_m, told.long_m);
+  EXPECT_EQ(kept.short_m, told.short_m);
+  ASSERT_TRUE(kept.ground);
+  EXPECT_EQ(kept.ground->p1, told.ground->p1);
+  EXPECT_EQ(kept.ground->p2, told.ground->p2);
+  EXPECT_EQ(kept.ground->reference, told.ground->reference);
+  EXPECT_EQ(kept.ground->u_offset_px, told.ground->u_offset_px);
+  EXPECT_EQ(kept.ground->u_angle_rad, told.ground->u_angle_rad);
+  EXPECT_EQ(kept.ground->source, told.ground->source);
+  EXPECT_EQ(kept.contact_frame, told.contact_frame);
+  EXPECT_EQ(kept.first_frame, told.first_frame);
+  EXPECT_EQ(kept.last_frame, told.last_frame);
+  EXPECT_EQ(kept.region, told.region);
+  EXPECT_EQ(kept.angle_kind, told.angle_kind);
+  EXPECT_EQ(kept.bounce_height_m, told.bounce_height_m);
+  EXPECT_EQ(kept.stop_early, told.stop_early);
+  ASSERT_TRUE(kept.crop);
+  EXPECT_EQ(kept.crop->x_px, told.crop->x_px);
+  EXPECT_EQ(kept.crop->y_px, told.crop->y_px);
+}
+
+TEST(Replay, AnUnknownWordIsAnErrorAndNotTheFirstOfAList) {
+  const Shot shot;
+  for (const char* pointer : {"/replay/ground/source", "/clip/time_base/source",
+                              "/clip/channel", "/scale/source"}) {
+    core::Trial trial = shot.trial;
+    auto document = nlohmann::ordered_json::parse(trial.document_json);
+    const nlohmann::ordered_json::json_pointer at(pointer);
+    ASSERT_TRUE(document.contains(at)) << pointer;
+    document[at] = "guess";
+    trial.document_json = document.dump();
+    const auto replayed = Replay(trial);
+    ASSERT_FALSE(replayed) << pointer;
+    EXPECT_THAT(replayed.error().reason,
+                ::testing::HasSubstr("'guess' is unknown, must be one of"));
   }
 }
 
