@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -19,6 +18,7 @@
 #include "app/documents/pictures.h"
 #include "app/measure/journal.h"
 #include "app/measure/options_hash.h"
+#include "app/text/parse_number.h"
 #include "touchdown/core/cancellation.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/footage/clip_digest.h"
@@ -299,22 +299,16 @@ class Batch {
 }  // namespace
 
 Shard ParseShard(const std::string& flag, const std::string& text) {
-  Shard shard;
-  const auto read = [](std::string_view part, std::size_t& value) {
-    const auto [end, error] =
-        std::from_chars(part.data(), part.data() + part.size(), value);
-    return error == std::errc() && end == part.data() + part.size();
-  };
   const std::string_view whole = text;
-  const std::size_t slash = whole.find('/');
-  if (slash == std::string_view::npos ||
-      !read(whole.substr(0, slash), shard.k) ||
-      !read(whole.substr(slash + 1), shard.n) || shard.k < 1 ||
-      shard.k > shard.n) {
+  const std::size_t slash = std::min(whole.find('/'), whole.size());
+  const auto k = report::ParseNumber<std::size_t>(whole.substr(0, slash));
+  const auto n = report::ParseNumber<std::size_t>(
+      whole.substr(std::min(slash + 1, whole.size())));
+  if (!k || !n || *k < 1 || *k > *n) {
     throw std::invalid_argument(fmt::format(
         "{} is '{}', must be k/n with k in 1 .. n, as in 2/8", flag, text));
   }
-  return shard;
+  return {*k, *n};
 }
 
 std::vector<BatchClip> SelectShard(std::vector<BatchClip> clips, Shard shard) {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <sstream>
 
 #include "app/text/csv_record.h"
+#include "app/text/parse_number.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
 
@@ -112,11 +112,8 @@ class ManifestReader {
                                std::string_view range) const {
     const auto cell = Text(column);
     if (!cell) return std::nullopt;
-    double value = 0.0;
-    const char* const end = cell->data() + cell->size();
-    const auto [stop, error] = std::from_chars(cell->data(), end, value);
-    if (error != std::errc() || stop != end ||
-        !(value >= low && value <= high)) {
+    const auto value = report::ParseNumber<double>(*cell);
+    if (!value || !(*value >= low && *value <= high)) {
       Refuse(column, *cell, fmt::format("a number {} was expected", range));
     }
     return value;

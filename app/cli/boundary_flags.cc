@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -15,6 +14,7 @@
 #include "app/cli/store_text.h"
 #include "app/report_input/report_input.h"
 #include "app/shots/thrower.h"
+#include "app/text/parse_number.h"
 #include "app/trials/looks.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -31,14 +31,12 @@ constexpr std::string_view kOfTheRig = "rig";
 
 double ReadFlagNumber(const char* flag, std::string_view text,
                       const char* form) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) {
+  const auto value = report::ParseNumber<double>(text);
+  if (!value) {
     throw std::invalid_argument(
         fmt::format("{}: '{}'; expected {}", flag, text, form));
   }
-  return value;
+  return *value;
 }
 
 template <class Parse>

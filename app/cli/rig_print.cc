@@ -50,13 +50,6 @@ Json OrNull(const std::optional<double>& value, double per_si) {
 
 }  // namespace
 
-Json EstimateJson(const core::Estimate& estimate, double per_si) {
-  const core::Estimate e = core::Scaled(estimate, per_si);
-  Json out{{"value", e.value}, {"u", e.u}};
-  if (e.interval95) out["interval95"] = {e.interval95->low, e.interval95->high};
-  return out;
-}
-
 Json FindingsJson(const std::vector<rig::Finding>& findings) {
   Json out = Json::array();
   for (const rig::Finding& f : findings) {

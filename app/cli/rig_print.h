@@ -6,16 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "app/text/json.h"
+#include "app/text/json_fields.h"
 #include "touchdown/rig/predict.h"
 #include "touchdown/rig/spring.h"
 
 namespace touchdown::cli {
 
+using report::EstimateJson;
 using report::Json;
-
-// JSON of an estimate in another unit: {"value", "u"[, "interval95"]}.
-Json EstimateJson(const core::Estimate& estimate, double per_si = 1.0);
 
 // ["warning: ...", "refused: ..."].
 Json FindingsJson(const std::vector<rig::Finding>& findings);

@@ -16,8 +16,8 @@
 #include "app/exchange/trial_list.h"
 #include "app/text/json.h"
 #include "app/trials/statement.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
@@ -133,8 +133,8 @@ std::string ListText(const std::vector<core::Trial>& trials) {
 
 void ShowContact(const core::ContactRecord& record,
                  std::vector<std::vector<std::string>>& rows) {
-  for (const auto& quantity : db::kContactQuantities) {
-    const auto& measured = db::At(record, quantity);
+  for (const auto& quantity : core::kContactQuantities) {
+    const auto& measured = core::At(record, quantity);
     std::string name(quantity.name);
     double unit = 1.0;
     if (name.ends_with("_rad")) {

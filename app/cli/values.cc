@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+
+#include "app/text/parse_number.h"
 
 namespace touchdown::cli {
 namespace {
@@ -15,17 +16,6 @@ namespace {
                          const std::string& form) {
   throw std::invalid_argument(
       fmt::format("{} is '{}', must be {}", flag, text, form));
-}
-
-template <class T>
-std::optional<T> ReadNumber(std::string_view text) {
-  T value{};
-  const auto result =
-      std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 std::vector<std::string_view> Split(std::string_view text, char at) {
@@ -45,7 +35,7 @@ std::vector<double> ParseNumbers(const std::string& flag,
                                  const std::string& form) {
   std::vector<double> numbers;
   for (const std::string_view part : Split(text, ',')) {
-    const auto number = ReadNumber<double>(part);
+    const auto number = report::ParseNumber<double>(part);
     if (!number || !std::isfinite(*number)) Refuse(flag, text, form);
     numbers.push_back(*number);
   }
@@ -74,12 +64,12 @@ std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,
   if (parts.size() != 2) Refuse(flag, text, form);
   std::pair<std::int64_t, std::int64_t> range{0, -1};
   if (!parts[0].empty()) {
-    const auto first = ReadNumber<std::int64_t>(parts[0]);
+    const auto first = report::ParseNumber<std::int64_t>(parts[0]);
     if (!first || *first < 0) Refuse(flag, text, form);
     range.first = *first;
   }
   if (!parts[1].empty()) {
-    const auto last = ReadNumber<std::int64_t>(parts[1]);
+    const auto last = report::ParseNumber<std::int64_t>(parts[1]);
     if (!last || *last <= range.first) Refuse(flag, text, form);
     range.second = *last;
   }

@@ -11,6 +11,7 @@
 #include "app/measure/analyze.h"
 #include "app/measure/judge.h"
 #include "app/text/json.h"
+#include "app/text/json_fields.h"
 #include "app/text/number_row.h"
 #include "app/text/version.h"
 #include "touchdown/core/units.h"
@@ -18,6 +19,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+using report::EstimateJson;
 using report::Json;
 
 constexpr double kToDegrees = 1.0 / core::kDegree;
@@ -29,18 +31,11 @@ class Writer {
   Json Number(const std::string& path, const core::Measured& m,
               double factor = 1.0) {
     if (!m) return Missing(path, m.error().reason);
-    return Value(core::Scaled(*m, factor));
+    return EstimateJson(*m, factor);
   }
   Json Missing(const std::string& path, const std::string& reason) {
     absent_[path] = reason;
     return nullptr;
-  }
-  static Json Value(const core::Estimate& e) {
-    Json json = {{"value", e.value}, {"u", e.u}};
-    if (e.interval95) {
-      json["interval95"] = {e.interval95->low, e.interval95->high};
-    }
-    return json;
   }
   Json TakeAbsent() { return std::move(absent_); }
 
@@ -186,10 +181,10 @@ Json BodyField(Writer& writer, const Analysis& analysis) {
   if (analysis.track) {
     const vision::BodyImage& image = analysis.track->body;
     if (body.kind == core::BodyKind::kSphere) {
-      json["radius_px"] = Writer::Value(image.radius_px);
+      json["radius_px"] = EstimateJson(image.radius_px);
     } else {
-      json["long_px"] = Writer::Value(core::Scaled(image.half_long_px, 2.0));
-      json["short_px"] = Writer::Value(core::Scaled(image.half_short_px, 2.0));
+      json["long_px"] = EstimateJson(image.half_long_px, 2.0);
+      json["short_px"] = EstimateJson(image.half_short_px, 2.0);
     }
   }
   return json;
@@ -222,16 +217,6 @@ Json ExplainedField(Writer& writer, const Analysis& analysis) {
       {"frames", explained.frames},       {"lost_frames", explained.lost},
       {"pixels", explained.pixels}};
   if (analysis.outlines_corrected) json["outlines_corrected"] = true;
-  return json;
-}
-
-Json ChecksField(const Analysis& analysis) {
-  Json json = Json::array();
-  for (const AnswerCheck& check : analysis.checks) {
-    json.push_back({{"name", check.name},
-                    {"verdict", Name(check.verdict)},
-                    {"reason", check.reason}});
-  }
   return json;
 }
 
@@ -300,6 +285,16 @@ Json PathField(const Analysis& analysis) {
 
 }  // namespace
 
+Json ChecksJson(const Analysis& analysis) {
+  Json json = Json::array();
+  for (const AnswerCheck& check : analysis.checks) {
+    json.push_back({{"name", check.name},
+                    {"verdict", Name(check.verdict)},
+                    {"reason", check.reason}});
+  }
+  return json;
+}
+
 std::string ToJson(const Analysis& analysis) {
   Writer writer;
   Json json;
@@ -308,7 +303,7 @@ std::string ToJson(const Analysis& analysis) {
   json["origin"] = Name(analysis.simulated ? core::Origin::kSimulated
                                            : core::Origin::kRecorded);
   if (analysis.scale) {
-    json["scale"] = {{"px_per_m", Writer::Value(analysis.scale->px_per_m)},
+    json["scale"] = {{"px_per_m", EstimateJson(analysis.scale->px_per_m)},
                      {"source", calib::Name(analysis.scale->source)}};
   } else {
     json["scale"] = writer.Missing("scale", analysis.no_scale_reason);
@@ -355,7 +350,7 @@ std::string ToJson(const Analysis& analysis) {
       {"resolved", e.resolved},
       {"unresolved", e.unresolved}};
   json["explained"] = ExplainedField(writer, analysis);
-  json["checks"] = ChecksField(analysis);
+  json["checks"] = ChecksJson(analysis);
   json["scene_model"] = {{"used", analysis.scene_model.used},
                          {"left_out", analysis.scene_model.left_out}};
   if (analysis.stopped_at) json["stopped_at_frame"] = *analysis.stopped_at;

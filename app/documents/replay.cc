@@ -8,6 +8,7 @@
 #include "app/documents/analysis_json.h"
 #include "app/measure/judge.h"
 #include "app/text/json.h"
+#include "app/text/json_fields.h"
 #include "app/text/number_row.h"
 #include "app/text/version.h"
 #include "app/text/whole_number.h"
@@ -16,29 +17,15 @@
 namespace touchdown::pipeline {
 namespace {
 
+using report::EstimateJson;
 using report::Json;
+using report::ReadEstimate;
 
 constexpr const char* kColumns =
     "frame time_s x_px y_px u_x_px u_y_px correlation angle_rad u_angle_rad "
     "relative_size misfit";
 
 // --- values that may be absent ----------------------------------------------
-
-Json EstimateJson(const core::Estimate& e) {
-  Json json = {{"value", e.value}, {"u", e.u}};
-  if (e.interval95)
-    json["interval95"] = {e.interval95->low, e.interval95->high};
-  return json;
-}
-
-core::Estimate ReadEstimate(const Json& json) {
-  core::Estimate e{json.at("value"), json.at("u"), std::nullopt};
-  if (json.contains("interval95")) {
-    e.interval95 =
-        core::Interval{json["interval95"].at(0), json["interval95"].at(1)};
-  }
-  return e;
-}
 
 void Put(Json& json, const char* name, const std::optional<double>& value) {
   if (value) json[name] = *value;

@@ -15,7 +15,7 @@
 #include "app/text/text.h"
 #include "touchdown/core/edge_unit.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 
 namespace touchdown::report {
 namespace {
@@ -77,10 +77,10 @@ Trial EmptyTrial(const std::string& author) {
   trial.origin = core::Origin::kManual;
   trial.author = author;
   trial.first.contact.found = true;
-  for (std::size_t i = 0; i < db::kContactQuantities.size(); ++i) {
+  for (std::size_t i = 0; i < core::kContactQuantities.size(); ++i) {
     ContactMeasured(trial, i) = core::AbsentBecause(kNotRecorded);
   }
-  for (std::size_t i = 0; i < db::kBodyQuantities.size(); ++i) {
+  for (std::size_t i = 0; i < core::kBodyQuantities.size(); ++i) {
     BodyMeasured(trial, i) = core::AbsentBecause(kNotRecorded);
   }
   return trial;
@@ -167,11 +167,11 @@ CsvTrials ReadTrialsCsv(std::istream& in, const std::string& name,
              "a standard uncertainty was expected beside the value");
       }
     };
-    for (const auto& quantity : db::kBodyQuantities) {
+    for (const auto& quantity : core::kBodyQuantities) {
       require_u(quantity.name, trial.body.*quantity.member);
     }
-    for (const auto& quantity : db::kContactQuantities) {
-      require_u(quantity.name, db::At(trial.first, quantity));
+    for (const auto& quantity : core::kContactQuantities) {
+      require_u(quantity.name, core::At(trial.first, quantity));
     }
     if (trial.author.empty()) {
       fail("author", "", "who states this was expected (or give --by)");

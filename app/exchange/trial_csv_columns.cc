@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "app/text/parse_number.h"
 #include "touchdown/core/edge_unit.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::report {
@@ -19,25 +19,21 @@ using core::Trial;
 namespace {
 
 double ToNumber(const std::string& cell) {
-  double value = 0.0;
-  const char* end = cell.data() + cell.size();
-  const char* begin = cell.data();
-  if (!cell.empty() && *begin == '+') ++begin;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+  std::string_view unsigned_cell = cell;
+  if (unsigned_cell.starts_with('+')) unsigned_cell.remove_prefix(1);
+  const auto value = ParseNumber<double>(unsigned_cell);
+  if (!value || !std::isfinite(*value)) {
     throw std::invalid_argument("a number with a decimal point was expected");
   }
-  return value;
+  return *value;
 }
 
 std::int64_t ToInteger(const std::string& cell) {
-  std::int64_t value = 0;
-  const char* end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc() || stop != end || value < 0) {
+  const auto value = ParseNumber<std::int64_t>(cell);
+  if (!value || *value < 0) {
     throw std::invalid_argument("a whole number >= 0 was expected");
   }
-  return value;
+  return *value;
 }
 
 bool ToFlag(const std::string& cell) {
@@ -232,9 +228,9 @@ std::vector<TrialColumn> MakeColumns() {
       "body_kind", "must be there",
       [](Trial& t) -> core::BodyKind& { return t.body.kind; },
       core::ParseBodyKind, "sphere or rectangle");
-  for (std::size_t i = 0; i < db::kBodyQuantities.size(); ++i) {
-    c.Measured(db::kBodyQuantities.at(i).name,
-               db::kBodyQuantities.at(i).meaning, BodyMeasured, i);
+  for (std::size_t i = 0; i < core::kBodyQuantities.size(); ++i) {
+    c.Measured(core::kBodyQuantities.at(i).name,
+               core::kBodyQuantities.at(i).meaning, BodyMeasured, i);
   }
   c.Word<core::AngleKind>(
       "angle_kind", "which angle is the contact angle",
@@ -277,9 +273,9 @@ std::vector<TrialColumn> MakeColumns() {
                  "leading, trailing or flush was expected");
            }
          }});
-  for (std::size_t i = 0; i < db::kContactQuantities.size(); ++i) {
-    c.Measured(db::kContactQuantities.at(i).name,
-               db::kContactQuantities.at(i).meaning, ContactMeasured, i);
+  for (std::size_t i = 0; i < core::kContactQuantities.size(); ++i) {
+    c.Measured(core::kContactQuantities.at(i).name,
+               core::kContactQuantities.at(i).meaning, ContactMeasured, i);
   }
   AddConditions(c);
   c.Text("clip_path", "where the clip was last seen",
@@ -314,10 +310,10 @@ std::vector<TrialColumn> MakeColumns() {
 }  // namespace
 
 core::Measured& BodyMeasured(Trial& trial, std::size_t i) {
-  return trial.body.*db::kBodyQuantities.at(i).member;
+  return trial.body.*core::kBodyQuantities.at(i).member;
 }
 core::Measured& ContactMeasured(Trial& trial, std::size_t i) {
-  return db::At(trial.first, db::kContactQuantities.at(i));
+  return core::At(trial.first, core::kContactQuantities.at(i));
 }
 
 const std::vector<TrialColumn>& AllColumns() {

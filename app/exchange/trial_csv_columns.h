@@ -21,7 +21,8 @@ struct TrialColumn {
   bool is_uncertainty = false;  // to be read after the values
 };
 
-// The i-th measured quantity of db::kBodyQuantities and db::kContactQuantities.
+// The i-th measured quantity of core::kBodyQuantities and
+// core::kContactQuantities.
 core::Measured& BodyMeasured(core::Trial& trial, std::size_t i);
 core::Measured& ContactMeasured(core::Trial& trial, std::size_t i);
 

@@ -11,7 +11,7 @@
 #include "app/exchange/register_json.h"
 #include "app/text/json_fields.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 
 namespace touchdown::report {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::string_view kAddedLater = "extrapolated_gap_m";
 
 Json BodyJson(const core::Body& body) {
   Json json = {{"kind", core::Name(body.kind)}};
-  for (const auto& quantity : db::kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     json[std::string(quantity.name)] = MeasuredJson(body.*quantity.member);
   }
   return json;
@@ -39,10 +39,10 @@ Json ContactJson(const core::ContactRecord& record) {
                {"state_because", TextJson(record.state.reason)},
                {"micro_bounce", record.state.micro_bounce}};
   if (contact.corner) json["corner"] = core::Name(*contact.corner);
-  for (const auto& quantity : db::kContactQuantities) {
-    json[std::string(quantity.name)] = MeasuredJson(db::At(record, quantity));
+  for (const auto& quantity : core::kContactQuantities) {
+    json[std::string(quantity.name)] = MeasuredJson(core::At(record, quantity));
   }
-  for (const auto& budget : db::kBudgets) {
+  for (const auto& budget : core::kBudgets) {
     Json lines = Json::array();
     for (const auto& line : contact.*budget.member) {
       lines.push_back(
@@ -92,7 +92,7 @@ Json RevisionObject(const db::Revision& revision) {
 core::Body ReadBodyFields(const Json& json) {
   core::Body body;
   body.kind = ReadWord(json, "kind", core::ParseBodyKind);
-  for (const auto& quantity : db::kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     body.*quantity.member = ReadMeasured(json, std::string(quantity.name));
   }
   return body;
@@ -111,16 +111,16 @@ core::ContactRecord ReadContact(const Json& json) {
   record.state.p_bounce = ReadOptionalNumber(json, "p_bounce");
   record.state.reason = ReadTextField(json, "state_because");
   record.state.micro_bounce = ReadFlag(json, "micro_bounce");
-  for (const auto& quantity : db::kContactQuantities) {
+  for (const auto& quantity : core::kContactQuantities) {
     const std::string name(quantity.name);
-    core::Measured& measured = db::At(record, quantity);
+    core::Measured& measured = core::At(record, quantity);
     if (name == kAddedLater && !json.contains(name)) {
       measured = core::AbsentBecause("exported before it was measured");
       continue;
     }
     measured = ReadMeasured(json, name);
   }
-  for (const auto& budget : db::kBudgets) {
+  for (const auto& budget : core::kBudgets) {
     const std::string name = fmt::format("{}_budget", budget.name);
     const Json& lines = Field(json, name);
     if (!lines.is_array()) WrongField(name, "an array");

@@ -1,38 +1,22 @@
 #include "app/measure/shared_uncertainty.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "touchdown/core/quantities.h"
+
 namespace touchdown::pipeline {
 namespace {
 
-constexpr std::size_t kQuantities = 19;
+using core::kContactQuantities;
 
-// Every number of a contact that a shared input can move.
-std::array<core::Measured*, kQuantities> ListQuantities(
-    core::ContactRecord& record) {
-  core::Contact& c = record.contact;
-  core::Motion& m = record.motion;
-  return {&c.approach_angle_rad,
-          &c.radius_angle_rad,
-          &c.face_angle_rad,
-          &c.time_s,
-          &c.frame,
-          &c.duration_s,
-          &record.state.max_gap_m,
-          &record.state.extrapolated_gap_m,
-          &m.before_speed_mps,
-          &m.before_normal_mps,
-          &m.before_tangential_mps,
-          &m.before_omega_rad_per_s,
-          &m.after_normal_mps,
-          &m.after_tangential_mps,
-          &m.after_omega_rad_per_s,
-          &m.restitution,
-          &m.centre_rebound_ratio,
-          &m.impulse_ratio,
-          &m.gravity_check_mps2};
+// That a shared input can move: the bounce height is a convention, and the
+// detectable gap no measurement.
+bool IsMoved(const core::ContactQuantity& quantity) {
+  return quantity.state != &core::StateDecision::bounce_height_m &&
+         quantity.state != &core::StateDecision::detectable_gap_m;
 }
 
 void Widen(core::Estimate& e, double u_shared) {
@@ -51,27 +35,37 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
                const std::vector<MovedContacts>& moved) {
   std::vector<core::ContactRecord*> records = {&contacts.first};
   for (core::ContactRecord& later : contacts.later) records.push_back(&later);
-  std::vector<std::array<double, kQuantities>> variances(records.size());
+  std::vector<std::array<double, kContactQuantities.size()>> variances(
+      records.size());
   for (auto& of_record : variances) of_record.fill(0.0);
   for (const MovedContacts& each : moved) {
     vision::ContactResult other = each.contacts;
     std::vector<core::ContactRecord*> others = {&other.first};
     for (core::ContactRecord& later : other.later) others.push_back(&later);
     for (std::size_t i = 0; i < records.size() && i < others.size(); ++i) {
-      const auto ours = ListQuantities(*records[i]);
-      const auto theirs = ListQuantities(*others[i]);
-      for (std::size_t q = 0; q < kQuantities; ++q) {
-        if (!*ours[q] || !*theirs[q]) continue;
-        const double change = (*theirs[q])->value - (*ours[q])->value;
+      for (std::size_t q = 0; q < kContactQuantities.size(); ++q) {
+        const core::Measured& ours =
+            core::At(*records[i], kContactQuantities[q]);
+        const core::Measured& theirs =
+            core::At(*others[i], kContactQuantities[q]);
+        if (!ours || !theirs) continue;
+        const double change = theirs->value - ours->value;
         variances[i][q] += each.weight * change * change;
       }
     }
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const auto ours = ListQuantities(*records[i]);
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-      if (*ours[q]) Widen(**ours[q], std::sqrt(variances[i][q]));
+    for (std::size_t q = 0; q < kContactQuantities.size(); ++q) {
+      if (!IsMoved(kContactQuantities[q])) continue;
+      core::Measured& ours = core::At(*records[i], kContactQuantities[q]);
+      if (ours) Widen(*ours, std::sqrt(variances[i][q]));
     }
+    const auto u_shared = [&](core::Measured core::Contact::*angle) {
+      const auto at = std::ranges::find(kContactQuantities, angle,
+                                        &core::ContactQuantity::contact);
+      return std::sqrt(variances[i][static_cast<std::size_t>(
+          at - kContactQuantities.begin())]);
+    };
     core::Contact& contact = records[i]->contact;
     core::Measured& approach = contact.approach_angle_rad;
     if (approach && approach->value < core::kNormal975 * approach->u) {
@@ -80,11 +74,14 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
           core::Interval{0.0, approach->value + core::kNormal975 * approach->u};
     }
     if (!contact.approach_budget.empty()) {
-      contact.approach_budget.push_back({source, std::sqrt(variances[i][0])});
+      contact.approach_budget.push_back(
+          {source, u_shared(&core::Contact::approach_angle_rad)});
     }
     if (!contact.attitude_budget.empty()) {
       contact.attitude_budget.push_back(
-          {source, std::sqrt(variances[i][contact.radius_angle_rad ? 1 : 2])});
+          {source, u_shared(contact.radius_angle_rad
+                                ? &core::Contact::radius_angle_rad
+                                : &core::Contact::face_angle_rad)});
     }
   }
 }

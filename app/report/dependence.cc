@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 
 #include "app/report/content.h"
 #include "app/text/format.h"
+#include "app/text/parse_number.h"
 #include "touchdown/analysis/statistics/score_tests.h"
 #include "touchdown/analysis/statistics/set_angles.h"
 #include "touchdown/core/units.h"
@@ -30,12 +30,7 @@ constexpr double kTelling = 0.01;
 std::optional<int> ParseLineNumber(std::string_view id) {
   constexpr std::string_view kLine = "line ";
   if (!id.starts_with(kLine)) return std::nullopt;
-  int line = 0;
-  const char* end = id.data() + id.size();
-  const auto [stop, error] =
-      std::from_chars(id.data() + kLine.size(), end, line);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return line;
+  return ParseNumber<int>(id.substr(kLine.size()));
 }
 
 // 0 for the first trial to 1 for the last, in the order in which a store took

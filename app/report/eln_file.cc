@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/report/evidence_page.h"
-#include "app/report/zip_file.h"
 #include "app/text/json.h"
 #include "app/text/text_file.h"
+#include "app/text/zip_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::report {
@@ -51,12 +51,17 @@ std::vector<std::string> ListFiles(const ReportInput& input,
 
 Json Reference(const std::string& id) { return {{"@id", id}}; }
 
+struct Entry {
+  std::string name;  // with folders, "/" between them
+  std::string bytes;
+};
+
 std::string Metadata(const ReportInput& input,
-                     const std::vector<ZipEntry>& files) {
+                     const std::vector<Entry>& files) {
   Json parts = Json::array();
   Json graph = Json::array();
   const std::string root = std::string(kRoot) + "/";
-  for (const ZipEntry& file : files) {
+  for (const Entry& file : files) {
     const std::string id = "./" + file.name.substr(root.size());
     parts.push_back(Reference(id));
     graph.push_back({{"@id", id},
@@ -100,7 +105,7 @@ std::string Metadata(const ReportInput& input,
 }  // namespace
 
 void WriteEln(const ReportInput& input, const fs::path& folder) {
-  std::vector<ZipEntry> entries;
+  std::vector<Entry> entries;
   for (const std::string& name : ListFiles(input, folder)) {
     auto bytes = ReadTextFile(folder / name);
     if (!bytes) {
@@ -110,10 +115,11 @@ void WriteEln(const ReportInput& input, const fs::path& folder) {
     }
     entries.push_back({fmt::format("{}/{}", kRoot, name), std::move(*bytes)});
   }
-  entries.insert(entries.begin(),
-                 {fmt::format("{}/ro-crate-metadata.json", kRoot),
-                  Metadata(input, entries)});
-  WriteTextFile(folder / "table1.eln", ZipArchive(entries));
+  pipeline::ZipFile zip(folder / "table1.eln");
+  zip.Add(fmt::format("{}/ro-crate-metadata.json", kRoot),
+          Metadata(input, entries));
+  for (const Entry& entry : entries) zip.Add(entry.name, entry.bytes);
+  zip.Commit();
 }
 
 }  // namespace touchdown::report

@@ -1,7 +1,8 @@
 #include "app/review/answers.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
+
+#include "app/text/parse_number.h"
 
 namespace touchdown::review {
 
@@ -29,11 +30,9 @@ nlohmann::ordered_json ClipJson(const vision::ClipInfo& info) {
 }
 
 std::int64_t ParsePathNumber(const std::string& text, const std::string& path) {
-  std::int64_t n = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, n);
-  if (error != std::errc{} || stop != end || n < 0) throw NotThere(path);
-  return n;
+  const auto n = report::ParseNumber<std::int64_t>(text);
+  if (!n || *n < 0) throw NotThere(path);
+  return *n;
 }
 
 }  // namespace touchdown::review

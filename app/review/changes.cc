@@ -11,8 +11,8 @@
 #include "app/review/words.h"
 #include "app/text/format.h"
 #include "app/text/json.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::review {
@@ -64,12 +64,12 @@ std::optional<core::Measured> FieldNumber(const core::Trial& trial,
     return std::nullopt;
   }
   if (const core::ContactRecord* record = FindContactRecord(trial, field)) {
-    for (const auto& quantity : db::kContactQuantities) {
-      if (field.column == quantity.name) return db::At(*record, quantity);
+    for (const auto& quantity : core::kContactQuantities) {
+      if (field.column == quantity.name) return core::At(*record, quantity);
     }
   }
   if (!field.prefix.empty()) return std::nullopt;
-  for (const auto& quantity : db::kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     if (field.column == quantity.name) return trial.body.*quantity.member;
   }
   if (field.column == "set_angle_rad") return Exactly(trial.set_angle_rad);
@@ -98,7 +98,7 @@ std::string FieldText(const core::Trial& trial, const Field& field,
   if (field.column == "p_bounce" && record->state.p_bounce) {
     return report::Probability(*record->state.p_bounce);
   }
-  for (const auto& budget : db::kBudgets) {
+  for (const auto& budget : core::kBudgets) {
     if (field.column == fmt::format("{}_budget", budget.name)) {
       return BudgetText(record->contact.*budget.member);
     }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "app/documents/pictures.h"
@@ -13,6 +12,7 @@
 #include "app/review/fields.h"
 #include "app/review/trial_view.h"
 #include "app/text/json.h"
+#include "app/text/parse_number.h"
 #include "app/text/whole_number.h"
 #include "app/trials/statement.h"
 #include "touchdown/core/errors.h"
@@ -41,15 +41,13 @@ pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
   }
   if (const auto moved = asked.find("moved"); moved != asked.end()) {
     for (const auto& [name, by] : moved->items()) {
-      std::int64_t frame = 0;
-      const char* const end = name.data() + name.size();
-      const auto [stop, error] = std::from_chars(name.data(), end, frame);
-      if (error != std::errc{} || stop != end) {
+      const auto frame = report::ParseNumber<std::int64_t>(name);
+      if (!frame) {
         throw std::invalid_argument(
             fmt::format("moved.{} is no frame, must be its number", name));
       }
-      correction.moved[frame] = {by.at(0).get<double>(),
-                                 by.at(1).get<double>()};
+      correction.moved[*frame] = {by.at(0).get<double>(),
+                                  by.at(1).get<double>()};
     }
   }
   if (const auto out = asked.find("left_out"); out != asked.end()) {

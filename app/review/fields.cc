@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "app/text/parse_number.h"
 #include "app/trials/statement.h"
 
 namespace touchdown::review {
@@ -41,10 +41,8 @@ std::optional<double> ReadNumberField(const nlohmann::json& asked,
   if (found != asked.end() && found->is_number()) return found->get<double>();
   const std::string text = ReadTextField(asked, field);
   if (text.empty()) return std::nullopt;
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) {
+  const auto value = report::ParseNumber<double>(text);
+  if (!value) {
     throw FieldError(
         Flag(field),
         fmt::format("is '{}', must be a number with a decimal point", text));

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <string>
 
 #include "app/review/guard.h"
+#include "app/text/parse_number.h"
 
 namespace touchdown::review {
 namespace {
@@ -90,13 +90,11 @@ std::optional<Reply> ReadTransfer(std::string_view name, std::string_view value,
                                   std::optional<std::size_t>& length,
                                   Head& head) {
   if (Same(name, "Content-Length")) {
-    std::size_t n = 0;
-    const char* const end = value.data() + value.size();
-    const auto [stop, error] = std::from_chars(value.data(), end, n);
-    if (error != std::errc{} || stop != end || length) {
+    const auto n = report::ParseNumber<std::size_t>(value);
+    if (!n || length) {
       return Refusal(400, "the request is not understood: Content-Length");
     }
-    length = n;
+    length = *n;
   } else if (Same(name, "Transfer-Encoding")) {
     return Refusal(411, "a body must say its length (Content-Length)");
   } else if (Same(name, "Content-Encoding") && !Same(value, "identity")) {

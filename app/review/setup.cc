@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/documents/analysis_json.h"
 #include "app/documents/log_analysis.h"
 #include "app/documents/pictures.h"
 #include "app/documents/replay.h"
@@ -223,7 +224,7 @@ Json TestJson(const AnalysisStatus& status) {
                                 : Json{{"absent", analysis.no_body_reason}};
   json["warnings"] = analysis.warnings;
   json["settings"] = SettingsJson(analysis);
-  json["checks"] = ChecksJson(analysis);
+  json["checks"] = pipeline::ChecksJson(analysis);
   return json;
 }
 

@@ -7,11 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/documents/analysis_json.h"
 #include "app/review/words.h"
 #include "app/text/format.h"
 #include "app/text/json.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 #include "touchdown/vision/contact/flight.h"
 
@@ -114,9 +115,9 @@ Json BudgetJson(const core::Budget& budget) {
 Json QuantitiesJson(const core::ContactRecord& record) {
   Json out = Json::array();
   for (const std::string_view column : ColumnsInOrder()) {
-    const auto& quantity = *std::ranges::find(db::kContactQuantities, column,
-                                              &db::ContactQuantity::name);
-    const core::Measured& measured = db::At(record, quantity);
+    const auto& quantity = *std::ranges::find(core::kContactQuantities, column,
+                                              &core::ContactQuantity::name);
+    const core::Measured& measured = core::At(record, quantity);
     const Shown shown = ShownAs(column);
     Json row = {{"name", shown.name}, {"words", Label(shown)}};
     if (measured) {
@@ -149,16 +150,6 @@ Json RecordJson(const core::ContactRecord& record) {
 
 }  // namespace
 
-Json ChecksJson(const pipeline::Analysis& analysis) {
-  Json out = Json::array();
-  for (const pipeline::AnswerCheck& check : analysis.checks) {
-    out.push_back({{"name", check.name},
-                   {"verdict", pipeline::Name(check.verdict)},
-                   {"reason", check.reason}});
-  }
-  return out;
-}
-
 Json ViewJson(const pipeline::Analysis& analysis) {
   const vision::Track& track = *analysis.track;
   const vision::BodyImage& body = track.body;
@@ -177,7 +168,7 @@ Json ViewJson(const pipeline::Analysis& analysis) {
                {"poses", std::move(poses)},
                {"warnings", analysis.warnings},
                {"corrections", analysis.corrections},
-               {"checks", ChecksJson(analysis)}};
+               {"checks", pipeline::ChecksJson(analysis)}};
   if (!analysis.plane) {
     view["ground"] = nullptr;
     return view;

@@ -14,9 +14,6 @@ namespace touchdown::review {
 // of the answer (measure/answer_check.h).
 nlohmann::ordered_json ViewJson(const pipeline::Analysis& analysis);
 
-// The checks alone.
-nlohmann::ordered_json ChecksJson(const pipeline::Analysis& analysis);
-
 // The measured numbers of a trial in words; budgets; state. What is absent says
 // why.
 nlohmann::ordered_json NumbersJson(const core::Trial& trial);

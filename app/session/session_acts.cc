@@ -1,13 +1,13 @@
 // What a person may type.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "app/session/session.h"
+#include "app/text/parse_number.h"
 #include "app/trials/statement.h"
 #include "app/trials/typed_values.h"
 #include "touchdown/core/errors.h"
@@ -37,11 +37,8 @@ void RequireReason(const std::string& word, const std::string& why) {
 }
 
 std::optional<double> Number(const std::string& text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) return {};
-  return value;
+  const auto value = report::ParseNumber<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace
@@ -293,10 +290,8 @@ void Session::Drive(const std::string& word, const std::string& rest,
 
 void Session::Fire(rig::Driver& driver, const std::string& arming,
                    const Arrival& arrival) {
-  std::uint64_t number = 0;
-  const char* const end = arming.data() + arming.size();
-  const auto [stop, error] = std::from_chars(arming.data(), end, number);
-  if (error != std::errc{} || stop != end || number == 0) {
+  const auto number = report::ParseNumber<std::uint64_t>(arming);
+  if (!number || *number == 0) {
     throw std::invalid_argument(fmt::format(
         "fire '{}': fire wants the number of the arming, a whole number as "
         "`arm` has said it",
@@ -307,7 +302,7 @@ void Session::Fire(rig::Driver& driver, const std::string& arming,
         "answer to `arm` was shown; type it on its own");
     return;
   }
-  const auto shots = driver.Fire({options_.operator_name, number});
+  const auto shots = driver.Fire({options_.operator_name, *number});
   if (!shots) {
     Say("fire: refused: " + shots.error().reason);
     return;

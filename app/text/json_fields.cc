@@ -84,6 +84,14 @@ Json MeasuredJson(const core::Measured& measured) {
   return json;
 }
 
+Json EstimateJson(const core::Estimate& estimate, double factor) {
+  const core::Estimate e = core::Scaled(estimate, factor);
+  Json json = {{"value", e.value}, {"u", e.u}};
+  if (e.interval95)
+    json["interval95"] = {e.interval95->low, e.interval95->high};
+  return json;
+}
+
 const Json& Field(const Json& json, const std::string& name) {
   const auto it = json.is_object() ? json.find(name) : json.end();
   if (!json.is_object() || it == json.end()) {
@@ -158,6 +166,15 @@ core::Measured ReadMeasured(const Json& json, const std::string& name) {
                        NumberOrInfinity((*interval)[1], name)};
   }
   return estimate;
+}
+
+core::Estimate ReadEstimate(const Json& json) {
+  core::Estimate e{json.at("value"), json.at("u"), std::nullopt};
+  if (json.contains("interval95")) {
+    e.interval95 =
+        core::Interval{json["interval95"].at(0), json["interval95"].at(1)};
+  }
+  return e;
 }
 
 Json ParsedLine(std::string_view line, std::string_view schema) {

@@ -1,5 +1,6 @@
-// Fields of the lossless JSON lines (trial_json.h, register_json.h): texts,
-// numbers, words, measured numbers, there and back. Internal to these.
+// Fields of JSON documents there and back: texts, numbers, words, measured
+// numbers. What says nothing else is of the lossless lines of trials and
+// registers, where no bit changes.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,9 @@ Json TextJson(const std::string& text);
 Json NumberJson(double value);  // infinities: "inf" and "-inf"
 Json OptionalNumberJson(const std::optional<double>& value);
 Json MeasuredJson(const core::Measured& measured);
+// {"value", "u"[, "interval95"]} of a document that people read: in the unit
+// that SI is multiplied with by `factor`.
+Json EstimateJson(const core::Estimate& estimate, double factor = 1.0);
 
 // The inverse. Each throws std::invalid_argument naming the field that is
 // missing or wrong.
@@ -31,6 +35,8 @@ double ReadNumberField(const Json& json, const std::string& name);
 std::optional<double> ReadOptionalNumber(const Json& json,
                                          const std::string& name);
 core::Measured ReadMeasured(const Json& json, const std::string& name);
+// The inverse of EstimateJson; throws as nlohmann::json does.
+core::Estimate ReadEstimate(const Json& json);
 
 template <class T>
 T ReadWord(const Json& json, const std::string& name,

@@ -7,9 +7,9 @@
 
 #include "app/text/version.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/names.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::pipeline {
@@ -36,8 +36,9 @@ core::Trial ManualTrial() {
   trial.origin = core::Origin::kManual;
   trial.software_version = Version();
   trial.first.contact.found = true;
-  for (const auto& quantity : db::kContactQuantities) {
-    db::At(trial.first, quantity) = core::AbsentBecause("not recorded by hand");
+  for (const auto& quantity : core::kContactQuantities) {
+    core::At(trial.first, quantity) =
+        core::AbsentBecause("not recorded by hand");
   }
   return trial;
 }

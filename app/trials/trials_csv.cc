@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
 #include <string_view>
 
+#include "app/text/parse_number.h"
 #include "touchdown/analysis/statistics/observation.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -53,14 +53,12 @@ struct Place {
 double ReadCell(const Place& place, std::string_view column,
                 const std::string& cell, double low, double high,
                 std::string_view range) {
-  double value = 0.0;
-  const char* end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc{} || stop != end || !(value >= low && value <= high)) {
+  const auto value = report::ParseNumber<double>(cell);
+  if (!value || !(*value >= low && *value <= high)) {
     RefuseLine(place, fmt::format("{} is '{}'; expected a number {}", column,
                                   cell, range));
   }
-  return value;
+  return *value;
 }
 
 // `u_deg` is the trial's own, `common_u_deg` what its set-up shares.

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 
+#include "app/text/parse_number.h"
 #include "app/trials/statement.h"
 #include "touchdown/core/edge_unit.h"
 #include "touchdown/db/register.h"
@@ -20,17 +20,6 @@ namespace {
                              const std::string& form) {
   throw std::invalid_argument(
       fmt::format("{} is '{}', must be {}", flag, text, form));
-}
-
-template <class T>
-std::optional<T> ReadNumber(std::string_view text) {
-  T value{};
-  const auto result =
-      std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 // What `parse` of a flag makes of a field: its message names the flag first.
@@ -50,7 +39,8 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
   const std::string form =
       "a number, or one with its standard uncertainty as in 40+-0.02";
   const std::size_t sign = text.find("+-");
-  const auto value = ReadNumber<double>(std::string_view(text).substr(0, sign));
+  const auto value =
+      report::ParseNumber<double>(std::string_view(text).substr(0, sign));
   if (!value || !std::isfinite(*value)) RefuseText(flag, text, form);
   if (sign == std::string::npos) {
     return {
@@ -59,7 +49,8 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
             unit,
         std::nullopt};
   }
-  const auto u = ReadNumber<double>(std::string_view(text).substr(sign + 2));
+  const auto u =
+      report::ParseNumber<double>(std::string_view(text).substr(sign + 2));
   if (!u || !std::isfinite(*u)) RefuseText(flag, text, form);
   if (*u < 0.0) {
     throw std::invalid_argument(fmt::format(

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "rows.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/db/records.h"
 #include "touchdown/db/register.h"
 
@@ -92,10 +92,10 @@ class Differences {
     Compare("state_because", before.state.reason, after.state.reason);
     Compare("micro_bounce", before.state.micro_bounce,
             after.state.micro_bounce);
-    for (const auto& quantity : kContactQuantities) {
+    for (const auto& quantity : core::kContactQuantities) {
       Compare(quantity.name, At(before, quantity), At(after, quantity));
     }
-    for (const auto& budget : kBudgets) {
+    for (const auto& budget : core::kBudgets) {
       Compare(fmt::format("{}_budget", budget.name),
               before.contact.*budget.member, after.contact.*budget.member);
     }
@@ -161,7 +161,7 @@ std::vector<Change> Changes(const core::Trial& before,
   differences.Compare("clip_path", before.clip.path, after.clip.path);
   differences.CompareWords("angle_kind", before.angle_kind, after.angle_kind);
   differences.CompareWords("body_kind", before.body.kind, after.body.kind);
-  for (const auto& quantity : kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     differences.Compare(quantity.name, before.body.*quantity.member,
                         after.body.*quantity.member);
   }

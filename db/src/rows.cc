@@ -8,7 +8,7 @@
 
 #include "register_rows.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 
 namespace touchdown::db {
 namespace {
@@ -108,7 +108,7 @@ const std::string& ContactNames() {
     std::string text =
         "found, not_found_because, from_start, corner, state, p_bounce, "
         "state_because, micro_bounce";
-    for (const auto& quantity : kContactQuantities) {
+    for (const auto& quantity : core::kContactQuantities) {
       text += ", " + MeasuredNames(quantity.name);
     }
     return text;
@@ -117,7 +117,7 @@ const std::string& ContactNames() {
 }
 // Eight of the contact itself, five for each quantity (value, u, interval,
 // reason).
-constexpr std::size_t kContactColumns = 8 + 5 * kContactQuantities.size();
+constexpr std::size_t kContactColumns = 8 + 5 * core::kContactQuantities.size();
 
 void InsertBudgets(Connection& connection, std::int64_t revision_id,
                    std::int64_t ordinal, const core::Contact& contact) {
@@ -126,7 +126,7 @@ void InsertBudgets(Connection& connection, std::int64_t revision_id,
   Statement insert(connection,
                    "INSERT INTO budget_lines (revision_id, ordinal, budget, "
                    "line, source, u_rad) VALUES (?, ?, ?, ?, ?, ?)");
-  for (const auto& budget : kBudgets) {
+  for (const auto& budget : core::kBudgets) {
     const Budget& lines = contact.*budget.member;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       insert.Add(revision_id)
@@ -160,7 +160,7 @@ void InsertContact(Connection& connection, std::int64_t revision_id,
       .Add(record.state.p_bounce)
       .Add(record.state.reason)
       .Add(record.state.micro_bounce);
-  for (const auto& quantity : kContactQuantities) {
+  for (const auto& quantity : core::kContactQuantities) {
     AddMeasured(insert, At(record, quantity));
   }
   insert.Run();
@@ -180,7 +180,7 @@ ContactRecord TakeContact(Connection& connection, Statement& row) {
   record.state.p_bounce = row.TakeOptionalReal();
   record.state.reason = row.TakeText();
   record.state.micro_bounce = row.TakeBool();
-  for (const auto& quantity : kContactQuantities) {
+  for (const auto& quantity : core::kContactQuantities) {
     At(record, quantity) = TakeMeasured(row);
   }
   return record;
@@ -189,21 +189,21 @@ ContactRecord TakeContact(Connection& connection, Statement& row) {
 // --- what may not enter ------------------------------------------------------
 
 void RequireBody(const core::Body& body) {
-  for (const auto& quantity : kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     RequireMeasured(fmt::format("body.{}", quantity.name),
                     body.*quantity.member);
   }
 }
 
 void RequireContact(const ContactRecord& record) {
-  for (const auto& quantity : kContactQuantities) {
+  for (const auto& quantity : core::kContactQuantities) {
     RequireMeasured(quantity.name, At(record, quantity));
   }
   if (record.state.p_bounce) {
     const double p = *record.state.p_bounce;
     if (!(p >= 0.0 && p <= 1.0)) Refuse("p_bounce", p, "in [0, 1]");
   }
-  for (const auto& budget : kBudgets) {
+  for (const auto& budget : core::kBudgets) {
     for (const auto& line : record.contact.*budget.member) {
       if (!(line.u >= 0.0)) {
         Refuse(fmt::format("u of the {} budget's line '{}'", budget.name,
@@ -283,7 +283,7 @@ std::string MeasuredNames(std::string_view name) {
 
 std::string BodyNames(std::string_view prefix) {
   std::string text = fmt::format("{}body_kind", prefix);
-  for (const auto& quantity : kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     text += ", " + MeasuredNames(fmt::format("{}{}", prefix, quantity.name));
   }
   return text;
@@ -291,7 +291,7 @@ std::string BodyNames(std::string_view prefix) {
 
 void AddBody(Statement& statement, const core::Body& body) {
   statement.Add(core::Name(body.kind));
-  for (const auto& quantity : kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     AddMeasured(statement, body.*quantity.member);
   }
 }
@@ -301,7 +301,7 @@ core::Body TakeBody(Statement& statement) {
   // The column's CHECK allows these two words only.
   body.kind = core::ParseBodyKind(statement.TakeText())
                   .value_or(core::BodyKind::kSphere);
-  for (const auto& quantity : kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     body.*quantity.member = TakeMeasured(statement);
   }
   return body;
@@ -313,7 +313,7 @@ void InsertStatement(Connection& connection, std::int64_t revision_id,
       "INSERT INTO statements (revision_id, clip_path, angle_kind, {}, "
       "set_angle_rad, set_speed_mps, contacts, software_version, options_hash, "
       "document_json) VALUES ({})",
-      BodyNames(""), Placeholders(10 + 5 * kBodyQuantities.size()));
+      BodyNames(""), Placeholders(10 + 5 * core::kBodyQuantities.size()));
   Statement insert(connection, sql);
   insert.Add(revision_id)
       .Add(trial.clip.path)
@@ -442,7 +442,7 @@ RevisionRow TakeRevision(Connection& connection, Statement& row) {
     core::BudgetLine line;
     line.source = lines.TakeText();
     line.u = lines.TakeReal();
-    for (const auto& budget : kBudgets) {
+    for (const auto& budget : core::kBudgets) {
       if (budget.name == which) {
         (contact.*budget.member).push_back(std::move(line));
         break;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 
 namespace touchdown::db {
 namespace {
@@ -84,7 +84,7 @@ Group BodyGroup() {
   Group group{
       "body_kind TEXT NOT NULL CHECK (body_kind IN ('sphere', 'rectangle'))",
       ""};
-  for (const auto& quantity : kBodyQuantities) {
+  for (const auto& quantity : core::kBodyQuantities) {
     const Group one = MeasuredGroup(quantity.name);
     group.columns += ",\n  " + one.columns;
     group.checks += (group.checks.empty() ? "" : ",\n") + one.checks;
@@ -94,7 +94,7 @@ Group BodyGroup() {
 
 Group ContactGroup() {
   Group group;
-  for (const auto& quantity : kContactQuantities) {
+  for (const auto& quantity : core::kContactQuantities) {
     const Group one = MeasuredGroup(quantity.name);
     group.columns += (group.columns.empty() ? "  " : ",\n  ") + one.columns;
     group.checks += (group.checks.empty() ? "" : ",\n") + one.checks;

@@ -7,8 +7,8 @@
 #include "register_rows.h"
 #include "schema_parts.h"
 #include "touchdown/core/edge_unit.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 #include "touchdown/db/views.h"
 
@@ -84,7 +84,7 @@ class Maker {
   void Body(std::string_view table) {
     Text("body_kind", fmt::format("{}.body_kind", table),
          "sphere or rectangle");
-    for (const auto& quantity : kBodyQuantities) {
+    for (const auto& quantity : core::kBodyQuantities) {
       Measured(quantity.name, table, std::string(quantity.meaning));
     }
   }
@@ -236,7 +236,7 @@ std::pair<View, std::string> Contacts() {
   view.Text("state_because", "f.state_because", "evidence of the state");
   view.Integer("micro_bounce", "f.micro_bounce",
                "1: it left the ground below the bounce height");
-  for (const auto& quantity : kContactQuantities) {
+  for (const auto& quantity : core::kContactQuantities) {
     view.Measured(quantity.name, "f", std::string(quantity.meaning));
   }
   return view.Done(std::string(kTrials) +

@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 
-#include "app/report/zip_file.h"
 #include "app/text/text_file.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
@@ -16,27 +15,6 @@ namespace touchdown::report {
 namespace {
 
 using ::testing::HasSubstr;
-
-// The check value of the CRC catalogues.
-TEST(Crc32, OfTheUsualNineDigits) {
-  EXPECT_EQ(Crc32("123456789"), 0xCBF43926U);
-  EXPECT_EQ(Crc32(""), 0U);
-}
-
-// Byte by byte as the specification has it.
-TEST(ZipArchive, OneStoredFile) {
-  const ZipEntry entry{"a/b", "hi"};
-  const std::string zip = ZipArchive({&entry, 1});
-  constexpr std::size_t kLocal = 30 + 3 + 2;
-  constexpr std::size_t kCentral = 46 + 3;
-  ASSERT_EQ(zip.size(), kLocal + kCentral + 22);
-  EXPECT_EQ(zip.substr(0, 4), "PK\x03\x04");
-  EXPECT_EQ(zip.substr(30, 5), "a/bhi");
-  EXPECT_EQ(zip.substr(kLocal, 4), "PK\x01\x02");
-  EXPECT_EQ(zip.substr(kLocal + kCentral, 4), "PK\x05\x06");
-  // The directory begins where the end record says.
-  EXPECT_EQ(static_cast<unsigned char>(zip[kLocal + kCentral + 16]), kLocal);
-}
 
 TEST(WriteEln, IsACrateOfTheReport) {
   const testing::TemporaryFolder folder;

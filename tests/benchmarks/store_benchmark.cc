@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/db/fixture.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::db {
@@ -24,7 +24,7 @@ core::Trial AnalyzedTrial(int number, const std::string& campaign) {
   core::Trial trial = SphereTrial(number, campaign);
   trial.clip.sha256 = std::string(56, 'a') + std::to_string(10000000 + number);
   for (std::size_t i = 0; i < 14; ++i) {
-    At(trial.first, kContactQuantities.at(i)) =
+    At(trial.first, core::kContactQuantities.at(i)) =
         core::Estimate{0.1 + 0.001 * number, 0.001, std::nullopt};
   }
   trial.first.contact.approach_budget = {{"localisation", 0.01},

@@ -11,7 +11,7 @@
 #include "tests/db/fixture.h"
 #include "tests/support/random_trials.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 
 namespace touchdown::db {
 namespace {
@@ -51,13 +51,13 @@ void ExpectSame(const core::Trial& a, const core::Trial& b) {
   EXPECT_EQ(a.origin, b.origin);
   EXPECT_EQ(a.clip, b.clip);
   EXPECT_EQ(a.body, b.body);
-  for (const auto& q : kBodyQuantities) {
+  for (const auto& q : core::kBodyQuantities) {
     ExpectSameBits(a.body.*q.member, b.body.*q.member);
   }
   EXPECT_EQ(a.angle_kind, b.angle_kind);
   EXPECT_EQ(a.first, b.first);
   EXPECT_EQ(a.later, b.later);
-  for (const auto& q : kContactQuantities) {
+  for (const auto& q : core::kContactQuantities) {
     ExpectSameBits(At(a.first, q), At(b.first, q));
     for (std::size_t i = 0; i < a.later.size(); ++i) {
       ExpectSameBits(At(a.later[i], q), At(b.later[i], q));

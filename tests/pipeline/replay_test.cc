@@ -15,7 +15,7 @@
 #include "app/measure/judge.h"
 #include "tests/pipeline/film_file.h"
 #include "tests/support/temporary_folder.h"
-#include "touchdown/db/quantities.h"
+#include "touchdown/core/quantities.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -44,9 +44,9 @@ struct Shot {
 // Both there or both absent; values within `share` of their u.
 void ExpectSame(const core::ContactRecord& a, const core::ContactRecord& b,
                 double share) {
-  for (const auto& quantity : db::kContactQuantities) {
-    const core::Measured& x = db::At(a, quantity);
-    const core::Measured& y = db::At(b, quantity);
+  for (const auto& quantity : core::kContactQuantities) {
+    const core::Measured& x = core::At(a, quantity);
+    const core::Measured& y = core::At(b, quantity);
     ASSERT_EQ(x.has_value(), y.has_value()) << quantity.name;
     if (!x) continue;
     // A limit of detection has no u of its own.

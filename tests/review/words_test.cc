@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/quantities.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::review {
@@ -13,8 +13,8 @@ namespace {
 
 TEST(Words, EveryNumberOfAContactIsShownOnce) {
   const auto columns = ColumnsInOrder();
-  ASSERT_EQ(columns.size(), db::kContactQuantities.size());
-  for (const auto& quantity : db::kContactQuantities) {
+  ASSERT_EQ(columns.size(), core::kContactQuantities.size());
+  for (const auto& quantity : core::kContactQuantities) {
     EXPECT_EQ(std::ranges::count(columns, quantity.name), 1) << quantity.name;
   }
 }
@@ -26,10 +26,10 @@ TEST(Words, NoPersonReadsAFieldNameOrARadian) {
     EXPECT_FALSE(label.ends_with(" rad")) << label;
     EXPECT_EQ(label.find("rad/"), std::string::npos) << label;
   };
-  for (const auto& quantity : db::kContactQuantities) expect(quantity.name);
-  for (const auto& quantity : db::kBodyQuantities) expect(quantity.name);
+  for (const auto& quantity : core::kContactQuantities) expect(quantity.name);
+  for (const auto& quantity : core::kBodyQuantities) expect(quantity.name);
   for (const auto& quantity : db::kConditionQuantities) expect(quantity.name);
-  for (const auto& budget : db::kBudgets) {
+  for (const auto& budget : core::kBudgets) {
     expect(std::string(budget.name) + "_budget");
   }
 }
