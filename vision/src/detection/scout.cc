@@ -95,13 +95,26 @@ void Join(std::vector<ChangedRegion>& regions) {
   }
 }
 
-double Quantile(std::vector<float>& values, double share) {
+// The value at `share` of the sorted values. `larger` of them are above
+// `bound`: where it is one of these, only they are sorted.
+double Quantile(std::vector<float>& values, double share, float bound,
+                std::size_t larger) {
   if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(
-                           share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
+  auto at =
+      static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::size_t kept = values.size();
+  if (at >= values.size() - larger) {
+    at -= values.size() - larger;
+    kept = 0;
+    for (const float value : values) {
+      values[kept] = value;  // written always, kept or not: no branch
+      kept += static_cast<std::size_t>(value > bound);
+    }
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(at);
+  std::nth_element(values.begin(), middle,
+                   values.begin() + static_cast<std::ptrdiff_t>(kept));
+  return static_cast<double>(*middle);
 }
 
 }  // namespace
@@ -143,6 +156,8 @@ Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
   constexpr double kHighShare = 0.98;
   // Ratio below which the noise counts as 1. Smaller sorts in every frame.
   constexpr double kMinToldRatio = 1.1;
+  constexpr auto kLarge = static_cast<float>(kMinToldRatio * kMedianOfNormal);
+  constexpr auto kBeyond = static_cast<float>(kMinToldRatio * kHighOfNormal);
   const std::size_t segments = At(segments_);
   const std::size_t all_rows = off.size() / std::max<std::size_t>(1, segments);
   std::array<std::vector<float>, kParts * kParts> parts;
@@ -156,7 +171,7 @@ Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
     for (; s < segments; s += kStep) {
       const float value = off[row * segments + s];
       parts[down + s * kParts / segments].push_back(value);
-      large += value > static_cast<float>(kMinToldRatio * kMedianOfNormal);
+      large += value > kLarge;
       ++count;
     }
     s -= segments;
@@ -168,22 +183,22 @@ Scout::Noise Scout::MeasureNoise(const std::vector<float>& off) const {
     for (const auto& part : parts) {
       some.insert(some.end(), part.begin(), part.end());
     }
-    noise.typical = Quantile(some, 0.5) / kMedianOfNormal;
+    noise.typical = Quantile(some, 0.5, kLarge, large) / kMedianOfNormal;
   }
   std::vector<float> high;
   for (std::vector<float>& part : parts) {
     if (part.empty()) continue;
-    const auto beyond =
-        std::count_if(part.begin(), part.end(), [](float value) {
-          return value > static_cast<float>(kMinToldRatio * kHighOfNormal);
-        });
+    const auto beyond = static_cast<std::size_t>(std::count_if(
+        part.begin(), part.end(), [](float value) { return value > kBeyond; }));
     const double share =
         static_cast<double>(beyond) / static_cast<double>(part.size());
-    high.push_back(share < 1.0 - kHighShare
-                       ? 1.0F
-                       : static_cast<float>(Quantile(part, kHighShare)));
+    high.push_back(
+        share < 1.0 - kHighShare
+            ? 1.0F
+            : static_cast<float>(Quantile(part, kHighShare, kBeyond, beyond)));
   }
-  noise.tail = std::max(noise.typical, Quantile(high, 0.5) / kHighOfNormal);
+  noise.tail =
+      std::max(noise.typical, Quantile(high, 0.5, 0.0F, 0) / kHighOfNormal);
   return noise;
 }
 
