@@ -64,7 +64,8 @@ ShapeCover::ShapeCover(const Shape& shape, double blur)
       half_short_(static_cast<float>(shape.half_short)),
       per_blur_(static_cast<float>(1.0 / blur)),
       bend_(static_cast<float>(
-          shape.disc ? 0.5 * blur / std::max(shape.half_long, blur) : 0.0)) {
+          shape.disc ? 0.5 * blur / std::max(shape.half_long, blur) : 0.0)),
+      by_long_(1.0F + bend_ / (half_long_ * per_blur_)) {
   const float narrow = disc_ ? half_long_ : half_short_;
   const float rim = (NormalTable::kReach + bend_) / per_blur_;
   const float inside = std::max(0.0F, narrow - rim);
@@ -72,20 +73,6 @@ ShapeCover::ShapeCover(const Shape& shape, double blur)
                               : std::hypot(half_long_ + rim, half_short_ + rim);
   inside_ = inside * inside;
   outside_ = outside * outside;
-}
-
-CoverAt ShapeCover::CoverOfDisc(float x, float y) const {
-  CoverAt at;
-  const float distance = std::sqrt(x * x + y * y) + 1e-6F;
-  const float z = (half_long_ - distance) * per_blur_ - bend_;
-  float density = 0.0F;
-  table_.Look(z, at.value, density);
-  const float slope = density * per_blur_;
-  at.by_x = -slope * x / distance;
-  at.by_y = -slope * y / distance;
-  at.by_long = slope * (1.0F + bend_ / (half_long_ * per_blur_));
-  at.by_blur = -slope * (z + 2.0F * bend_);
-  return at;
 }
 
 CoverAt ShapeCover::CoverOfRectangle(float x, float y) const {

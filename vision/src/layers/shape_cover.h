@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "layers/edge_product.h"
@@ -82,14 +83,27 @@ class ShapeCover {
     const float square = x * x + y * y;
     if (square < inside_) return {.value = 1.0F};
     if (square > outside_) return {};
-    return disc_ ? CoverOfDisc(x, y) : CoverOfRectangle(x, y);
+    return disc_ ? CoverOfDisc(x, y, square) : CoverOfRectangle(x, y);
   }
   // `cosine`, `sine`: of the body's direction, in which x and y are.
   Product WithEdge(float x, float y, const StillEdge& edge, float cosine,
                    float sine) const;
 
  private:
-  CoverAt CoverOfDisc(float x, float y) const;
+  CoverAt CoverOfDisc(float x, float y, float square) const {
+    CoverAt at;
+    const float distance = std::sqrt(square) + 1e-6F;
+    const float z = (half_long_ - distance) * per_blur_ - bend_;
+    float density = 0.0F;
+    table_.Look(z, at.value, density);
+    const float slope = density * per_blur_;
+    const float outward = slope / distance;
+    at.by_x = -outward * x;
+    at.by_y = -outward * y;
+    at.by_long = slope * by_long_;
+    at.by_blur = -slope * (z + 2.0F * bend_);
+    return at;
+  }
   CoverAt CoverOfRectangle(float x, float y) const;
 
   const NormalTable& table_;
@@ -101,7 +115,8 @@ class ShapeCover {
   float half_long_;
   float half_short_;
   float per_blur_;
-  float bend_;  // s / (2 a) of a disc
+  float bend_;     // s / (2 a) of a disc
+  float by_long_;  // of z by a disc's radius, in 1 / s
 };
 
 }  // namespace touchdown::vision::layers
