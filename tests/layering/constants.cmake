@@ -17,10 +17,12 @@ set(folders
     vision/src/explanation
     vision/src/footage
     vision/src/numbers
+    vision/src/layers
     vision/src/outline
     vision/src/overlay
     vision/src/synthetic
-    vision/src/track)
+    vision/src/track
+    vision/src/tracking)
 set(breaches "")
 foreach(folder IN LISTS folders)
   file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/${folder}/*.h"

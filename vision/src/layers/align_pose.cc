@@ -18,7 +18,10 @@ namespace {
 void WeighByLayers(const Layers& layers, const LayerPose& motion,
                    FrameSamples& samples) {
   constexpr float kLeastStill = 0.3F;  // below, B was never seen
+  // Share from which on the body alone is seen, and B need not be known.
   constexpr float kWhole = 0.95F;
+  // Frames that an error of B can be shared by: of a body that stands still, no
+  // more. Larger widens slow bodies without end. Not studied.
   constexpr float kMostFrames = 40.0F;
   const auto edge = static_cast<float>(4.0 * layers.blur);  // its width, px
   const auto v_x = static_cast<float>(motion.x);
@@ -146,8 +149,12 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
 PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
                   const Layers& layers, const LayerPose& start,
                   const LayerPose& motion, bool turns) {
+  // Of Gauss and Newton: a bound on time, mostly not reached. Not studied.
   constexpr int kSteps = 5;
+  // The step after which no other is taken: small beside a pose's u, which is
+  // some hundredths of a pixel.
   constexpr double kStill_px = 2e-3;
+  // Fewer do not tell three numbers and how far they scatter. Not studied.
   constexpr std::size_t kLeastPixels = 12;
   PoseFit out;
   out.pose = start;

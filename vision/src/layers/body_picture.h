@@ -20,7 +20,7 @@ struct SplineWeights {
   std::array<float, 4> at;
   explicit SplineWeights(float share) {
     const float rest = 1.0F - share;
-    constexpr float kSixth = 1.0F / 6.0F;
+    constexpr float kSixth = 1.0F / 6.0F;  // of the cubic B-spline's weights
     at[0] = rest * rest * rest * kSixth;
     at[1] = (4.0F + share * share * (3.0F * share - 6.0F)) * kSixth;
     at[2] = (4.0F + rest * rest * (3.0F * rest - 6.0F)) * kSixth;

@@ -9,6 +9,7 @@ namespace {
 
 double Phi(double z) { return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0); }
 
+// 1 / (2 pi), of the normal density of two variables.
 constexpr float kPerTwoPi = static_cast<float>(0.5 * std::numbers::inv_pi);
 // Parallel edges are taken as a little askew: the integrand stays finite.
 constexpr float kMostRho = 0.9999F;
@@ -17,6 +18,7 @@ constexpr float kMostRho = 0.9999F;
 
 // The curvature over the step falls from 1 to -1 as z grows.
 EdgeTable::EdgeTable(double blur) {
+  // Blurs from the edge, as from the body's own (kFar in shape_cover.cc).
   constexpr double kFarthest = 3.5;
   const double h = 1.0 / blur;
   const auto step = [h](double z) { return Phi(z + h) - Phi(z - h); };
@@ -37,6 +39,7 @@ EdgeTable::EdgeTable(double blur) {
   };
   double before = ratio(-kFarthest);
   fill_down_to(before, -kFarthest, 0.0);
+  // Between two steps, in blurs.
   constexpr double kApart = 2.0 * kFarthest / kSteps;
   for (std::size_t n = 1; n <= kSteps && left > 0; ++n) {
     const double z = kApart * static_cast<double>(n) - kFarthest;
@@ -44,7 +47,7 @@ EdgeTable::EdgeTable(double blur) {
     fill_down_to(here, z, kApart / (here - before));
     before = here;
   }
-  constexpr double kNone = -2.0;
+  constexpr double kNone = -2.0;  // below every ratio: fills what is left
   fill_down_to(kNone, kFarthest, 0.0);
 }
 
@@ -89,9 +92,11 @@ StillEdge StillEdges::FindEdge(std::int32_t pixel) {
 }
 
 float EdgeProduct(float z1, float z2, float rho) {
+  // Gauss's, of six points, on 0 to 1.
   static constexpr std::array<float, 6> kNodes = {0.033765243F, 0.169395307F,
                                                   0.380690407F, 0.619309593F,
                                                   0.830604693F, 0.966234757F};
+  // Of these nodes; their sum is 1.
   static constexpr std::array<float, 6> kWeights = {0.085662246F, 0.180380787F,
                                                     0.233956967F, 0.233956967F,
                                                     0.180380787F, 0.085662246F};

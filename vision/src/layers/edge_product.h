@@ -41,6 +41,7 @@ class EdgeTable {
   Place Look(float curvature) const;
 
  private:
+  // Of the curvature from -1 to 1, and linear between them. Not studied.
   static constexpr std::size_t kCells = 128;
   std::array<float, kCells + 1> z_{};
   std::array<float, kCells + 1> share_{};

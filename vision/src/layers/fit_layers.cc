@@ -32,6 +32,7 @@ void LinearizeAll(const PictureStack& stack, const Layers& layers,
 // Root mean square of the residuals, those beyond four standard deviations
 // counted as that.
 double MeasureNoise(const std::vector<FrameSamples>& frames, double before) {
+  // Standard deviations, as in RobustWeight.
   constexpr double kCut = 4.0;
   double sum = 0.0;
   double count = 0.0;
@@ -58,6 +59,7 @@ void Reweigh(double noise_dn, std::vector<FrameSamples>& frames) {
 
 // The level that most of the body shows.
 float MeanLevel(const std::vector<FrameSamples>& frames) {
+  // Coverage from which on a pixel shows the body alone.
   constexpr float kWhole = 0.95F;
   double sum = 0.0;
   double count = 0.0;
@@ -109,8 +111,10 @@ void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
 // poses moved, px.
 double Advance(const JointStep& joint, const FitLayersOptions& options,
                LayerFit& fit) {
-  constexpr double kMostBlurStep = 0.3;
-  constexpr double kMostExposureStep = 0.2;
+  // Farther the model is not linear: the step would be one of another model.
+  // Smaller ones take more steps. Not studied.
+  constexpr double kMostBlurStep = 0.3;      // px
+  constexpr double kMostExposureStep = 0.2;  // of a frame
   constexpr double kMostSizeStep_px = 0.5;
   constexpr double kMostCurveStep = 0.5;
   Layers& layers = fit.layers;
@@ -180,6 +184,8 @@ double MeasureCurve(const PictureStack& stack, const FreePart& free,
     const JointStep joint =
         SolveJointStep(fit.layers, frames, evidence, free, solve);
     curve = fit.layers.curve + joint.shared[kCurve];
+    // Of the curve, which is 0 for a linear camera and 1.2 for a gamma of 0.45.
+    // Not studied.
     constexpr double kSettled = 0.02;
     if (curve < kWorthIt || std::abs(curve - before) < kSettled) break;
     Advance(joint, options, fit);
@@ -210,7 +216,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   layers.quadratic = {static_cast<double>(MeanLevel(frames))};
   if (options.textured) LearnTexture(layers);
 
-  constexpr double kHeld = 0.0;
+  constexpr double kHeld = 0.0;  // u of the curve: it is not fitted yet
   JointStepOptions solve = SolveOptions(options, kHeld);
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;

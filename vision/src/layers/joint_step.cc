@@ -167,6 +167,7 @@ class NormalEquations {
   void Precondition(const Unknowns& in, Unknowns& out) const;
 
  private:
+  // Precision of what is not fitted, far above any that pixels give.
   static constexpr double kHeld = 1e15;
 
   // work(samples, frame, part) over all frames, part by part.

@@ -16,6 +16,7 @@ struct Node {
 
 // More nodes where the body's farthest point moves more px in the exposure.
 std::span<const Node> ChooseNodes(double way) {
+  // Gauss's of one, two, three and five points, on -1/2 to 1/2.
   static constexpr std::array<Node, 1> kOne = {{{0.0, 1.0}}};
   static constexpr std::array<Node, 2> kTwo = {
       {{-0.28867513459481287, 0.5}, {0.28867513459481287, 0.5}}};
@@ -123,6 +124,7 @@ template <Derivatives kDerivatives>
 void LinearizeModel(const PictureStack& stack, std::size_t picture,
                     const Layers& layers, const LayerPose& pose,
                     const LayerPose& motion, FrameSamples& samples) {
+  // Whether those by the shared numbers are wanted, too.
   constexpr bool kAll = kDerivatives == Derivatives::kAll;
   // Below it a pixel shows nothing of the body.
   constexpr float kLeastCover = 2e-4F;

@@ -118,6 +118,7 @@ void LearnTexture(Layers& layers);
 
 // Cauchy's, at four standard deviations of noise.
 inline float RobustWeight(float residual, double noise_dn) {
+  // Standard deviations: less gives weight away, more lets an occluder pull.
   constexpr float kCut = 4.0F;
   const float off = residual / (kCut * static_cast<float>(noise_dn));
   return 1.0F / (1.0F + off * off);

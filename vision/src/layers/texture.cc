@@ -12,6 +12,7 @@ namespace touchdown::vision::layers {
 double MeasureCommonTexture(const PictureStack& stack, const Layers& layers,
                             const std::vector<LayerPose>& poses,
                             const std::vector<FrameSamples>& frames) {
+  // Coverage from which on a pixel shows the body alone.
   constexpr float kWhole = 0.97F;
   std::vector<double> sums(layers.grid.size());
   std::vector<double> counts(layers.grid.size());
@@ -31,6 +32,7 @@ double MeasureCommonTexture(const PictureStack& stack, const Layers& layers,
       counts[cell] += 1.0;
     }
   }
+  // Frames: the mean of fewer is mostly noise.
   constexpr double kEnough = 3.0;
   const double variance = layers.noise_dn * layers.noise_dn;
   double texture2 = 0.0;
@@ -65,6 +67,8 @@ std::vector<float> WeighPicture(const Layers& layers,
 // inside of the blurred edge, where T is not to be mistaken for the outline's
 // place.
 double MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
+  // Inside of the half sides: nearer, an error of the outline looks like
+  // texture.
   constexpr double kBlurs = 1.5;
   constexpr double kLeastHalf = 0.3;  // of a thin body's half side
   using TermVector = Eigen::Matrix<double, 6, 1>;
@@ -95,6 +99,7 @@ double MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
     right += static_cast<double>(layers.picture[c]) * terms;
     inside.emplace_back(c, terms);
   }
+  // Twice the six numbers of the quadratic: fewer leave no scatter to measure.
   constexpr std::size_t kLeastCells = 12;
   if (inside.size() < kLeastCells) return layers.texture_dn;
   normal.diagonal().array() += 1e-6;

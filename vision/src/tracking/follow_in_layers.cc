@@ -67,9 +67,11 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   FitLayersOptions options;
   auto& value = options.prior.value;
   auto& u = options.prior.u;
+  // px, of the first guess: a sharper one converges from nearer by only.
   constexpr double kLeastBlur = 0.7;
   value[layers::kBlur] = std::max(track.body.blur_px, kLeastBlur);
   u[layers::kBlur] = 0.5;
+  // Of a frame's interval, where no blur has told one yet; u is as large.
   constexpr double kUsualExposure = 0.3;
   value[layers::kExposure] = track.body.shutter_fraction > 0.0
                                  ? track.body.shutter_fraction
@@ -77,6 +79,8 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   u[layers::kExposure] = 0.3;
   value[layers::kLong] = shape.half_long;
   value[layers::kShort] = shape.half_short;
+  // px, of a half side that is stated: less would hold it where edges are not
+  // of the model's shape. Not studied.
   constexpr double kLeastU = 0.02;
   constexpr double kSeenU = 0.3;  // where only the outline tells
   u[layers::kLong] = size ? std::max(0.5 * size->long_px.u, kLeastU) : kSeenU;
@@ -88,7 +92,7 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   u[layers::kSlopeY] = slope;
   // A disc's shading and size look alike: only corners tell.
   u[layers::kCurve] = shape.disc ? 0.0 : 1.0;
-  constexpr double kAnyLevel_dn = 1e4;
+  constexpr double kAnyLevel_dn = 1e4;  // as good as free
   for (std::size_t k = 0; k < layers::kTerms; ++k) {
     u[layers::kQuadratic + k] = kAnyLevel_dn;
   }
@@ -124,7 +128,7 @@ Pose MakePose(const PoseFit& at, const core::PixelRect& box,
   pose.angle_rad = at.pose.angle_rad;
   pose.u_x_px = std::sqrt(at.covariance[0][0]);
   pose.u_y_px = std::sqrt(at.covariance[1][1]);
-  constexpr double kMost = 0.99;
+  constexpr double kMost = 0.99;  // a covariance that can be inverted
   pose.correlation_xy = std::clamp(
       at.covariance[0][1] / (pose.u_x_px * pose.u_y_px), -kMost, kMost);
   pose.u_angle_rad = std::sqrt(std::max(at.covariance[2][2], 0.0));
@@ -137,7 +141,7 @@ Pose MakePose(const PoseFit& at, const core::PixelRect& box,
 // residuals' correlation adds to a pose's u, as a share of noise over
 // steepness; the share is that of 350 clips in MJPEG and H.264 (crf 17 and 23).
 double CodecDrift(const PoseFit& at, double noise_dn) {
-  constexpr double kOfNoise = 0.45;
+  constexpr double kOfNoise = 0.45;  // the share
   const double steep = std::max(at.steepness[0], at.steepness[1]);
   if (at.widened <= 1.0 || steep <= 0.0) return 0.0;
   return kOfNoise * noise_dn / steep * (at.widened - 1.0);
@@ -155,6 +159,8 @@ double MeasureGrowth(const Track& track) {
 // Frames that are much worse explained than the others show something else: an
 // occluder, or the body where it leaves the picture.
 void DropUnexplained(std::vector<Pose>& poses) {
+  // Times the median misfit. Less drops frames at the ground's edge. Not
+  // studied.
   constexpr double kUsual = 2.0;
   const double most = kUsual * MedianMisfit(poses);
   std::erase_if(poses, [most](const Pose& pose) { return pose.misfit > most; });
@@ -196,6 +202,7 @@ Evidence GatherEvidence(Clip& clip, const Background& background,
 bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
                 const FitLayersOptions& options, Evidence& evidence) {
   FitLayersOptions coarse = HalvedOptions(options);
+  // A bound on time: the fit at full resolution goes on from there.
   constexpr int kCoarseSteps = 6;
   coarse.steps = kCoarseSteps;
   const Shape half{shape.disc, 0.5 * shape.half_long, 0.5 * shape.half_short};
@@ -230,7 +237,7 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
 // are held.
 void PrepareForTexture(const std::optional<BodySize>& size,
                        FitLayersOptions& options, Evidence& evidence) {
-  constexpr std::size_t kMostTextured = 40;
+  constexpr std::size_t kMostTextured = 40;  // pictures
   options.textured = true;
   const auto chosen = SpreadEvenly(evidence.path.frames.size(), kMostTextured);
   if (chosen.size() < evidence.path.frames.size()) {

@@ -150,6 +150,8 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
 PictureReader::PictureReader(Clip& clip, const std::vector<float>& still,
                              const Shape& shape, const core::PixelRect& box)
     : clip_(clip), still_(still), box_(box) {
+  // Around the body: what a rough pose may be off, and the blurred edge. More
+  // takes memory and time.
   constexpr double kRoom_px = 12.0;
   reach_px_ = shape.Reach() + kRoom_px;
 }

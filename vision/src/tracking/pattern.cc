@@ -14,6 +14,7 @@
 namespace touchdown::vision {
 namespace {
 
+// Of a cell that nothing was seen of.
 constexpr double kNoLevel = std::numeric_limits<double>::quiet_NaN();
 
 // Keys' cubic convolution (IEEE Trans. Acoust. Speech Signal Process. 29, 1981,
