@@ -2,6 +2,7 @@
 #   sqlite3.h      only in db/src and in its tests
 #   OpenCV         only in calib/src and vision/src
 #   spdlog         never in a header
+#   CLI11          only where the whole command line is parsed or described
 #   app/           never included by a module
 # Usage: cmake -D ROOT=<source tree> -P includes.cmake
 file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/*.h" "${ROOT}/*.cc")
@@ -21,6 +22,11 @@ foreach(file IN LISTS files)
     endif()
     if(line MATCHES "spdlog/" AND file MATCHES "\\.h$")
       list(APPEND breaches "${file}: ${line} (spdlog stays out of headers)")
+    endif()
+    if(line MATCHES "CLI/"
+       AND NOT file MATCHES "^app/cli/(options|main|command_tree|defaults)\\.cc$")
+      list(APPEND breaches
+           "${file}: ${line} (CLI11 stands behind app/cli/options.h)")
     endif()
     if(line MATCHES "[\"<]app/" AND NOT file MATCHES "^(app|tests)/")
       list(APPEND breaches "${file}: ${line} (modules do not know app)")
