@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "layers/edge_product.h"
@@ -130,10 +131,10 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   constexpr float kLeastCover = 2e-4F;
   constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
 
-  samples.Resize(0, kDerivatives);
   const SampleWindow window =
       ComputeSampleWindow(stack, picture, layers, pose, motion);
   if (window.right <= window.left || window.bottom <= window.top) {
+    samples.Resize(0, kDerivatives);
     return;
   }
   const double reach = layers.shape.Reach();
@@ -188,7 +189,7 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
       const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);
       const float step_y =
           0.5F * (still[pixel + stack.width] - still[pixel - stack.width]);
-      const StillEdge edge = edges.FindEdge(pixel);
+      std::optional<StillEdge> edge;  // looked for where the body's own is
       float covered = 0.0F;
       float lifted = 0.0F;  // by what covers it: sum of w M (T + S - B)
       float model = behind;
@@ -226,11 +227,15 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
           t_y += node.sine * tilt.by_x + node.cosine * tilt.by_y;
         }
         Product product;
-        if (edge.contrast != 0.0F) {
-          product = cover.WithEdge(x, y, edge, node.cosine, node.sine);
-        } else if (std::max(std::abs(step_x), std::abs(step_y)) < most_slope) {
-          t_x -= step_x;
-          t_y -= step_y;
+        if (m.by_long != 0.0F || m.by_short != 0.0F) {
+          if (!edge) edge = edges.FindEdge(pixel);
+          if (edge->contrast != 0.0F) {
+            product = cover.WithEdge(x, y, *edge, node.cosine, node.sine);
+          } else if (std::max(std::abs(step_x), std::abs(step_y)) <
+                     most_slope) {
+            t_x -= step_x;
+            t_y -= step_y;
+          }
         }
         const float own = m_x * t_x + m_y * t_y;
         covered += shares[k];
