@@ -267,6 +267,37 @@ TEST(Contact, CornerIsTheOneThatTouches) {
   }
 }
 
+// What a neighbouring answer differs by is then the number that was changed.
+TEST(Contact, OnItsOwnPathTheAnswerIsTheSame) {
+  for (const double face : {-25.0_deg, 0.0_deg, 8.0_deg}) {
+    SCOPED_TRACE(face / core::kDegree);
+    Throw thrown = Block(face);
+    thrown.before = {1.2, -0.9, 3.0};
+    Rebound(thrown, 0.6);
+    Filming filming;
+    filming.frames = 38;
+    PlaneTrack track = FilmPlane(thrown, filming);
+    ContactOptions options = WithScale(filming);
+    const ContactResult result = FindContacts(track, options);
+    ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
+    options.path = result.path;
+    const ContactResult again = FindContacts(track, options);
+    ASSERT_TRUE(again.first.contact.found) << again.first.contact.reason;
+    const core::Estimate angle = *result.first.contact.approach_angle_rad;
+    EXPECT_NEAR(again.first.contact.approach_angle_rad->value, angle.value,
+                1e-6 * angle.u);
+    // Another rate measures the same stretches.
+    track.frame_interval_s *= 1.02;
+    for (PlaneSample& s : track.samples) s.time_s *= 1.02;
+    const ContactResult slower = FindContacts(track, options);
+    ASSERT_EQ(slower.path.size(), result.path.size());
+    for (std::size_t i = 0; i < result.path.size(); ++i) {
+      EXPECT_EQ(slower.path[i].first_frame, result.path[i].first_frame);
+      EXPECT_EQ(slower.path[i].last_frame, result.path[i].last_frame);
+    }
+  }
+}
+
 TEST(Contact, FaceAngleLiesInItsHalfTurn) {
   for (double face = -170.0; face <= 180.0; face += 17.5) {
     Throw thrown = Block(std::remainder(face, 180.0) * core::kDegree);
