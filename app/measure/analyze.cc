@@ -11,6 +11,7 @@
 #include "app/measure/answer_check.h"
 #include "app/measure/body_size.h"
 #include "app/measure/check_options.h"
+#include "app/measure/choose_ground.h"
 #include "app/measure/clip_calibration.h"
 #include "app/measure/footage.h"
 #include "app/measure/journal.h"
@@ -23,7 +24,6 @@
 #include "app/text/version.h"
 #include "touchdown/calib/ground_lines.h"
 #include "touchdown/vision/background/background.h"
-#include "touchdown/vision/contact/supported_path.h"
 #include "touchdown/vision/detection/frame_store.h"
 #include "touchdown/vision/explanation/explained_change.h"
 #include "touchdown/vision/footage/clip_digest.h"
@@ -35,24 +35,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Wall time in seconds since `start`: what the document's timing_s holds.
 double Since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-struct Judged {
-  calib::GroundLine ground;
-  vision::Track track;  // refined with this ground
-  vision::PlaneTrack plane;
-  vision::ContactResult contacts;
-};
-
-// How well a line serves as the ground of this track; more is better.
-int Merit(const vision::ContactResult& result) {
-  if (!result.ground_refuted.empty()) return 0;
-  if (!result.first.contact.found) return 1;
-  return 2;
-}
-
+// One clip, whose options and calibration were checked, to one Analysis. Data
+// flow in one direction: the track comes from the pixels, the ground from the
+// track and the still picture, the refined track from the pixels again, and all
+// else from the refined track.
 class Analyzer {
  public:
   Analyzer(Footage footage, const ClipCalibration& camera,
@@ -67,17 +58,17 @@ class Analyzer {
   Analysis Run();
 
  private:
+  // The track as a camera without distortion would show it.
   vision::Track Seen(const vision::Track& track) const {
     return ToIdealPicture(camera_, track);
   }
   // The scale, the body's size and what hangs on them, from a track.
   void TakeSize(const vision::Track& track);
-  Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
+  std::vector<calib::GroundLine> FindVisibleLines() const;
+  void MeasureContacts(const calib::GroundLine& ground,
+                       const vision::Track& track);
   void MeasureExplained();
   void JudgeSeveralBodies();
-  std::optional<Judged> JudgeBest(
-      const std::vector<calib::GroundLine>& candidates,
-      const vision::Track& track);
   void FindGroundAndContacts(vision::Track track);
   void DescribeScene();
   // How what need not be waited for is done.
@@ -87,6 +78,8 @@ class Analyzer {
   }
 
   const AnalyzeOptions& options_;
+  // The clip stands apart, because the last step hands it to a thread of its
+  // own.
   Footage footage_;  // but for the clip
   std::unique_ptr<vision::Clip> clip_;
   Analysis result_;
@@ -98,6 +91,8 @@ class Analyzer {
   std::future<void> given_back_;  // the last: it uses the clip
 };
 
+// Called after each fit of the outlines: a scale that comes of the body's own
+// size moves with its radius, and the contacts need the newest one.
 void Analyzer::TakeSize(const vision::Track& track) {
   const vision::BodyImage body = Seen(track).body;
   result_.scale = FindScale(options_, body);
@@ -113,156 +108,82 @@ void Analyzer::TakeSize(const vision::Track& track) {
   contact_options_ = MakeContactOptions(options_, camera_, result_.scale);
 }
 
-Judged Analyzer::Judge(const calib::GroundLine& ground,
-                       const vision::Track& track) {
-  clip_->cancellation().Check();
-  Judged judged;
-  judged.ground = ground;
+// Straight edges of the still picture, the likeliest ground first.
+std::vector<calib::GroundLine> Analyzer::FindVisibleLines() const {
+  // The background's own noise: that of a frame over the square root of the
+  // frames averaged.
+  const calib::StillImage still{background_.level.data(), background_.width_px,
+                                background_.height_px,
+                                std::sqrt(background_.UsualVariance() / 8.0)};
+  calib::GroundLineOptions options;
+  options.lens = camera_.lens;
+  options.threads = options_.decoder_threads;
+  return calib::FindGroundLines(still, options);
+}
+
+// The one look at the pixels near the ground, and the contacts on it.
+void Analyzer::MeasureContacts(const calib::GroundLine& ground,
+                               const vision::Track& track) {
   calib::GroundLine in_image = ground;
   if (camera_.lens) {
     in_image = SeenGroundLine(SeenInPlane(camera_, Seen(track), ground),
                               *camera_.lens);
   }
-  judged.track = vision::Refine(*clip_, background_, track,
-                                {in_image, aspect_, options_.decoder_threads});
+  result_.ground = ground;
+  result_.track = vision::Refine(*clip_, background_, track,
+                                 {in_image, aspect_, options_.decoder_threads});
   // To give a large mapped file's pages back takes milliseconds: beside the
-  // rest. Mostly no other line is tried.
+  // rest.
   given_back_ =
       std::async(AsyncPolicy(), [clip = clip_.get()] { clip->HasRead(); });
-  TakeSize(judged.track);
-  judged.plane = SeenInPlane(
-      camera_, WithStatedSize(Seen(judged.track), options_), ground);
-  judged.contacts = FindPlaneContacts(judged.plane, contact_options_);
-  return judged;
+  TakeSize(*result_.track);
+  result_.plane = SeenInPlane(
+      camera_, WithStatedSize(Seen(*result_.track), options_), ground);
+  result_.contacts = FindPlaneContacts(*result_.plane, contact_options_);
 }
 
-// The one that serves best as the ground of this track; nothing of none.
-std::optional<Judged> Analyzer::JudgeBest(
-    const std::vector<calib::GroundLine>& candidates,
-    const vision::Track& track) {
-  // A first judgement by the track as it is; only the likely ones are worth
-  // fitting every outline again.
-  const vision::Track seen = Seen(track);
-  std::vector<std::pair<int, calib::GroundLine>> ranked;
-  for (const calib::GroundLine& candidate : candidates) {
-    if (!camera_.ideal_ground &&
-        PassesThroughGround(SeenInPlane(camera_, seen, candidate))) {
-      continue;
-    }
-    ranked.emplace_back(
-        candidates.size() == 1
-            ? 0
-            : Merit(FindPlaneContacts(SeenInPlane(camera_, seen, candidate),
-                                      contact_options_)),
-        candidate);
-  }
-  std::stable_sort(
-      ranked.begin(), ranked.end(),
-      [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::optional<Judged> best;
-  int best_merit = -1;
-  for (const auto& [expected, candidate] : ranked) {
-    if (expected <= best_merit) break;
-    Judged judged = Judge(candidate, track);
-    const int merit = Merit(judged.contacts);
-    if (merit > best_merit) {
-      best_merit = merit;
-      best = std::move(judged);
-    }
-    if (merit == 2) break;
-  }
-  return best;
-}
-
+// A ground that was given or calibrated is taken as it is, also where the path
+// refutes it: then the user is told. Else the picture and the path tell.
 void Analyzer::FindGroundAndContacts(vision::Track track) {
   clip_->cancellation().Enter("the ground is looked for");
-  std::vector<calib::GroundLine> candidates;
-  if (camera_.ideal_ground) {
-    candidates.push_back(*camera_.ideal_ground);
-  } else {
-    // The background's own noise: that of a frame over the square root of the
-    // frames averaged.
-    const calib::StillImage still{background_.level.data(),
-                                  background_.width_px, background_.height_px,
-                                  std::sqrt(background_.UsualVariance() / 8.0)};
-    calib::GroundLineOptions line_options;
-    line_options.lens = camera_.lens;
-    line_options.threads = options_.decoder_threads;
-    candidates = calib::FindGroundLines(still, line_options);
-  }
-  const auto merit_of = [](const std::optional<Judged>& judged) {
-    return judged ? Merit(judged->contacts) : -1;
-  };
-  std::optional<Judged> best = JudgeBest(candidates, track);
-  if (!camera_.ideal_ground && track.step > 1 && merit_of(best) < 2) {
-    // What else there is to try needs all of the track.
-    track = vision::FitEveryFrame(*clip_, background_, track, track_options_);
-    best = JudgeBest(candidates, track);
-  }
-  int best_merit = merit_of(best);
-  const vision::Track seen = Seen(track);
-  // A visible edge need not be the contact line: where none agrees with the
-  // track, the lowest points at the contacts tell.
-  if (!camera_.ideal_ground &&
-      (best_merit < 2 || IsAtTheEnd(best->contacts.first.contact, seen))) {
-    if (const auto from_path = vision::GroundFromPath(seen)) {
-      Judged judged = Judge(*from_path, track);
-      if (judged.contacts.first.contact.from_start) {
-        result_.warnings.emplace_back(
-            "no visible edge is the ground; the body moves along it all the "
-            "time, and its path tells where it is");
-        best = std::move(judged);
-        best_merit = 2;
-      }
+  GroundChoice choice;
+  choice.line = camera_.ideal_ground;
+  if (!choice.line) {
+    const std::vector<calib::GroundLine> visible = FindVisibleLines();
+    choice = ChooseGround(visible, camera_, Seen(track), contact_options_);
+    if (track.step > 1 && !choice.serves) {
+      // What else there is to try needs all of the track.
+      track = vision::FitEveryFrame(*clip_, background_, track, track_options_);
+      choice = ChooseGround(visible, camera_, Seen(track), contact_options_);
     }
   }
-  if (!camera_.ideal_ground && best_merit < 1) {
-    if (const auto from_contacts = vision::GroundFromContacts(seen)) {
-      Judged judged = Judge(*from_contacts, track);
-      if (judged.contacts.first.contact.found) {
-        if (best) {
-          result_.warnings.push_back(
-              fmt::format("the visible edge is not the ground ({}); the "
-                          "contact points tell where it is",
-                          best->contacts.ground_refuted));
-        } else if (!candidates.empty()) {
-          result_.warnings.emplace_back(
-              "no visible edge is the ground (the body passes below each); the "
-              "contact points tell where it is");
-        }
-        best = std::move(judged);
-        best_merit = 2;
-      }
-    }
-  }
-  TakeSize(best ? best->track : track);
-  if (!best) {
+  result_.warnings.insert(result_.warnings.end(), choice.warnings.begin(),
+                          choice.warnings.end());
+  if (!choice.line) {
+    TakeSize(track);
     result_.no_ground_reason =
         "no straight edge was found that the body stays above, and it shows no "
         "rebound; give --ground X1,Y1,X2,Y2";
     result_.contacts.first.contact.reason = "the ground is not known";
     result_.contacts.first.state.reason = "the ground is not known";
-    result_.plane = std::nullopt;
-    result_.track = track;
+    result_.track = std::move(track);
     return;
   }
-  if (best_merit == 0 && camera_.ideal_ground) {
+  MeasureContacts(*choice.line, track);
+  const std::string& refuted = result_.contacts.ground_refuted;
+  if (!refuted.empty() && camera_.ideal_ground) {
     result_.warnings.push_back(
-        "ground: " + best->contacts.ground_refuted +
+        "ground: " + refuted +
         (options_.ground ? "; check --ground" : "; calibrate it again"));
-  } else if (best_merit == 0) {
-    result_.no_ground_reason = best->contacts.ground_refuted;
+  } else if (!refuted.empty()) {
+    result_.no_ground_reason = refuted;
   }
-  if (best->ground.source == calib::GroundSource::kDetected &&
-      IsAtTheEnd(best->contacts.first.contact, seen)) {
+  if (choice.line->source == calib::GroundSource::kDetected &&
+      IsAtTheEnd(result_.contacts.first.contact, Seen(track))) {
     result_.warnings.emplace_back(
         "no frame shows the body after it met the line, which was found in the "
         "picture: whether that is the ground is not known; give --ground");
   }
-  result_.ground = best->ground;
-  result_.track = std::move(best->track);
-  result_.plane = std::move(best->plane);
-  result_.contacts = std::move(best->contacts);
 }
 
 // The clip compared with what the track says that it shows.
@@ -272,6 +193,7 @@ void Analyzer::MeasureExplained() {
   options.region = options_.region;
   options.still_frames = footage_.still_frames;
   options.threads = options_.decoder_threads;
+  // Frames near the contact decide; without one the sample is even in time.
   const core::Contact& contact = result_.contacts.first.contact;
   if (contact.found && contact.frame) {
     options.frame_of_interest = contact.frame->value;
@@ -286,6 +208,8 @@ void Analyzer::MeasureExplained() {
 // Others move, too: powder, a shadow, or a second body. The answer stands where
 // the one that was followed explains nearly all that changes.
 void Analyzer::JudgeSeveralBodies() {
+  // The same limit as of a clip in which one body moves: there a warning, here
+  // a condition.
   const AnswerCheckLimits limits;
   constexpr double kMostElsewhere = 0.1;  // of all change
   if (result_.explained && result_.explained->near >= limits.usual_near &&
@@ -303,6 +227,9 @@ void Analyzer::JudgeSeveralBodies() {
   result_.contacts.first.state.reason = reason;
 }
 
+// The document's `scene_model`: a reader of a report sees which effects the
+// figures contain, and why the others were left out. Names are keys of the
+// document.
 void Analyzer::DescribeScene() {
   SceneModel& scene = result_.scene_model;
   if (!result_.track) return;
@@ -345,6 +272,8 @@ void Analyzer::DescribeScene() {
   }
 }
 
+// A step that finds nothing leaves its part of the result absent with a reason;
+// the steps after it run on what is there.
 Analysis Analyzer::Run() {
   const std::optional<core::BodyKind> kind = DetermineKind(options_);
   result_.options_hash = OptionsHash(options_);
@@ -355,6 +284,7 @@ Analysis Analyzer::Run() {
   const std::int64_t last =
       options_.last_frame < 0 ? result_.clip.frames : options_.last_frame;
 
+  // Two measured sides fix the shape even where no scale is known.
   if (options_.long_m) {
     const core::Body measured =
         core::Rectangle(*options_.long_m, *options_.short_m);
@@ -364,6 +294,8 @@ Analysis Analyzer::Run() {
   result_.calibration = camera_.calibration;
   result_.warnings.insert(result_.warnings.end(), camera_.warnings.begin(),
                           camera_.warnings.end());
+  // Every frame is fitted once the ground is known; until then every few frames
+  // are enough, and cost less.
   vision::TrackOptions& track_options = track_options_;
   track_options.every_frame = false;
   track_options.first = options_.first_frame;
@@ -379,6 +311,7 @@ Analysis Analyzer::Run() {
   auto tracked = vision::TrackBody(*clip_, track_options);
   result_.timing.track_s = Since(footage_.begun);
 
+  // From here on the time counts as that of contacts.
   const auto lap = Clock::now();
   if (!tracked) {
     result_.no_body_reason = tracked.error().reason;
@@ -393,6 +326,8 @@ Analysis Analyzer::Run() {
     FindGroundAndContacts(track);
     AddLens(result_, camera_, contact_options_);
     AddYaw(result_, camera_, contact_options_);
+    // Warnings in the order of the steps: what a person reads first is what
+    // spoils all that follows.
     const std::vector<std::string> of_track = Seen(*result_.track).warnings;
     result_.warnings.insert(result_.warnings.end(), of_track.begin(),
                             of_track.end());
@@ -411,6 +346,8 @@ Analysis Analyzer::Run() {
           : core::DefaultAngleKind(result_.body ? result_.body->kind
                                                 : core::BodyKind::kSphere);
   DescribeScene();
+  // Nobody reads the clip from here on. To close it can take milliseconds, in
+  // which the budget is described.
   result_.timing.decode_s = clip_->reading_s();
   const auto closing = std::async(
       AsyncPolicy(),
@@ -428,10 +365,15 @@ Analysis Analyzer::Run() {
   return result_;
 }
 
+// Whether the analysis found a single moving body, so that no other channel of
+// a colour recording needs to be tried.
 bool OneBody(const Analysis& analysis) {
   return analysis.body && !analysis.track->several_bodies;
 }
 
+// One clip of one channel: options are checked before the first frame is
+// decoded, so that a user's mistake costs no time. Ends by the limit with
+// Unfinished; a user's interruption passes as core::Cancelled.
 Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
                          const AnalyzeOptions& options,
                          const core::Cancellation& until) {
@@ -458,6 +400,8 @@ Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
   }
 }
 
+// What every loop over frames asks. Without limit, interruption and journal it
+// is empty and asking costs nothing.
 core::Cancellation MakeCancellation(const std::filesystem::path& path,
                                     const AnalyzeOptions& options) {
   auto on_stage = StageJournal(path);
@@ -493,6 +437,8 @@ std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds && std::abs(more - 1.0) > kNear1;
        ++round) {
+    // A clip that was made linear has no gamma left: what the outlines still
+    // show is the factor to the next round's.
     *options.gamma *= more;
     Analysis light =
         AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
@@ -530,6 +476,7 @@ Analysis Analyze(const std::filesystem::path& path,
   clip_options.decoder_threads = options.decoder_threads;
   auto clip = OpenRecording(path, clip_options);
   const double open_s = Since(start);
+  // A copy over a network may still run while its beginning is analysed.
   // Of a file that is read in place: whether it was whole to the end.
   const std::unique_ptr<vision::Clip> witness = clip->Another();
   // Beside the analysis, where more than one thread is allowed.
@@ -543,7 +490,10 @@ Analysis Analyze(const std::filesystem::path& path,
         digest_s = Since(begun);
         return digest;
       });
+  // Linear light has 12 or 16 bits: the document names those of the recording.
   const std::int32_t bit_depth = clip->info().bit_depth;  // of the file
+  // What is known of the file and not of its frames, also where the analysis
+  // was ended by its limit.
   const auto complete = [&, bit_depth](Analysis& analysis) {
     analysis.clip.bit_depth = bit_depth;
     analysis.clip_id = id.get();
@@ -556,6 +506,8 @@ Analysis Analyze(const std::filesystem::path& path,
   try {
     Analysis analysis = AnalyzeOpenClip(std::move(clip), options, until);
     if (analysis.clip.has_colour && !OneBody(analysis)) {
+      // A shadow is dark in luma and has no colour: in a colour difference it
+      // is not there. The first channel with one body is taken.
       for (const vision::Channel channel : {vision::Channel::kRedDifference,
                                             vision::Channel::kBlueDifference}) {
         clip_options.channel = channel;

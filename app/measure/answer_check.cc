@@ -31,6 +31,8 @@ AnswerCheck CheckExplained(const Analysis& analysis,
     return check;
   }
   const vision::ExplainedChange& explained = *analysis.explained;
+  // `!(a >= b)` and not `a < b`: a number that could not be computed is
+  // refused, too.
   const bool patterned = analysis.track && analysis.track->patterned;
   const double least =
       patterned ? limits.least_near_patterned : limits.least_near;
@@ -65,6 +67,8 @@ AnswerCheck CheckPath(const Analysis& analysis,
     return check;
   }
   check.verdict = Verdict::kPassed;
+  // Of all stretches of the path those count in which the flights before and
+  // after the first contact lie: the angles come of them.
   const vision::ContactEvidence& first = contacts.evidence.front();
   for (const auto* flight : {&first.before, &first.after}) {
     if (!*flight) continue;
@@ -120,6 +124,7 @@ AnswerCheck CheckRestitution(const Analysis& analysis,
     check.reason = e.error().reason;
     return check;
   }
+  // Distance from 0 .. 1; negative within.
   const double beyond = std::max(-e->value, e->value - 1.0);
   check.verdict = Verdict::kPassed;
   if (beyond > limits.most_sigmas * e->u) {
@@ -135,6 +140,9 @@ AnswerCheck CheckRestitution(const Analysis& analysis,
   return check;
 }
 
+// Gravity fitted freely beside g: the one check of scale and frame rate that
+// every flight holds. It doubts and never refuses: which of the two is wrong is
+// not known, and the angles hardly depend on either.
 AnswerCheck CheckGravity(const Analysis& analysis,
                          const AnswerCheckLimits& limits) {
   AnswerCheck check;
@@ -144,11 +152,13 @@ AnswerCheck CheckGravity(const Analysis& analysis,
     check.reason = g.error().reason;
     return check;
   }
+  // g varies by 0.5 % over the earth; 0.2 % is a standard deviation of that.
   const core::Estimate known{core::kStandardGravity_mps2,
                              0.002 * core::kStandardGravity_mps2};
   check.verdict = Verdict::kPassed;
   if (core::Disagreement(*g, known) > limits.most_sigmas) {
     check.verdict = Verdict::kDoubtful;
+    // g_fit / g = true scale / stated scale = (stated rate / true rate)^2.
     const double ratio = g->value / known.value;
     check.reason = fmt::format(
         "gravity fitted freely is {:.3f} +- {:.3f} m/s2 for {:.3f}: a scale of "
@@ -191,6 +201,7 @@ std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {
   analysis.checks = RunAnswerChecks(analysis, limits);
+  // One reason is enough, the first; those that doubt are all told.
   const auto refused =
       std::find_if(analysis.checks.begin(), analysis.checks.end(),
                    [](const AnswerCheck& check) {

@@ -17,6 +17,8 @@ struct SizePair {
   double stated_m = 0.0;
 };
 
+// The sizes that can be compared: of a whole body of the stated kind, where a
+// scale that the body itself did not make is known. Else empty.
 std::vector<SizePair> SizePairs(vision::BodyImage& seen,
                                 const AnalyzeOptions& options) {
   std::vector<SizePair> pairs;
@@ -39,6 +41,9 @@ std::vector<SizePair> SizePairs(vision::BodyImage& seen,
 
 // What one cause would explain all of the differences.
 std::string ExplainDifferences(const std::vector<SizePair>& pairs) {
+  // A wrong scale makes all sizes wrong by one ratio; an outline that lies too
+  // far out makes them wrong by one number of pixels. A sphere has one size:
+  // the two cannot be told apart.
   const SizePair& a = pairs.front();
   const SizePair& b = pairs.back();
   const auto ratio = [](const SizePair& p) {
@@ -53,8 +58,11 @@ std::string ExplainDifferences(const std::vector<SizePair>& pairs) {
     return fmt::format("{} or a {} of {:.3f} mm would explain it", scale,
                        a.name, 1e3 * a.stated_m * ratio(a));
   }
+  // px by which each cause leaves the second side unexplained.
   const double by_scale = std::abs(ratio(a) - ratio(b)) * b.stated.value;
   const double by_outline = std::abs(outside_px(a) - outside_px(b));
+  // px. A cause that leaves less than this of the second side explains both;
+  // larger names causes that are none. Not studied.
   constexpr double kSame_px = 0.1;
   if (std::min(by_scale, by_outline) > kSame_px) {
     return "neither a scale nor a common error of the outline explains both: "
@@ -79,6 +87,8 @@ vision::Track WithStatedSize(vision::Track seen,
 
 std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
                                              const AnalyzeOptions& options) {
+  // Beyond four standard deviations chance is no explanation; up to there the
+  // two are averaged by their u and nothing is said.
   constexpr double kConflict = 4.0;  // u
   vision::BodyImage body = seen;
   const std::vector<SizePair> pairs = SizePairs(body, options);
@@ -89,6 +99,8 @@ std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
     conflict.relative =
         std::max(conflict.relative,
                  std::abs(pair.seen->value / pair.stated.value - 1.0));
+    // In whole sizes, as a caliper shows them; the pairs hold halves, as the
+    // fit has them.
     conflict.reason += fmt::format(
         "{}{}: {:.2f} +- {:.2f} px are seen, {:.2f} +- {:.2f} px stated",
         conflict.reason.empty() ? "" : ", ", pair.name, 2.0 * pair.seen->value,
@@ -139,6 +151,8 @@ std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
     return std::nullopt;
   }
   // Of a body without a size in the picture only what was told is a scale.
+  // FindScale is asked with a body whose size in the picture is not known, so
+  // that the answer cannot come of that size.
   vision::BodyImage unseen;
   unseen.whole_px = 1.0;
   const std::optional<calib::Scale> scale = FindScale(options, unseen);
@@ -162,6 +176,7 @@ std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
 core::Body DetermineBody(const AnalyzeOptions& options,
                          const vision::BodyImage& image,
                          const std::optional<calib::Scale>& scale) {
+  // Half a size in px to a whole one in m, with u of pixels and of scale.
   const auto metres = [&](const core::Estimate& half_px) -> core::Measured {
     if (!scale) return core::AbsentBecause("no scale");
     const core::Estimate& s = scale->px_per_m;

@@ -8,6 +8,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// An option that is not given is in order. `!(v > 0)` refuses NaN as well.
 void RequirePositive(const char* field, const std::optional<double>& value) {
   if (value && !(*value > 0.0 && std::isfinite(*value))) {
     throw std::invalid_argument(
@@ -31,6 +32,7 @@ std::optional<core::BodyKind> DetermineKind(const AnalyzeOptions& options) {
   if (options.long_m.has_value() != options.short_m.has_value()) {
     throw std::invalid_argument("a rectangle needs both sides");
   }
+  // A stated size implies the kind, and must not contradict a stated kind.
   std::optional<core::BodyKind> kind = options.body_kind;
   if (options.diameter_m) kind = core::BodyKind::kSphere;
   if (options.long_m) kind = core::BodyKind::kRectangle;
@@ -60,6 +62,7 @@ void CheckOptions(const AnalyzeOptions& options, const vision::ClipInfo& clip) {
         fmt::format("frames is {}:{}, must be a range within 0:{}",
                     options.first_frame, last, frames));
   }
+  // `width - x` and not `x + width`: the sum of two large numbers overflows.
   const core::PixelRect& r = options.region;
   if (r.width > 0 && (r.x < 0 || r.y < 0 || r.width > clip.width_px - r.x ||
                       r.height > clip.height_px - r.y)) {

@@ -13,6 +13,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// "1.25 +- 0.10 deg".
 std::string AngleText(const core::Estimate& e) {
   return fmt::format("{:.2f} +- {:.2f} deg", e.value / core::kDegree,
                      e.u / core::kDegree);
@@ -25,6 +26,8 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
   ClipCalibration out;
   out.image_ground = options.ground;
   if (options.calibration) {
+    // Where the picture lies on the sensor: said by the user, else by the file;
+    // AdaptToPicture says no where neither does and the sizes differ.
     calib::Picture picture{clip.width_px, clip.height_px, options.crop};
     if (!picture.corner && clip.sensor_origin) {
       picture.corner = calib::SensorCorner{clip.sensor_origin->x_px,
@@ -38,11 +41,14 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
     const calib::Calibration& calibration =
         out.calibration.emplace(*std::move(fitted));
     if (calibration.lens) out.lens = calibration.lens->lens;
+    // The age is asked for a fresh analysis; a stored trial that is judged
+    // again was made with the calibration of its day.
     if (!options.today.empty()) {
       if (auto old = calib::AgeWarning(calibration, options.today)) {
         out.warnings.push_back(*std::move(old));
       }
     }
+    // A ground that is given for this clip comes before the calibrated one.
     if (calibration.ground && !out.image_ground) {
       const calib::GroundRecord& ground = *calibration.ground;
       out.image_ground =
@@ -51,6 +57,8 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
     }
     if (calibration.ground) out.yaw_rad = calibration.ground->yaw_rad;
     if (calibration.ground && calibration.ground->slope_rad) {
+      // Along the normal of a ground that slopes by s acts g cos(s), with u(g
+      // cos s)^2 = u(g)^2 + (g sin(s) u(s))^2 (JCGM 100, equation 10).
       const core::Estimate& slope = *calibration.ground->slope_rad;
       core::Estimate& gravity = out.gravity_mps2;
       gravity.u = std::hypot(gravity.u,
@@ -58,6 +66,9 @@ ClipCalibration FitToClip(const AnalyzeOptions& options,
       gravity.value *= std::cos(slope.value);
     }
   }
+  // Two points in the image, wherever they come from, become a straight line of
+  // the picture without distortion; the model of the lens holds within the
+  // calibrated picture only.
   out.ideal_ground = out.image_ground;
   if (out.lens && out.image_ground) {
     out.ideal_ground = calib::Undistorted(*out.image_ground, *out.lens);
@@ -75,6 +86,8 @@ vision::PlaneYaw MakePlaneYaw(double yaw_rad,
   vision::PlaneYaw yaw;
   yaw.yaw_rad = yaw_rad;
   if (lens) {
+    // Perspective needs the focal length; without a lens the turned plane is
+    // seen from infinitely far.
     yaw.focal_px = calib::IdealFocal(*lens);
     yaw.axis = {lens->cx_px, lens->cy_px};
   }
@@ -89,6 +102,7 @@ std::optional<vision::PlaneYaw> CalibratedYaw(const ClipCalibration& camera) {
 void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
                          SceneModel& scene) {
   scene.used.emplace_back("roll, by the ground line: angles are to it");
+  // Each effect is left out until the calibration turns out to hold it.
   scene.left_out["perspective"] = "no calibration";
   scene.left_out["yaw"] = "no calibration";
   if (!calibration) {
@@ -121,6 +135,8 @@ void DescribeCalibration(const std::optional<calib::Calibration>& calibration,
 
 calib::GroundLine SeenGroundLine(const vision::PlaneTrack& plane,
                                  const calib::Lens& lens) {
+  // The stretch of the ground beside which the body was seen, half a size
+  // longer at both ends: over it the chord fits the bent line best.
   double from = 0.0;
   double to = 0.0;
   bool any = false;
@@ -164,6 +180,8 @@ std::optional<calib::GroundLine> ThroughPoints(
     sxx += x * x;
     sxy += x * y;
   }
+  // Least squares of y over x. A ground line is not vertical, so that the
+  // denominator is not small.
   const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
   const double offset = (sy - slope * sx) / n;
   const auto at = [&](double x_px) {

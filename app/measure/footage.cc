@@ -9,6 +9,7 @@ namespace touchdown::pipeline {
 Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
                       const AnalyzeOptions& options) {
   Footage footage;
+  // To measure the light reads frames: it is part of the time of the track.
   footage.begun = std::chrono::steady_clock::now();
   footage.info = clip->info();
   const std::int64_t last =
@@ -19,6 +20,7 @@ Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
       std::move(clip), options.first_frame, last, light_options);
   footage.clip = std::move(light.clip);
   footage.light_told = light.told;
+  // Absent where nothing was taken out: the scene model tells the two apart.
   if (light.corrected) footage.light_spread = light.spread;
   return footage;
 }

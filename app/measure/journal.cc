@@ -13,6 +13,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Control characters as \xNN; bytes from 0x80 on pass, so that UTF-8 does.
 std::string OnOneLine(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -27,6 +28,7 @@ std::string OnOneLine(std::string_view text) {
   return out;
 }
 
+// What the file said of itself, and where the frame rate comes from.
 void JournalClip(const Analysis& analysis) {
   const vision::ClipInfo& clip = analysis.clip;
   Journal(fmt::format(
@@ -37,6 +39,7 @@ void JournalClip(const Analysis& analysis) {
       clip.time_base.trusted ? "" : ", not trusted"));
 }
 
+// Wall times; the digest runs beside the rest and is not part of the sum.
 void JournalTimes(const Timing& timing) {
   Journal(fmt::format(
       "times: decoding {:.3f} s, tracking with it {:.3f} s, contacts {:.3f} s, "
@@ -57,6 +60,8 @@ std::function<void(const char* stage)> StageJournal(
     const std::filesystem::path& recording) {
   if (!JournalIsKept()) return {};
   using Clock = std::chrono::steady_clock;
+  // The name alone: jobs of a batch run beside each other, and each line has to
+  // say whose it is.
   return [name = recording.filename().string(),
           begun = Clock::now()](const char* stage) {
     const std::chrono::duration<double> passed = Clock::now() - begun;
@@ -74,6 +79,7 @@ void JournalAnalysis(const Analysis& analysis) {
   for (const auto& [what, why] : analysis.scene_model.left_out) {
     Journal(fmt::format("left out: {}, because: {}", what, why));
   }
+  // Empty reasons belong to what was found.
   for (const auto& [what, why] : {std::pair("scale", &analysis.no_scale_reason),
                                   {"ground", &analysis.no_ground_reason},
                                   {"body", &analysis.no_body_reason}}) {

@@ -18,6 +18,8 @@
 namespace touchdown::pipeline {
 namespace {
 
+// The pose of `frame`; throws naming `field` of the correction where no outline
+// was fitted in it.
 std::vector<vision::Pose>::iterator ToPose(vision::Track& track,
                                            std::int64_t frame,
                                            const char* field) {
@@ -31,6 +33,9 @@ std::vector<vision::Pose>::iterator ToPose(vision::Track& track,
   return found;
 }
 
+// Applies what a person did to single outlines and records each as a sentence
+// of the document, so that a report can show what was not measured by the
+// program.
 void MoveOutlines(const Correction& correction, Analysis& analysis) {
   vision::Track& track = *analysis.track;
   for (const auto& [frame, by] : correction.moved) {
@@ -75,6 +80,8 @@ vision::PlaneTrack SeenInPlane(const ClipCalibration& camera,
 }
 
 bool PassesThroughGround(const vision::PlaneTrack& plane) {
+  // px. Room for an outline that errs and a line that is tilted; smaller
+  // refuses true grounds. Not studied.
   constexpr double kBelow_px = 2.0;
   return std::any_of(plane.samples.begin(), plane.samples.end(),
                      [](const vision::PlaneSample& sample) {
@@ -100,6 +107,7 @@ vision::ContactResult FindPlaneContacts(const vision::PlaneTrack& plane,
                                         const vision::ContactOptions& options) {
   vision::ContactOptions in_plane = options;
   if (in_plane.scale) {
+    // The plane is turned by the yaw: its pixels are longer than the picture's.
     in_plane.scale->px_per_m = PxPerMetre(plane, *options.scale);
   }
   return vision::FindContacts(plane, in_plane);
@@ -137,11 +145,16 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
   const calib::GroundLine& ideal = analysis.plane->ground;
   const auto seen =
       SeenPoints(ideal, *camera.lens, camera.ideal_ground ? 2 : 33);
+  // A lens moves poses by fractions of a pixel. Which stretch is flight and
+  // which is contact does not depend on it, and a cut made anew would add its
+  // own jumps to u.
   const vision::ContactOptions same_path = KeepPath(analysis, contact_options);
   AddLensUncertainty(
       analysis.contacts, *camera.lens, analysis.calibration->lens->covariance,
       [&](const calib::Lens& lens) {
         const auto ground = ThroughPoints(seen, lens, ideal);
+        // A lens outside of its model tells nothing: all is absent, and
+        // AddShared passes over it.
         if (!ground) return vision::ContactResult{};
         std::optional<vision::PlaneYaw> yaw;
         if (camera.yaw_rad) yaw = MakePlaneYaw(camera.yaw_rad->value, lens);
@@ -160,6 +173,8 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
       !analysis.contacts.first.contact.found) {
     return;
   }
+  // The refined track without distortion, of the size that image and statement
+  // tell together: what the contacts themselves were found in.
   const vision::Track seen =
       WithStatedSize(ToIdealPicture(camera, *analysis.track), analysis.options);
   std::vector<MovedContacts> moved;
@@ -194,9 +209,12 @@ void DescribeBudget(Analysis& analysis,
       "no second model is fitted; what the flights do not explain widens u";
   const vision::TimeBase& time = analysis.clip.time_base;
   const auto& angle = analysis.contacts.first.contact.approach_angle_rad;
+  // The time base has no stated u. What the reader can be told is how much an
+  // error of it would do.
   std::string reason =
       time.trusted ? "the rate is the recording's own; its u is not stated"
                    : "the rate is not the recording's own; no u of it is known";
+  // A body that is down from the start has no approach to be changed.
   if (analysis.plane && angle && !analysis.contacts.first.contact.from_start) {
     // All speeds follow the rate; the angle feels it through gravity alone.
     constexpr double kPerCent = 0.01;
@@ -241,8 +259,12 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
     analysis.corrections.push_back(
         fmt::format("touchdown between frames {} and {}", frame, frame + 1));
   }
+  // The same steps as of a fresh analysis from here on (analyze.cc), but for
+  // the pixels: the stored track stands for them.
   const ClipCalibration camera = FitToClip(analysis.options, analysis.clip);
   analysis.calibration = camera.calibration;
+  // Without a stored ground there is nothing to judge by, unless the person
+  // gives one.
   if (correction.ground || !analysis.ground) {
     if (!camera.ideal_ground) {
       throw std::invalid_argument("ground is missing, must be two points");
@@ -260,6 +282,7 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
   AddLens(analysis, camera, contact_options);
   AddYaw(analysis, camera, contact_options);
   DescribeBudget(analysis, contact_options);
+  // Stored warnings stay. One that the new contacts repeat is not said twice.
   for (const std::string& warning : analysis.contacts.warnings) {
     if (std::find(analysis.warnings.begin(), analysis.warnings.end(),
                   warning) == analysis.warnings.end()) {

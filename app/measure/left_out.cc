@@ -24,6 +24,8 @@ struct ApproachFacts {
   double flight_s = 0.0;
 };
 
+// Nothing where a number is missing that every effect needs: then no effect is
+// stated at all, and not some of them.
 std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
   const core::ContactRecord& first = a.contacts.first;
   const auto& angle = first.contact.approach_angle_rad;
@@ -38,6 +40,7 @@ std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
                     a.scale->px_per_m.value};
   const double frame = first.contact.frame->value;
   const auto& poses = a.track->poses;
+  // The pose next to the contact tells where in the picture the body was.
   const auto at =
       std::min_element(poses.begin(), poses.end(),
                        [frame](const vision::Pose& p, const vision::Pose& q) {
@@ -55,11 +58,14 @@ std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
   return out;
 }
 
+// "0.12 deg of the approach angle, 3 u".
 std::string Size(double error_rad, double u_rad) {
   return fmt::format("{:.2g} deg of the approach angle, {:.2g} u",
                      error_rad / kDegree, u_rad > 0 ? error_rad / u_rad : 0.0);
 }
 
+// A path that leaves the plane by psi: nearer to the camera it grows away from
+// the picture's middle (lever), and its horizontal part looks shorter.
 LeftOutEffect OutOfPlane(const ApproachFacts& s, const LeftOutSizes& sizes) {
   LeftOutEffect out{"path out of the plane"};
   const double psi = sizes.out_of_plane_rad;
@@ -75,6 +81,8 @@ LeftOutEffect OutOfPlane(const ApproachFacts& s, const LeftOutSizes& sizes) {
   return out;
 }
 
+// Rows that are read one after the other shift a falling body's picture by its
+// own speed: relative to the picture's height.
 LeftOutEffect Rolling(const Analysis& a, const ApproachFacts& s,
                       const LeftOutSizes& sizes) {
   LeftOutEffect out{"rolling shutter"};
@@ -89,6 +97,9 @@ LeftOutEffect Rolling(const Analysis& a, const ApproachFacts& s,
   return out;
 }
 
+// On a ground that slopes by s, g sin(s) along it changes the speed by g sin(s)
+// T over the flight; a straight line fitted to the path is off by half of that
+// at its end.
 LeftOutEffect Slope(const ApproachFacts& s, const LeftOutSizes& sizes) {
   LeftOutEffect out{"gravity along the ground"};
   out.error_rad = core::kStandardGravity_mps2 * std::sin(sizes.slope_rad) *
@@ -99,6 +110,8 @@ LeftOutEffect Slope(const ApproachFacts& s, const LeftOutSizes& sizes) {
   return out;
 }
 
+// A common offset of all outlines moves the whole path, which no angle feels;
+// the instant of contact and the gaps do.
 LeftOutEffect Outline(const Analysis& a, const ApproachFacts& s,
                       const LeftOutSizes& sizes) {
   LeftOutEffect out{"light and gamma"};
@@ -136,6 +149,8 @@ std::vector<LeftOutEffect> LeftOutEffects(const Analysis& analysis,
   const auto seen = SeenAtContact(analysis);
   if (!seen) return {};
   std::vector<LeftOutEffect> out{OutOfPlane(*seen, sizes)};
+  // Both formats are of high-speed cameras, whose shutters are global; of other
+  // files nobody knows.
   const bool raw =
       analysis.clip.format == "mraw" || analysis.clip.format == "cine";
   if (!raw) out.push_back(Rolling(analysis, *seen, sizes));
@@ -153,6 +168,7 @@ std::vector<LeftOutEffect> LeftOutEffects(const Analysis& analysis,
 
 void DescribeLeftOut(Analysis& analysis, const LeftOutSizes& sizes) {
   auto& left_out = analysis.scene_model.left_out;
+  // Called again after a correction: nothing may be said twice.
   for (const LeftOutEffect& effect : LeftOutEffects(analysis, sizes)) {
     left_out[effect.name] = effect.text;
     // A camera's yaw does to a path in the plane what the path's own would.

@@ -20,6 +20,7 @@ std::vector<calib::LensVector> Directions(const calib::LensCovariance& c) {
       calib::DecomposeLensCovariance(unit.asDiagonal() * c * unit.asDiagonal());
   std::vector<calib::LensVector> directions;
   for (int k = 0; k < calib::kLensParameters; ++k) {
+    // A direction in which the pictures fix the lens to rounding moves nothing.
     const double variance = own.variances[k];
     constexpr double kRounding = 1e-9;
     if (!(variance > kRounding)) continue;
@@ -37,6 +38,8 @@ void AddLensUncertainty(vision::ContactResult& contacts,
                         const ContactsThrough& again) {
   std::vector<MovedContacts> moved;
   for (const calib::LensVector& direction : Directions(covariance)) {
+    // One side is enough: over one standard deviation of a calibrated lens the
+    // contacts move linearly.
     moved.push_back({again(calib::ToLens(calib::ToVector(lens) + direction))});
   }
   AddShared(contacts, "lens", moved);

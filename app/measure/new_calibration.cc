@@ -12,6 +12,7 @@ calib::Calibration NewCalibration(const std::string& camera,
   out.date = date.empty() ? Today() : date;
   out.expires = AddDays("--date", out.date, valid_days);
   out.picture = picture;
+  // Files that do not say where the picture lies show the whole sensor.
   if (!out.picture.corner) out.picture.corner = calib::SensorCorner{};
   return out;
 }

@@ -11,6 +11,8 @@ namespace touchdown::pipeline {
 
 std::unique_ptr<vision::Clip> OpenRecording(
     const std::filesystem::path& path, const vision::ClipOptions& options) {
+  // A kernel that refuses a limit does not end the analysis; the journal says
+  // what was not granted, and `touchdown doctor` shows it, too.
   vision::Confinement granted;
   auto clip = vision::OpenClipApart(path, options, {}, &granted);
   if (!JournalIsKept()) return clip;

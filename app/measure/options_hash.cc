@@ -7,6 +7,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Hexadecimal, so that no rounding makes two options look the same.
 std::string Text(const std::optional<double>& v) {
   return v ? fmt::format("{:a}", *v) : "-";
 }
@@ -17,6 +18,8 @@ std::string Text(const std::optional<core::Estimate>& e) {
 }  // namespace
 
 std::string OptionsHash(const AnalyzeOptions& o) {
+  // Options that came later are appended only where they are set: hashes of
+  // stored trials stay what they were.
   std::string text = fmt::format(
       "fps={};scale={};kind={};diameter={};long={};short={};frames={}:{};"
       "region={},{},{},{};angle={};bounce={};",
@@ -36,6 +39,7 @@ std::string OptionsHash(const AnalyzeOptions& o) {
   if (o.crop) text += fmt::format("crop={},{}", o.crop->x_px, o.crop->y_px);
   if (o.gamma) text += fmt::format("gamma={:a};", *o.gamma);
   if (o.stop_early) text += "stop-early;";
+  // FNV-1a (Fowler, Noll, Vo): offset basis and prime for 64 bits.
   std::uint64_t hash = 14695981039346656037ull;
   for (const char c : text) {
     hash ^= static_cast<unsigned char>(c);

@@ -19,6 +19,8 @@ bool IsMoved(const core::ContactQuantity& quantity) {
          quantity.state != &core::StateDecision::detectable_gap_m;
 }
 
+// Adds a standard uncertainty in quadrature; an asymmetric interval grows by
+// the same factor on both sides.
 void Widen(core::Estimate& e, double u_shared) {
   const double before = e.u;
   e.u = std::hypot(e.u, u_shared);
@@ -33,6 +35,8 @@ void Widen(core::Estimate& e, double u_shared) {
 
 void AddShared(vision::ContactResult& contacts, const std::string& source,
                const std::vector<MovedContacts>& moved) {
+  // First contact and later ones in order; a moved result may have fewer, and
+  // its i-th belongs to our i-th.
   std::vector<core::ContactRecord*> records = {&contacts.first};
   for (core::ContactRecord& later : contacts.later) records.push_back(&later);
   std::vector<std::array<double, kContactQuantities.size()>> variances(
@@ -60,6 +64,7 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
       core::Measured& ours = core::At(*records[i], kContactQuantities[q]);
       if (ours) Widen(*ours, std::sqrt(variances[i][q]));
     }
+    // What was added to an angle, for its line of the budget.
     const auto u_shared = [&](core::Measured core::Contact::*angle) {
       const auto at = std::ranges::find(kContactQuantities, angle,
                                         &core::ContactQuantity::contact);

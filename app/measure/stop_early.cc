@@ -23,6 +23,8 @@ class Borrowed final : public vision::Clip {
   }
 
   const vision::ClipInfo& info() const override { return clip_.info(); }
+  // All that an analysis may ask is passed on: a capability that got lost here
+  // would change how frames are read, and with it the time but not the answer.
   bool views_last() const override { return clip_.views_last(); }
   bool windows_are_cheap() const override { return clip_.windows_are_cheap(); }
   std::int64_t EntryFrame(std::int64_t index) const override {
@@ -41,6 +43,8 @@ class Borrowed final : public vision::Clip {
   vision::Clip& clip_;
 };
 
+// No outline is fitted before enough frames show something: an analysis of an
+// empty beginning would cost and say nothing.
 // What the windows that differ from the still picture tell before any outline
 // is fitted.
 class ActivityTally {
@@ -94,6 +98,8 @@ double FaceLift(const vision::PlaneTrack& plane) {
   return std::abs(std::sin(tilt)) * plane.size_px;
 }
 
+// Why a bounce is not yet beyond doubt; empty where it is. The gap only grows
+// with further frames, so a rise well above the bounce height stays one.
 std::string ReasonAgainstBounce(const core::StateDecision& state,
                                 const StopRule& rule) {
   if (state.max_gap_m->value < rule.least_rise * state.bounce_height_m->value) {
@@ -102,6 +108,10 @@ std::string ReasonAgainstBounce(const core::StateDecision& state,
   return {};
 }
 
+// Why a body that stays down may still rise; empty where it cannot. It has to
+// be seen for several times as long as a rise to the bounce height takes, and a
+// block has to lie on a face: one on its edge still falls, and may be thrown
+// up.
 std::string ReasonAgainstStay(const Analysis& analysis, double contact_s,
                               const StopRule& rule) {
   const core::StateDecision& state = analysis.contacts.first.state;
@@ -122,6 +132,8 @@ std::string ReasonAgainstStay(const Analysis& analysis, double contact_s,
   return {};
 }
 
+// Whether a quantity of fewer frames agrees with that of more, in the u of the
+// former. Absent in both counts as agreement.
 bool IsWithin(const core::Measured& fewer, const core::Measured& more,
               double most_u) {
   if (fewer.has_value() != more.has_value()) return false;
@@ -142,6 +154,7 @@ std::string ReasonToContinue(const Analysis& analysis, std::int64_t end,
   if (contact.from_start || !contact.time_s || !contact.frame) {
     return "it was on the ground from the start";
   }
+  // A warning of any other kind may turn into an answer with more frames.
   // Those of contacts are of a ground that is off, which is looked at below.
   if (analysis.warnings.size() >
       known_warnings + analysis.contacts.warnings.size()) {
@@ -159,6 +172,8 @@ std::string ReasonToContinue(const Analysis& analysis, std::int64_t end,
   if (!analysis.scale || !state.max_gap_m || !state.bounce_height_m) {
     return "there is no scale";
   }
+  // A line that lies off by a share of the bounce height shifts every gap by as
+  // much, and so the label.
   const double height_px =
       state.bounce_height_m->value * analysis.scale->px_per_m.value;
   if (analysis.contacts.evidence.empty() ||
@@ -195,12 +210,15 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
                              const ClipCalibration& camera,
                              const AnalyzeOptions& options,
                              const StopRule& rule, std::size_t most_bytes) {
+  // Those of file and camera are there from the first frame on and do not speak
+  // against stopping.
   const std::size_t known_warnings =
       clip->info().warnings.size() + camera.warnings.size();
   Footage footage = InSteadyLight(std::move(clip), options);
   vision::FrameStoreOptions keep = MakeKeepOptions(options, footage.info);
   keep.most_bytes = most_bytes;
   const auto frames = vision::GrowFrames(std::move(footage.clip), keep);
+  // The same analysis as of a whole clip, over frames that are decoded already.
   const auto analyze = [&](const AnalyzeOptions& of) {
     Footage part;
     part.info = footage.info;
@@ -214,12 +232,16 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     return analysis;
   };
 
+  // Pieces of frames are decoded, each followed by an analysis where it can
+  // have changed the answer. Two in a row must say the same.
   const std::int64_t range = keep.last - keep.first;
   const std::int64_t piece = std::max(rule.least_piece, range / rule.pieces);
   ActivityTally seen(rule.least_run);
   std::int64_t looked_at = 0;  // of the frames that show anything
   std::optional<Analysis> decided;
   for (std::int64_t end = keep.first + piece; end < keep.last; end += piece) {
+    // Frames that have to be decoded twice, because the store has no room for
+    // them, cost more than an early end saves.
     if (static_cast<double>(frames->DecodedAgain()) >
             rule.most_decoded_again * static_cast<double>(range) ||
         !frames->ExtendDecoding(end)) {
@@ -238,10 +260,13 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     }
     looked_at = seen.frames();
     if (!frames->HoldsAllChanges()) continue;
+    // The range ends here as if the user had said so; progress is told by this
+    // loop.
     AnalyzeOptions so_far = options;
     so_far.last_frame = end;
     so_far.progress = nullptr;
     Analysis analysis = analyze(so_far);
+    // An answer that becomes doubtful again was never decided.
     if (!ReasonToContinue(analysis, end, known_warnings, rule).empty()) {
       decided.reset();
       continue;
@@ -256,12 +281,15 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     analysis.stopped_at = end;
     analysis.scene_model.left_out[fmt::format("frames {}:{}", end, keep.last)] =
         fmt::format("stopped early: by frame {} the state was decided", end);
+    // Frames that were passed over are named, so that nobody takes them for
+    // measured ones.
     for (const auto& [from, to] : frames->LeftOut()) {
       analysis.scene_model.left_out[fmt::format("frames {}:{}", from, to)] =
           "their key frames show nothing";
     }
     return analysis;
   }
+  // Never decided: the clip as a whole.
   frames->ExtendDecoding(keep.last);
   return analyze(options);
 }

@@ -11,6 +11,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Bilinear; 0 where one of the four neighbours lies outside of the frame.
 double InterpolateLevel(const core::Frame& frame, core::PixelPoint p) {
   const double x0 = std::floor(p.x_px);
   const double y0 = std::floor(p.y_px);
@@ -26,6 +27,8 @@ double InterpolateLevel(const core::Frame& frame, core::PixelPoint p) {
          b * ((1.0 - a) * frame.at(x, y + 1) + a * frame.at(x + 1, y + 1));
 }
 
+// Each frame is read whole: a window of the result needs a bent window of the
+// source, and people look at one frame at a time.
 class Straightened final : public vision::Clip {
  public:
   Straightened(std::unique_ptr<vision::Clip> clip, const calib::Lens& lens)
@@ -76,6 +79,7 @@ std::unique_ptr<vision::Clip> UndistortedClip(
 
 Drawable OpenToDraw(const Analysis& analysis) {
   vision::ClipOptions options;
+  // A rate that the user gave numbers the frames of the document.
   options.fps = analysis.options.fps;
   Drawable out{OpenRecording(analysis.clip.path, options), *analysis.track};
   if (analysis.calibration && analysis.calibration->lens) {

@@ -24,6 +24,7 @@ std::string WhatToDo(const AnalyzeOptions& options) {
 Unfinished UnfinishedAnalysis(const vision::ClipInfo& clip,
                               const AnalyzeOptions& options,
                               const std::string& while_what) {
+  // One reason in every place where a reader may look for one.
   const std::string reason =
       fmt::format("not done within {:g} s: ended {} of {}",
                   options.limit_s.value_or(0.0), while_what, clip.frames);
@@ -36,10 +37,12 @@ Unfinished UnfinishedAnalysis(const vision::ClipInfo& clip,
   so_far.no_scale_reason = reason;
   so_far.contacts.first.contact.reason = reason;
   so_far.contacts.first.state.reason = reason;
+  // The body was not found, so that its kind is what the options say of it.
   so_far.angle_kind = options.angle_kind.value_or(core::DefaultAngleKind(
       options.long_m ? core::BodyKind::kRectangle
                      : options.body_kind.value_or(core::BodyKind::kSphere)));
   so_far.options = options;
+  // Callbacks and pointers of the caller must not outlive the call.
   so_far.options.progress = nullptr;
   so_far.options.interrupted = nullptr;
   so_far.options_hash = OptionsHash(options);
