@@ -1,9 +1,9 @@
-// Functions of LAPACK and BLAS that OpenCV's archives call, each of which loads
-// the library when the first of them is called. Linked with the program, the
+// Stand-ins for the functions of LAPACK and BLAS that OpenCV's archives call:
+// the first call of any of them loads the library. Linked with the program, the
 // library and the threads that OpenBLAS starts would cost every command
 // milliseconds, and only the calibration of a camera has matrices that need it.
-// The three functions of GLX are asked for by OpenCV too; it never opens a
-// display here, so they do nothing.
+// The archives also ask for three functions of GLX; no display is ever opened,
+// so these do nothing.
 #include <dlfcn.h>
 
 #include <cstddef>

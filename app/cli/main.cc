@@ -114,10 +114,10 @@ std::vector<std::string> Arguments(int argc, char** argv, const CLI::App& app) {
   return out;
 }
 
-// Stops the threads of OpenBLAS, where OpenCV's LAPACK is one. Each waits
-// busily for the first thirtieth of a second, in which a short command does
-// most of its work: 0.03 of 0.16 s (analyze, 1000 raw frames, two cores).
-// OpenBLAS starts them again when they are needed.
+// Where LAPACK is OpenBLAS, it starts with a thread for each further core. Each
+// waits busily for the first thirtieth of a second, in which a short command
+// does most of its work: 0.03 of 0.16 s (analyze, 1000 raw frames, two cores).
+// They are stopped here; OpenBLAS starts them again when they are needed.
 void StopIdleThreads() {
   using Stop = int (*)();
   if (auto* const stop = reinterpret_cast<Stop>(

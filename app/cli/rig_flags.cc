@@ -1,3 +1,6 @@
+// A description of the rig from rig.toml, from flags, or from the file with
+// single values replaced by flags. Flags bear the unit of their name; the
+// description is SI.
 #include "app/cli/rig_flags.h"
 
 #include <fmt/core.h>
@@ -24,11 +27,15 @@ void TakeEstimate(To& to, const char* flag, const std::string& text,
   if (!text.empty()) to = ParseEstimate(flag, text, unit);
 }
 
+// Puts the typed geometry of the springs into `springs`. Without a geometry of
+// rig.toml and without a measured stiffness all five values must be typed;
+// otherwise those that were typed replace the file's.
 void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
   const bool any = !flags.shear_modulus_gpa.empty() || !flags.wire_mm.empty() ||
                    !flags.coil_mm.empty() || !flags.coil_diameter.empty() ||
                    !flags.active_coils.empty();
   if (!any && (springs.geometry || springs.stiffness_n_per_m)) return;
+  // Nothing to correct: each value must come from a flag.
   const bool fresh = !springs.geometry;
   rig::SpringGeometry geometry =
       springs.geometry.value_or(rig::SpringGeometry{});
@@ -48,6 +55,8 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
     need("--coil-diameter", flags.coil_diameter);
     need("--active-coils", flags.active_coils);
   }
+  // The coils that do not act keep their number when the active ones change: 2
+  // for closed ends (rig/spring.h), or what rig.toml implies.
   const double dead =
       fresh ? 2.0 : geometry.total_coils - geometry.active_coils.value;
   TakeEstimate(geometry.shear_modulus_pa, "--shear-modulus-gpa",
@@ -76,6 +85,8 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
 
 }  // namespace
 
+// Defaults stand in brackets in the help, "[2]": they belong to the description
+// and apply only where neither flag nor file says otherwise.
 Option AddSpringFlags(CLI::App& app, RigFlags& flags) {
   const Option rig =
       AddOption(app, "--rig", flags.rig,
@@ -118,6 +129,7 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags) {
 
 rig::Description MakeDescription(const RigFlags& flags) {
   rig::Description out;
+  // The file first, so that every flag below corrects it.
   if (!flags.rig.empty()) out = rig::ReadDescription(flags.rig);
   rig::Springs& springs = out.springs;
   const bool typed_stiffness = !flags.stiffness_n_per_m.empty();
@@ -130,6 +142,8 @@ rig::Description MakeDescription(const RigFlags& flags) {
         ParseEstimate("--stiffness-n-per-m", flags.stiffness_n_per_m, 1.0);
   }
   if (flags.count) springs.count = *flags.count;
+  // These two mean something only with a geometry; beside a measured stiffness
+  // alone they are passed over.
   if (springs.geometry) {
     rig::SpringGeometry& geometry = *springs.geometry;
     if (flags.total_coils) geometry.total_coils = *flags.total_coils;
@@ -152,6 +166,8 @@ rig::Description MakeDescription(const RigFlags& flags) {
                1.0);
   TakeEstimate(out.loss_j, "--loss-j", flags.loss_j, 1.0);
   TakeEstimate(out.gravity_mps2, "--gravity-mps2", flags.gravity_mps2, 1.0);
+  // A u alone, of a setting whose value is not part of the description. NaN and
+  // infinity are refused with the negative ones.
   const auto take_u = [](const char* flag, const std::optional<double>& given,
                          double unit, double& to) {
     if (!given) return;
