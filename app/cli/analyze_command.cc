@@ -61,7 +61,8 @@ std::string MakeDocument(const pipeline::Analysis& analysis,
 // that contradict each other, core::InputError for the clip, core::StoreError
 // for the store.
 int RunAnalyze(const AnalyzeCommandFlags& flags) {
-  // Few allocations are ever given back: the process ends after one clip.
+  // The process ends after one clip, so that memory kept until then costs
+  // nobody anything.
   KeepMemory();
   pipeline::AnalyzeOptions options = ToOptions(flags.analyze);
   // Flags that mean nothing without a store are refused: a user who gives them

@@ -55,7 +55,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
     options.diameter_m = ParseEstimate("--diameter-mm", flags.diameter,
                                        core::kMillimetre, kPlainSize);
   }
-  // ParseSides() returns the long side first.
+  // The side that is typed first is taken for the long one.
   if (!flags.sides.empty()) {
     std::tie(options.long_m, options.short_m) =
         ParseSides("--sides-mm", flags.sides, core::kMillimetre, kPlainSize);

@@ -178,8 +178,8 @@ calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
   return ground;
 }
 
-// Finds the ground line from a board, from two marked points, or from the
-// picture itself, in this order; a plumb line adds the slope. Returns 0.
+// Takes the ground line from a board or from two marked points, whichever is
+// given, else from the picture itself; a plumb line adds the slope. Returns 0.
 int RunGround(const ReferenceFlags& flags) {
   if (!flags.points.empty() && !flags.board.empty()) {
     throw std::invalid_argument(

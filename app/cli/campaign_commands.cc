@@ -74,8 +74,8 @@ int NewCampaign(const CampaignFlags& flags) {
     store.AddCampaign(campaign);
   }
   const db::Plan plan = UpdatePlan(flags, {});
-  // `new` does not ask who declares the plan: the program stands in for a name,
-  // and a change of conventions needs a reason.
+  // The program stands in for a name that was not given. A change of
+  // conventions has always the same reason, so --why is not asked for.
   if (plan != db::Plan{}) {
     db::SetPlan(store, campaign.name, plan,
                 flags.by.empty() ? "touchdown" : flags.by,

@@ -141,8 +141,8 @@ std::string ZshCompletion(const std::vector<CommandText>& tree) {
   return out;
 }
 
-// fish has no `case`: each completion has a condition, which asks whether the
-// words so far lead to exactly its command.
+// fish wants one line for each completion, with a condition: __touchdown_at
+// tells whether the words so far name exactly that command.
 std::string FishCompletion(const std::vector<CommandText>& tree) {
   std::string out = fmt::format(
       "# fish completion of touchdown\n"

@@ -217,15 +217,15 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
         Printable(errors.front()), errors.size(),
         errors.size() == 1 ? "" : "s"));
   }
-  // The form of all rows is right: from here on they are held against the
-  // store.
+  // The rows that are left have the right form; from here on they are held
+  // against what the store has.
   auto store = db::Store::Open(db, db::OpenMode::kCreate);
   std::vector<core::Trial> good;
   std::vector<std::size_t> rows;
   for (auto& [row, trial] : read.trials) {
     std::string error;
-    // An id in the file would make the row a revision of that trial. Revisions
-    // come by `correct` and by JSON lines, never by a CSV.
+    // A row with an id that the store has would become a revision of that
+    // trial, which is not what an import of trials is for.
     if (!trial.id.empty()) {
       try {
         if (store.Find(trial.id)) {
@@ -401,9 +401,9 @@ int Import(const ImportFlags& flags) {
     return format == Format::kCsv ? ImportCsv(flags, db, in)
                                   : ImportJsonLines(flags, db, in);
   };
-  // The first import into a new store is tried in another folder before, so
-  // that a file with no right row leaves no store behind. A pipe can be read
-  // only once: it is imported without a trial run.
+  // The first import into a new store is tried in another folder before: a file
+  // of which nothing can be imported leaves no store behind. A pipe can be read
+  // only once, and is imported without a trial run.
   std::error_code ignored;
   if (!fs::exists(flags.db, ignored) &&
       fs::is_regular_file(flags.file, ignored) &&

@@ -1,6 +1,7 @@
-// A handler of signals may do next to nothing, and removing files is not
-// allowed in it. So it writes one byte into a pipe; a thread of its own
-// (Listen) reads the byte, removes what is not complete and ends the process.
+// A handler of signals may take no lock and allocate nothing, so it cannot
+// remove what is on the list of unfinished files. It writes one byte into a
+// pipe instead; a thread of its own (Listen) reads the byte, removes the files
+// and ends the process.
 #include "app/cli/interruption.h"
 
 #include <fcntl.h>
@@ -38,8 +39,8 @@ void OnInterruption(int signal) {
   WakeListener(static_cast<unsigned char>(signal));
 }
 
-// _exit() and not exit(): destructors would wait for other threads, which may
-// be in the middle of a decoder.
+// _exit() and not exit(), which would destroy objects that other threads still
+// use.
 [[noreturn]] void End(int signal) {
   core::RemoveUnfinished();
   // A progress bar's line is not left half drawn.

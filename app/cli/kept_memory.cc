@@ -21,8 +21,8 @@ void KeepMemory() {
   // What analyze of such a clip needs, and a little more; the heap grows by as
   // much again.
   constexpr int kRoom = 16 * kMiB;
-  // Blocks up to kLargest come from the heap, which is not given back while it
-  // is in use, and grows by kRoom at a time.
+  // Blocks up to kLargest come from the heap, which keeps that much of freed
+  // memory at its end and grows by kRoom at a time.
   ::mallopt(M_MMAP_THRESHOLD, kLargest);
   ::mallopt(M_TRIM_THRESHOLD, kLargest);
   ::mallopt(M_TOP_PAD, kRoom);

@@ -77,7 +77,7 @@ void SetUpLog(const LogFlags& flags) {
   // Without sinks the level is off, and JournalIsKept() spares the work of
   // making lines that nobody reads.
   logger->set_level(sinks.empty() ? spdlog::level::off : spdlog::level::debug);
-  // After a crash the last line is what matters: each is on the disk at once.
+  // After a crash the last line is what matters: none waits in a buffer.
   logger->flush_on(spdlog::level::debug);
   // Nothing fails because nobody could be told.
   logger->set_error_handler([](const std::string&) {});

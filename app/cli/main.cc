@@ -1,7 +1,8 @@
 // The program's entry: from the command line to one function, and from what
-// that throws to the exit status. Order matters at the start: first the process
-// that was started as a reader of recordings, then the standard streams, then
-// signals, before any thread or file exists.
+// that throws to the exit status. The order at the start matters: a process
+// that was started as a reader of recordings goes no further; the standard
+// streams come before any file is opened, the signals before any thread is
+// started.
 #include <dlfcn.h>
 
 #include <CLI/CLI.hpp>

@@ -9,9 +9,9 @@
 namespace touchdown::cli {
 namespace {
 
-// Returns `text` escaped for troff. A line must not begin with a dot or an
-// apostrophe, which would make it a request, and hyphens are written as minus
-// signs, so that options can be copied from the page.
+// Returns `text` escaped for troff: a dot at its beginning would make a request
+// of it. Hyphens become minus signs, so that options can be copied from the
+// page.
 std::string Roff(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -91,7 +91,7 @@ std::string Printable(std::string_view text) {
   return out;
 }
 
-// The flush makes the line appear before a crash or a long computation.
+// Errors are passed over: there is nobody left who could be told of them.
 void TellRaw(std::string_view bytes) noexcept {
   std::fwrite(bytes.data(), 1, bytes.size(), stderr);
   std::fflush(stderr);

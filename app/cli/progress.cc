@@ -17,7 +17,8 @@ ProgressBar::ProgressBar(std::string what)
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 
-// Analyses report each frame: drawing all would cost more than a frame does.
+// Progress may come for every frame, thousands a second: ten drawings a second
+// are all that a person sees.
 bool ProgressBar::IsTimeToDraw() {
   if (!terminal_) return false;
   const auto now = std::chrono::steady_clock::now();

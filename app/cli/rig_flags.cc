@@ -27,9 +27,10 @@ void TakeEstimate(To& to, const char* flag, const std::string& text,
   if (!text.empty()) to = ParseEstimate(flag, text, unit);
 }
 
-// Puts the typed geometry of the springs into `springs`. Without a geometry of
-// rig.toml and without a measured stiffness all five values must be typed;
-// otherwise those that were typed replace the file's.
+// Puts the typed geometry of the springs into `springs`. Where there is a
+// geometry already, the typed values replace its own. Where there is none, all
+// five must be typed, unless none is and a measured stiffness serves. Throws
+// std::invalid_argument naming the first that is missing.
 void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
   const bool any = !flags.shear_modulus_gpa.empty() || !flags.wire_mm.empty() ||
                    !flags.coil_mm.empty() || !flags.coil_diameter.empty() ||
