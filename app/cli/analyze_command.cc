@@ -1,6 +1,6 @@
-// touchdown analyze: one recording to one trial. The flags become options, the
-// clip is measured (app/measure), and only then are outputs touched: evidence
-// in --out, the trial in --db, the answer on stdout.
+// touchdown analyze makes one trial of one recording. The flags become options,
+// the clip is measured (app/measure), and only then are outputs touched:
+// evidence in --out, the trial in --db, the answer on stdout.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -24,7 +24,7 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed; an empty string means that the flag was not given.
+// Holds the flags as typed; an empty string means that the flag was not given.
 // `analyze` holds those that batch, session and report-bug have too.
 struct AnalyzeCommandFlags {
   std::string clip;
@@ -51,8 +51,8 @@ std::string MakeDocument(const pipeline::Analysis& analysis,
                     {"revision", logged->revision},
                     {"is_proposal", logged->is_proposal},
                     {"store", flags.db}};
-  // A path may hold bytes that are no UTF-8. JSON cannot: they are replaced,
-  // where dump() would throw otherwise.
+  // A path may hold bytes that are not UTF-8, which JSON cannot. They are
+  // replaced; without that dump() would throw.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -82,7 +82,7 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
   // Names in --condition are looked up before the analysis: a typing error must
   // not cost the minutes that it takes.
   const auto conditions = ReadConditions(flags.conditions, flags.db);
-  // Flags go before the campaign, which fills in only what they leave open.
+  // Flags take precedence: the campaign fills in only what they leave open.
   if (!flags.campaign.empty()) {
     pipeline::FillFromCampaign(flags.db, flags.campaign, options);
   }

@@ -15,7 +15,7 @@ namespace touchdown::cli {
 
 // Returns the limit unchanged, in seconds; +infinity stands for no limit.
 double ToLimit(double limit_s) {
-  // Written so that NaN is refused, too.
+  // The condition is written so that NaN is refused, too.
   if (!(limit_s > 0.0)) {
     throw std::invalid_argument(fmt::format(
         "--limit-s is {:g}, must be above 0: seconds for one clip", limit_s));

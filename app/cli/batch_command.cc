@@ -1,8 +1,8 @@
-// touchdown batch: a folder of recordings, or a manifest, into the trial store.
-// Without --watch the recordings are listed, cut down to this machine's share
-// (--shard), analysed and logged (app/batch), and a table says which of them a
-// person should look at. With --watch the same happens to each recording as
-// soon as it is complete, until a signal ends the command.
+// touchdown batch brings a folder of recordings, or a manifest, into the trial
+// store. Without --watch the recordings are listed, cut down to this machine's
+// share (--shard), analysed and logged (app/batch), and a table says which of
+// them a person should look at. With --watch the same happens to each recording
+// as soon as it is complete, until a signal ends the command.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -40,8 +40,9 @@ namespace {
 namespace fs = std::filesystem;
 using pipeline::TriageEntry;
 
-// The flags as typed. `source` is a folder or a manifest.csv; `jobs` 0 means
-// one analysis on each core; an empty `out` means that no evidence is written.
+// Holds the flags as typed. `source` is a folder or a manifest.csv; `jobs` 0
+// means one analysis on each core; an empty `out` means that no evidence is
+// written.
 struct BatchFlags {
   std::string source;
   std::string db;
@@ -58,14 +59,14 @@ struct BatchFlags {
   bool columns = false;
 };
 
-// State that the handler of SIGINT and SIGTERM shares with the watch. The
+// The handler of SIGINT and SIGTERM shares this state with the watch. The
 // handler may interrupt any instruction, so each must be lock-free.
 // watch_interrupted ends the waiting, and the analysis that goes on
 // (AnalyzeOptions::interrupted); analysing_batch tells the handler that there
 // is one.
 std::atomic<bool> watch_interrupted = false;
 std::atomic<bool> analysing_batch = false;
-// Number of the signal that cut an analysis off; 0 where none did.
+// Holds the number of the signal that cut an analysis off; 0 where none did.
 std::atomic<int> batch_ended_by = 0;
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -80,8 +81,8 @@ void OnWatchSignal(int signal) {
   EndSoon(signal);
 }
 
-// For --watch alone: a plain batch has nothing to end in good order, and leaves
-// its signals to interruption.h.
+// Only --watch catches signals: a plain batch has nothing to end in good order,
+// and leaves them to interruption.h.
 void CatchWatchSignals() {
   struct sigaction action = {};
   action.sa_handler = OnWatchSignal;  // without SA_RESTART: waiting ends
@@ -89,8 +90,8 @@ void CatchWatchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-// `batch --columns`: the columns that a manifest.csv may have, as a table.
-// Needs neither a store nor recordings.
+// Prints the columns that a manifest.csv may have (`batch --columns`). This
+// needs neither a store nor recordings.
 int PrintManifestColumns() {
   std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
   for (const auto& column : pipeline::ManifestColumns()) {
@@ -129,7 +130,8 @@ db::Store OpenStore(const BatchFlags& flags) {
   return store;
 }
 
-// "bounce", "undecided, P(bounce) 0.412", or "-" where there is no trial.
+// Returns "bounce", "undecided, P(bounce) 0.412", or "-" where there is no
+// trial.
 std::string StateText(const TriageEntry& entry) {
   if (!entry.state) return "-";
   std::string text(core::Name(*entry.state));
@@ -139,7 +141,8 @@ std::string StateText(const TriageEntry& entry) {
   return text;
 }
 
-// "approach 20.013 +- 0.048" in degrees, or "-" where there is no angle.
+// Returns "approach 20.013 +- 0.048" in degrees, or "-" where there is no
+// angle.
 std::string AngleText(const TriageEntry& entry) {
   return entry.angle_rad ? fmt::format("{} {}", core::Name(*entry.angle_kind),
                                        WithU(entry.angle_rad, core::kDegree))
@@ -240,7 +243,7 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
   // afterwards: until here Ctrl-C ends the program at once.
   CatchWatchSignals();
   std::vector<TriageEntry> all;
-  // Called by Watch() with the recordings that have become complete.
+  // Watch() calls this with the recordings that have become complete.
   const auto take = [&](const std::vector<fs::path>& complete) {
     ProgressBar bar("batch");
     analysing_batch = true;

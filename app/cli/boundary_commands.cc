@@ -1,7 +1,7 @@
-// touchdown boundary, report: from trials to a boundary angle. Both select
-// trials by the same flags (boundary_flags.h), record that the answer is looked
-// at, and estimate one boundary for each group of trials that may be pooled.
-// `boundary` prints the groups, `report` writes files.
+// touchdown boundary and report lead from trials to a boundary angle. Both
+// select trials by the same flags (boundary_flags.h), record that the answer is
+// looked at, and estimate one boundary for each group of trials that may be
+// pooled. `boundary` prints the groups, `report` writes files.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -34,8 +34,9 @@ namespace {
 
 using core::kDegree;
 
-// The groups of `boundary` with what they were made of. `trials` are sorted as
-// the tables are, and taken out of `input`: the groups refer to them by index.
+// Holds the groups of `boundary` with what they were made of. `trials` are
+// sorted as the tables are, and taken out of `input`: the groups refer to them
+// by index.
 struct Answer {
   report::ReportInput input;
   std::vector<core::Trial> trials;
@@ -95,8 +96,8 @@ void PrintGroup(const report::Group& group) {
       "deg)\n",
       DegreesText(p.scatter_median_rad), DegreesText(p.scatter95_rad.low),
       DegreesText(p.scatter95_rad.high), DegreesText(p.sd_rad));
-  // The same estimate under other priors on the scatter: where these lines
-  // differ much, the trials say little.
+  // These lines give the same estimate under other priors on the scatter: where
+  // they differ much, the trials say little.
   for (const auto& line : p.sensitivity) {
     fmt::print(
         "              {} deg, 95 % {} to {} deg if the scatter is about "
@@ -125,7 +126,8 @@ void PrintGroup(const report::Group& group) {
   }
   fmt::print("  verdict     {}: {}\n", report::VerdictWord(group),
              report::VerdictSentence(group));
-  // How the verdict may still change; empty where there is nothing to say.
+  // Says how the verdict may still change; it is empty where there is nothing
+  // to say.
   const std::string outlook = report::OutlookSentence(group);
   if (!outlook.empty()) fmt::print("              {}\n", outlook);
   fmt::print("  next angle  {}\n", report::NextSentence(group));
@@ -188,8 +190,8 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
   }
   // 0 leaves it to the report: a row for each angle, or bins that fit a page.
   input.bin_width_rad = flags.bin_deg * kDegree;
-  // Pictures that the store keeps go before those of the folder: merge() leaves
-  // alone what is there.
+  // Pictures that the store keeps take precedence over those of the folder:
+  // merge() leaves alone what is there.
   if (flags.evidence && !flags.store.empty()) {
     input.pictures = pipeline::KeptPictures(flags.store, input.trials);
   }

@@ -34,8 +34,8 @@ using core::kDegree;
 // The word of --support-deg for the angles that can be thrown.
 constexpr std::string_view kOfTheRig = "rig";
 
-// The number that the whole of `text` is. Throws std::invalid_argument with the
-// flag, the text and the expected form.
+// Returns the number that the whole of `text` is. Throws std::invalid_argument
+// with the flag, the text and the expected form.
 double ReadFlagNumber(const char* flag, std::string_view text,
                       const char* form) {
   const auto value = report::ParseNumber<double>(text);
@@ -46,8 +46,8 @@ double ReadFlagNumber(const char* flag, std::string_view text,
   return *value;
 }
 
-// The value of a word such as "sphere"; nothing where the flag was not given. A
-// word that `parse` does not know is the user's error.
+// Returns the value of a word such as "sphere", and nothing where the flag was
+// not given. A word that `parse` does not know is the user's error.
 template <class Parse>
 auto OptionalWord(const char* flag, const std::string& text, Parse parse,
                   const char* words) -> decltype(parse(text)) {
@@ -123,7 +123,7 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
   return range;
 }
 
-// Nothing where no corner was asked for: the rig takes either.
+// Returns nothing where no corner was asked for: the rig takes either.
 std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags) {
   return OptionalWord("--corner", flags.corner, core::ParseCorner,
                       "leading, trailing or flush");
@@ -144,7 +144,7 @@ void RefuseCheckShots(const BoundaryFlags& flags,
 }
 
 void PrintLeftOut(const report::Group& group, std::string_view heading) {
-  // Enough to see a pattern; a campaign may have hundreds of them.
+  // Five are enough to see a pattern; a campaign may have hundreds.
   constexpr std::size_t kShown = 5;
   const std::size_t shown = std::min(group.left_out.size(), kShown);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -232,7 +232,7 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
 void KeepLook(const BoundaryFlags& flags, std::string_view command,
               report::ReportInput& input) {
   if (flags.store.empty() || input.trials.empty()) return;
-  // One look for each campaign that has a trial here.
+  // Each campaign that has a trial here gets one look.
   std::set<std::string> names;
   for (const core::Trial& trial : input.trials) names.insert(trial.campaign);
   const std::string trouble = pipeline::KeepLooks(flags.store, names, command);
@@ -241,7 +241,7 @@ void KeepLook(const BoundaryFlags& flags, std::string_view command,
     Tell(fmt::format("this look is not on record: {}", trouble));
     return;
   }
-  // Read again, so that this very look is in the plan that a report shows.
+  // The plan is read again, so that a report shows this very look.
   input.plan =
       db::PlanEvents(db::Store::Open(flags.store, db::OpenMode::kRead));
 }
@@ -352,7 +352,8 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
   AddFlag(command, "--json", flags.json, "one JSON document");
 }
 
-// Two decimals: the angle of a good clip is known to some hundredths.
+// Two decimals are enough: the angle of a good clip is known to some
+// hundredths.
 std::string DegreesText(double angle_rad) {
   return fmt::format("{:.2f}", angle_rad / kDegree);
 }

@@ -11,8 +11,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The folder that only this user can read (XDG_RUNTIME_DIR), else the one for
-// temporary files: there the mode 600 of the file protects it alone.
+// Returns the folder that only this user can read (XDG_RUNTIME_DIR), else the
+// one for temporary files, where nothing but its mode 600 protects the file.
 std::filesystem::path OwnFolder() {
   const char* const own = std::getenv("XDG_RUNTIME_DIR");
   std::error_code ignored;
@@ -48,7 +48,7 @@ BrowserPage::BrowserPage(const std::string& address) {
   const int descriptor = mkostemps(name.data(), kSuffix, O_CLOEXEC);
   if (descriptor < 0) return;
   path_ = name;
-  // A page that sends the browser on to the address, with a link for browsers
+  // The page sends the browser on to the address, and has a link for browsers
   // that do not follow. "no-referrer" keeps the session's key out of the
   // headers of later requests.
   const std::string page = fmt::format(

@@ -25,7 +25,7 @@
 namespace touchdown::cli {
 namespace {
 
-// `board` as typed, "chessboard:9x6:25mm"; `images` are files and folders.
+// `board` is as typed, "chessboard:9x6:25mm"; `images` are files and folders.
 struct LensFlags {
   CalibrationFileFlags file;
   std::vector<std::string> images;
@@ -61,7 +61,7 @@ pipeline::BoardPictures FindInPictures(const LensFlags& flags,
                     "the board",
                     flags.images.front()));
   }
-  // --sensor-origin goes before what the files say of their place.
+  // --sensor-origin takes precedence over what the files say.
   std::optional<calib::SensorCorner> corner;
   if (!flags.file.sensor_origin.empty()) {
     corner = ParseCorner("--sensor-origin", flags.file.sensor_origin);
@@ -73,9 +73,9 @@ pipeline::BoardPictures FindInPictures(const LensFlags& flags,
   return found;
 }
 
-// The touchdown.calibrate.lens/1 document: each number of the lens with its u,
-// how well the views fit, and the calibration file itself. Lengths are px,
-// angles deg.
+// Returns the touchdown.calibrate.lens/1 document: each number of the lens with
+// its u, how well the views fit, and the calibration file itself. Lengths are
+// px, angles deg.
 nlohmann::ordered_json LensJson(const pipeline::BoardPictures& found,
                                 const calib::LensCalibration& lens,
                                 const calib::Calibration& file) {
@@ -101,8 +101,8 @@ nlohmann::ordered_json LensJson(const pipeline::BoardPictures& found,
   }
   json["without_board"] = found.without;
   json["warnings"] = lens.warnings;
-  // The same text that was written to --out, so that a script needs not open
-  // it.
+  // This is the text that was written to --out: a script need not open that
+  // file.
   json["calibration"] =
       nlohmann::ordered_json::parse(calib::CalibrationText(file));
   return json;
@@ -124,7 +124,7 @@ void PrintLens(const pipeline::BoardPictures& found,
     fmt::print("{:<10} {}{}\n", px ? name.substr(0, 2) : name,
                Rounded(lens.Parameter(i)), px ? " px" : "");
   }
-  // What the lens does to the picture, in px: more telling than its numbers.
+  // The displacement in px tells a person more than the parameters do.
   fmt::print("bends      up to {:.2f} px within the picture\n",
              calib::LargestDisplacement(lens.lens, found.picture.width_px,
                                         found.picture.height_px));

@@ -24,8 +24,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags of both commands as typed. Points are "X1,Y1,X2,Y2" in pixels of
-// the picture as it is seen, lens not undone.
+// Holds the flags of both commands as typed. Points are "X1,Y1,X2,Y2" in pixels
+// of the picture as it is seen, lens not undone.
 struct ReferenceFlags {
   CalibrationFileFlags file;
   std::string picture;
@@ -35,8 +35,8 @@ struct ReferenceFlags {
   bool json = false;
 };
 
-// The picture, the calibration that the command adds to, and its lens; without
-// a lens the marked points are taken as they are.
+// Holds the picture, the calibration that the command adds to, and its lens;
+// without a lens the marked points are taken as they are.
 struct Begun {
   StillPicture still;
   calib::Calibration file;
@@ -141,7 +141,7 @@ FloatPicture Floats(const core::Frame& frame) {
   return out;
 }
 
-// The straightest edge of the picture as the ground line. Throws
+// Returns the edge of the picture with most support as the ground line. Throws
 // core::InputError where there is none within 20 degrees of level. Its ends are
 // in the picture as it is seen, as those are that a person marks.
 calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
@@ -188,7 +188,7 @@ int RunGround(const ReferenceFlags& flags) {
   Begun begun = Begin(flags);
   std::vector<std::string> lines;
   calib::GroundRecord ground;
-  // An angle with its u in degrees: "0.52 +- 0.03".
+  // Returns an angle with its u in degrees, as "0.52 +- 0.03".
   const auto degrees = [](const core::Estimate& e) {
     return Rounded(core::Scaled(e, 1.0 / core::kDegree));
   };
@@ -263,7 +263,7 @@ int RunGround(const ReferenceFlags& flags) {
   return 0;
 }
 
-// The flags that `scale` and `ground` have in common.
+// Adds the flags that `scale` and `ground` have in common.
 void AddPictureFlags(CLI::App& command, ReferenceFlags& flags) {
   AddOption(command, "PICTURE", flags.picture,
             "a picture, or a clip of which one frame is looked at")

@@ -1,6 +1,6 @@
-// touchdown campaign new|plan|list|show: the conventions of a campaign, which
-// are fixed before its first trial, and its plan (db/plan.h), which may change
-// with a reason.
+// touchdown campaign new|plan|list|show keeps the conventions of a campaign,
+// which are fixed before its first trial, and its plan (db/plan.h), which may
+// change with a reason.
 #include <fmt/format.h>
 
 #include <memory>
@@ -26,8 +26,8 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
-// The flags of all four commands, each of which uses some. `entry` holds the
-// conventions as typed (trials/campaign_entry.h).
+// Holds the flags of all four commands, each of which uses some. `entry` holds
+// the conventions as typed (trials/campaign_entry.h).
 struct CampaignFlags {
   std::string db;
   pipeline::CampaignEntry entry;
@@ -75,7 +75,7 @@ int NewCampaign(const CampaignFlags& flags) {
   }
   const db::Plan plan = UpdatePlan(flags, {});
   // The program stands in for a name that was not given. A change of
-  // conventions has always the same reason, so --why is not asked for.
+  // conventions always has the same reason, so --why is not asked for.
   if (plan != db::Plan{}) {
     db::SetPlan(store, campaign.name, plan,
                 flags.by.empty() ? "touchdown" : flags.by,
@@ -107,8 +107,8 @@ int ChangePlan(const CampaignFlags& flags) {
   return 0;
 }
 
-// Prints a table of all campaigns, or a touchdown.campaign/1 line for each.
-// Degrees and millimetres in the table, SI in JSON.
+// Prints a table of all campaigns, or a touchdown.campaign/1 line for each. The
+// table has degrees and millimetres, JSON has SI units.
 int ListCampaigns(const CampaignFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   std::vector<std::vector<std::string>> rows = {

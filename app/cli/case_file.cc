@@ -27,8 +27,8 @@ namespace {
 
 using core::InputError;
 
-// Without blanks, tabs and CR at either end. Spreadsheets and people add them;
-// they never mean anything in a case file.
+// Returns `text` without blanks, tabs and CR at either end. Spreadsheets and
+// people add them; they never mean anything in a case file.
 std::string_view Trim(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r";
   const std::size_t first = text.find_first_not_of(kBlank);
@@ -36,7 +36,7 @@ std::string_view Trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-// One row as cells of text; `line` is the line of the file it begins in.
+// Holds one row as cells of text; `line` is the line of the file it begins in.
 struct RawRow {
   std::size_t line = 1;
   std::vector<std::string> cells;
@@ -88,8 +88,8 @@ std::vector<RawRow> ParseRows(const std::string& file,
   return rows;
 }
 
-// The bytes of a file without a byte order mark, which spreadsheets write.
-// Throws core::InputError with the system's reason.
+// Returns the bytes of a file without a byte order mark, which spreadsheets
+// write. Throws core::InputError with the system's reason.
 std::string ReadAll(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
@@ -115,7 +115,8 @@ CaseRow::CaseRow(std::shared_ptr<const Header> header, std::size_t line,
                  std::vector<std::string> cells)
     : header_(std::move(header)), line_(line), cells_(std::move(cells)) {}
 
-// Place of the column in the row; nothing where the header lacks it.
+// Returns the place of the column in the row; nothing where the header lacks
+// it.
 std::optional<std::size_t> CaseRow::Find(std::string_view column) const {
   const auto& columns = header_->columns;
   const auto it = std::find(columns.begin(), columns.end(), column);
@@ -123,9 +124,9 @@ std::optional<std::size_t> CaseRow::Find(std::string_view column) const {
   return static_cast<std::size_t>(it - columns.begin());
 }
 
-// Place of the cell that a number is taken from. A hexadecimal cell wins, in a
-// column named after the quantity with its unit ("alpha_rad_hex") or without
-// ("alpha_hex"); an empty cell counts as absent.
+// Returns the place of the cell that a number is taken from. A hexadecimal cell
+// wins, in a column named after the quantity with its unit ("alpha_rad_hex") or
+// without ("alpha_hex"); an empty cell counts as absent.
 std::optional<std::size_t> CaseRow::FindNumber(std::string_view column) const {
   const auto filled = [&](const std::string& name) {
     const auto index = Find(name);

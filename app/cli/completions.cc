@@ -38,13 +38,14 @@ std::string WithoutColons(std::string_view name) {
   return out;
 }
 
-// A word that may stand behind a command, with the text that zsh shows.
+// Holds a word that may stand behind a command, and the text that zsh shows
+// with it.
 struct Completion {
   std::string name;
   std::string description;
 };
-// The subcommands first, then the options with their short names. Positional
-// arguments are left out: the shell completes file names there.
+// Lists the subcommands first, then the options with their short names.
+// Positional arguments are left out: the shell completes file names there.
 std::vector<Completion> ListCompletions(const CommandText& command,
                                         const std::vector<CommandText>& tree) {
   std::vector<Completion> words;
@@ -71,7 +72,7 @@ constexpr std::string_view kFindPath = R"(  local at=touchdown word
   done
 )";
 
-// "touchdown rig plan" as "touchdown/rig/plan".
+// Turns "touchdown rig plan" into "touchdown/rig/plan".
 std::string Slashed(std::string path) {
   for (char& c : path) {
     if (c == ' ') c = '/';
@@ -79,7 +80,8 @@ std::string Slashed(std::string path) {
   return path;
 }
 
-// Every path with slashes, blanks between, for the lookup of kFindPath.
+// Returns every path with slashes, separated by blanks, for the lookup of
+// kFindPath.
 std::string AllPaths(const std::vector<CommandText>& tree) {
   std::string all;
   for (const CommandText& command : tree) all += " " + Slashed(command.path);

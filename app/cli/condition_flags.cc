@@ -12,7 +12,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The expected form of --condition with all its keys, for help and messages.
+// Returns the expected form of --condition with all its keys, for help and
+// messages.
 std::string Form() {
   std::string form = "KEY=VALUE with one of the keys";
   std::string_view before = " ";
@@ -35,7 +36,7 @@ void AddConditionFlag(CLI::App& command, ConditionFlags& flags) {
 }
 
 void ApplyCondition(const std::string& text, core::Conditions& conditions) {
-  // Only the first '=' separates: a value may hold others.
+  // Only the first '=' is a separator: a value may hold others.
   const std::size_t sign = text.find('=');
   const std::string key = text.substr(0, sign);
   try {

@@ -1,6 +1,6 @@
-// touchdown db check|seal|backup|columns|pictures|merge|relink|migrate: care of
-// the store. The work is done in db/maintenance.h and app/trials; here its
-// reports become lines. `seal` is in seal_command.cc.
+// touchdown db check|seal|backup|columns|pictures|merge|relink|migrate takes
+// care of the store. The work is done in db/maintenance.h and app/trials; here
+// its reports become lines. `seal` is in seal_command.cc.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -25,7 +25,7 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags of all subcommands as typed; each uses some.
+// Holds the flags of all subcommands as typed; each uses some.
 struct DbFlags {
   std::string db;
   std::string to;
@@ -35,7 +35,7 @@ struct DbFlags {
   std::string folder;
 };
 
-// "1 problem", "2 problems". `word` takes a plain s.
+// Returns "1 problem", "2 problems". `word` takes a plain s.
 std::string Plural(std::size_t n, std::string_view word) {
   return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
 }
@@ -81,15 +81,15 @@ int Check(const DbFlags& flags) {
       report.clips_missing.size(), report.clips_without_digest,
       flags.no_clips ? "; not looked at (--no-clips)" : "");
   // A seal finds what the store's own chain cannot: rows that were altered and
-  // given new digests. It is checked before damage is thrown, so that its
-  // message is not lost.
+  // given new digests. Damage that was found is printed already, so it is not
+  // lost where this throws.
   if (!flags.against.empty()) CheckSeal(store, flags.against);
   if (!report.problems.empty()) {
     throw core::StoreError(
         fmt::format("{}: {}; go back to a backup, or export what can be read",
                     flags.db, Plural(report.problems.size(), "problem")));
   }
-  // True of the store even where a recording changed, which follows.
+  // The store itself is sound even where a recording changed, which follows.
   fmt::print("the store is sound\n");
   if (!report.clips_changed.empty()) {
     throw core::StoreError(fmt::format(
@@ -135,8 +135,8 @@ int Merge(const DbFlags& flags) {
   return 0;
 }
 
-// `db columns`: the dictionary of the views, the same for every store; it needs
-// none.
+// Prints the dictionary of the views (`db columns`). It is the same for every
+// store, so none is opened.
 int Columns() {
   std::vector<std::vector<std::string>> rows = {
       {"view", "column", "type", "unit", "meaning"}};

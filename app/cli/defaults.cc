@@ -20,14 +20,14 @@
 namespace touchdown::cli {
 namespace {
 
-// The variable of the environment, "" where it is not set; an empty value
-// counts as not set.
+// Returns the variable of the environment, "" where it is not set; an empty
+// value counts as not set.
 std::string Variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
-// Whether the line has the option, as "--db lab.db" or "--db=lab.db".
+// Returns whether the line has the option, as "--db lab.db" or "--db=lab.db".
 bool Has(const std::vector<std::string>& arguments, const std::string& name) {
   return std::any_of(
       arguments.begin(), arguments.end(), [&](const std::string& argument) {

@@ -18,15 +18,15 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed. The same seed gives the same clips.
+// Holds the flags as typed. The same seed gives the same clips.
 struct DemoFlags {
   std::string out = "touchdown-demo";
   std::uint64_t seed = 1;
   double limit_s = pipeline::kUsualLimit_s;
 };
 
-// The paper's two words, and a third: "slide" is every state that is decided
-// not to be a bounce.
+// Returns one of the paper's two words, or a third: "slide" is every state that
+// is decided not to be a bounce.
 std::string TwoWords(core::MotionState state) {
   if (state == core::MotionState::kUndecided) return "undecided";
   return core::IsNotBounce(state) ? "slide" : "bounce";
@@ -67,7 +67,7 @@ int RunDemo(const DemoFlags& flags) {
                TwoWords(row.true_state), TwoWords(row.state),
                row.right() ? "" : "  WRONG");
   }
-  // Absolute paths, so that they can be opened from any folder.
+  // The paths are absolute, so that they can be opened from any folder.
   fmt::print(
       "\n{} of {} right as bounce or not; RMSE of the contact angle {:.4f} deg "
       "over {} clips\nreport     {}\nstore      {}\n",

@@ -15,8 +15,8 @@
 namespace touchdown::cli {
 namespace {
 
-// Exit status where something that was asked for will not work; the same as
-// that of an input that cannot be read.
+// This is the exit status where something that was asked for will not work. It
+// is that of an input that cannot be read.
 constexpr int kTroubleFound = 3;
 
 // `doctor` names what is to be looked at (doctor_flags.h).

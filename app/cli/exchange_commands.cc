@@ -39,12 +39,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The forms of a file of trials, see above.
+// These are the forms of a file of trials that are listed above.
 enum class Format { kCsv, kJsonLines, kTidy };
 
-// The format by --format or, without it, by the file's extension. `tidy` is a
-// folder and follows from no name. Throws std::invalid_argument where neither
-// says it.
+// Returns the format that --format names or, without it, the file's extension.
+// `tidy` is a folder and follows from no name. Throws std::invalid_argument
+// where neither says it.
 Format ChooseFormat(const std::string& flag, const std::string& file) {
   const std::string kind =
       !flag.empty() ? flag : fs::path(file).extension().string();
@@ -63,8 +63,8 @@ Format ChooseFormat(const std::string& flag, const std::string& file) {
 
 // --- export ------------------------------------------------------------------
 
-// The flags of `export` as typed; an empty `out` is stdout, an empty `campaign`
-// means all.
+// Holds the flags of `export` as typed; an empty `out` is stdout, an empty
+// `campaign` means all.
 struct ExportFlags {
   std::string db;
   std::string out;
@@ -116,7 +116,7 @@ class FileBuffer : public std::streambuf {
   explicit FileBuffer(core::OutputFile& file) : file_(file) {}
 
  private:
-  // For single characters; most of the text comes through xsputn().
+  // Takes single characters; most of the text comes through xsputn().
   int overflow(int c) override {
     if (c == EOF) return 0;
     const char byte = static_cast<char>(c);
@@ -168,7 +168,8 @@ int Export(const ExportFlags& flags) {
 
 // --- import ------------------------------------------------------------------
 
-// The flags of `import` as typed. `file` is also what errors call the source.
+// Holds the flags of `import` as typed. `file` is also what errors call the
+// source.
 struct ImportFlags {
   std::string db;
   std::string file;
@@ -180,7 +181,7 @@ struct ImportFlags {
   double paper_u_deg = 0.5;
 };
 
-// `import --columns`: the columns that a CSV of trials may have.
+// Prints the columns that a CSV of trials may have (`import --columns`).
 int PrintTrialColumns() {
   std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
   for (const auto& column : report::TrialCsvColumns()) {
@@ -205,8 +206,8 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
                    std::istream& in) {
   auto read = report::ReadTrialsCsv(in, flags.file, flags.by);
   auto& errors = read.errors;
-  // All errors are told at once, so that a file can be mended in one go: the
-  // first in the exception, which main prints last, the others before it.
+  // All errors are reported at once, so that a file can be mended in one go:
+  // the first in the exception, which main prints last, the others before it.
   if (!flags.partial && !errors.empty()) {
     for (std::size_t i = 1; i < errors.size(); ++i) {
       Tell(errors[i]);
@@ -237,8 +238,8 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
         error = invalid.what();
       }
     }
-    // Found here and not when the trial is logged, so that the message can name
-    // row and column.
+    // The campaign is looked up here and not when the trial is logged, so that
+    // the message can name row and column.
     const bool no_campaign =
         !trial.campaign.empty() && !store.FindCampaign(trial.campaign);
     if (no_campaign) {
@@ -319,8 +320,8 @@ int PrintImported(const Imported& done) {
   return done.errors.empty() ? 0 : 5;
 }
 
-// A folder for a trial run of an import, removed with all in it at the end,
-// also when a signal ends the process (core::Unfinished).
+// Holds a folder for a trial run of an import, which is removed with all in it
+// at the end, also when a signal ends the process (core::Unfinished).
 class Rehearsal {
  public:
   Rehearsal() {

@@ -28,7 +28,7 @@ FolderWatch::~FolderWatch() {
 // is watched already stays as it is. Folders that cannot be read are skipped.
 void FolderWatch::AddFolders() {
   if (inotify_ < 0) return;
-  // Whatever changes the extent of a recording, and what brings or removes one.
+  // These events change the extent of a recording, bring one or remove one.
   constexpr std::uint32_t kEvents = IN_CREATE | IN_MODIFY | IN_CLOSE_WRITE |
                                     IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE;
   inotify_add_watch(inotify_, folder_.c_str(), kEvents);

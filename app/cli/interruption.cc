@@ -26,8 +26,8 @@ std::array<int, 2> signal_pipe = {-1, -1};
 // by itself first.
 constexpr unsigned char kSoon = 0x80;
 
-// Async-signal-safe. errno is kept: the code that was interrupted may be about
-// to read it.
+// This is async-signal-safe. errno is kept: the code that was interrupted may
+// be about to read it.
 void WakeListener(unsigned char what) {
   const int before = errno;
   // A full pipe has told enough.
@@ -39,8 +39,8 @@ void OnInterruption(int signal) {
   WakeListener(static_cast<unsigned char>(signal));
 }
 
-// _exit() and not exit(), which would destroy objects that other threads still
-// use.
+// Calls _exit() and not exit(), which would destroy objects that other threads
+// still use.
 [[noreturn]] void End(int signal) {
   core::RemoveUnfinished();
   // A progress bar's line is not left half drawn.

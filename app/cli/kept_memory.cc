@@ -26,7 +26,7 @@ void KeepMemory() {
   ::mallopt(M_MMAP_THRESHOLD, kLargest);
   ::mallopt(M_TRIM_THRESHOLD, kLargest);
   ::mallopt(M_TOP_PAD, kRoom);
-  // Where the heap ends at this moment.
+  // Returns where the heap ends at this moment.
   const auto end = [] { return reinterpret_cast<std::uintptr_t>(::sbrk(0)); };
   const std::uintptr_t before = end();
   // One block makes the heap grow by kRoom; the part between its old and its

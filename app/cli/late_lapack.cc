@@ -1,9 +1,9 @@
-// Stand-ins for the functions of LAPACK and BLAS that OpenCV's archives call:
-// the first call of any of them loads the library. Linked with the program, the
-// library and the threads that OpenBLAS starts would cost every command
-// milliseconds, and only the calibration of a camera has matrices that need it.
-// The archives also ask for three functions of GLX; no display is ever opened,
-// so these do nothing.
+// These are stand-ins for the functions of LAPACK and BLAS that OpenCV's
+// archives call: the first call of any of them loads the library. Linked with
+// the program, the library and the threads that OpenBLAS starts would cost
+// every command milliseconds, and only the calibration of a camera has matrices
+// that need it. The archives also ask for three functions of GLX; no display is
+// ever opened, so these do nothing.
 #include <dlfcn.h>
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace {
 
-// The function of that name in liblapack or in what it depends on. Throws
-// std::runtime_error saying which package to install.
+// Returns the function of that name in liblapack or in what it depends on.
+// Throws std::runtime_error saying which package to install.
 void* Find(const char* name) {
   // With the BLAS that it needs. Never closed: it is used to the program's end.
   static void* const library = ::dlopen("liblapack.so.3", RTLD_LAZY);

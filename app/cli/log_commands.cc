@@ -1,6 +1,6 @@
-// touchdown log, correct: what people state of a trial. Both share the flags of
-// a statement; `log` makes a new trial of origin manual, `correct` a further
-// revision of any trial.
+// touchdown log and correct record what people state of a trial. Both share the
+// flags of a statement; `log` makes a new trial of origin manual, `correct` a
+// further revision of any trial.
 #include <fmt/format.h>
 
 #include <memory>
@@ -22,8 +22,8 @@ namespace {
 
 // --- what a trial by hand may say --------------------------------------------
 
-// A statement as typed. The conditions stay apart until it is known which were
-// stated before.
+// Holds a statement as typed. The conditions stay apart until it is known which
+// were stated before.
 struct StatementFlags {
   pipeline::Statement said;
   ConditionFlags conditions;
@@ -71,7 +71,8 @@ void PrintLogged(const db::Logged& logged, bool json) {
   }
 }
 
-// The flags of `log` as typed; body and campaign may each stand for the other.
+// Holds the flags of `log` as typed; body and campaign may each stand for the
+// other.
 struct LogByHandFlags {
   std::string db;
   std::string campaign;
@@ -93,7 +94,7 @@ int Log(const LogByHandFlags& flags) {
 
 // --- correct -----------------------------------------------------------------
 
-// The flags of `correct` as typed.
+// Holds the flags of `correct` as typed.
 struct CorrectFlags {
   std::string db;
   std::string id;

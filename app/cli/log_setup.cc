@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kFileBytes = std::size_t{10} << 20;
 constexpr std::size_t kOlderFiles = 3;
 
-// A sink that writes the journal to the file and rotates it. Throws
+// Returns a sink that writes the journal to the file and rotates it. Throws
 // core::OutputError where the name is no plain file: rotating renames it, which
 // would replace a device or the target of a link.
 spdlog::sink_ptr FileSink(const std::string& name) {

@@ -1,8 +1,8 @@
-// The program's entry: from the command line to one function, and from what
-// that throws to the exit status. The order at the start matters: a process
-// that was started as a reader of recordings goes no further; the standard
-// streams come before any file is opened, the signals before any thread is
-// started.
+// This is the program's entry: it leads from the command line to one function,
+// and from what that throws to the exit status. The order at the start matters:
+// a process that was started as a reader of recordings goes no further; the
+// standard streams come before any file is opened, the signals before any
+// thread is started.
 #include <dlfcn.h>
 
 #include <CLI/CLI.hpp>
@@ -30,7 +30,7 @@
 
 namespace {
 
-// The statuses that main gives; 5 and the others come from the commands.
+// main itself returns these; 5 and other statuses come from the commands.
 enum ExitStatus : int {
   kUsage = 2,   // wrong usage or impossible argument
   kInput = 3,   // input unreadable, damaged or unsupported
@@ -39,7 +39,7 @@ enum ExitStatus : int {
   kDefect = 70
 };
 
-// A command's name and the function that adds it to the command line.
+// Holds a command's name and the function that adds it to the command line.
 struct Command {
   std::string_view name;
   void (*add)(CLI::App&, touchdown::cli::Action&);
@@ -69,8 +69,8 @@ constexpr Command kCommands[] = {{"analyze", touchdown::cli::AddAnalyze},
                                  {"doctor", touchdown::cli::AddDoctor},
                                  {"report-bug", touchdown::cli::AddReportBug}};
 
-// A tool of the build, which writes manual pages of all commands; no user needs
-// it, and --help leaves it out.
+// This is a tool of the build, which writes manual pages of all commands. No
+// user needs it, and --help leaves it out.
 constexpr std::string_view kDescribe = "describe";
 
 // Adds the command of that name alone, since making all of them takes

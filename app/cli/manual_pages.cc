@@ -39,7 +39,7 @@ std::string Roff(std::string_view text) {
   return out;
 }
 
-// "touchdown rig plan" as "touchdown-rig-plan", the name of its page.
+// Turns "touchdown rig plan" into "touchdown-rig-plan", the name of its page.
 std::string Dashed(std::string_view path) {
   std::string name(path);
   std::replace(name.begin(), name.end(), ' ', '-');
@@ -47,7 +47,7 @@ std::string Dashed(std::string_view path) {
 }
 
 // Adds a section with one paragraph for each option: its names in bold, its
-// form, its description. No options, no section.
+// form, its description. Without options there is no section.
 void AddOptionSection(std::string& page, std::string_view title,
                       const std::vector<OptionText>& options) {
   if (options.empty()) return;

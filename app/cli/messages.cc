@@ -58,9 +58,10 @@ std::size_t Decode(std::string_view text, std::uint32_t& point) {
   return point < least || surrogate || point > 0x10ffff ? 0 : length;
 }
 
-// Whether a terminal may be sent the character. Refused are control characters,
-// zero-width ones, and marks that turn the direction of writing: with these a
-// file's name could show another text than it holds, or command the terminal.
+// Returns whether a terminal may be sent the character. Refused are control
+// characters, zero-width ones, and marks that turn the direction of writing:
+// with these a file's name could show another text than it holds, or command
+// the terminal.
 bool IsHarmless(std::uint32_t point) {
   const auto within = [point](std::uint32_t low, std::uint32_t high) {
     return point >= low && point <= high;

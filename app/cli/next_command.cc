@@ -1,4 +1,4 @@
-// touchdown next: the angle to throw, and the rig's settings for it. The
+// touchdown next says which angle to throw, and the rig's settings for it. The
 // boundary is estimated as by `boundary`; a rule turns the estimate, or the
 // bare outcomes in their order, into an angle, and the rig turns that into
 // settings.
@@ -33,8 +33,8 @@ using core::kDegree;
 
 // Returns the group's observations in the order in which they were thrown,
 // which Neyer's test, 3pod and up-and-down depend on. `as_given` has the order
-// of the CSV file or, from a store, the order in which trials were logged.
-// Empty where the group has no trial.
+// of the CSV file or, from a store, the order in which trials were logged. The
+// list is empty where the group has no trial.
 std::vector<analysis::Observation> InOrder(
     const std::vector<core::Trial>& as_given, const report::Group& group) {
   for (const auto& candidate : analysis::GroupTrials(as_given)) {
@@ -95,8 +95,8 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
   return next;
 }
 
-// The settings as the session writes them, with the predicted contact where
-// there are settings.
+// Returns the settings as the session writes them, with the predicted contact
+// where there are settings.
 nlohmann::ordered_json PlanJson(const pipeline::Thrower& thrower,
                                 const core::Expected<rig::SetPoint>& point) {
   nlohmann::ordered_json out = session::SetPointsJson(thrower, point);
@@ -116,8 +116,8 @@ void PrintSetPoints(const pipeline::Thrower& thrower,
       FindingsText(point->contact.findings));
 }
 
-// The campaign to begin, where no trial matches: the declared one that was
-// asked for, else one made from --body and --angle-kind.
+// Returns the campaign to begin where no trial matches: the declared one that
+// was asked for, else one made from --body and --angle-kind.
 core::Campaign EmptyCampaign(const BoundaryFlags& flags,
                              const report::ReportInput& input) {
   for (const core::Campaign& campaign : input.campaigns) {
@@ -204,7 +204,7 @@ int RunNext(const BoundaryFlags& flags) {
   fmt::print("sd after it       {} deg expected, {} deg now\n",
              DegreesText(next.expected_sd_rad),
              DegreesText(group.study.posterior.sd_rad));
-  // A reason to stop, or how far it is still.
+  // The last line gives the reason to stop, or says how many trials are left.
   switch (next.stop) {
     case analysis::StopReason::kTargetReached:
       fmt::print("stop              the 95 % interval is within +- {} deg\n",

@@ -1,5 +1,5 @@
-// touchdown register add|change|list|show: rigs, cameras, springs,
-// calibrations, bodies, surfaces, operators. The table of fields
+// touchdown register add|change|list|show keeps rigs, cameras, springs,
+// calibrations, bodies, surfaces and operators. The table of fields
 // (db::ListFields) makes the flags, the help and the text of each kind, so that
 // a field is declared once.
 #include <fmt/format.h>
@@ -41,32 +41,32 @@ constexpr const char* kKindWords =
 
 // --- what an entry says ------------------------------------------------------
 
-// Fields that --file fills and no flag can: text and digest must be those of
-// the same bytes.
+// Returns whether --file alone fills the field: text and digest must be those
+// of the same bytes.
 bool IsOfFile(const RegisterField& field) {
   return field.name == "document" || field.name == "sha256";
 }
 
-// Whether entries of this kind keep a file: rigs and calibrations.
+// Returns whether entries of this kind keep a file: rigs and calibrations.
 bool HasFile(RegisterKind kind) {
   return std::ranges::any_of(db::ListFields(kind), IsOfFile);
 }
 
-// "wire_diameter_mm" of the inner "wire_diameter_m": the unit that a person
-// types and reads.
+// Returns "wire_diameter_mm" for the inner "wire_diameter_m": people type and
+// read that unit.
 std::string EdgeName(const RegisterField& field) {
   const core::EdgeUnit unit = core::AtTheEdge(field.name);
   return unit.stem + unit.suffix;
 }
 
-// "--wire-diameter-mm".
+// Returns the flag, such as "--wire-diameter-mm".
 std::string FlagName(const RegisterField& field) {
   std::string flag = "--" + EdgeName(field);
   std::ranges::replace(flag, '_', '-');
   return flag;
 }
 
-// The field's meaning, with the words or the form that it takes.
+// Returns the field's meaning, with the words or the form that it takes.
 std::string Help(const RegisterField& field) {
   std::string help(field.meaning);
   if (field.type == FieldType::kWord) {
@@ -78,8 +78,8 @@ std::string Help(const RegisterField& field) {
   return help;
 }
 
-// An entry as typed. `fields` holds a place for each flag of the kind, by the
-// field's inner name; nothing where the flag was not given.
+// Holds an entry as typed. `fields` holds a place for each flag of the kind, by
+// the field's inner name; nothing where the flag was not given.
 struct EntryFlags {
   std::string db;
   std::string name;
@@ -90,8 +90,8 @@ struct EntryFlags {
   bool json = false;
 };
 
-// The bytes of a file that has been read as a rig or a calibration already, so
-// that an error here is not expected.
+// Returns the bytes of a file that has been read as a rig or a calibration
+// already, so that an error here is not expected.
 std::string WholeText(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -149,8 +149,8 @@ void Apply(const EntryFlags& flags, Entry& entry) {
 
 // --- what is printed ---------------------------------------------------------
 
-// The field for a person, with u, in the unit of its name. A document is
-// counted and not printed.
+// Returns the field for a person, with u, in the unit of its name. A document
+// is counted and not printed.
 std::string FieldText(const Entry& entry, const RegisterField& field) {
   const std::string key(field.name);
   switch (field.type) {
@@ -171,14 +171,14 @@ std::string FieldText(const Entry& entry, const RegisterField& field) {
              : Printable(text);
 }
 
-// "2, 2026-03-01T09:00:00Z by A. Lee: new wire".
+// Returns "2, 2026-03-01T09:00:00Z by A. Lee: new wire".
 std::string VersionText(const Entry& entry) {
   return fmt::format("{}, {} by {}{}{}", entry.version, entry.recorded_at_utc,
                      Printable(entry.author), entry.reason.empty() ? "" : ": ",
                      Printable(entry.reason));
 }
 
-// One line for each field that says something; empty ones are left out.
+// Returns one line for each field that says something; empty ones are left out.
 std::string EntryText(const Entry& entry) {
   std::vector<std::vector<std::string>> rows = {
       {std::string(Name(entry.kind)), Printable(entry.name)},
@@ -191,7 +191,8 @@ std::string EntryText(const Entry& entry) {
   return Aligned(rows);
 }
 
-// Each version with what it changed against the one before, oldest first.
+// Lists each version, oldest first, with what it changed against the one
+// before.
 std::string EntryHistoryText(const std::vector<Entry>& versions) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < versions.size(); ++i) {
@@ -242,7 +243,7 @@ int ChangeInRegister(const EntryFlags& flags, RegisterKind kind) {
   return 0;
 }
 
-// The flags of `list` and `show` as typed; an empty `kind` lists all.
+// Holds the flags of `list` and `show` as typed; an empty `kind` lists all.
 struct LookFlags {
   std::string db;
   std::string kind;

@@ -1,6 +1,6 @@
-// touchdown report-bug: an archive for whoever is to find out what went wrong.
-// It takes the flags of `analyze` and runs that once more in a process of its
-// own (app/doctor/bug_report.h); nothing is sent anywhere.
+// touchdown report-bug makes an archive for whoever is to find out what went
+// wrong. It takes the flags of `analyze` and runs that once more in a process
+// of its own (app/doctor/bug_report.h); nothing is sent anywhere.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -21,7 +21,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed. `pictures` is the most frames that go into the archive.
+// Holds the flags as typed. `pictures` is the most frames that go into the
+// archive.
 struct ReportBugFlags {
   std::string clip;
   AnalyzeFlags analyze;

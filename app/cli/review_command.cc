@@ -26,8 +26,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed. Port 0 lets the server choose; an empty `reports` is the
-// folder `report` beside the store.
+// Holds the flags as typed. Port 0 lets the server choose; an empty `reports`
+// is the folder `report` beside the store.
 struct ReviewFlags {
   std::string db;
   int port = 0;

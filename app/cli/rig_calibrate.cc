@@ -1,6 +1,6 @@
-// touchdown rig calibrate: the stiffness from measured forces, the efficiency
-// and losses from measured launch speeds. Each part reads a CSV, fits
-// (rig/calibrate.h) and prints the line that belongs into rig.toml.
+// touchdown rig calibrate finds the stiffness from measured forces, the
+// efficiency and losses from measured launch speeds. Each part reads a CSV,
+// fits (rig/calibrate.h) and prints the line that belongs into rig.toml.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -21,8 +21,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed. `force` and `speeds` are CSV files, of which one may be
-// missing; `rig` gives what the fit of the efficiency takes as known.
+// Holds the flags as typed. `force` and `speeds` are CSV files, of which one
+// may be missing; `rig` gives what the fit of the efficiency takes as known.
 struct CalibrateFlags {
   RigFlags rig;
   std::string force, speeds, losses = "per-shot";
@@ -30,8 +30,8 @@ struct CalibrateFlags {
   bool json = false;
 };
 
-// The number of a column with the u of "u_" + column; u = 0 where that column
-// is missing, which the fit takes as not stated.
+// Returns the number of a column with the u of "u_" + column; u = 0 where that
+// column is missing, which the fit takes as not stated.
 core::Estimate Measured(const CaseRow& row, const std::string& column) {
   return {row.Number(column), row.OptionalNumber("u_" + column).value_or(0.0),
           std::nullopt};
@@ -81,7 +81,7 @@ void CalibrateStiffness(const CalibrateFlags& flags, Json& out) {
       fit->stiffness_n_per_m.value, fit->stiffness_n_per_m.u);
 }
 
-// What is fitted besides the efficiency. Throws std::invalid_argument.
+// Returns what is fitted besides the efficiency. Throws std::invalid_argument.
 rig::LossModel ParseLosses(const std::string& word) {
   if (word == "none") return rig::LossModel::kNone;
   if (word == "per-shot") return rig::LossModel::kPerShot;
@@ -97,7 +97,7 @@ void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
   options.losses = ParseLosses(flags.losses);
   const rig::Description rig = MakeDescription(flags.rig);
   // Without rig.toml the mass would be a default of the description, and the
-  // efficiency would be wrong in proportion.
+  // efficiency would be wrong.
   if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
     throw std::invalid_argument("--mass-g is missing: the mass of the body");
   }

@@ -29,8 +29,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Name and text of one cell of the result.
 using Cells = std::vector<std::pair<std::string_view, std::string>>;
 
-// One rig, in SI: springs, launch, relative uncertainties of their values, the
-// compression beyond the preload, and the fall from muzzle to ground.
+// Holds one rig, in SI: springs, launch, relative uncertainties of their
+// values, the compression beyond the preload, and the fall from muzzle to
+// ground.
 struct Case {
   rig::Spring spring;
   rig::SpringLimits limits;
@@ -90,16 +91,17 @@ void AddNumber(Cells& cells, std::string_view name, double value) {
                      std::isnan(value) ? "nan" : fmt::format("{:.17g}", value));
 }
 
-// Speed at the muzzle, or NaN where the body does not leave it.
+// Returns the speed at the muzzle, or NaN where the body does not leave it.
 double SpeedOrNan(const rig::Launch& launch, double compression_m) {
   const auto muzzle = rig::LaunchSpeed(launch, compression_m);
   return muzzle ? muzzle->speed_mps : kNan;
 }
 
-// Stiffness by both readings of Eq. (11), stresses at the whole compression,
-// clearance, mass and energy.
+// Adds the stiffness by both readings of Eq. (11), stresses at the whole
+// compression, clearance, mass and energy.
 void AddSpring(const Case& c, const rig::SpringReport& report, Cells& cells) {
-  // From the free length: the springs are compressed by the preload already.
+  // whole_m counts from the free length: the springs are compressed by the
+  // preload already.
   const double whole_m = c.launch.preload_m + c.compression_m;
   AddNumber(cells, "H_outer_literal", report.stiffness_as_printed_n_per_m);
   AddNumber(cells, "H_mean", report.stiffness_n_per_m);
@@ -126,8 +128,8 @@ void AddSpring(const Case& c, const rig::SpringReport& report, Cells& cells) {
                 (c.compression_m + 2.0 * c.launch.preload_m));
 }
 
-// Launch speed by Eq. (10) and by the energy balance, and the flight from the
-// muzzle to the ground.
+// Adds the launch speed by Eq. (10) and by the energy balance, and the flight
+// from the muzzle to the ground.
 void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   const double x = c.compression_m;
   AddNumber(cells, "v_eq10_outer",
@@ -162,15 +164,16 @@ void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   AddNumber(cells, "range", flight.range_m);
 }
 
-// The relative u of the ideal launch speed three times: to first order with the
-// mean diameter, as the paper prints it, and by Monte Carlo.
+// Adds the relative u of the ideal launch speed three times: to first order
+// with the mean diameter, as the paper prints it, and by Monte Carlo.
 void AddUncertainty(const Case& c, const RigCasesOptions& options,
                     Cells& cells) {
   const rig::IdealSpeedU gum = rig::IdealSpeedUncertainty(c.spring, c.u);
   AddNumber(cells, "u_rel_GUM_mean", gum.u_rel);
   AddNumber(cells, "u_rel_GUM_outer", rig::PrintedSpeedUncertainty(c.u).u_rel);
   AddNumber(cells, "bias_rel_2nd_order", gum.bias_rel);
-  // A generator for each row, so that a row gives the same answer in any file.
+  // Each row has a generator of its own, so that a row gives the same answer in
+  // any file.
   std::mt19937_64 engine(options.seed);
   const rig::MonteCarloRun run =
       rig::IdealSpeedMonteCarlo(c.spring, c.u, options.draws, engine);
@@ -183,8 +186,8 @@ void AddUncertainty(const Case& c, const RigCasesOptions& options,
   AddNumber(cells, "MC_q97.5_over_v", mc.interval95.high);
 }
 
-// Whether the body leaves the muzzle, whether the springs bear it, and every
-// warning in one cell.
+// Adds whether the body leaves the muzzle, whether the springs bear it, and
+// every warning in one cell.
 void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {
   std::vector<rig::Finding> findings = report.findings;
   const auto muzzle = rig::LaunchSpeed(c.launch, c.compression_m);
@@ -204,7 +207,7 @@ void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {
   cells.emplace_back("findings", report::CsvCell(text));
 }
 
-// All columns of the answer to one row, in the order of the result.
+// Returns all columns of the answer to one row, in the order of the result.
 Cells Evaluate(const CaseRow& row, const RigCasesOptions& options) {
   const Case c = ReadCase(row);
   const rig::SpringReport report = rig::CheckSpring(

@@ -1,5 +1,5 @@
-// A description of the rig from rig.toml, from flags, or from the file with
-// single values replaced by flags. Flags bear the unit of their name; the
+// Makes a description of the rig from rig.toml, from flags, or from the file
+// with single values replaced by flags. Flags bear the unit of their name; the
 // description is SI.
 #include "app/cli/rig_flags.h"
 
@@ -36,7 +36,7 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
                    !flags.coil_mm.empty() || !flags.coil_diameter.empty() ||
                    !flags.active_coils.empty();
   if (!any && (springs.geometry || springs.stiffness_n_per_m)) return;
-  // Nothing to correct: each value must come from a flag.
+  // Without a geometry to correct, each value must come from a flag.
   const bool fresh = !springs.geometry;
   rig::SpringGeometry geometry =
       springs.geometry.value_or(rig::SpringGeometry{});
@@ -130,7 +130,7 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags) {
 
 rig::Description MakeDescription(const RigFlags& flags) {
   rig::Description out;
-  // The file first, so that every flag below corrects it.
+  // The file comes first, so that every flag below corrects it.
   if (!flags.rig.empty()) out = rig::ReadDescription(flags.rig);
   rig::Springs& springs = out.springs;
   const bool typed_stiffness = !flags.stiffness_n_per_m.empty();
@@ -167,8 +167,8 @@ rig::Description MakeDescription(const RigFlags& flags) {
                1.0);
   TakeEstimate(out.loss_j, "--loss-j", flags.loss_j, 1.0);
   TakeEstimate(out.gravity_mps2, "--gravity-mps2", flags.gravity_mps2, 1.0);
-  // A u alone, of a setting whose value is not part of the description. NaN and
-  // infinity are refused with the negative ones.
+  // Takes a u alone, of a setting whose value is not part of the description.
+  // NaN and infinity are refused with the negative ones.
   const auto take_u = [](const char* flag, const std::optional<double>& given,
                          double unit, double& to) {
     if (!given) return;

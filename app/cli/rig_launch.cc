@@ -1,6 +1,6 @@
-// touchdown rig launch: the speed that a compression gives, or the compression
-// for a wanted speed, by Eq. (10) and by the energy balance; with a muzzle
-// height also the flight and the contact.
+// touchdown rig launch gives the speed that a compression gives, or the
+// compression for a wanted speed, by Eq. (10) and by the energy balance; with a
+// muzzle height also the flight and the contact.
 #include <fmt/core.h>
 
 #include <memory>
@@ -18,7 +18,7 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed. Without `height_mm` nothing is said of the flight.
+// Holds the flags as typed. Without `height_mm` nothing is said of the flight.
 struct LaunchFlags {
   RigFlags rig;
   DrawFlags draw;

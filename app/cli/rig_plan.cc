@@ -1,5 +1,5 @@
-// touchdown rig plan: for each wanted contact angle the settings that give it
-// at the wanted speed, or why there are none.
+// touchdown rig plan gives for each wanted contact angle the settings that give
+// it at the wanted speed, or why there are none.
 #include <fmt/core.h>
 
 #include <memory>
@@ -18,8 +18,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed. `height_mm` holds the muzzle height; without it the plan
-// chooses one.
+// Holds the flags as typed. `height_mm` holds the muzzle height; without it the
+// plan chooses one.
 struct PlanFlags {
   RigFlags rig;
   DrawFlags draw;
@@ -31,8 +31,8 @@ struct PlanFlags {
   bool json = false;
 };
 
-// What is wanted of every contact, but for the angle, which is set for each in
-// turn. Throws std::invalid_argument for an unknown word.
+// Returns what is wanted of every contact, but for the angle, which is set for
+// each in turn. Throws std::invalid_argument for an unknown word.
 rig::ContactWish MakeWish(const PlanFlags& flags, const rig::Description& rig) {
   rig::ContactWish wish;
   // A rig without a body throws a point, which lands as a sphere does.
@@ -63,13 +63,13 @@ rig::ContactWish MakeWish(const PlanFlags& flags, const rig::Description& rig) {
   return wish;
 }
 
-// One line with the settings and where the body lands, "20 deg: elevation ...,
-// lands at 20.0 +- 0.4 deg", and one for each finding. `all` adds everything
-// that was predicted.
+// Returns one line with the settings and where the body lands, "20 deg:
+// elevation ..., lands at 20.0 +- 0.4 deg", and one for each finding. `all`
+// adds everything that was predicted.
 std::string PlanText(double angle_deg, core::AngleKind kind,
                      const rig::SetPoint& point, bool all) {
   const rig::ContactPrediction& contact = point.contact;
-  // The predicted angle of the kind that was asked for.
+  // This is the predicted angle of the kind that was asked for.
   const rig::Predicted& angle =
       kind == core::AngleKind::kApproach ? contact.approach_angle_rad
       : kind == core::AngleKind::kRadius ? contact.radius_angle_rad
@@ -96,8 +96,8 @@ int RunPlan(const PlanFlags& flags) {
   const rig::Description rig = MakeDescription(flags.rig);
   rig::ContactWish wish = MakeWish(flags, rig);
   const std::string kind(core::Name(wish.kind));
-  // One generator for all angles: the same line repeated gives the same bytes,
-  // while an angle alone may draw other numbers than among others.
+  // One generator serves all angles: the same line repeated gives the same
+  // bytes, while an angle alone may draw other numbers than among others.
   std::mt19937_64 engine(flags.draw.seed);
   Json out{{"schema", "touchdown.rig.plan/1"},
            {"rig", rig.name},

@@ -49,7 +49,7 @@ void PutPredicted(Json& to, Json& absent, const char* name,
   to[name] = std::move(out);
 }
 
-// A number in the unit of its key, or null where there is none.
+// Returns a number in the unit of its key, or null where there is none.
 Json OrNull(const std::optional<double>& value, double per_si) {
   return value ? Json(*value * per_si) : Json(nullptr);
 }
@@ -114,7 +114,7 @@ Json PredictionJson(const rig::ContactPrediction& c) {
 
 std::string Rounded(const core::Estimate& e) {
   if (!(e.u > 0.0)) return fmt::format("{:.6g}", e.value);
-  // Decimal place of the first digit of u: -2 for 0.03.
+  // This is the decimal place of the first digit of u: -2 for 0.03.
   const int place = static_cast<int>(std::floor(std::log10(e.u)));
   const int decimals = std::max(0, 1 - place);
   // A double has no more to show: both numbers then have their own digits.
@@ -175,8 +175,8 @@ std::string FindingsText(const std::vector<rig::Finding>& findings) {
   return out;
 }
 
-// The lines below the stiffness; what needs a free length is left out where
-// none was given.
+// Returns the lines below the stiffness; what needs a free length is left out
+// where none was given.
 std::string SpringText(const rig::SpringReport& r) {
   std::string out;
   out += ValueLine("of one spring", r.stiffness_of_one_n_per_m, "N/m");

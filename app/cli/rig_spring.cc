@@ -1,5 +1,5 @@
-// touchdown rig spring: the springs' stiffness by Eq. (11), stress, clearance
-// and surge, for one rig or for a file of them (--cases).
+// touchdown rig spring gives the springs' stiffness by Eq. (11), stress,
+// clearance and surge, for one rig or for a file of them (--cases).
 #include <fmt/core.h>
 
 #include <memory>
@@ -18,7 +18,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed; `cases` is a CSV that is answered in place of the flags.
+// Holds the flags as typed; `cases` is a CSV that is answered in place of the
+// flags.
 struct SpringFlags {
   RigFlags rig;
   DrawFlags draw;

@@ -31,14 +31,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The flags as typed; without `out` only the head is printed.
+// Holds the flags as typed; without `out` only the head is printed.
 struct SealFlags {
   std::string db;
   std::string out;
   std::string key;
 };
 
-// The bytes of a key or a seal. Throws core::InputError.
+// Returns the bytes of a key or a seal. Throws core::InputError.
 std::string Contents(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in || fs::is_directory(path)) {
@@ -51,8 +51,8 @@ std::string Contents(const fs::path& path) {
 
 // --- signing -----------------------------------------------------------------
 
-// A program that signs files: how it is called, which file it writes, and the
-// command by which others verify that.
+// Describes a program that signs files: how it is called, which file it writes,
+// and the command by which others verify that.
 struct Signer {
   std::vector<std::string> command;
   std::string signature;  // the file that it writes

@@ -1,6 +1,6 @@
-// touchdown session: a technician at the rig, and a folder that recordings
-// appear in. The session itself (app/session) knows neither terminal nor
-// signals. This file gives it both: TerminalLines reads what is typed,
+// touchdown session serves a technician at the rig, and a folder that
+// recordings appear in. The session itself (app/session) knows neither terminal
+// nor signals. This file gives it both: TerminalLines reads what is typed,
 // FolderWatch wakes when files change, Serve() hands over lines and recordings
 // in turn, and the handlers of signals stop the rig before anything else.
 #include <fmt/format.h>
@@ -41,8 +41,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The flags as typed. `driver` is "manual" or a serial port; `quiet_s` is how
-// long, in seconds, a recording must not grow to count as complete.
+// Holds the flags as typed. `driver` is "manual" or a serial port; `quiet_s` is
+// how long, in seconds, a recording must not grow to count as complete.
 struct SessionFlags {
   std::string db;
   std::string campaign;
@@ -62,16 +62,16 @@ struct SessionFlags {
   ConditionFlags conditions;
 };
 
-// State that the handlers of signals share with Serve(). A handler sets
+// The handlers of signals share this state with Serve(). A handler sets
 // session_ended where the session is to end.
 volatile std::sig_atomic_t session_ended = 0;
 volatile std::sig_atomic_t rig_stopped = 0;  // and nobody was told
-// The instant of that stop: a line typed before it must not act after it.
+// Holds the instant of that stop: a line typed before it must not act after it.
 std::atomic<std::chrono::steady_clock::time_point> rig_stopped_at;
 // An analysis runs, and may not look at session_ended for seconds.
 volatile std::sig_atomic_t analysing_shot = 0;
-// The rig's controller while a Driving lives; null with a rig that is set by
-// hand.
+// Points to the rig's controller while a Driving lives; null with a rig that is
+// set by hand.
 std::atomic<rig::Driver*> driven_rig = nullptr;
 static_assert(std::atomic<rig::Driver*>::is_always_lock_free &&
               decltype(rig_stopped_at)::is_always_lock_free);
@@ -155,9 +155,9 @@ class Driving {
   rig::DriverMonitor monitor_;
 };
 
-// The daily check shot: a drop whose speed and angle are known without a
-// camera. Throws std::invalid_argument where the body has no size or the height
-// is none.
+// Returns the daily check shot: a drop whose speed and angle are known without
+// a camera. Throws std::invalid_argument where the body has no size or the
+// height is not above 0.
 session::CheckShot MakeCheckShot(const SessionFlags& flags,
                                  const core::Campaign& campaign,
                                  const rig::Description& rig) {
@@ -272,7 +272,7 @@ int RunSession(const SessionFlags& flags) {
         ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
                                 "leading, trailing or flush");
   }
-  // First all that can be refused without touching the rig.
+  // All that can be refused without touching the rig comes first.
   session::SessionOptions options;
   options.analyze = ToOptions(flags.analyze);
   options.again = flags.again;
@@ -310,7 +310,7 @@ int RunSession(const SessionFlags& flags) {
   TerminalLines lines([] {
     if (rig::Driver* const driver = driven_rig.load()) driver->Stop();
   });
-  // Made in any case: without a controller the person is the driver.
+  // This is made in any case: without a controller the person is the driver.
   rig::ManualDriver hands(
       [&lines](const std::string& question) { return lines.Ask(question); });
   // Goes before the lines do, and stops and disarms what it drives.
@@ -319,8 +319,8 @@ int RunSession(const SessionFlags& flags) {
   std::optional<Driving> driving;
   if (controller) driving.emplace(*controller);
   rig::Driver& driver = controller ? *controller : hands;
-  // The ends of the session: the terminal, the clock that dates files, the
-  // driver, and where pictures go.
+  // These are the ends of the session: the terminal, the clock that dates
+  // files, the driver, and where pictures go.
   session::SessionEnds ends;
   ends.say = [](const std::string& line) {
     pipeline::Journal("said: " + line);

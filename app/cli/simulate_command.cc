@@ -19,7 +19,8 @@
 namespace touchdown::cli {
 namespace {
 
-// The flags as typed; exactly one of `scene`, `table1` and `example` is meant.
+// Holds the flags as typed; exactly one of `scene`, `table1` and `example` is
+// meant.
 struct SimulateFlags {
   std::string scene;
   bool table1 = false;
@@ -30,8 +31,8 @@ struct SimulateFlags {
   bool json = false;
 };
 
-// One line for a person: the clip's path, the angles at touchdown in degrees,
-// the state, and how far the greatest gap is from the bounce height.
+// Returns one line for a person: the clip's path, the angles at touchdown in
+// degrees, the state, and how far the greatest gap is from the bounce height.
 std::string ClipLine(const pipeline::SimulatedClip& made) {
   const auto& truth = made.truth;
   if (!truth.touchdown) {

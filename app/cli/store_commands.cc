@@ -1,5 +1,5 @@
-// touchdown list, show: what is in the store. `list` prints a line a trial,
-// `show` everything of one. Both only read.
+// touchdown list and show tell what is in the store. `list` prints a line a
+// trial, `show` everything of one. Both only read.
 #include <fmt/format.h>
 
 #include <memory>
@@ -34,7 +34,7 @@ constexpr std::size_t kShownId = 8;  // characters of a UUID, enough for people
 
 // --- list --------------------------------------------------------------------
 
-// The filters as typed; empty ones let every trial pass.
+// Holds the filters as typed; empty ones let every trial pass.
 struct ListFlags {
   std::string db;
   std::string campaign;
@@ -48,9 +48,9 @@ struct ListFlags {
   bool json = false;
 };
 
-// The typed filters for the store. `campaign_given` tells --campaign '' (trials
-// in none) from no --campaign. Throws std::invalid_argument for a word that is
-// none of the flag's.
+// Returns the typed filters for the store. `campaign_given` tells --campaign ''
+// (trials in none) from no --campaign. Throws std::invalid_argument for a word
+// that is none of the flag's.
 db::TrialFilter MakeFilter(const ListFlags& flags, bool campaign_given) {
   db::TrialFilter filter;
   if (campaign_given) filter.campaign = flags.campaign;
@@ -76,8 +76,8 @@ db::TrialFilter MakeFilter(const ListFlags& flags, bool campaign_given) {
   return filter;
 }
 
-// The touchdown.list/1 document: degrees and millimetres, null for what is
-// absent.
+// Returns the touchdown.list/1 document: degrees and millimetres, null for what
+// is absent.
 std::string ListJson(const std::vector<core::Trial>& trials) {
   Json list = Json::array();
   for (const auto& trial : trials) list.push_back(report::TrialRowJson(trial));
@@ -86,8 +86,8 @@ std::string ListJson(const std::vector<core::Trial>& trials) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-// What a reader must know of a trial before its numbers, such as "SIMULATED;
-// EXCLUDED: wrong body"; "" for most.
+// Returns what a reader must know of a trial before its numbers, such as
+// "SIMULATED; EXCLUDED: wrong body"; "" for most.
 std::string Marks(const core::Trial& trial) {
   std::string marks;
   const auto add = [&marks](const std::string& mark) {
@@ -102,14 +102,15 @@ std::string Marks(const core::Trial& trial) {
   return marks;
 }
 
-// The value in `unit` with fixed decimals, or "-".
+// Returns the value in `unit` with fixed decimals, or "-".
 std::string Shown(const std::optional<double>& value, int decimals,
                   double unit) {
   return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
 }
 
-// A table with one line a trial, and a line that counts them. An excluded or
-// simulated trial is counted apart: nobody must take it for one that counts.
+// Returns a table with one line a trial, and a line that counts them. An
+// excluded or simulated trial is counted apart: nobody must take it for one
+// that counts.
 std::string ListText(const std::vector<core::Trial>& trials) {
   constexpr std::size_t kShortId = 8;
   std::vector<std::vector<std::string>> rows = {
@@ -217,7 +218,7 @@ void ShowConditions(const core::Conditions& conditions,
                                       Printable(conditions.anomaly_note))});
 }
 
-// All of one trial, as the revision in force states it.
+// Returns all of one trial, as the revision in force states it.
 std::string ShowText(const core::Trial& trial) {
   std::string text;
   if (trial.origin == core::Origin::kSimulated) {
@@ -260,7 +261,7 @@ std::string ShowText(const core::Trial& trial) {
   return text + Aligned(rows);
 }
 
-// What a new analysis would change of a trial that a person has corrected,
+// Says what a new analysis would change of a trial that a person has corrected,
 // field by field, and how to accept it.
 std::string ProposalText(const core::Trial& trial,
                          const core::Trial& proposal) {
@@ -274,8 +275,8 @@ std::string ProposalText(const core::Trial& trial,
   return text;
 }
 
-// Every revision, oldest first, with what it changed. A proposal is compared
-// with the revision in force when it came, like all others.
+// Lists every revision, oldest first, with what it changed. A proposal is
+// compared with the revision in force when it came, like all others.
 std::string TrialHistoryText(const std::vector<db::Revision>& history) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < history.size(); ++i) {
@@ -295,7 +296,7 @@ std::string TrialHistoryText(const std::vector<db::Revision>& history) {
   return text;
 }
 
-// The flags of `show` as typed; `id` may be the beginning of one.
+// Holds the flags of `show` as typed; `id` may be the beginning of one.
 struct ShowFlags {
   std::string db;
   std::string id;

@@ -8,7 +8,7 @@
 
 namespace touchdown::cli {
 
-// Required where it stands; touchdown.toml may supply it (defaults.h).
+// The flag is required; touchdown.toml may supply it (defaults.h).
 void AddDbFlag(CLI::App& command, std::string& db) {
   AddOption(command, "--db", db, "the trial store, e.g. lab.db")
       .Require()
@@ -35,7 +35,7 @@ core::Trial RequireTrial(const db::Store& store, const std::string& id) {
 }
 
 std::string BodyText(const core::Body& body) {
-  // Four digits, without u; "?" for a size that is not known.
+  // A size has four digits and no u; "?" stands for one that is not known.
   const auto mm = [](const core::Measured& size) {
     return size ? fmt::format("{:.4g}", size->value / core::kMillimetre)
                 : std::string("?");

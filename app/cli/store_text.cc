@@ -12,7 +12,8 @@
 namespace touchdown::cli {
 namespace {
 
-// Characters of a UTF-8 text: its bytes but for those that continue one.
+// Counts the characters of a UTF-8 text: its bytes but for those that continue
+// one.
 std::size_t Width(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
@@ -23,7 +24,7 @@ std::size_t Width(std::string_view text) {
 
 std::string WithU(const core::Measured& measured, double unit) {
   if (!measured) return "-";
-  // Without a usable u nothing says how many digits are meant: six.
+  // Without a usable u nothing says how many digits are meant; six are printed.
   if (!(measured->u > 0.0) || !std::isfinite(measured->u) ||
       !std::isfinite(measured->value)) {
     return fmt::format("{:.6g}", measured->value / unit);

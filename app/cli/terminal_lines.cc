@@ -41,7 +41,7 @@ void Clear(int event) {
   [[maybe_unused]] const auto read_bytes = read(event, &count, sizeof count);
 }
 
-// The line `stop`, whatever blanks are around it.
+// Returns whether the line is `stop`, whatever blanks are around it.
 bool IsStop(std::string_view line) {
   const auto begin = line.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return false;
@@ -76,12 +76,12 @@ TerminalLines::~TerminalLines() {
   close(end_);
 }
 
-// Bytes of waiting lines and of the one that is begun.
+// Counts the bytes of waiting lines and of the one that is begun.
 bool TerminalLines::IsFull() const {
   return bytes_ + begun_.size() > kMostWaiting_bytes;
 }
 
-// The reader's thread: until the input ends or the object does.
+// The reader's thread runs this until the input ends, or the object does.
 void TerminalLines::Read() {
   std::array<char, 4096> bytes{};
   while (true) {

@@ -1,4 +1,4 @@
-// touchdown theory boundary: the boundary angle by each model of
+// touchdown theory boundary gives the boundary angle by each model of
 // analysis/theory/boundary_models.h, side by side. A model that lacks one of
 // its inputs is listed with what it needs; named alone by --model, it is an
 // error of the user.
@@ -71,8 +71,9 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
   return out;
 }
 
-// Flags as inputs of the models: each value with its u, angles in radians.
-// Throws std::invalid_argument where neither --body nor --kappa was given.
+// Returns the flags as inputs of the models: each value with its u, angles in
+// radians. Throws std::invalid_argument where neither --body nor --kappa was
+// given.
 BoundaryInputs MakeBoundaryInputs(const TheoryFlags& flags, bool sphere) {
   const CornerFlags& f = flags.corner;
   const TheoryBoundaryFlags& b = flags.boundary;
@@ -106,13 +107,13 @@ BoundaryInputs MakeBoundaryInputs(const TheoryFlags& flags, bool sphere) {
   return in;
 }
 
-// An angle in degrees, or null.
+// Returns an angle in degrees, or null.
 Json DegreesJson(const std::optional<double>& angle_rad) {
   return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
 }
 
-// One model's answer for JSON: boundary or the reason that there is none, the
-// state of every range of angles, sensitivities and uncertainty.
+// Returns one model's answer for JSON: boundary or the reason that there is
+// none, the state of every range of angles, sensitivities and uncertainty.
 Json AnswerJson(const BoundaryAnswer& a) {
   Json json;
   if (a.boundary_rad) {
@@ -149,7 +150,8 @@ Json AnswerJson(const BoundaryAnswer& a) {
   return json;
 }
 
-// The same for a person; what has no uncertain input shows no uncertainty.
+// Returns the same for a person; what has no uncertain input shows no
+// uncertainty.
 std::string AnswerText(const BoundaryAnswer& a) {
   std::string out;
   const auto& u = a.uncertainty;

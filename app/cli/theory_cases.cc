@@ -28,20 +28,21 @@ using core::kDegree;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Degrees of an angle that may be absent.
+// Returns the degrees of an angle that may be absent.
 std::optional<double> InDegrees(std::optional<double> angle_rad) {
   if (!angle_rad) return std::nullopt;
   return *angle_rad / kDegree;
 }
 
-// -1 trailing, 0 at rest, 1 leading (analysis/theory/corner.h).
+// Reads -1 (trailing), 0 (at rest) or 1 (leading) (analysis/theory/corner.h).
 analysis::Slip SlipOfCase(const CaseRow& row) {
   return static_cast<analysis::Slip>(row.Choice("slip_sign", {-1, 0, 1}));
 }
 
 }  // namespace
 
-// Columns for two solutions, the most that a sliding contact has.
+// The answer has columns for two solutions, the most that a sliding contact
+// has.
 std::string RegimeCases(const std::string& path) {
   const CaseTable table = ReadCases(
       path, {"id", "alpha_rad", "mu", "slip_sign", "m", "R", "omega", "g"});
@@ -56,7 +57,8 @@ std::string RegimeCases(const std::string& path) {
                                       "B_over_g"};
   constexpr int kShown = 2;
   for (int i = 1; i <= kShown; ++i) {
-    // The columns of the two solutions: sol1_kind, sol1_Fn ... sol2_residual.
+    // These are the columns of the two solutions: sol1_kind, sol1_Fn ...
+    // sol2_residual.
     for (const char* name : {"kind", "Fn", "Ft", "gddN", "gddT", "residual"}) {
       columns.push_back(fmt::format("sol{}_{}", i, name));
     }
@@ -185,9 +187,9 @@ std::string ImpactCases(const std::string& path) {
 
 namespace {
 
-// The boundary of an omega that is uncertain (column u_omega): first order, the
-// chance that there is no boundary, and mean, u and quantiles where there is
-// one. Angles in degrees.
+// Answers the boundary of an omega that is uncertain (column u_omega): first
+// order, the chance that there is no boundary, and mean, u and quantiles where
+// there is one. Angles are in degrees.
 std::string UncertainBoundaryCases(const CaseTable& table) {
   CaseWriter out({"id", "w", "alpha_deg", "GUM_first_order_u_deg",
                   "second_order_mean_deg", "P_no_boundary", "cond_mean_deg",
@@ -246,8 +248,8 @@ std::string BoundaryCases(const std::string& path) {
 
 namespace {
 
-// An entry of M or q: 3, "3", "0x1.8p+1" or "4/3". Text allows numbers that
-// JSON has no form for, such as exact thirds.
+// Reads an entry of M or q: 3, "3", "0x1.8p+1" or "4/3". Text allows numbers
+// that JSON has no form for, such as exact thirds.
 double ParseEntry(const CaseRow& row, const char* column,
                   const nlohmann::json& entry) {
   if (entry.is_number()) return entry.get<double>();
@@ -261,7 +263,8 @@ double ParseEntry(const CaseRow& row, const char* column,
   row.Refuse(column, "a list of numbers or fractions like \"4/3\"");
 }
 
-// The cell as a JSON list; refused with an example where it is none.
+// Reads the cell as a JSON list; where it is none, it is refused with an
+// example.
 nlohmann::json ParseList(const CaseRow& row, const char* column) {
   nlohmann::json list = nlohmann::json::parse(row.Text(column), nullptr, false);
   if (!list.is_array()) {
@@ -270,8 +273,8 @@ nlohmann::json ParseList(const CaseRow& row, const char* column) {
   return list;
 }
 
-// The basic solutions as a JSON list of lists of text, with 17 digits: JSON
-// numbers would be printed with fewer.
+// Returns the basic solutions as a JSON list of lists. Numbers are text with 17
+// significant digits.
 std::string ListOfSolutions(const analysis::LcpResult& r) {
   auto list = nlohmann::json::array();
   for (const analysis::LcpSolution& s : r.solutions) {

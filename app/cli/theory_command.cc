@@ -1,6 +1,6 @@
-// touchdown theory: its commands and flags, and the checks that several of them
-// share (Need...). What the commands do is in theory_contact.cc,
-// theory_boundary.cc and theory_map.cc.
+// This file has the commands and flags of touchdown theory, and the checks that
+// several of them share (Need...). What the commands do is in
+// theory_contact.cc, theory_boundary.cc and theory_map.cc.
 #include <fmt/core.h>
 
 #include <memory>
@@ -15,8 +15,8 @@ namespace {
 
 using SharedFlags = std::shared_ptr<TheoryFlags>;
 
-// --json, --cases and --out. `columns` names the columns of a case file, for
-// the help of --cases.
+// Adds --json, --cases and --out. `columns` names the columns of a case file,
+// for the help of --cases.
 void AddResult(CLI::App* command, const SharedFlags& flags,
                const char* columns) {
   AddFlag(*command, "--json", flags->result.json, "one JSON document");
@@ -26,7 +26,7 @@ void AddResult(CLI::App* command, const SharedFlags& flags,
             "file for the answer (default: standard output)");
 }
 
-// How mass lies about the centre, the radius, friction and the corner.
+// Adds the flags for mass layout, radius, friction, corner and gravity.
 void AddShape(CLI::App* command, CornerFlags& f) {
   const Option body =
       AddOption(*command, "--body", f.body,
@@ -47,8 +47,8 @@ void AddShape(CLI::App* command, CornerFlags& f) {
       .ShowDefault();
 }
 
-// The angle in degrees or radians: degrees give exact sines at 0, 30 and 90
-// deg.
+// Adds the angle in degrees or radians: degrees give exact sines at 0, 30 and
+// 90 deg.
 void AddAngle(CLI::App* command, CornerFlags& f) {
   const Option degrees = AddOption(
       *command, "--alpha-deg", f.alpha_deg,
@@ -57,7 +57,8 @@ void AddAngle(CLI::App* command, CornerFlags& f) {
       .Exclude(degrees);
 }
 
-// The spin before or after the impact, which `what` says: the commands differ.
+// Adds the spin; `what` says whether before or after the impact, since the
+// commands differ.
 void AddSpin(CLI::App* command, CornerFlags& f, const char* what) {
   AddOption(*command, "--omega-rad-per-s", f.omega_rad_per_s, what);
 }
@@ -245,7 +246,7 @@ analysis::SinCos NeedAlpha(const CornerFlags& flags) {
   return analysis::SinCosOfDegrees(Need(flags.alpha_deg, "--alpha-deg"));
 }
 
-// --kappa goes before --body; the two exclude each other anyway.
+// CLI11 has refused --kappa and --body together.
 double NeedKappa(const CornerFlags& flags) {
   using analysis::MassLayout;
   if (flags.kappa) return *flags.kappa;
@@ -258,8 +259,8 @@ double NeedKappa(const CornerFlags& flags) {
       "--kappa a number");
 }
 
-// The direction of slip: forward of a leading corner, backward of a trailing
-// one, none at rest.
+// Returns the direction of slip: forward of a leading corner, backward of a
+// trailing one, none at rest.
 analysis::Slip NeedSlip(const CornerFlags& flags) {
   if (flags.at_rest) {
     if (!flags.corner.empty()) {

@@ -48,7 +48,8 @@ Json FiniteOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-// A signed change in the unit of the flag, or "never" where none is enough.
+// Returns a signed change in the unit of the flag, or "never" where none is
+// enough.
 std::string ChangeText(double value, double per_unit, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:+.4g}{}", value / per_unit, unit)
                               : std::string("never");
@@ -197,7 +198,8 @@ int RunImpact(const TheoryFlags& flags) {
                    p.alpha_rate_rad_per_s * p.radius_m * p.alpha.cos;
   }
   const analysis::ImpactResult r = analysis::Impact(p);
-  // From here on in the frame of the viewer, motion to the right.
+  // From here on signs are those of the viewer's frame, with motion to the
+  // right.
   const double omega_after = -mirror * r.alpha_rate_rad_per_s;
   const double slip_before = mirror * p.tangential_mps;
   const double slip_after = mirror * r.tangential_mps;
@@ -271,7 +273,7 @@ int RunFlat(const TheoryFlags& flags) {
 
 namespace {
 
-// "1, 4/3" as numbers. Throws std::invalid_argument with the flag's name.
+// Reads "1, 4/3" as numbers. Throws std::invalid_argument with the flag's name.
 std::vector<double> ParseVector(const std::string& text, const char* flag) {
   std::vector<double> out;
   std::size_t start = 0;

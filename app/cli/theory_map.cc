@@ -1,6 +1,6 @@
-// touchdown theory map: the regimes over the radius angle and a second axis,
-// friction or spin, as a CSV and as drawings in one folder. Beside the map come
-// the paper's figures of the complementarity problem.
+// touchdown theory map shows the regimes over the radius angle and a second
+// axis, friction or spin, as a CSV and as drawings in one folder. Beside the
+// map come the paper's figures of the complementarity problem.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -28,8 +28,8 @@ const std::vector<double> kPaperAngles_rad = {
     11.8 * kDegree, 27.4 * kDegree, 43.0 * kDegree,
     58.7 * kDegree, 74.4 * kDegree, 90.0 * kDegree};
 
-// One line a cell: angle, value of the second axis, regime, and the normal
-// force of the sliding solution per mass. The angle runs fastest.
+// Writes one line a cell: angle, value of the second axis, regime, and the
+// normal force of the sliding solution per mass. The angle runs fastest.
 std::string Csv(const analysis::RegimeMap& map) {
   std::string out =
       fmt::format("alpha_deg,{},regime,normal_force_per_mass_mps2\n",
@@ -45,7 +45,7 @@ std::string Csv(const analysis::RegimeMap& map) {
   return out;
 }
 
-// What the map holds fixed, for the heading of its drawing.
+// Says what the map holds fixed, for the heading of its drawing.
 std::string Circumstances(const analysis::ContactProblem& p, MapAxis axis) {
   const char* corner =
       p.slip == analysis::Slip::kLeading ? "leading" : "trailing";

@@ -9,8 +9,9 @@
 namespace touchdown::cli {
 namespace {
 
-// The number that the whole of `text` is; `whole` is what the user typed, which
-// the message quotes. Throws std::invalid_argument also for infinities.
+// Returns the number that the whole of `text` is; `whole` is what the user
+// typed, which the message quotes. Throws std::invalid_argument also for
+// infinities.
 double ParseNumber(const std::string& text, const std::string& whole) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);

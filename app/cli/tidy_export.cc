@@ -17,14 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "trials.csv-metadata.json": where readers of CSV on the Web look for it.
+// Returns "trials.csv-metadata.json", where readers of CSV on the Web look for
+// it.
 fs::path SchemaPath(const fs::path& csv) {
   return csv.string() + "-metadata.json";
 }
 
-// The schema of one CSV, after the W3C's "Metadata Vocabulary for Tabular
-// Data". `csv` is the file's name as seen from the schema, `about` says what
-// one row is.
+// Returns the schema of one CSV, after the W3C's "Metadata Vocabulary for
+// Tabular Data". `csv` is the file's name as seen from the schema, `about` says
+// what one row is.
 std::string SchemaText(const std::string& csv, const std::string& about,
                        const std::vector<db::ViewColumn>& columns) {
   nlohmann::ordered_json json = {
@@ -48,8 +49,8 @@ std::string SchemaText(const std::string& csv, const std::string& about,
   return json.dump(2) + "\n";
 }
 
-// A cell as CSV; empty for NULL. A real has as many digits as it needs to come
-// back the same.
+// Returns a cell as CSV; NULL is empty. A real has as many digits as it needs
+// to come back the same.
 std::string CellText(const db::Cell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) {
     return report::CsvCell(*text);
@@ -102,8 +103,8 @@ void WriteTidy(const db::Store& store, std::string_view campaign,
     files.back()->Write(
         SchemaText(name, "one row: " + view.one_row, view.columns));
   }
-  // Everything is on the disk under temporary names. Only then do the files
-  // take their names, and no signal ends the process in between.
+  // Everything is complete under temporary names. Only then do the files take
+  // their names, and no signal ends the process in between.
   for (const auto& file : files) file->Finish();
   const core::AllOrNothing together;
   for (const auto& file : files) file->Commit();

@@ -12,15 +12,15 @@
 namespace touchdown::cli {
 namespace {
 
-// The message of every value: "--region is '1,2', must be X,Y,W,H ...".
+// Throws the message of every value: "--region is '1,2', must be X,Y,W,H ...".
 [[noreturn]] void Refuse(const std::string& flag, const std::string& text,
                          const std::string& form) {
   throw std::invalid_argument(
       fmt::format("{} is '{}', must be {}", flag, text, form));
 }
 
-// The parts between the separators; one more than there are separators, and
-// empty where two follow each other.
+// Returns the parts between the separators; one more than there are separators,
+// and empty where two follow each other.
 std::vector<std::string_view> Split(std::string_view text, char at) {
   std::vector<std::string_view> parts;
   while (true) {
@@ -68,7 +68,7 @@ std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,
   const std::string form = "first and one past the last frame, as in 18:33";
   const auto parts = Split(text, ':');
   if (parts.size() != 2) Refuse(flag, text, form);
-  // An open end: from frame 0, to the last (-1).
+  // An open end means frame 0, or the last frame (-1).
   std::pair<std::int64_t, std::int64_t> range{0, -1};
   if (!parts[0].empty()) {
     const auto first = report::ParseNumber<std::int64_t>(parts[0]);
