@@ -274,7 +274,8 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
   pipeline::WatchOptions options;
   options.now = [] { return std::chrono::steady_clock::now(); };
   options.wait = [&](bool growing) {
-    // Of a network drive nothing is heard: look now and then.
+    // inotify hears nothing of a network drive, so the folder is looked at now
+    // and then.
     constexpr std::chrono::milliseconds kNowAndThen{10000};
     if (!watch_interrupted) {
       changes.Wait(growing ? pipeline::Settling::kQuiet : kNowAndThen);

@@ -77,9 +77,9 @@ void BrowserPage::Show() const {
     if (child > 0) waitpid(child, nullptr, 0);
     return;
   }
-  // A grandchild, so that nobody waits for the browser.
+  // The browser runs in a grandchild, so that nobody waits for it.
   if (fork() != 0) _exit(0);
-  // Its words are not ours, and it ends by its own signals.
+  // What the browser prints must not mix with this program's results.
   const int nowhere = open("/dev/null", O_RDWR);
   if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 ||
       dup2(nowhere, STDERR_FILENO) < 0) {

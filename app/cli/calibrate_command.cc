@@ -1,4 +1,4 @@
-// touchdown calibrate lens: pictures of a board become a lens in a dated
+// touchdown calibrate lens makes a lens of pictures of a board, in a dated
 // calibration file. `scale` and `ground` are in calibrate_references.cc, the
 // flags and the file that all three share in calibrate_file.cc.
 #include <fmt/core.h>

@@ -135,7 +135,7 @@ FloatPicture Floats(const core::Frame& frame) {
                         static_cast<std::ptrdiff_t>(differences.size() / 2);
     // The median alone is wanted: a full sort of all pixels would take longer.
     std::nth_element(differences.begin(), middle, differences.end());
-    // At least that of rounding.
+    // Rounding to whole levels alone makes this much noise.
     out.noise_dn = std::max(1.4826 * *middle / std::sqrt(2.0), 0.3);
   }
   return out;
@@ -171,8 +171,8 @@ calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
   };
   ground.p1 = seen(line.p1);
   ground.p2 = seen(line.p2);
-  // Of points of which both the height and the direction are at least as
-  // uncertain as the line's (calib::MakeGroundLine).
+  // Two points with this u make a line whose height and direction are at least
+  // as uncertain as those of the line found (calib::MakeGroundLine).
   ground.u_point_px = std::max(std::sqrt(2.0) * line.u_offset_px,
                                length * line.u_angle_rad / std::sqrt(2.0));
   return ground;

@@ -61,7 +61,7 @@ std::vector<Completion> ListCompletions(const CommandText& command,
   return words;
 }
 
-// Shell code, the same in bash and zsh: from the words before the cursor
+// This shell code is the same in bash and zsh. From the words before the cursor
 // (`before`) it finds the path of the command, in `at`. Words that lead to no
 // command, such as options and their values, are passed over.
 constexpr std::string_view kFindPath = R"(  local at=touchdown word

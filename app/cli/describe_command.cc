@@ -1,5 +1,5 @@
-// touchdown describe: manual pages and completions, written when the program is
-// built. A tool of the build; no --help shows it.
+// touchdown describe writes manual pages and completions when the program is
+// built. It is a tool of the build, and no --help shows it.
 #include <filesystem>
 #include <memory>
 #include <string>

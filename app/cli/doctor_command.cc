@@ -1,4 +1,5 @@
-// touchdown doctor: what stands in the way of a measurement, before it does.
+// touchdown doctor finds what would stand in the way of a measurement, before
+// it does.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -97,7 +97,7 @@ void WriteExport(std::ostream& out, const db::Store& store,
   for (const auto& event : db::PlanEvents(store, flags.campaign)) {
     out << report::PlanEventJson(event) << '\n';
   }
-  // One trial at a time: memory does not grow with the store.
+  // Trials come one at a time: memory does not grow with the store.
   store.ForEachHistory([&](const std::vector<db::Revision>& history) {
     if (!flags.campaign.empty() &&
         history.front().trial.campaign != flags.campaign) {
@@ -156,7 +156,7 @@ int Export(const ExportFlags& flags) {
   core::OutputFile file(flags.out);
   FileBuffer buffer(file);
   std::ostream out(&buffer);
-  // What the file throws is thrown on.
+  // Without this the stream would swallow what the file throws.
   out.exceptions(std::ios::badbit);
   WriteExport(out, store, flags, format);
   // CSV types nothing: its schema says what each column holds. JSON lines name
@@ -191,7 +191,7 @@ int PrintTrialColumns() {
   return 0;
 }
 
-// What an import has done, to be printed at its end.
+// Holds what an import has done; it is printed at the end.
 struct Imported {
   std::string summary;
   std::vector<std::string> errors;     // of rows that were passed over

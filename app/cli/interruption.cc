@@ -19,7 +19,7 @@
 namespace touchdown::cli {
 namespace {
 
-// For the handler: where the thread listens.
+// The handler writes into the second end; the thread reads from the first.
 std::array<int, 2> signal_pipe = {-1, -1};
 
 // What the thread is told: the signal's number, and whether the command may end

@@ -61,7 +61,8 @@ void AddStatementFlags(CLI::App& command, StatementFlags& all) {
 // Says which revision was recorded, for a person or as touchdown.logged/1.
 void PrintLogged(const db::Logged& logged, bool json) {
   if (json) {
-    // Of ASCII only: a UUID, a number, a truth value.
+    // All values are ASCII (a UUID, a number, a truth value), so nothing is
+    // escaped.
     fmt::print(
         "{{\"schema\": \"touchdown.logged/1\", \"id\": \"{}\", \"revision\": "
         "{}, \"is_new\": {}}}\n",

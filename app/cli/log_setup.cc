@@ -79,7 +79,7 @@ void SetUpLog(const LogFlags& flags) {
   logger->set_level(sinks.empty() ? spdlog::level::off : spdlog::level::debug);
   // After a crash the last line is what matters: none waits in a buffer.
   logger->flush_on(spdlog::level::debug);
-  // Nothing fails because nobody could be told.
+  // A journal that cannot be written is no reason for a command to fail.
   logger->set_error_handler([](const std::string&) {});
   spdlog::set_default_logger(std::move(logger));
 }

@@ -182,7 +182,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");
-  // Not of each command: what is set before them they take over.
+  // A command takes over the footer that is set before it is added. This footer
+  // belongs to the program's own help alone, so it comes last.
   app.footer(
       "Exit status: 0 done (an undecided trial is a result); 2 wrong usage or "
       "impossible argument; 3 input unreadable, damaged or unsupported; 4 "
@@ -225,7 +226,7 @@ int main(int argc, char** argv) {
         "out of memory; a smaller clip, fewer --jobs or a higher limit");
     return kInput;
   } catch (const std::exception& error) {
-    // What fmt throws where stdout takes no more.
+    // fmt throws this where stdout takes no more.
     if (std::ferror(stdout) != 0) {
       touchdown::cli::Tell(std::string("stdout: the results could not be "
                                        "written: ") +

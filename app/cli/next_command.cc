@@ -158,7 +158,7 @@ int RunNext(const BoundaryFlags& flags) {
         "--angle-kind or --origin",
         groups.size(), names));
   }
-  // No trial yet: the prior alone gives the first angle.
+  // Without a trial the prior alone gives the first angle.
   if (groups.empty()) {
     groups.push_back(report::EmptyGroup(input, EmptyCampaign(flags, input)));
   }

@@ -137,7 +137,7 @@ void Apply(const EntryFlags& flags, Entry& entry) {
             key, ParseMeasured(FlagName(field), text,
                                core::AtTheEdge(field.name).factor));
         break;
-      // The name alone: the store finds the version in force.
+      // Only the name is given: the store finds the version in force.
       case FieldType::kEntry:
         entry.entries[key] = {text, ""};
         break;

@@ -93,7 +93,8 @@ int RunReview(const ReviewFlags& flags) {
   std::thread waiter([&] {
     int signal = 0;
     sigwait(&signals, &signal);
-    // Requests that are answered may take long: an analysis does.
+    // A request that is being answered may take long, such as an analysis; the
+    // process ends soon in any case.
     if (!ended) EndSoon(signal);
     server.Stop();
   });

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Name and text of one cell of the result.
+// Each pair is the name of a column and the text of its cell.
 using Cells = std::vector<std::pair<std::string_view, std::string>>;
 
 // Holds one rig, in SI: springs, launch, relative uncertainties of their
@@ -138,7 +138,8 @@ void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   AddNumber(
       cells, "v_eq10_mean",
       rig::IdealLaunchSpeed(x, report.stiffness_n_per_m, c.launch.mass_kg));
-  // One correction of Eq. (10) at a time (with the preload), then all.
+  // The first two columns have one correction of Eq. (10) each, beside the
+  // preload; v_full has all.
   rig::Launch one;
   one.stiffness_n_per_m = c.launch.stiffness_n_per_m;
   one.mass_kg = c.launch.mass_kg;

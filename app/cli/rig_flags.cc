@@ -137,7 +137,7 @@ rig::Description MakeDescription(const RigFlags& flags) {
   TakeEstimate(springs.stiffness_n_per_m, "--stiffness-n-per-m",
                flags.stiffness_n_per_m, 1.0);
   TakeGeometry(flags, springs);
-  // Both typed: the measured one is used, as in rig.toml.
+  // Where both are typed, the measured one is used, as in rig.toml.
   if (typed_stiffness) {
     springs.stiffness_n_per_m =
         ParseEstimate("--stiffness-n-per-m", flags.stiffness_n_per_m, 1.0);

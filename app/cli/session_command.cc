@@ -220,7 +220,8 @@ void Serve(const SessionFlags& flags, session::Session& session,
     std::fflush(stdout);
   };
   options.wait = [&](bool growing) {
-    // Of a network drive nothing is heard: look now and then.
+    // inotify hears nothing of a network drive, so the folder is looked at now
+    // and then.
     constexpr std::chrono::milliseconds kNowAndThen{2000};
     if (session_ended != 0) return false;
     changes.Wait(growing ? options.quiet : kNowAndThen, lines.descriptor());
@@ -313,7 +314,8 @@ int RunSession(const SessionFlags& flags) {
   // This is made in any case: without a controller the person is the driver.
   rig::ManualDriver hands(
       [&lines](const std::string& question) { return lines.Ask(question); });
-  // Goes before the lines do, and stops and disarms what it drives.
+  // The controller is destroyed before the lines are; it then stops and disarms
+  // the rig.
   const auto controller =
       flags.driver == "manual" ? nullptr : OpenController(flags);
   std::optional<Driving> driving;

@@ -134,7 +134,7 @@ void TerminalLines::Take(const char* bytes, std::size_t size) {
     lines_.push_back({std::exchange(begun_, {}), begun_at_,
                       begun_alone_ && whole == 1 && i + 1 == size});
     if (is_stop && on_stop_) {
-      // Not under the lock: what is called might need this object.
+      // The lock is given up: what is called might need this object.
       lock.unlock();
       on_stop_();
       lock.lock();

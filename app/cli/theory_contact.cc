@@ -90,8 +90,8 @@ int RunRegime(const TheoryFlags& flags) {
                {"solutions", Json::array()}};
   std::string text = fmt::format("regime   {}, {} solution{}\n", Name(r.regime),
                                  r.n_solutions, r.n_solutions == 1 ? "" : "s");
-  // One line a solution: two where the contact is indeterminate, none where it
-  // is inconsistent.
+  // Each solution gets a line: there are two where the contact is
+  // indeterminate, and none where it is inconsistent.
   for (const analysis::ContactSolution& s : r.Solutions()) {
     json["solutions"].push_back(
         {{"kind", Name(s.kind)},
