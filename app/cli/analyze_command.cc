@@ -1,3 +1,6 @@
+// touchdown analyze makes one trial of one recording. The flags become options,
+// the clip is measured (app/measure), and only then are outputs touched:
+// evidence in --out, the trial in --db, the answer on stdout.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -21,6 +24,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed; an empty string means that the flag was not given.
+// `analyze` holds those that batch, session and report-bug have too.
 struct AnalyzeCommandFlags {
   std::string clip;
   AnalyzeFlags analyze;
@@ -32,7 +37,9 @@ struct AnalyzeCommandFlags {
   bool json = false;
 };
 
-// The document, with what became of it in the store.
+// Returns the touchdown.analysis/1 document. Where the trial was logged, it has
+// `logged` besides: the trial's id, its revision, whether a person must accept
+// it, and the store.
 std::string MakeDocument(const pipeline::Analysis& analysis,
                          const std::optional<pipeline::Logged>& logged,
                          const AnalyzeCommandFlags& flags) {
@@ -44,12 +51,22 @@ std::string MakeDocument(const pipeline::Analysis& analysis,
                     {"revision", logged->revision},
                     {"is_proposal", logged->is_proposal},
                     {"store", flags.db}};
+  // A path may hold bytes that are not UTF-8, which JSON cannot. They are
+  // replaced; without that dump() would throw.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+// Analyses one clip, and logs it where --db is given. Returns 0 whatever was
+// found: an undecided trial is a result. Throws std::invalid_argument for flags
+// that contradict each other, core::InputError for the clip, core::StoreError
+// for the store.
 int RunAnalyze(const AnalyzeCommandFlags& flags) {
+  // The process ends after one clip, so that memory kept until then costs
+  // nobody anything.
   KeepMemory();
   pipeline::AnalyzeOptions options = ToOptions(flags.analyze);
+  // Flags that mean nothing without a store are refused: a user who gives them
+  // expects the trial to be recorded.
   if (flags.db.empty() && !flags.campaign.empty()) {
     throw std::invalid_argument("--campaign needs --db, the store it is in");
   }
@@ -62,12 +79,18 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
         "digest; leave one of them out");
   }
   options.digest = !flags.no_digest;
+  // Names in --condition are looked up before the analysis: a typing error must
+  // not cost the minutes that it takes.
   const auto conditions = ReadConditions(flags.conditions, flags.db);
+  // Flags take precedence: the campaign fills in only what they leave open.
   if (!flags.campaign.empty()) {
     pipeline::FillFromCampaign(flags.db, flags.campaign, options);
   }
   ProgressBar bar("analyze");
   options.progress = [&bar](double share) { bar.Show(share); };
+  // At the time limit a script still gets the document of what is known, with
+  // the reason of each absent answer; main turns the exception into the message
+  // and exit status 3.
   const pipeline::Analysis analysis = [&] {
     try {
       return pipeline::Analyze(flags.clip, options);
@@ -80,6 +103,8 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
     }
   }();
   bar.Finish();
+  // Evidence that cannot be written ends the command before the store is
+  // changed.
   if (!flags.out.empty()) pipeline::WriteEvidence(analysis, flags.out);
   std::optional<pipeline::Logged> logged;
   if (!flags.db.empty()) {
@@ -93,6 +118,7 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
     if (logged) {
       fmt::print("logged     trial {} revision {} in {}\n", logged->trial_id,
                  logged->revision, flags.db);
+      // `show` takes the beginning of an id: 8 characters are easy to copy.
       if (logged->is_proposal) {
         fmt::print(
             "proposed   a person's correction stays in force; `touchdown show "
@@ -116,6 +142,8 @@ void AddAnalyze(CLI::App& app, Action& action) {
             "or a folder of PNG, TIFF or JPEG images")
       .Require();
   AddAnalyzeFlags(*command, flags->analyze);
+  // The flags from here on decide what becomes of the answer; those above
+  // decide the answer itself.
   AddOption(*command, "--out", flags->out,
             "write track.csv, contact.png and analysis.json into this folder");
   AddOption(*command, "--db", flags->db, "log the trial in this store");

@@ -13,7 +13,9 @@
 
 namespace touchdown::cli {
 
+// Returns the limit unchanged, in seconds; +infinity stands for no limit.
 double ToLimit(double limit_s) {
+  // The condition is written so that NaN is refused, too.
   if (!(limit_s > 0.0)) {
     throw std::invalid_argument(fmt::format(
         "--limit-s is {:g}, must be above 0: seconds for one clip", limit_s));
@@ -21,19 +23,27 @@ double ToLimit(double limit_s) {
   return limit_s;
 }
 
+// Only what concerns one flag alone is checked here. What depends on the clip
+// or on two flags together is checked by Analyze(), which the review page calls
+// as well.
 pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   pipeline::AnalyzeOptions options;
   options.fps = flags.fps;
   options.gamma = flags.gamma;
   if (!flags.calibration.empty()) {
+    // The date is needed besides the file: the analysis warns of a calibration
+    // that has expired, and takes no clock of its own.
     options.calibration = calib::ReadCalibration(flags.calibration);
     options.today = pipeline::Today();
   }
   if (!flags.crop.empty()) options.crop = ParseCorner("--crop", flags.crop);
+  // A number without "+-u" gets u = 0.1 % (kPlainSize); the same holds for the
+  // sizes below.
   if (!flags.scale.empty()) {
     options.scale_px_per_m =
         ParseEstimate("--scale-px-per-m", flags.scale, 1.0, kPlainSize);
   }
+  // `auto` leaves body_kind empty: the kind that fits the outlines is taken.
   if (flags.body != "auto") {
     options.body_kind = core::ParseBodyKind(flags.body);
     if (!options.body_kind) {
@@ -45,6 +55,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
     options.diameter_m = ParseEstimate("--diameter-mm", flags.diameter,
                                        core::kMillimetre, kPlainSize);
   }
+  // The side that is typed first is taken for the long one.
   if (!flags.sides.empty()) {
     std::tie(options.long_m, options.short_m) =
         ParseSides("--sides-mm", flags.sides, core::kMillimetre, kPlainSize);
@@ -52,6 +63,8 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   if (!flags.ground.empty()) {
     const auto n = ParseNumbers("--ground", flags.ground, 4,
                                 "two points X1,Y1,X2,Y2 in pixels");
+    // Both points are equally uncertain, --ground-u-px along the line's normal.
+    // Throws where they coincide.
     options.ground =
         calib::MakeGroundLine({n[0], n[1]}, {n[2], n[3]}, flags.ground_u_px);
   }
@@ -63,6 +76,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
     }
     options.contact_frame = flags.contact_frame;
   }
+  // "18:33" means frames 18 to 32; an open end, "18:", is last_frame = -1.
   if (!flags.frames.empty()) {
     std::tie(options.first_frame, options.last_frame) =
         ParseFrames("--frames", flags.frames);
@@ -85,6 +99,7 @@ pipeline::AnalyzeOptions ToOptions(const AnalyzeFlags& flags) {
   return options;
 }
 
+// `demo` has this flag of all the flags of analyze: it runs analyses too.
 void AddLimitFlag(CLI::App& command, double& limit_s) {
   AddOption(command, "--limit-s", limit_s,
             "an analysis that takes longer is ended, with how far it got "
@@ -92,6 +107,9 @@ void AddLimitFlag(CLI::App& command, double& limit_s) {
       .ShowDefault();
 }
 
+// --help shows the flags in this order: the camera's geometry, the body, time
+// and light, the ground, what part of the clip is looked at, and the
+// conventions by which the contact is judged.
 void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
   AddOption(command, "--calibration", flags.calibration,
             "a file of `touchdown calibrate`: the lens, and scale and ground "

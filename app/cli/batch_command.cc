@@ -1,4 +1,8 @@
-// batch: a folder of recordings, or a manifest, into the trial store.
+// touchdown batch brings a folder of recordings, or a manifest, into the trial
+// store. Without --watch the recordings are listed, cut down to this machine's
+// share (--shard), analysed and logged (app/batch), and a table says which of
+// them a person should look at. With --watch the same happens to each recording
+// as soon as it is complete, until a signal ends the command.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,6 +40,9 @@ namespace {
 namespace fs = std::filesystem;
 using pipeline::TriageEntry;
 
+// Holds the flags as typed. `source` is a folder or a manifest.csv; `jobs` 0
+// means one analysis on each core; an empty `out` means that no evidence is
+// written.
 struct BatchFlags {
   std::string source;
   std::string db;
@@ -52,15 +59,21 @@ struct BatchFlags {
   bool columns = false;
 };
 
-// For the handler of SIGINT and SIGTERM: the watch ends, and what is being
-// analysed with it.
+// The handler of SIGINT and SIGTERM shares this state with the watch. The
+// handler may interrupt any instruction, so each must be lock-free.
+// watch_interrupted ends the waiting, and the analysis that goes on
+// (AnalyzeOptions::interrupted); analysing_batch tells the handler that there
+// is one.
 std::atomic<bool> watch_interrupted = false;
 std::atomic<bool> analysing_batch = false;
-// The signal, where it cut an analysis off.
+// Holds the number of the signal that cut an analysis off; 0 where none did.
 std::atomic<int> batch_ended_by = 0;
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
 
+// While the watch only waits, a signal ends it in good order. During an
+// analysis the process must end soon in any case, since a decoder may look at
+// no flag: EndSoon() sees to it. The next run analyses that recording again.
 void OnWatchSignal(int signal) {
   watch_interrupted = true;
   if (!analysing_batch) return;
@@ -68,6 +81,8 @@ void OnWatchSignal(int signal) {
   EndSoon(signal);
 }
 
+// Only --watch catches signals: a plain batch has nothing to end in good order,
+// and leaves them to interruption.h.
 void CatchWatchSignals() {
   struct sigaction action = {};
   action.sa_handler = OnWatchSignal;  // without SA_RESTART: waiting ends
@@ -75,6 +90,8 @@ void CatchWatchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+// Prints the columns that a manifest.csv may have (`batch --columns`). This
+// needs neither a store nor recordings.
 int PrintManifestColumns() {
   std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
   for (const auto& column : pipeline::ManifestColumns()) {
@@ -84,6 +101,11 @@ int PrintManifestColumns() {
   return 0;
 }
 
+// Opens --db for writing. Without a campaign a new store is made where there is
+// none; with --campaign alone the store must be there. With --campaign-from a
+// new store is made, too, and the campaign, its plan and the register's entries
+// are copied into it from that other store: so shards on several machines, each
+// with a store of its own, log by the same conventions.
 db::Store OpenStore(const BatchFlags& flags) {
   if (flags.campaign_from.empty()) {
     return db::Store::Open(flags.db, flags.campaign.empty()
@@ -98,13 +120,18 @@ db::Store OpenStore(const BatchFlags& flags) {
   const core::Campaign campaign =
       pipeline::RequireCampaign(from, flags.campaign);
   auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
+  // A campaign that --db has already is left alone: if its conventions
+  // differed, Restore() would add it a second time under another name.
   std::vector<core::Campaign> missing;
   if (!store.FindCampaign(campaign.name)) missing.push_back(campaign);
+  // No trials are copied: the history ends before the first.
   db::Restore(store, from.uuid(), db::AllVersions(from), missing,
               db::PlanEvents(from, campaign.name), [] { return std::nullopt; });
   return store;
 }
 
+// Returns "bounce", "undecided, P(bounce) 0.412", or "-" where there is no
+// trial.
 std::string StateText(const TriageEntry& entry) {
   if (!entry.state) return "-";
   std::string text(core::Name(*entry.state));
@@ -114,13 +141,17 @@ std::string StateText(const TriageEntry& entry) {
   return text;
 }
 
+// Returns "approach 20.013 +- 0.048" in degrees, or "-" where there is no
+// angle.
 std::string AngleText(const TriageEntry& entry) {
   return entry.angle_rad ? fmt::format("{} {}", core::Name(*entry.angle_kind),
                                        WithU(entry.angle_rad, core::kDegree))
                          : std::string("-");
 }
 
-// What a person should look at, and the sum of it all.
+// Prints a table of the recordings that a person should look at, in the order
+// of `entries`, and a line with the counts of all. Names and reasons come from
+// files, so they are made printable.
 void PrintTriage(const std::vector<TriageEntry>& entries) {
   std::vector<std::vector<std::string>> rows = {
       {"look at", "recording", "state", "angle, deg", "because"}};
@@ -139,6 +170,8 @@ void PrintTriage(const std::vector<TriageEntry>& entries) {
       counts.to_look_at);
 }
 
+// Reports on a batch: triage.csv in --out, then a table or touchdown.batch/1 on
+// stdout. Returns the exit status: 5 where a recording failed, else 0.
 int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   pipeline::SortByNeed(entries);
   if (!flags.out.empty()) {
@@ -147,6 +180,8 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
     report::WriteTextFile(fs::path(flags.out) / "triage.csv",
                           pipeline::TriageCsv(entries));
   }
+  // The checks of scale, frame rate and size take all trials of a campaign, so
+  // the store is read anew instead of this batch's entries.
   std::vector<pipeline::CampaignWord> campaigns;
   if (fs::exists(flags.db)) {
     campaigns = pipeline::CampaignWords(
@@ -157,6 +192,7 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   } else {
     PrintTriage(entries);
     for (const pipeline::CampaignWord& word : campaigns) {
+      // Text tells of failed checks only; the JSON has a sentence for each.
       if (!word.failed) continue;
       fmt::print("campaign {}: {}\n", Printable(word.campaign),
                  Printable(word.sentence));
@@ -164,6 +200,7 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   }
   const std::size_t failed = pipeline::Count(entries).failed;
   if (failed == 0) return 0;
+  // The advice goes to stderr: stdout carries results only.
   Tell(
       fmt::format("{} of {} recordings failed; the list says why, and the "
                   "same command tries them once more (--again: always)",
@@ -171,6 +208,10 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   return 5;
 }
 
+// Returns the options of one RunBatch(), which draws its progress on `bar`. The
+// conditions name entries of the register: each is fixed to the version that is
+// in force at this moment. Throws std::invalid_argument for a condition that is
+// no KEY=VALUE or names no entry.
 pipeline::BatchOptions MakeOptions(const BatchFlags& flags,
                                    const db::Store& store, ProgressBar& bar) {
   pipeline::BatchOptions options;
@@ -186,16 +227,23 @@ pipeline::BatchOptions MakeOptions(const BatchFlags& flags,
              fmt::format("{} of {}, {} failed, ", progress.done, progress.all,
                          progress.failed));
   };
+  // Nobody sets the flag without --watch.
   options.stop = [] { return watch_interrupted.load(); };
   return options;
 }
 
-// Takes what comes until SIGINT or SIGTERM.
+// Analyses and logs every recording of the folder once it has stopped growing,
+// until SIGINT or SIGTERM. Prints a line for each at once, and the report of
+// all at the end. Returns the status of FinishBatch(), or 128 + signal where
+// the signal cut an analysis off.
 int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
   analyze.interrupted = &watch_interrupted;
   auto store = OpenStore(flags);
+  // Opening the store may wait for another process, so the signals are caught
+  // afterwards: until here Ctrl-C ends the program at once.
   CatchWatchSignals();
   std::vector<TriageEntry> all;
+  // Watch() calls this with the recordings that have become complete.
   const auto take = [&](const std::vector<fs::path>& complete) {
     ProgressBar bar("batch");
     analysing_batch = true;
@@ -210,6 +258,8 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
       if (!flags.json) {
         fmt::print("{}  {}  {}  {}\n", Printable(entry.clip), StateText(entry),
                    AngleText(entry), Printable(entry.reason));
+        // A person, or a pipe's reader, sees each line when its recording is
+        // done.
         std::fflush(stdout);
       }
       // One that had been taken too early is taken again.
@@ -218,23 +268,30 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
       all.push_back(entry);
     }
   };
+  // inotify only shortens the wait. Whether a recording is complete follows
+  // from its size and age alone (pipeline::Settling).
   FolderWatch changes(flags.source);
   pipeline::WatchOptions options;
   options.now = [] { return std::chrono::steady_clock::now(); };
   options.wait = [&](bool growing) {
-    // Of a network drive nothing is heard: look now and then.
+    // inotify hears nothing of a network drive, so the folder is looked at now
+    // and then.
     constexpr std::chrono::milliseconds kNowAndThen{10000};
     if (!watch_interrupted) {
       changes.Wait(growing ? pipeline::Settling::kQuiet : kNowAndThen);
     }
     return !watch_interrupted;
   };
+  // Returns when options.wait says that a signal came.
   pipeline::Watch(flags.source, options, take);
   const int status = FinishBatch(std::move(all), flags);
   constexpr int kBySignal = 128;  // as shells count
   return batch_ended_by != 0 ? kBySignal + batch_ended_by : status;
 }
 
+// Lists the recordings with the options of each: those that lie in the folder
+// or below it, or those that the manifest names. Throws core::InputError where
+// a folder holds none, or the manifest cannot be read.
 std::vector<pipeline::BatchClip> ListClips(
     const BatchFlags& flags, const pipeline::AnalyzeOptions& analyze) {
   if (!fs::is_directory(flags.source)) {
@@ -252,6 +309,8 @@ std::vector<pipeline::BatchClip> ListClips(
                                   analyze);
 }
 
+// Checks the flags and runs the batch. Throws std::invalid_argument naming the
+// flag that is missing or impossible.
 int RunBatch(const BatchFlags& flags) {
   if (flags.columns) return PrintManifestColumns();
   if (flags.source.empty()) {
@@ -259,12 +318,16 @@ int RunBatch(const BatchFlags& flags) {
         "FOLDER is missing, must be a folder of recordings or a manifest.csv");
   }
   if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  // Each analysis is a thread that holds part of a recording in memory; more
+  // than this is a typing error.
   constexpr int kMaxJobs = 1024;
   if (flags.jobs < 0 || flags.jobs > kMaxJobs) {
     throw std::invalid_argument(
         fmt::format("--jobs is {}, must be 1 to {}, or 0 for one on each core",
                     flags.jobs, kMaxJobs));
   }
+  // The flags of the analysis are parsed before any recording is listed or the
+  // store is made.
   const pipeline::AnalyzeOptions analyze = ToOptions(flags.analyze);
   if (flags.watch) {
     if (!fs::is_directory(flags.source) || !flags.shard.empty()) {
@@ -274,6 +337,8 @@ int RunBatch(const BatchFlags& flags) {
     return WatchFolder(flags, analyze);
   }
   auto clips = ListClips(flags, analyze);
+  // The list has the same order on every machine that sees the same folder or
+  // manifest, so that all shards together are the whole batch.
   if (!flags.shard.empty()) {
     clips = pipeline::SelectShard(std::move(clips),
                                   pipeline::ParseShard("--shard", flags.shard));

@@ -1,4 +1,7 @@
-// touchdown boundary, report: from trials to a boundary angle.
+// touchdown boundary and report lead from trials to a boundary angle. Both
+// select trials by the same flags (boundary_flags.h), record that the answer is
+// looked at, and estimate one boundary for each group of trials that may be
+// pooled. `boundary` prints the groups, `report` writes files.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -31,18 +34,25 @@ namespace {
 
 using core::kDegree;
 
+// Holds the groups of `boundary` with what they were made of. `trials` are
+// sorted as the tables are, and taken out of `input`: the groups refer to them
+// by index.
 struct Answer {
   report::ReportInput input;
   std::vector<core::Trial> trials;
   std::vector<report::Group> groups;
 };
 
+// Selects trials and estimates the boundary of each group. Throws
+// std::invalid_argument where no trial matches or --campaign names check shots,
+// which have no boundary.
 Answer MakeAnswer(const BoundaryFlags& flags) {
   Answer out;
   out.input = MakeInput(flags);
   KeepLook(flags, "boundary", out.input);
   out.trials = std::move(out.input.trials);
   out.input.trials.clear();
+  // The order in which the store gives the trials must not change the answer.
   report::SortTrials(out.trials);
   out.groups = report::MakeGroups(out.input, out.trials);
   RefuseCheckShots(flags, out.input);
@@ -54,6 +64,8 @@ Answer MakeAnswer(const BoundaryFlags& flags) {
   return out;
 }
 
+// Prints one group for a person. Each line has its heading in the first 14
+// columns; all angles are in degrees.
 void PrintGroup(const report::Group& group) {
   const auto& study = group.study;
   const auto& p = study.posterior;
@@ -70,6 +82,8 @@ void PrintGroup(const report::Group& group) {
              DegreesText(p.interval95_rad.high),
              DegreesText(p.interval90_rad.low),
              DegreesText(p.interval90_rad.high));
+  // The interval above covers two priors on the scatter; how far it reaches
+  // under the first alone shows what the second adds.
   if (p.cautious_prior) {
     fmt::print(
         "              {} to {} deg under the first of its two priors on the "
@@ -82,6 +96,8 @@ void PrintGroup(const report::Group& group) {
       "deg)\n",
       DegreesText(p.scatter_median_rad), DegreesText(p.scatter95_rad.low),
       DegreesText(p.scatter95_rad.high), DegreesText(p.sd_rad));
+  // These lines give the same estimate under other priors on the scatter: where
+  // they differ much, the trials say little.
   for (const auto& line : p.sensitivity) {
     fmt::print(
         "              {} deg, 95 % {} to {} deg if the scatter is about "
@@ -97,6 +113,7 @@ void PrintGroup(const report::Group& group) {
       DegreesText(l.interval95_rad.high), l.open_high ? " (open)" : "");
   fmt::print("  status      {}: {}\n", analysis::Name(p.status),
              report::StatusSentence(study));
+  // Each theory is compared; only the declared one gets the verdict below.
   for (const auto& t : study.theories) {
     fmt::print(
         "  theory      {} {} deg{}: E_n {}, P(boundary below it) {}, the 90 % "
@@ -109,11 +126,15 @@ void PrintGroup(const report::Group& group) {
   }
   fmt::print("  verdict     {}: {}\n", report::VerdictWord(group),
              report::VerdictSentence(group));
+  // Says how the verdict may still change; it is empty where there is nothing
+  // to say.
   const std::string outlook = report::OutlookSentence(group);
   if (!outlook.empty()) fmt::print("              {}\n", outlook);
   fmt::print("  next angle  {}\n", report::NextSentence(group));
 }
 
+// `boundary`: prints each group as text, or all as one touchdown.boundary/1
+// document. Returns 0.
 int AnswerBoundary(const BoundaryFlags& flags) {
   const Answer answer = MakeAnswer(flags);
   if (flags.json) {
@@ -132,11 +153,17 @@ int AnswerBoundary(const BoundaryFlags& flags) {
   return 0;
 }
 
+// `report`: writes the report into --out and says on stdout which file to open.
+// `options` is the command line as the report quotes it. Returns 0; throws
+// std::invalid_argument for a flag, core::InputError and core::OutputError for
+// files.
 int RunReport(const BoundaryFlags& flags, const std::string& options) {
   if (flags.details_example) {
     fmt::print("{}", report::DetailsExample());
     return 0;
   }
+  // The report compares trials with the paper's boundary of one kind of body,
+  // and bare angles do not tell which that is.
   if (!flags.csv.empty() && flags.body.empty()) {
     throw std::invalid_argument(
         "--trials: a report needs --body sphere or rectangle, which the file "
@@ -150,15 +177,21 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
                       : report::ReadDetails(flags.details);
   if (!flags.title.empty()) input.title = flags.title;
   const std::size_t n = input.trials.size();
+  // Predicts every trial that has set-points, for the pages that compare what
+  // the rig was set to with what was measured.
   if (!flags.rig.empty()) {
     input.rig = pipeline::PredictTrials(flags.rig, input.trials);
   }
+  // Tables link to pages of evidence only where these are written below.
   input.evidence_pages = flags.evidence;
   if (!(flags.bin_deg >= 0.0 && flags.bin_deg <= 90.0)) {
     throw std::invalid_argument(
         fmt::format("--bin-deg: {}; expected 0 to 90", flags.bin_deg));
   }
+  // 0 leaves it to the report: a row for each angle, or bins that fit a page.
   input.bin_width_rad = flags.bin_deg * kDegree;
+  // Pictures that the store keeps take precedence over those of the folder:
+  // merge() leaves alone what is there.
   if (flags.evidence && !flags.store.empty()) {
     input.pictures = pipeline::KeptPictures(flags.store, input.trials);
   }
@@ -171,11 +204,14 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
     pipeline::AddPictures(
         input, flags.evidence ? input.trials.size() : pipeline::kMostStrips);
   }
+  // The five texts and the schema are on the disk before anything is made from
+  // them: the PDF is printed from the page, the archive packs the files.
   report::WriteReport(report::MakeReport(input), flags.out);
   if (flags.evidence) report::WriteEvidencePages(input, flags.out);
   const std::string page =
       (std::filesystem::path(flags.out) / "table1.html").string();
   nlohmann::ordered_json files = report::kReportFiles;
+  // --json lists what was written, so each extra file is added to the list.
   if (flags.pdf) {
     report::PrintPdf(page, std::filesystem::path(flags.out) / "table1.pdf");
     files.push_back("table1.pdf");
@@ -218,6 +254,8 @@ void AddBoundary(CLI::App& app, Action& action) {
   SetAction(*command, action, [flags] { return AnswerBoundary(*flags); });
 }
 
+// `report` has its own flags besides those of boundary; --evidence takes its
+// folder or stands alone, which CLI11 tells apart by its count.
 void AddReport(CLI::App& app, Action& action) {
   auto flags = std::make_shared<BoundaryFlags>();
   CLI::App* command =
@@ -250,6 +288,7 @@ void AddReport(CLI::App& app, Action& action) {
           "with the pictures that analyze or batch put there (--out)")
           .AllowNoValue()
           .NameType("[FOLDER]");
+  // What was given is known after parsing only, so it is asked here.
   SetAction(*command, action, [flags, command, evidence] {
     flags->evidence = evidence.IsGiven();
     // The options as asked for, without where the report goes.

@@ -1,3 +1,8 @@
+// Turns the typed flags of boundary, next and report into options of the
+// modules below: MakeSelection() says which trials, MakeStudy() how the
+// boundary is estimated, and MakeInput() puts both together with what the
+// trials are compared with. Typed angles are degrees; all that leaves this file
+// is radians.
 #include "app/cli/boundary_flags.h"
 
 #include <fmt/core.h>
@@ -29,6 +34,8 @@ using core::kDegree;
 // The word of --support-deg for the angles that can be thrown.
 constexpr std::string_view kOfTheRig = "rig";
 
+// Returns the number that the whole of `text` is. Throws std::invalid_argument
+// with the flag, the text and the expected form.
 double ReadFlagNumber(const char* flag, std::string_view text,
                       const char* form) {
   const auto value = report::ParseNumber<double>(text);
@@ -39,6 +46,8 @@ double ReadFlagNumber(const char* flag, std::string_view text,
   return *value;
 }
 
+// Returns the value of a word such as "sphere", and nothing where the flag was
+// not given. A word that `parse` does not know is the user's error.
 template <class Parse>
 auto OptionalWord(const char* flag, const std::string& text, Parse parse,
                   const char* words) -> decltype(parse(text)) {
@@ -51,6 +60,7 @@ auto OptionalWord(const char* flag, const std::string& text, Parse parse,
   return parsed;
 }
 
+// An empty text means that the flag was not given: the filter lets all pass.
 std::optional<std::string> Given(const std::string& text) {
   if (text.empty()) return std::nullopt;
   return text;
@@ -59,6 +69,8 @@ std::optional<std::string> Given(const std::string& text) {
 }  // namespace
 
 core::Estimate ParseTheory(const std::string& text) {
+  // The message shows one form that works, since "11.8 +- 0.5" with blanks does
+  // not.
   constexpr const char* kForm = "degrees from 0 to 90, e.g. 11.8 or 11.8+-0.5";
   const std::size_t sign = text.find("+-");
   const double value = ReadFlagNumber(
@@ -83,6 +95,7 @@ core::Estimate ReadTheory(const BoundaryFlags& flags) {
     throw std::invalid_argument(
         fmt::format("--theory-u-deg: {}; expected 0 to 90", u_deg));
   }
+  // Two different u's must not be resolved silently in favour of one.
   if (theory.u > 0.0) {
     throw std::invalid_argument(fmt::format(
         "--theory-u-deg: {} beside --theory-deg {}; give the theory's u once",
@@ -110,11 +123,14 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
   return range;
 }
 
+// Returns nothing where no corner was asked for: the rig takes either.
 std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags) {
   return OptionalWord("--corner", flags.corner, core::ParseCorner,
                       "leading, trailing or flush");
 }
 
+// Check shots are drops from a known height at one angle: no boundary lies
+// among them.
 void RefuseCheckShots(const BoundaryFlags& flags,
                       const report::ReportInput& input) {
   for (const core::Campaign& campaign : input.campaigns) {
@@ -128,6 +144,7 @@ void RefuseCheckShots(const BoundaryFlags& flags,
 }
 
 void PrintLeftOut(const report::Group& group, std::string_view heading) {
+  // Five are enough to see a pattern; a campaign may have hundreds.
   constexpr std::size_t kShown = 5;
   const std::size_t shown = std::min(group.left_out.size(), kShown);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -141,7 +158,11 @@ void PrintLeftOut(const report::Group& group, std::string_view heading) {
   }
 }
 
+// Checks the ranges of the flags. Whether there is exactly one source (--db,
+// --trials, --paper-table1) is checked by SelectTrials().
 pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
+  // Left alone, the u would be dropped and the verdict would look sharper than
+  // the user asked for.
   if (flags.theory_u_deg && flags.theory.empty()) {
     throw std::invalid_argument(
         "--theory-u-deg: there is no --theory-deg that it could be of; a "
@@ -172,6 +193,8 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
     throw std::invalid_argument(fmt::format(
         "--margin-deg: {}; expected more than 0", flags.margin_deg));
   }
+  // A file has no campaign that could declare a theory, so --theory-deg
+  // declares it. Of a store the flag is for information only (MakeInput).
   if (!flags.csv.empty() && !flags.theory.empty()) {
     const core::Estimate theory = ReadTheory(flags);
     out.theory_name = flags.theory_name;
@@ -182,11 +205,14 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
   return out;
 }
 
+// The module checks the ranges of target, repeatability and trials itself.
 analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   analysis::StudyOptions out;
   out.next.target_half_width_rad = flags.target_deg * kDegree;
   out.next.set_u_rad = flags.set_u_deg * kDegree;
   out.next.max_trials = flags.max_trials;
+  // "rig" is resolved in MakeInput(), where the reach is known for each
+  // campaign.
   if (!flags.support.empty() && flags.support != kOfTheRig) {
     const core::Interval support = ParseRange("--support-deg", flags.support);
     if (support.low < 0.0 || support.high > 90.0 * kDegree) {
@@ -200,20 +226,29 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   return out;
 }
 
+// Somebody who looks after every trial and stops when the answer pleases can
+// reach any verdict; therefore each look is on record beside the campaign's
+// plan.
 void KeepLook(const BoundaryFlags& flags, std::string_view command,
               report::ReportInput& input) {
   if (flags.store.empty() || input.trials.empty()) return;
+  // Each campaign that has a trial here gets one look.
   std::set<std::string> names;
   for (const core::Trial& trial : input.trials) names.insert(trial.campaign);
   const std::string trouble = pipeline::KeepLooks(flags.store, names, command);
   if (!trouble.empty()) {
+    // A read-only store must not keep anybody from reading the answer.
     Tell(fmt::format("this look is not on record: {}", trouble));
     return;
   }
+  // The plan is read again, so that a report shows this very look.
   input.plan =
       db::PlanEvents(db::Store::Open(flags.store, db::OpenMode::kRead));
 }
 
+// Selects trials and sets what they are compared with and what can be thrown.
+// `with_evidence` also loads analysis documents and earlier labels, which only
+// `report` shows: they are most of a store's bytes.
 report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   pipeline::SelectionOptions options = MakeSelection(flags);
   options.with_evidence = with_evidence;
@@ -226,9 +261,13 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
       return report::Reach{asked, "as --feasible-deg says"};
     };
   } else if (!flags.rig.empty()) {
+    // Each campaign's reach is found by searching the rig's settings when it is
+    // asked for, at the speed of --speed-mps or of that campaign's band.
     input.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps,
                                           ReadCorner(flags), flags.store);
   }
+  // The prior on the boundary is then confined to the angles that can be
+  // thrown.
   if (flags.support == kOfTheRig) {
     if (!input.reach_of) {
       throw std::invalid_argument(
@@ -242,6 +281,8 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   if (!flags.csv.empty() && flags.body.empty()) input.theories.clear();
   if (flags.csv.empty() && !flags.theory.empty()) {
     const core::Estimate theory = ReadTheory(flags);
+    // The flag does not say which body it is of, so trials of either are
+    // compared with it.
     for (const auto body :
          {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
       input.theories.push_back(
@@ -254,6 +295,8 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   return input;
 }
 
+// --help shows them in this order: the source of trials, filters, theory, what
+// can be thrown, when to stop, the rig.
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
   AddOption(command, "--db", flags.store, "trial store");
   AddOption(
@@ -309,6 +352,8 @@ void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags) {
   AddFlag(command, "--json", flags.json, "one JSON document");
 }
 
+// Two decimals are enough: the angle of a good clip is known to some
+// hundredths.
 std::string DegreesText(double angle_rad) {
   return fmt::format("{:.2f}", angle_rad / kDegree);
 }

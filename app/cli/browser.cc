@@ -11,6 +11,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Returns the folder that only this user can read (XDG_RUNTIME_DIR), else the
+// one for temporary files, where nothing but its mode 600 protects the file.
 std::filesystem::path OwnFolder() {
   const char* const own = std::getenv("XDG_RUNTIME_DIR");
   std::error_code ignored;
@@ -18,6 +20,8 @@ std::filesystem::path OwnFolder() {
   return std::filesystem::temp_directory_path(ignored);
 }
 
+// Writes all of `text`; false where the disk is full or the file is gone. A
+// short write is no error and goes on.
 bool WriteToDescriptor(int descriptor, const std::string& text) {
   std::size_t written = 0;
   while (written < text.size()) {
@@ -37,11 +41,16 @@ bool HasDesktop() {
 }
 
 BrowserPage::BrowserPage(const std::string& address) {
+  // mkostemps() makes the file with mode 600 under a name that was free, so
+  // that nobody can put a file of theirs in its place.
   constexpr int kSuffix = 5;  // ".html", by which a browser is chosen
   std::string name = (OwnFolder() / "touchdown-XXXXXX.html").string();
   const int descriptor = mkostemps(name.data(), kSuffix, O_CLOEXEC);
   if (descriptor < 0) return;
   path_ = name;
+  // The page sends the browser on to the address, and has a link for browsers
+  // that do not follow. "no-referrer" keeps the session's key out of the
+  // headers of later requests.
   const std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><title>touchdown review</title>\n"
       "<meta name=\"referrer\" content=\"no-referrer\">\n"
@@ -50,6 +59,7 @@ BrowserPage::BrowserPage(const std::string& address) {
       address);
   const bool is_written = WriteToDescriptor(descriptor, page);
   close(descriptor);
+  // Half a page would show nothing: the file goes, and path() stays empty.
   if (is_written) return;
   unlink(name.c_str());
   path_.clear();
@@ -60,22 +70,28 @@ BrowserPage::~BrowserPage() {
 }
 
 void BrowserPage::Show() const {
+  // The child only starts another child and ends; it is waited for at once, so
+  // that no zombie remains. The browser belongs to init.
   const pid_t child = fork();
   if (child != 0) {
     if (child > 0) waitpid(child, nullptr, 0);
     return;
   }
-  // A grandchild, so that nobody waits for the browser.
+  // The browser runs in a grandchild, so that nobody waits for it.
   if (fork() != 0) _exit(0);
-  // Its words are not ours, and it ends by its own signals.
+  // What the browser prints must not mix with this program's results.
   const int nowhere = open("/dev/null", O_RDWR);
   if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 ||
       dup2(nowhere, STDERR_FILENO) < 0) {
     _exit(127);
   }
+  // review blocks SIGINT and SIGTERM in this thread, and a started program
+  // would inherit that: nobody could end the browser with them.
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
+  // exec returns only where xdg-open cannot be started. _exit() runs no
+  // destructor of ours: the file must stay for the parent.
   execlp("xdg-open", "xdg-open", path_.c_str(), static_cast<char*>(nullptr));
   _exit(127);
 }

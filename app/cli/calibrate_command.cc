@@ -1,4 +1,6 @@
-// touchdown calibrate lens; scale and ground are in calibrate_references.cc
+// touchdown calibrate lens makes a lens of pictures of a board, in a dated
+// calibration file. `scale` and `ground` are in calibrate_references.cc, the
+// flags and the file that all three share in calibrate_file.cc.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -23,6 +25,7 @@
 namespace touchdown::cli {
 namespace {
 
+// `board` is as typed, "chessboard:9x6:25mm"; `images` are files and folders.
 struct LensFlags {
   CalibrationFileFlags file;
   std::vector<std::string> images;
@@ -30,7 +33,8 @@ struct LensFlags {
   bool json = false;
 };
 
-// Folders stand for the pictures in them.
+// Returns the pictures to look at: each file as it was given, each folder as
+// the pictures in it, by name.
 std::vector<std::filesystem::path> Expanded(
     const std::vector<std::string>& arguments) {
   std::vector<std::filesystem::path> images;
@@ -45,6 +49,9 @@ std::vector<std::filesystem::path> Expanded(
   return images;
 }
 
+// Finds the board in each picture. Throws core::InputError where no picture was
+// given, one cannot be read, or their sizes differ; a picture that shows no
+// whole board is listed in `without` and left out of the fit.
 pipeline::BoardPictures FindInPictures(const LensFlags& flags,
                                        const calib::Board& board) {
   const auto images = Expanded(flags.images);
@@ -54,6 +61,7 @@ pipeline::BoardPictures FindInPictures(const LensFlags& flags,
                     "the board",
                     flags.images.front()));
   }
+  // --sensor-origin takes precedence over what the files say.
   std::optional<calib::SensorCorner> corner;
   if (!flags.file.sensor_origin.empty()) {
     corner = ParseCorner("--sensor-origin", flags.file.sensor_origin);
@@ -65,6 +73,9 @@ pipeline::BoardPictures FindInPictures(const LensFlags& flags,
   return found;
 }
 
+// Returns the touchdown.calibrate.lens/1 document: each number of the lens with
+// its u, how well the views fit, and the calibration file itself. Lengths are
+// px, angles deg.
 nlohmann::ordered_json LensJson(const pipeline::BoardPictures& found,
                                 const calib::LensCalibration& lens,
                                 const calib::Calibration& file) {
@@ -90,11 +101,15 @@ nlohmann::ordered_json LensJson(const pipeline::BoardPictures& found,
   }
   json["without_board"] = found.without;
   json["warnings"] = lens.warnings;
+  // This is the text that was written to --out: a script need not open that
+  // file.
   json["calibration"] =
       nlohmann::ordered_json::parse(calib::CalibrationText(file));
   return json;
 }
 
+// Prints the lens for a person: parameters with u, the fit of each view, the
+// coverage and the warnings.
 void PrintLens(const pipeline::BoardPictures& found,
                const calib::LensCalibration& lens, const calib::Board& board,
                const std::string& out) {
@@ -104,10 +119,12 @@ void PrintLens(const pipeline::BoardPictures& found,
              found.picture.height_px);
   for (int i = 0; i < calib::kLensParameters; ++i) {
     const std::string name = calib::kLensNames[static_cast<std::size_t>(i)];
+    // "cx_px" is shown as "cx ... px"; k1 to k3, p1 and p2 have no unit.
     const bool px = name.ends_with("_px");
     fmt::print("{:<10} {}{}\n", px ? name.substr(0, 2) : name,
                Rounded(lens.Parameter(i)), px ? " px" : "");
   }
+  // The displacement in px tells a person more than the parameters do.
   fmt::print("bends      up to {:.2f} px within the picture\n",
              calib::LargestDisplacement(lens.lens, found.picture.width_px,
                                         found.picture.height_px));
@@ -124,6 +141,7 @@ void PrintLens(const pipeline::BoardPictures& found,
         "deg\n",
         view.name, view.rms_px, view.most_px, view.tilt_rad / core::kDegree);
   }
+  // Pictures that did not count are named, so that they can be taken again.
   for (const std::string& name : found.without) {
     fmt::print("view       {:<20} the board is not seen whole: left out\n",
                name);
@@ -136,6 +154,8 @@ void PrintLens(const pipeline::BoardPictures& found,
   fmt::print("written    {}\n", out);
 }
 
+// Fits the lens and writes the calibration file. Nothing is written where the
+// pictures do not determine a lens (core::InputError with the reason).
 int RunLens(const LensFlags& flags) {
   const calib::Board board = calib::ParseBoard(flags.board);
   const pipeline::BoardPictures found = FindInPictures(flags, board);

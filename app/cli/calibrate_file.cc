@@ -12,6 +12,8 @@
 
 namespace touchdown::cli {
 
+// `add` is false for `lens`: a calibration begins with its lens, and scale and
+// ground are added to that file.
 void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
   AddOption(command, "--out", flags.out,
             "the calibration file to write, e.g. camera.json")
@@ -33,6 +35,7 @@ void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
   }
 }
 
+// A million pixels is far beyond any sensor, and fits an int32.
 calib::SensorCorner ParseCorner(const std::string& flag,
                                 const std::string& text) {
   const auto n = ParseNumbers(flag, text, 2, "X,Y in whole pixels, at least 0");
@@ -45,6 +48,8 @@ calib::SensorCorner ParseCorner(const std::string& flag,
   return {static_cast<std::int32_t>(n[0]), static_cast<std::int32_t>(n[1])};
 }
 
+// `u_point_px` comes from --u-point-px of the same command: its error names
+// that flag and not `flag`.
 calib::MarkedPair ParsePair(const std::string& flag, const std::string& text,
                             double u_point_px) {
   const auto n =
@@ -56,6 +61,8 @@ calib::MarkedPair ParsePair(const std::string& flag, const std::string& text,
   return {{n[0], n[1]}, {n[2], n[3]}, u_point_px};
 }
 
+// The corner decides later which recordings the calibration fits: a part of the
+// sensor is moved into the calibrated picture by it.
 calib::Picture DescribePicture(const CalibrationFileFlags& flags,
                                const StillPicture& picture) {
   calib::Picture out{picture.image.width_px, picture.image.height_px,
@@ -69,6 +76,8 @@ calib::Picture DescribePicture(const CalibrationFileFlags& flags,
 calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
                                     const calib::Picture& picture) {
   calib::Calibration out;
+  // A scale or ground is measured with the lens of the known file: that file
+  // must fit the new picture, else its lens would be wrong there.
   if (!flags.calibration.empty()) {
     const auto known = calib::ReadCalibration(flags.calibration);
     auto fitted = calib::AdaptToPicture(known, picture);

@@ -1,4 +1,6 @@
-// touchdown calibrate scale|ground
+// touchdown calibrate scale|ground: things of known length or direction in one
+// picture become a scale, a ground line, a slope. Each command begins with the
+// file of --calibration, adds its part and writes the whole to --out.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -22,6 +24,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags of both commands as typed. Points are "X1,Y1,X2,Y2" in pixels
+// of the picture as it is seen, lens not undone.
 struct ReferenceFlags {
   CalibrationFileFlags file;
   std::string picture;
@@ -31,12 +35,16 @@ struct ReferenceFlags {
   bool json = false;
 };
 
+// Holds the picture, the calibration that the command adds to, and its lens;
+// without a lens the marked points are taken as they are.
 struct Begun {
   StillPicture still;
   calib::Calibration file;
   std::optional<calib::Lens> lens;
 };
 
+// Reads picture and calibration. Throws core::InputError where either cannot be
+// read, or the calibration is of another picture.
 Begun Begin(const ReferenceFlags& flags) {
   Begun begun{ReadPicture(flags.picture, flags.frame), {}, std::nullopt};
   begun.file =
@@ -45,6 +53,7 @@ Begun Begin(const ReferenceFlags& flags) {
   return begun;
 }
 
+// Writes the calibration to --out, then prints it (--json) or `lines`.
 void WriteReference(const ReferenceFlags& flags, const calib::Calibration& file,
                     const std::vector<std::string>& lines) {
   calib::WriteCalibration(flags.file.out, file);
@@ -56,6 +65,9 @@ void WriteReference(const ReferenceFlags& flags, const calib::Calibration& file,
   fmt::print("written    {}\n", flags.file.out);
 }
 
+// Measures the scale in px/m by a known length, and tests it on a second one
+// where that is given. Returns 0: a failed test is a warning, since only the
+// user knows which of the two lengths is wrong.
 int RunScale(const ReferenceFlags& flags) {
   if (flags.check_points.empty() != flags.check_length.empty()) {
     throw std::invalid_argument(
@@ -79,6 +91,7 @@ int RunScale(const ReferenceFlags& flags) {
     const core::Estimate& error = *scale.check_error_m;
     lines.push_back(fmt::format("check      error {} mm",
                                 Rounded(core::Scaled(error, 1e3))));
+    // The error and 0 are apart by more than the 95 % interval.
     if (std::abs(error.value) > core::kNormal975 * error.u) {
       lines.emplace_back(
           "warning    the check length does not agree: look at the points, the "
@@ -101,6 +114,9 @@ struct FloatPicture {
   double noise_dn = 1.0;
 };
 
+// Returns the levels row by row, and the noise of one pixel in DN: the median
+// absolute difference of neighbours in a row, times 1.4826 to make it a
+// standard deviation, over sqrt(2) because two pixels enter each.
 FloatPicture Floats(const core::Frame& frame) {
   FloatPicture out;
   std::vector<double> differences;
@@ -117,18 +133,23 @@ FloatPicture Floats(const core::Frame& frame) {
   if (!differences.empty()) {
     const auto middle = differences.begin() +
                         static_cast<std::ptrdiff_t>(differences.size() / 2);
+    // The median alone is wanted: a full sort of all pixels would take longer.
     std::nth_element(differences.begin(), middle, differences.end());
-    // At least that of rounding.
+    // Rounding to whole levels alone makes this much noise.
     out.noise_dn = std::max(1.4826 * *middle / std::sqrt(2.0), 0.3);
   }
   return out;
 }
 
+// Returns the edge of the picture with most support as the ground line. Throws
+// core::InputError where there is none within 20 degrees of level. Its ends are
+// in the picture as it is seen, as those are that a person marks.
 calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
   const core::Frame frame = begun.still.image.View();
   const FloatPicture picture = Floats(frame);
   calib::GroundLineOptions options;
   options.lens = begun.lens;
+  // The lines come by falling support; only the best is used.
   options.most_lines = 1;
   const auto lines = calib::FindGroundLines(
       {picture.level.data(), frame.width_px, frame.height_px, picture.noise_dn},
@@ -143,18 +164,22 @@ calib::GroundRecord Detected(const Begun& begun, const std::string& path) {
   const double length =
       std::hypot(line.p2.x_px - line.p1.x_px, line.p2.y_px - line.p1.y_px);
   calib::GroundRecord ground;
+  // The line was fitted in the lens's ideal picture; the file keeps points as
+  // they are seen.
   const auto seen = [&](core::PixelPoint p) {
     return begun.lens ? calib::Distort(*begun.lens, p) : p;
   };
   ground.p1 = seen(line.p1);
   ground.p2 = seen(line.p2);
-  // Of points of which both the height and the direction are at least as
-  // uncertain as the line's (calib::MakeGroundLine).
+  // Two points with this u make a line whose height and direction are at least
+  // as uncertain as those of the line found (calib::MakeGroundLine).
   ground.u_point_px = std::max(std::sqrt(2.0) * line.u_offset_px,
                                length * line.u_angle_rad / std::sqrt(2.0));
   return ground;
 }
 
+// Takes the ground line from a board or from two marked points, whichever is
+// given, else from the picture itself; a plumb line adds the slope. Returns 0.
 int RunGround(const ReferenceFlags& flags) {
   if (!flags.points.empty() && !flags.board.empty()) {
     throw std::invalid_argument(
@@ -163,9 +188,12 @@ int RunGround(const ReferenceFlags& flags) {
   Begun begun = Begin(flags);
   std::vector<std::string> lines;
   calib::GroundRecord ground;
+  // Returns an angle with its u in degrees, as "0.52 +- 0.03".
   const auto degrees = [](const core::Estimate& e) {
     return Rounded(core::Scaled(e, 1.0 / core::kDegree));
   };
+  // The board tells the yaw of the plane and the scale besides the line. Its
+  // pose needs the lens: without it the pose would absorb the distortion.
   if (!flags.board.empty()) {
     if (!begun.lens) {
       throw std::invalid_argument(
@@ -187,6 +215,7 @@ int RunGround(const ReferenceFlags& flags) {
     ground = located->ground;
     calib::ScaleRecord scale;
     scale.px_per_m = located->px_per_m;
+    // The length that the scale rests on is the middle row of the board.
     scale.length_m = board.pitch_m * (board.columns - 1);
     begun.file.scale = scale;
     lines.push_back(
@@ -207,10 +236,12 @@ int RunGround(const ReferenceFlags& flags) {
   } else {
     ground = Detected(begun, flags.picture);
   }
+  // Only marked points can coincide; the direction would be undefined.
   if (ground.p1 == ground.p2) {
     throw std::invalid_argument(fmt::format(
         "--points is '{}', must be two different points", flags.points));
   }
+  // The ground may slope; gravity in the plane frame follows from it.
   if (!flags.plumb.empty()) {
     ground.slope_rad = calib::MeasureSlope(
         {ground.p1, ground.p2, ground.u_point_px},
@@ -220,6 +251,7 @@ int RunGround(const ReferenceFlags& flags) {
                     "right",
                     degrees(*ground.slope_rad)));
   }
+  // The ground line heads the output, whatever it was found from.
   lines.insert(
       lines.begin(),
       fmt::format("ground     ({:.2f}, {:.2f}) to ({:.2f}, {:.2f}) px, "
@@ -231,6 +263,7 @@ int RunGround(const ReferenceFlags& flags) {
   return 0;
 }
 
+// Adds the flags that `scale` and `ground` have in common.
 void AddPictureFlags(CLI::App& command, ReferenceFlags& flags) {
   AddOption(command, "PICTURE", flags.picture,
             "a picture, or a clip of which one frame is looked at")

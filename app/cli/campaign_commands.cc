@@ -1,4 +1,6 @@
-// campaign new|list|show: conventions, fixed before the first trial.
+// touchdown campaign new|plan|list|show keeps the conventions of a campaign,
+// which are fixed before its first trial, and its plan (db/plan.h), which may
+// change with a reason.
 #include <fmt/format.h>
 
 #include <memory>
@@ -24,6 +26,8 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
+// Holds the flags of all four commands, each of which uses some. `entry` holds
+// the conventions as typed (trials/campaign_entry.h).
 struct CampaignFlags {
   std::string db;
   pipeline::CampaignEntry entry;
@@ -34,7 +38,7 @@ struct CampaignFlags {
   std::string why;
 };
 
-// What is not given stays as it is.
+// Returns `plan` with the fields that were typed; the others stay as they are.
 db::Plan UpdatePlan(const CampaignFlags& flags, db::Plan plan) {
   for (const auto field :
        {&db::Plan::design, &db::Plan::stopping_rule, &db::Plan::error_rates}) {
@@ -43,6 +47,8 @@ db::Plan UpdatePlan(const CampaignFlags& flags, db::Plan plan) {
   return plan;
 }
 
+// The plan is kept in words: it is for readers of the report, and nothing in
+// the program acts on it.
 void AddPlanFlags(CLI::App& command, CampaignFlags& flags) {
   AddOption(command, "--design", flags.plan.design,
             "how angles are chosen, in words: '2 deg steps, ascending'");
@@ -53,6 +59,9 @@ void AddPlanFlags(CLI::App& command, CampaignFlags& flags) {
   AddOption(command, "--by", flags.by, "who declares it");
 }
 
+// Declares a campaign, in a new store where there is none; with --change,
+// changes one that has no trials yet (the store refuses it otherwise). A plan
+// that was given besides is recorded as the first.
 int NewCampaign(const CampaignFlags& flags) {
   const core::Campaign campaign = pipeline::MakeCampaign(flags.entry);
   // A store is made only for what has been found right.
@@ -65,6 +74,8 @@ int NewCampaign(const CampaignFlags& flags) {
     store.AddCampaign(campaign);
   }
   const db::Plan plan = UpdatePlan(flags, {});
+  // The program stands in for a name that was not given. A change of
+  // conventions always has the same reason, so --why is not asked for.
   if (plan != db::Plan{}) {
     db::SetPlan(store, campaign.name, plan,
                 flags.by.empty() ? "touchdown" : flags.by,
@@ -74,11 +85,14 @@ int NewCampaign(const CampaignFlags& flags) {
   return 0;
 }
 
+// Records a further plan of the campaign. Unlike conventions, a plan may change
+// after the first trial; then the store wants a reason (--why).
 int ChangePlan(const CampaignFlags& flags) {
   if (flags.by.empty()) {
     throw std::invalid_argument("--by is missing, must be who declares it");
   }
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  // The events come oldest first, so the last plan among them is in force.
   db::Plan plan;
   for (const db::PlanEvent& event : db::PlanEvents(store, flags.entry.name)) {
     if (event.kind == db::PlanEventKind::kPlan) plan = event.plan;
@@ -93,6 +107,8 @@ int ChangePlan(const CampaignFlags& flags) {
   return 0;
 }
 
+// Prints a table of all campaigns, or a touchdown.campaign/1 line for each. The
+// table has degrees and millimetres, JSON has SI units.
 int ListCampaigns(const CampaignFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   std::vector<std::vector<std::string>> rows = {
@@ -117,7 +133,9 @@ int ListCampaigns(const CampaignFlags& flags) {
   return 0;
 }
 
-// The one that was named, or the only one.
+// Returns the campaign that was named; without a name the only one of the
+// store. Throws core::StoreError where the name is unknown, and
+// std::invalid_argument listing the names where there is a choice.
 core::Campaign CampaignToShow(const db::Store& store, const std::string& name) {
   if (!name.empty()) return db::RequireCampaign(store, name);
   const auto campaigns = store.Campaigns();
@@ -132,6 +150,7 @@ core::Campaign CampaignToShow(const db::Store& store, const std::string& name) {
                     : "one of: " + names));
 }
 
+// Prints one campaign with the number of its trials.
 int ShowCampaign(const CampaignFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   const core::Campaign campaign = CampaignToShow(store, flags.entry.name);
@@ -141,6 +160,7 @@ int ShowCampaign(const CampaignFlags& flags) {
   }
   db::TrialFilter filter;
   filter.campaign = campaign.name;
+  // The trials are only counted: their documents stay on the disk.
   filter.with_documents = false;
   fmt::print("{}trials: {}\n", CampaignText(campaign),
              store.Trials(filter).size());
@@ -154,6 +174,7 @@ void AddCampaign(CLI::App& app, Action& action) {
       AddCommand(app, "campaign",
                  "trials of one body on one surface, with its conventions");
   RequireSubcommand(*command);
+  // One set of flags serves all four: only one of them is called.
   auto flags = std::make_shared<CampaignFlags>();
   CLI::App* make =
       AddCommand(*command, "new", "declare a campaign before its first trial");

@@ -1,3 +1,6 @@
+// CSV by RFC 4180: quoted cells may hold commas, line feeds and "" for a quote;
+// lines end with LF or CRLF. Lines that are blank are skipped and still
+// counted, so that messages name the line that an editor shows.
 #include "app/cli/case_file.h"
 
 #include <fmt/format.h>
@@ -24,6 +27,8 @@ namespace {
 
 using core::InputError;
 
+// Returns `text` without blanks, tabs and CR at either end. Spreadsheets and
+// people add them; they never mean anything in a case file.
 std::string_view Trim(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r";
   const std::size_t first = text.find_first_not_of(kBlank);
@@ -31,11 +36,14 @@ std::string_view Trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+// Holds one row as cells of text; `line` is the line of the file it begins in.
 struct RawRow {
   std::size_t line = 1;
   std::vector<std::string> cells;
 };
 
+// Splits the text of a file into rows. Throws core::InputError where a quote is
+// left open, naming the line where that row begins.
 std::vector<RawRow> ParseRows(const std::string& file,
                               const std::string& text) {
   std::vector<RawRow> rows;
@@ -48,10 +56,13 @@ std::vector<RawRow> ParseRows(const std::string& file,
     const bool blank = row.cells.size() == 1 && Trim(row.cells[0]).empty();
     if (!blank) rows.push_back(std::move(row));
     row = RawRow{};
+    // `line` is counted up after this call, by the line feed that ended the
+    // row.
     row.line = line + 1;
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    // A quoted line feed belongs to the cell, and is a line of the file too.
     if (c == '\n' && quoted) ++line;
     if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
       cell += '"';
@@ -72,10 +83,13 @@ std::vector<RawRow> ParseRows(const std::string& file,
         "{}: line {}: a quoted cell is never closed; expected a closing \"",
         file, row.line));
   }
+  // The last line may lack its line feed.
   if (!cell.empty() || !row.cells.empty()) end_row();
   return rows;
 }
 
+// Returns the bytes of a file without a byte order mark, which spreadsheets
+// write. Throws core::InputError with the system's reason.
 std::string ReadAll(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
@@ -101,6 +115,8 @@ CaseRow::CaseRow(std::shared_ptr<const Header> header, std::size_t line,
                  std::vector<std::string> cells)
     : header_(std::move(header)), line_(line), cells_(std::move(cells)) {}
 
+// Returns the place of the column in the row; nothing where the header lacks
+// it.
 std::optional<std::size_t> CaseRow::Find(std::string_view column) const {
   const auto& columns = header_->columns;
   const auto it = std::find(columns.begin(), columns.end(), column);
@@ -108,6 +124,9 @@ std::optional<std::size_t> CaseRow::Find(std::string_view column) const {
   return static_cast<std::size_t>(it - columns.begin());
 }
 
+// Returns the place of the cell that a number is taken from. A hexadecimal cell
+// wins, in a column named after the quantity with its unit ("alpha_rad_hex") or
+// without ("alpha_hex"); an empty cell counts as absent.
 std::optional<std::size_t> CaseRow::FindNumber(std::string_view column) const {
   const auto filled = [&](const std::string& name) {
     const auto index = Find(name);
@@ -133,6 +152,7 @@ const std::string& CaseRow::Text(std::string_view column) const {
 }
 
 double CaseRow::Parse(std::size_t index) const {
+  // strtod reads hexadecimal floats, too; it must use up the whole cell.
   const std::string text(Trim(cells_[index]));
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -165,6 +185,7 @@ int CaseRow::Choice(std::string_view column,
   Refuse(column, "one of " + list);
 }
 
+// The cell as it stands is quoted; it is empty where the column is missing.
 void CaseRow::Refuse(std::string_view column, std::string_view expected) const {
   const auto index = Find(column);
   throw InputError(fmt::format(
@@ -186,6 +207,8 @@ bool CaseTable::HasColumn(std::string_view column) const {
          header->columns.end();
 }
 
+// All checks of form happen here, before the first case is answered: a file
+// with a wrong last row gives an error and not half an answer.
 CaseTable ReadCases(const std::string& path,
                     const std::vector<std::string>& columns) {
   auto raw = ParseRows(path, ReadAll(path));
@@ -193,6 +216,7 @@ CaseTable ReadCases(const std::string& path,
     throw InputError(
         fmt::format("{}: is empty; expected a header and rows of cases", path));
   }
+  // The rows share the header, which their messages need.
   auto header = std::make_shared<CaseRow::Header>();
   header->file = path;
   for (const std::string& name : raw[0].cells) {
@@ -222,6 +246,7 @@ CaseTable ReadCases(const std::string& path,
   return table;
 }
 
+// 17 significant digits give back the same double.
 std::string Cell(double value) {
   return std::isnan(value) ? std::string() : fmt::format("{:.17g}", value);
 }
@@ -239,6 +264,7 @@ CaseWriter::CaseWriter(const std::vector<std::string>& columns)
   Add(columns);
 }
 
+// A wrong number of cells is a bug of the caller, never of the file.
 void CaseWriter::Add(const std::vector<std::string>& cells) {
   if (cells.size() != n_columns_) {
     throw std::logic_error(fmt::format("row has {} cells, table has {} columns",
@@ -251,6 +277,8 @@ void CaseWriter::Add(const std::vector<std::string>& cells) {
   csv_ += '\n';
 }
 
+// A short write to stdout is found here, while main's own check covers what was
+// printed by others.
 void WriteResult(std::string_view text, const std::string& path) {
   if (path.empty()) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||

@@ -1,3 +1,7 @@
+// Completion scripts for three shells, written when the program is built: the
+// scripts hold the whole tree of commands and never start the program. In them
+// a command is a path with slashes, "touchdown/rig/plan", which is one word for
+// every shell.
 #include "app/cli/completions.h"
 
 #include <fmt/format.h>
@@ -7,7 +11,8 @@
 namespace touchdown::cli {
 namespace {
 
-// In single quotes, for any of the three shells.
+// Returns `text` in single quotes, which bash, zsh and fish read alike. A line
+// feed would end the entry of a list: it becomes a blank.
 std::string Quoted(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
@@ -22,7 +27,8 @@ std::string Quoted(std::string_view text) {
   return out + "'";
 }
 
-// A colon ends the name before a description of zsh's.
+// zsh ends the name of a completion at the first colon, where its description
+// begins: colons of a name are escaped.
 std::string WithoutColons(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -32,11 +38,14 @@ std::string WithoutColons(std::string_view name) {
   return out;
 }
 
-// Every word that may stand behind a command, with what it is.
+// Holds a word that may stand behind a command, and the text that zsh shows
+// with it.
 struct Completion {
   std::string name;
   std::string description;
 };
+// Lists the subcommands first, then the options with their short names.
+// Positional arguments are left out: the shell completes file names there.
 std::vector<Completion> ListCompletions(const CommandText& command,
                                         const std::vector<CommandText>& tree) {
   std::vector<Completion> words;
@@ -52,7 +61,9 @@ std::vector<Completion> ListCompletions(const CommandText& command,
   return words;
 }
 
-// Finds in `before`, the words before the cursor, the command that they name.
+// This shell code is the same in bash and zsh. From the words before the cursor
+// (`before`) it finds the path of the command, in `at`. Words that lead to no
+// command, such as options and their values, are passed over.
 constexpr std::string_view kFindPath = R"(  local at=touchdown word
   for word in "${before[@]:1}"; do
     case " $commands " in
@@ -61,6 +72,7 @@ constexpr std::string_view kFindPath = R"(  local at=touchdown word
   done
 )";
 
+// Turns "touchdown rig plan" into "touchdown/rig/plan".
 std::string Slashed(std::string path) {
   for (char& c : path) {
     if (c == ' ') c = '/';
@@ -68,6 +80,8 @@ std::string Slashed(std::string path) {
   return path;
 }
 
+// Returns every path with slashes, separated by blanks, for the lookup of
+// kFindPath.
 std::string AllPaths(const std::vector<CommandText>& tree) {
   std::string all;
   for (const CommandText& command : tree) all += " " + Slashed(command.path);
@@ -76,6 +90,8 @@ std::string AllPaths(const std::vector<CommandText>& tree) {
 
 }  // namespace
 
+// One `case` branch for each command sets the words that may follow. "-o
+// default" falls back to file names where none of them fits.
 std::string BashCompletion(const std::vector<CommandText>& tree) {
   std::string out = fmt::format(
       "# bash completion of touchdown\n"
@@ -100,6 +116,8 @@ std::string BashCompletion(const std::vector<CommandText>& tree) {
   return out;
 }
 
+// As in bash, but each word bears its description; file names are offered as
+// well unless the word begins with a dash.
 std::string ZshCompletion(const std::vector<CommandText>& tree) {
   std::string out = fmt::format(
       "#compdef touchdown\n"
@@ -125,6 +143,8 @@ std::string ZshCompletion(const std::vector<CommandText>& tree) {
   return out;
 }
 
+// fish wants one line for each completion, with a condition: __touchdown_at
+// tells whether the words so far name exactly that command.
 std::string FishCompletion(const std::vector<CommandText>& tree) {
   std::string out = fmt::format(
       "# fish completion of touchdown\n"
@@ -148,6 +168,7 @@ std::string FishCompletion(const std::vector<CommandText>& tree) {
       if (!option.name.empty()) out += " -l " + option.name.substr(2);
       if (!option.short_name.empty())
         out += " -s " + option.short_name.substr(1);
+      // -r: the option needs an argument, for which fish offers files.
       if (option.takes_value) out += " -r";
       out += fmt::format(" -d {}\n", Quoted(option.description));
     }

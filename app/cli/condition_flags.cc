@@ -12,6 +12,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Returns the expected form of --condition with all its keys, for help and
+// messages.
 std::string Form() {
   std::string form = "KEY=VALUE with one of the keys";
   std::string_view before = " ";
@@ -24,6 +26,8 @@ std::string Form() {
 
 }  // namespace
 
+// Each use takes one value. Without OneAtATime() the flag would swallow the
+// positional arguments behind it.
 void AddConditionFlag(CLI::App& command, ConditionFlags& flags) {
   AddOption(command, "--condition", flags,
             "of the shot, " + Form() + "; may be given several times")
@@ -32,6 +36,7 @@ void AddConditionFlag(CLI::App& command, ConditionFlags& flags) {
 }
 
 void ApplyCondition(const std::string& text, core::Conditions& conditions) {
+  // Only the first '=' is a separator: a value may hold others.
   const std::size_t sign = text.find('=');
   const std::string key = text.substr(0, sign);
   try {
@@ -40,6 +45,7 @@ void ApplyCondition(const std::string& text, core::Conditions& conditions) {
       return;
     }
   } catch (const pipeline::FieldError& mistake) {
+    // The error names the key; here it is said that it came with --condition.
     throw std::invalid_argument(
         fmt::format("--condition {} {}", mistake.field(), mistake.problem()));
   }
@@ -50,6 +56,8 @@ void ApplyCondition(const std::string& text, core::Conditions& conditions) {
 void ApplyConditions(const ConditionFlags& flags,
                      std::optional<core::Conditions>& conditions) {
   if (flags.empty()) return;
+  // "None were stated" and "nothing is known" differ in the store, so the
+  // conditions come into being only where one is given.
   if (!conditions) conditions.emplace();
   for (const std::string& flag : flags) ApplyCondition(flag, *conditions);
 }
@@ -58,6 +66,7 @@ std::optional<core::Conditions> ReadConditions(
     const ConditionFlags& flags, const std::filesystem::path& db) {
   std::optional<core::Conditions> conditions;
   ApplyConditions(flags, conditions);
+  // Conditions without names (temperature, a note) need no store to be there.
   if (conditions && db::NameEntries(*conditions)) {
     conditions =
         db::Resolved(db::Store::Open(db, db::OpenMode::kRead), *conditions);

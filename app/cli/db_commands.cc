@@ -1,4 +1,6 @@
-// db check|seal|backup|merge|migrate|columns|relink: care of the store.
+// touchdown db check|seal|backup|columns|pictures|merge|relink|migrate takes
+// care of the store. The work is done in db/maintenance.h and app/trials; here
+// its reports become lines. `seal` is in seal_command.cc.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -23,6 +25,7 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags of all subcommands as typed; each uses some.
 struct DbFlags {
   std::string db;
   std::string to;
@@ -32,12 +35,19 @@ struct DbFlags {
   std::string folder;
 };
 
+// Returns "1 problem", "2 problems". `word` takes a plain s.
 std::string Plural(std::size_t n, std::string_view word) {
   return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
 }
 
+// Checks the store and, unless --no-clips, every recording that it knows.
+// Everything found is printed first. Then damage of the store, or a recording
+// whose bytes changed, is a core::StoreError (exit status 4); a recording that
+// is only not where it was is no error.
 int Check(const DbFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
+  // db opens no recordings itself. A recording that cannot be read counts as
+  // missing, which is told below.
   db::DigestOf digest;
   if (!flags.no_clips) {
     digest =
@@ -70,12 +80,16 @@ int Check(const DbFlags& flags) {
       report.clips_verified, report.clips_changed.size(),
       report.clips_missing.size(), report.clips_without_digest,
       flags.no_clips ? "; not looked at (--no-clips)" : "");
+  // A seal finds what the store's own chain cannot: rows that were altered and
+  // given new digests. Damage that was found is printed already, so it is not
+  // lost where this throws.
   if (!flags.against.empty()) CheckSeal(store, flags.against);
   if (!report.problems.empty()) {
     throw core::StoreError(
         fmt::format("{}: {}; go back to a backup, or export what can be read",
                     flags.db, Plural(report.problems.size(), "problem")));
   }
+  // The store itself is sound even where a recording changed, which follows.
   fmt::print("the store is sound\n");
   if (!report.clips_changed.empty()) {
     throw core::StoreError(fmt::format(
@@ -86,14 +100,19 @@ int Check(const DbFlags& flags) {
   return 0;
 }
 
+// Copies the store to TO, which must not exist, and prints its name.
 int Backup(const DbFlags& flags) {
   db::Backup(db::Store::Open(flags.db, db::OpenMode::kRead), flags.to);
   fmt::print("{}\n", flags.to);
   return 0;
 }
 
+// Adds the other stores one after the other, each in one transaction, and
+// prints what came of each. Conflicts are told and are no error: nothing of
+// either side is dropped.
 int Merge(const DbFlags& flags) {
-  // What cannot be read makes no new store.
+  // Each is opened once before --db is made: a file that cannot be read must
+  // not leave a new, empty store behind.
   for (const auto& file : flags.from) {
     db::Store::Open(file, db::OpenMode::kRead);
   }
@@ -116,6 +135,8 @@ int Merge(const DbFlags& flags) {
   return 0;
 }
 
+// Prints the dictionary of the views (`db columns`). It is the same for every
+// store, so none is opened.
 int Columns() {
   std::vector<std::vector<std::string>> rows = {
       {"view", "column", "type", "unit", "meaning"}};
@@ -129,12 +150,15 @@ int Columns() {
   return 0;
 }
 
+// Draws the missing pictures of contacts beside the store. A recording that is
+// gone is counted and is no error: the picture is for people only.
 int Pictures(const DbFlags& flags) {
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
   const auto trials = store.Trials();
   const auto there = pipeline::KeptPictures(flags.db, trials);
   std::size_t drawn = 0;
   for (const core::Trial& trial : trials) {
+    // A picture that is there is kept, even if the trial was revised since.
     if (there.contains(trial.id)) continue;
     drawn += pipeline::KeepPicture(flags.db, trial) ? 1 : 0;
   }
@@ -145,6 +169,8 @@ int Pictures(const DbFlags& flags) {
   return 0;
 }
 
+// Finds moved recordings below FOLDER and writes where they are into the store.
+// Returns 0 whether or not all were found.
 int Relink(const DbFlags& flags) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   const pipeline::Relinked relinked = pipeline::Relink(store, flags.folder);
@@ -161,6 +187,8 @@ int Relink(const DbFlags& flags) {
   return 0;
 }
 
+// Brings the store to this program's version; a copy of it as it was stays
+// beside it.
 int Migrate(const DbFlags& flags) {
   const db::Migration migration = db::Migrate(flags.db);
   if (migration.from_version == migration.to_version) {
@@ -176,6 +204,8 @@ int Migrate(const DbFlags& flags) {
 
 }  // namespace
 
+// `check` and `seal` guard against alteration, `backup` against loss; `merge`,
+// `relink` and `migrate` change the store, the others read it.
 void AddDb(CLI::App& app, Action& action) {
   CLI::App* command = AddCommand(app, "db", "care of the trial store");
   RequireSubcommand(*command);

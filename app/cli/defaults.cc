@@ -1,4 +1,6 @@
-// toml++ stays in this file.
+// Reads and writes touchdown.toml, and adds what it says to the command line
+// before CLI11 parses it. So a default behaves in every respect as if the user
+// had typed it. toml++ stays in this file.
 #include "app/cli/defaults.h"
 
 #include <fmt/core.h>
@@ -18,12 +20,14 @@
 namespace touchdown::cli {
 namespace {
 
+// Returns the variable of the environment, "" where it is not set; an empty
+// value counts as not set.
 std::string Variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
-// The option `name` or `name=value` is in the line.
+// Returns whether the line has the option, as "--db lab.db" or "--db=lab.db".
 bool Has(const std::vector<std::string>& arguments, const std::string& name) {
   return std::any_of(
       arguments.begin(), arguments.end(), [&](const std::string& argument) {
@@ -31,8 +35,9 @@ bool Has(const std::vector<std::string>& arguments, const std::string& name) {
       });
 }
 
-// The command that the line calls: the last of the words at its beginning that
-// are names of commands.
+// Returns the command that the line calls: each word at its beginning that
+// names a subcommand leads one step down. CLI11 has not parsed yet, so options
+// before the command's name end the search there.
 const CLI::App* CalledCommand(const std::vector<std::string>& arguments,
                               const CLI::App& app) {
   const CLI::App* at = &app;
@@ -50,11 +55,14 @@ const CLI::App* CalledCommand(const std::vector<std::string>& arguments,
 Defaults ReadDefaults(const std::filesystem::path& folder) {
   Defaults out;
   const std::filesystem::path path = folder / kDefaultsFile;
+  // No file is the usual case and no error.
   if (const auto text = report::ReadTextFile(path)) {
     const std::string name = path.string();
     try {
       const toml::table table = toml::parse(*text, name);
       for (const auto& [key, node] : table) {
+        // A key that is not known is refused: a misspelt "campain" would
+        // otherwise send trials into no campaign without a word.
         std::string* to = key == "db"         ? &out.store
                           : key == "campaign" ? &out.campaign
                                               : nullptr;
@@ -77,6 +85,8 @@ Defaults ReadDefaults(const std::filesystem::path& folder) {
     }
   }
   const std::string store = Variable(kStoreVariable);
+  // A store of the environment drops the file's campaign, too: that campaign is
+  // one of the file's store.
   if (!store.empty()) out = {store, ""};
   const std::string campaign = Variable(kCampaignVariable);
   if (!campaign.empty()) out.campaign = campaign;
@@ -86,6 +96,7 @@ Defaults ReadDefaults(const std::filesystem::path& folder) {
 void WriteDefaults(const Defaults& defaults,
                    const std::filesystem::path& folder) {
   toml::table table;
+  // toml++ quotes the values, whatever characters a name has.
   table.insert("db", defaults.store);
   if (!defaults.campaign.empty()) table.insert("campaign", defaults.campaign);
   std::ostringstream text;
@@ -96,15 +107,21 @@ void WriteDefaults(const Defaults& defaults,
 std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
                                       const CLI::App& app,
                                       const Defaults& defaults) {
+  // `analyze` may be tried out on any clip: a default store would fill with
+  // trials that nobody wanted to log.
   if (defaults.store.empty() || arguments.empty() ||
       arguments.front() == "analyze") {
     return arguments;
   }
+  // With one of these the line names its own source of trials, or only prints
+  // something.
   for (const char* own : {"--db", "--trials", "--paper-table1", "--help", "-h",
                           "--details-example", "--columns"}) {
     if (Has(arguments, own)) return arguments;
   }
   const CLI::App* command = CalledCommand(arguments, app);
+  // Adds the option to the line where the command knows it and the user has not
+  // given it; true where it was added.
   const auto add = [&](const char* option, const std::string& value) {
     if (value.empty() || Has(arguments, option) ||
         command->get_option_no_throw(option) == nullptr) {
@@ -113,6 +130,7 @@ std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
     arguments.push_back(fmt::format("{}={}", option, value));
     return true;
   };
+  // A campaign is a name in one store: it is added only together with it.
   if (add("--db", defaults.store)) add("--campaign", defaults.campaign);
   return arguments;
 }

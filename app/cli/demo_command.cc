@@ -1,3 +1,5 @@
+// touchdown demo: renders the clips of Table 1, analyses and logs them, writes
+// the report, and prints each answer beside the truth it was rendered from.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,17 +18,22 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed. The same seed gives the same clips.
 struct DemoFlags {
   std::string out = "touchdown-demo";
   std::uint64_t seed = 1;
   double limit_s = pipeline::kUsualLimit_s;
 };
 
+// Returns one of the paper's two words, or a third: "slide" is every state that
+// is decided not to be a bounce.
 std::string TwoWords(core::MotionState state) {
   if (state == core::MotionState::kUndecided) return "undecided";
   return core::IsNotBounce(state) ? "slide" : "bounce";
 }
 
+// Runs the whole chain and prints a table with a row for each clip. Returns 0
+// even where an answer is wrong: the table marks that row.
 int RunDemo(const DemoFlags& flags) {
   pipeline::DemoOptions options;
   options.folder = flags.out;
@@ -46,6 +53,8 @@ int RunDemo(const DemoFlags& flags) {
   for (const pipeline::DemoRow& row : demo.rows) {
     std::string measured = "absent";
     std::string error;
+    // A face angle has a sign; the contact angle of a face campaign is its
+    // magnitude.
     if (row.angle_rad) {
       const double value = std::abs(row.angle_rad->value) / core::kDegree;
       measured = fmt::format("{:.3f} +- {:.3f}", value,
@@ -58,6 +67,7 @@ int RunDemo(const DemoFlags& flags) {
                TwoWords(row.true_state), TwoWords(row.state),
                row.right() ? "" : "  WRONG");
   }
+  // The paths are absolute, so that they can be opened from any folder.
   fmt::print(
       "\n{} of {} right as bounce or not; RMSE of the contact angle {:.4f} deg "
       "over {} clips\nreport     {}\nstore      {}\n",

@@ -1,5 +1,5 @@
-// touchdown describe: manual pages and completions, written when the program is
-// built. A tool of the build; no --help shows it.
+// touchdown describe writes manual pages and completions when the program is
+// built. It is a tool of the build, and no --help shows it.
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,12 +14,14 @@
 namespace touchdown::cli {
 namespace {
 
+// Writes a file that appears whole or not at all. Throws core::OutputError.
 void Write(const std::filesystem::path& path, const std::string& text) {
   core::OutputFile file(path);
   file.Write(text);
   file.Commit();
 }
 
+// Writes man1/*.1 and the three completion scripts into `out`. Returns 0.
 int WriteDescriptions(const CLI::App& app, const std::filesystem::path& out) {
   const auto tree = DescribeCommands(app);
   std::filesystem::create_directories(out / "man1");
@@ -34,6 +36,8 @@ int WriteDescriptions(const CLI::App& app, const std::filesystem::path& out) {
 
 }  // namespace
 
+// The action needs the whole tree: main adds this command behind all others,
+// since `describe` is none of their names.
 void AddDescribe(CLI::App& app, Action& action) {
   auto out = std::make_shared<std::string>();
   CLI::App* command =

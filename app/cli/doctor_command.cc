@@ -1,4 +1,5 @@
-// touchdown doctor: what stands in the way of a measurement, before it does.
+// touchdown doctor finds what would stand in the way of a measurement, before
+// it does.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,20 +16,25 @@
 namespace touchdown::cli {
 namespace {
 
-// Something that was asked for will not work: as of an input that cannot be
-// read.
+// This is the exit status where something that was asked for will not work. It
+// is that of an input that cannot be read.
 constexpr int kTroubleFound = 3;
 
+// `doctor` names what is to be looked at (doctor_flags.h).
 struct DoctorCommandFlags {
   DoctorFlags doctor;
   bool json = false;
 };
 
+// Prints every finding, as text or as touchdown.doctor/1. Returns 0, or
+// kTroubleFound where at least one finding is trouble.
 int RunDoctor(const DoctorCommandFlags& flags) {
   const auto findings = pipeline::Examine(ToOptions(flags.doctor));
   if (flags.json) {
     fmt::print("{}\n", pipeline::ToJson(findings));
   } else {
+    // Names of files and devices stand in the text: it is made printable line
+    // by line, since Printable() would escape the line feeds too.
     std::istringstream lines(pipeline::ToText(findings));
     for (std::string line; std::getline(lines, line);) {
       fmt::print("{}\n", Printable(line));
@@ -57,6 +63,7 @@ pipeline::DoctorOptions ToOptions(const DoctorFlags& flags) {
   options.store = flags.store;
   options.calibration = flags.calibration;
   options.recordings = flags.recordings;
+  // The module takes no clock, so that its findings can be tested.
   options.today = pipeline::Today();
   options.now = std::chrono::system_clock::now();
   return options;

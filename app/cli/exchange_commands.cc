@@ -1,4 +1,7 @@
-// export, import: trials to and from files.
+// touchdown export, import: trials to and from files.
+//   csv    a flat view of the revisions in force, for spreadsheets
+//   jsonl  everything, revision by revision; an import gives the same store
+//   tidy   export only: a folder with one CSV for each view of the store
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,8 +39,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// These are the forms of a file of trials that are listed above.
 enum class Format { kCsv, kJsonLines, kTidy };
 
+// Returns the format that --format names or, without it, the file's extension.
+// `tidy` is a folder and follows from no name. Throws std::invalid_argument
+// where neither says it.
 Format ChooseFormat(const std::string& flag, const std::string& file) {
   const std::string kind =
       !flag.empty() ? flag : fs::path(file).extension().string();
@@ -56,6 +63,8 @@ Format ChooseFormat(const std::string& flag, const std::string& file) {
 
 // --- export ------------------------------------------------------------------
 
+// Holds the flags of `export` as typed; an empty `out` is stdout, an empty
+// `campaign` means all.
 struct ExportFlags {
   std::string db;
   std::string out;
@@ -63,11 +72,15 @@ struct ExportFlags {
   std::string campaign;
 };
 
+// Writes the trials as CSV or JSON lines. The JSON lines stand in the order
+// that an import needs: what others refer to comes first (register, campaigns,
+// plans, then the revisions of each trial).
 void WriteExport(std::ostream& out, const db::Store& store,
                  const ExportFlags& flags, Format format) {
   if (format == Format::kCsv) {
     db::TrialFilter filter;
     if (!flags.campaign.empty()) filter.campaign = flags.campaign;
+    // The documents are most of a store's bytes, and no column shows them.
     filter.with_documents = false;
     report::WriteTrialsCsv(out, store.Trials(filter));
     return;
@@ -84,6 +97,7 @@ void WriteExport(std::ostream& out, const db::Store& store,
   for (const auto& event : db::PlanEvents(store, flags.campaign)) {
     out << report::PlanEventJson(event) << '\n';
   }
+  // Trials come one at a time: memory does not grow with the store.
   store.ForEachHistory([&](const std::vector<db::Revision>& history) {
     if (!flags.campaign.empty() &&
         history.front().trial.campaign != flags.campaign) {
@@ -95,12 +109,14 @@ void WriteExport(std::ostream& out, const db::Store& store,
   });
 }
 
-// A stream into an output file.
+// Lets the exporters, which write to a std::ostream, write to a
+// core::OutputFile, so that an export appears whole or not at all.
 class FileBuffer : public std::streambuf {
  public:
   explicit FileBuffer(core::OutputFile& file) : file_(file) {}
 
  private:
+  // Takes single characters; most of the text comes through xsputn().
   int overflow(int c) override {
     if (c == EOF) return 0;
     const char byte = static_cast<char>(c);
@@ -115,6 +131,8 @@ class FileBuffer : public std::streambuf {
   core::OutputFile& file_;
 };
 
+// Runs `export`. Returns 0; throws std::invalid_argument for flags,
+// core::StoreError where store or campaign is not there, core::OutputError.
 int Export(const ExportFlags& flags) {
   const Format format = ChooseFormat(flags.format, flags.out);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
@@ -127,6 +145,7 @@ int Export(const ExportFlags& flags) {
     return 0;
   }
   if (flags.out.empty()) {
+    // Only here can a reader see half an export: a pipe has no temporary name.
     WriteExport(std::cout, store, flags, format);
     std::cout.flush();
     if (!std::cout) {
@@ -137,9 +156,11 @@ int Export(const ExportFlags& flags) {
   core::OutputFile file(flags.out);
   FileBuffer buffer(file);
   std::ostream out(&buffer);
-  // What the file throws is thrown on.
+  // Without this the stream would swallow what the file throws.
   out.exceptions(std::ios::badbit);
   WriteExport(out, store, flags, format);
+  // CSV types nothing: its schema says what each column holds. JSON lines name
+  // their schema themselves.
   file.Commit();
   if (format == Format::kCsv) WriteTrialsSchema(flags.out);
   return 0;
@@ -147,6 +168,8 @@ int Export(const ExportFlags& flags) {
 
 // --- import ------------------------------------------------------------------
 
+// Holds the flags of `import` as typed. `file` is also what errors call the
+// source.
 struct ImportFlags {
   std::string db;
   std::string file;
@@ -158,6 +181,7 @@ struct ImportFlags {
   double paper_u_deg = 0.5;
 };
 
+// Prints the columns that a CSV of trials may have (`import --columns`).
 int PrintTrialColumns() {
   std::vector<std::vector<std::string>> rows = {{"column", "meaning"}};
   for (const auto& column : report::TrialCsvColumns()) {
@@ -167,7 +191,7 @@ int PrintTrialColumns() {
   return 0;
 }
 
-// What an import has done, to be printed at its end.
+// Holds what an import has done; it is printed at the end.
 struct Imported {
   std::string summary;
   std::vector<std::string> errors;     // of rows that were passed over
@@ -175,10 +199,15 @@ struct Imported {
   std::size_t count = 0;
 };
 
+// Imports the rows of a CSV as new trials of the store at `db`. Without
+// --partial all rows or none; with it each right row on its own, and the errors
+// of the others are returned.
 Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
                    std::istream& in) {
   auto read = report::ReadTrialsCsv(in, flags.file, flags.by);
   auto& errors = read.errors;
+  // All errors are reported at once, so that a file can be mended in one go:
+  // the first in the exception, which main prints last, the others before it.
   if (!flags.partial && !errors.empty()) {
     for (std::size_t i = 1; i < errors.size(); ++i) {
       Tell(errors[i]);
@@ -189,11 +218,15 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
         Printable(errors.front()), errors.size(),
         errors.size() == 1 ? "" : "s"));
   }
+  // The rows that are left have the right form; from here on they are held
+  // against what the store has.
   auto store = db::Store::Open(db, db::OpenMode::kCreate);
   std::vector<core::Trial> good;
   std::vector<std::size_t> rows;
   for (auto& [row, trial] : read.trials) {
     std::string error;
+    // A row with an id that the store has would become a revision of that
+    // trial, which is not what an import of trials is for.
     if (!trial.id.empty()) {
       try {
         if (store.Find(trial.id)) {
@@ -205,6 +238,8 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
         error = invalid.what();
       }
     }
+    // The campaign is looked up here and not when the trial is logged, so that
+    // the message can name row and column.
     const bool no_campaign =
         !trial.campaign.empty() && !store.FindCampaign(trial.campaign);
     if (no_campaign) {
@@ -223,6 +258,8 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
     rows.push_back(row);
   }
   Imported done;
+  // LogTrials() takes all in one transaction; it says which trial it refuses by
+  // its place in `good`, and `rows` has the line of the file for it.
   if (!flags.partial) {
     try {
       done.count = store.LogTrials(good).size();
@@ -248,6 +285,8 @@ Imported ImportCsv(const ImportFlags& flags, const fs::path& db,
   return done;
 }
 
+// Imports what `export` wrote, history by history. What is there already is
+// counted and left alone, so an import can be repeated.
 Imported ImportJsonLines(const ImportFlags& flags, const fs::path& db,
                          std::istream& in) {
   report::ExportReader reader(in, flags.file);
@@ -269,6 +308,7 @@ Imported ImportJsonLines(const ImportFlags& flags, const fs::path& db,
   return done;
 }
 
+// Prints what an import did. Returns 5 where rows were passed over, else 0.
 int PrintImported(const Imported& done) {
   for (const auto& conflict : done.conflicts) {
     fmt::print("conflict: {}\n", Printable(conflict));
@@ -280,7 +320,8 @@ int PrintImported(const Imported& done) {
   return done.errors.empty() ? 0 : 5;
 }
 
-// A store that goes away, in a folder of its own.
+// Holds a folder for a trial run of an import, which is removed with all in it
+// at the end, also when a signal ends the process (core::Unfinished).
 class Rehearsal {
  public:
   Rehearsal() {
@@ -307,7 +348,9 @@ class Rehearsal {
   std::optional<core::Unfinished> unfinished_;
 };
 
-// All of the paper's Table 1 or, where one of its campaigns is there, nothing.
+// Imports the paper's Table 1 with its two campaigns; the angles get the u of
+// --paper-u-deg, since the paper states none. Refused where the store has a
+// campaign of one of these names.
 int ImportPaperTable1(const ImportFlags& flags) {
   if (!flags.file.empty()) {
     throw std::invalid_argument(fmt::format(
@@ -334,6 +377,7 @@ int ImportPaperTable1(const ImportFlags& flags) {
   return 0;
 }
 
+// Runs `import` in its three forms: columns, the paper's trials, a file.
 int Import(const ImportFlags& flags) {
   if (flags.columns) return PrintTrialColumns();
   if (flags.paper_table1) return ImportPaperTable1(flags);
@@ -347,6 +391,7 @@ int Import(const ImportFlags& flags) {
   if (format == Format::kTidy) {
     throw std::invalid_argument("--format is 'tidy', must be csv or jsonl");
   }
+  // Imports the file into the store at `db`; it is opened anew each time.
   const auto import_into = [&](const fs::path& db) {
     std::ifstream in(flags.file, std::ios::binary);
     if (!in || fs::is_directory(flags.file)) {
@@ -357,8 +402,9 @@ int Import(const ImportFlags& flags) {
     return format == Format::kCsv ? ImportCsv(flags, db, in)
                                   : ImportJsonLines(flags, db, in);
   };
-  // A store is made only for what has been found right: the first import of a
-  // new one is tried elsewhere before. (A pipe can be read but once.)
+  // The first import into a new store is tried in another folder before: a file
+  // of which nothing can be imported leaves no store behind. A pipe can be read
+  // only once, and is imported without a trial run.
   std::error_code ignored;
   if (!fs::exists(flags.db, ignored) &&
       fs::is_regular_file(flags.file, ignored) &&

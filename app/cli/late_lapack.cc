@@ -1,7 +1,9 @@
-// What OpenCV's archives ask of LAPACK and BLAS, which are loaded when the
-// first of it is called: with the program they, and the threads that OpenBLAS
-// starts, take it milliseconds, and large matrices occur where cameras are
-// calibrated alone. Their display is never asked for.
+// These are stand-ins for the functions of LAPACK and BLAS that OpenCV's
+// archives call: the first call of any of them loads the library. Linked with
+// the program, the library and the threads that OpenBLAS starts would cost
+// every command milliseconds, and only the calibration of a camera has matrices
+// that need it. The archives also ask for three functions of GLX; no display is
+// ever opened, so these do nothing.
 #include <dlfcn.h>
 
 #include <cstddef>
@@ -10,6 +12,8 @@
 
 namespace {
 
+// Returns the function of that name in liblapack or in what it depends on.
+// Throws std::runtime_error saying which package to install.
 void* Find(const char* name) {
   // With the BLAS that it needs. Never closed: it is used to the program's end.
   static void* const library = ::dlopen("liblapack.so.3", RTLD_LAZY);
@@ -23,12 +27,15 @@ void* Find(const char* name) {
   return found;
 }
 
+// Calls the function with the arguments as they came: all are pointers or C
+// numbers, so nothing is converted.
 template <class... Arguments>
 void Late(const char* name, Arguments... arguments) {
   reinterpret_cast<void (*)(Arguments...)>(Find(name))(arguments...);
 }
 
-// Fortran is told how long each text is, after all else.
+// Fortran passes the length of each text argument behind all others: uplo, jobz
+// and trans are one letter long.
 constexpr std::size_t kLetter = 1;
 
 }  // namespace
@@ -37,6 +44,8 @@ constexpr std::size_t kLetter = 1;
 #pragma GCC visibility push(hidden)
 extern "C" {
 
+// `t` is s for float or d for double. The parameters stand as LAPACK's manual
+// has them; none is read here, so void* serves for all.
 #define TOUCHDOWN_LAPACK(t)                                                    \
   void t##getrf_(void* m, void* n, void* a, void* lda, void* ipiv,             \
                  void* info) {                                                 \
@@ -72,6 +81,8 @@ TOUCHDOWN_LAPACK(s)
 TOUCHDOWN_LAPACK(d)
 #undef TOUCHDOWN_LAPACK
 
+// Unlike LAPACK's, the functions of CBLAS take numbers by value; complex
+// factors come as pointers.
 #define TOUCHDOWN_BLAS(t, Scalar)                                             \
   void cblas_##t##gemm(int order, int trans_a, int trans_b, int m, int n,     \
                        int k, Scalar alpha, const void* a, int lda,           \

@@ -1,4 +1,6 @@
-// log, correct: what people state of a trial.
+// touchdown log and correct record what people state of a trial. Both share the
+// flags of a statement; `log` makes a new trial of origin manual, `correct` a
+// further revision of any trial.
 #include <fmt/format.h>
 
 #include <memory>
@@ -20,12 +22,16 @@ namespace {
 
 // --- what a trial by hand may say --------------------------------------------
 
+// Holds a statement as typed. The conditions stay apart until it is known which
+// were stated before.
 struct StatementFlags {
   pipeline::Statement said;
   ConditionFlags conditions;
 };
 
-// What was said of a trial whose conditions were known to be `before`.
+// Returns the statement with its conditions: `before`, what was known of the
+// trial, changed by --condition. Throws std::invalid_argument for a condition
+// that cannot be understood.
 pipeline::Statement ReadStatement(const StatementFlags& flags,
                                   std::optional<core::Conditions> before) {
   pipeline::Statement statement = flags.said;
@@ -34,6 +40,7 @@ pipeline::Statement ReadStatement(const StatementFlags& flags,
   return statement;
 }
 
+// An option that is not given states nothing, so none of them has a default.
 void AddStatementFlags(CLI::App& command, StatementFlags& all) {
   pipeline::Statement& flags = all.said;
   AddOption(command, "--angle-deg", flags.angle_deg, "the contact angle");
@@ -51,9 +58,11 @@ void AddStatementFlags(CLI::App& command, StatementFlags& all) {
   AddConditionFlag(command, all.conditions);
 }
 
+// Says which revision was recorded, for a person or as touchdown.logged/1.
 void PrintLogged(const db::Logged& logged, bool json) {
   if (json) {
-    // Of ASCII only: a UUID, a number, a truth value.
+    // All values are ASCII (a UUID, a number, a truth value), so nothing is
+    // escaped.
     fmt::print(
         "{{\"schema\": \"touchdown.logged/1\", \"id\": \"{}\", \"revision\": "
         "{}, \"is_new\": {}}}\n",
@@ -63,6 +72,8 @@ void PrintLogged(const db::Logged& logged, bool json) {
   }
 }
 
+// Holds the flags of `log` as typed; body and campaign may each stand for the
+// other.
 struct LogByHandFlags {
   std::string db;
   std::string campaign;
@@ -72,6 +83,8 @@ struct LogByHandFlags {
   bool json = false;
 };
 
+// Records a trial that nobody filmed, or that was judged by eye. Returns 0;
+// throws pipeline::FieldError (exit status 2) naming the flag.
 int Log(const LogByHandFlags& flags) {
   const pipeline::ManualEntry entry{
       flags.campaign, pipeline::ParseBody(flags.body),
@@ -82,6 +95,7 @@ int Log(const LogByHandFlags& flags) {
 
 // --- correct -----------------------------------------------------------------
 
+// Holds the flags of `correct` as typed.
 struct CorrectFlags {
   std::string db;
   std::string id;
@@ -94,9 +108,15 @@ struct CorrectFlags {
   bool json = false;
 };
 
+// Records a person's revision: a correction, an exclusion, or an inclusion.
+// Returns 0; throws std::invalid_argument where nothing would change.
 int Correct(const CorrectFlags& flags) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
+  // The store compares the correction with this state: if somebody revises the
+  // trial meanwhile, it refuses instead of overwriting.
   const core::Trial seen = RequireTrial(store, flags.id);
+  // --accept begins from the statement of another revision, such as a proposed
+  // analysis; the other flags then change that.
   core::Trial corrected =
       flags.accept == 0 ? seen
                         : pipeline::Restated("accept", store.History(seen.id),
@@ -109,6 +129,8 @@ int Correct(const CorrectFlags& flags) {
         "nothing would change; give what is to be corrected, --accept, "
         "--exclude or --include");
   }
+  // Each revision says one thing with one reason, or the history could not tell
+  // which of the two the reason is for.
   if (changed && (flags.exclude || flags.include)) {
     throw std::invalid_argument(
         "--exclude and --include go alone: correct first, then exclude");

@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kFileBytes = std::size_t{10} << 20;
 constexpr std::size_t kOlderFiles = 3;
 
+// Returns a sink that writes the journal to the file and rotates it. Throws
+// core::OutputError where the name is no plain file: rotating renames it, which
+// would replace a device or the target of a link.
 spdlog::sink_ptr FileSink(const std::string& name) {
   std::error_code ignored;
   const fs::file_status status = fs::symlink_status(name, ignored);
@@ -44,6 +47,8 @@ spdlog::sink_ptr FileSink(const std::string& name) {
 
 }  // namespace
 
+// They belong to the program and not to a command, so that they may stand
+// anywhere in the line.
 void AddLogFlags(CLI::App& app, LogFlags& flags) {
   AddFlag(app, "--verbose", flags.verbose,
           "say on stderr what is done, how long it takes and why");
@@ -57,6 +62,8 @@ void SetUpLog(const LogFlags& flags) {
   std::vector<spdlog::sink_ptr> sinks;
   if (flags.verbose) {
     auto sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    // A terminal shows the time of day; a file, which outlives the day, has
+    // date, zone, process and thread besides.
     sink->set_pattern("touchdown: %H:%M:%S.%e  %v");
     sinks.push_back(std::move(sink));
   }
@@ -67,9 +74,12 @@ void SetUpLog(const LogFlags& flags) {
   }
   auto logger =
       std::make_shared<spdlog::logger>("touchdown", sinks.begin(), sinks.end());
+  // Without sinks the level is off, and JournalIsKept() spares the work of
+  // making lines that nobody reads.
   logger->set_level(sinks.empty() ? spdlog::level::off : spdlog::level::debug);
+  // After a crash the last line is what matters: none waits in a buffer.
   logger->flush_on(spdlog::level::debug);
-  // Nothing fails because nobody could be told.
+  // A journal that cannot be written is no reason for a command to fail.
   logger->set_error_handler([](const std::string&) {});
   spdlog::set_default_logger(std::move(logger));
 }

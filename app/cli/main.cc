@@ -1,3 +1,8 @@
+// This is the program's entry: it leads from the command line to one function,
+// and from what that throws to the exit status. The order at the start matters:
+// a process that was started as a reader of recordings goes no further; the
+// standard streams come before any file is opened, the signals before any
+// thread is started.
 #include <dlfcn.h>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +30,7 @@
 
 namespace {
 
+// main itself returns these; 5 and other statuses come from the commands.
 enum ExitStatus : int {
   kUsage = 2,   // wrong usage or impossible argument
   kInput = 3,   // input unreadable, damaged or unsupported
@@ -33,6 +39,7 @@ enum ExitStatus : int {
   kDefect = 70
 };
 
+// Holds a command's name and the function that adds it to the command line.
 struct Command {
   std::string_view name;
   void (*add)(CLI::App&, touchdown::cli::Action&);
@@ -62,11 +69,13 @@ constexpr Command kCommands[] = {{"analyze", touchdown::cli::AddAnalyze},
                                  {"doctor", touchdown::cli::AddDoctor},
                                  {"report-bug", touchdown::cli::AddReportBug}};
 
-// Of the build, which tells of all others; no user is told of it.
+// This is a tool of the build, which writes manual pages of all commands. No
+// user needs it, and --help leaves it out.
 constexpr std::string_view kDescribe = "describe";
 
-// The command of that name alone: to make all takes milliseconds. Those of
-// another name, such as --help, see all of them.
+// Adds the command of that name alone, since making all of them takes
+// milliseconds of every start. Where the name is no command (--help, --verbose
+// before the command, a misspelt word), all are added.
 void AddCommands(CLI::App& app, touchdown::cli::Action& action,
                  std::string_view name) {
   const auto* const one = std::find_if(
@@ -80,8 +89,9 @@ void AddCommands(CLI::App& app, touchdown::cli::Action& action,
   if (name == kDescribe) touchdown::cli::AddDescribe(app, action);
 }
 
-// What to say of a first word that is no command; empty where it is one, or an
-// option.
+// Returns the message for a first word that is no command, with the one that
+// was probably meant; empty where it is a command or an option. CLI11's own
+// message would not name what was meant.
 std::string UnknownCommand(std::string_view word) {
   if (word.empty() || word.starts_with('-') || word == kDescribe) return "";
   std::vector<std::string> names;
@@ -95,7 +105,9 @@ std::string UnknownCommand(std::string_view word) {
                         : "did you mean `touchdown " + meant + "`?");
 }
 
-// The command line as CLI11 takes it: in reverse.
+// Returns the arguments with the defaults of touchdown.toml added, last first:
+// in this order CLI11 takes a vector. Throws core::InputError where that file
+// cannot be understood.
 std::vector<std::string> Arguments(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> out = touchdown::cli::WithDefaults(
       {argv + 1, argv + argc}, app, touchdown::cli::ReadDefaults(""));
@@ -103,10 +115,10 @@ std::vector<std::string> Arguments(int argc, char** argv, const CLI::App& app) {
   return out;
 }
 
-// Where LAPACK is OpenBLAS, OpenCV brings a thread for each further core that
-// waits busily for the first thirtieth of a second, in which most of a short
-// command is done: 0.03 of 0.16 s (analyze, 1000 raw frames, two cores). What
-// needs them starts them again.
+// Where LAPACK is OpenBLAS, it starts with a thread for each further core. Each
+// waits busily for the first thirtieth of a second, in which a short command
+// does most of its work: 0.03 of 0.16 s (analyze, 1000 raw frames, two cores).
+// They are stopped here; OpenBLAS starts them again when they are needed.
 void StopIdleThreads() {
   using Stop = int (*)();
   if (auto* const stop = reinterpret_cast<Stop>(
@@ -115,7 +127,8 @@ void StopIdleThreads() {
   }
 }
 
-// What was asked of which program.
+// Writes version, commit and command line to the journal, so that a log says
+// what was asked of which program.
 void JournalStart(int argc, char** argv) {
   namespace pipeline = touchdown::pipeline;
   if (!pipeline::JournalIsKept()) return;
@@ -125,6 +138,7 @@ void JournalStart(int argc, char** argv) {
   pipeline::Journal(line);
 }
 
+// Says the error on stderr and in the journal; returns `status`.
 int Complain(int status, const std::exception& error) {
   touchdown::pipeline::Journal("ended with status " + std::to_string(status) +
                                ": " + error.what());
@@ -132,8 +146,8 @@ int Complain(int status, const std::exception& error) {
   return status;
 }
 
-// Runs what the command line asks for; its results have arrived when it
-// returns.
+// Runs the command and returns its exit status. Throws core::OutputError where
+// its results did not all arrive on stdout. An empty action (--help) is 0.
 int Run(const touchdown::cli::Action& action) {
   const int status = action ? action() : 0;
   touchdown::cli::RequireStdoutWritten();
@@ -146,6 +160,8 @@ int main(int argc, char** argv) {
   if (const auto status = touchdown::vision::ServeAsReader(argc, argv)) {
     return *status;
   }
+  // A closed stdout would otherwise be the number of the next file opened, and
+  // results would be written into it.
   touchdown::cli::KeepStandardStreams();
   StopIdleThreads();
   touchdown::cli::CatchInterruptions();
@@ -157,15 +173,17 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version",
                        std::string(touchdown::pipeline::Version()) + " (" +
                            std::string(touchdown::pipeline::Commit()) + ")");
-  // Until it is known who listens nobody does.
+  // The flags are not read yet; until they are, the journal goes nowhere.
   touchdown::cli::SetUpLog({});
   touchdown::cli::LogFlags log;
   touchdown::cli::AddLogFlags(app, log);
+  // Options of the program are understood behind a command's name, too.
   app.fallthrough();
   app.require_subcommand(1);
   touchdown::cli::Action action;
   AddCommands(app, action, argc > 1 ? argv[1] : "");
-  // Not of each command: what is set before them they take over.
+  // A command takes over the footer that is set before it is added. This footer
+  // belongs to the program's own help alone, so it comes last.
   app.footer(
       "Exit status: 0 done (an undecided trial is a result); 2 wrong usage or "
       "impossible argument; 3 input unreadable, damaged or unsupported; 4 "
@@ -178,6 +196,8 @@ int main(int argc, char** argv) {
       throw std::invalid_argument(unknown);
     }
     app.parse(Arguments(argc, argv, app));
+    // Only the parsed line says where the journal goes; its first entry
+    // follows.
     touchdown::cli::SetUpLog(log);
     JournalStart(argc, argv);
     return Run(action);
@@ -192,17 +212,21 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     return Complain(kUsage, error);
   } catch (const touchdown::core::OutputError& error) {
+    // An OutputError is an InputError as well: caught first, it keeps its own
+    // status.
     return Complain(kOutput, error);
   } catch (const touchdown::core::InputError& error) {
     return Complain(kInput, error);
   } catch (const touchdown::core::StoreError& error) {
     return Complain(kStore, error);
   } catch (const std::bad_alloc&) {
+    // There may be no memory left to make a message: this one is short and
+    // fixed.
     touchdown::cli::Tell(
         "out of memory; a smaller clip, fewer --jobs or a higher limit");
     return kInput;
   } catch (const std::exception& error) {
-    // What fmt throws where stdout takes no more.
+    // fmt throws this where stdout takes no more.
     if (std::ferror(stdout) != 0) {
       touchdown::cli::Tell(std::string("stdout: the results could not be "
                                        "written: ") +

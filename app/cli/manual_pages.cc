@@ -9,7 +9,9 @@
 namespace touchdown::cli {
 namespace {
 
-// Text as it stands: no character of it means anything to the formatter.
+// Returns `text` escaped for troff: a dot at its beginning would make a request
+// of it. Hyphens become minus signs, so that options can be copied from the
+// page.
 std::string Roff(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -37,13 +39,15 @@ std::string Roff(std::string_view text) {
   return out;
 }
 
+// Turns "touchdown rig plan" into "touchdown-rig-plan", the name of its page.
 std::string Dashed(std::string_view path) {
   std::string name(path);
   std::replace(name.begin(), name.end(), ' ', '-');
   return name;
 }
 
-// One paragraph of each: its name in bold, its form, what it is.
+// Adds a section with one paragraph for each option: its names in bold, its
+// form, its description. Without options there is no section.
 void AddOptionSection(std::string& page, std::string_view title,
                       const std::vector<OptionText>& options) {
   if (options.empty()) return;
@@ -58,6 +62,7 @@ void AddOptionSection(std::string& page, std::string_view title,
   }
 }
 
+// Lists the commands below this one with their descriptions and pages.
 void AddCommandSection(std::string& page, const CommandText& command,
                        const std::vector<CommandText>& tree) {
   if (command.commands.empty()) return;
@@ -77,6 +82,7 @@ std::string ManualPageName(const CommandText& command) {
 
 std::string ManualPage(const CommandText& command,
                        const std::vector<CommandText>& tree) {
+  // The date in .TH stays empty: a page of the same sources has the same bytes.
   std::string page = fmt::format(
       ".TH {} 1 \"\" \"touchdown {}\" \"touchdown\"\n.SH NAME\n{} \\- {}\n"
       ".SH SYNOPSIS\n\\fB{}\\fR",
@@ -94,6 +100,7 @@ std::string ManualPage(const CommandText& command,
   if (!command.footer.empty()) {
     page += fmt::format(".SH NOTES\n{}\n", Roff(command.footer));
   }
+  // A page refers to the command above it; the program's own has none.
   const auto above = command.path.rfind(' ');
   if (above != std::string::npos) {
     page += fmt::format(".SH SEE ALSO\n\\fB{}\\fR(1)\n",

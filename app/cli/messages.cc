@@ -16,8 +16,10 @@
 namespace touchdown::cli {
 namespace {
 
-// The length of the UTF-8 sequence at the start of `text`, and its code point;
-// 0 where it is none.
+// Reads one UTF-8 sequence at the start of `text`, which must not be empty.
+// Returns its length in bytes, with its code point in `point`; 0 where the
+// bytes are no UTF-8 (RFC 3629): cut off, overlong, a surrogate, or beyond
+// U+10FFFF.
 std::size_t Decode(std::string_view text, std::uint32_t& point) {
   const auto byte = [&](std::size_t i) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
@@ -29,6 +31,9 @@ std::size_t Decode(std::string_view text, std::uint32_t& point) {
     point = first;
     return 1;
   }
+  // The first byte gives the length. `least` is the smallest code point that
+  // needs it: anything below is an overlong form, by which a control character
+  // could be smuggled past a filter.
   if (first >= 0xc2 && first < 0xe0) {
     length = 2;
     point = first & 0x1fU;
@@ -53,6 +58,10 @@ std::size_t Decode(std::string_view text, std::uint32_t& point) {
   return point < least || surrogate || point > 0x10ffff ? 0 : length;
 }
 
+// Returns whether a terminal may be sent the character. Refused are control
+// characters, zero-width ones, and marks that turn the direction of writing:
+// with these a file's name could show another text than it holds, or command
+// the terminal.
 bool IsHarmless(std::uint32_t point) {
   const auto within = [point](std::uint32_t low, std::uint32_t high) {
     return point >= low && point <= high;
@@ -72,6 +81,8 @@ std::string Printable(std::string_view text) {
     if (length > 0 && IsHarmless(point)) {
       out += text.substr(0, length);
     } else {
+      // A refused character is shown byte by byte; of what is no UTF-8, only
+      // the first byte, and reading goes on with the next.
       for (const char c : text.substr(0, length == 0 ? 1 : length)) {
         out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
       }
@@ -81,6 +92,7 @@ std::string Printable(std::string_view text) {
   return out;
 }
 
+// Errors are passed over: there is nobody left who could be told of them.
 void TellRaw(std::string_view bytes) noexcept {
   std::fwrite(bytes.data(), 1, bytes.size(), stderr);
   std::fflush(stderr);
@@ -94,6 +106,8 @@ void Tell(std::string_view text) noexcept {
   }
 }
 
+// Runs before any file is opened; the numbers 0 to 2 are tried in order, so
+// that the one that is missing is the lowest that is free.
 void KeepStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
@@ -105,6 +119,8 @@ void KeepStandardStreams() {
 }
 
 void RequireStdoutWritten() {
+  // Where an earlier write failed, errno is no longer its reason: then the
+  // message has none.
   errno = 0;
   std::cout.flush();
   const bool flushed = std::fflush(stdout) == 0;

@@ -1,4 +1,7 @@
-// touchdown next: the angle to throw, and the rig's settings for it.
+// touchdown next says which angle to throw, and the rig's settings for it. The
+// boundary is estimated as by `boundary`; a rule turns the estimate, or the
+// bare outcomes in their order, into an angle, and the rig turns that into
+// settings.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -28,8 +31,10 @@ namespace {
 
 using core::kDegree;
 
-// Neyer's test and up-and-down want the trials as they were thrown: the order
-// of a CSV file; of a store, the order in which trials were logged.
+// Returns the group's observations in the order in which they were thrown,
+// which Neyer's test, 3pod and up-and-down depend on. `as_given` has the order
+// of the CSV file or, from a store, the order in which trials were logged. The
+// list is empty where the group has no trial.
 std::vector<analysis::Observation> InOrder(
     const std::vector<core::Trial>& as_given, const report::Group& group) {
   for (const auto& candidate : analysis::GroupTrials(as_given)) {
@@ -47,10 +52,13 @@ std::vector<analysis::Observation> InOrder(
   return {};
 }
 
+// Returns the next angle by --rule. Throws std::invalid_argument for an unknown
+// rule, or one that lacks the guess that it needs.
 analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
                               const analysis::NextAngleOptions& options,
                               const std::vector<core::Trial>& as_given,
                               const report::Group& group) {
+  // The study has applied its own rule already.
   if (flags.rule == "expected-variance") return group.study.next;
   analysis::NextAngle next;
   if (flags.rule == "neyer" || flags.rule == "3pod") {
@@ -77,7 +85,8 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
                     "3pod or up-down",
                     flags.rule));
   }
-  // What there is to know does not depend on the rule.
+  // The other rules give an angle only. What is known now, and when to stop,
+  // does not depend on the rule.
   next.expected_sd_rad =
       analysis::ExpectedSd(group.study.posterior, next.angle_rad, options);
   next.half_width_rad = group.study.next.half_width_rad;
@@ -86,6 +95,8 @@ analysis::NextAngle ApplyRule(const BoundaryFlags& flags,
   return next;
 }
 
+// Returns the settings as the session writes them, with the predicted contact
+// where there are settings.
 nlohmann::ordered_json PlanJson(const pipeline::Thrower& thrower,
                                 const core::Expected<rig::SetPoint>& point) {
   nlohmann::ordered_json out = session::SetPointsJson(thrower, point);
@@ -93,6 +104,8 @@ nlohmann::ordered_json PlanJson(const pipeline::Thrower& thrower,
   return out;
 }
 
+// Prints the settings or why there are none, the launch speed that they give,
+// and what the springs' check found.
 void PrintSetPoints(const pipeline::Thrower& thrower,
                     const core::Expected<rig::SetPoint>& point) {
   fmt::print("set-points        {}\n", session::SetPointsText(thrower, point));
@@ -103,7 +116,8 @@ void PrintSetPoints(const pipeline::Thrower& thrower,
       FindingsText(point->contact.findings));
 }
 
-// The campaign without a trial yet: the one asked for, or what the flags say.
+// Returns the campaign to begin where no trial matches: the declared one that
+// was asked for, else one made from --body and --angle-kind.
 core::Campaign EmptyCampaign(const BoundaryFlags& flags,
                              const report::ReportInput& input) {
   for (const core::Campaign& campaign : input.campaigns) {
@@ -120,10 +134,15 @@ core::Campaign EmptyCampaign(const BoundaryFlags& flags,
   return out;
 }
 
+// Answers `next`, as text or as touchdown.boundary/1 with the fields of `next`
+// at its top. Returns 0; throws std::invalid_argument where trials of several
+// groups match, since one angle cannot serve two boundaries.
 int RunNext(const BoundaryFlags& flags) {
   report::ReportInput input = MakeInput(flags);
   RefuseCheckShots(flags, input);
   KeepLook(flags, "next", input);
+  // Two orders are kept: `as_given` for the rules that follow the throws,
+  // `sorted` for the estimate, which must not depend on any order.
   const std::vector<core::Trial> as_given = std::move(input.trials);
   std::vector<core::Trial> sorted = as_given;
   report::SortTrials(sorted);
@@ -139,6 +158,7 @@ int RunNext(const BoundaryFlags& flags) {
         "--angle-kind or --origin",
         groups.size(), names));
   }
+  // Without a trial the prior alone gives the first angle.
   if (groups.empty()) {
     groups.push_back(report::EmptyGroup(input, EmptyCampaign(flags, input)));
   }
@@ -147,14 +167,17 @@ int RunNext(const BoundaryFlags& flags) {
   if (!flags.rig.empty()) {
     thrower = pipeline::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
                                     ReadCorner(flags), flags.store);
+    // The rig's description was read, but it cannot throw for this campaign.
     if (!group.reach) throw std::invalid_argument(group.reach.error().reason);
   }
   analysis::NextAngleOptions options = input.study.next;
+  // An angle that no setting gives is moved to the nearest that one does.
   if (group.reach) options.feasible_rad = group.reach->angle_rad;
   group.study.next = ApplyRule(flags, options, as_given, group);
   const analysis::NextAngle& next = group.study.next;
   if (flags.json) {
     nlohmann::ordered_json document = report::BoundaryDocument(groups);
+    // Scripts find the three numbers they want without knowing the groups.
     for (const char* field :
          {"angle_deg", "expected_sd_deg", "trials_to_target"}) {
       document[field] = document["next"][field];
@@ -181,6 +204,7 @@ int RunNext(const BoundaryFlags& flags) {
   fmt::print("sd after it       {} deg expected, {} deg now\n",
              DegreesText(next.expected_sd_rad),
              DegreesText(group.study.posterior.sd_rad));
+  // The last line gives the reason to stop, or says how many trials are left.
   switch (next.stop) {
     case analysis::StopReason::kTargetReached:
       fmt::print("stop              the 95 % interval is within +- {} deg\n",

@@ -17,6 +17,8 @@ ProgressBar::ProgressBar(std::string what)
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 
+// Progress may come for every frame, thousands a second: ten drawings a second
+// are all that a person sees.
 bool ProgressBar::IsTimeToDraw() {
   if (!terminal_) return false;
   const auto now = std::chrono::steady_clock::now();
@@ -26,6 +28,7 @@ bool ProgressBar::IsTimeToDraw() {
   return true;
 }
 
+// Takes the work to go on as fast as it did so far.
 void ProgressBar::Show(double share) {
   const double gone =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_)
@@ -40,11 +43,13 @@ void ProgressBar::Show(double share, std::optional<double> left_s,
   share = std::clamp(share, 0.0, 1.0);
   constexpr int kWidth = 30;
   const int full = static_cast<int>(share * kWidth);
+  // The line is drawn over itself; \033[K clears what a longer one left.
   TellRaw(fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f} %  {}{}\033[K", what_, "",
                       full, "", kWidth - full, 100.0 * share, done,
                       left_s ? fmt::format("{:.0f} s left ", *left_s) : ""));
 }
 
+// Leaves an empty line to the results or messages that follow.
 void ProgressBar::Finish() {
   if (!drawn_) return;
   TellRaw("\r\033[K");

@@ -1,5 +1,7 @@
-// register add|change|list|show: rigs, cameras, springs, calibrations, bodies,
-// surfaces, operators.
+// touchdown register add|change|list|show keeps rigs, cameras, springs,
+// calibrations, bodies, surfaces and operators. The table of fields
+// (db::ListFields) makes the flags, the help and the text of each kind, so that
+// a field is declared once.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,26 +41,32 @@ constexpr const char* kKindWords =
 
 // --- what an entry says ------------------------------------------------------
 
-// What is taken from --file, and from nowhere else.
+// Returns whether --file alone fills the field: text and digest must be those
+// of the same bytes.
 bool IsOfFile(const RegisterField& field) {
   return field.name == "document" || field.name == "sha256";
 }
 
+// Returns whether entries of this kind keep a file: rigs and calibrations.
 bool HasFile(RegisterKind kind) {
   return std::ranges::any_of(db::ListFields(kind), IsOfFile);
 }
 
+// Returns "wire_diameter_mm" for the inner "wire_diameter_m": people type and
+// read that unit.
 std::string EdgeName(const RegisterField& field) {
   const core::EdgeUnit unit = core::AtTheEdge(field.name);
   return unit.stem + unit.suffix;
 }
 
+// Returns the flag, such as "--wire-diameter-mm".
 std::string FlagName(const RegisterField& field) {
   std::string flag = "--" + EdgeName(field);
   std::ranges::replace(flag, '_', '-');
   return flag;
 }
 
+// Returns the field's meaning, with the words or the form that it takes.
 std::string Help(const RegisterField& field) {
   std::string help(field.meaning);
   if (field.type == FieldType::kWord) {
@@ -70,6 +78,8 @@ std::string Help(const RegisterField& field) {
   return help;
 }
 
+// Holds an entry as typed. `fields` holds a place for each flag of the kind, by
+// the field's inner name; nothing where the flag was not given.
 struct EntryFlags {
   std::string db;
   std::string name;
@@ -80,17 +90,22 @@ struct EntryFlags {
   bool json = false;
 };
 
+// Returns the bytes of a file that has been read as a rig or a calibration
+// already, so that an error here is not expected.
 std::string WholeText(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// rig.toml or a calibration file, whole; refused unless it can be read as one.
+// Keeps a rig.toml or a calibration file whole in `entry`, with its SHA-256.
+// Throws core::InputError where it cannot be read as what it is to be.
 void ApplyFile(const std::string& file, Entry& entry) {
   if (entry.kind == RegisterKind::kRig) {
     rig::ReadDescription(file);
   } else {
     const calib::Calibration calibration = calib::ReadCalibration(file);
+    // `contents` is a word of the register: one part of the calibration, or
+    // several.
     const int parts = (calibration.lens ? 1 : 0) + (calibration.scale ? 1 : 0) +
                       (calibration.ground ? 1 : 0);
     entry.texts["contents"] = parts > 1           ? "several"
@@ -103,6 +118,8 @@ void ApplyFile(const std::string& file, Entry& entry) {
   entry.texts["sha256"] = vision::Sha256(file);
 }
 
+// Puts the typed fields into `entry`; the others stay as they are. Throws
+// std::invalid_argument naming the flag of a number that is none.
 void Apply(const EntryFlags& flags, Entry& entry) {
   if (!flags.file.empty()) ApplyFile(flags.file, entry);
   for (const RegisterField& field : db::ListFields(entry.kind)) {
@@ -120,6 +137,7 @@ void Apply(const EntryFlags& flags, Entry& entry) {
             key, ParseMeasured(FlagName(field), text,
                                core::AtTheEdge(field.name).factor));
         break;
+      // Only the name is given: the store finds the version in force.
       case FieldType::kEntry:
         entry.entries[key] = {text, ""};
         break;
@@ -131,6 +149,8 @@ void Apply(const EntryFlags& flags, Entry& entry) {
 
 // --- what is printed ---------------------------------------------------------
 
+// Returns the field for a person, with u, in the unit of its name. A document
+// is counted and not printed.
 std::string FieldText(const Entry& entry, const RegisterField& field) {
   const std::string key(field.name);
   switch (field.type) {
@@ -151,12 +171,14 @@ std::string FieldText(const Entry& entry, const RegisterField& field) {
              : Printable(text);
 }
 
+// Returns "2, 2026-03-01T09:00:00Z by A. Lee: new wire".
 std::string VersionText(const Entry& entry) {
   return fmt::format("{}, {} by {}{}{}", entry.version, entry.recorded_at_utc,
                      Printable(entry.author), entry.reason.empty() ? "" : ": ",
                      Printable(entry.reason));
 }
 
+// Returns one line for each field that says something; empty ones are left out.
 std::string EntryText(const Entry& entry) {
   std::vector<std::vector<std::string>> rows = {
       {std::string(Name(entry.kind)), Printable(entry.name)},
@@ -169,6 +191,8 @@ std::string EntryText(const Entry& entry) {
   return Aligned(rows);
 }
 
+// Lists each version, oldest first, with what it changed against the one
+// before.
 std::string EntryHistoryText(const std::vector<Entry>& versions) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < versions.size(); ++i) {
@@ -182,6 +206,7 @@ std::string EntryHistoryText(const std::vector<Entry>& versions) {
   return text;
 }
 
+// Prints this version as a table, or as one touchdown.register/1 line.
 void PrintEntry(const Entry& entry, bool json) {
   if (json) {
     fmt::print("{}\n", report::EntryJson(entry));
@@ -192,11 +217,14 @@ void PrintEntry(const Entry& entry, bool json) {
 
 // --- commands ----------------------------------------------------------------
 
+// Records a new entry. Returns 0; throws core::StoreError where the name is
+// taken.
 int AddToRegister(const EntryFlags& flags, RegisterKind kind) {
   Entry entry = db::NewEntry(kind, flags.name);
   Apply(flags, entry);
   // A store is made only for what has been found right.
   db::RequireStorable(entry);
+  // An entry that names others can only be right in a store that has them.
   const bool refers = std::ranges::any_of(entry.entries, [](const auto& field) {
     return !field.second.name.empty();
   });
@@ -206,6 +234,7 @@ int AddToRegister(const EntryFlags& flags, RegisterKind kind) {
   return 0;
 }
 
+// Records a further version: the one in force, with the typed fields changed.
 int ChangeInRegister(const EntryFlags& flags, RegisterKind kind) {
   auto store = db::Store::Open(flags.db, db::OpenMode::kWrite);
   Entry entry = db::RequireEntry(store, kind, flags.name);
@@ -214,6 +243,7 @@ int ChangeInRegister(const EntryFlags& flags, RegisterKind kind) {
   return 0;
 }
 
+// Holds the flags of `list` and `show` as typed; an empty `kind` lists all.
 struct LookFlags {
   std::string db;
   std::string kind;
@@ -222,11 +252,13 @@ struct LookFlags {
   bool json = false;
 };
 
+// Throws std::invalid_argument with the seven words for any other.
 RegisterKind DetermineKind(const std::string& word) {
   return ParseWord<RegisterKind>("KIND", word, db::ParseRegisterKind,
                                  kKindWords);
 }
 
+// Prints the versions in force by kind and name.
 int ListRegister(const LookFlags& flags) {
   std::vector<RegisterKind> kinds(db::kRegisterKinds.begin(),
                                   db::kRegisterKinds.end());
@@ -246,6 +278,8 @@ int ListRegister(const LookFlags& flags) {
   return 0;
 }
 
+// Prints one entry, with --history all its versions. As JSON lines the history
+// has the version in force as its last line.
 int ShowEntry(const LookFlags& flags) {
   const RegisterKind kind = DetermineKind(flags.kind);
   const auto store = db::Store::Open(flags.db, db::OpenMode::kRead);
@@ -260,7 +294,9 @@ int ShowEntry(const LookFlags& flags) {
   return 0;
 }
 
-// `register add` or `register change`, with a subcommand for each kind.
+// Adds `register add` or `register change` with a subcommand for each kind,
+// since each kind has other fields. A change needs a reason (--why), a first
+// version none.
 void AddEntryCommands(CLI::App& parent, const std::string& verb,
                       const std::string& about, Action& action,
                       int (*run)(const EntryFlags&, RegisterKind)) {
@@ -277,6 +313,8 @@ void AddEntryCommands(CLI::App& parent, const std::string& verb,
         .Require(verb == "change");
     for (const RegisterField& field : db::ListFields(kind)) {
       if (IsOfFile(field)) continue;
+      // The map's values stay where they are when others come in, so CLI11 may
+      // keep a reference to each.
       AddOption(*one, FlagName(field), flags->fields[std::string(field.name)],
                 Help(field));
     }

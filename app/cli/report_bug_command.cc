@@ -1,4 +1,6 @@
-// touchdown report-bug: an archive for who is to find out what went wrong.
+// touchdown report-bug makes an archive for whoever is to find out what went
+// wrong. It takes the flags of `analyze` and runs that once more in a process
+// of its own (app/doctor/bug_report.h); nothing is sent anywhere.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -19,6 +21,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed. `pictures` is the most frames that go into the
+// archive.
 struct ReportBugFlags {
   std::string clip;
   AnalyzeFlags analyze;
@@ -28,7 +32,8 @@ struct ReportBugFlags {
   bool yes = false;
 };
 
-// The flags of `analyze` as they were typed: all but the command's own.
+// Returns the flags of `analyze` as they were typed, all but this command's
+// own, so that the process that analyses gets the same line.
 std::vector<std::string> ListTyped(const CLI::App& command) {
   const std::set<std::string> own = {"CLIP", "--out", "--pictures", "--yes"};
   std::vector<std::string> typed;
@@ -40,6 +45,9 @@ std::vector<std::string> ListTyped(const CLI::App& command) {
   return typed;
 }
 
+// Asks on stderr whether the archive may be written, and reads the answer from
+// stdin; anything but y or yes means no. Throws std::invalid_argument where
+// stdin ends: a script must say --yes.
 bool IsWanted(const ReportBugFlags& flags) {
   if (flags.yes) return true;
   Tell(fmt::format("write these into {}? [y/N]", flags.out));
@@ -51,6 +59,8 @@ bool IsWanted(const ReportBugFlags& flags) {
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
+// Shows what the archive would hold, asks, and writes it. Returns 0, also where
+// the answer was no.
 int RunReportBug(const ReportBugFlags& flags) {
   ToOptions(flags.analyze);  // what is wrong is said before all else
   pipeline::BugOptions options;
@@ -63,6 +73,7 @@ int RunReportBug(const ReportBugFlags& flags) {
   options.doctor.today = pipeline::Today();
   options.doctor.now = std::chrono::system_clock::now();
   const std::vector<pipeline::BugFile> files = pipeline::CollectBug(options);
+  // Sizes are rounded up: a small file is not shown as 0 kB.
   constexpr std::size_t kKilobyte = 1000;
   for (const pipeline::BugFile& file : files) {
     fmt::print("{:<28} {:>8} kB  {}\n", Printable(file.name),
@@ -71,6 +82,7 @@ int RunReportBug(const ReportBugFlags& flags) {
   fmt::print(
       "These show what the camera saw, names of files and what machine this "
       "is. Nothing is sent.\n");
+  // The question refers to the list, which must be on the screen before it.
   RequireStdoutWritten();
   if (!IsWanted(flags)) {
     Tell("nothing was written");

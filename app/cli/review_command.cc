@@ -1,4 +1,6 @@
-// touchdown review: the local page on which a person looks at trials.
+// touchdown review: serves the local page on which a person looks at trials,
+// until Ctrl-C. This file has the flags, the signals and the browser; the page
+// itself is app/review.
 #include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
@@ -24,6 +26,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed. Port 0 lets the server choose; an empty `reports`
+// is the folder `report` beside the store.
 struct ReviewFlags {
   std::string db;
   int port = 0;
@@ -35,6 +39,8 @@ struct ReviewFlags {
   std::string corner;
 };
 
+// Serves the page until SIGINT or SIGTERM; returns 0. Throws core::StoreError
+// where the store cannot be opened, core::InputError where the port is taken.
 int RunReview(const ReviewFlags& flags) {
   if (flags.port < 0 || flags.port > 65535) {
     throw std::invalid_argument(
@@ -48,6 +54,7 @@ int RunReview(const ReviewFlags& flags) {
           ? std::filesystem::absolute(flags.db).parent_path() / "report"
           : std::filesystem::path(flags.reports);
   options.recordings.assign(flags.recordings.begin(), flags.recordings.end());
+  // The page shows the next angle, which a rig's reach limits as in `next`.
   if (!flags.rig.empty()) {
     std::optional<core::Corner> corner;
     if (!flags.corner.empty()) {
@@ -73,16 +80,21 @@ int RunReview(const ReviewFlags& flags) {
                        ? ""
                        : " (not there yet: the page makes it with the first "
                          "answer that is kept)"));
+  // The file by which the browser finds the page lives as long as the server. A
+  // machine without a desktop has the address on stdout alone.
   std::optional<BrowserPage> page;
   if (!flags.no_open && HasDesktop()) {
     page.emplace(server.address());
     if (!page->path().empty()) page->Show();
   }
+  // A thread of its own waits for the signal: Stop() may be called from any
+  // thread, but a handler of signals may call next to nothing.
   std::atomic<bool> ended = false;
   std::thread waiter([&] {
     int signal = 0;
     sigwait(&signals, &signal);
-    // Requests that are answered may take long: an analysis does.
+    // A request that is being answered may take long, such as an analysis; the
+    // process ends soon in any case.
     if (!ended) EndSoon(signal);
     server.Stop();
   });

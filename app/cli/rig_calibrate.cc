@@ -1,4 +1,6 @@
-// touchdown rig calibrate
+// touchdown rig calibrate finds the stiffness from measured forces, the
+// efficiency and losses from measured launch speeds. Each part reads a CSV,
+// fits (rig/calibrate.h) and prints the line that belongs into rig.toml.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -19,6 +21,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed. `force` and `speeds` are CSV files, of which one
+// may be missing; `rig` gives what the fit of the efficiency takes as known.
 struct CalibrateFlags {
   RigFlags rig;
   std::string force, speeds, losses = "per-shot";
@@ -26,12 +30,17 @@ struct CalibrateFlags {
   bool json = false;
 };
 
+// Returns the number of a column with the u of "u_" + column; u = 0 where that
+// column is missing, which the fit takes as not stated.
 core::Estimate Measured(const CaseRow& row, const std::string& column) {
   return {row.Number(column), row.OptionalNumber("u_" + column).value_or(0.0),
           std::nullopt};
 }
 
+// Fits F = F0 + H X to the forces and prints H, or adds it to `out`. A fit that
+// the points do not allow is an answer with its reason, not an error.
 void CalibrateStiffness(const CalibrateFlags& flags, Json& out) {
+  // No column is required here: Number() names the one that is missing.
   const CaseTable table = ReadCases(flags.force, {});
   std::vector<rig::ForcePoint> points;
   for (const CaseRow& row : table.rows) {
@@ -72,6 +81,7 @@ void CalibrateStiffness(const CalibrateFlags& flags, Json& out) {
       fit->stiffness_n_per_m.value, fit->stiffness_n_per_m.u);
 }
 
+// Returns what is fitted besides the efficiency. Throws std::invalid_argument.
 rig::LossModel ParseLosses(const std::string& word) {
   if (word == "none") return rig::LossModel::kNone;
   if (word == "per-shot") return rig::LossModel::kPerShot;
@@ -80,10 +90,14 @@ rig::LossModel ParseLosses(const std::string& word) {
       "--losses is \"{}\", must be none, per-shot or friction", word));
 }
 
+// Fits the efficiency, and with it a loss per shot or the barrel's friction, to
+// the launch speeds. Prints it or adds it to `out`.
 void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
   rig::EfficiencyFitOptions options;
   options.losses = ParseLosses(flags.losses);
   const rig::Description rig = MakeDescription(flags.rig);
+  // Without rig.toml the mass would be a default of the description, and the
+  // efficiency would be wrong.
   if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
     throw std::invalid_argument("--mass-g is missing: the mass of the body");
   }
@@ -95,6 +109,8 @@ void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
     options.u_stiffness_rel =
         stiffness.first_order->u / stiffness.first_order->value;
   }
+  // A third of the springs' mass moves with the body (Rayleigh, rig/launch.h);
+  // the relative u of the whole moving mass enters the fit.
   const double moving_kg = launch.mass_kg + launch.spring_mass_kg / 3.0;
   const double u_springs_kg =
       rig.springs.mass_kg ? rig.springs.mass_kg->u : 0.0;
@@ -134,6 +150,7 @@ void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
   }
   fmt::print("{}{}", ValueLine("efficiency", fit->efficiency, 1.0, ""),
              ValueLine("eta H", fit->effective_stiffness_n_per_m, 1.0, "N/m"));
+  // Of the losses only the one that was fitted has a number.
   if (options.losses == rig::LossModel::kPerShot) {
     fmt::print("{}", ValueLine("loss per shot", fit->loss_j, 1.0, "J"));
   }
@@ -150,6 +167,7 @@ void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
       fit->efficiency.value, fit->efficiency.u);
 }
 
+// Runs the parts whose CSV was given, stiffness first. Returns 0.
 int RunCalibrate(const CalibrateFlags& flags) {
   if (flags.force.empty() && flags.speeds.empty()) {
     throw std::invalid_argument(

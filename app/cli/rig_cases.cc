@@ -1,3 +1,6 @@
+// One row of the case file becomes a Case, and each Add...() appends some
+// columns of the answer. The columns are named as in the reference cases, so
+// that the two files can be compared cell by cell.
 #include "app/cli/rig_cases.h"
 
 #include <fmt/core.h>
@@ -23,9 +26,12 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Name and text of one cell of the result.
+// Each pair is the name of a column and the text of its cell.
 using Cells = std::vector<std::pair<std::string_view, std::string>>;
 
+// Holds one rig, in SI: springs, launch, relative uncertainties of their
+// values, the compression beyond the preload, and the fall from muzzle to
+// ground.
 struct Case {
   rig::Spring spring;
   rig::SpringLimits limits;
@@ -35,6 +41,8 @@ struct Case {
   double drop_m = 0.0;
 };
 
+// Reads the columns of a row. Throws core::InputError for a cell that is no
+// number, std::invalid_argument for a number that no rig has.
 Case ReadCase(const CaseRow& row) {
   const auto number = [&](std::string_view column) {
     return row.Number(column);
@@ -48,6 +56,7 @@ Case ReadCase(const CaseRow& row) {
   c.spring.total_coils = number("n_total");
   c.spring.density_kg_per_m3 = number("rho_spring");
   const double count = number("n_springs");
+  // The count becomes an int: a larger one is a mistake of the file.
   constexpr double kMost = 1000.0;
   if (!(count >= 1.0 && count <= kMost) || count != std::floor(count)) {
     throw std::invalid_argument(fmt::format(
@@ -58,6 +67,7 @@ Case ReadCase(const CaseRow& row) {
   c.limits.free_length_m = row.OptionalNumber("L0_m");
   c.compression_m = number("X");
   c.drop_m = number("h0");
+  // Eq. (11) with the mean diameter: the cases have no measured stiffness.
   c.launch.stiffness_n_per_m = rig::Stiffness(c.spring);
   c.launch.spring_mass_kg = rig::SpringMass(c.spring);
   c.launch.mass_kg = number("m");
@@ -75,17 +85,23 @@ Case ReadCase(const CaseRow& row) {
   return c;
 }
 
+// 17 digits give back the same double; what does not exist is "nan".
 void AddNumber(Cells& cells, std::string_view name, double value) {
   cells.emplace_back(name,
                      std::isnan(value) ? "nan" : fmt::format("{:.17g}", value));
 }
 
+// Returns the speed at the muzzle, or NaN where the body does not leave it.
 double SpeedOrNan(const rig::Launch& launch, double compression_m) {
   const auto muzzle = rig::LaunchSpeed(launch, compression_m);
   return muzzle ? muzzle->speed_mps : kNan;
 }
 
+// Adds the stiffness by both readings of Eq. (11), stresses at the whole
+// compression, clearance, mass and energy.
 void AddSpring(const Case& c, const rig::SpringReport& report, Cells& cells) {
+  // whole_m counts from the free length: the springs are compressed by the
+  // preload already.
   const double whole_m = c.launch.preload_m + c.compression_m;
   AddNumber(cells, "H_outer_literal", report.stiffness_as_printed_n_per_m);
   AddNumber(cells, "H_mean", report.stiffness_n_per_m);
@@ -112,6 +128,8 @@ void AddSpring(const Case& c, const rig::SpringReport& report, Cells& cells) {
                 (c.compression_m + 2.0 * c.launch.preload_m));
 }
 
+// Adds the launch speed by Eq. (10) and by the energy balance, and the flight
+// from the muzzle to the ground.
 void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   const double x = c.compression_m;
   AddNumber(cells, "v_eq10_outer",
@@ -120,7 +138,8 @@ void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   AddNumber(
       cells, "v_eq10_mean",
       rig::IdealLaunchSpeed(x, report.stiffness_n_per_m, c.launch.mass_kg));
-  // One correction of Eq. (10) at a time (with the preload), then all.
+  // The first two columns have one correction of Eq. (10) each, beside the
+  // preload; v_full has all.
   rig::Launch one;
   one.stiffness_n_per_m = c.launch.stiffness_n_per_m;
   one.mass_kg = c.launch.mass_kg;
@@ -133,6 +152,7 @@ void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   AddNumber(cells, "v_spring_mass", SpeedOrNan(one, x));
   const double speed = SpeedOrNan(c.launch, x);
   AddNumber(cells, "v_full", speed);
+  // A body that does not leave the muzzle has no flight: all columns are NaN.
   rig::Flight flight{kNan, kNan, kNan, kNan, kNan, kNan};
   if (!std::isnan(speed)) {
     flight = rig::Fly(speed, c.launch.elevation_rad, c.drop_m,
@@ -145,12 +165,16 @@ void AddLaunch(const Case& c, const rig::SpringReport& report, Cells& cells) {
   AddNumber(cells, "range", flight.range_m);
 }
 
+// Adds the relative u of the ideal launch speed three times: to first order
+// with the mean diameter, as the paper prints it, and by Monte Carlo.
 void AddUncertainty(const Case& c, const RigCasesOptions& options,
                     Cells& cells) {
   const rig::IdealSpeedU gum = rig::IdealSpeedUncertainty(c.spring, c.u);
   AddNumber(cells, "u_rel_GUM_mean", gum.u_rel);
   AddNumber(cells, "u_rel_GUM_outer", rig::PrintedSpeedUncertainty(c.u).u_rel);
   AddNumber(cells, "bias_rel_2nd_order", gum.bias_rel);
+  // Each row has a generator of its own, so that a row gives the same answer in
+  // any file.
   std::mt19937_64 engine(options.seed);
   const rig::MonteCarloRun run =
       rig::IdealSpeedMonteCarlo(c.spring, c.u, options.draws, engine);
@@ -163,6 +187,8 @@ void AddUncertainty(const Case& c, const RigCasesOptions& options,
   AddNumber(cells, "MC_q97.5_over_v", mc.interval95.high);
 }
 
+// Adds whether the body leaves the muzzle, whether the springs bear it, and
+// every warning in one cell.
 void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {
   std::vector<rig::Finding> findings = report.findings;
   const auto muzzle = rig::LaunchSpeed(c.launch, c.compression_m);
@@ -182,6 +208,7 @@ void AddFindings(const Case& c, const rig::SpringReport& report, Cells& cells) {
   cells.emplace_back("findings", report::CsvCell(text));
 }
 
+// Returns all columns of the answer to one row, in the order of the result.
 Cells Evaluate(const CaseRow& row, const RigCasesOptions& options) {
   const Case c = ReadCase(row);
   const rig::SpringReport report = rig::CheckSpring(
@@ -203,6 +230,7 @@ std::string RigCases(const std::string& path, const RigCasesOptions& options) {
   for (const CaseRow& row : table.rows) {
     Cells cells;
     row.Answer([&] { cells = Evaluate(row, options); });
+    // The header follows from the first answer: all rows have the same columns.
     if (out.empty()) {
       for (const auto& [name, text] : cells) {
         out += fmt::format("{}{}", out.empty() ? "" : ",", name);

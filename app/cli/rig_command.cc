@@ -1,4 +1,5 @@
-// touchdown rig spring|launch|plan|calibrate|example
+// touchdown rig spring|launch|plan|calibrate|example: puts the parts together,
+// each of which has its own source.
 #include <fmt/core.h>
 
 #include <stdexcept>
@@ -15,6 +16,7 @@ void AddDrawFlags(CLI::App& app, DrawFlags& flags) {
 }
 
 void RequireDraws(std::size_t draws) {
+  // With two draws there is a standard deviation; the upper limit is memory.
   constexpr std::size_t kMost = 100'000'000;  // 800 MB a column
   if (draws < 2 || draws > kMost) {
     throw std::invalid_argument(

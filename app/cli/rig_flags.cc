@@ -1,3 +1,6 @@
+// Makes a description of the rig from rig.toml, from flags, or from the file
+// with single values replaced by flags. Flags bear the unit of their name; the
+// description is SI.
 #include "app/cli/rig_flags.h"
 
 #include <fmt/core.h>
@@ -24,11 +27,16 @@ void TakeEstimate(To& to, const char* flag, const std::string& text,
   if (!text.empty()) to = ParseEstimate(flag, text, unit);
 }
 
+// Puts the typed geometry of the springs into `springs`. Where there is a
+// geometry already, the typed values replace its own. Where there is none, all
+// five must be typed, unless none is and a measured stiffness serves. Throws
+// std::invalid_argument naming the first that is missing.
 void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
   const bool any = !flags.shear_modulus_gpa.empty() || !flags.wire_mm.empty() ||
                    !flags.coil_mm.empty() || !flags.coil_diameter.empty() ||
                    !flags.active_coils.empty();
   if (!any && (springs.geometry || springs.stiffness_n_per_m)) return;
+  // Without a geometry to correct, each value must come from a flag.
   const bool fresh = !springs.geometry;
   rig::SpringGeometry geometry =
       springs.geometry.value_or(rig::SpringGeometry{});
@@ -48,6 +56,8 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
     need("--coil-diameter", flags.coil_diameter);
     need("--active-coils", flags.active_coils);
   }
+  // The coils that do not act keep their number when the active ones change: 2
+  // for closed ends (rig/spring.h), or what rig.toml implies.
   const double dead =
       fresh ? 2.0 : geometry.total_coils - geometry.active_coils.value;
   TakeEstimate(geometry.shear_modulus_pa, "--shear-modulus-gpa",
@@ -76,6 +86,8 @@ void TakeGeometry(const RigFlags& flags, rig::Springs& springs) {
 
 }  // namespace
 
+// Defaults stand in brackets in the help, "[2]": they belong to the description
+// and apply only where neither flag nor file says otherwise.
 Option AddSpringFlags(CLI::App& app, RigFlags& flags) {
   const Option rig =
       AddOption(app, "--rig", flags.rig,
@@ -118,18 +130,21 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags) {
 
 rig::Description MakeDescription(const RigFlags& flags) {
   rig::Description out;
+  // The file comes first, so that every flag below corrects it.
   if (!flags.rig.empty()) out = rig::ReadDescription(flags.rig);
   rig::Springs& springs = out.springs;
   const bool typed_stiffness = !flags.stiffness_n_per_m.empty();
   TakeEstimate(springs.stiffness_n_per_m, "--stiffness-n-per-m",
                flags.stiffness_n_per_m, 1.0);
   TakeGeometry(flags, springs);
-  // Both typed: the measured one is used, as in rig.toml.
+  // Where both are typed, the measured one is used, as in rig.toml.
   if (typed_stiffness) {
     springs.stiffness_n_per_m =
         ParseEstimate("--stiffness-n-per-m", flags.stiffness_n_per_m, 1.0);
   }
   if (flags.count) springs.count = *flags.count;
+  // These two mean something only with a geometry; beside a measured stiffness
+  // alone they are passed over.
   if (springs.geometry) {
     rig::SpringGeometry& geometry = *springs.geometry;
     if (flags.total_coils) geometry.total_coils = *flags.total_coils;
@@ -152,6 +167,8 @@ rig::Description MakeDescription(const RigFlags& flags) {
                1.0);
   TakeEstimate(out.loss_j, "--loss-j", flags.loss_j, 1.0);
   TakeEstimate(out.gravity_mps2, "--gravity-mps2", flags.gravity_mps2, 1.0);
+  // Takes a u alone, of a setting whose value is not part of the description.
+  // NaN and infinity are refused with the negative ones.
   const auto take_u = [](const char* flag, const std::optional<double>& given,
                          double unit, double& to) {
     if (!given) return;

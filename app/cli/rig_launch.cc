@@ -1,4 +1,6 @@
-// touchdown rig launch
+// touchdown rig launch gives the speed that a compression gives, or the
+// compression for a wanted speed, by Eq. (10) and by the energy balance; with a
+// muzzle height also the flight and the contact.
 #include <fmt/core.h>
 
 #include <memory>
@@ -16,6 +18,7 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed. Without `height_mm` nothing is said of the flight.
 struct LaunchFlags {
   RigFlags rig;
   DrawFlags draw;
@@ -24,6 +27,8 @@ struct LaunchFlags {
   bool json = false;
 };
 
+// Answers `rig launch`. Returns 0 even where the body does not leave the
+// muzzle: that is an answer, with the energy balance as its reason.
 int RunLaunch(const LaunchFlags& flags) {
   RequireDraws(flags.draw.draws);
   if (flags.compression_mm.has_value() == flags.speed_mps.has_value()) {
@@ -32,6 +37,7 @@ int RunLaunch(const LaunchFlags& flags) {
         "compression?)");
   }
   rig::Description rig = MakeDescription(flags.rig);
+  // A default mass would give a wrong speed without a word.
   if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
     throw std::invalid_argument("--mass-g is missing: the mass of the body");
   }
@@ -40,6 +46,8 @@ int RunLaunch(const LaunchFlags& flags) {
   setting.elevation_rad = flags.elevation_deg * core::kDegree;
   setting.muzzle_height_m = flags.height_mm.value_or(0.0) * core::kMillimetre;
   const rig::Launch launch = rig::MakeLaunch(rig, setting.elevation_rad);
+  // SolveCompression() answers always; whether the springs bear it is among the
+  // findings below.
   setting.compression_m = flags.compression_mm
                               ? *flags.compression_mm * core::kMillimetre
                               : rig::SolveCompression(launch, *flags.speed_mps);
@@ -68,6 +76,8 @@ int RunLaunch(const LaunchFlags& flags) {
                : Json(nullptr);
     out["allowed"] = rig::Allowed(contact.findings);
     Json predicted = PredictionJson(contact);
+    // Predict() was given height 0 for want of one: what it says of the flight
+    // is taken out, each field with its reason.
     if (!flags.height_mm) {
       for (const char* name :
            {"impact_speed_mps", "approach_angle_deg", "flight_time_s",
@@ -90,6 +100,8 @@ int RunLaunch(const LaunchFlags& flags) {
   } else {
     fmt::print("{}", PredictionText(contact, flags.height_mm.has_value()));
     fmt::print("{}", ValueLine("ideal speed, Eq. (10)", ideal, "m/s"));
+    // The line balances: left of the sign the springs' energy, right of it all
+    // that it became.
     const rig::EnergyBalance& e = muzzle->energy;
     fmt::print(
         "  energy, J: springs {:.4g} = losses {:.4g} + gravity {:.4g} + "

@@ -1,4 +1,5 @@
-// touchdown rig plan
+// touchdown rig plan gives for each wanted contact angle the settings that give
+// it at the wanted speed, or why there are none.
 #include <fmt/core.h>
 
 #include <memory>
@@ -17,6 +18,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed. `height_mm` holds the muzzle height; without it the
+// plan chooses one.
 struct PlanFlags {
   RigFlags rig;
   DrawFlags draw;
@@ -28,8 +31,11 @@ struct PlanFlags {
   bool json = false;
 };
 
+// Returns what is wanted of every contact, but for the angle, which is set for
+// each in turn. Throws std::invalid_argument for an unknown word.
 rig::ContactWish MakeWish(const PlanFlags& flags, const rig::Description& rig) {
   rig::ContactWish wish;
+  // A rig without a body throws a point, which lands as a sphere does.
   wish.kind = core::DefaultAngleKind(rig.body ? rig.body->kind
                                               : core::BodyKind::kSphere);
   if (!flags.angle_kind.empty()) {
@@ -57,11 +63,13 @@ rig::ContactWish MakeWish(const PlanFlags& flags, const rig::Description& rig) {
   return wish;
 }
 
-// "20 deg: elevation ..., lands at 20.0 +- 0.4 deg": one line for each angle,
-// and one for each thing to look at.
+// Returns one line with the settings and where the body lands, "20 deg:
+// elevation ..., lands at 20.0 +- 0.4 deg", and one for each finding. `all`
+// adds everything that was predicted.
 std::string PlanText(double angle_deg, core::AngleKind kind,
                      const rig::SetPoint& point, bool all) {
   const rig::ContactPrediction& contact = point.contact;
+  // This is the predicted angle of the kind that was asked for.
   const rig::Predicted& angle =
       kind == core::AngleKind::kApproach ? contact.approach_angle_rad
       : kind == core::AngleKind::kRadius ? contact.radius_angle_rad
@@ -81,11 +89,15 @@ std::string PlanText(double angle_deg, core::AngleKind kind,
          FindingsText(contact.findings);
 }
 
+// Plans each angle in the order given. Returns 0: an angle that the rig cannot
+// throw is refused in its own line and stops nothing.
 int RunPlan(const PlanFlags& flags) {
   RequireDraws(flags.draw.draws);
   const rig::Description rig = MakeDescription(flags.rig);
   rig::ContactWish wish = MakeWish(flags, rig);
   const std::string kind(core::Name(wish.kind));
+  // One generator serves all angles: the same line repeated gives the same
+  // bytes, while an angle alone may draw other numbers than among others.
   std::mt19937_64 engine(flags.draw.seed);
   Json out{{"schema", "touchdown.rig.plan/1"},
            {"rig", rig.name},

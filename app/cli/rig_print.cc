@@ -1,3 +1,5 @@
+// Each number appears in the unit that its key or heading names: `per_si` is
+// how many of that unit make one SI unit.
 #include "app/cli/rig_print.h"
 
 #include <fmt/core.h>
@@ -16,6 +18,8 @@ constexpr double kPerMm = 1e3;
 constexpr double kPerMpa = 1e-6;
 constexpr double kPerGram = 1e3;
 
+// Puts one prediction under `name`: first order with u and budget, Monte Carlo
+// where it was run. An absent one is null, and its reason goes into `absent`.
 void PutPredicted(Json& to, Json& absent, const char* name,
                   const rig::Predicted& value, double per_si) {
   if (!value.first_order) {
@@ -34,6 +38,7 @@ void PutPredicted(Json& to, Json& absent, const char* name,
     out["first_order_valid"] = value.first_order_valid;
   } else {
     out["monte_carlo"] = nullptr;
+    // The draws may be absent where the first order is not.
     absent[std::string(name) + ".monte_carlo"] =
         value.monte_carlo.error().reason;
   }
@@ -44,6 +49,7 @@ void PutPredicted(Json& to, Json& absent, const char* name,
   to[name] = std::move(out);
 }
 
+// Returns a number in the unit of its key, or null where there is none.
 Json OrNull(const std::optional<double>& value, double per_si) {
   return value ? Json(*value * per_si) : Json(nullptr);
 }
@@ -92,6 +98,8 @@ Json PredictionJson(const rig::ContactPrediction& c) {
   PutPredicted(out, absent, "range_mm", c.range_m, kPerMm);
   out["corner"] =
       c.corner ? Json(std::string(core::Name(*c.corner))) : Json(nullptr);
+  // Without an attitude there is no corner; with one, none is first where the
+  // contact point lies straight below the centre.
   if (!c.corner) {
     absent["corner"] = c.face_angle_rad.first_order
                            ? "a corner straight below the centre"
@@ -106,8 +114,10 @@ Json PredictionJson(const rig::ContactPrediction& c) {
 
 std::string Rounded(const core::Estimate& e) {
   if (!(e.u > 0.0)) return fmt::format("{:.6g}", e.value);
+  // This is the decimal place of the first digit of u: -2 for 0.03.
   const int place = static_cast<int>(std::floor(std::log10(e.u)));
   const int decimals = std::max(0, 1 - place);
+  // A double has no more to show: both numbers then have their own digits.
   if (decimals > 12) return fmt::format("{:.12g} +- {:.2g}", e.value, e.u);
   return fmt::format("{:.{}f} +- {:.{}f}", e.value, decimals, e.u, decimals);
 }
@@ -133,6 +143,7 @@ std::string ValueLine(std::string_view name, const rig::Predicted& value,
       fmt::format("  {:<22}{:<22}", name,
                   Rounded(core::Scaled(*value.first_order, per_si)) + " " +
                       std::string(unit));
+  // Without uncertain inputs every draw is the same: nothing to add.
   if (value.monte_carlo && value.monte_carlo->u > 0.0) {
     const rig::MonteCarlo& mc = *value.monte_carlo;
     out +=
@@ -141,6 +152,7 @@ std::string ValueLine(std::string_view name, const rig::Predicted& value,
                     mc.interval95.low * per_si, mc.interval95.high * per_si,
                     value.first_order_valid ? "" : "  (not normal: use this)");
   }
+  // A number without a unit would leave a blank at the line's end.
   while (out.back() == ' ') out.pop_back();
   return out + '\n';
 }
@@ -163,6 +175,8 @@ std::string FindingsText(const std::vector<rig::Finding>& findings) {
   return out;
 }
 
+// Returns the lines below the stiffness; what needs a free length is left out
+// where none was given.
 std::string SpringText(const rig::SpringReport& r) {
   std::string out;
   out += ValueLine("of one spring", r.stiffness_of_one_n_per_m, "N/m");
@@ -189,6 +203,7 @@ std::string PredictionText(const rig::ContactPrediction& c, bool with_flight) {
   if (!with_flight) return out;
   out += ValueLine("impact speed", c.impact_speed_mps, 1.0, "m/s");
   out += ValueLine("approach angle", c.approach_angle_rad, kPerDegree, "deg");
+  // Only a rectangle has these two.
   if (c.face_angle_rad.first_order) {
     out += ValueLine("radius angle", c.radius_angle_rad, kPerDegree, "deg");
     out += ValueLine("face angle", c.face_angle_rad, kPerDegree, "deg");

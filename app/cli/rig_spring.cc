@@ -1,4 +1,5 @@
-// touchdown rig spring
+// touchdown rig spring gives the springs' stiffness by Eq. (11), stress,
+// clearance and surge, for one rig or for a file of them (--cases).
 #include <fmt/core.h>
 
 #include <memory>
@@ -17,6 +18,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed; `cases` is a CSV that is answered in place of the
+// flags.
 struct SpringFlags {
   RigFlags rig;
   DrawFlags draw;
@@ -25,8 +28,12 @@ struct SpringFlags {
   bool json = false;
 };
 
+// Answers `rig spring`. Returns 0; what the springs do not bear is among the
+// findings. `app` tells which flags were given.
 int RunSpring(const SpringFlags& flags, const CLI::App& app) {
   if (!flags.cases.empty()) {
+    // A case file has draws and seed of its own, those of the reference cases,
+    // unless the user typed others.
     RigCasesOptions options;
     for (const GivenOption& option : ListGiven(app)) {
       if (option.name == "--draws") options.draws = flags.draw.draws;
@@ -39,6 +46,8 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
   RequireDraws(flags.draw.draws);
   const rig::Description rig = MakeDescription(flags.rig);
   const auto spring = rig::MakeSpring(rig.springs);
+  // Without --compression-mm the springs are checked at the greatest travel of
+  // rig.toml, or at the preload alone.
   const double travel_m = flags.compression_mm
                               ? *flags.compression_mm * core::kMillimetre
                               : rig.compression_max_m.value_or(0.0);
@@ -47,6 +56,7 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
   limits.free_length_m = rig.springs.free_length_m;
   limits.allowable_shear_pa = rig.springs.allowable_shear_pa;
   std::optional<rig::SpringReport> report;
+  // A measured stiffness without a geometry has no stress and no clearance.
   if (spring) report = rig::CheckSpring(*spring, whole_m, limits);
   const std::vector<rig::Finding> findings =
       rig::CheckCompression(rig, travel_m);
@@ -55,6 +65,8 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
   const rig::Predicted stiffness =
       rig::PredictStiffness(rig, {flags.draw.draws}, engine);
   if (flags.json) {
+    // PredictionJson() writes a stiffness together with its absences, so it is
+    // wrapped into a prediction that holds nothing else.
     rig::ContactPrediction only;
     only.stiffness_n_per_m = stiffness;
     Json out{{"schema", "touchdown.rig.spring/1"},

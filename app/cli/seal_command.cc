@@ -1,3 +1,6 @@
+// A seal is made from the store, written to a file and signed by a program of
+// the user's. `db check --against` reads it again. The order in MakeSeal()
+// matters: all that can be refused is refused before a file exists.
 #include "app/cli/seal_command.h"
 
 #include <fmt/format.h>
@@ -28,12 +31,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Holds the flags as typed; without `out` only the head is printed.
 struct SealFlags {
   std::string db;
   std::string out;
   std::string key;
 };
 
+// Returns the bytes of a key or a seal. Throws core::InputError.
 std::string Contents(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in || fs::is_directory(path)) {
@@ -46,14 +51,17 @@ std::string Contents(const fs::path& path) {
 
 // --- signing -----------------------------------------------------------------
 
-// A program that signs files, and how its signature is verified.
+// Describes a program that signs files: how it is called, which file it writes,
+// and the command by which others verify that.
 struct Signer {
   std::vector<std::string> command;
   std::string signature;  // the file that it writes
   std::string verify;
 };
 
-// By what the key's file begins with.
+// Returns the signer for a private key; the text of the key's file tells whose
+// it is. Throws core::InputError where the key cannot be read,
+// std::invalid_argument where it is of none of the three programs.
 Signer ChooseSigner(const std::string& key, const std::string& file) {
   const std::string text = Contents(key);
   if (text.starts_with("untrusted comment:")) {
@@ -81,10 +89,13 @@ Signer ChooseSigner(const std::string& key, const std::string& file) {
       key));
 }
 
-// The signer may ask for a passphrase; what it says goes to stderr.
+// Runs the signer and waits for it. It has the terminal, since it may ask for a
+// passphrase; what it prints goes to stderr, because stdout is for the head
+// alone. Throws core::OutputError where it cannot be started or does not sign.
 void RunSigner(const std::vector<std::string>& command) {
   std::vector<char*> words;
   for (const std::string& word : command) {
+    // posix_spawn does not change the words, though its type does not say so.
     words.push_back(const_cast<char*>(word.c_str()));
   }
   words.push_back(nullptr);
@@ -102,6 +113,7 @@ void RunSigner(const std::vector<std::string>& command) {
                     command[0], std::strerror(trouble)));
   }
   int status = 0;
+  // A signal may end the wait before the child is done.
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
@@ -112,12 +124,15 @@ void RunSigner(const std::vector<std::string>& command) {
 
 // --- commands ----------------------------------------------------------------
 
+// Seals what the store holds. Prints the head on stdout; with --out writes the
+// whole seal and, with --key, its signature. Returns 0.
 int MakeSeal(const SealFlags& flags) {
   if (!flags.key.empty() && flags.out.empty()) {
     throw std::invalid_argument("--key signs a file: give --out FILE, too");
   }
   std::optional<Signer> signer;
   if (!flags.key.empty()) signer = ChooseSigner(flags.key, flags.out);
+  // Neither seal nor signature may replace one that is kept.
   for (const std::string& file :
        {flags.out, signer ? signer->signature : std::string()}) {
     if (!file.empty() && fs::exists(file)) {
@@ -129,6 +144,8 @@ int MakeSeal(const SealFlags& flags) {
   const db::Seal seal = db::MakeSeal(store);
   if (!flags.out.empty()) {
     report::WriteTextFile(flags.out, db::SealText(seal));
+    // Without the signature that was asked for the seal goes again: it would
+    // look as if it had been left unsigned on purpose.
     try {
       if (signer) RunSigner(signer->command);
     } catch (...) {
@@ -153,6 +170,8 @@ int MakeSeal(const SealFlags& flags) {
 
 void CheckSeal(const db::Store& store, const std::string& seal) {
   db::Seal sealed;
+  // The text of a head, "UUID:LINKS:SHA256", is no name of a file in practice,
+  // so it is tried first.
   if (const auto head = db::ParseHead(seal)) {
     sealed.head = *head;
   } else if (std::error_code ignored; fs::exists(seal, ignored)) {

@@ -1,4 +1,8 @@
-// session: a technician at the rig, a folder that recordings appear in.
+// touchdown session serves a technician at the rig, and a folder that
+// recordings appear in. The session itself (app/session) knows neither terminal
+// nor signals. This file gives it both: TerminalLines reads what is typed,
+// FolderWatch wakes when files change, Serve() hands over lines and recordings
+// in turn, and the handlers of signals stop the rig before anything else.
 #include <fmt/format.h>
 
 #include <array>
@@ -37,6 +41,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Holds the flags as typed. `driver` is "manual" or a serial port; `quiet_s` is
+// how long, in seconds, a recording must not grow to count as complete.
 struct SessionFlags {
   std::string db;
   std::string campaign;
@@ -56,20 +62,24 @@ struct SessionFlags {
   ConditionFlags conditions;
 };
 
-// For the handlers of signals.
+// The handlers of signals share this state with Serve(). A handler sets
+// session_ended where the session is to end.
 volatile std::sig_atomic_t session_ended = 0;
 volatile std::sig_atomic_t rig_stopped = 0;  // and nobody was told
-// When it was, for the lines that were typed before.
+// Holds the instant of that stop: a line typed before it must not act after it.
 std::atomic<std::chrono::steady_clock::time_point> rig_stopped_at;
+// An analysis runs, and may not look at session_ended for seconds.
 volatile std::sig_atomic_t analysing_shot = 0;
+// Points to the rig's controller while a Driving lives; null with a rig that is
+// set by hand.
 std::atomic<rig::Driver*> driven_rig = nullptr;
 static_assert(std::atomic<rig::Driver*>::is_always_lock_free &&
               decltype(rig_stopped_at)::is_always_lock_free);
 
 // Whatever the signal, a rig that moves is stopped first. Ctrl-C does no more
-// than that while there is something to stop; the next one ends the session,
-// and what it analyses with it: the recording is taken when it is started
-// again.
+// than that while there is something to stop; the next one ends the session. An
+// analysis that runs then ends with the process; its recording is taken when
+// the session is started again.
 void OnSessionSignal(int signal) {
   rig::Driver* const driver = driven_rig.load();
   const bool moves = driver != nullptr && !driver->is_stopped();
@@ -83,8 +93,8 @@ void OnSessionSignal(int signal) {
   if (analysing_shot != 0) EndSoon(signal);
 }
 
-// Of a defect, or from outside: the rig is stopped, then the signal does what
-// it does.
+// For signals of a defect (SIGSEGV, SIGABRT ...): the rig is stopped, then the
+// signal does what it does by default, such as write a core file.
 void OnFault(int signal) {
   if (rig::Driver* const driver = driven_rig.load()) driver->Stop();
   struct sigaction action = {};
@@ -97,6 +107,8 @@ void OnFault(int signal) {
 constexpr std::size_t kFaultStack_bytes = 64 << 10;
 alignas(16) std::array<char, kFaultStack_bytes> fault_stack;
 
+// Takes SIGINT and SIGTERM over from interruption.h, and catches the others
+// that end a process: each must stop the rig first.
 void CatchSessionSignals() {
   struct sigaction action = {};
   action.sa_handler = OnSessionSignal;
@@ -117,8 +129,9 @@ void CatchSessionSignals() {
   }
 }
 
-// While it lives, signals and the line `stop` stop the rig, its state is told
-// whenever it changes, and its controller hears that the program lives.
+// While a Driving lives, signals and the line `stop` stop the rig, each change
+// of its state is printed, and its controller hears that the program lives:
+// without that heartbeat the hardware stops by itself.
 class Driving {
  public:
   explicit Driving(rig::Driver& driver)
@@ -133,6 +146,8 @@ class Driving {
   Driving& operator=(const Driving&) = delete;
 
  private:
+  // Makes the driver known to the handlers before the monitor's first question,
+  // from within the list of initialisers.
   static rig::Driver& Announced(rig::Driver& driver) {
     driven_rig = &driver;
     return driver;
@@ -140,6 +155,9 @@ class Driving {
   rig::DriverMonitor monitor_;
 };
 
+// Returns the daily check shot: a drop whose speed and angle are known without
+// a camera. Throws std::invalid_argument where the body has no size or the
+// height is not above 0.
 session::CheckShot MakeCheckShot(const SessionFlags& flags,
                                  const core::Campaign& campaign,
                                  const rig::Description& rig) {
@@ -160,6 +178,8 @@ session::CheckShot MakeCheckShot(const SessionFlags& flags,
   return check;
 }
 
+// Connects to the rig's controller on its serial port; every line to and from
+// it is in the journal. Throws core::InputError where no controller answers.
 std::unique_ptr<rig::Driver> OpenController(const SessionFlags& flags) {
   rig::SerialOptions options;
   options.baud = flags.baud;
@@ -171,6 +191,8 @@ std::unique_ptr<rig::Driver> OpenController(const SessionFlags& flags) {
     };
   }
   auto driver = std::make_unique<rig::SerialDriver>(flags.driver, options);
+  // The person must know that the springs were latched before: somebody may
+  // have relied on that.
   if (driver->was_found_armed()) {
     fmt::print(
         "the controller was ARMED, or did not say, when it was connected: "
@@ -179,7 +201,8 @@ std::unique_ptr<rig::Driver> OpenController(const SessionFlags& flags) {
   return driver;
 }
 
-// Hands over what comes, from the keyboard and from the folder, until the end.
+// Hands what is typed, and each recording that is complete, to the session
+// until it ends: by a line, a signal, or the end of the input.
 void Serve(const SessionFlags& flags, session::Session& session,
            TerminalLines& lines) {
   FolderWatch changes(flags.watch);
@@ -187,7 +210,8 @@ void Serve(const SessionFlags& flags, session::Session& session,
   options.quiet = std::chrono::milliseconds(
       static_cast<std::int64_t>(flags.quiet_s * 1000.0));
   options.now = [] { return std::chrono::steady_clock::now(); };
-  // Of a signal: what was typed before it, and waits, is not done after it.
+  // After a stop by a signal: drops the lines that were typed before it and
+  // still wait, and says that the rig is stopped. A handler can do neither.
   const auto tell_stop = [&] {
     if (rig_stopped == 0) return;
     rig_stopped = 0;
@@ -196,18 +220,22 @@ void Serve(const SessionFlags& flags, session::Session& session,
     std::fflush(stdout);
   };
   options.wait = [&](bool growing) {
-    // Of a network drive nothing is heard: look now and then.
+    // inotify hears nothing of a network drive, so the folder is looked at now
+    // and then.
     constexpr std::chrono::milliseconds kNowAndThen{2000};
     if (session_ended != 0) return false;
     changes.Wait(growing ? options.quiet : kNowAndThen, lines.descriptor());
     tell_stop();
     while (const auto line = rig_stopped != 0 ? std::nullopt : lines.Next()) {
+      // A log then shows what a person did, and when, beside the controller's
+      // lines.
       pipeline::Journal("typed: " + line->text);
       if (!session.Obey(line->text, {line->began, line->is_alone})) {
         return false;
       }
       if (session_ended != 0) return false;
     }
+    // The signal may have come while a line was obeyed.
     tell_stop();
     return session_ended == 0 && !lines.at_end();
   };
@@ -215,6 +243,8 @@ void Serve(const SessionFlags& flags, session::Session& session,
                   [&](const std::vector<fs::path>& complete) {
                     for (const fs::path& recording : complete) {
                       if (session_ended != 0) return;
+                      // From here to its end a signal ends the process after a
+                      // moment (EndSoon).
                       analysing_shot = 1;
                       session.Take(recording);
                       analysing_shot = 0;
@@ -222,6 +252,9 @@ void Serve(const SessionFlags& flags, session::Session& session,
                   });
 }
 
+// Runs a session from its first line to its last. Returns 0. Throws
+// std::invalid_argument for flags, core::InputError for folder, rig and port,
+// core::StoreError for the store or where another session has it.
 int RunSession(const SessionFlags& flags) {
   if (!fs::is_directory(flags.watch)) {
     throw core::InputError(fmt::format(
@@ -229,6 +262,7 @@ int RunSession(const SessionFlags& flags) {
         "appear in",
         flags.watch));
   }
+  // A longer wait would make a technician believe that nothing happens.
   if (!(flags.quiet_s > 0.0 && flags.quiet_s <= 60.0)) {
     throw std::invalid_argument(fmt::format(
         "--quiet-s is {:g}, must be above 0, up to 60", flags.quiet_s));
@@ -239,6 +273,7 @@ int RunSession(const SessionFlags& flags) {
         ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
                                 "leading, trailing or flush");
   }
+  // All that can be refused without touching the rig comes first.
   session::SessionOptions options;
   options.analyze = ToOptions(flags.analyze);
   options.again = flags.again;
@@ -249,8 +284,10 @@ int RunSession(const SessionFlags& flags) {
       flags.rig, campaign, flags.speed_mps, corner, flags.db);
   if (!flags.no_check)
     options.check = MakeCheckShot(flags, campaign, thrower.rig);
+  // Two sessions on one store would each plan the same shot.
   const session::SessionLock lock(flags.db);
   const auto before = session::ReadSession(flags.db);
+  // Who was at the rig last time is taken for who is there now.
   options.operator_name = flags.operator_name;
   if (options.operator_name.empty() && before) {
     options.operator_name = before->operator_name;
@@ -261,22 +298,31 @@ int RunSession(const SessionFlags& flags) {
   }
   core::Conditions conditions =
       ReadConditions(flags.conditions, flags.db).value_or(core::Conditions{});
+  // Each trial refers to the rig as it was: its rig.toml is kept in the
+  // register, where it is not there already.
   if (conditions.rig.name.empty()) {
     conditions.rig = pipeline::KeepRig(store, thrower, options.operator_name);
   }
   options.conditions = conditions;
+  // From here on the order of declarations is the order in which things must
+  // end, backwards: the session, then the monitor, then the controller, which
+  // disarms, then the lines.
   CatchSessionSignals();
   TerminalLines lines([] {
     if (rig::Driver* const driver = driven_rig.load()) driver->Stop();
   });
+  // This is made in any case: without a controller the person is the driver.
   rig::ManualDriver hands(
       [&lines](const std::string& question) { return lines.Ask(question); });
-  // Goes before the lines do, and stops and disarms what it drives.
+  // The controller is destroyed before the lines are; it then stops and disarms
+  // the rig.
   const auto controller =
       flags.driver == "manual" ? nullptr : OpenController(flags);
   std::optional<Driving> driving;
   if (controller) driving.emplace(*controller);
   rig::Driver& driver = controller ? *controller : hands;
+  // These are the ends of the session: the terminal, the clock that dates
+  // files, the driver, and where pictures go.
   session::SessionEnds ends;
   ends.say = [](const std::string& line) {
     pipeline::Journal("said: " + line);
@@ -298,6 +344,7 @@ int RunSession(const SessionFlags& flags) {
   session.Start();
   Serve(flags, session, lines);
   session.End();
+  // A controller disarms when it is closed; a person must be asked to.
   if (!controller && hands.Armed() != rig::ArmedState::kNo) {
     fmt::print("the springs are latched, or may be: unlatch them\n");
   }

@@ -1,3 +1,5 @@
+// touchdown simulate: renders clips whose truth is known, from a scene file or
+// for the 18 shots of the paper's Table 1.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -17,6 +19,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Holds the flags as typed; exactly one of `scene`, `table1` and `example` is
+// meant.
 struct SimulateFlags {
   std::string scene;
   bool table1 = false;
@@ -27,6 +31,8 @@ struct SimulateFlags {
   bool json = false;
 };
 
+// Returns one line for a person: the clip's path, the angles at touchdown in
+// degrees, the state, and how far the greatest gap is from the bounce height.
 std::string ClipLine(const pipeline::SimulatedClip& made) {
   const auto& truth = made.truth;
   if (!truth.touchdown) {
@@ -48,11 +54,15 @@ std::string ClipLine(const pipeline::SimulatedClip& made) {
       truth.bounce_height_m / core::kMillimetre);
 }
 
+// Renders the shots into --out and lists them as text or touchdown.simulate/1.
+// Returns 0; throws std::invalid_argument for flags, core::InputError for a
+// scene that is wrong.
 int RunSimulate(const SimulateFlags& flags) {
   if (flags.example) {
     fmt::print("{}", pipeline::SceneText(pipeline::ExampleShot()));
     return 0;
   }
+  // Both or neither was given.
   if (flags.table1 == !flags.scene.empty()) {
     throw std::invalid_argument(
         "simulate: give either a SCENE.json or --table1 (--example prints a "
@@ -67,12 +77,15 @@ int RunSimulate(const SimulateFlags& flags) {
     throw std::invalid_argument("--format is '" + flags.format +
                                 "', must be mraw, png, tiff or mp4");
   }
+  // The scene is read, and found right, before the first clip is written.
   const std::vector<pipeline::Shot> shots =
       flags.table1
           ? pipeline::Table1Shots()
           : std::vector<pipeline::Shot>{pipeline::ReadSceneFile(flags.scene)};
   ProgressBar bar("simulate");
   nlohmann::ordered_json clips = nlohmann::ordered_json::array();
+  // What is printed waits until all clips are there, so that the progress bar
+  // stays in one line.
   std::string lines;
   for (std::size_t i = 0; i < shots.size(); ++i) {
     pipeline::SimulateOptions options;

@@ -1,4 +1,5 @@
-// list, show: what is in the store.
+// touchdown list and show tell what is in the store. `list` prints a line a
+// trial, `show` everything of one. Both only read.
 #include <fmt/format.h>
 
 #include <memory>
@@ -33,6 +34,7 @@ constexpr std::size_t kShownId = 8;  // characters of a UUID, enough for people
 
 // --- list --------------------------------------------------------------------
 
+// Holds the filters as typed; empty ones let every trial pass.
 struct ListFlags {
   std::string db;
   std::string campaign;
@@ -46,6 +48,9 @@ struct ListFlags {
   bool json = false;
 };
 
+// Returns the typed filters for the store. `campaign_given` tells --campaign ''
+// (trials in none) from no --campaign. Throws std::invalid_argument for a word
+// that is none of the flag's.
 db::TrialFilter MakeFilter(const ListFlags& flags, bool campaign_given) {
   db::TrialFilter filter;
   if (campaign_given) filter.campaign = flags.campaign;
@@ -66,10 +71,13 @@ db::TrialFilter MakeFilter(const ListFlags& flags, bool campaign_given) {
   if (!flags.until.empty()) filter.until_utc = flags.until;
   if (flags.counting) filter.excluded = false;
   if (flags.excluded) filter.excluded = true;
+  // No column shows the analysis documents, which are most of a store's bytes.
   filter.with_documents = false;
   return filter;
 }
 
+// Returns the touchdown.list/1 document: degrees and millimetres, null for what
+// is absent.
 std::string ListJson(const std::vector<core::Trial>& trials) {
   Json list = Json::array();
   for (const auto& trial : trials) list.push_back(report::TrialRowJson(trial));
@@ -78,7 +86,8 @@ std::string ListJson(const std::vector<core::Trial>& trials) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-// What a reader must know of a trial before its numbers.
+// Returns what a reader must know of a trial before its numbers, such as
+// "SIMULATED; EXCLUDED: wrong body"; "" for most.
 std::string Marks(const core::Trial& trial) {
   std::string marks;
   const auto add = [&marks](const std::string& mark) {
@@ -93,11 +102,15 @@ std::string Marks(const core::Trial& trial) {
   return marks;
 }
 
+// Returns the value in `unit` with fixed decimals, or "-".
 std::string Shown(const std::optional<double>& value, int decimals,
                   double unit) {
   return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
 }
 
+// Returns a table with one line a trial, and a line that counts them. An
+// excluded or simulated trial is counted apart: nobody must take it for one
+// that counts.
 std::string ListText(const std::vector<core::Trial>& trials) {
   constexpr std::size_t kShortId = 8;
   std::vector<std::vector<std::string>> rows = {
@@ -108,6 +121,8 @@ std::string ListText(const std::vector<core::Trial>& trials) {
   for (const auto& trial : trials) {
     simulated += trial.origin == core::Origin::kSimulated ? 1 : 0;
     excluded += trial.excluded ? 1 : 0;
+    // An id is cut to its beginning, by which `show` finds it; of a time the
+    // fraction of the second is left out.
     rows.push_back({trial.id.substr(0, kShortId), Printable(trial.campaign),
                     std::string(core::Name(trial.origin)), BodyText(trial.body),
                     std::string(core::Name(trial.angle_kind)),
@@ -131,12 +146,16 @@ std::string ListText(const std::vector<core::Trial>& trials) {
 
 // --- show --------------------------------------------------------------------
 
+// Adds a row for each measured quantity of one contact: its name with the unit
+// it is shown in, value and u, and the 95 % interval where the normal one would
+// mislead; or the reason of its absence.
 void ShowContact(const core::ContactRecord& record,
                  std::vector<std::vector<std::string>>& rows) {
   for (const auto& quantity : core::kContactQuantities) {
     const auto& measured = core::At(record, quantity);
     std::string name(quantity.name);
     double unit = 1.0;
+    // The record's names bear SI units; people read degrees and millimetres.
     if (name.ends_with("_rad")) {
       name.replace(name.size() - 3, 3, "deg");
       unit = kDegree;
@@ -159,6 +178,8 @@ void ShowContact(const core::ContactRecord& record,
   }
 }
 
+// Adds the conditions of the shot: entries of the register with the beginning
+// of the version's id, numbers with u, note and anomaly.
 void ShowConditions(const core::Conditions& conditions,
                     std::vector<std::vector<std::string>>& rows) {
   rows.push_back({"conditions", ""});
@@ -170,6 +191,7 @@ void ShowConditions(const core::Conditions& conditions,
                                 named.id.substr(0, kShownId))});
   }
   if (auto celsius = conditions.temperature_k) {
+    // A shift leaves u as it is.
     celsius->value -= core::kIcePoint_k;
     rows.push_back({"  temperature, deg C", WithU(celsius, 1.0)});
   }
@@ -196,6 +218,7 @@ void ShowConditions(const core::Conditions& conditions,
                                       Printable(conditions.anomaly_note))});
 }
 
+// Returns all of one trial, as the revision in force states it.
 std::string ShowText(const core::Trial& trial) {
   std::string text;
   if (trial.origin == core::Origin::kSimulated) {
@@ -229,6 +252,7 @@ std::string ShowText(const core::Trial& trial) {
   if (trial.conditions) ShowConditions(*trial.conditions, rows);
   rows.push_back({"measured", ""});
   ShowContact(trial.first, rows);
+  // The first contact is "contact 1", shown above without a number.
   for (std::size_t i = 0; i < trial.later.size(); ++i) {
     rows.push_back({fmt::format("contact {}", i + 2),
                     std::string(core::Name(trial.later[i].state.label))});
@@ -237,7 +261,8 @@ std::string ShowText(const core::Trial& trial) {
   return text + Aligned(rows);
 }
 
-// An analysis that waits for a person.
+// Says what a new analysis would change of a trial that a person has corrected,
+// field by field, and how to accept it.
 std::string ProposalText(const core::Trial& trial,
                          const core::Trial& proposal) {
   std::string text =
@@ -250,6 +275,8 @@ std::string ProposalText(const core::Trial& trial,
   return text;
 }
 
+// Lists every revision, oldest first, with what it changed. A proposal is
+// compared with the revision in force when it came, like all others.
 std::string TrialHistoryText(const std::vector<db::Revision>& history) {
   std::string text = "history\n";
   for (std::size_t i = 0; i < history.size(); ++i) {
@@ -269,6 +296,7 @@ std::string TrialHistoryText(const std::vector<db::Revision>& history) {
   return text;
 }
 
+// Holds the flags of `show` as typed; `id` may be the beginning of one.
 struct ShowFlags {
   std::string db;
   std::string id;
@@ -297,6 +325,7 @@ void AddList(CLI::App& app, Action& action) {
   AddFlag(*command, "--excluded", flags->excluded, "only excluded trials")
       .Exclude(counting);
   AddFlag(*command, "--json", flags->json, "one JSON document");
+  // Only after parsing is it known whether --campaign was given.
   SetAction(*command, action, [flags, campaign] {
     const auto filter = MakeFilter(*flags, campaign.IsGiven());
     const auto store = db::Store::Open(flags->db, db::OpenMode::kRead);

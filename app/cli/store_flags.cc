@@ -8,12 +8,14 @@
 
 namespace touchdown::cli {
 
+// The flag is required; touchdown.toml may supply it (defaults.h).
 void AddDbFlag(CLI::App& command, std::string& db) {
   AddOption(command, "--db", db, "the trial store, e.g. lab.db")
       .Require()
       .NameType("FILE");
 }
 
+// The kind may be left out: the size that is given tells it.
 void AddBodyFlags(CLI::App& command, pipeline::BodyEntry& flags) {
   AddOption(command, "--body", flags.kind, "sphere or rectangle")
       .NameType("KIND");
@@ -33,6 +35,7 @@ core::Trial RequireTrial(const db::Store& store, const std::string& id) {
 }
 
 std::string BodyText(const core::Body& body) {
+  // A size has four digits and no u; "?" stands for one that is not known.
   const auto mm = [](const core::Measured& size) {
     return size ? fmt::format("{:.4g}", size->value / core::kMillimetre)
                 : std::string("?");

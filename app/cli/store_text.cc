@@ -12,6 +12,8 @@
 namespace touchdown::cli {
 namespace {
 
+// Counts the characters of a UTF-8 text: its bytes but for those that continue
+// one.
 std::size_t Width(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
@@ -22,6 +24,7 @@ std::size_t Width(std::string_view text) {
 
 std::string WithU(const core::Measured& measured, double unit) {
   if (!measured) return "-";
+  // Without a usable u nothing says how many digits are meant; six are printed.
   if (!(measured->u > 0.0) || !std::isfinite(measured->u) ||
       !std::isfinite(measured->value)) {
     return fmt::format("{:.6g}", measured->value / unit);
@@ -31,6 +34,7 @@ std::string WithU(const core::Measured& measured, double unit) {
 
 std::string Aligned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
+  // A row may have fewer cells than others.
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -44,6 +48,8 @@ std::string Aligned(const std::vector<std::vector<std::string>>& rows) {
       line += row[i];
       line.append(widths[i] - Width(row[i]) + 2, ' ');
     }
+    // The last column is not padded, so that lines have no blanks at their
+    // ends.
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + '\n';
   }
@@ -63,6 +69,7 @@ std::string CampaignText(const core::Campaign& campaign) {
            ? fmt::format("{:.4g} to {:.4g}", campaign.speed_min_mps,
                          campaign.speed_max_mps)
            : "not declared"}};
+  // The theory and what it predicts stand in one line.
   std::string theory = "none declared";
   if (!campaign.theory_name.empty()) {
     theory = Printable(campaign.theory_name);

@@ -1,4 +1,7 @@
-// `touchdown theory boundary`.
+// touchdown theory boundary gives the boundary angle by each model of
+// analysis/theory/boundary_models.h, side by side. A model that lacks one of
+// its inputs is listed with what it needs; named alone by --model, it is an
+// error of the user.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -22,12 +25,13 @@ using analysis::BoundaryModel;
 using core::kDegree;
 using report::Json;
 
-// In the paper's words its hoop is a sphere too.
+// The paper calls its hoop a sphere, so for boundaries `hoop` means its sphere:
+// the angle that varies is the approach angle.
 bool CountsAsSphere(const CornerFlags& f) {
   return IsSphere(f) || f.body == "hoop";
 }
 
-// The flags that a model cannot do without and that were not given.
+// Returns the flags that the model cannot do without and that were not given.
 std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
                                  bool sphere) {
   std::vector<std::string> out;
@@ -36,6 +40,8 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
   };
   const CornerFlags& f = flags.corner;
   const TheoryBoundaryFlags& b = flags.boundary;
+  // Without spin the radius has no influence on the models that take it for the
+  // spin alone.
   const bool spins = f.omega_rad_per_s.value_or(0.0) != 0.0;
   switch (model) {
     case BoundaryModel::kPublished:
@@ -47,6 +53,8 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
     case BoundaryModel::kCorrectedLcp:
       if (sphere) break;
       need(!f.corner.empty(), "--corner");
+      // Friction matters where the corner leads: there it may turn the sign of
+      // A_hat (Painleve's wedge).
       need(f.corner != "leading" || f.mu.has_value(), "--mu");
       need(!spins || f.radius_m.has_value(), "--radius-m");
       break;
@@ -63,6 +71,9 @@ std::vector<std::string> Missing(BoundaryModel model, const TheoryFlags& flags,
   return out;
 }
 
+// Returns the flags as inputs of the models: each value with its u, angles in
+// radians. Throws std::invalid_argument where neither --body nor --kappa was
+// given.
 BoundaryInputs MakeBoundaryInputs(const TheoryFlags& flags, bool sphere) {
   const CornerFlags& f = flags.corner;
   const TheoryBoundaryFlags& b = flags.boundary;
@@ -84,6 +95,7 @@ BoundaryInputs MakeBoundaryInputs(const TheoryFlags& flags, bool sphere) {
                   std::nullopt};
   in.bounce_height_m = {b.bounce_height_m.value_or(in.bounce_height_m.value),
                         b.u_bounce_height_m, std::nullopt};
+  // The flags exclude each other: at most one of the two angles is held.
   const std::optional<double> held_deg =
       b.approach_deg ? b.approach_deg : b.radius_angle_deg;
   if (held_deg) {
@@ -95,10 +107,13 @@ BoundaryInputs MakeBoundaryInputs(const TheoryFlags& flags, bool sphere) {
   return in;
 }
 
+// Returns an angle in degrees, or null.
 Json DegreesJson(const std::optional<double>& angle_rad) {
   return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
 }
 
+// Returns one model's answer for JSON: boundary or the reason that there is
+// none, the state of every range of angles, sensitivities and uncertainty.
 Json AnswerJson(const BoundaryAnswer& a) {
   Json json;
   if (a.boundary_rad) {
@@ -120,6 +135,7 @@ Json AnswerJson(const BoundaryAnswer& a) {
                                      {"deg_per_unit", s.slope / kDegree},
                                      {"u_deg", s.u_rad / kDegree}});
   }
+  // The share of draws without a boundary means nothing where none was drawn.
   const auto& u = a.uncertainty;
   json["uncertainty"] = {
       {"first_order_u_deg", u.first_order_u_rad / kDegree},
@@ -134,6 +150,8 @@ Json AnswerJson(const BoundaryAnswer& a) {
   return json;
 }
 
+// Returns the same for a person; what has no uncertain input shows no
+// uncertainty.
 std::string AnswerText(const BoundaryAnswer& a) {
   std::string out;
   const auto& u = a.uncertainty;
@@ -179,6 +197,7 @@ std::string AnswerText(const BoundaryAnswer& a) {
 
 }  // namespace
 
+// Answers `theory boundary`. Returns 0, also where no model has a boundary.
 int RunBoundary(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
     if (flags.result.json) {
@@ -194,6 +213,8 @@ int RunBoundary(const TheoryFlags& flags) {
                {"seed", flags.boundary.seed},
                {"models", Json::array()}};
   std::string text;
+  // The cards say what each model assumes and where it holds; these lines go
+  // with every number, so that none is quoted without them.
   for (const auto& card : analysis::BoundaryModelCards()) {
     if (!flags.boundary.model.empty() && flags.boundary.model != card.name) {
       continue;

@@ -1,3 +1,8 @@
+// Each function reads a case file, answers every row and returns the answers as
+// CSV, in the columns of the reference cases. A quantity that does not exist is
+// an empty cell. An argument that is impossible (std::invalid_argument of the
+// module) becomes a core::InputError that names file and line:
+// CaseRow::Answer().
 #include "app/cli/theory_cases.h"
 
 #include <fmt/format.h>
@@ -23,17 +28,21 @@ using core::kDegree;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+// Returns the degrees of an angle that may be absent.
 std::optional<double> InDegrees(std::optional<double> angle_rad) {
   if (!angle_rad) return std::nullopt;
   return *angle_rad / kDegree;
 }
 
+// Reads -1 (trailing), 0 (at rest) or 1 (leading) (analysis/theory/corner.h).
 analysis::Slip SlipOfCase(const CaseRow& row) {
   return static_cast<analysis::Slip>(row.Choice("slip_sign", {-1, 0, 1}));
 }
 
 }  // namespace
 
+// The answer has columns for two solutions, the most that a sliding contact
+// has.
 std::string RegimeCases(const std::string& path) {
   const CaseTable table = ReadCases(
       path, {"id", "alpha_rad", "mu", "slip_sign", "m", "R", "omega", "g"});
@@ -48,6 +57,8 @@ std::string RegimeCases(const std::string& path) {
                                       "B_over_g"};
   constexpr int kShown = 2;
   for (int i = 1; i <= kShown; ++i) {
+    // These are the columns of the two solutions: sol1_kind, sol1_Fn ...
+    // sol2_residual.
     for (const char* name : {"kind", "Fn", "Ft", "gddN", "gddT", "residual"}) {
       columns.push_back(fmt::format("sol{}_{}", i, name));
     }
@@ -66,6 +77,8 @@ std::string RegimeCases(const std::string& path) {
       p.radius_m = row.Number("R");
       p.omega_rad_per_s = row.Number("omega");
       p.gravity_mps2 = row.Number("g");
+      // The shape is given once: as kappa = R^2/k^2 or as the radius of
+      // gyration k.
       const auto kappa = row.OptionalNumber("kappa_in");
       const auto gyration = row.OptionalNumber("k_in");
       if (kappa.has_value() == gyration.has_value()) {
@@ -78,6 +91,7 @@ std::string RegimeCases(const std::string& path) {
         p.gyration_radius_m = *gyration;
       }
       const analysis::ContactResult r = analysis::SolveContact(p);
+      // A_hat belongs to sliding; at rest its cells are empty.
       const bool rests = p.slip == analysis::Slip::kNone;
       // A = A_hat / m may leave the range of double where neither does.
       const long double a = static_cast<long double>(r.a_hat) / p.mass_kg;
@@ -93,6 +107,7 @@ std::string RegimeCases(const std::string& path) {
           p.gravity_mps2 > 0.0 ? Cell(r.b_mps2 / p.gravity_mps2) : ""};
       for (int i = 0; i < kShown; ++i) {
         if (i >= r.n_solutions) {
+          // Six empty cells hold the place of a solution that does not exist.
           cells.insert(cells.end(), 6, "");
           continue;
         }
@@ -113,6 +128,7 @@ std::string RegimeCases(const std::string& path) {
   return out.Csv();
 }
 
+// NaN stands for a number that does not exist: Cell() leaves it empty.
 std::string FlatCases(const std::string& path) {
   const CaseTable table =
       ReadCases(path, {"id", "a", "b", "mu", "slip_sign", "m", "g"});
@@ -141,6 +157,7 @@ std::string FlatCases(const std::string& path) {
   return out.Csv();
 }
 
+// Impulses are per unit mass, so their unit is m/s.
 std::string ImpactCases(const std::string& path) {
   const CaseTable table = ReadCases(path, {"id", "alpha", "mu", "kappa", "R",
                                            "vT0", "vN0", "alphadot0", "e"});
@@ -170,6 +187,9 @@ std::string ImpactCases(const std::string& path) {
 
 namespace {
 
+// Answers the boundary of an omega that is uncertain (column u_omega): first
+// order, the chance that there is no boundary, and mean, u and quantiles where
+// there is one. Angles are in degrees.
 std::string UncertainBoundaryCases(const CaseTable& table) {
   CaseWriter out({"id", "w", "alpha_deg", "GUM_first_order_u_deg",
                   "second_order_mean_deg", "P_no_boundary", "cond_mean_deg",
@@ -209,6 +229,8 @@ std::string BoundaryCases(const std::string& path) {
       const auto b = analysis::SolveSpinBoundary(
           row.Number("R"), row.Number("omega"), row.Number("g"));
       const bool exists = b.status != analysis::SpinBoundaryStatus::kNone;
+      // At R omega^2 = g the boundary is 90 deg and its derivatives are
+      // infinite: their cells are empty.
       const bool smooth = b.status == analysis::SpinBoundaryStatus::kExists;
       const auto derivative = [&](double value) {
         return Cell(smooth ? value : kNaN);
@@ -226,10 +248,12 @@ std::string BoundaryCases(const std::string& path) {
 
 namespace {
 
-// 3, "3", "0x1.8p+1" or "4/3".
+// Reads an entry of M or q: 3, "3", "0x1.8p+1" or "4/3". Text allows numbers
+// that JSON has no form for, such as exact thirds.
 double ParseEntry(const CaseRow& row, const char* column,
                   const nlohmann::json& entry) {
   if (entry.is_number()) return entry.get<double>();
+  // What is no number is refused below, with the column's name.
   if (entry.is_string()) {
     try {
       return ParseFraction(entry.get<std::string>());
@@ -239,6 +263,8 @@ double ParseEntry(const CaseRow& row, const char* column,
   row.Refuse(column, "a list of numbers or fractions like \"4/3\"");
 }
 
+// Reads the cell as a JSON list; where it is none, it is refused with an
+// example.
 nlohmann::json ParseList(const CaseRow& row, const char* column) {
   nlohmann::json list = nlohmann::json::parse(row.Text(column), nullptr, false);
   if (!list.is_array()) {
@@ -247,6 +273,8 @@ nlohmann::json ParseList(const CaseRow& row, const char* column) {
   return list;
 }
 
+// Returns the basic solutions as a JSON list of lists. Numbers are text with 17
+// significant digits.
 std::string ListOfSolutions(const analysis::LcpResult& r) {
   auto list = nlohmann::json::array();
   for (const analysis::LcpSolution& s : r.solutions) {
@@ -262,6 +290,8 @@ std::string ListOfSolutions(const analysis::LcpResult& r) {
 
 std::string LcpCases(const std::string& path) {
   const CaseTable table = ReadCases(path, {"M", "q"});
+  // Reference files call the first column name or id. Where both are missing,
+  // the second reading makes the usual complaint about the header.
   const bool named = table.HasColumn("name");
   if (!named && !table.HasColumn("id")) {
     static_cast<void>(ReadCases(path, {"id", "M", "q"}));  // complains
@@ -284,6 +314,7 @@ std::string LcpCases(const std::string& path) {
         }
       }
       const analysis::LcpResult r = analysis::SolveLcp(m, q);
+      // The worst of the solutions stands for all.
       double residual = 0.0;
       for (const auto& s : r.solutions) {
         residual = std::fmax(residual, s.residual);

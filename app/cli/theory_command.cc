@@ -1,4 +1,6 @@
-// `touchdown theory`: its commands and flags.
+// This file has the commands and flags of touchdown theory, and the checks that
+// several of them share (Need...). What the commands do is in
+// theory_contact.cc, theory_boundary.cc and theory_map.cc.
 #include <fmt/core.h>
 
 #include <memory>
@@ -13,6 +15,8 @@ namespace {
 
 using SharedFlags = std::shared_ptr<TheoryFlags>;
 
+// Adds --json, --cases and --out. `columns` names the columns of a case file,
+// for the help of --cases.
 void AddResult(CLI::App* command, const SharedFlags& flags,
                const char* columns) {
   AddFlag(*command, "--json", flags->result.json, "one JSON document");
@@ -22,12 +26,14 @@ void AddResult(CLI::App* command, const SharedFlags& flags,
             "file for the answer (default: standard output)");
 }
 
+// Adds the flags for mass layout, radius, friction, corner and gravity.
 void AddShape(CLI::App* command, CornerFlags& f) {
   const Option body =
       AddOption(*command, "--body", f.body,
                 "mass layout: rectangle (kappa 3), hoop (1, the paper's "
                 "sphere), shell (3/2), solid-sphere (5/2)")
           .OneOf({"rectangle", "hoop", "shell", "solid-sphere"});
+  // kappa is all that the equations take of the mass layout.
   AddOption(*command, "--kappa", f.kappa, "R^2/k^2 instead of --body")
       .Exclude(body);
   AddOption(*command, "--radius-m", f.radius_m,
@@ -41,6 +47,8 @@ void AddShape(CLI::App* command, CornerFlags& f) {
       .ShowDefault();
 }
 
+// Adds the angle in degrees or radians: degrees give exact sines at 0, 30 and
+// 90 deg.
 void AddAngle(CLI::App* command, CornerFlags& f) {
   const Option degrees = AddOption(
       *command, "--alpha-deg", f.alpha_deg,
@@ -49,6 +57,8 @@ void AddAngle(CLI::App* command, CornerFlags& f) {
       .Exclude(degrees);
 }
 
+// Adds the spin; `what` says whether before or after the impact, since the
+// commands differ.
 void AddSpin(CLI::App* command, CornerFlags& f, const char* what) {
   AddOption(*command, "--omega-rad-per-s", f.omega_rad_per_s, what);
 }
@@ -119,6 +129,7 @@ void AddBoundaryCommand(CLI::App& theory, const SharedFlags& flags,
                  "the boundary angle by each model, with its assumptions");
   CornerFlags& f = flags->corner;
   TheoryBoundaryFlags& b = flags->boundary;
+  // The words are those of analysis::BoundaryModelCards().
   AddOption(*command, "--model", b.model,
             "one model (default: all side by side)")
       .OneOf({"published", "printed-equations", "corrected-lcp",
@@ -198,6 +209,7 @@ void AddTheory(CLI::App& app, Action& action) {
   auto* theory = AddCommand(
       app, "theory", "contact theory: regimes, boundary angles, impacts");
   RequireSubcommand(*theory);
+  // One set of flags for all: only one command is called.
   const auto flags = std::make_shared<TheoryFlags>();
   AddRegimeCommand(*theory, flags, action);
   AddBoundaryCommand(*theory, flags, action);
@@ -213,6 +225,8 @@ double Need(const std::optional<double>& value, const char* flag) {
       fmt::format("{} is missing; give it a value, or --cases a file", flag));
 }
 
+// A hoop is none of them: its contact point is fixed to the body, as that of a
+// rectangle's corner is.
 bool IsSphere(const CornerFlags& flags) {
   return flags.body == "shell" || flags.body == "solid-sphere";
 }
@@ -227,10 +241,12 @@ analysis::SinCos NeedAlpha(const CornerFlags& flags) {
     }
     return analysis::SinCosOfDegrees(90.0);
   }
+  // CLI11 has refused both angles together.
   if (flags.alpha_rad) return analysis::SinCosOfRadians(*flags.alpha_rad);
   return analysis::SinCosOfDegrees(Need(flags.alpha_deg, "--alpha-deg"));
 }
 
+// CLI11 has refused --kappa and --body together.
 double NeedKappa(const CornerFlags& flags) {
   using analysis::MassLayout;
   if (flags.kappa) return *flags.kappa;
@@ -243,6 +259,8 @@ double NeedKappa(const CornerFlags& flags) {
       "--kappa a number");
 }
 
+// Returns the direction of slip: forward of a leading corner, backward of a
+// trailing one, none at rest.
 analysis::Slip NeedSlip(const CornerFlags& flags) {
   if (flags.at_rest) {
     if (!flags.corner.empty()) {

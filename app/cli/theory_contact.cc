@@ -1,4 +1,7 @@
-// `touchdown theory regime | impact | flat | lcp`.
+// touchdown theory regime|impact|flat|lcp: each fills a problem of
+// analysis/theory from the flags, solves it, and makes text and JSON of the
+// answer together, so that the two show the same numbers. With --cases each
+// answers a file instead (theory_cases.h).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,12 +26,14 @@ namespace {
 using core::kDegree;
 using report::Json;
 
+// Writes the answer as JSON or text, to --out or stdout; returns 0.
 int WriteAnswer(const TheoryFlags& flags, const Json& json,
                 const std::string& text) {
   WriteResult(flags.result.json ? json.dump(2) + "\n" : text, flags.result.out);
   return 0;
 }
 
+// Writes the answers of a case file; returns 0. A CSV cannot be had as JSON.
 int WriteCases(const TheoryFlags& flags, const std::string& csv) {
   if (flags.result.json) {
     throw std::invalid_argument(
@@ -38,11 +43,13 @@ int WriteCases(const TheoryFlags& flags, const std::string& csv) {
   return 0;
 }
 
-// Finite numbers as they are, others as null.
+// JSON has no infinity: a margin that no change of the input reaches is null.
 Json FiniteOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+// Returns a signed change in the unit of the flag, or "never" where none is
+// enough.
 std::string ChangeText(double value, double per_unit, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:+.4g}{}", value / per_unit, unit)
                               : std::string("never");
@@ -50,6 +57,8 @@ std::string ChangeText(double value, double per_unit, const char* unit) {
 
 }  // namespace
 
+// Answers `theory regime`: every solution of the contact problem, and how far
+// each input is from a change of regime.
 int RunRegime(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
     return WriteCases(flags, RegimeCases(flags.result.cases));
@@ -66,6 +75,8 @@ int RunRegime(const TheoryFlags& flags) {
   p.radius_m = p.omega_rad_per_s == 0.0 ? f.radius_m.value_or(1.0)
                                         : Need(f.radius_m, "--radius-m");
   p.gravity_mps2 = f.gravity_mps2;
+  // A sphere's contact point stays below its centre: neither angle nor spin
+  // enters, so the problem is made anew.
   if (IsSphere(f)) {
     p = analysis::SphereContact(p.mass_kg, p.radius_m, p.kappa, p.mu, p.slip,
                                 p.gravity_mps2);
@@ -79,6 +90,8 @@ int RunRegime(const TheoryFlags& flags) {
                {"solutions", Json::array()}};
   std::string text = fmt::format("regime   {}, {} solution{}\n", Name(r.regime),
                                  r.n_solutions, r.n_solutions == 1 ? "" : "s");
+  // Each solution gets a line: there are two where the contact is
+  // indeterminate, and none where it is inconsistent.
   for (const analysis::ContactSolution& s : r.Solutions()) {
     json["solutions"].push_back(
         {{"kind", Name(s.kind)},
@@ -103,6 +116,8 @@ int RunRegime(const TheoryFlags& flags) {
         "         a sphere touches below its centre: spin and angle play no "
         "part in its normal force\n";
   }
+  // The numbers as given decide the regime above. Whoever rounded them must
+  // know that a neighbouring regime is possible.
   if (r.within_tolerance) {
     text += fmt::format(
         "         within rounding of an edge: for rounded inputs {}\n",
@@ -116,6 +131,8 @@ int RunRegime(const TheoryFlags& flags) {
                   {"b_omega_rad_per_s", FiniteOrNull(m.b_omega_rad_per_s)},
                   {"b_radius_m", FiniteOrNull(m.b_radius_m)},
                   {"b_gravity_mps2", FiniteOrNull(m.b_gravity_mps2)}};
+  // A sliding contact is decided by the signs of A_hat and b, one at rest by
+  // the friction cone and b.
   if (p.slip != analysis::Slip::kNone) {
     json["a_hat"] = FiniteOrNull(r.a_hat);
     json["a_hat_tolerance"] = FiniteOrNull(r.a_hat_tolerance);
@@ -144,6 +161,9 @@ int RunRegime(const TheoryFlags& flags) {
   return WriteAnswer(flags, json, text);
 }
 
+// Answers `theory impact`: velocities of the contact point and spin after the
+// impact. The state before is given as velocity of the centre (speed and
+// approach angle) or of the contact point itself.
 int RunImpact(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
     return WriteCases(flags, ImpactCases(flags.result.cases));
@@ -160,6 +180,7 @@ int RunImpact(const TheoryFlags& flags) {
   // In the frame of corner.h P lies at +x; there a trailing corner moves to -x
   // and what is counter-clockwise for the viewer is clockwise.
   double mirror = 1.0;
+  // The velocity of the contact point is in the frame of corner.h already.
   if (i.tangential_mps || i.normal_mps) {
     p.tangential_mps = Need(i.tangential_mps, "--tangential-mps");
     p.normal_mps = Need(i.normal_mps, "--normal-mps");
@@ -177,6 +198,8 @@ int RunImpact(const TheoryFlags& flags) {
                    p.alpha_rate_rad_per_s * p.radius_m * p.alpha.cos;
   }
   const analysis::ImpactResult r = analysis::Impact(p);
+  // From here on signs are those of the viewer's frame, with motion to the
+  // right.
   const double omega_after = -mirror * r.alpha_rate_rad_per_s;
   const double slip_before = mirror * p.tangential_mps;
   const double slip_after = mirror * r.tangential_mps;
@@ -210,6 +233,8 @@ int RunImpact(const TheoryFlags& flags) {
   return WriteAnswer(flags, json, text);
 }
 
+// Answers `theory flat`: forces on both edges of a rectangle that slides on one
+// side, or that no solution exists.
 int RunFlat(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
     return WriteCases(flags, FlatCases(flags.result.cases));
@@ -248,6 +273,7 @@ int RunFlat(const TheoryFlags& flags) {
 
 namespace {
 
+// Reads "1, 4/3" as numbers. Throws std::invalid_argument with the flag's name.
 std::vector<double> ParseVector(const std::string& text, const char* flag) {
   std::vector<double> out;
   std::size_t start = 0;
@@ -267,6 +293,7 @@ std::vector<double> ParseVector(const std::string& text, const char* flag) {
 
 }  // namespace
 
+// Answers `theory lcp`: all solutions of a small problem, up to 8 unknowns.
 int RunLcp(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
     return WriteCases(flags, LcpCases(flags.result.cases));
@@ -278,6 +305,8 @@ int RunLcp(const TheoryFlags& flags) {
   const std::vector<double> q = ParseVector(flags.lcp.q, "--vector");
   std::vector<double> m;
   std::size_t rows = 0;
+  // Rows are parted by semicolons; each must be as long as the vector, which is
+  // known already. That the matrix is square is checked by SolveLcp().
   for (std::size_t start = 0; start <= flags.lcp.m.size(); ++rows) {
     const std::size_t end =
         std::min(flags.lcp.m.find(';', start), flags.lcp.m.size());

@@ -1,4 +1,6 @@
-// `touchdown theory map`: the regime map as CSV, and the drawings of theory.
+// touchdown theory map shows the regimes over the radius angle and a second
+// axis, friction or spin, as a CSV and as drawings in one folder. Beside the
+// map come the paper's figures of the complementarity problem.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,6 +28,8 @@ const std::vector<double> kPaperAngles_rad = {
     11.8 * kDegree, 27.4 * kDegree, 43.0 * kDegree,
     58.7 * kDegree, 74.4 * kDegree, 90.0 * kDegree};
 
+// Writes one line a cell: angle, value of the second axis, regime, and the
+// normal force of the sliding solution per mass. The angle runs fastest.
 std::string Csv(const analysis::RegimeMap& map) {
   std::string out =
       fmt::format("alpha_deg,{},regime,normal_force_per_mass_mps2\n",
@@ -41,6 +45,7 @@ std::string Csv(const analysis::RegimeMap& map) {
   return out;
 }
 
+// Says what the map holds fixed, for the heading of its drawing.
 std::string Circumstances(const analysis::ContactProblem& p, MapAxis axis) {
   const char* corner =
       p.slip == analysis::Slip::kLeading ? "leading" : "trailing";
@@ -56,6 +61,9 @@ std::string Circumstances(const analysis::ContactProblem& p, MapAxis axis) {
 
 }  // namespace
 
+// Computes the map and writes it into --out; lists the files on stdout. Returns
+// 0. Throws std::invalid_argument for flags, core::OutputError where folder or
+// files cannot be written.
 int RunMap(const TheoryFlags& flags) {
   const CornerFlags& f = flags.corner;
   const MapFlags& m = flags.map;
@@ -73,6 +81,7 @@ int RunMap(const TheoryFlags& flags) {
   p.slip = NeedSlip(f);
   p.gravity_mps2 = f.gravity_mps2;
   p.omega_rad_per_s = f.omega_rad_per_s.value_or(0.0);
+  // The radius enters through the spin alone.
   const bool needs_radius =
       options.axis == MapAxis::kOmega || p.omega_rad_per_s != 0.0;
   p.radius_m =
@@ -92,6 +101,8 @@ int RunMap(const TheoryFlags& flags) {
   }
   const analysis::RegimeMap map = analysis::ComputeRegimeMap(options);
 
+  // The map is computed before the folder is made: impossible numbers leave
+  // nothing behind.
   const std::filesystem::path folder = flags.result.out;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -100,6 +111,7 @@ int RunMap(const TheoryFlags& flags) {
                                         folder.string(), error.message()));
   }
   std::vector<std::string> written;
+  // Writes one file whole and remembers its name for the list.
   const auto write = [&](const char* name, const std::string& text) {
     const std::string path = (folder / name).string();
     WriteResult(text, path);
@@ -120,6 +132,7 @@ int RunMap(const TheoryFlags& flags) {
                      "the paper's sphere"},
           std::tuple{"fig7_rectangle.svg", analysis::MassLayout::kRectangle,
                      "the rectangle"}}) {
+      // The two figures differ in the mass layout only.
       line.kappa = Kappa(kappa);
       write(name,
             report::DrawComplementarityLines(

@@ -9,6 +9,9 @@
 namespace touchdown::cli {
 namespace {
 
+// Returns the number that the whole of `text` is; `whole` is what the user
+// typed, which the message quotes. Throws std::invalid_argument also for
+// infinities.
 double ParseNumber(const std::string& text, const std::string& whole) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -22,6 +25,8 @@ double ParseNumber(const std::string& text, const std::string& whole) {
 
 }  // namespace
 
+// The words are those of the reference cases: the sign is that of the slip
+// along x in the frame of corner.h.
 std::string PhasesText(const analysis::ImpactResult& result) {
   std::string out;
   for (const analysis::ImpactPhase& phase : result.Phases()) {
@@ -70,6 +75,7 @@ double ParseFraction(const std::string& text) {
   if (slash == std::string::npos) return ParseNumber(text, text);
   const double above = ParseNumber(text.substr(0, slash), text);
   const double below = ParseNumber(text.substr(slash + 1), text);
+  // Infinity would pass for a number.
   if (below == 0.0) {
     throw std::invalid_argument(fmt::format("'{}' divides by 0", text));
   }

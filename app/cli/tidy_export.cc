@@ -1,3 +1,5 @@
+// The views of the store (db/views.h) are written as they are: names, units and
+// meanings of their columns become the schema.
 #include "app/cli/tidy_export.h"
 
 #include <fmt/format.h>
@@ -15,10 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Returns "trials.csv-metadata.json", where readers of CSV on the Web look for
+// it.
 fs::path SchemaPath(const fs::path& csv) {
   return csv.string() + "-metadata.json";
 }
 
+// Returns the schema of one CSV, after the W3C's "Metadata Vocabulary for
+// Tabular Data". `csv` is the file's name as seen from the schema, `about` says
+// what one row is.
 std::string SchemaText(const std::string& csv, const std::string& about,
                        const std::vector<db::ViewColumn>& columns) {
   nlohmann::ordered_json json = {
@@ -42,6 +49,8 @@ std::string SchemaText(const std::string& csv, const std::string& about,
   return json.dump(2) + "\n";
 }
 
+// Returns a cell as CSV; NULL is empty. A real has as many digits as it needs
+// to come back the same.
 std::string CellText(const db::Cell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) {
     return report::CsvCell(*text);
@@ -55,6 +64,8 @@ std::string CellText(const db::Cell& cell) {
   return {};
 }
 
+// Writes a view row by row: memory does not grow with the store. CSV by RFC
+// 4180 ends its lines with CR LF.
 void WriteView(const db::Store& store, const db::View& view,
                std::string_view campaign, core::OutputFile& csv) {
   std::string line;
@@ -92,6 +103,8 @@ void WriteTidy(const db::Store& store, std::string_view campaign,
     files.back()->Write(
         SchemaText(name, "one row: " + view.one_row, view.columns));
   }
+  // Everything is complete under temporary names. Only then do the files take
+  // their names, and no signal ends the process in between.
   for (const auto& file : files) file->Finish();
   const core::AllOrNothing together;
   for (const auto& file : files) file->Commit();
@@ -102,6 +115,7 @@ void WriteTrialsSchema(const fs::path& csv) {
   for (const report::CsvColumn& column : report::TrialCsvColumns()) {
     const std::string unit =
         column.is_number ? db::FindUnit(column.name) : std::string();
+    // These two are whole numbers; the other numeric columns are real.
     const bool is_count =
         column.name == "revision" || column.name == "clip_size_bytes";
     columns.push_back({column.name,

@@ -1,4 +1,5 @@
-// touchdown use lab.db "asphalt, block": what the next commands are about.
+// touchdown use STORE [CAMPAIGN]: writes touchdown.toml, by which the commands
+// that follow in this folder know store and campaign (defaults.h).
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,6 +17,9 @@
 namespace touchdown::cli {
 namespace {
 
+// Checks that store and campaign are there, then writes the file. Returns 0;
+// throws core::StoreError or std::invalid_argument with the name that may have
+// been meant.
 int RunUse(const Defaults& defaults) {
   const db::Store store = db::Store::Open(defaults.store, db::OpenMode::kRead);
   if (!defaults.campaign.empty()) {
@@ -31,6 +35,7 @@ int RunUse(const Defaults& defaults) {
                                        "see `touchdown campaign list`")));
     }
   }
+  // The empty folder is the one that the command runs in.
   WriteDefaults(defaults, "");
   fmt::print("{}: commands in this folder mean {}{}\n", kDefaultsFile,
              defaults.store,

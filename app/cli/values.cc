@@ -12,12 +12,15 @@
 namespace touchdown::cli {
 namespace {
 
+// Throws the message of every value: "--region is '1,2', must be X,Y,W,H ...".
 [[noreturn]] void Refuse(const std::string& flag, const std::string& text,
                          const std::string& form) {
   throw std::invalid_argument(
       fmt::format("{} is '{}', must be {}", flag, text, form));
 }
 
+// Returns the parts between the separators; one more than there are separators,
+// and empty where two follow each other.
 std::vector<std::string_view> Split(std::string_view text, char at) {
   std::vector<std::string_view> parts;
   while (true) {
@@ -44,9 +47,12 @@ std::vector<double> ParseNumbers(const std::string& flag,
 }
 
 core::PixelRect ParseRegion(const std::string& flag, const std::string& text) {
+  // No picture that is read has longer sides, and all sums stay within an
+  // int32.
   constexpr double kMaxSidePx = 65536.0;
   const std::string form = "X,Y,W,H in whole pixels, W and H positive";
   const auto n = ParseNumbers(flag, text, 4, form);
+  // The corner may be at 0; a side of 0 would be no region.
   for (std::size_t i = 0; i < n.size(); ++i) {
     const double least = i < 2 ? 0.0 : 1.0;
     if (!(n[i] >= least && n[i] <= kMaxSidePx) || n[i] != std::floor(n[i])) {
@@ -62,6 +68,7 @@ std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& flag,
   const std::string form = "first and one past the last frame, as in 18:33";
   const auto parts = Split(text, ':');
   if (parts.size() != 2) Refuse(flag, text, form);
+  // An open end means frame 0, or the last frame (-1).
   std::pair<std::int64_t, std::int64_t> range{0, -1};
   if (!parts[0].empty()) {
     const auto first = report::ParseNumber<std::int64_t>(parts[0]);
