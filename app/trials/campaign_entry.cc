@@ -17,9 +17,9 @@ using core::kDegree;
 using core::kMillimetre;
 
 // "3.5:4.5"
-// A campaign's speed band at touchdown, in m/s: lowest, then highest. Only the
-// form is checked here; db::RequireStorable refuses a band that is upside down
-// or negative. Throws FieldError naming speed-mps.
+// Reads a campaign's speed band at touchdown, in m/s: lowest, then highest.
+// Only the form is checked here; db::RequireStorable refuses a band that is
+// upside down or negative. Throws FieldError naming speed-mps.
 std::pair<double, double> ParseBand(const std::string& text) {
   std::pair<double, double> band;
   const char* const end = text.data() + text.size();

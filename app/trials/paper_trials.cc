@@ -9,9 +9,9 @@
 namespace touchdown::pipeline {
 namespace {
 
-// A body of which only the kind is known. The sizes that this kind has are
-// absent because the paper does not state them; the others keep the reason "not
-// a sphere" or "not a rectangle".
+// Makes a body of which only the kind is known. The sizes that this kind has
+// are absent because the paper does not state them; the others keep the reason
+// "not a sphere" or "not a rectangle".
 core::Body UnmeasuredBody(core::BodyKind kind) {
   core::Body body;
   body.kind = kind;
@@ -29,7 +29,7 @@ core::Body UnmeasuredBody(core::BodyKind kind) {
 
 PaperTrials PaperTable1Trials(double u_rad) {
   PaperTrials out;
-  // One campaign a body, nine trials each.
+  // Each body has one campaign of nine trials.
   for (const auto kind :
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
     core::Campaign campaign;

@@ -25,8 +25,8 @@ constexpr std::array<std::string_view, 19> kVideos = {
 // Of the folder that a store keeps its pictures in (pictures.h).
 constexpr const char* kEvidence = ".evidence";
 
-// The extension with its dot, ASCII letters in lower case: ".MRAW" gives
-// ".mraw". Cameras and Windows programs write either.
+// Returns the extension with its dot, ASCII letters in lower case: ".MRAW"
+// gives ".mraw". Cameras and Windows programs write either.
 std::string LowerExtension(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) {
@@ -35,16 +35,16 @@ std::string LowerExtension(const fs::path& path) {
   return extension;
 }
 
-// Whether the name alone says that the file is a recording. TIFF stacks are not
-// among these: only their content tells them from single pictures.
+// Says whether the name alone tells that the file is a recording. TIFF stacks
+// are not among these: only their content tells them from single pictures.
 bool IsRecordingFile(const fs::path& path) {
   const std::string extension = LowerExtension(path);
   return extension == ".mraw" ||
          std::find(kVideos.begin(), kVideos.end(), extension) != kVideos.end();
 }
 
-// Hidden by the Unix convention: the name begins with a dot. Copying programs
-// write under such names until a file is complete.
+// A hidden file has a name that begins with a dot. Copying programs write under
+// such names until a file is complete.
 bool IsHidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
@@ -58,13 +58,13 @@ bool IsStack(const fs::path& path) {
   }
 }
 
-// What lies directly in one folder.
+// Holds what lies directly in one folder.
 struct Inside {
   std::vector<fs::path> recordings;
   std::vector<fs::path> folders;  // to be looked through, too
 };
 
-// The recordings directly in `folder`, which is itself one where it holds
+// Lists the recordings directly in `folder`, which is itself one where it holds
 // pictures alone, and the folders below it. Files that `admit` refuses are not
 // opened. Throws core::InputError where the folder cannot be read.
 Inside ListFolder(const fs::path& folder, const Admit& admit) {

@@ -65,7 +65,7 @@ bool IsStillThere(const db::KnownClip& clip) {
   }
 }
 
-// Whether `path` lies in `folder` or deeper, by names alone: both must be
+// Says whether `path` lies in `folder` or deeper, by names alone: both must be
 // absolute and normal. Links are not followed.
 bool IsBelow(const fs::path& path, const fs::path& folder) {
   const fs::path to = path.lexically_relative(folder);
@@ -79,16 +79,16 @@ Relinked Relink(db::Store& store, const fs::path& folder) {
   const auto recordings = FindRecordings(folder);
   const ById there = ReadIds(recordings, clips);
   const fs::path root = fs::absolute(folder).lexically_normal();
-  // How many clips of the store share an id. Where only one has it the id
-  // decides; else the full SHA-256 does, which reads the whole file.
+  // This counts the clips of the store that share an id. Where only one has it
+  // the id decides; else the full SHA-256 does, which reads the whole file.
   std::map<std::string, int> sharing;
   for (const db::KnownClip& clip : clips) ++sharing[clip.id];
   Relinked out;
   out.looked_at = recordings.size();
   for (const db::KnownClip& clip : clips) {
     std::vector<fs::path> same;
-    // Candidates in the order of their paths: FindRecordings sorts them, and a
-    // multimap keeps equal keys in the order of insertion.
+    // The candidates come in the order of their paths: FindRecordings sorts
+    // them, and a multimap keeps equal keys in the order of insertion.
     const auto [begin, end] = there.equal_range(clip.id);
     for (auto it = begin; it != end; ++it) {
       if (sharing[clip.id] == 1 || MatchesDigest(clip, it->second)) {
@@ -96,7 +96,7 @@ Relinked Relink(db::Store& store, const fs::path& folder) {
       }
     }
     const fs::path seen = clip.last_seen_path;
-    // In place, moved within reach, or missing: exactly one of the three.
+    // A recording is in place, missing, or found elsewhere in the folder.
     if (std::ranges::find(same, seen) != same.end() ||
         (!IsBelow(seen, root) && IsStillThere(clip))) {
       ++out.in_place;

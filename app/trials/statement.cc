@@ -17,8 +17,8 @@ namespace {
 
 using core::kDegree;
 
-// The word of a field. `words` is the list that the message shows. Throws
-// FieldError where `text` is none of them.
+// Parses the word of a field. `words` is the list that the message shows.
+// Throws FieldError where `text` is none of them.
 template <class T>
 T RequireWord(const char* field, const std::string& text,
               std::optional<T> (*parse)(std::string_view), const char* words) {
@@ -35,8 +35,8 @@ void RequireAngle(const char* field, double angle_deg, double low_deg) {
   }
 }
 
-// A trial of which everything is absent but that the body touched down: whoever
-// logs a shot by hand has seen it land.
+// Makes a trial in which nothing is known but that the body touched down:
+// whoever logs a shot by hand has seen it land.
 core::Trial ManualTrial() {
   core::Trial trial;
   trial.origin = core::Origin::kManual;
@@ -177,7 +177,8 @@ db::Logged LogByHand(const std::filesystem::path& path,
       trial.angle_kind = core::DefaultAngleKind(body->kind);
     }
   }
-  // Again, on the real trial: the kind of angle may now be the campaign's.
+  // It is applied again, to the real trial: the kind of angle may now be the
+  // campaign's.
   Apply(entry.statement, trial);
   return store.LogTrial(trial);
 }

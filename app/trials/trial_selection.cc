@@ -15,7 +15,7 @@
 namespace touchdown::pipeline {
 namespace {
 
-// The campaign of that name; null for trials in none.
+// Returns the campaign of that name, null for trials in none.
 const core::Campaign* Find(const std::vector<core::Campaign>& campaigns,
                            const std::string& name) {
   const auto found =
@@ -24,8 +24,8 @@ const core::Campaign* Find(const std::vector<core::Campaign>& campaigns,
   return found == campaigns.end() ? nullptr : &*found;
 }
 
-// Whether a person ever corrected the trial. Exclusions are no review: they say
-// nothing of the measurement.
+// Says whether a person ever corrected the trial. Exclusions are no review:
+// they say nothing of the measurement.
 bool IsReviewed(const db::Store& store, const std::string& id) {
   const auto history = store.History(id);
   return std::any_of(history.begin(), history.end(), [](const auto& revision) {
@@ -73,8 +73,8 @@ std::vector<db::Entry> CollectEntries(const db::Store& store,
   return out;
 }
 
-// Trials of a store. Filters that the store knows are part of the query;
-// SelectTrials applies the rest. Throws core::StoreError, and
+// Selects trials of a store. Filters that the store knows are part of the
+// query; SelectTrials applies the rest. Throws core::StoreError, and
 // std::invalid_argument for a campaign that is not there.
 Selection FromStore(const SelectionOptions& options) {
   const db::Store store = db::Store::Open(options.store, db::OpenMode::kRead);
@@ -123,9 +123,9 @@ Selection FromStore(const SelectionOptions& options) {
   return out;
 }
 
-// Trials of a CSV file, all in one campaign made up here: its name is the
-// file's unless one was given. The options state what the file cannot say
-// (body, kind, origin, theory); they do not filter.
+// Reads the trials of a CSV file into one campaign that is made up here: its
+// name is the file's unless one was given. The options state what the file
+// cannot say (body, kind, origin, theory); they do not filter.
 Selection FromCsv(const SelectionOptions& options) {
   CsvTrials what;
   what.campaign = options.campaign.value_or(options.csv.stem().string());
@@ -152,7 +152,8 @@ Selection FromCsv(const SelectionOptions& options) {
   return out;
 }
 
-// The 18 trials of the paper's Table 1, without a plan or evidence.
+// Takes the 18 trials of the paper's Table 1; they have no plan and no
+// evidence.
 Selection FromPaper(const SelectionOptions& options) {
   PaperTrials paper = PaperTable1Trials(options.paper_u_rad);
   return {std::move(paper.trials),
@@ -184,9 +185,9 @@ Selection SelectTrials(const SelectionOptions& options) {
                   : options.paper_table1 ? FromPaper(options)
                                          : FromStore(options);
   if (from_csv) return out;
-  // The filters once more, for the paper's trials and for what the store's
-  // query cannot ask (kind of angle, surface). A trial in no campaign has no
-  // surface, so a filter by surface drops it.
+  // The filters are applied once more, to the paper's trials and for what the
+  // store's query cannot ask (kind of angle, surface). A trial in no campaign
+  // has no surface, so a filter by surface drops it.
   std::erase_if(out.trials, [&](const core::Trial& trial) {
     const core::Campaign* campaign = Find(out.campaigns, trial.campaign);
     return (options.campaign && trial.campaign != *options.campaign) ||

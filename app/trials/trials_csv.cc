@@ -18,7 +18,7 @@ namespace {
 
 using core::kDegree;
 
-// `text` without blanks, a carriage return and quotation marks at its ends.
+// Takes blanks, a carriage return and quotation marks from the ends of `text`.
 // Spreadsheets quote headings and write Windows line ends.
 std::string Trimmed(std::string_view text) {
   const auto is_blank = [](char c) {
@@ -29,8 +29,8 @@ std::string Trimmed(std::string_view text) {
   return std::string(text);
 }
 
-// The cells of a line, trimmed. Every comma divides: a quoted cell must not
-// hold one.
+// Divides a line into its cells, trimmed. Every comma divides: a quoted cell
+// must not hold one.
 std::vector<std::string> Cells(const std::string& line) {
   std::vector<std::string> out(1);
   for (const char c : line) {
@@ -44,7 +44,7 @@ std::vector<std::string> Cells(const std::string& line) {
   return out;
 }
 
-// Where a message points to; lines count from 1, headings and comments
+// Says where a message points to; lines count from 1, headings and comments
 // included.
 struct Place {
   const std::filesystem::path& path;
@@ -57,8 +57,8 @@ struct Place {
       fmt::format("{}: line {}: {}", place.path.string(), place.line, what));
 }
 
-// The number in a cell, in the column's own unit, low <= value <= high; `range`
-// says that in words. An empty cell is refused, too.
+// Reads the number in a cell, in the column's own unit, low <= value <= high;
+// `range` says that in words. An empty cell is refused, too.
 double ReadCell(const Place& place, std::string_view column,
                 const std::string& cell, double low, double high,
                 std::string_view range) {
@@ -125,7 +125,8 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
   std::vector<core::Trial> trials;
   std::string line;
   Place place{path, 0};
-  // Position of a column in the heading; nothing where it is not there.
+  // Returns the position of a column in the heading, nothing where it is not
+  // there.
   const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
     const auto at = std::find(header.begin(), header.end(), name);
     if (at == header.end()) return std::nullopt;
@@ -157,7 +158,7 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
       RefuseLine(place, fmt::format("{} cells; expected {}, as in the heading",
                                     cells.size(), header.size()));
     }
-    // A cell of this line, from 0 to `high`; the column must exist.
+    // Reads a cell of this line, from 0 to `high`; the column must exist.
     const auto number = [&](std::string_view column, double high,
                             std::string_view range) {
       return ReadCell(place, column, cells[*find(column)], 0.0, high, range);

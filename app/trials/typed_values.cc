@@ -115,8 +115,8 @@ const std::vector<std::string>& ConditionKeys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all;
     for (const auto& entry : db::kConditionEntries) {
-      // Keys in the order of the register's tables, with units as people type
-      // them: temperature_k of the store is temperature_c here.
+      // Keys stand in the order of the register's tables, with units as people
+      // type them: temperature_k of the store is temperature_c here.
       all.emplace_back(Name(entry.kind));
     }
     for (const auto& quantity : db::kConditionQuantities) {
@@ -133,7 +133,8 @@ bool SetCondition(const std::string& key, const std::string& value,
                   core::Conditions& conditions) {
   for (const auto& entry : db::kConditionEntries) {
     if (key != Name(entry.kind)) continue;
-    // The name only; db::Resolved adds the id of the version in force.
+    // Only the name is known here; db::Resolved adds the id of the version in
+    // force.
     conditions.*entry.member = {value, ""};
     return true;
   }
@@ -145,7 +146,7 @@ bool SetCondition(const std::string& key, const std::string& value,
     });
     return true;
   }
-  // The three that are neither entries nor numbers.
+  // Three keys are neither entries nor numbers.
   if (key == "anomaly") {
     const auto word = core::ParseAnomaly(value);
     if (!word) {
