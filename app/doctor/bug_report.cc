@@ -50,8 +50,8 @@ std::string ReadHead(const fs::path& path, std::size_t most) {
 struct Run {
   std::string command;
   std::string end;  // "exit status 3", "signal 11 (Segmentation fault)"
-  // Standard output, standard error and the file of --log, each at most
-  // kMostBytes.
+  // These are standard output, standard error and the file of --log, each at
+  // most kMostBytes.
   std::string out;
   std::string err;
   std::string log;

@@ -276,9 +276,9 @@ Json TrackField(Writer& writer, const Analysis& analysis) {
     sfx += f * p.centre.x_px;
     sfy += f * p.centre.y_px;
   }
-  // Least squares of x and y over the frame number, counted from the first pose
-  // so that the sums stay small. At least two different frames make the
-  // determinant positive.
+  // x and y are fitted by least squares over the frame number, which is counted
+  // from the first pose so that the sums stay small. Two different frames make
+  // the determinant positive.
   const double determinant = n * sff - sf * sf;
   json["mean_velocity_px_per_frame"] = {(n * sfx - sf * sx) / determinant,
                                         (n * sfy - sf * sy) / determinant};
@@ -380,7 +380,7 @@ std::string ToJson(const Analysis& analysis) {
   }
   json["motion"] = MotionField(writer, "motion.", first.motion);
   const vision::RestitutionOfImpacts& e = analysis.contacts.restitution;
-  // Of all impacts of the clip together; "motion" has that of the first alone.
+  // It is that of all impacts of the clip; "motion" has that of the first alone.
   json["restitution_of_impacts"] = {
       {"restitution",
        writer.Number("restitution_of_impacts.restitution", e.value)},

@@ -47,8 +47,8 @@ void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options) {
 
 core::Trial LoggableTrial(const Analysis& analysis,
                           const core::Campaign* campaign, std::string sha256) {
-  // The absolute path, so that the store finds the clip from any folder; size
-  // and SHA-256, by which it is known when it was moved or changed.
+  // The path is made absolute, so that the store finds the clip from any
+  // folder. Size and SHA-256 tell when it was moved or changed.
   core::Trial trial = ToTrial(analysis);
   trial.clip.path = std::filesystem::absolute(analysis.clip.path).string();
   trial.clip.size_bytes = vision::SizeBytes(analysis.clip.path);

@@ -21,8 +21,9 @@ using report::EstimateJson;
 using report::Json;
 using report::ReadEstimate;
 
-// Columns of a row of "replay"/"track"/"rows", by spaces: a line of text for
-// each frame takes far fewer bytes than named fields.
+// These are the columns of a row of "replay"/"track"/"rows", with blanks
+// between: a line of text for each frame takes far fewer bytes than named
+// fields.
 constexpr const char* kColumns =
     "frame time_s x_px y_px u_x_px u_y_px correlation angle_rad u_angle_rad "
     "relative_size misfit";
@@ -43,9 +44,9 @@ std::optional<core::Estimate> OptionalEstimate(const Json& json,
   if (!json.contains(name)) return std::nullopt;
   return ReadEstimate(json.at(name));
 }
-template <class T>
 // Returns a field, nothing where it is absent or null. Throws Json::exception
 // where it is of another type.
+template <class T>
 std::optional<T> Optional(const Json& json, const char* name) {
   if (!json.contains(name) || json.at(name).is_null()) return std::nullopt;
   return json.at(name).get<T>();
@@ -166,8 +167,8 @@ AnalyzeOptions ReadOptions(const Json& json) {
 
 // --- track -------------------------------------------------------------------
 
-// Writes the track in the image as it was recorded. Digits: 1e-5 px of
-// positions, four digits of uncertainties, which are known to two.
+// Writes the track in the image as it was recorded: positions to 1e-5 px,
+// uncertainties to four digits, of which two are known.
 Json TrackJson(const vision::Track& track) {
   const vision::BodyImage& body = track.body;
   Json json = {{"radius_px", EstimateJson(body.radius_px)},

@@ -31,9 +31,9 @@ bool IsFinished(AnalysisState state) {
 // Says whether two orders would give the same answer. Two tabs that ask for it
 // then look at one analysis. Who asked plays no part.
 bool IsSame(const AnalysisOrder& a, const AnalysisOrder& b) {
-  // Returns the hash of what the analysis is told. Of a test the campaign is not
-  // in the store and may differ under one name, so its conventions are hashed,
-  // too.
+  // Returns the hash of what the analysis is told. Of a test the campaign is
+  // not in the store and may differ under one name, so its conventions are
+  // hashed, too.
   const auto told = [](const AnalysisOrder& order) {
     pipeline::AnalyzeOptions options = order.camera;
     if (order.is_test) pipeline::FillFromCampaign(order.campaign, options);

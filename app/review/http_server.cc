@@ -459,8 +459,8 @@ void HttpServer::Run() {
 
 void HttpServer::Stop() {
   {
-    // It is set under the lock: else a thread between its test and its wait would
-    // miss it.
+    // It is set under the lock: else a thread between its test and its wait
+    // would miss it.
     const std::lock_guard lock(impl_->mutex);
     impl_->stops = true;
   }

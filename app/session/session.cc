@@ -93,7 +93,8 @@ Session::Session(db::Store& store, const core::Campaign& campaign,
   if (before->phase != Phase::kConventions) file_.phase = Phase::kShot;
   file_.last = before->last;
   // A shot that was waited for when the session ended, and was not logged.
-  // A trial more than at its planning means that the shot was made and logged.
+  // One trial more than when it was planned means that the shot was made and
+  // logged.
   resumed_plan_ = before->planned && before->trials_before == CountTrials() &&
                   (!before->is_check || options_.check);
   if (resumed_plan_) {

@@ -24,9 +24,9 @@ namespace {
 }
 
 // What `parse` of a flag makes of a field: its message names the flag first.
-template <class Parse>
 // The flag is empty, so the message begins with a space, which is dropped:
 // FieldError puts the field's name in front.
+template <class Parse>
 auto OfField(const std::string& field, const Parse& parse) {
   try {
     return parse("");
