@@ -380,7 +380,8 @@ std::string ToJson(const Analysis& analysis) {
   }
   json["motion"] = MotionField(writer, "motion.", first.motion);
   const vision::RestitutionOfImpacts& e = analysis.contacts.restitution;
-  // It is that of all impacts of the clip; "motion" has that of the first alone.
+  // It is that of all impacts of the clip; "motion" has that of the first
+  // impact alone.
   json["restitution_of_impacts"] = {
       {"restitution",
        writer.Number("restitution_of_impacts.restitution", e.value)},

@@ -28,8 +28,8 @@ bool IsFinished(AnalysisState state) {
   return state != AnalysisState::kWaiting && state != AnalysisState::kRunning;
 }
 
-// Says whether two orders would give the same answer. Two tabs that ask for it
-// then look at one analysis. Who asked plays no part.
+// Says whether two orders ask for the same analysis, so that two tabs look at
+// one. Who asked plays no part, nor does `again`.
 bool IsSame(const AnalysisOrder& a, const AnalysisOrder& b) {
   // Returns the hash of what the analysis is told. Of a test the campaign is
   // not in the store and may differ under one name, so its conventions are

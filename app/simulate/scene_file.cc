@@ -282,7 +282,8 @@ analysis::BodyState ReadStart(Object object, const core::Body& body) {
 // Back along the flight from the state at first contact to frame
 // lead_in_frames.
 // `frame` counts from the beginning of the clip and may lie between two frames.
-// Throws where the flight back to that frame would leave the ground.
+// Throws where the flight back to frame lead_in_frames would pass through the
+// ground.
 analysis::BodyState ReadTouchdown(Object object, const core::Body& body,
                                   const Shot& shot) {
   const double fps = shot.camera.fps;
