@@ -39,9 +39,12 @@ fs::path EvidenceFolder(const fs::path& root, const BatchClip& clip) {
   return root / name;
 }
 
+// The store has the answer already; nothing was analysed.
 struct Known {
   std::string trial_id;
 };
+// There is no answer: the clip cannot be read, its analysis failed, or it is
+// set aside.
 struct Failed {
   std::string reason;
 };
@@ -53,6 +56,14 @@ struct Answer {
   bool analysed = false;
 };
 
+// Runs one batch.
+//
+//   Work (jobs_ threads): Claim -> AnswerClip -> waiting_ -> Settle
+//
+// Threads analyse in any order; Settle logs strictly in the order of the list,
+// so that trials, revisions and copies are the same with any number of jobs.
+// One lock guards the store and all that the threads share; it is not held
+// while a clip is analysed.
 class Batch {
  public:
   Batch(db::Store& store, std::span<const BatchClip> clips,
@@ -61,6 +72,8 @@ class Batch {
         clips_(clips),
         options_(options),
         set_aside_(store.path()) {
+    // With fewer jobs than cores the cores are divided among the decoders.
+    // Speed alone depends on it.
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     jobs_ = options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : cores;
     jobs_ = std::max<std::size_t>(1, std::min(jobs_, clips.size()));
@@ -69,14 +82,19 @@ class Batch {
     window_ = kAhead * jobs_;
     shares_.resize(clips.size());
     for (const BatchClip& clip : clips) {
+      // Before any work: a campaign that is not there ends the batch at once.
       if (clip.campaign.empty() || campaigns_.contains(clip.campaign)) continue;
       campaigns_[clip.campaign] = RequireCampaign(store, clip.campaign);
     }
   }
 
+  // Analyses all clips; returns their entries in the order of the list, fewer
+  // where the batch was stopped. Rethrows the first trouble with the store.
   std::vector<TriageEntry> Run() {
     start_ = std::chrono::steady_clock::now();
     {
+      // The threads are joined at the end of this block, before their result is
+      // looked at.
       std::vector<std::jthread> threads;
       for (std::size_t i = 0; i < jobs_; ++i) {
         threads.emplace_back([this] { Work(); });
@@ -91,6 +109,8 @@ class Batch {
   // trial in memory, some kilobytes; more would be lost if the batch is killed.
   static constexpr std::size_t kAhead = 4;
 
+  // What one thread does until nothing is left to claim. A clip's own failure
+  // is an answer; what is thrown here concerns the whole batch.
   void Work() {
     while (const auto index = Claim()) {
       try {
@@ -109,6 +129,9 @@ class Batch {
     }
   }
 
+  // Returns the place of the next clip in the list, nothing where the batch
+  // ends. Waits while this thread would get too far ahead of the slowest
+  // (kAhead).
   std::optional<std::size_t> Claim() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] {
@@ -120,24 +143,34 @@ class Batch {
     return next_++;
   }
 
+  // Makes a clip into a trial that is not logged yet, or finds why there is
+  // none. Holds the lock only to ask the store. Throws core::StoreError and
+  // core::OutputError, which end the batch, and core::Cancelled.
   Answer AnswerClip(const BatchClip& clip, std::size_t index) {
     Answer answer;
+    // The key stays empty until the clip's id is known: a clip that cannot even
+    // be read is not set aside.
     SetAside::Key key;
     try {
       AnalyzeOptions analyze = clip.options;
       const core::Campaign* campaign = nullptr;
       if (!clip.campaign.empty()) {
         campaign = &campaigns_.at(clip.campaign);
+        // The campaign's conventions belong to the options before they are
+        // hashed: the hash must be that of the analysis that would be made.
         FillFromCampaign(*campaign, analyze);
       }
       answer.clip_id = vision::ClipId(clip.clip);
       if (!options_.again) {
         const std::lock_guard lock(mutex_);
         const auto last = store_.FindLogged(clip.campaign, answer.clip_id);
+        // A set-point that the list does not give asks for nothing.
         const auto same = [](const std::optional<double>& wanted,
                              const std::optional<double>& there) {
           return !wanted || wanted == there;
         };
+        // The same clip, options and set-points: a batch that was killed goes
+        // on behind what it has logged.
         if (last && last->options_hash == OptionsHash(analyze) &&
             same(clip.set_angle_rad, last->set_angle_rad) &&
             same(clip.set_speed_mps, last->set_speed_mps)) {
@@ -151,6 +184,8 @@ class Batch {
         }
       }
       key = {answer.clip_id, OptionsHash(analyze)};
+      // Threads and progress are set after the hash was taken: they decide no
+      // answer.
       analyze.decoder_threads = decoder_threads_;
       analyze.progress = [this, index](double share) {
         const std::lock_guard lock(mutex_);
@@ -160,6 +195,8 @@ class Batch {
       answer.analysed = true;
       Journal("batch: " + clip.name + " begins");
       const Analysis analysis = Analyze(clip.clip, analyze);
+      // The evidence is written before the trial is logged: whoever finds a
+      // trial in the store finds its evidence, too.
       if (!options_.evidence.empty()) {
         WriteEvidence(analysis, EvidenceFolder(options_.evidence, clip));
       }
@@ -168,18 +205,25 @@ class Batch {
       trial.set_speed_mps = clip.set_speed_mps;
       trial.conditions = options_.conditions;
       trial.reason = options_.reason;
+      // A person who cancels between the analysis and this line must not find a
+      // trial.
       if (analyze.interrupted != nullptr && *analyze.interrupted) {
         throw core::Cancelled(clip.name + ": ended before it was logged");
       }
+      // Beside the store and for people; a picture that fails does not fail the
+      // trial.
       KeepPicture(store_.path(), trial);
       answer.what = std::move(trial);
     } catch (const core::StoreError&) {
+      // A store or a disk that takes nothing fails every further clip as well.
       throw;
     } catch (const core::OutputError&) {
       throw;
     } catch (const core::Cancelled&) {
+      // Whoever cancelled wants all of the batch to end.
       throw;
     } catch (const std::exception& error) {
+      // All else concerns this clip alone: the batch goes on.
       Journal("batch: " + clip.name + " failed: " + error.what());
       answer.what = Failed{error.what()};
       const std::lock_guard lock(mutex_);
@@ -201,6 +245,9 @@ class Batch {
     }
   }
 
+  // Logs the answer and returns its entry. Under the lock, in the order of the
+  // list: of two copies of a recording the first in the list is logged. Throws
+  // core::StoreError.
   TriageEntry MakeEntry(const BatchClip& clip, const Answer& answer) {
     TriageEntry entry;
     entry.clip = clip.name;
@@ -233,6 +280,8 @@ class Batch {
     }
   }
 
+  // Makes the entry of a trial that is in the store, with the proposal that may
+  // wait beside a person's correction. Under the lock.
   TriageEntry StoredEntry(const std::string& name, Done done,
                           const std::string& id) const {
     const auto proposals = store_.Proposals(id);
@@ -240,6 +289,8 @@ class Batch {
                            proposals.empty() ? nullptr : &proposals.front());
   }
 
+  // Returns the trial of that id. One that is missing was removed from the file
+  // by something other than this program.
   core::Trial RequireTrial(const std::string& id) const {
     auto trial = store_.Find(id);
     if (!trial) {
@@ -251,6 +302,8 @@ class Batch {
   }
 
   // Under the lock.
+  // Tells the caller how far the batch is. `share` counts clips, those begun by
+  // the share of them that is analysed.
   void Report() const {
     if (!options_.progress) return;
     BatchProgress progress;
@@ -286,7 +339,10 @@ class Batch {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::size_t next_ = 0;  // the first that nobody has claimed
+  // Answers that are not logged yet because an earlier clip is not done, by
+  // their place in the list.
   std::map<std::size_t, Answer> waiting_;
+  // Campaign and clip id to the name of the clip that came first.
   std::map<std::pair<std::string, std::string>, std::string> first_of_;
   std::vector<TriageEntry> entries_;
   std::vector<double> shares_;  // of the analysis of each
@@ -299,6 +355,7 @@ class Batch {
 }  // namespace
 
 Shard ParseShard(const std::string& flag, const std::string& text) {
+  // Without a slash the second part is empty and no number.
   const std::string_view whole = text;
   const std::size_t slash = std::min(whole.find('/'), whole.size());
   const auto k = report::ParseNumber<std::size_t>(whole.substr(0, slash));
@@ -313,6 +370,8 @@ Shard ParseShard(const std::string& flag, const std::string& text) {
 
 std::vector<BatchClip> SelectShard(std::vector<BatchClip> clips, Shard shard) {
   std::vector<BatchClip> part;
+  // Every n-th clip is taken, not a block: neighbours in a folder are of one
+  // campaign, and each machine gets some of each.
   for (std::size_t i = shard.k - 1; i < clips.size(); i += shard.n) {
     part.push_back(std::move(clips[i]));
   }
@@ -327,6 +386,8 @@ std::vector<BatchClip> ListBatchClips(std::span<const fs::path> recordings,
   for (const fs::path& recording : recordings) {
     BatchClip clip;
     clip.clip = recording;
+    // The name is the path below the folder. A recording that is the folder
+    // itself (a folder of images) has none there and keeps its own path.
     clip.name = recording.lexically_relative(folder).string();
     if (clip.name == "." || clip.name.empty()) clip.name = recording.string();
     clip.campaign = campaign;
@@ -346,6 +407,7 @@ std::vector<BatchClip> ListBatchClips(std::span<const ManifestRow> rows,
     clip.name = row.name;
     clip.campaign = row.campaign.value_or(campaign);
     clip.options = options;
+    // A row's own rate wins over --fps.
     if (row.fps) clip.options.fps = row.fps;
     clip.set_angle_rad = row.set_angle_rad;
     clip.set_speed_mps = row.set_speed_mps;

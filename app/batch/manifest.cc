@@ -19,8 +19,15 @@ namespace {
 // A season of a lab is thousands of shots; a file of more rows is not a
 // manifest.
 constexpr std::size_t kMaxRows = 1'000'000;
+// 256 MiB: a million rows of 256 bytes. The file is read into memory, so a long
+// video that was given by mistake is refused before that.
 constexpr std::uintmax_t kMaxBytes = 1u << 28;
 
+// Reads one manifest, row by row, and stops at the first mistake. An example:
+//
+//   clip,campaign,set_angle_deg,fps
+//   day1/shot_001.mraw,asphalt,11.5,
+//   day1/shot_002.mraw,asphalt,12.0,5000
 class ManifestReader {
  public:
   ManifestReader(const std::string& text, std::string name,
@@ -31,6 +38,8 @@ class ManifestReader {
     report::SkipByteOrderMark(in_);
     ReadHeader();
     std::vector<ManifestRow> rows;
+    // The row in which each clip first came. Two rows of one clip could state
+    // two set-points for one shot.
     std::map<std::filesystem::path, std::size_t> seen;
     while (NextRecord()) {
       if (cells_.size() == 1 && cells_.front().empty()) continue;  // blank
@@ -59,6 +68,8 @@ class ManifestReader {
   }
 
  private:
+  // Fail names the row, Refuse also the column and the cell. Both throw
+  // core::InputError.
   [[noreturn]] void Fail(const std::string& what) const {
     throw core::InputError(fmt::format("{}: row {}: {}", name_, row_, what));
   }
@@ -68,6 +79,8 @@ class ManifestReader {
                                        row_, column, cell, what));
   }
 
+  // Puts the next row into cells_; false at the end of the file. `row_` counts
+  // records: a quoted cell may go over several lines of the file.
   bool NextRecord() {
     ++row_;
     auto cells = report::ReadCsvRecord(in_, name_, row_);
@@ -76,6 +89,8 @@ class ManifestReader {
     return true;
   }
 
+  // Takes the header; refuses a column that is unknown, twice or missing. An
+  // unknown column is a misspelt one, whose values would be lost silently.
   void ReadHeader() {
     if (!NextRecord()) {
       throw core::InputError(fmt::format(
@@ -98,6 +113,8 @@ class ManifestReader {
     }
   }
 
+  // Returns the cell of this row in that column, nothing where the column is
+  // not there or the cell is empty.
   std::optional<std::string> Text(std::string_view column) const {
     const auto at = std::ranges::find(header_, column);
     if (at == header_.end()) return std::nullopt;
@@ -119,10 +136,13 @@ class ManifestReader {
     return value;
   }
 
+  // Reads the row as a whole. Relative clips begin at the manifest's folder, so
+  // that a folder with its manifest can be moved. Degrees become radians here.
   ManifestRow TakeRow() const {
     ManifestRow row;
     row.row = row_;
     const auto clip = Text("clip");
+    // A path ends at a NUL byte: what follows it would be cut off silently.
     if (!clip || clip->find('\0') != std::string::npos) {
       Refuse("clip", clip.value_or(""), "the path of a recording was expected");
     }

@@ -13,8 +13,11 @@ SetAside::SetAside(const std::filesystem::path& store)
     : file_(store.string() + ".failed.jsonl") {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file_, ignored)) return;
+  // One line a failure, so the lines of a key are counted. The last reason is
+  // the one that is shown.
   std::ifstream in(file_);
   for (std::string line; std::getline(in, line);) {
+    // A half line of a process that was killed does not spoil the others.
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) continue;
     const auto text = [&json](const char* name) -> std::string {
@@ -36,6 +39,7 @@ std::optional<std::string> SetAside::FindReason(const Key& key) const {
   if (found == failures_.end() || found->second.count < kMostFailures) {
     return std::nullopt;
   }
+  // The reason holds the clip's own message, of one line.
   return fmt::format("set aside, having failed {} times ({}); --again tries it",
                      found->second.count, found->second.reason);
 }
@@ -54,6 +58,8 @@ void SetAside::Failed(const Key& key, const std::string& clip,
           .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
       "\n";
   // In one piece, whoever else appends.
+  // No link is followed and no FIFO waited for: the name beside the store is
+  // known to everybody who can write into the folder.
   const int descriptor =
       open(file_.c_str(),
            O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,

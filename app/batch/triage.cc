@@ -73,6 +73,7 @@ std::string_view Name(Attention attention) {
 
 std::string ProposalSentence(const core::Trial& trial,
                              const core::Trial& proposal) {
+  // "bounce, approach angle 20.013 ± 0.048 deg"
   const auto words = [](const core::Trial& one) {
     return fmt::format("{}, {} angle {} deg", core::Name(one.first.state.label),
                        core::Name(one.angle_kind),
@@ -101,12 +102,15 @@ TriageEntry MakeTriageEntry(const std::string& clip, Done done,
   entry.p_bounce = trial.first.state.p_bounce;
   entry.angle_kind = trial.angle_kind;
   entry.angle_rad = ContactAngle(trial);
+  // The first that applies is why a person should look. They are asked in the
+  // order of Attention, the most pressing first.
   const auto warnings = ReadWarnings(trial);
   if (!trial.first.contact.found) {
     entry.attention = Attention::kNoContact;
     entry.reason = trial.first.contact.reason;
   } else if (trial.first.state.label == core::MotionState::kUndecided) {
     entry.attention = Attention::kUndecided;
+    // 1 for a toss-up (P = 0.5) or for no probability at all, 0 for certainty.
     entry.urgency =
         entry.p_bounce ? 1.0 - 2.0 * std::abs(*entry.p_bounce - 0.5) : 1.0;
     entry.reason = trial.first.state.reason;
@@ -120,10 +124,13 @@ TriageEntry MakeTriageEntry(const std::string& clip, Done done,
       entry.reason += (entry.reason.empty() ? "" : "; ") + warning;
     }
   } else {
+    // All is well; the least certain angle still comes first.
     entry.attention = Attention::kNone;
     entry.urgency = entry.angle_rad->u / kDegree;
   }
   if (proposal == nullptr) return entry;
+  // A proposal presses more than warnings do and less than a missing answer; in
+  // the latter case both reasons are told.
   if (entry.attention > Attention::kProposed) {
     entry.attention = Attention::kProposed;
     entry.urgency = 0.0;
@@ -157,6 +164,7 @@ TriageCounts Count(std::span<const TriageEntry> entries) {
 
 std::vector<CampaignWord> CampaignWords(const db::Store& store,
                                         std::span<const TriageEntry> entries) {
+  // The campaigns that this batch touched, each once.
   std::set<std::string> names;
   for (const TriageEntry& entry : entries) {
     if (entry.trial_id.empty()) continue;
@@ -191,6 +199,7 @@ std::string TriageJson(std::span<const TriageEntry> entries,
     ordered_json one;
     one["clip"] = entry.clip;
     one["done"] = Name(entry.done);
+    // A field that does not apply is null; it is not left out.
     one["attention"] = entry.attention == Attention::kNone
                            ? ordered_json()
                            : ordered_json(Name(entry.attention));
@@ -227,6 +236,8 @@ std::string TriageJson(std::span<const TriageEntry> entries,
 }
 
 std::string TriageCsv(std::span<const TriageEntry> entries) {
+  // One row a clip, in the order given. An absent value is an empty cell.
+  // CsvCell guards against formulas in names and reasons.
   std::string csv =
       "clip,done,attention,reason,trial,revision,state,p_bounce,angle_kind,"
       "angle_deg,angle_u_deg\r\n";

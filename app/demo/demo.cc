@@ -30,6 +30,9 @@ using core::kMillimetre;
 // What a caliper tells of a body: 0.02 mm.
 constexpr double kCaliper_m = 0.02 * kMillimetre;
 
+// Returns the body as a technician would state it: the sizes of the rendered
+// one, with a caliper's u. The simulator's sizes are exact, and no lab has
+// those.
 core::Body Measured(const core::Body& made) {
   return made.kind == core::BodyKind::kSphere
              ? core::Sphere({made.diameter_m->value, kCaliper_m})
@@ -55,6 +58,8 @@ core::Campaign PaperCampaign(const Shot& shot) {
   return campaign;
 }
 
+// States size, kind of angle and bounce height to the analysis, which a lab
+// fixes beforehand. Ground and contact are left to be found.
 AnalyzeOptions MakeOptions(const core::Campaign& campaign) {
   AnalyzeOptions options;
   if (campaign.body.kind == core::BodyKind::kSphere) {
@@ -92,6 +97,8 @@ void InParallel(int n, int threads, const std::function<void(int)>& work) {
   if (trouble) std::rethrow_exception(trouble);
 }
 
+// Returns the contact angle in radians; the row must have one. Of a face angle
+// it is the magnitude, as the set angle is.
 double Angle(const DemoRow& row) {
   const double value = row.angle_rad->value;
   return row.kind == core::AngleKind::kFace ? std::abs(value) : value;
@@ -100,11 +107,15 @@ double Angle(const DemoRow& row) {
 }  // namespace
 
 bool DemoRow::right() const {
+  // The comparison is made in the paper's two words: rolling where the truth is
+  // sliding is right.
   if (state == core::MotionState::kUndecided) return false;
   return core::IsNotBounce(state) == core::IsNotBounce(true_state);
 }
 
 DemoResult RunDemo(const DemoOptions& options) {
+  // Step 1: render and analyse, a clip a thread. A clip's noise depends on the
+  // seed and its name, so the order of the threads changes no answer.
   const std::vector<Shot> shots = Table1Shots();
   const int n = static_cast<int>(shots.size());
   const int threads =
@@ -132,6 +143,7 @@ DemoResult RunDemo(const DemoOptions& options) {
     DemoRow& row = result.rows[at];
     row.clip = shot.name;
     row.kind = shot.angle_kind;
+    // The set angle is the true one: the shots of table1.cc land at it.
     row.true_angle_rad = *shot.set_angle_rad;
     row.angle_rad = core::Angle(a.contacts.first.contact, shot.angle_kind);
     row.true_state = made.truth.state;
@@ -146,15 +158,21 @@ DemoResult RunDemo(const DemoOptions& options) {
   });
 
   result.store = options.folder / "demo.db";
+  // Step 2: log in the order of the table, on one thread: a Store belongs to
+  // one thread.
   db::Store store = db::Store::Open(result.store, db::OpenMode::kCreate);
   for (std::size_t i = 0; i < shots.size(); ++i) {
     const core::Campaign campaign = PaperCampaign(shots[i]);
+    // A second run finds its campaigns there, and its clips make further
+    // revisions of the trials.
     if (!store.FindCampaign(campaign.name)) store.AddCampaign(campaign);
     core::Trial trial = LoggableTrial(analyses[i], &campaign);
     trial.set_angle_rad = shots[i].set_angle_rad;
     store.LogTrial(trial);
   }
 
+  // Step 3: compare with the truth. The mean is over trials that have an angle;
+  // `angles` says how many.
   double square = 0.0;
   for (const DemoRow& row : result.rows) {
     result.right += row.right();
@@ -165,6 +183,8 @@ DemoResult RunDemo(const DemoOptions& options) {
   }
   result.rmse_rad = result.angles > 0 ? std::sqrt(square / result.angles) : 0.0;
 
+  // Step 4: report from the store, as `touchdown report` does from a lab's. The
+  // title says that the outcome was chosen, wherever the page ends up.
   SelectionOptions select;
   select.store = result.store;
   select.with_evidence = true;

@@ -36,6 +36,8 @@ constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 // Of a recording that cannot be opened: its headers.
 constexpr std::size_t kHeadBytes = std::size_t{64} << 10;
 
+// Returns the first bytes of a file, at most `most`; empty where it cannot be
+// read.
 std::string ReadHead(const fs::path& path, std::size_t most) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes(most, '\0');
@@ -48,17 +50,22 @@ std::string ReadHead(const fs::path& path, std::size_t most) {
 struct Run {
   std::string command;
   std::string end;  // "exit status 3", "signal 11 (Segmentation fault)"
+  // These are standard output, standard error and the file of --log, each at
+  // most kMostBytes.
   std::string out;
   std::string err;
   std::string log;
 };
 
+// Owns the list of files that posix_spawn opens for the child.
 class SpawnFiles {
  public:
   SpawnFiles() { posix_spawn_file_actions_init(&actions_); }
   ~SpawnFiles() { posix_spawn_file_actions_destroy(&actions_); }
   SpawnFiles(const SpawnFiles&) = delete;
   SpawnFiles& operator=(const SpawnFiles&) = delete;
+  // Sends descriptor `fd` of the child into a file that only the owner may
+  // read: it names recordings and folders.
   void Redirect(int fd, const fs::path& file) {
     constexpr int kOwnerOnly = 0600;
     posix_spawn_file_actions_addopen(&actions_, fd, file.c_str(),
@@ -70,6 +77,8 @@ class SpawnFiles {
   posix_spawn_file_actions_t actions_{};
 };
 
+// Waits for the child and says in words how it ended. A signal to this process
+// (a resized terminal) interrupts the wait and not the child.
 std::string DescribeExit(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
@@ -81,6 +90,9 @@ std::string DescribeExit(pid_t child) {
                      strsignal(WTERMSIG(status)));
 }
 
+// Runs `touchdown analyze` on the clip in a process of its own and collects
+// what it said. A crash is then a result like any other. Nothing is thrown for
+// what the child does.
 Run RunAnalyze(const BugOptions& options) {
   const ScratchFolder folder;
   const fs::path out = folder.path() / "out";
@@ -89,6 +101,9 @@ Run RunAnalyze(const BugOptions& options) {
   std::vector<std::string> words{"touchdown", "analyze"};
   words.insert(words.end(), options.flags.begin(), options.flags.end());
   Run run;
+  // The report shows the command as the person typed it: --json and --log,
+  // which are added behind it, are the report's own business. `--` keeps a clip
+  // whose name begins with a dash from being read as a flag.
   run.command =
       fmt::format("{} {}", fmt::join(words, " "), options.clip.string());
   words.insert(words.end(), {"--json", "--log", log.string(), "--",
@@ -100,6 +115,8 @@ Run RunAnalyze(const BugOptions& options) {
   files.Redirect(STDOUT_FILENO, out);
   files.Redirect(STDERR_FILENO, err);
   pid_t child = 0;
+  // The child is the very program that runs, whatever is on the PATH.
+  // posix_spawn is used and not fork, since this process may have threads.
   const int refused = posix_spawn(&child, "/proc/self/exe", files.get(),
                                   nullptr, argv.data(), environ);
   run.end = refused == 0 ? DescribeExit(child)
@@ -113,6 +130,7 @@ Run RunAnalyze(const BugOptions& options) {
 // Frame of the contact, where the document has one.
 std::optional<std::int64_t> ReadContactFrame(const std::string& document) {
   const auto json = nlohmann::json::parse(document, nullptr, false);
+  // A child that crashed leaves half a document or none.
   if (!json.is_object() || !json.contains("contact")) return std::nullopt;
   const auto& frame = json["contact"].value("frame", nlohmann::json());
   if (!frame.is_number()) return std::nullopt;
@@ -124,6 +142,8 @@ std::optional<std::int64_t> ReadContactFrame(const std::string& document) {
 std::set<std::int64_t> ChooseFrames(std::int64_t frames, int most,
                                     std::optional<std::int64_t> contact) {
   std::set<std::int64_t> chosen;
+  // Frames are offered in the order of their worth until `most` are chosen;
+  // those outside of the recording are passed over.
   const auto add = [&](std::int64_t index) {
     if (std::ssize(chosen) < most && index >= 0 && index < frames) {
       chosen.insert(index);
@@ -138,6 +158,9 @@ std::set<std::int64_t> ChooseFrames(std::int64_t frames, int most,
   return chosen;
 }
 
+// Adds whole frames as PNG, with the samples as they were recorded. Of a
+// recording that cannot be opened or read on, the reason is added and its first
+// bytes, in which its headers are.
 void AddFrames(const BugOptions& options, const std::string& document,
                std::vector<BugFile>& files) {
   try {
@@ -158,6 +181,9 @@ void AddFrames(const BugOptions& options, const std::string& document,
   }
 }
 
+// Adds what the analysis read beside the recording: the camera's header, in
+// either spelling of its extension, and the files of `also`. What is not there
+// is passed over.
 void AddHeaders(const BugOptions& options, std::vector<BugFile>& files) {
   std::set<fs::path> headers(options.also.begin(), options.also.end());
   for (const char* extension : {".cih", ".cihx", ".CIH", ".CIHX"}) {
@@ -185,6 +211,8 @@ std::vector<BugFile> CollectBug(const BugOptions& options) {
     throw core::InputError(options.clip.string() +
                            ": there is no such recording");
   }
+  // command.txt holds the program's version, the command, how it ended, and
+  // what it said on standard error, a part a line.
   const Run run = RunAnalyze(options);
   std::vector<BugFile> files;
   files.push_back({"command.txt", "what was asked, and how it ended",

@@ -35,6 +35,8 @@ bool IsOnNetwork(const fs::path& path) {
   return type == kNfs || type == kSmb || type == kSmb2;
 }
 
+// Opens the store and checks all of it (db::Check). Damage is told before the
+// network drive: it is the more pressing of the two.
 Finding StoreFinding(const DoctorOptions& options) {
   Finding finding{"store", Health::kGood, {}, {}};
   try {
@@ -62,6 +64,8 @@ Finding StoreFinding(const DoctorOptions& options) {
   return finding;
 }
 
+// Reads the calibration and says what it holds, of which camera and until when
+// it is good. One that is out of date works and is a note.
 Finding CameraFinding(const DoctorOptions& options) {
   Finding finding{"camera", Health::kGood, {}, {}};
   try {
@@ -86,9 +90,12 @@ Finding CameraFinding(const DoctorOptions& options) {
 }
 
 // The newest recording is read: its first and its last frame.
+// Adds one finding, and a second one where the camera's clock is ahead.
 void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
   Finding finding{"recordings", Health::kGood, {}, {}};
   try {
+    // The newest is the one that was written to last. A recording that vanishes
+    // while it is measured counts as older than all others.
     fs::path newest;
     Extent of_newest;
     const auto all = FindRecordings(options.recordings);
@@ -109,6 +116,8 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
     }
     const auto clip = OpenRecording(newest);
     const vision::ClipInfo& info = clip->info();
+    // The first frame shows that the format is understood, the last that the
+    // file is whole: one that was cut short fails there.
     clip->Read(0);
     clip->Read(info.frames - 1);
     finding.text = fmt::format(
@@ -122,6 +131,8 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
       finding.advice =
           "its rate may be that of playback: give --fps with every analysis";
     }
+    // A recording dated after now shows that the camera's clock, or the file
+    // server's, is ahead of this machine's. One that lags is not noticed.
     const auto ahead =
         of_newest.written - std::chrono::file_clock::from_sys(options.now);
     // Clocks of two machines that are set by the same network agree to seconds.
@@ -141,6 +152,8 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
   findings.push_back(finding);
 }
 
+// Says how much room there is on the file system of `folder`, for an ordinary
+// user (what is reserved for root is not counted).
 Finding DiskFinding(const fs::path& folder) {
   Finding finding{"disk", Health::kGood, {}, {}};
   std::error_code trouble;
@@ -166,6 +179,8 @@ Finding DiskFinding(const fs::path& folder) {
   return finding;
 }
 
+// Says what time it is and whether the kernel holds its clock to be set by a
+// time server (STA_UNSYNC). A container may not be allowed to ask.
 Finding ClockFinding(const DoctorOptions& options) {
   const std::time_t now = std::chrono::system_clock::to_time_t(options.now);
   std::tm utc{};
@@ -203,6 +218,8 @@ std::string_view Name(Health health) {
 }
 
 std::vector<Finding> Examine(const DoctorOptions& options) {
+  // The machine comes first, then what was asked about; disk and clock, which
+  // concern every measurement, end the list.
   std::vector<Finding> findings = ExamineMachine();
   if (!options.store.empty()) findings.push_back(StoreFinding(options));
   if (!options.calibration.empty()) findings.push_back(CameraFinding(options));

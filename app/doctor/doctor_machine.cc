@@ -28,6 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Says which program this is: its version and the commit it was built from.
 Finding ProgramFinding() {
   return {"program",
           Health::kGood,
@@ -35,6 +36,7 @@ Finding ProgramFinding() {
           {}};
 }
 
+// Reads the name of the distribution from the line
 // PRETTY_NAME="Debian GNU/Linux 12 (bookworm)"
 std::string Distribution() {
   std::ifstream in("/etc/os-release");
@@ -48,6 +50,8 @@ std::string Distribution() {
   return "unknown distribution";
 }
 
+// Says what the machine is: distribution, kernel, architecture, cores, and its
+// memory in GiB (1024^3 bytes).
 Finding SystemFinding() {
   utsname name{};
   uname(&name);
@@ -68,6 +72,8 @@ std::string Loaded(std::string_view beginning) {
   std::vector<std::string> names;
   dl_iterate_phdr(
       [](dl_phdr_info* info, std::size_t, void* data) {
+        // The program itself has an empty name, and the kernel's vdso no path:
+        // both are passed over.
         std::error_code none;
         const fs::path file = fs::canonical(info->dlpi_name, none);
         if (!none && *info->dlpi_name == '/') {
@@ -88,6 +94,9 @@ Finding LibrariesFinding() {
   return {"libraries", Health::kGood, Loaded("lib"), {}};
 }
 
+// Loads libav and says which video codecs it decodes. A codec that is not there
+// is a note: few labs have recordings of every kind. Without libav no video can
+// be read at all, which is trouble.
 Finding VideoFinding() {
   try {
     std::string there;
@@ -112,6 +121,9 @@ Finding VideoFinding() {
 }
 
 // A recording of one picture of our own is read as a stranger's would be.
+// Recordings are decoded in a process of their own, which may read nothing but
+// the recording and reach no network. This tries it and says what the kernel
+// granted.
 Finding ReaderFinding() {
   const auto trouble = [](const std::string& what) {
     return Finding{"reader", Health::kTrouble, what,
@@ -119,6 +131,8 @@ Finding ReaderFinding() {
   };
   try {
     const ScratchFolder folder;
+    // The picture is black and of 16 x 16 px: what is tried is the way to it,
+    // not its content. The scratch folder removes it at the end.
     constexpr std::int32_t kSide_px = 16;
     std::array<std::byte, kSide_px * kSide_px> pixels{};
     core::Frame frame;
@@ -129,6 +143,7 @@ Finding ReaderFinding() {
     vision::WritePng(folder.path() / "0.png", frame);
     vision::Confinement granted;
     vision::ClipOptions options;
+    // A folder of images tells no frame rate, and one is asked for.
     options.fps = 1.0;
     vision::OpenClipApart(folder.path(), options, {}, &granted)->Read(0);
     const bool all =
@@ -149,6 +164,7 @@ Finding ReaderFinding() {
   }
 }
 
+// Says whether a folder of PATH has the program and this user may run it.
 bool IsOnPath(std::string_view program) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "");
@@ -158,6 +174,9 @@ bool IsOnPath(std::string_view program) {
   return false;
 }
 
+// Looks for a program that this one calls. `without` says how bad its absence
+// is, `what_for` what then does not work, `package` which Debian package has
+// it.
 Finding ToolFinding(std::string_view program, std::string_view package,
                     Health without, std::string_view what_for) {
   if (IsOnPath(program)) {
@@ -168,6 +187,9 @@ Finding ToolFinding(std::string_view program, std::string_view package,
           fmt::format("install the package {}", package)};
 }
 
+// The library is loaded when a lens is calibrated and not before, so that every
+// other command starts without it; whether it is there shows only when it is
+// asked for.
 Finding LapackFinding() {
   if (void* const library = dlopen("liblapack.so.3", RTLD_LAZY)) {
     dlclose(library);
@@ -180,6 +202,8 @@ Finding LapackFinding() {
 }  // namespace
 
 std::vector<Finding> ExamineMachine() {
+  // The order matters for the libraries: they are listed before VideoFinding
+  // loads libav.
   std::vector<Finding> findings{ProgramFinding(), SystemFinding(),
                                 LibrariesFinding(), VideoFinding(),
                                 ReaderFinding()};

@@ -22,12 +22,16 @@ namespace {
 using report::EstimateJson;
 using report::Json;
 
+// These factors bring SI, which the analysis holds, to the units in the names
+// of the fields.
 constexpr double kToDegrees = 1.0 / core::kDegree;
 constexpr double kToMillimetres = 1.0 / core::kMillimetre;
 
 // Writes numbers, and collects why some are missing.
 class Writer {
  public:
+  // Returns {"value", "u"} in SI times `factor`, or null; then the reason is
+  // noted under `path`, the dotted name by which "absent" lists the field.
   Json Number(const std::string& path, const core::Measured& m,
               double factor = 1.0) {
     if (!m) return Missing(path, m.error().reason);
@@ -37,12 +41,16 @@ class Writer {
     absent_[path] = reason;
     return nullptr;
   }
+  // Hands over all reasons; it must be called last.
   Json TakeAbsent() { return std::move(absent_); }
 
  private:
   Json absent_ = Json::object();
 };
 
+// Lists the uncertainty budget of the contact angle: radius and face angle
+// share one, that of the attitude. [{"source": "localisation", "u_deg": 0.01},
+// ...]
 Json BudgetField(const core::Contact& contact, core::AngleKind kind) {
   const core::Budget& budget = kind == core::AngleKind::kApproach
                                    ? contact.approach_budget
@@ -54,6 +62,8 @@ Json BudgetField(const core::Contact& contact, core::AngleKind kind) {
   return json;
 }
 
+// Writes one touchdown. `at` is where it stands ("contact." or
+// "later_contacts[0].contact."), for the reasons of what is absent.
 Json ContactField(Writer& writer, const std::string& at,
                   const core::Contact& contact, core::AngleKind kind) {
   Json json;
@@ -61,6 +71,8 @@ Json ContactField(Writer& writer, const std::string& at,
   if (!contact.found) json["reason"] = contact.reason;
   json["from_start"] = contact.from_start;
   json["time_s"] = writer.Number(at + "time_s", contact.time_s);
+  // By the contract of the document `frame` is a bare number and not {value,
+  // u}; its u stands beside it.
   if (contact.frame) {
     json["frame"] = contact.frame->value;
     json["u_frame"] = contact.frame->u;
@@ -76,6 +88,8 @@ Json ContactField(Writer& writer, const std::string& at,
       at + "radius_angle_deg", contact.radius_angle_rad, kToDegrees);
   json["face_angle_deg"] =
       writer.Number(at + "face_angle_deg", contact.face_angle_rad, kToDegrees);
+  // Where a contact was found without a corner, the reason given is that of a
+  // sphere.
   if (contact.corner) {
     json["corner"] = Name(*contact.corner);
   } else {
@@ -87,6 +101,8 @@ Json ContactField(Writer& writer, const std::string& at,
   return json;
 }
 
+// Writes the motion state with its evidence. Bounce height and detectable gap
+// are bare numbers in mm: a convention and a limit have no u.
 Json StateField(Writer& writer, const std::string& at,
                 const core::StateDecision& state) {
   Json json;
@@ -117,6 +133,8 @@ Json StateField(Writer& writer, const std::string& at,
   return json;
 }
 
+// Writes the velocities before and after in m/s and rad/s, of the plane frame,
+// and the ratios that follow from them.
 Json MotionField(Writer& writer, const std::string& at, const core::Motion& m) {
   const auto number = [&](const char* name, const core::Measured& value) {
     return writer.Number(at + name, value);
@@ -145,6 +163,8 @@ Json MotionField(Writer& writer, const std::string& at, const core::Motion& m) {
   return json;
 }
 
+// Writes what the file is. The full digest is left to the store, since it takes
+// as long as reading all bytes.
 Json ClipField(Writer& writer, const Analysis& analysis) {
   const vision::ClipInfo& clip = analysis.clip;
   Json json;
@@ -168,6 +188,8 @@ Json ClipField(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
+// Writes what was thrown: sizes in mm where they are known, and as seen in the
+// picture, whole sides in px where the track has half ones.
 Json BodyField(Writer& writer, const Analysis& analysis) {
   if (!analysis.body) return writer.Missing("body", analysis.no_body_reason);
   const core::Body& body = *analysis.body;
@@ -190,6 +212,8 @@ Json BodyField(Writer& writer, const Analysis& analysis) {
   return json;
 }
 
+// Names the calibration that was used. The file itself stands in full under
+// "replay", in the options.
 Json CalibrationField(Writer& writer, const Analysis& analysis) {
   if (!analysis.calibration) {
     return writer.Missing("calibration", "no --calibration");
@@ -252,6 +276,9 @@ Json TrackField(Writer& writer, const Analysis& analysis) {
     sfx += f * p.centre.x_px;
     sfy += f * p.centre.y_px;
   }
+  // x and y are fitted by least squares over the frame number, which is counted
+  // from the first pose so that the sums stay small. Two different frames make
+  // the determinant positive.
   const double determinant = n * sff - sf * sf;
   json["mean_velocity_px_per_frame"] = {(n * sfx - sf * sx) / determinant,
                                         (n * sfy - sf * sy) / determinant};
@@ -262,6 +289,8 @@ Json TrackField(Writer& writer, const Analysis& analysis) {
 // store): a line of text for each frame.
 Json PathField(const Analysis& analysis) {
   const vision::PlaneTrack& plane = *analysis.plane;
+  // These are millimetres for a pixel of the plane, which differ from the
+  // image's scale where the plane of travel is turned.
   const double mm =
       1.0 / PxPerMetre(plane, *analysis.scale).value / core::kMillimetre;
   Json rows = Json::array();
@@ -275,6 +304,8 @@ Json PathField(const Analysis& analysis) {
     if (plane.kind == core::BodyKind::kRectangle) {
       row.AddFixed(s.face_rad / core::kDegree, kDecimals);
     } else {
+      // A sphere has no face angle; the column stays, so that all rows are
+      // alike.
       row.AddWord("null");
     }
     rows.push_back(row.text());
@@ -296,6 +327,9 @@ Json ChecksJson(const Analysis& analysis) {
 }
 
 std::string ToJson(const Analysis& analysis) {
+  // The fields stand in this order: what was filmed, in which frame of
+  // reference, the body, the answer, how far it can be trusted, and what the
+  // program itself needs.
   Writer writer;
   Json json;
   json["schema"] = "touchdown.analysis/1";
@@ -318,6 +352,8 @@ std::string ToJson(const Analysis& analysis) {
                       {"u_offset_px", g.u_offset_px},
                       {"u_angle_deg", g.u_angle_rad * kToDegrees},
                       {"source", calib::Name(g.source)}};
+    // The line through two points at which the camera sees it is what people
+    // draw; the ideal line, on which all angles are based, is given beside it.
     if (analysis.calibration && analysis.calibration->lens) {
       const calib::GroundLine& ideal = *analysis.ground;
       json["ground"]["ideal_px"] = {ideal.p1.x_px, ideal.p1.y_px, ideal.p2.x_px,
@@ -344,6 +380,8 @@ std::string ToJson(const Analysis& analysis) {
   }
   json["motion"] = MotionField(writer, "motion.", first.motion);
   const vision::RestitutionOfImpacts& e = analysis.contacts.restitution;
+  // It is that of all impacts of the clip; "motion" has that of the first
+  // impact alone.
   json["restitution_of_impacts"] = {
       {"restitution",
        writer.Number("restitution_of_impacts.restitution", e.value)},
@@ -363,6 +401,7 @@ std::string ToJson(const Analysis& analysis) {
                       {"check", analysis.timing.check_s},
                       {"digest", analysis.timing.digest_s},
                       {"frames_per_s", analysis.timing.frames_per_s}};
+  // Every field that may be missing has been written by now.
   json["absent"] = writer.TakeAbsent();
   if (!analysis.corrections.empty()) {
     json["corrections"] = analysis.corrections;

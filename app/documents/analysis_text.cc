@@ -10,6 +10,8 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Returns "20.013 +- 0.048 deg", or "absent: " and the reason. `factor` brings
+// SI to `unit`. The sign is in ASCII, for terminals that lack it.
 std::string MeasuredText(const core::Measured& m, double factor,
                          const char* unit) {
   if (!m) return fmt::format("absent: {}", m.error().reason);
@@ -23,6 +25,7 @@ std::string Convention(const core::Measured& m, double factor,
            : "absent: " + m.error().reason;
 }
 
+// Adds "name       text". An empty name continues the line before.
 void Line(std::string& out, const char* name, const std::string& text) {
   out += fmt::format("{:<10} {}\n", name, text);
 }
@@ -32,6 +35,8 @@ std::string SourceOfHeight(const Analysis& a) {
   if (a.options.bounce_height_m || !a.contacts.first.state.bounce_height_m) {
     return "";
   }
+  // A convention that follows from a measured size differs from clip to clip,
+  // which is why the line asks for a fixed one.
   const bool stated = a.options.diameter_m || a.options.long_m;
   return fmt::format(
       "taken from the body's {} size (the larger of 0.5 mm and 2 % of it): a "
@@ -39,6 +44,8 @@ std::string SourceOfHeight(const Analysis& a) {
       stated ? "stated" : "measured");
 }
 
+// Adds the evidence of the state: greatest gap, bounce height, and the least
+// gap that this recording could have shown, all in mm.
 void AddGaps(std::string& out, const Analysis& a) {
   const core::StateDecision& state = a.contacts.first.state;
   constexpr double kMm = 1.0 / core::kMillimetre;
@@ -57,6 +64,7 @@ void AddGaps(std::string& out, const Analysis& a) {
   }
 }
 
+// Adds velocities and ratios at the first touchdown, a number or its reason.
 void AddMotion(std::string& out, const core::Motion& motion) {
   Line(out, "speed", MeasuredText(motion.before_speed_mps, 1.0, "m/s"));
   const auto parts = [](const core::Measured& normal,
@@ -76,6 +84,8 @@ void AddMotion(std::string& out, const core::Motion& motion) {
   Line(out, "restitut.", MeasuredText(motion.restitution, 1.0, ""));
   Line(out, "centre",
        MeasuredText(motion.centre_rebound_ratio, 1.0, "") + " (rebound ratio)");
+  // The impulse ratio is what friction was used; it equals mu only where the
+  // contact point slid all through the impact.
   Line(out, "impulses",
        MeasuredText(motion.impulse_ratio, 1.0, "") + " (ratio)");
   Line(out, "gravity", MeasuredText(motion.gravity_check_mps2, 1.0, "m/s2"));
@@ -86,6 +96,8 @@ void AddMotion(std::string& out, const core::Motion& motion) {
 std::string ToText(const Analysis& a) {
   constexpr double kDeg = 1.0 / core::kDegree;
   constexpr double kMm = 1.0 / core::kMillimetre;
+  // The lines tell from top to bottom what was filmed, the frame of reference,
+  // the contact, the state, the motion, the checks, what follows, warnings.
   const core::ContactRecord& first = a.contacts.first;
   const core::Contact& contact = first.contact;
   std::string out;
@@ -123,6 +135,7 @@ std::string ToText(const Analysis& a) {
   } else {
     Line(out, "ground", "none: " + a.no_ground_reason);
   }
+  // A body that is down from the first frame has no instant of touchdown.
   if (!contact.found) {
     Line(out, "contact", "none: " + contact.reason);
   } else if (contact.from_start) {
@@ -158,11 +171,15 @@ std::string ToText(const Analysis& a) {
   }
   if (first.state.micro_bounce) state += ", micro-bounce";
   Line(out, "state", state);
+  // The reason is a sentence of its own, below the label.
   Line(out, "", first.state.reason);
   AddGaps(out, a);
+  // Without a flight before it there are no velocities at touchdown, only a row
+  // of "absent".
   if (contact.found && !contact.from_start) {
     AddMotion(out, first.motion);
     const vision::RestitutionOfImpacts& e = a.contacts.restitution;
+    // One resolved impact is the restitution above, said once.
     if (e.resolved > 1 || e.unresolved > 0) {
       Line(out, "impacts",
            fmt::format(
@@ -173,6 +190,8 @@ std::string ToText(const Analysis& a) {
                    : "all that were seen"));
     }
   }
+  // This says how much of what changes in the clip the answer accounts for. A
+  // share near 1, with little change elsewhere, speaks for the track.
   if (a.explained) {
     Line(
         out, "explained",
@@ -183,6 +202,7 @@ std::string ToText(const Analysis& a) {
   } else {
     Line(out, "explained", "absent: " + a.explained.error().reason);
   }
+  // Later contacts are told in one line each; all numbers are in the document.
   for (const core::ContactRecord& later : a.contacts.later) {
     const core::Measured angle =
         core::ContactAngle(later.contact, a.angle_kind);
@@ -202,6 +222,7 @@ std::string ToText(const Analysis& a) {
   for (const auto& [what, why] : a.scene_model.left_out) {
     Line(out, "left out", what + ": " + why);
   }
+  // The rate is that of the whole analysis, frames over wall time.
   Line(out, "time",
        fmt::format("{:.3f} s, {:.0f} frames/s", a.timing.total_s,
                    a.timing.frames_per_s));

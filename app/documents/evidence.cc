@@ -18,6 +18,14 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Makes track.csv, a row a frame; the heading alone where no body was followed.
+//
+//   x_px, y_px   centre in the recorded picture, pixel centres at integers
+//   angle_deg    of the long side in the picture; empty for a sphere
+//   misfit       normalised residual rms of the outline fit
+//   along_px .. face_deg   the same pose seen from the ground line
+//
+// Units are px, since a scale may be absent.
 std::string TrackCsv(const Analysis& analysis) {
   std::string csv =
       "frame,time_s,x_px,y_px,u_x_px,u_y_px,angle_deg,u_angle_deg,misfit,"
@@ -36,6 +44,7 @@ std::string TrackCsv(const Analysis& analysis) {
                              p.u_angle_rad / core::kDegree)
                : std::string(",,");
     csv += fmt::format("{:.3f},", p.misfit);
+    // Both lists are in the order of frames, so one index walks along.
     if (analysis.plane && at < analysis.plane->samples.size() &&
         analysis.plane->samples[at].frame == p.frame) {
       const vision::PlaneSample& s = analysis.plane->samples[at++];
@@ -50,6 +59,8 @@ std::string TrackCsv(const Analysis& analysis) {
   return csv;
 }
 
+// Makes the heading of the contact's picture: file, state and contact angle.
+// SIMULATED stands on it, since pictures travel without their document.
 std::string Title(const Analysis& analysis) {
   const core::ContactRecord& first = analysis.contacts.first;
   std::string title = analysis.clip.path.filename().string();
@@ -69,6 +80,8 @@ std::optional<vision::ColourImage> MakeContactSheet(const Analysis& analysis) {
   if (!analysis.track || !analysis.plane || analysis.track->poses.empty()) {
     return std::nullopt;
   }
+  // The recording is read again, undistorted where there is a lens: drawn lines
+  // and flights are straight and parabolic only there.
   const Drawable drawable = OpenToDraw(analysis);
   vision::ContactSheetOptions sheet_options;
   sheet_options.title = Title(analysis);
@@ -81,9 +94,12 @@ void WriteEvidence(const Analysis& analysis,
                    const std::filesystem::path& folder) {
   // All of it is made before any is written: who ends the program between two
   // files leaves none.
+  // The picture needs the recording a second time and may fail, so it is drawn
+  // before the folder is made.
   const std::string track = TrackCsv(analysis);
   const std::string document = ToJson(analysis) + "\n";
   const std::optional<vision::ColourImage> sheet = MakeContactSheet(analysis);
+  // From here on a signal waits: the three files appear together.
   const core::AllOrNothing together;
   std::error_code trouble;
   std::filesystem::create_directories(folder, trouble);

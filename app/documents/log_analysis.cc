@@ -20,12 +20,16 @@ core::Campaign RequireCampaign(const db::Store& store,
 
 void FillFromCampaign(const std::filesystem::path& db,
                       const std::string& campaign, AnalyzeOptions& options) {
+  // The store is closed again before the analysis begins, which may take
+  // minutes.
   FillFromCampaign(
       RequireCampaign(db::Store::Open(db, db::OpenMode::kRead), campaign),
       options);
 }
 
 void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options) {
+  // What a person stated for this clip goes before the campaign. A body counts
+  // as stated by its kind or by any size: half of it from each would mix two.
   const core::Body& body = campaign.body;
   if (!options.body_kind && !options.diameter_m && !options.long_m) {
     options.body_kind = body.kind;
@@ -43,6 +47,8 @@ void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options) {
 
 core::Trial LoggableTrial(const Analysis& analysis,
                           const core::Campaign* campaign, std::string sha256) {
+  // The path is made absolute, so that the store finds the clip from any
+  // folder. Size and SHA-256 tell when it was moved or changed.
   core::Trial trial = ToTrial(analysis);
   trial.clip.path = std::filesystem::absolute(analysis.clip.path).string();
   trial.clip.size_bytes = vision::SizeBytes(analysis.clip.path);
@@ -50,6 +56,8 @@ core::Trial LoggableTrial(const Analysis& analysis,
       sha256.empty() ? vision::Sha256(analysis.clip.path) : std::move(sha256);
   if (campaign != nullptr) {
     trial.campaign = campaign->name;
+    // A clip that shows no body is a shot all the same: the campaign's body was
+    // thrown, and the store refuses a trial of another one.
     if (!analysis.body) {
       trial.body = campaign->body;
       trial.angle_kind = campaign->angle_kind;
@@ -75,6 +83,8 @@ Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
     }
   }
   const db::Logged logged = store.LogTrial(trial);
+  // The picture comes after the trial is on the disk: it may fail, the trial
+  // must not.
   KeepPicture(db, trial);
   return {logged.id, logged.revision, logged.is_proposal};
 }

@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 // Recording and options of an analysis.
 using Key = std::pair<std::string, std::string>;
 
+// Returns the text json[object][field]; empty where there is none. The file may
+// be anybody's.
 std::string FindText(const nlohmann::json& json, const char* object,
                      const char* field) {
   const auto outer = json.find(object);
@@ -32,6 +34,8 @@ std::string FindText(const nlohmann::json& json, const char* object,
                                                      : "";
 }
 
+// Reads which analysis an analysis.json is of; both parts are empty where it is
+// none.
 Key ReadKey(const fs::path& analysis) {
   std::ifstream file(analysis);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
@@ -46,6 +50,8 @@ std::optional<fs::path> FindPicture(const fs::path& store,
                                     const core::Trial& trial) {
   const std::string name =
       fmt::format("{}-{}", trial.clip.id, trial.options_hash);
+  // Id and hash are hexadecimal. A slash or dots, in a store that came from
+  // elsewhere, would lead out of the folder.
   const bool is_plain = std::ranges::all_of(name, [](char c) {
     return c == '-' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z');
   });
@@ -63,12 +69,17 @@ bool KeepPicture(const fs::path& store, const core::Trial& trial) {
   const auto picture = FindPicture(store, trial);
   if (!picture) return false;
   try {
+    // The analysis is taken from the trial, so that the picture shows what is
+    // stored, a person's correction included.
     auto analysis = Replay(trial);
     if (!analysis) return false;
+    // The document has the path as it was typed; the trial has the absolute
+    // one.
     analysis->clip.path = trial.clip.path;
     const auto sheet = MakeContactSheet(*analysis);
     if (!sheet) return false;
     std::error_code ignored;
+    // Where the folder cannot be made, writing the picture says so.
     fs::create_directories(PictureFolder(store), ignored);
     vision::WritePngRgb(*picture, sheet->width_px, sheet->height_px,
                         sheet->rgb);
@@ -98,6 +109,8 @@ std::map<std::string, fs::path> FindPictures(
   std::map<Key, fs::path> found;
   std::error_code trouble;
   fs::recursive_directory_iterator entry(folder, trouble);
+  // One pass over the folder collects every contact.png by the recording and
+  // the options of the analysis.json beside it.
   for (; !trouble && entry != fs::recursive_directory_iterator();
        entry.increment(trouble)) {
     if (entry->path().filename() != "analysis.json") continue;
@@ -106,6 +119,8 @@ std::map<std::string, fs::path> FindPictures(
     if (!fs::is_regular_file(picture, ignored)) continue;
     const Key key = ReadKey(entry->path());
     const auto [at, is_new] = found.emplace(key, picture);
+    // Directories are listed in any order: the first by path is always the
+    // same.
     if (!is_new && picture < at->second) at->second = picture;
   }
   if (trouble) {

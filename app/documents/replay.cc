@@ -21,12 +21,16 @@ using report::EstimateJson;
 using report::Json;
 using report::ReadEstimate;
 
+// These are the columns of a row of "replay"/"track"/"rows", with blanks
+// between: a line of text for each frame takes far fewer bytes than named
+// fields.
 constexpr const char* kColumns =
     "frame time_s x_px y_px u_x_px u_y_px correlation angle_rad u_angle_rad "
     "relative_size misfit";
 
 // --- values that may be absent ----------------------------------------------
 
+// What is absent is left out, and read back as absent.
 void Put(Json& json, const char* name, const std::optional<double>& value) {
   if (value) json[name] = *value;
 }
@@ -40,18 +44,23 @@ std::optional<core::Estimate> OptionalEstimate(const Json& json,
   if (!json.contains(name)) return std::nullopt;
   return ReadEstimate(json.at(name));
 }
+// Returns a field, nothing where it is absent or null. Throws Json::exception
+// where it is of another type.
 template <class T>
 std::optional<T> Optional(const Json& json, const char* name) {
   if (!json.contains(name) || json.at(name).is_null()) return std::nullopt;
   return json.at(name).get<T>();
 }
 
+// Returns a whole number of 32 bits; `name` is for the message.
 std::int32_t Int32(const Json& json, const char* name) {
   return WholeNumber<std::int32_t>(json, name);
 }
 
 // --- ground, options ---------------------------------------------------------
 
+// Writes the line as it was used: two points, and the reference point at which
+// its offset and its direction are uncorrelated.
 Json GroundJson(const calib::GroundLine& g) {
   return {{"p1_px", {g.p1.x_px, g.p1.y_px}},
           {"p2_px", {g.p2.x_px, g.p2.y_px}},
@@ -93,6 +102,8 @@ calib::GroundLine ReadGroundLine(const Json& json) {
   return g;
 }
 
+// Writes the options that decide an answer, in SI. Limits, threads and progress
+// are left out: they belong to the run and not to the analysis.
 Json OptionsJson(const AnalyzeOptions& o) {
   Json json = Json::object();
   Put(json, "fps", o.fps);
@@ -116,6 +127,8 @@ Json OptionsJson(const AnalyzeOptions& o) {
   return json;
 }
 
+// Reads them back. Throws Json::exception, std::invalid_argument or
+// core::InputError where the document is damaged or of another program.
 AnalyzeOptions ReadOptions(const Json& json) {
   AnalyzeOptions o;
   o.fps = Optional<double>(json, "fps");
@@ -154,6 +167,8 @@ AnalyzeOptions ReadOptions(const Json& json) {
 
 // --- track -------------------------------------------------------------------
 
+// Writes the track in the image as it was recorded: positions to 1e-5 px,
+// uncertainties to four digits, of which two are known.
 Json TrackJson(const vision::Track& track) {
   const vision::BodyImage& body = track.body;
   Json json = {{"radius_px", EstimateJson(body.radius_px)},
@@ -193,6 +208,8 @@ Json TrackJson(const vision::Track& track) {
   return json;
 }
 
+// Reads it back. A field that an earlier document lacks gets the value that
+// held for it.
 vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   vision::Track track;
   track.body.kind = kind;
@@ -220,6 +237,7 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   track.several_bodies = json.at("several_bodies");
   for (const Json& row : json.at("rows")) {
     std::istringstream in(row.get<std::string>());
+    // The decimal point is the document's, whatever the locale.
     in.imbue(std::locale::classic());
     vision::Pose p;
     in >> p.frame >> p.time_s >> p.centre.x_px >> p.centre.y_px >> p.u_x_px >>
@@ -233,6 +251,8 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
 
 // --- the rest of an analysis, from the document's own fields -----------------
 
+// Restores what the document says of the file. The file is not opened: it may
+// be gone.
 vision::ClipInfo ReadClipInfo(const Json& json) {
   using enum vision::FpsSource;
   vision::ClipInfo clip;
@@ -274,6 +294,9 @@ core::Expected<vision::ExplainedChange> ReadExplained(const Json& document) {
   return explained;
 }
 
+// Restores an analysis up to its track and ground line; contacts and angles are
+// for Rejudge to find. Body, kind of angle, origin and clip id are the trial's,
+// all else is the document's.
 Analysis RestoreAnalysis(const core::Trial& trial, const Json& document) {
   using enum calib::ScaleSource;
   using enum vision::Channel;
@@ -363,6 +386,8 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
           "an earlier program analysed it and kept no track; analyse the clip "
           "again");
     }
+    // What cannot be judged again is told with its cause, so that the page can
+    // say why a trial has no outlines.
     if (!document["replay"].contains("track")) {
       return core::AbsentBecause("the analysis saw no body");
     }
@@ -370,7 +395,10 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
     if (analysis.track->several_bodies) {
       return core::AbsentBecause("several bodies move in it");
     }
+    // Without a line there is nothing to judge; the track can still be shown.
     if (!analysis.ground) return analysis;
+    // The correction is empty: the stored track is judged as it is, by the code
+    // of this program.
     return Rejudge(std::move(analysis), {});
   } catch (const Json::exception& error) {
     return core::AbsentBecause(
@@ -384,11 +412,15 @@ core::Expected<Analysis> Replay(const core::Trial& trial) {
 }
 
 std::optional<AnalyzeOptions> ReadCameraOptions(const core::Trial& trial) {
+  // Here a document that is damaged is one that does not say: a default is
+  // better than no answer.
   const Json document = Json::parse(trial.document_json, nullptr, false);
   if (!document.is_object() || !document.contains("replay")) {
     return std::nullopt;
   }
   try {
+    // Each option is chosen by name: one that is added to AnalyzeOptions must
+    // not slip into the next clip's analysis.
     const AnalyzeOptions all = ReadOptions(document["replay"].at("options"));
     AnalyzeOptions camera;
     camera.fps = all.fps;
@@ -411,6 +443,8 @@ core::Trial WithAnalysis(const core::Trial& seen, const Analysis& analysis) {
   const core::Trial judged = ToTrial(analysis);
   trial.first = judged.first;
   trial.later = judged.later;
+  // Author, reason and time are the store's to set; the set-points, conditions
+  // and the clip are facts of the shot.
   trial.software_version = judged.software_version;
   trial.options_hash = judged.options_hash;
   trial.document_json = judged.document_json;

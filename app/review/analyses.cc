@@ -23,11 +23,17 @@ constexpr std::size_t kMostFinished = 32;
 // Of those that are not. A folder of more is for `touchdown batch`.
 constexpr std::size_t kMostWaiting = 64;
 
+// Says whether nothing more happens to an analysis.
 bool IsFinished(AnalysisState state) {
   return state != AnalysisState::kWaiting && state != AnalysisState::kRunning;
 }
 
+// Says whether two orders ask for the same analysis, so that two tabs look at
+// one. Who asked plays no part, nor does `again`.
 bool IsSame(const AnalysisOrder& a, const AnalysisOrder& b) {
+  // Returns the hash of what the analysis is told. Of a test the campaign is
+  // not in the store and may differ under one name, so its conventions are
+  // hashed, too.
   const auto told = [](const AnalysisOrder& order) {
     pipeline::AnalyzeOptions options = order.camera;
     if (order.is_test) pipeline::FillFromCampaign(order.campaign, options);
@@ -40,6 +46,8 @@ bool IsSame(const AnalysisOrder& a, const AnalysisOrder& b) {
          told(a) == told(b);
 }
 
+// Returns the answer in a few words, for the list on the page: "approach angle
+// 20.013 ± 0.048 deg, bounce".
 std::string Said(const pipeline::TriageEntry& entry) {
   const std::string state =
       entry.state ? std::string(core::Name(*entry.state)) : "no state";
@@ -68,6 +76,10 @@ std::string_view Name(AnalysisState state) {
   return "failed";
 }
 
+// The job is one analysis. The worker's progress and the person's wish to end
+// it cross threads without the queue's lock: a frame must not wait for it.
+// `status.order` does not change after Add, so the worker reads it without the
+// lock.
 struct AnalysisQueue::Job {
   AnalysisStatus status;  // under the queue's lock
   std::atomic<double> share = 0.0;
@@ -79,6 +91,8 @@ AnalysisQueue::AnalysisQueue(std::filesystem::path store)
 
 AnalysisQueue::~AnalysisQueue() {
   {
+    // The one that runs ends at its next look at `interrupted`; the worker is
+    // then waited for, since it uses this object.
     const std::lock_guard lock(guard_);
     ending_ = true;
     for (const auto& job : jobs_) job->interrupted = true;
@@ -91,6 +105,8 @@ std::string AnalysisQueue::Add(AnalysisOrder order) {
   const std::lock_guard lock(guard_);
   std::size_t waiting = 0;
   for (const auto& job : jobs_) {
+    // One that was cancelled and still runs counts as finished: it must not be
+    // the answer to a new request.
     if (IsFinished(job->status.state) || job->interrupted) continue;
     if (IsSame(job->status.order, order)) return job->status.id;
     ++waiting;
@@ -102,6 +118,7 @@ std::string AnalysisQueue::Add(AnalysisOrder order) {
         waiting));
   }
   const auto job = std::make_shared<Job>();
+  // Numbers count from 1 in each run of the server; none is used twice.
   job->status.id = fmt::format("{}", ++last_number_);
   job->status.order = std::move(order);
   jobs_.push_back(job);
@@ -113,6 +130,8 @@ bool AnalysisQueue::Cancel(const std::string& id) {
   const std::lock_guard lock(guard_);
   for (const auto& job : jobs_) {
     if (job->status.id != id) continue;
+    // One that runs ends by itself, soon, and says so; one that waits never
+    // begins.
     job->interrupted = true;
     if (job->status.state == AnalysisState::kWaiting) {
       job->status.state = AnalysisState::kCancelled;
@@ -122,6 +141,8 @@ bool AnalysisQueue::Cancel(const std::string& id) {
   return false;
 }
 
+// Copies what the page asks for. The progress is told in frames, as people
+// count; `ahead` counts the unfinished ones that were asked for before.
 AnalysisStatus AnalysisQueue::MakeStatus(const Job& job) const {
   AnalysisStatus status = job.status;
   status.frames_done = std::llround(std::clamp(job.share.load(), 0.0, 1.0) *
@@ -148,6 +169,8 @@ std::optional<AnalysisStatus> AnalysisQueue::Find(const std::string& id) const {
   return std::nullopt;
 }
 
+// A test that was kept remembers its trial: a second tab that keeps it as well
+// gets the same one.
 void AnalysisQueue::SetTrial(const std::string& id,
                              const std::string& trial_id) {
   const std::lock_guard lock(guard_);
@@ -156,6 +179,8 @@ void AnalysisQueue::SetTrial(const std::string& id,
   }
 }
 
+// Drops the oldest finished ones beyond kMostFinished, so that memory does not
+// grow with the day: a test holds a whole track.
 void AnalysisQueue::Forget() {
   std::size_t over = 0;
   for (const auto& job : jobs_) over += IsFinished(job->status.state) ? 1 : 0;
@@ -166,6 +191,7 @@ void AnalysisQueue::Forget() {
   });
 }
 
+// The worker's loop: one analysis at a time, since each may use all cores.
 void AnalysisQueue::Work() {
   while (true) {
     std::shared_ptr<Job> next;
@@ -181,12 +207,16 @@ void AnalysisQueue::Work() {
       next = *std::ranges::find_if(jobs_, is_waiting);
       next->status.state = AnalysisState::kRunning;
     }
+    // The lock is not held: it takes seconds, and the page asks for progress
+    // meanwhile.
     Run(*next);
     const std::lock_guard lock(guard_);
     Forget();
   }
 }
 
+// Runs one job and turns whatever is thrown into its state: nothing may end the
+// worker.
 void AnalysisQueue::Run(Job& job) {
   const auto end = [&](AnalysisState state, const std::string& trouble) {
     const std::lock_guard lock(guard_);
@@ -206,6 +236,8 @@ void AnalysisQueue::Run(Job& job) {
   }
 }
 
+// Analyses with the settings of a campaign that is not stored yet. The result
+// stays in memory until a person keeps or forgets it.
 void AnalysisQueue::Test(Job& job) {
   const AnalysisOrder& order = job.status.order;
   pipeline::AnalyzeOptions options = order.camera;
@@ -224,6 +256,8 @@ void AnalysisQueue::Test(Job& job) {
   job.status.state = AnalysisState::kDone;
 }
 
+// Analyses and logs by a batch of one clip, so that the page and `touchdown
+// batch` know and skip the same recordings.
 void AnalysisQueue::Log(Job& job) {
   const AnalysisOrder& order = job.status.order;
   pipeline::BatchClip clip;
@@ -244,8 +278,10 @@ void AnalysisQueue::Log(Job& job) {
     job.share = progress.share;
   };
   options.stop = [&job] { return job.interrupted.load(); };
+  // The thread has a connection of its own: one Store belongs to one thread.
   db::Store store = db::Store::Open(store_, db::OpenMode::kWrite);
   const auto entries = pipeline::RunBatch(store, {&clip, 1}, options);
+  // No entry means that `stop` said so.
   if (entries.empty()) throw core::Cancelled("ended before it was logged");
   const pipeline::TriageEntry& entry = entries.front();
   const std::lock_guard lock(guard_);

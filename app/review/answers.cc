@@ -8,6 +8,7 @@ namespace touchdown::review {
 
 Reply JsonReply(const nlohmann::ordered_json& json) {
   Reply reply;
+  // Names of files need not be UTF-8; such bytes are replaced.
   reply.body = json.dump(-1, ' ', false,
                          nlohmann::ordered_json::error_handler_t::replace);
   return reply;
@@ -17,6 +18,8 @@ Reply PictureReply(const Picture& picture) {
   Reply reply;
   reply.type = picture.type;
   reply.body = *picture.bytes;
+  // This browser alone may keep it for ten minutes: stepping to and fro asks
+  // for each frame once.
   reply.headers = {{"Cache-Control", "private, max-age=600"}};
   return reply;
 }
@@ -31,6 +34,7 @@ nlohmann::ordered_json ClipJson(const vision::ClipInfo& info) {
 
 std::int64_t ParsePathNumber(const std::string& text, const std::string& path) {
   const auto n = report::ParseNumber<std::int64_t>(text);
+  // A path that holds no number leads nowhere: 404, not 400.
   if (!n || *n < 0) throw NotThere(path);
   return *n;
 }

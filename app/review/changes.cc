@@ -20,6 +20,7 @@ namespace {
 
 using report::Json;
 
+// db::Changes puts these prefixes before the column.
 constexpr std::string_view kOfConditions = "conditions: ";
 constexpr std::string_view kContactPrefix = "contact ";  // "contact 2: "
 
@@ -29,12 +30,15 @@ struct Field {
   std::string_view column;
 };
 
+// Divides "contact 2: state" behind ": "; the prefix is empty for the trial
+// itself and its first contact.
 Field SplitField(std::string_view change) {
   const std::size_t colon = change.find(": ");
   if (colon == std::string_view::npos) return {"", change};
   return {change.substr(0, colon + 2), change.substr(colon + 2)};
 }
 
+// Returns the contact that a field is of.
 // Null where the trial has no such contact, or the field is of no contact.
 const core::ContactRecord* FindContactRecord(const core::Trial& trial,
                                              const Field& field) {
@@ -43,18 +47,22 @@ const core::ContactRecord* FindContactRecord(const core::Trial& trial,
   const std::string_view digits = field.prefix.substr(kContactPrefix.size());
   std::size_t number = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  // The first contact has no number; the second is the first of `later`.
   if (number < 2 || number - 2 >= trial.later.size()) return nullptr;
   return &trial.later[number - 2];
 }
 
+// Makes a set-point a number like others: it has no uncertainty.
 core::Measured Exactly(const std::optional<double>& value) {
   if (!value) return core::AbsentBecause("not set");
   return core::Estimate{*value, 0.0, std::nullopt};
 }
 
+// Returns the measured number that a field is, in SI.
 // Nothing where the field is no number of a unit.
 std::optional<core::Measured> FieldNumber(const core::Trial& trial,
                                           const Field& field) {
+  // These are temperature, humidity and the rig's settings.
   if (field.prefix == kOfConditions) {
     for (const auto& quantity : db::kConditionQuantities) {
       if (field.column == quantity.name) {
@@ -77,6 +85,8 @@ std::optional<core::Measured> FieldNumber(const core::Trial& trial,
   return std::nullopt;
 }
 
+// Returns a budget in one line, in degrees: "localisation 0.0100 deg, ground
+// 0.0200 deg".
 std::string BudgetText(const core::Budget& budget) {
   std::string text;
   for (const auto& line : budget) {
@@ -110,6 +120,8 @@ std::string FieldText(const core::Trial& trial, const Field& field,
 
 Json ChangesJson(const core::Trial& before, const core::Trial& after) {
   Json out = Json::array();
+  // A new document makes numbers change; that it was made anew says something
+  // only where no number did.
   Json document;
   for (const db::Change& change : db::Changes(before, after)) {
     const Field field = SplitField(change.field);
@@ -138,6 +150,9 @@ Json HistoryJson(const std::vector<db::Revision>& history) {
          {"when", trial.recorded_at_utc},
          {"changes",
           i == 0 ? Json::array()
+                 // A revision is compared with the one in force before it,
+                 // which is not always the one before it in the list: proposals
+                 // stand between.
                  : ChangesJson(db::RevisionInForce({history.data(), i}).trial,
                                trial)}});
   }

@@ -21,6 +21,7 @@ constexpr std::int64_t kNear = 20;
 // A folder of images tells no frame rate; pictures need none.
 constexpr double kAnyRate_hz = 1.0;
 
+// Opens a recording to look at. Throws like vision::OpenClip.
 std::unique_ptr<vision::Clip> OpenShelfClip(const std::filesystem::path& path) {
   vision::ClipOptions options;
   options.fps = kAnyRate_hz;
@@ -30,6 +31,8 @@ std::unique_ptr<vision::Clip> OpenShelfClip(const std::filesystem::path& path) {
 }
 
 // The level of which one sample in a thousand lies above.
+// It is never below 255: a dark recording keeps its levels. `frame` has more
+// than 8 bits.
 std::uint32_t FindWhiteLevel(const core::Frame& frame) {
   std::vector<std::uint32_t> count(std::size_t{frame.full_scale()} + 1);
   for (std::int32_t y = 0; y < frame.height_px; ++y) {
@@ -46,6 +49,7 @@ std::uint32_t FindWhiteLevel(const core::Frame& frame) {
   return level;
 }
 
+// Brings a deeper frame to 8 bits: 0 stays 0, `white` and above become 255.
 vision::Image ToEightBits(const core::Frame& frame, std::uint32_t white) {
   vision::Image image;
   image.width_px = frame.width_px;
@@ -62,10 +66,14 @@ vision::Image ToEightBits(const core::Frame& frame, std::uint32_t white) {
   return image;
 }
 
+// Says whether a frame may depend on earlier ones. Raw recordings and folders
+// of images are read frame by frame; all else is taken to depend on them.
 bool IsCompressed(const vision::ClipInfo& info) {
   return info.format != "mraw" && !info.format.ends_with("-folder");
 }
 
+// Encodes a frame of 8 bits. PNG keeps the samples of raw recordings; the
+// compressed ones have lost theirs already, and JPEG is smaller.
 Picture Encode(const core::Frame& frame, const vision::ClipInfo& info) {
   if (IsCompressed(info)) {
     return {"image/jpeg", std::make_shared<const std::string>(
@@ -75,6 +83,7 @@ Picture Encode(const core::Frame& frame, const vision::ClipInfo& info) {
           std::make_shared<const std::string>(vision::EncodePng(frame))};
 }
 
+// Encodes a frame of any depth; `white` is used for deeper ones alone.
 Picture Encode(const core::Frame& frame, const vision::ClipInfo& info,
                std::uint32_t white) {
   if (!frame.is_16_bit()) return Encode(frame, info);
@@ -99,6 +108,7 @@ ClipShelf::~ClipShelf() {
   warmer_.join();
 }
 
+// Returns what is known of a recording; nothing before it was first opened.
 std::optional<ClipShelf::Known> ClipShelf::Recall(
     const std::string& path) const {
   const std::lock_guard lock(guard_);
@@ -107,6 +117,8 @@ std::optional<ClipShelf::Known> ClipShelf::Recall(
   return found->second;
 }
 
+// Remembers a recording's facts. The white level is found once, in the first
+// frame: pictures of one recording must not flicker.
 ClipShelf::Known ClipShelf::Learn(const std::string& path, vision::Clip& clip) {
   if (const auto known = Recall(path)) return *known;
   Known known = {clip.info(), 255};
@@ -115,6 +127,7 @@ ClipShelf::Known ClipShelf::Learn(const std::string& path, vision::Clip& clip) {
   return known_.emplace(path, std::move(known)).first->second;
 }
 
+// Returns a picture that is kept, and makes it the last used.
 std::optional<Picture> ClipShelf::Find(const Key& key) {
   const std::lock_guard lock(guard_);
   const auto found = kept_.find(key);
@@ -123,6 +136,8 @@ std::optional<Picture> ClipShelf::Find(const Key& key) {
   return found->second.picture;
 }
 
+// Keeps a picture, and drops those that were used longest ago while there are
+// more than most_bytes. One that is larger than all of it is not kept.
 void ClipShelf::Keep(const Key& key, const Picture& picture) {
   const std::lock_guard lock(guard_);
   if (kept_.contains(key) || picture.bytes->size() > options_.most_bytes) {
@@ -144,6 +159,8 @@ std::size_t ClipShelf::bytes() const {
   return bytes_;
 }
 
+// The reader stays open in the pool: frames are mostly asked for next. What is
+// known of a path holds until the server ends.
 vision::ClipInfo ClipShelf::Info(const std::filesystem::path& path) {
   if (const auto known = Recall(path.string())) return known->info;
   const ReaderPool::Lease reader = readers_.Take(path);
@@ -160,12 +177,16 @@ Picture ClipShelf::Frame(const std::filesystem::path& path,
   const Known known = Learn(key.first, reader.clip());
   const bool compressed = IsCompressed(known.info);
   if (compressed) Ask(key.first, index);
+  // The lease is held while the frame is encoded: its samples belong to the
+  // reader.
   Picture picture = Encode(reader.clip().Read(index), known.info, known.white);
   // A raw frame is made again as quickly as it is found.
   if (compressed) Keep(key, picture);
   return picture;
 }
 
+// A list shows hundreds of these, each of another recording: decoding them
+// ahead would push out what a person is looking at.
 Picture ClipShelf::Small(const std::filesystem::path& path, std::int64_t index,
                          core::PixelPoint centre, double width_px) {
   const ReaderPool::Lease reader = readers_.Take(path);
@@ -176,6 +197,8 @@ Picture ClipShelf::Small(const std::filesystem::path& path, std::int64_t index,
                             vision::EncodeJpeg(image.View(), kJpegQuality))};
 }
 
+// Asks the thread to decode a recording ahead. Of more than most_open the one
+// that was asked for longest ago is dropped, and its decoding ends.
 void ClipShelf::Ask(const std::string& path, std::int64_t index) {
   const std::lock_guard lock(guard_);
   const auto found =
@@ -190,12 +213,17 @@ void ClipShelf::Ask(const std::string& path, std::int64_t index) {
   wake_.notify_one();
 }
 
+// Says whether the recording is still among those asked for; the thread asks
+// before each frame.
 bool ClipShelf::IsAsked(const std::string& path) const {
   const std::lock_guard lock(guard_);
   return std::any_of(asked_.begin(), asked_.end(),
                      [&](const Asked& asked) { return asked.path == path; });
 }
 
+// The thread's loop: takes the recording that was asked for last and decodes it
+// without the lock. An entry that was taken stays in the list, so that it is
+// not decoded a second time.
 void ClipShelf::WarmUp() {
   std::unique_lock lock(guard_);
   for (;;) {
@@ -229,6 +257,7 @@ void ClipShelf::Decode(const Asked& asked) {
   const std::int64_t first = std::max<std::int64_t>(0, asked.from - kNear);
   std::size_t made = 0;
   for (std::int64_t k = 0; k < frames && IsAsked(asked.path); ++k) {
+    // The order is from `first` to the end, then from the beginning.
     const Key key{asked.path, (first + k) % frames};
     const core::Frame frame = clip->Read(key.second);
     if (Find(key)) continue;

@@ -22,6 +22,9 @@ namespace {
 
 using report::Json;
 
+// Reads what the page sends. Points are of the recorded picture, in px. Throws
+// std::invalid_argument naming the field, nlohmann's exceptions for values of
+// another type.
 pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
   pipeline::Correction correction;
   if (const auto ground = asked.find("ground_px");
@@ -33,6 +36,7 @@ pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
           n.size()));
     }
     correction.ground =
+        // u of the line follows from how well a hand places its two points.
         calib::MakeGroundLine({n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px);
   }
   if (const auto frame = asked.find("contact_frame");
@@ -40,6 +44,7 @@ pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
     correction.contact_frame = pipeline::WholeNumber(*frame, "contact_frame");
   }
   if (const auto moved = asked.find("moved"); moved != asked.end()) {
+    // Frames are the names of an object, since JSON has no numbers there.
     for (const auto& [name, by] : moved->items()) {
       const auto frame = report::ParseNumber<std::int64_t>(name);
       if (!frame) {
@@ -58,14 +63,18 @@ pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
   return correction;
 }
 
+// Holds the trial with its correction, and the analysis that is drawn of it.
 struct Corrected {
   core::Trial trial;
   core::Expected<pipeline::Analysis> analysis;
 };
 
+// Applies a correction, without storing it. What is measured anew comes first,
+// then what a person states: a stated label wins over the judged one.
 Corrected MakeCorrected(const core::Trial& seen, const nlohmann::json& asked) {
   Corrected out{seen, pipeline::Replay(seen)};
   const pipeline::Correction correction = ReadCorrection(asked);
+  // A note or a label needs no track; a moved outline does.
   if (!correction.empty()) {
     if (!out.analysis) {
       throw std::invalid_argument("there is no track to correct: " +
@@ -81,6 +90,7 @@ Corrected MakeCorrected(const core::Trial& seen, const nlohmann::json& asked) {
   return out;
 }
 
+// Returns "corrected by A. Lee: ground was the mat", for whoever came too late.
 std::string RevisionText(const db::Revision& last) {
   return fmt::format("{} by {}{}{}", db::Name(last.kind), last.trial.author,
                      last.trial.reason.empty() ? "" : ": ", last.trial.reason);
@@ -117,7 +127,10 @@ db::Logged Revise(db::Store& store, const std::string& id,
         "revision {} was made meanwhile ({}); look at it and correct again",
         last.revision, RevisionText(in_force)));
   };
+  // This is asked before anything is computed: the person may have looked at an
+  // older revision.
   require_last();
+  // One of the three is done, and the correction is not looked at.
   if (asked.value("exclude", false)) {
     return store.Exclude(id, who, why, expected);
   }
@@ -132,11 +145,13 @@ db::Logged Revise(db::Store& store, const std::string& id,
   } else {
     trial = MakeCorrected(last, asked).trial;
   }
+  // A revision that says nothing new would only hide the one before it.
   if (db::Changes(last, trial).empty()) {
     throw std::invalid_argument("nothing would change; correct something");
   }
   try {
     const db::Logged logged = store.Correct(trial, who, why);
+    // The kept picture shows what is in force.
     pipeline::KeepPicture(store.path(), trial);
     return logged;
   } catch (const core::StoreError&) {

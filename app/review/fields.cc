@@ -12,6 +12,7 @@ namespace {
 
 using pipeline::FieldError;
 
+// Turns "angle_u_deg" of the page into "angle-u-deg" of the command line.
 std::string Flag(std::string field) {
   for (char& c : field) c = c == '_' ? '-' : c;
   return field;
@@ -29,6 +30,7 @@ std::string ReadTextField(const nlohmann::json& asked, const char* field) {
 std::string RequiredText(const nlohmann::json& asked, const char* field,
                          const char* what) {
   std::string text = ReadTextField(asked, field);
+  // Blanks alone are no name and no reason.
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw FieldError(Flag(field), fmt::format("is missing, must be {}", what));
   }
@@ -38,6 +40,7 @@ std::string RequiredText(const nlohmann::json& asked, const char* field,
 std::optional<double> ReadNumberField(const nlohmann::json& asked,
                                       const char* field) {
   const auto found = asked.find(field);
+  // Forms send text, programs numbers.
   if (found != asked.end() && found->is_number()) return found->get<double>();
   const std::string text = ReadTextField(asked, field);
   if (text.empty()) return std::nullopt;

@@ -18,6 +18,8 @@ Reply Refusal(int status, const std::string& what) {
 }
 
 const std::vector<std::pair<std::string, std::string>>& SafeHeaders() {
+  // Scripts, styles and pictures come from this server alone; nothing inline
+  // runs, so that a name with markup in it does nothing.
   static const std::vector<std::pair<std::string, std::string>> kHeaders = {
       {"Content-Security-Policy",
        "default-src 'none'; script-src 'self'; style-src 'self'; img-src "
@@ -53,6 +55,7 @@ Reply KeyPage(std::string_view what) {
 }
 
 // The key in an address that holds it, or the key itself.
+// A person may paste the whole printed address into the field.
 std::string ExtractKey(std::string_view text) {
   constexpr std::string_view kName = "token=";
   const std::size_t at = text.rfind(kName);
@@ -65,6 +68,8 @@ std::string ExtractKey(std::string_view text) {
 
 }  // namespace
 
+// A Cookie header is "name=value; name=value": a browser sends those of all
+// servers on this machine, whatever their port.
 std::string CookieValue(const std::string& header, const std::string& name) {
   std::string_view rest(header);
   while (!rest.empty()) {
@@ -93,6 +98,8 @@ std::string Guard::CookieName() const {
   return fmt::format("touchdown_{}", port_);
 }
 
+// Says whether a Host header names this server. A page whose own name was made
+// to resolve to 127.0.0.1 sends that name.
 bool Guard::IsOwnHost(const std::string& host) const {
   return host == fmt::format("127.0.0.1:{}", port_) ||
          host == fmt::format("localhost:{}", port_);
@@ -108,6 +115,8 @@ bool Guard::IsOurs(const std::string& token) const {
   return different == 0;
 }
 
+// The tests go from what a stranger's page cannot hide (Host, Origin,
+// Sec-Fetch-Site) to the key, and then to what a change must be besides.
 std::optional<Reply> Guard::Refuse(const Request& request) const {
   if (!IsOwnHost(request.host)) {
     return Refusal(403,
@@ -125,6 +134,7 @@ std::optional<Reply> Guard::Refuse(const Request& request) const {
   }
   if (!IsOurs(request.token) &&
       !IsOurs(CookieValue(request.cookie, CookieName()))) {
+    // A person who opens the page gets a form; a program gets one line.
     if (request.method == "GET" && request.path == "/") {
       return KeyPage("This page needs the key of the session.");
     }
@@ -133,6 +143,8 @@ std::optional<Reply> Guard::Refuse(const Request& request) const {
                    "holds the key of this session");
   }
   if (request.method != "GET" && request.method != "HEAD") {
+    // A form of another page can send text or form data without asking; for
+    // JSON a browser asks first, and is refused.
     if (request.content_type.rfind("application/json", 0) != 0) {
       return Refusal(415, "a request that changes something must be JSON");
     }
@@ -150,6 +162,7 @@ std::optional<Reply> Guard::Welcome(const Request& request) const {
       given == request.query.end() || !IsOwnHost(request.host)) {
     return std::nullopt;
   }
+  // Most often this is a tab of an earlier run of the server.
   if (!IsOurs(ExtractKey(given->second))) {
     return KeyPage("This address is of another session.");
   }

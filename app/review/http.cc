@@ -15,8 +15,11 @@ namespace {
 // Fields of one head; a browser sends about 15. More are refused: each costs
 // memory beyond its bytes.
 constexpr std::size_t kMostFields = 64;
+// Every line of a head ends so (RFC 9112, section 2.2).
 constexpr std::string_view kLineEnd = "\r\n";
 
+// Compares names of fields and their keywords, in which HTTP tells no upper
+// from lower case.
 bool Same(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
     return std::tolower(static_cast<unsigned char>(x)) ==
@@ -24,6 +27,7 @@ bool Same(std::string_view a, std::string_view b) {
   });
 }
 
+// Returns a field's value without the blanks around it.
 std::string_view Trimmed(std::string_view text) {
   const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
@@ -40,16 +44,21 @@ std::string_view TakeToken(std::string_view& rest, std::string_view end) {
   return taken;
 }
 
+// Says whether a field may have this name: visible ASCII, no blank. A blank
+// before the colon is refused: servers and proxies disagree about it, which
+// lets a request say two things.
 bool IsName(std::string_view name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return c > ' ' && c < 0x7f && c != ':';
   });
 }
 
+// Returns the answer to what is no HTTP.
 tl::unexpected<Reply> NotUnderstood(const std::string& what) {
   return tl::unexpected(Refusal(400, "the request is not understood: " + what));
 }
 
+// Returns the value of a hexadecimal digit; -1 where `c` is none.
 int HexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -57,6 +66,8 @@ int HexDigit(char c) {
   return -1;
 }
 
+// Reads "/api/trials/ID?revision=3" into path and query. Both are decoded only
+// after they were divided: an encoded "?" or "&" belongs to a name.
 void ReadTarget(std::string_view target, Request& request) {
   std::string_view rest = target;
   request.path = Decoded(TakeToken(rest, "?"), false);
@@ -89,6 +100,7 @@ std::string* FindPlace(std::string_view name, Request& request) {
 std::optional<Reply> ReadTransfer(std::string_view name, std::string_view value,
                                   std::optional<std::size_t>& length,
                                   Head& head) {
+  // A length that stands twice is refused, even where both agree.
   if (Same(name, "Content-Length")) {
     const auto n = report::ParseNumber<std::size_t>(value);
     if (!n || length) {
@@ -96,6 +108,8 @@ std::optional<Reply> ReadTransfer(std::string_view name, std::string_view value,
     }
     length = *n;
   } else if (Same(name, "Transfer-Encoding")) {
+    // Chunks do not say beforehand how much will come, and the server bounds
+    // its memory by that.
     return Refusal(411, "a body must say its length (Content-Length)");
   } else if (Same(name, "Content-Encoding") && !Same(value, "identity")) {
     return Refusal(415, "a body must not be compressed");
@@ -107,6 +121,7 @@ std::optional<Reply> ReadTransfer(std::string_view name, std::string_view value,
   return std::nullopt;
 }
 
+// Returns the words after the status, for people who look at the bytes.
 std::string_view ReasonPhrase(int status) {
   switch (status) {
     case 200:
@@ -128,6 +143,7 @@ std::string_view ReasonPhrase(int status) {
   }
 }
 
+// Says whether an answer has the field already.
 bool Says(const Reply& reply, std::string_view name) {
   return std::any_of(
       reply.headers.begin(), reply.headers.end(),
@@ -136,6 +152,8 @@ bool Says(const Reply& reply, std::string_view name) {
 
 }  // namespace
 
+// The empty line is looked for as bytes: what stands before it is not read
+// until it is all there.
 std::optional<std::size_t> HeadLength(std::string_view bytes) {
   constexpr std::string_view kEnd = "\r\n\r\n";
   const std::size_t end = bytes.find(kEnd);
@@ -173,10 +191,12 @@ tl::expected<Head, Reply> ReadHead(std::string_view bytes) {
     return tl::unexpected(Refusal(501, "only GET, HEAD and POST are answered"));
   }
   if (!target.starts_with('/')) return NotUnderstood("its path");
+  // HTTP/1.1 keeps a connection unless told otherwise, 1.0 closes it.
   head.keeps_alive = line == "HTTP/1.1";
   ReadTarget(target, head.request);
   std::optional<std::size_t> length;
   std::size_t fields = 0;
+  // Each line holds one field; the empty line ends them.
   for (line = TakeToken(rest, kLineEnd); !line.empty();
        line = TakeToken(rest, kLineEnd)) {
     if (++fields > kMostFields) {
@@ -207,6 +227,8 @@ std::string WriteReply(const Reply& reply, const ReplyForm& form) {
       "Connection: {}\r\n",
       reply.status, ReasonPhrase(reply.status), reply.type, reply.body.size(),
       form.keeps_alive ? "keep-alive" : "close");
+  // The answer's own fields come first, so that they stand in place of the
+  // usual ones: a report brings its own Content-Security-Policy.
   const auto add = [&bytes](std::string_view name, std::string_view value) {
     bytes += fmt::format("{}: {}\r\n", name, value);
   };

@@ -13,6 +13,8 @@
 namespace touchdown::review {
 namespace {
 
+// Says whether a call that failed is to be tried again later: nothing has come,
+// the buffer is full, or a signal came in between.
 bool IsPassing(int error) {
   return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
 }
@@ -22,6 +24,8 @@ bool IsPassing(int error) {
 Connection::~Connection() { close(socket); }
 
 Transfer ReadSome(Connection& connection, std::size_t most) {
+  // A call takes one piece: one fast client does not keep the thread from the
+  // others.
   std::array<char, std::size_t{16} << 10> piece;
   const ssize_t n = recv(connection.socket, piece.data(),
                          std::min(piece.size(), most), MSG_DONTWAIT);
@@ -29,6 +33,7 @@ Transfer ReadSome(Connection& connection, std::size_t most) {
     connection.in.append(piece.data(), static_cast<std::size_t>(n));
     return Transfer::kDone;
   }
+  // 0 bytes mean that the client has closed its side.
   return n < 0 && IsPassing(errno) ? Transfer::kLater : Transfer::kClosed;
 }
 
@@ -49,10 +54,13 @@ int ListenLocally(int port) {
       socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (listener < 0) return -1;
   const int yes = 1;
+  // The port can be taken again at once after the server ended. It is not
+  // shared: SO_REUSEPORT is not set.
   setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in address = {};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<in_port_t>(port));
+  // No other machine reaches 127.0.0.1.
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (bind(listener, reinterpret_cast<const sockaddr*>(&address),
            sizeof address) != 0 ||
@@ -63,6 +71,7 @@ int ListenLocally(int port) {
   return listener;
 }
 
+// It is asked for where the system chose the port.
 int BoundPort(int socket) {
   sockaddr_in address = {};
   socklen_t size = sizeof address;

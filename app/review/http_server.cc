@@ -39,6 +39,8 @@ constexpr int kLookEvery_ms = 500;
 // its answer before the connection is reset.
 constexpr std::chrono::milliseconds kDrainTime{2000};
 
+// Returns how many connections may be held: half of the process's open files at
+// most, since recordings and the store need the rest.
 std::size_t MostConnections(std::size_t asked) {
   rlimit files = {};
   if (getrlimit(RLIMIT_NOFILE, &files) != 0) return asked;
@@ -47,6 +49,10 @@ std::size_t MostConnections(std::size_t asked) {
 
 }  // namespace
 
+// The server's state, by who may touch it: connections belong to the thread in
+// Loop(); tasks and finished answers cross over to the threads in Work() and
+// back, under `mutex`. A connection is known across threads by its number and
+// never by its address: it may have gone before its answer is ready.
 struct HttpServer::Impl {
   using Stage = Connection::Stage;
   struct Task {
@@ -67,6 +73,8 @@ struct HttpServer::Impl {
 
   // --- threads that answer ---------------------------------------------------
 
+  // The loop of a thread that answers. It ends at Stop() without looking at the
+  // tasks that still wait.
   void Work() {
     for (;;) {
       Task task;
@@ -86,6 +94,8 @@ struct HttpServer::Impl {
     }
   }
 
+  // Ends the wait in Loop(), which looks at finished answers and at `stops`
+  // then.
   void Wake() const {
     const std::uint64_t one = 1;
     // It can only fail where it is awake already.
@@ -94,6 +104,7 @@ struct HttpServer::Impl {
 
   // --- the thread that has the connections -----------------------------------
 
+  // Tells epoll what to report of a connection; `what` = 0: only that it broke.
   void Watch(const Connection& c, std::uint32_t what, int how) const {
     epoll_event event = {};
     event.events = what;
@@ -101,18 +112,25 @@ struct HttpServer::Impl {
     epoll_ctl(events, how, c.socket, &event);
   }
 
+  // Takes all connections that wait.
   void Accept() {
     for (;;) {
       const int socket =
           accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
       if (socket < 0) {
+        // No descriptor is left: without room the loop would be woken for ever
+        // by a connection that it cannot take.
         if ((errno == EMFILE || errno == ENFILE) && DropSlowest()) continue;
         return;
       }
       const int yes = 1;
+      // Answers go out at once: the page steps through frames one request at a
+      // time.
       setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
       auto connection = std::make_unique<Connection>(socket, next_number++);
       connection->deadline = HttpClock::now() + options.head_time;
+      // Where everybody is owed an answer the new one is closed by its
+      // destructor.
       if (connections.size() >= most_connections && !DropSlowest()) continue;
       Watch(*connection, EPOLLIN, EPOLL_CTL_ADD);
       connections.emplace(connection->number, std::move(connection));
@@ -138,6 +156,7 @@ struct HttpServer::Impl {
     return true;
   }
 
+  // Forgets a connection and gives back the room of its body. `c` is gone then.
   void Drop(const Connection& c) {
     if (c.stage == Stage::kBody || c.stage == Stage::kAnswering) {
       bodies_bytes -= c.head.body_bytes;
@@ -153,10 +172,13 @@ struct HttpServer::Impl {
     return options.most_head_bytes;
   }
 
+  // Acts on what epoll reports of one connection. `c` may be gone on return.
   void Handle(Connection& c, std::uint32_t what) {
     if ((what & (EPOLLERR | EPOLLHUP)) != 0) return Drop(c);
     if (c.stage == Stage::kWriting) return Write(c);
     if (c.stage == Stage::kAnswering) return;
+    // The time for a head counts from its first byte: an idle connection that
+    // sends again is not late.
     const bool begins = c.stage == Stage::kHead && c.in.empty();
     switch (ReadSome(c, ReadLimit(c))) {
       case Transfer::kLater:
@@ -175,6 +197,8 @@ struct HttpServer::Impl {
   }
 
   // Goes on with what has been read.
+  // A connection may hold the next request behind this one, so only the head is
+  // taken away.
   void Advance(Connection& c) {
     if (c.stage == Stage::kHead) {
       const auto length = HeadLength(c.in);
@@ -185,6 +209,7 @@ struct HttpServer::Impl {
         }
         return;
       }
+      // A head that is not understood is answered in the form of an empty one.
       auto head = ReadHead(std::string_view(c.in).substr(0, *length));
       c.in.erase(0, *length);
       if (!head) {
@@ -200,6 +225,9 @@ struct HttpServer::Impl {
   }
 
   // Whether its body is to be read.
+  // Asks the guard first: who may not pass is told so whatever the body is.
+  // Then the body's length is compared with what one request, and all together,
+  // may send.
   bool Admit(Connection& c) {
     if (auto reply = answers.admit(c.head.request)) {
       Refuse(c, *std::move(reply));
@@ -230,6 +258,8 @@ struct HttpServer::Impl {
     return true;
   }
 
+  // Hands a whole request to the threads. The socket is not read meanwhile: a
+  // client that sends on is held back by its own buffer.
   void DispatchRequest(Connection& c) {
     c.head.request.body = c.in.substr(0, c.head.body_bytes);
     c.in.erase(0, c.head.body_bytes);
@@ -244,6 +274,7 @@ struct HttpServer::Impl {
     ready.notify_one();
   }
 
+  // Returns how the answer is to be written.
   static ReplyForm MakeReplyForm(const Connection& c) {
     return {!c.closes, c.head.request.method != "HEAD"};
   }
@@ -256,6 +287,7 @@ struct HttpServer::Impl {
     Begin(c, WriteReply(reply, MakeReplyForm(c)));
   }
 
+  // Begins to send an answer; mostly all of it goes out at once.
   void Begin(Connection& c, std::string bytes) {
     c.out = std::move(bytes);
     c.written = 0;
@@ -264,12 +296,15 @@ struct HttpServer::Impl {
     Write(c);
   }
 
+  // Sends on. When all is sent the connection waits for its next request or,
+  // where it closes, is drained.
   void Write(Connection& c) {
     const std::size_t before = c.written;
     switch (WriteSome(c)) {
       case Transfer::kClosed:
         return Drop(c);
       case Transfer::kLater:
+        // A slow reader is not late as long as it takes something.
         if (c.written > before) {
           c.deadline = HttpClock::now() + options.write_time;
         }
@@ -282,6 +317,8 @@ struct HttpServer::Impl {
     c.since = HttpClock::now();
     Watch(c, EPOLLIN, EPOLL_CTL_MOD);
     if (c.closes) {
+      // Closing at once with unread bytes would reset the connection, and the
+      // client might lose the answer that it is just reading.
       shutdown(c.socket, SHUT_WR);
       c.in = {};
       c.stage = Stage::kDraining;
@@ -290,9 +327,12 @@ struct HttpServer::Impl {
     }
     c.stage = Stage::kHead;
     c.deadline = c.since + options.idle_time;
+    // The next request may have come together with the last one.
     if (!c.in.empty()) Advance(c);
   }
 
+  // Sends what the threads have answered. The list is swapped out under the
+  // lock, so that no thread waits while it is sent.
   void TakeFinished() {
     std::deque<Finished> all;
     {
@@ -307,6 +347,9 @@ struct HttpServer::Impl {
     }
   }
 
+  // Closes connections whose time is up. One that waits for its answer has
+  // none: the answer may take minutes. Late ones are collected first, since
+  // Drop changes the map.
   void DropLate() {
     const auto now = HttpClock::now();
     std::vector<const Connection*> late;
@@ -318,6 +361,7 @@ struct HttpServer::Impl {
     for (const Connection* c : late) Drop(*c);
   }
 
+  // The loop of the thread that has the connections, until Stop().
   void Loop() {
     std::array<epoll_event, kMostEvents> happened;
     auto looked = HttpClock::now();
@@ -370,6 +414,8 @@ HttpServer::HttpServer(const HttpOptions& options, HttpAnswers answers)
   impl_->options = options;
   impl_->answers = std::move(answers);
   impl_->most_connections = MostConnections(options.most_connections);
+  // What a person can cure (a port that is taken, too few descriptors) is found
+  // here and not in Run().
   impl_->listener = ListenLocally(options.port);
   if (impl_->listener < 0) {
     throw core::InputError(
@@ -398,6 +444,8 @@ HttpServer::~HttpServer() { Stop(); }
 
 int HttpServer::port() const { return impl_->port; }
 
+// `threads` is declared before `ended` and so destroyed after it: Stop() comes
+// before the threads are joined.
 void HttpServer::Run() {
   std::vector<std::jthread> threads;
   // The threads are told to end before they are waited for, whatever happens.
@@ -411,6 +459,8 @@ void HttpServer::Run() {
 
 void HttpServer::Stop() {
   {
+    // It is set under the lock: else a thread between its test and its wait
+    // would miss it.
     const std::lock_guard lock(impl_->mutex);
     impl_->stops = true;
   }

@@ -37,6 +37,8 @@ std::optional<core::Conditions> ReadConditions(const nlohmann::json& asked) {
   return conditions;
 }
 
+// Reads what a person states of a trial by hand. The kind of angle is not among
+// it: it is the campaign's.
 pipeline::Statement ReadStatement(const nlohmann::json& asked) {
   pipeline::Statement out;
   out.angle_deg = ReadNumberField(asked, "angle_deg");
@@ -55,6 +57,7 @@ pipeline::Statement ReadStatement(const nlohmann::json& asked) {
 db::Logged LogTyped(const std::filesystem::path& store,
                     const nlohmann::json& asked) {
   pipeline::ManualEntry entry;
+  // On the page a trial is always of a campaign, whose body it has.
   entry.campaign = RequiredText(asked, "campaign", "one of the campaigns");
   entry.by = RequiredText(asked, "who", "your name");
   entry.statement = ReadStatement(asked);
@@ -71,10 +74,12 @@ AnalysisOrder ReadOrder(const std::filesystem::path& store,
     throw FieldError("recording", "is missing, must be one of the list");
   }
   order.recording = ReadRecording(asked["recording"]);
+  // It is refused here if it lies outside of the folders.
   order.path = folders.Require(order.recording);
   order.again = asked.value("again", false);
   const auto open = db::Store::Open(store, db::OpenMode::kRead);
   pipeline::RequireCampaign(open, order.campaign.name);
+  // The camera is mostly the one of the last shot; a person says if it is not.
   if (!asked.value("other_camera", false)) {
     order.camera = LastCamera(open, order.campaign.name)
                        .value_or(pipeline::AnalyzeOptions{});
@@ -82,6 +87,8 @@ AnalysisOrder ReadOrder(const std::filesystem::path& store,
   pipeline::Statement setting;
   setting.set_angle_deg = ReadNumberField(asked, "set_angle_deg");
   setting.set_speed_mps = ReadNumberField(asked, "set_speed_mps");
+  // Set-points are tried on a trial that nobody keeps, so that a wrong one is
+  // refused with its field.
   core::Trial rehearsal;
   pipeline::Apply(setting, rehearsal);  // before the work, not after it
   order.set_angle_rad = rehearsal.set_angle_rad;
@@ -98,6 +105,8 @@ std::optional<pipeline::AnalyzeOptions> LastCamera(
   db::TrialFilter filter;
   filter.campaign = campaign;
   filter.excluded = false;  // perhaps for its camera's sake
+  // Documents are large: only those from the last trial back are read, until
+  // one says what its camera was.
   filter.with_documents = false;
   std::optional<pipeline::AnalyzeOptions> camera;
   const std::vector<core::Trial> trials = store.Trials(filter);
@@ -111,6 +120,8 @@ std::optional<pipeline::AnalyzeOptions> LastCamera(
   return camera;
 }
 
+// The report is that of the whole store: no filter is set, and the evidence of
+// the trials is in it.
 std::size_t BuildReport(const std::filesystem::path& store,
                         const std::filesystem::path& folder,
                         const report::ReachOf& reach_of) {

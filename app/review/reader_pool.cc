@@ -8,6 +8,7 @@ namespace touchdown::review {
 ReaderPool::ReaderPool(std::size_t most, OpenClip open)
     : most_(std::max<std::size_t>(1, most)), open_(std::move(open)) {}
 
+// A lease that was moved from gives nothing back.
 ReaderPool::Lease::Lease(Lease&& other) noexcept
     : pool_(std::exchange(other.pool_, nullptr)), reader_(other.reader_) {}
 
@@ -15,6 +16,9 @@ ReaderPool::Lease::~Lease() {
   if (pool_ != nullptr) pool_->Return(reader_);
 }
 
+// Tries, until it succeeds: the recording's own reader if nobody uses it; a new
+// one if there is room; a new one in place of the idle one that was used
+// longest ago. Waits where none of the three can be done.
 ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
   std::list<Lease::Reader> closing;  // outside the lock, after it
   std::unique_lock lock(guard_);
@@ -43,11 +47,13 @@ ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
   readers_.push_front({path, nullptr});
   const auto reader = readers_.begin();
   lock.unlock();
+  // Closing a decoder takes time, which others must not wait for.
   closing.clear();
   try {
     reader->clip = open_(path);
   } catch (...) {
     lock.lock();
+    // The place is given back; whoever waited for it tries to open it again.
     readers_.erase(reader);
     lock.unlock();
     freed_.notify_all();
@@ -56,6 +62,8 @@ ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
   return {*this, reader};
 }
 
+// Gives a reader back. All are woken: which of them can go on depends on the
+// recording that each waits for.
 void ReaderPool::Return(std::list<Lease::Reader>::iterator reader) {
   {
     const std::lock_guard lock(guard_);

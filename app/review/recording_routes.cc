@@ -39,6 +39,7 @@ std::multimap<std::string, core::Trial> TrialsByPath(const db::Store& store) {
   return out;
 }
 
+// Returns the time of a file in whole seconds since 1970.
 std::int64_t UnixSeconds(std::filesystem::file_time_type time) {
   const auto system = std::chrono::file_clock::to_sys(time);
   return std::chrono::duration_cast<std::chrono::seconds>(
@@ -46,6 +47,8 @@ std::int64_t UnixSeconds(std::filesystem::file_time_type time) {
       .count();
 }
 
+// Lists the recordings of one folder with the trials that each has. A folder
+// that cannot be read (an unplugged disk) has `trouble` instead.
 Json FolderJson(const RecordingFolders& folders, std::size_t place,
                 const std::multimap<std::string, core::Trial>& trials) {
   const std::filesystem::path& folder = folders.folders()[place];
@@ -55,6 +58,8 @@ Json FolderJson(const RecordingFolders& folders, std::size_t place,
       const std::filesystem::path path = (folder / name).lexically_normal();
       const pipeline::Extent extent = pipeline::MeasureExtent(path);
       Json known = Json::array();
+      // Trials are found by path and not by id: an id costs reading the
+      // recording.
       const auto [first, last] = trials.equal_range(path.string());
       for (auto trial = first; trial != last; ++trial) {
         known.push_back(
@@ -102,6 +107,8 @@ Json CameraText(const pipeline::AnalyzeOptions& camera) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+// Lists the campaigns with what is known of their cameras; camera is null where
+// nothing is.
 Json CampaignCamerasJson(const db::Store& store) {
   Json campaigns = Json::array();
   for (const core::Campaign& campaign : store.Campaigns()) {
@@ -113,6 +120,7 @@ Json CampaignCamerasJson(const db::Store& store) {
   return campaigns;
 }
 
+// Answers GET /api/recordings. Without a store all recordings are new.
 Json RecordingsJson(Desk& desk) {
   std::optional<db::Store> store;
   if (desk.HasStore()) store = desk.Open(db::OpenMode::kRead);
@@ -131,11 +139,14 @@ Json RecordingsJson(Desk& desk) {
 
 // --- one recording -----------------------------------------------------------
 
+// Returns a field of the query; empty where it is not there.
 std::string Asked(const Request& request, const char* field) {
   const auto found = request.query.find(field);
   return found == request.query.end() ? "" : found->second;
 }
 
+// Returns the recording of ?folder=N&name=...; Require refuses what lies
+// outside of the folders.
 std::filesystem::path PathAsked(Desk& desk, const Request& request) {
   const Recording recording{static_cast<std::size_t>(ParsePathNumber(
                                 Asked(request, "folder"), request.path)),
@@ -143,6 +154,8 @@ std::filesystem::path PathAsked(Desk& desk, const Request& request) {
   return desk.recordings().Require(recording);
 }
 
+// The shelf opens everything with a rate of its own, so the rate is asked for
+// by opening the recording once more.
 Json RecordingJson(Desk& desk, const std::filesystem::path& path) {
   Json json = ClipJson(desk.shelf().Info(path));
   try {
@@ -163,6 +176,7 @@ Reply RecordingFrameReply(Desk& desk, const Request& request) {
 
 // --- analyses ----------------------------------------------------------------
 
+// Tells one analysis as the page lists it.
 Json StatusJson(const AnalysisStatus& status) {
   const AnalysisOrder& order = status.order;
   return {{"id", status.id},
@@ -199,6 +213,7 @@ std::string Kept(Desk& desk, const AnalysisStatus& status,
   return id;
 }
 
+// Queues an analysis and returns its id.
 std::string QueueOrder(Desk& desk, AnalysisOrder order) {
   // What cannot be read is refused now, by whoever asked.
   order.frames = desk.shelf().Info(order.path).frames;
@@ -218,6 +233,7 @@ std::optional<Reply> GetOfRecordings(Desk& desk, const Request& request) {
   }
   if (path == "/api/analyses") return JsonReply(AnalysesJson(desk));
   if (path.starts_with(kAnalyses)) {
+    // /api/analyses/ID
     const auto status = desk.analyses().Find(path.substr(kAnalyses.size()));
     if (!status) throw NotThere(path);
     Json json = StatusJson(*status);
@@ -241,6 +257,7 @@ std::optional<Reply> PostToRecordings(Desk& desk, const std::string& path,
     return JsonReply(LensJson(desk.recordings(), asked));
   }
   if (!path.starts_with(kAnalyses)) return std::nullopt;
+  // /api/analyses/ID/cancel and /api/analyses/ID/keep
   const std::string rest = path.substr(kAnalyses.size());
   const std::size_t slash = rest.find('/');
   const std::string id = rest.substr(0, slash);

@@ -19,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using pipeline::FieldError;
 
+// Says whether `path` is `folder` or lies in it; both must be canonical. Names
+// are compared whole: /data2 is not below /data.
 bool IsBelow(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end())
              .first == folder.end();
@@ -36,6 +38,7 @@ RecordingFolders::RecordingFolders(const std::vector<fs::path>& folders) {
           "recordings lie in",
           folder.string()));
     }
+    // A folder that was given twice is listed once.
     if (std::ranges::find(folders_, canonical) == folders_.end()) {
       folders_.push_back(canonical);
     }
@@ -45,11 +48,14 @@ RecordingFolders::RecordingFolders(const std::vector<fs::path>& folders) {
 std::optional<fs::path> RecordingFolders::ResolvePath(
     std::size_t folder, const fs::path& path) const {
   std::error_code trouble;
+  // Links are followed to their end before the place is judged.
   fs::path canonical = fs::canonical(path, trouble);
   if (trouble || !IsBelow(canonical, folders_.at(folder))) return std::nullopt;
   return canonical;
 }
 
+// Files that a link leads to outside are not even opened (is_inside as
+// `admit`).
 std::vector<std::string> RecordingFolders::Names(std::size_t folder) const {
   const fs::path& root = folders_.at(folder);
   const auto is_inside = [&](const fs::path& file) {
@@ -57,6 +63,7 @@ std::vector<std::string> RecordingFolders::Names(std::size_t folder) const {
   };
   std::vector<std::string> names;
   for (const fs::path& found : pipeline::FindRecordings(root, is_inside)) {
+    // A header or a single picture that leads out would be read with the rest.
     if (std::ranges::all_of(pipeline::ListFiles(found), is_inside)) {
       names.push_back(found.lexically_relative(root).string());
     }
@@ -65,6 +72,8 @@ std::vector<std::string> RecordingFolders::Names(std::size_t folder) const {
 }
 
 fs::path RecordingFolders::Require(const Recording& recording) const {
+  // All causes have one message: it does not tell whether a file outside is
+  // there.
   const auto refuse = [&]() -> FieldError {
     return {"recording",
             fmt::format("is '{}', must be one of the folders' recordings",
@@ -108,6 +117,7 @@ Recording ReadRecording(const nlohmann::json& asked) {
   recording.name = RequiredText(asked, "name", "a recording of a folder");
   const auto folder = asked.find("folder");
   if (folder == asked.end()) throw FieldError("folder", "is missing");
+  // Its upper end is for Require to test, which knows the folders.
   const auto place = pipeline::WholeNumber(*folder, "folder");
   if (place < 0) throw FieldError("folder", "must be at least 0");
   recording.folder = static_cast<std::size_t>(place);

@@ -11,6 +11,9 @@ nlohmann::ordered_json RelinkedJson(const std::filesystem::path& store,
                                     const nlohmann::json& asked) {
   const std::string folder =
       RequiredText(asked, "folder", "where recordings are");
+  // The folder is one of this machine and need not be among those of
+  // --recordings: it is searched for known recordings alone, and none of its
+  // names is told but those that were found.
   auto opened = db::Store::Open(store, db::OpenMode::kWrite);
   const pipeline::Relinked relinked = pipeline::Relink(opened, folder);
   auto found = nlohmann::ordered_json::array();

@@ -30,6 +30,8 @@ namespace {
 
 using report::Json;
 
+// Returns the type by which the browser reads a file. What is not known is
+// text: it is shown and never run (nosniff).
 std::string ContentType(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
   if (name.ends_with(".css")) return "text/css; charset=utf-8";
@@ -38,6 +40,7 @@ std::string ContentType(std::string_view name) {
   return "text/plain; charset=utf-8";
 }
 
+// Returns a file of the page, out of the program itself (embed.cmake).
 Reply PageReply(const std::string& name) {
   const auto file = PageFile(name);
   if (!file) throw NotThere("/page/" + name);
@@ -54,6 +57,8 @@ std::optional<std::string> StripPrefix(const std::string& path,
   return path.substr(prefix.size());
 }
 
+// Returns the plot of a group. Groups are counted from 0, as in
+// /api/statistics.
 Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
   const auto n = static_cast<std::size_t>(ParsePathNumber(text, request.path));
   const auto statistics = desk.StatisticsNow();
@@ -66,6 +71,8 @@ Reply PlotReply(Desk& desk, const Request& request, const std::string& text) {
 
 // --- one trial ---------------------------------------------------------------
 
+// Returns the revision that ?revision=N asks for, without it the one in force,
+// which is not the last where a proposal waits.
 core::Trial FindRevision(const std::vector<db::Revision>& history,
                          const Request& request) {
   const auto asked = request.query.find("revision");
@@ -79,6 +86,8 @@ core::Trial FindRevision(const std::vector<db::Revision>& history,
   throw NotThere(request.path + "?revision=" + asked->second);
 }
 
+// Tells size and frames of a trial's recording, or why there are no pictures: a
+// recording that is gone must not hide the numbers.
 Json ClipOfTrialJson(Desk& desk, const core::Trial& trial) {
   if (trial.clip.path.empty()) return {{"absent", "logged by hand"}};
   try {
@@ -88,6 +97,8 @@ Json ClipOfTrialJson(Desk& desk, const core::Trial& trial) {
   }
 }
 
+// Answers GET /api/trials/ID: all that the page shows of a trial in one answer,
+// from one reading of its history.
 Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
   const db::Store store = desk.Open(db::OpenMode::kRead);
   const auto history = store.History(id);
@@ -104,12 +115,15 @@ Reply TrialReply(Desk& desk, const Request& request, const std::string& id) {
                {"numbers", NumbersJson(trial)},
                {"history", HistoryJson(history)},
                {"clip", ClipOfTrialJson(desk, trial)}};
+  // The stored track is judged again, which takes milliseconds; no pixel is
+  // read.
   const auto analysis = pipeline::Replay(trial);
   json["view"] = analysis ? ViewJson(*analysis)
                           : Json{{"absent", analysis.error().reason}};
   return JsonReply(json);
 }
 
+// Returns frame `number`, counted from 0 in the file, as a picture.
 Reply FrameReply(Desk& desk, const Request& request, const std::string& id,
                  const std::string& number) {
   const std::int64_t n = ParsePathNumber(number, request.path);
@@ -126,6 +140,7 @@ core::Trial AskedTrial(Desk& desk, const Request& request,
   return FindRevision(history, request);
 }
 
+// Returns the small picture of the trial in force.
 Reply ThumbnailReply(Desk& desk, const Request& request,
                      const std::string& id) {
   const auto trial = desk.Open(db::OpenMode::kRead).Find(id);
@@ -133,6 +148,8 @@ Reply ThumbnailReply(Desk& desk, const Request& request,
   return PictureReply(RenderThumbnail(desk.shelf(), *trial));
 }
 
+// Returns the path as a file to save. Its name bears the trial's short id, so
+// that several in one folder are told apart.
 Reply TrajectoryReply(Desk& desk, const Request& request,
                       const std::string& id) {
   const auto csv = TrajectoryCsv(AskedTrial(desk, request, id));
@@ -148,6 +165,7 @@ Reply TrajectoryReply(Desk& desk, const Request& request,
   return reply;
 }
 
+// Returns the trial in force. Throws NotThere.
 core::Trial RequireTrial(const db::Store& store, const std::string& id,
                          const Request& request) {
   auto trial = store.Find(id);
@@ -161,6 +179,7 @@ struct TrialPath {
   std::string rest;  // after the next slash; empty: none
 };
 
+// Divides /api/trials/ID/REST; returns nothing for another path.
 std::optional<TrialPath> ParseTrialPath(const std::string& path) {
   const auto rest = StripPrefix(path, "/api/trials/");
   if (!rest) return std::nullopt;
@@ -171,6 +190,8 @@ std::optional<TrialPath> ParseTrialPath(const std::string& path) {
 
 // --- report ------------------------------------------------------------------
 
+// Returns a file of the report that was built last. `sandbox` keeps whatever a
+// report holds from asking this server in the page's name.
 Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
   // The files that a report is, and no other of the folder.
   if (std::find(std::begin(report::kReportFiles),
@@ -194,6 +215,7 @@ Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
   return reply;
 }
 
+// Answers what changes nothing. Throws NotThere for a path that is none.
 Reply Get(Desk& desk, const Request& request) {
   const std::string& path = request.path;
   if (auto reply = GetOfRecordings(desk, request)) return *std::move(reply);
@@ -205,6 +227,8 @@ Reply Get(Desk& desk, const Request& request) {
          {"store", std::filesystem::absolute(desk.store()).string()}});
   }
   if (path == "/api/trials") {
+    // The stamp is taken before the list is read: what is written in between
+    // makes the page ask once more.
     const std::string stamp = desk.Stamp();
     Json json = desk.HasStore() ? TrialListJson(desk.Open(db::OpenMode::kRead),
                                                 desk.triage())
@@ -244,7 +268,10 @@ Json LoggedJson(const db::Logged& logged) {
           {"is_new", logged.is_new}};
 }
 
+// Answers what changes or computes something. A store is opened for writing
+// only where something is stored: a preview needs no right to write.
 Reply Post(Desk& desk, const Request& request) {
+  // A body that is no JSON throws, and is answered by 400 (Route).
   const auto asked = nlohmann::json::parse(request.body);
   const std::string& path = request.path;
   if (auto reply = PostToRecordings(desk, path, asked)) {
@@ -258,6 +285,8 @@ Reply Post(Desk& desk, const Request& request) {
     }
     if (trial->rest == "revisions") {
       db::Store store = desk.Open(db::OpenMode::kWrite);
+      // An id that is not there is a wrong path (404) and no trouble of the
+      // store (503).
       RequireTrial(store, trial->id, request);
       return JsonReply(LoggedJson(Revise(store, trial->id, asked)));
     }
@@ -278,8 +307,11 @@ Reply Post(Desk& desk, const Request& request) {
 
 }  // namespace
 
+// The order of the handlers is from the narrower type to the wider: FieldError
+// is an invalid_argument, OutputError an InputError.
 Reply Route(Desk& desk, const Request& request) {
   try {
+    // HEAD is answered as GET is; the body is left out when it is written.
     const bool reads = request.method == "GET" || request.method == "HEAD";
     return reads ? Get(desk, request) : Post(desk, request);
   } catch (const NotThere& error) {
@@ -287,6 +319,7 @@ Reply Route(Desk& desk, const Request& request) {
   } catch (const Conflict& error) {
     return Refusal(409, error.what());
   } catch (const pipeline::FieldError& error) {
+    // The page puts `problem` beside the input that `field` names.
     Reply reply = Refusal(400, error.what());
     reply.body =
         nlohmann::json{{"error", error.what()},

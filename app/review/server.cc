@@ -39,6 +39,8 @@ void RequireStoreOrPlace(const std::filesystem::path& store) {
   if (std::filesystem::exists(store, none) &&
       (!std::filesystem::is_regular_file(store, none) ||
        std::filesystem::file_size(store, none) > 0)) {
+    // It is opened for writing, so that a store that cannot be corrected is
+    // refused at the start and not after a person's work.
     db::Store::Open(store, db::OpenMode::kWrite);
     return;
   }
@@ -52,6 +54,8 @@ void RequireStoreOrPlace(const std::filesystem::path& store) {
 
 }  // namespace
 
+// The order of the members matters: the guard needs the port that `http` took,
+// and `http` ends before the desk that it answers from.
 struct Server::Impl {
   explicit Impl(const ServerOptions& options)
       : desk(options.store, options.reports, options.reach_of,
@@ -61,11 +65,13 @@ struct Server::Impl {
               [this](const Request& request) { return Answer(request); }}),
         guard(db::SystemSources().new_uuid(), http.port()) {}
 
+  // Sees heads only, on the thread that has the connections: it must be quick.
   std::optional<Reply> Admit(const Request& request) const {
     if (auto welcome = guard.Welcome(request)) return welcome;
     return guard.Refuse(request);
   }
 
+  // Answers a request that was admitted, on a thread of its own.
   Reply Answer(const Request& request) {
     const auto begun = std::chrono::steady_clock::now();
     Reply reply = Route(desk, request);
@@ -88,6 +94,8 @@ struct Server::Impl {
 
 Server::Server(const ServerOptions& options) {
   RequireStoreOrPlace(options.store);
+  // The store's own port is tried first: open tabs of an earlier run find the
+  // server again, and drafts, which the browser keeps by port, are found too.
   if (options.http.port == 0) {
     try {
       ServerOptions own = options;

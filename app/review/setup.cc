@@ -31,6 +31,7 @@ namespace {
 using pipeline::FieldError;
 using report::Json;
 
+// Returns an object inside what the page sends. Throws FieldError.
 const nlohmann::json& Part(const nlohmann::json& asked, const char* name) {
   const auto part = asked.find(name);
   if (part == asked.end() || !part->is_object()) {
@@ -39,6 +40,9 @@ const nlohmann::json& Part(const nlohmann::json& asked, const char* name) {
   return *part;
 }
 
+// Makes the campaign as `touchdown campaign new` does, from the same fields.
+// Throws FieldError, and std::invalid_argument where the store would refuse it:
+// that is better known before the test than after it.
 core::Campaign MakeCampaign(const nlohmann::json& asked) {
   pipeline::CampaignEntry entry;
   entry.name = RequiredText(asked, "name", "a name for the campaign");
@@ -86,6 +90,8 @@ std::optional<calib::MarkedPair> ReadPair(const nlohmann::json& asked,
   return pair;
 }
 
+// Returns size of the picture and, where the file says it, its place on the
+// sensor: a calibration fits one window of a camera.
 calib::Picture DescribePicture(const vision::ClipInfo& clip) {
   calib::Picture picture{clip.width_px, clip.height_px, std::nullopt};
   if (const auto& corner = clip.sensor_origin) {
@@ -94,10 +100,14 @@ calib::Picture DescribePicture(const vision::ClipInfo& clip) {
   return picture;
 }
 
+// Makes the options of the camera from what was marked on the recording. Where
+// nothing was marked there is no calibration, and all is found in the clip.
 pipeline::AnalyzeOptions ReadCameraOptions(const nlohmann::json& asked,
                                            const vision::ClipInfo& clip) {
   pipeline::AnalyzeOptions options;
   options.fps = ReadNumberField(asked, "fps");
+  // A lens of other pictures (another size, another window) is refused; one
+  // that fits brings its calibration, to which scale and ground are added.
   const std::string camera = ReadTextField(asked, "camera");
   calib::Calibration calibration =
       pipeline::NewCalibration(camera, DescribePicture(clip));
@@ -113,6 +123,7 @@ pipeline::AnalyzeOptions ReadCameraOptions(const nlohmann::json& asked,
     calibration = *std::move(fitted);
     if (!camera.empty()) calibration.camera = camera;
   }
+  // The scale is measured in the undistorted picture where there is a lens.
   std::optional<calib::Lens> lens;
   if (calibration.lens) lens = calibration.lens->lens;
   const auto scale = ReadPair(asked, "scale_px");
@@ -131,12 +142,14 @@ pipeline::AnalyzeOptions ReadCameraOptions(const nlohmann::json& asked,
     throw FieldError("length-mm",
                      "is given, but its two points are not marked");
   }
+  // The line is kept as it was clicked, in the recorded picture.
   if (const auto ground = ReadPair(asked, "ground_px")) {
     calibration.ground = calib::GroundRecord{
         ground->p1, ground->p2, ground->u_point_px, std::nullopt, std::nullopt};
   }
   if (calibration.lens || calibration.scale || calibration.ground) {
     options.calibration = std::move(calibration);
+    // The day is asked for because a calibration has an age.
     options.today = pipeline::Today();
   }
   return options;
@@ -155,6 +168,8 @@ void RequireWithoutTrials(const db::Store& store, const std::string& name) {
 
 // --- the answer --------------------------------------------------------------
 
+// Tells what the analysis used of the camera and where it came from, so that a
+// person sees whether a mark was taken or something else was found.
 Json SettingsJson(const pipeline::Analysis& analysis) {
   const auto said = [](const auto& part, const std::string& reason) {
     return part ? std::string(calib::Name(part->source)) : "none: " + reason;
@@ -180,6 +195,8 @@ AnalysisOrder ReadTestOrder(Desk& desk, const nlohmann::json& asked) {
   if (desk.HasStore()) {
     RequireWithoutTrials(desk.Open(db::OpenMode::kRead), order.campaign.name);
   }
+  // The shelf has looked at the recording already: the person marked points on
+  // it.
   order.camera =
       ReadCameraOptions(Part(asked, "camera"), desk.shelf().Info(order.path));
   return order;
@@ -191,6 +208,7 @@ Json LensJson(const RecordingFolders& folders, const nlohmann::json& asked) {
   const std::string typed =
       RequiredText(asked, "board", "like chessboard:9x6:25mm");
   calib::Board board;
+  // ParseBoard speaks of a flag; the page wants the field.
   try {
     board = calib::ParseBoard(typed);
   } catch (const std::invalid_argument& error) {
@@ -202,6 +220,8 @@ Json LensJson(const RecordingFolders& folders, const nlohmann::json& asked) {
       pipeline::CalibrateBoardLens(found, board);
   calib::Calibration file =
       pipeline::NewCalibration(ReadTextField(asked, "camera"), found.picture);
+  // The page gets the whole calibration and sends it back with the test: the
+  // server keeps nothing between the two.
   file.lens = pipeline::MakeLensRecord(lens, board);
   return {
       {"schema", "touchdown.review.lens/1"},
@@ -219,6 +239,8 @@ Json TestJson(const AnalysisStatus& status) {
   Json json = {{"schema", "touchdown.review.test/1"}};
   if (!status.analysis) return json;
   const pipeline::Analysis& analysis = *status.analysis;
+  // The numbers and pictures are those of a stored trial, so that a person
+  // judges the test by what the trial will show.
   json["numbers"] = NumbersJson(pipeline::ToTrial(analysis));
   json["view"] = analysis.track ? ViewJson(analysis)
                                 : Json{{"absent", analysis.no_body_reason}};
@@ -240,6 +262,8 @@ db::Logged Keep(const std::filesystem::path& store,
   core::Trial trial = pipeline::LoggableTrial(*status.analysis, &campaign);
   trial.reason = "logged on the review page by " + who;
   db::Store open = db::Store::Open(store, db::OpenMode::kCreate);
+  // A campaign without trials may have been made before, by hand or by an
+  // earlier try; its conventions are still free.
   if (open.FindCampaign(campaign.name)) {
     RequireWithoutTrials(open, campaign.name);
     open.ChangeCampaign(campaign);

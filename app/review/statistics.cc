@@ -19,6 +19,7 @@ namespace {
 
 using report::Json;
 
+// Returns the class by which the page colours a cell.
 std::string_view ToneName(report::Tone tone) {
   switch (tone) {
     case report::Tone::kSlide:
@@ -39,6 +40,8 @@ std::string_view ToneName(report::Tone tone) {
   return "plain";
 }
 
+// Turns a table of the report into JSON: texts as they are printed, with their
+// tone; the page computes none of them.
 Json TableJson(const report::Table& table) {
   Json columns = Json::array();
   for (const auto& column : table.columns) {
@@ -89,6 +92,8 @@ Statistics MakeStatistics(const std::filesystem::path& store,
   options.store = store;
   report::ReportInput input =
       pipeline::MakeReportInput(pipeline::SelectTrials(options));
+  // The trials are taken out and sorted as the report sorts them: groups refer
+  // to them by index.
   input.reach_of = reach_of;
   std::vector<core::Trial> trials = std::move(input.trials);
   input.trials.clear();
@@ -98,6 +103,7 @@ Statistics MakeStatistics(const std::filesystem::path& store,
   Statistics out;
   Json json = {{"schema", "touchdown.review.statistics/1"},
                {"groups", Json::array()}};
+  // The N-th plot belongs to the N-th group (/api/plots/N).
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const report::Group& group = groups[i];
     report::Figure figure = report::MakeFigure(group, i);
@@ -108,6 +114,7 @@ Statistics MakeStatistics(const std::filesystem::path& store,
     json["groups"].push_back(std::move(one));
   }
   json["table1"] = Table1Json(groups, trials, input);
+  // Campaigns that have no trial yet are told with the angle to begin with.
   json["without_trials"] = Json::array();
   for (const core::Campaign& campaign : input.campaigns) {
     if (core::HasCheckShots(campaign)) continue;

@@ -18,6 +18,8 @@ constexpr double kBodySizes = 3.0;
 // frame; at least the sample nearest to its middle.
 template <class Sample>
 double BoxMean(const core::Frame& frame, double x0, double y0, double size) {
+  // Pixel centres are at integers, so a box from x0 on begins with the sample
+  // nearest to x0.
   const auto first = [](double at) { return std::lround(at); };
   const long left = first(x0), top = first(y0);
   const long right = std::max(left + 1, first(x0 + size));
@@ -31,6 +33,8 @@ double BoxMean(const core::Frame& frame, double x0, double y0, double size) {
       sum += row[x];
     }
   }
+  // The sum is divided by the whole box: what lies beyond the frame counts as
+  // black.
   return sum / static_cast<double>((right - left) * (bottom - top));
 }
 
@@ -45,6 +49,7 @@ vision::Image Shrunk(const core::Frame& frame, core::PixelPoint centre,
   vision::Image image;
   image.width_px = kThumbnailWidth_px;
   image.height_px = kThumbnailHeight_px;
+  // One pixel of the thumbnail is so many pixels of the frame wide and high.
   const double step = width_px / kThumbnailWidth_px;
   const double left = centre.x_px - step * kThumbnailWidth_px / 2.0;
   const double top = centre.y_px - step * kThumbnailHeight_px / 2.0;
@@ -63,12 +68,14 @@ vision::Image Shrunk(const core::Frame& frame, core::PixelPoint centre,
 
 Picture RenderThumbnail(ClipShelf& shelf, const core::Trial& trial) {
   const vision::ClipInfo info = shelf.Info(trial.clip.path);
+  // Without a contact the whole width of the middle frame is shown.
   core::PixelPoint centre{info.width_px / 2.0, info.height_px / 2.0};
   double width_px = info.width_px;
   std::int64_t frame = info.frames / 2;
   const auto analysis = pipeline::Replay(trial);
   if (analysis && !analysis->contacts.evidence.empty() &&
       trial.first.contact.frame) {
+    // The larger of the two is half of the body's greatest extent.
     const vision::BodyImage& body = analysis->track->body;
     centre = analysis->contacts.evidence.front().touching;
     width_px = kBodySizes * 2.0 *

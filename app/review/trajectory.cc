@@ -26,6 +26,7 @@ core::Expected<std::string> TrajectoryCsv(const core::Trial& trial) {
   if (trial.document_json.empty()) {
     return core::AbsentBecause("the trial was logged by hand");
   }
+  // The document has numbers with blanks between; CSV wants commas.
   const auto document = report::StoredDocument(trial);
   if (!document.contains("path")) {
     return core::AbsentBecause(

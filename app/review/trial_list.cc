@@ -18,6 +18,7 @@ using report::Json;
 // Beyond so many that are not known yet, all documents are read in one query.
 constexpr std::size_t kOneByOne = 20;
 
+// Lists the campaigns with how many of `trials` each has, excluded ones too.
 Json CampaignsJson(const db::Store& store,
                    const std::vector<core::Trial>& trials) {
   Json out = Json::array();
@@ -37,6 +38,8 @@ Json CampaignsJson(const db::Store& store,
   return out;
 }
 
+// Puts the document together; a store that is not there yet has the same
+// fields.
 Json ListJson(const std::filesystem::path& store, const std::string& id,
               std::size_t to_look_at, Json campaigns, Json rows) {
   return {{"schema", "touchdown.review.trials/1"},
@@ -51,6 +54,8 @@ Json ListJson(const std::filesystem::path& store, const std::string& id,
 
 std::vector<TriageEntry> TriageMemory::MakeEntries(
     const db::Store& store, const std::vector<core::Trial>& trials) {
+  // The lock is held throughout: two tabs that open at once read the documents
+  // once.
   const std::lock_guard lock(guard_);
   std::map<std::string, core::Trial> proposals;
   for (core::Trial& proposal : store.Proposals()) {
@@ -66,10 +71,12 @@ std::vector<TriageEntry> TriageMemory::MakeEntries(
     return std::pair(trial.id,
                      proposal != nullptr ? proposal->revision : trial.revision);
   };
+  // `trial` must have its document, from which the warnings are read.
   const auto learn = [&](const core::Trial& trial) {
     known_[key(trial)] = pipeline::MakeTriageEntry(
         trial.clip.path, pipeline::Done::kKnown, trial, proposal_of(trial));
   };
+  // After the first list few are unknown: those revised since.
   std::vector<const core::Trial*> unknown;
   for (const core::Trial& trial : trials) {
     if (!known_.contains(key(trial))) unknown.push_back(&trial);
@@ -91,6 +98,7 @@ std::vector<TriageEntry> TriageMemory::MakeEntries(
                       : pipeline::MakeTriageEntry(trial.clip.path,
                                                   pipeline::Done::kKnown, trial,
                                                   proposal_of(trial)));
+    // A person has looked at it already.
     if (trial.excluded) out.back().attention = Attention::kNone;
   }
   return out;
@@ -102,6 +110,7 @@ Json TrialListJson(const db::Store& store, TriageMemory& memory) {
   const std::vector<core::Trial> trials = store.Trials(filter);
   const std::vector<TriageEntry> triage = memory.MakeEntries(store, trials);
   // The order of SortByNeed, of positions.
+  // Positions are sorted and not entries: trials and triage stay side by side.
   std::vector<std::size_t> order(trials.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

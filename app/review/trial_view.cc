@@ -35,6 +35,8 @@ class ToPicture {
       lens_ = analysis.calibration->lens->lens;
     }
   }
+  // Returns [x, y] in px of the recorded picture. Without a lens both pictures
+  // are one.
   Json operator()(core::PixelPoint ideal) const {
     return PointJson(lens_ ? calib::Distort(*lens_, ideal) : ideal);
   }
@@ -47,6 +49,8 @@ class ToPicture {
 Json GroundJson(const pipeline::Analysis& analysis, const ToPicture& seen) {
   const calib::GroundLine& g = *analysis.ground;
   const double angle = calib::ImageAngle(g);
+  // The line goes through its reference point at its angle; `share` runs from
+  // the left border of the picture (0) to the right one (1).
   const double from = -g.reference.x_px;
   const double to = analysis.clip.width_px - 1 - g.reference.x_px;
   const auto at = [&](double share) {
@@ -58,6 +62,7 @@ Json GroundJson(const pipeline::Analysis& analysis, const ToPicture& seen) {
   for (int i = 0; i <= kPieces; ++i) {
     line.push_back(seen(at(static_cast<double>(i) / kPieces)));
   }
+  // The handles stand a tenth of the width inside, where a mouse reaches them.
   return {{"p1_px", seen(at(0.1))},
           {"p2_px", seen(at(0.9))},
           {"line_px", std::move(line)},
@@ -66,6 +71,7 @@ Json GroundJson(const pipeline::Analysis& analysis, const ToPicture& seen) {
           {"source", calib::Name(g.source)}};
 }
 
+// Returns the points of a fitted flight between two instants, for drawing.
 Json FlightJson(const vision::PlaneTrack& plane, const vision::Flight& flight,
                 double from_s, double to_s, const ToPicture& seen) {
   Json points = Json::array();
@@ -80,6 +86,8 @@ Json FlightJson(const vision::PlaneTrack& plane, const vision::Flight& flight,
 void AddResiduals(const vision::PlaneTrack& plane, const vision::Flight& flight,
                   const char* which, double unit, Json& rows) {
   for (const vision::PlaneSample& s : plane.samples) {
+    // A row is frame, flight, residual along and its u, residual in height and
+    // its u, in mm, or in px without a scale.
     if (s.frame < flight.first_frame || s.frame > flight.last_frame) continue;
     const auto fitted = flight.At(s.time_s);
     rows.push_back({s.frame, which, (s.along_px - fitted.along_px) * unit,
@@ -89,9 +97,12 @@ void AddResiduals(const vision::PlaneTrack& plane, const vision::Flight& flight,
   }
 }
 
+// Tells what is drawn of one touchdown: centre, contact point, and the
+// velocity's direction. `e` must have its flight before.
 Json ContactJson(const vision::PlaneTrack& plane,
                  const vision::ContactEvidence& e, const ToPicture& seen) {
   const auto s = e.before->At(e.time_s);
+  // px/s; the bound only keeps a body at rest from a division by zero.
   const double speed = std::max(1e-12, std::hypot(s.v_t, s.v_n));
   const double reach = 1.6 * plane.half_long_px;  // beyond the outline
   return {{"centre_px", seen(e.centre)},
@@ -104,6 +115,7 @@ Json ContactJson(const vision::PlaneTrack& plane,
                                  s.height_px + reach * s.v_n / speed))}}};
 }
 
+// Lists a budget in degrees.
 Json BudgetJson(const core::Budget& budget) {
   Json out = Json::array();
   for (const auto& line : budget) {
@@ -112,6 +124,8 @@ Json BudgetJson(const core::Budget& budget) {
   return out;
 }
 
+// Lists every measured number of a contact in the order of words.cc, as text
+// with its u in the unit of its words, or with why it is absent.
 Json QuantitiesJson(const core::ContactRecord& record) {
   Json out = Json::array();
   for (const std::string_view column : ColumnsInOrder()) {
@@ -130,6 +144,7 @@ Json QuantitiesJson(const core::ContactRecord& record) {
   return out;
 }
 
+// Tells one contact: state, numbers and budgets.
 Json RecordJson(const core::ContactRecord& record) {
   const core::StateDecision& state = record.state;
   return {{"found", record.contact.found},
@@ -156,6 +171,8 @@ Json ViewJson(const pipeline::Analysis& analysis) {
   const ToPicture seen(analysis);
   Json poses = Json::array();
   for (const vision::Pose& p : track.poses) {
+    // Outlines are drawn in the recorded picture, in which they were fitted:
+    // they go without the lens.
     poses.push_back({p.frame, p.centre.x_px, p.centre.y_px,
                      p.angle_rad / kDegree, p.relative_size});
   }
@@ -175,6 +192,7 @@ Json ViewJson(const pipeline::Analysis& analysis) {
   }
   const vision::PlaneTrack& plane = *analysis.plane;
   view["ground"] = GroundJson(analysis, seen);
+  // Lengths of gaps and residuals are in mm where there is a scale.
   const double unit =
       analysis.scale
           ? 1.0 / (analysis.scale->px_per_m.value * core::kMillimetre)
@@ -192,9 +210,13 @@ Json ViewJson(const pipeline::Analysis& analysis) {
   view["refuted"] = analysis.contacts.ground_refuted;
   Json flights = Json::array();
   Json residuals = Json::array();
+  // Flights are drawn of the first contact alone; a body that is down from the
+  // start has none before it.
   const auto& evidence = analysis.contacts.evidence;
   if (!evidence.empty() && evidence.front().before) {
     const vision::ContactEvidence& e = evidence.front();
+    // The curve covers the frames of the flight: as many before touchdown, and
+    // after release, as were fitted.
     const double dt = plane.frame_interval_s;
     const auto frames = static_cast<double>(e.before->frames);
     flights.push_back(

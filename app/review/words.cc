@@ -12,6 +12,8 @@ namespace {
 
 using Words = std::pair<std::string_view, std::string_view>;
 
+// A contact's numbers come first, in the order in which a person looks for them
+// (kContactWords of them, then everything else).
 constexpr std::array kWords{
     Words{"approach_angle_rad", "approach angle"},
     Words{"radius_angle_rad", "radius angle"},
@@ -66,12 +68,14 @@ constexpr std::array kWords{
 };
 constexpr std::size_t kContactWords = 21;  // the first are a contact's numbers
 
+// Units are found by the suffix that core::AtTheEdge gives a name.
 constexpr std::array kUnits{
     Words{"_deg", "deg"},         Words{"_mm", "mm"}, Words{"_mps", "m/s"},
     Words{"_mps2", "m/s\u00b2"},  Words{"_s", "s"},   Words{"_c", "\u00b0C"},
     Words{"_deg_per_s", "deg/s"},
 };
 
+// Returns the word for a key; `otherwise` where the table has none.
 std::string_view LookUpWord(std::span<const Words> table, std::string_view key,
                             std::string_view otherwise) {
   const auto found = std::ranges::find(table, key, &Words::first);
@@ -87,12 +91,14 @@ constexpr auto kColumns = [] {
 }  // namespace
 
 Shown ShownAs(std::string_view column) {
+  // Documents keep rad/s; people are shown deg/s.
   core::EdgeUnit edge = core::AtTheEdge(column);
   if (edge.suffix == "_rad_per_s") {
     edge.suffix = "_deg_per_s";
     edge.factor = core::kDegree;
   }
   std::string stem = edge.stem;
+  // A column without words of its own is told by its name: "software version".
   std::ranges::replace(stem, '_', ' ');
   return {edge.stem + edge.suffix,
           std::string(LookUpWord(kWords, column, stem)),

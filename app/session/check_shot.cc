@@ -11,6 +11,8 @@
 namespace touchdown::session {
 namespace {
 
+// Returns the size of the body that is dropped. Throws std::invalid_argument
+// where it has none: the campaign's name and bounce height need it.
 core::Estimate RequireSize(const CheckShot& check) {
   const auto size = core::Size(check.body);
   if (!size) {
@@ -35,6 +37,8 @@ core::Estimate ExpectedSpeed(const CheckShot& check) {
           fmt::format("{} is {:g}, must be positive and finite", field, value));
     }
   }
+  // From v = sqrt(2 g h) follows that u(v)/v is half of the relative u of g and
+  // h together.
   const double speed = std::sqrt(2.0 * g.value * h.value);
   return {speed, speed / 2.0 * std::hypot(h.u / h.value, g.u / g.value),
           std::nullopt};
@@ -53,6 +57,7 @@ core::Campaign CheckCampaign(const CheckShot& check) {
   campaign.body = check.body;
   campaign.surface = core::kCheckShotSurface;
   campaign.angle_kind = core::AngleKind::kApproach;
+  // No speed band and no theory: a check shot gets no verdict.
   campaign.bounce_height_m =
       core::DefaultBounceHeight(RequireSize(check).value);
   return campaign;
@@ -62,6 +67,8 @@ CheckResult Compare(const CheckShot& check, const core::Trial& trial) {
   const core::Estimate known = ExpectedSpeed(check);
   const core::Measured& speed = trial.first.motion.before_speed_mps;
   const core::Measured& angle = trial.first.contact.approach_angle_rad;
+  // E_n divides by the expanded uncertainty, U = 2 u, of the measured and the
+  // known value together.
   const auto e_n = [](double difference, double u, double u_known) {
     return difference / (2.0 * std::hypot(u, u_known));
   };
@@ -71,6 +78,8 @@ CheckResult Compare(const CheckShot& check, const core::Trial& trial) {
   } else {
     out.speed_e_n = core::AbsentBecause(speed.error().reason);
   }
+  // A dropped body meets the ground at 90 deg. A measured angle never exceeds
+  // that, so this E_n is 0 or negative.
   constexpr double kUpright = std::numbers::pi / 2.0;
   if (angle) {
     out.angle_e_n = e_n(angle->value - kUpright, angle->u, check.upright_u_rad);
@@ -80,6 +89,8 @@ CheckResult Compare(const CheckShot& check, const core::Trial& trial) {
   const auto good = [](const core::Expected<double>& value) {
     return value && std::abs(*value) <= 1.0;
   };
+  // Scale and frame rate show in the speed, the camera's level in the angle.
+  // One that is absent is no agreement.
   out.agrees = good(out.speed_e_n) && good(out.angle_e_n);
   const auto text = [](const core::Expected<double>& value) {
     return value ? fmt::format("E_n {:.2f}", *value)

@@ -18,10 +18,12 @@ core::Expected<rig::SetPoint> PlanNext(const Thrower& thrower,
   constexpr std::size_t kDraws = 10'000;
   rig::ContactWish wish = thrower.wish;
   wish.angle_rad = angle_rad;
+  // The seed is fixed: asked again, the same angle gives the same numbers.
   std::mt19937_64 engine(1);
   return rig::PlanContact(thrower.rig, wish, {kDraws}, engine);
 }
 
+// `speed_mps` is the wished speed at touchdown, not that at the muzzle.
 nlohmann::ordered_json SetPointsJson(
     const Thrower& thrower, const core::Expected<rig::SetPoint>& point) {
   nlohmann::ordered_json out = {
@@ -38,6 +40,8 @@ nlohmann::ordered_json SetPointsJson(
   return out;
 }
 
+// The decimals are those that a person can set: 0.01 deg, 0.01 mm of
+// compression and 0.1 mm of height.
 std::string SetPointsText(const Thrower& thrower,
                           const core::Expected<rig::SetPoint>& point) {
   if (!point) return "none: " + point.error().reason;

@@ -33,6 +33,8 @@ using core::kDegree;
 // Of the kernel's coarse clock, which dates files.
 constexpr double kFileClock_s = 0.02;
 
+// Returns when the recording was last written to, s since 1970, by the clock of
+// the machine that wrote it; 0 where it has gone.
 double WrittenAt_s(const fs::path& recording) {
   const pipeline::Extent extent = pipeline::MeasureExtent(recording);
   if (extent.files == 0) return 0.0;  // it has gone
@@ -54,6 +56,8 @@ std::string SomePictures(const fs::path& recording) {
   return bytes;
 }
 
+// Returns the beginning of a trial's id, which is enough to find it by
+// (db::Store::Find).
 std::string Short(const std::string& id) { return id.substr(0, 8); }
 
 }  // namespace
@@ -67,21 +71,30 @@ Session::Session(db::Store& store, const core::Campaign& campaign,
       options_(std::move(options)),
       ends_(std::move(ends)),
       reach_(pipeline::ReachOfThrower(thrower_)) {
+  // The next angle is chosen within what the rig can throw.
   options_.study.next.feasible_rad = reach_.angle_rad;
   if (options_.check) check_campaign_ = CheckCampaign(*options_.check);
   file_.campaign = campaign_.name;
   file_.operator_name = options_.operator_name;
   auto trials = store_.Trials({.campaign = campaign_.name});
+  // Conventions are accepted once: a campaign with trials has them already.
   file_.phase = trials.empty() ? Phase::kConventions : Phase::kShot;
   if (!trials.empty()) {
+    // `undo`, `exclude` and `repeat` also reach the last trial of an earlier
+    // session. Its file is not known, so a recording that grew is not
+    // recognised.
     core::Trial& trial = trials.back();
     acts_.push_back({trial.excluded ? Act::kExcluded : Act::kLogged, trial.id});
     last_ = LastTaken{"", 0, "", std::move(trial)};
   }
+  // What follows is taken from the earlier session's file, if it was of this
+  // campaign.
   if (!before || before->campaign != campaign_.name) return;
   if (before->phase != Phase::kConventions) file_.phase = Phase::kShot;
   file_.last = before->last;
   // A shot that was waited for when the session ended, and was not logged.
+  // One trial more than when it was planned means that the shot was made and
+  // logged.
   resumed_plan_ = before->planned && before->trials_before == CountTrials() &&
                   (!before->is_check || options_.check);
   if (resumed_plan_) {
@@ -110,6 +123,8 @@ void Session::End() {
   Save();
 }
 
+// Counts the trials of the campaign and of its check shots, excluded ones too:
+// each trial logged after a plan was shown uses that plan up.
 std::size_t Session::CountTrials() const {
   db::TrialFilter filter;
   filter.with_documents = false;
@@ -136,6 +151,9 @@ bool Session::CheckIsDue() const {
   return store_.Trials(filter).empty();
 }
 
+// Returns what the campaign's trials say now: boundary, next angle, counts.
+// Trials of different origins are never pooled; the group is that of the origin
+// of the last trial.
 report::Group Session::Now() const {
   report::ReportInput input;
   input.campaigns = {campaign_};
@@ -153,6 +171,8 @@ report::Group Session::Now() const {
 }
 
 void Session::Plan() {
+  // This counts the trials, estimates the boundary, chooses a check shot or an
+  // angle, finds set-points, and writes the session's file for a restart.
   file_.planned = true;
   file_.trials_before = CountTrials();
   const report::Group group = Now();
@@ -161,6 +181,8 @@ void Session::Plan() {
                   report::BoundarySentence(group.study),
                   group.study.counts.not_bounce, group.study.counts.bounce,
                   group.study.counts.undecided, group.left_out.size());
+  // A plan that was shown before an interruption is taken up once, with the
+  // instant at which it was shown: the shot may have been made since.
   const bool resumed = std::exchange(resumed_plan_, false);
   plan_lines_.clear();
   if (resumed ? file_.is_check : CheckIsDue()) {
@@ -207,6 +229,8 @@ double Session::AngleBesides() const {
   // by chance.
   const double beside = 2.0 * options_.study.next.set_u_rad;
   std::optional<analysis::NextAngle> best;
+  // What remains of the reach between the skipped angles is tried interval by
+  // interval; the best has the least expected uncertainty of the boundary.
   double low = reach_.angle_rad.low;
   const auto consider = [&](double high) {
     if (!(high > low)) return;
@@ -221,13 +245,19 @@ double Session::AngleBesides() const {
     low = std::max(low, skipped + beside);
   }
   consider(reach_.angle_rad.high);
+  // Where the skipped angles leave nothing, the session asks for the best angle
+  // again.
   return best ? best->angle_rad : group.study.next.angle_rad;
 }
 
+// Finds set-points and prediction for file_.angle_rad and puts what is to be
+// said of them into plan_lines_. Where the rig cannot throw the angle, the
+// lines say so and setting_ stays empty.
 void Session::PlanAngle() {
   const auto point = PlanNext(thrower_, file_.angle_rad);
   file_.set_points = SetPointsJson(thrower_, point);
   setting_.reset();
+  // What the controller read back was of the plan before.
   read_.reset();
   plan_lines_ = {
       fmt::format("next shot: {} angle {:.2f} deg",
@@ -259,11 +289,15 @@ void Session::SayPlan() const {
   for (const std::string& line : plan_lines_) Say(line);
 }
 
+// Says whether the shot was made after its set-points were shown. A camera
+// whose clock is behind loses its set-points that way.
 bool Session::Belongs(const fs::path& recording) const {
   return file_.planned &&
          WrittenAt_s(recording) >= file_.planned_at_s - kFileClock_s;
 }
 
+// Returns the trial that this campaign, or its check shots, have of the
+// recording; nothing where it is new.
 std::optional<std::string> Session::KnownAs(const std::string& clip_id) const {
   for (const core::Campaign* one :
        {&campaign_, check_campaign_ ? &*check_campaign_ : nullptr}) {
@@ -275,6 +309,8 @@ std::optional<std::string> Session::KnownAs(const std::string& clip_id) const {
   return std::nullopt;
 }
 
+// Throws core::StoreError where the campaign in the store is not the one that
+// the technician accepted.
 void Session::RequireSameConventions() const {
   const auto now = store_.FindCampaign(campaign_.name);
   if (!now || report::CampaignJson(*now) != report::CampaignJson(campaign_)) {
@@ -287,11 +323,15 @@ void Session::RequireSameConventions() const {
 
 void Session::Take(const fs::path& recording) {
   if (file_.phase == Phase::kConventions) {
+    // Nothing is logged before the conventions are accepted; then it is taken
+    // in the order of arrival (Obey).
     held_.push_back(recording);
     return;
   }
   const Phase waiting = file_.phase;
   try {
+    // A recording that is known is passed over, so that a session can start
+    // anew over a full folder.
     const std::string id = vision::ClipId(recording);
     if (const auto known = KnownAs(id)) {
       Say(fmt::format("{}: known, trial {}", recording.filename().string(),
@@ -303,11 +343,15 @@ void Session::Take(const fs::path& recording) {
     Save();
     Log(recording, id);
   } catch (const core::StoreError&) {
+    // Trouble with the store or the disk ends the session: what it promises (a
+    // trial is on the disk before a line speaks of it) cannot be kept.
     throw;
   } catch (const core::OutputError&) {
     throw;
   } catch (const std::exception& error) {
     Say(fmt::format("not logged: {}", error.what()));
+    // A recording that cannot be analysed leaves the plan as it is: the
+    // technician throws the same shot again.
     file_.phase = waiting;
     file_.recording.clear();
     Save();
@@ -316,6 +360,8 @@ void Session::Take(const fs::path& recording) {
 
 void Session::Log(const fs::path& recording, const std::string& clip_id) {
   RequireSameConventions();
+  // Set-points and campaign depend on whether it belongs to the plan: a
+  // recording from before a check shot was asked for is an ordinary shot.
   const bool belongs = Belongs(recording);
   const bool is_check = belongs && file_.is_check;
   if (is_check && !store_.FindCampaign(check_campaign_->name)) {
@@ -333,6 +379,7 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   pipeline::FillFromCampaign(campaign, analyze);
   pipeline::SetAside set_aside(store_.path());
   const pipeline::SetAside::Key key{clip_id, pipeline::OptionsHash(analyze)};
+  // A recording that failed twice in the same way is not tried at every start.
   const auto why = set_aside.FindReason(key);
   if (why && !options_.again) {
     throw core::InputError(
@@ -351,6 +398,8 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   }
   trial.author = options_.operator_name;
   const std::string pictures = SomePictures(recording);
+  // The same path, more bytes and the same pictures behind the header mean that
+  // the last recording was taken while it was still being written.
   const bool grown = last_ && last_->path == trial.clip.path &&
                      last_->bytes < trial.clip.size_bytes &&
                      !pictures.empty() && pictures == last_->pictures;
@@ -360,6 +409,8 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
       store_.Exclude(last_->trial.id, options_.operator_name,
                      "the recording was not complete when it was analysed");
     }
+    // The plan has moved on since, so set-points and conditions come from the
+    // half trial and not from file_.
     trial.set_angle_rad = last_->trial.set_angle_rad;
     trial.set_speed_mps = last_->trial.set_speed_mps;
     trial.conditions = last_->trial.conditions;
@@ -371,14 +422,18 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     if (setting_) trial.set_speed_mps = LaunchSpeedOfPlan();
   }
   if (!grown) trial.conditions = ConditionsNow(belongs, is_check);
+  // From here on the trial is on the disk: what fails below loses a line or a
+  // picture and no trial.
   trial.id = store_.LogTrial(trial).id;
   note_.clear();
   last_ = LastTaken{trial.clip.path, trial.clip.size_bytes, pictures, trial};
   acts_.push_back({Act::kLogged, trial.id});
   file_.recording.clear();
+  // A shot was made: what was skipped before it may be asked for again.
   skipped_rad_.clear();
   if (is_check) check_wanted_ = false;
   Answer(trial, ends_.now_s() - WrittenAt_s(recording), is_check);
+  // The picture comes after the answer, for which a person is waiting.
   if (ends_.keep_picture) ends_.keep_picture(trial);
   if (!belongs) {
     Say("  (recorded before these set-points were shown: logged without them)");
@@ -386,14 +441,19 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   Plan();
   if (!is_check) {
     Say("  boundary   " + file_.boundary);
+    // The boundary was shown: that is a look at the answer, and goes on record.
     db::RecordLook(store_, campaign_.name, "session");
   }
   SayPlan();
 }
 
+// Returns the conditions of the shot that is being logged. The rig's settings
+// are those that the controller read back, else those that were asked for;
+// absent, with the reason, where the shot is not of this plan.
 core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
   core::Conditions now = options_.conditions;
   now.note = note_;
+  // The operator's name refers to the register where it has an entry.
   if (now.person.name.empty()) {
     const auto person = db::FindEntry(store_, db::RegisterKind::kOperator,
                                       options_.operator_name);
@@ -415,11 +475,14 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
                               : "recorded before these set-points were shown";
   for (core::Measured* set :
        {&now.elevation_rad, &now.compression_m, &now.muzzle_height_m}) {
+    // A setting that --condition stated stays.
     if (!*set) *set = core::AbsentBecause(why);
   }
   return now;
 }
 
+// Returns the launch speed that the planned setting predicts, m/s: the
+// set-point of the speed is that at the muzzle. 0 where the rig predicts none.
 double Session::LaunchSpeedOfPlan() const {
   const auto muzzle =
       rig::LaunchSpeed(rig::MakeLaunch(thrower_.rig, setting_->elevation_rad),
@@ -427,6 +490,8 @@ double Session::LaunchSpeedOfPlan() const {
   return muzzle ? muzzle->speed_mps : 0.0;
 }
 
+// Says what a trial is: state, angle and set-point, why to look at it, and how
+// long the answer took. The first line is kept in the session's file as well.
 void Session::Answer(const core::Trial& trial, double seconds_since_written,
                      bool is_check) {
   const auto entry = pipeline::MakeTriageEntry(trial.clip.path,

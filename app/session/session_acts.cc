@@ -19,6 +19,8 @@ namespace {
 
 using core::kDegree;
 
+// Divides a line into its first word and the rest, both without blanks at their
+// ends. A carriage return counts as blank: lines may be piped in from Windows.
 std::pair<std::string, std::string> Split(const std::string& line) {
   const auto begin = line.find_first_not_of(" \t\r");
   if (begin == std::string::npos) return {};
@@ -30,12 +32,15 @@ std::pair<std::string, std::string> Split(const std::string& line) {
           text.substr(text.find_first_not_of(" \t", space))};
 }
 
+// A revision needs a reason. Throws std::invalid_argument, which Obey says.
 void RequireReason(const std::string& word, const std::string& why) {
   if (why.empty()) {
     throw std::invalid_argument(word + " wants a reason: " + word + " REASON");
   }
 }
 
+// Returns a finite number; nothing where the text is none, "nan" and "inf"
+// included.
 std::optional<double> Number(const std::string& text) {
   const auto value = report::ParseNumber<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
@@ -47,6 +52,7 @@ bool Session::Obey(const std::string& line, const Arrival& arrival) {
   const auto [word, rest] = Split(line);
   if (word == "quit") return false;
   try {
+    // Until the conventions are accepted, an empty line is the only answer.
     if (file_.phase == Phase::kConventions) {
       if (!word.empty()) {
         Say("press Enter to accept the conventions, or quit");
@@ -55,6 +61,7 @@ bool Session::Obey(const std::string& line, const Arrival& arrival) {
       file_.phase = Phase::kShot;
       Plan();
       SayPlan();
+      // Recordings that arrived meanwhile are taken now.
       for (const auto& recording : std::exchange(held_, {})) Take(recording);
       return true;
     }
@@ -85,6 +92,7 @@ bool Session::Obey(const std::string& line, const Arrival& arrival) {
         throw std::invalid_argument(
             "no check shot is declared: start with --check-height-mm");
       }
+      // A person may ask for a check shot beyond the daily one.
       check_wanted_ = true;
       check_skipped_ = false;
       Plan();
@@ -98,6 +106,7 @@ bool Session::Obey(const std::string& line, const Arrival& arrival) {
   } catch (const std::invalid_argument& mistake) {
     Say(mistake.what());
   } catch (const core::OutputError&) {
+    // OutputError is an InputError, but ends the session.
     throw;
   } catch (const core::InputError& trouble) {  // the rig's controller
     Say(trouble.what());
@@ -127,6 +136,8 @@ void Session::Help() const {
   }
 }
 
+// Skips what is planned. A check shot wants a reason, as a day without one must
+// be explained; an angle does not. `why` is said and not stored.
 void Session::Skip(const std::string& why) {
   if (file_.is_check) {
     RequireReason("skip", why);
@@ -140,6 +151,8 @@ void Session::Skip(const std::string& why) {
   SayPlan();
 }
 
+// Plans the angle of the last trial once more. A check shot, or a trial that
+// was logged without set-points, has none.
 void Session::Repeat() {
   const core::Trial& last = RequireLast();
   if (!last.set_angle_rad || last.campaign != campaign_.name) {
@@ -148,6 +161,9 @@ void Session::Repeat() {
   Angle(fmt::format("{}", *last.set_angle_rad / kDegree));
 }
 
+// Plans an angle that the operator chose, in degrees, within the rig's reach;
+// 1e-9 rad forgives the rounding of the ends that are shown. The choice
+// replaces a check shot that was waited for.
 void Session::Angle(const std::string& degrees) {
   const auto value = Number(degrees);
   if (!value || *value * kDegree < reach_.angle_rad.low - 1e-9 ||
@@ -166,11 +182,15 @@ void Session::Angle(const std::string& degrees) {
   SayPlan();
 }
 
+// Returns the last trial of the session or of an earlier one. Throws
+// std::invalid_argument where the campaign has none.
 const core::Trial& Session::RequireLast() const {
   if (last_) return last_->trial;
   throw std::invalid_argument("there is no trial yet");
 }
 
+// The trial stays in the store and no longer counts for the boundary; so the
+// next angle is planned anew.
 void Session::Exclude(const std::string& why) {
   RequireReason("exclude", why);
   const core::Trial& last = RequireLast();
@@ -202,6 +222,8 @@ void Session::Undo() {
         act.trial, options_.operator_name,
         act.kind == Act::kLogged ? "undo of the log" : "undo of the inclusion");
   }
+  // The undoing itself is no act: typed again, `undo` goes one act further
+  // back.
   acts_.pop_back();
   Say(fmt::format(
       "trial {} {}", act.trial.substr(0, 8),
@@ -210,6 +232,7 @@ void Session::Undo() {
   SayPlan();
 }
 
+// Says who is at the rig from now on; trials that are logged keep their author.
 void Session::Operator(const std::string& name) {
   if (name.empty()) throw std::invalid_argument("operator wants a name");
   options_.operator_name = name;
@@ -218,6 +241,8 @@ void Session::Operator(const std::string& name) {
   Say("operator: " + name);
 }
 
+// Sets one condition of the shots from now on, "temperature_c=21+-0.5". A note
+// belongs to one shot and has a word of its own.
 void Session::Condition(const std::string& text) {
   const std::size_t sign = text.find('=');
   core::Conditions changed = options_.conditions;
@@ -236,6 +261,8 @@ void Session::Condition(const std::string& text) {
         "spring=S 3",
         text));
   }
+  // A name that the register does not have is refused now, not at the next
+  // shot.
   options_.conditions = db::Resolved(store_, changed);
   Say(fmt::format("from now on: {}", text));
 }
@@ -246,6 +273,8 @@ void Session::Note(const std::string& text) {
   Say("logged with the next shot: " + text);
 }
 
+// Obeys a word for the rig. What the rig refuses is said with its reason.
+// Throws core::InputError where the controller does not answer.
 void Session::Drive(const std::string& word, const std::string& rest,
                     const Arrival& arrival) {
   if (ends_.driver == nullptr) {
@@ -271,6 +300,8 @@ void Session::Drive(const std::string& word, const std::string& rest,
         status.shots));
   } else if (word == "set") {
     if (!setting_) throw std::invalid_argument("there are no set-points now");
+    // What the controller reads back is stored with the shot, not what was
+    // asked.
     const auto read = driver.Set(*setting_);
     if (!read) return refused(read.error());
     read_ = *read;
@@ -288,6 +319,9 @@ void Session::Drive(const std::string& word, const std::string& rest,
   }
 }
 
+// Fires once, on a person's word. The line must have been typed on its own
+// after the answer to `arm` was said: a pasted `arm` and `fire 1` would release
+// the springs before anybody had looked.
 void Session::Fire(rig::Driver& driver, const std::string& arming,
                    const Arrival& arrival) {
   const auto number = report::ParseNumber<std::uint64_t>(arming);

@@ -25,9 +25,13 @@ using nlohmann::ordered_json;
 
 constexpr const char* kSchema = "touchdown.session/1";
 
+// All phases are listed here, so that one can be found by its name.
 constexpr std::array kPhases = {Phase::kConventions, Phase::kCheck,
                                 Phase::kShot, Phase::kAnalysing, Phase::kEnded};
 
+// Returns the name of the store with `extension` appended:
+// "lab.db.session.json". The store's own extension stays, so that two stores
+// never share a file.
 fs::path SiblingPath(const fs::path& store, const char* extension) {
   fs::path path = store;
   path += extension;
@@ -65,6 +69,8 @@ void WriteSession(const fs::path& store, const SessionFile& session) {
   out["recording"] = session.recording.empty()
                          ? ordered_json()
                          : ordered_json(session.recording);
+  // The angle stands twice: in degrees for people and other programs, and in
+  // radians so that it is read back as the same number.
   out["shot"] = ordered_json();
   if (session.planned) {
     out["shot"] = {{"trials_before", session.trials_before},
@@ -85,6 +91,8 @@ void WriteSession(const fs::path& store, const SessionFile& session) {
 }
 
 std::optional<SessionFile> ReadSession(const fs::path& store) {
+  // A missing file parses as nothing, like a damaged one. The session plans
+  // set_points anew from the angle.
   std::ifstream in(SessionPath(store), std::ios::binary);
   const auto document = ordered_json::parse(in, nullptr, false);
   try {
@@ -95,6 +103,7 @@ std::optional<SessionFile> ReadSession(const fs::path& store) {
     out.campaign = document.at("campaign");
     out.operator_name = document.at("operator");
     const std::string phase = document.at("phase");
+    // A phase that is unknown leaves the default: conventions are shown again.
     for (const Phase one : kPhases) {
       if (Name(one) == phase) out.phase = one;
     }
@@ -116,11 +125,16 @@ std::optional<SessionFile> ReadSession(const fs::path& store) {
 
 SessionLock::SessionLock(const fs::path& store) {
   const fs::path path = SiblingPath(store, ".session.lock");
+  // The file stays when the lock goes: removing it would let two sessions hold
+  // locks on two files of one name. O_CLOEXEC keeps a child from holding the
+  // lock on.
   file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) {
     throw core::StoreError(fmt::format("{}: cannot be made: {}", path.string(),
                                        std::strerror(errno)));
   }
+  // The kernel lets go of the lock when the process ends, however it ends; so
+  // no lock is left over from a crash.
   if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
     close(file_);
     throw core::StoreError(

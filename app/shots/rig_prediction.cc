@@ -31,7 +31,11 @@ constexpr std::size_t kDraws = 2000;
 core::Expected<rig::Setting> SettingAtLaunch(const rig::Description& rig,
                                              rig::ContactWish wish,
                                              double launch_mps) {
+  // This many turns reach kClose for approach angles up to 84 deg, where sin^2
+  // is 0.989. A turn costs one FindSetting.
   constexpr int kTurns = 2000;
+  // Relative error of the launch speed that ends the search: far below what any
+  // rig sets, so that the result does not depend on where it stops.
   constexpr double kClose = 1e-9;
   wish.speed_mps = launch_mps;
   for (int i = 0; i < kTurns; ++i) {
@@ -42,6 +46,8 @@ core::Expected<rig::Setting> SettingAtLaunch(const rig::Description& rig,
     if (!muzzle) return core::AbsentBecause(muzzle.error().reason);
     const double v = muzzle->speed_mps;
     if (std::abs(v - launch_mps) <= kClose * launch_mps) return setting;
+    // Energy adds up: what the launch lacks in v^2 is added to the wish at
+    // touchdown. Where nothing positive is left the fall alone is faster.
     const double square =
         wish.speed_mps * wish.speed_mps + launch_mps * launch_mps - v * v;
     if (!(square > 0.0)) break;
@@ -58,6 +64,7 @@ struct Planned {
   bool possible = false;
 };
 
+// Makes a plan in which all three numbers are absent for the same reason.
 Planned Refused(const std::string& reason) {
   Planned out;
   out.prediction = {core::AbsentBecause(reason), core::AbsentBecause(reason),
@@ -65,6 +72,8 @@ Planned Refused(const std::string& reason) {
   return out;
 }
 
+// Predicts what the trial's set-points lead to; refused, with the reason, where
+// the rig cannot be asked or cannot do it.
 Planned Plan(const rig::Description& rig, const core::Trial& trial) {
   if (!trial.set_angle_rad) return Refused("no set-point of the angle");
   if (!trial.set_speed_mps || !(*trial.set_speed_mps > 0.0)) {
@@ -77,6 +86,8 @@ Planned Plan(const rig::Description& rig, const core::Trial& trial) {
   rig::ContactWish wish;
   wish.kind = trial.angle_kind;
   wish.angle_rad = *trial.set_angle_rad;
+  // The corner that landed first belongs to the throw: the same radius angle is
+  // reached nose up and nose down by two settings.
   wish.corner = trial.first.contact.corner;
   const double highest = std::numbers::pi / 2;
   const double lowest = wish.kind == core::AngleKind::kFace ? -highest : 0.0;
@@ -85,6 +96,8 @@ Planned Plan(const rig::Description& rig, const core::Trial& trial) {
   }
   const auto setting = SettingAtLaunch(rig, wish, *trial.set_speed_mps);
   if (!setting) return Refused(setting.error().reason);
+  // The seed is fixed, so that the same trials give the same report, digit by
+  // digit.
   std::mt19937_64 engine(1);
   const auto contact = rig::Predict(rig, *setting, {kDraws}, engine);
   Planned out;
@@ -93,12 +106,16 @@ Planned Plan(const rig::Description& rig, const core::Trial& trial) {
   const auto& launch = contact.launch_speed_mps.first_order;
   const auto& impact = contact.impact_speed_mps.first_order;
   if (!launch || !impact) return Refused("the body would not reach the ground");
+  // Height of the fall from the speeds, in m: h = (v^2 - v0^2) / 2g.
   out.fall_m = (impact->value * impact->value - launch->value * launch->value) /
                (2 * rig.gravity_mps2.value);
   out.possible = true;
   return out;
 }
 
+// Returns the launch speed that a measured speed at touchdown tells, in m/s: v0
+// = sqrt(v^2 - 2 g h). u is of first order in v, h and g; h is known as well as
+// the muzzle's height is.
 core::Measured LaunchFromTouchdown(const rig::Description& rig, double fall_m,
                                    const core::Measured& touchdown_mps) {
   if (!touchdown_mps) return touchdown_mps;
@@ -117,6 +134,7 @@ core::Measured LaunchFromTouchdown(const rig::Description& rig, double fall_m,
       {}};
 }
 
+// Adds to the plan of a set-point what this trial alone can tell.
 report::ShotPrediction ForTrial(const rig::Description& rig,
                                 const Planned& planned,
                                 const core::Trial& trial) {
@@ -139,6 +157,7 @@ report::RigUsed PredictTrials(const std::filesystem::path& rig_file,
                               std::span<const core::Trial> trials) {
   const rig::Description rig = rig::ReadDescription(rig_file);
   report::RigUsed out;
+  // Facts are lines of the report, in this order: name and value.
   const auto fact = [&](const char* name, std::string value) {
     out.facts.emplace_back(name, std::move(value));
   };
@@ -170,6 +189,8 @@ report::RigUsed PredictTrials(const std::filesystem::path& rig_file,
   for (const core::Trial& trial : trials) {
     if (!trial.set_angle_rad && !trial.set_speed_mps) continue;
     const auto& corner = trial.first.contact.corner;
+    // -1 stands for what is not set: no angle in radians of a protocol is that
+    // by chance, no speed is negative.
     const std::tuple key(trial.set_angle_rad.value_or(-1.0),
                          trial.set_speed_mps.value_or(-1.0), trial.angle_kind,
                          trial.body.kind,

@@ -9,6 +9,9 @@ namespace {
 
 using core::kDegree;
 
+// Contact angles are 0 to 90 deg by magnitude; whole degrees are asked first,
+// 45 deg for the reason of a rig that can throw none, and the ends are then
+// found to kEnd_rad. A set-point is no better than 0.01 deg.
 constexpr int kDegrees = 90;
 constexpr double kMiddle_rad = 45.0 * kDegree;
 constexpr double kEnd_rad = 0.01 * kDegree;
@@ -17,6 +20,7 @@ constexpr double kEnd_rad = 0.01 * kDegree;
 
 core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
                                                rig::ContactWish wish) {
+  // Says whether the rig has a setting for this angle.
   const auto can = [&](double angle_rad) {
     wish.angle_rad = angle_rad;
     return rig::FindSetting(rig, wish).has_value();
@@ -29,6 +33,9 @@ core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
     }
     return good;
   };
+  // The longest run of whole degrees is looked for: a rig may reach shallow and
+  // steep angles with a gap between, and the next angle is clipped to one
+  // interval.
   int best_first = 0;
   int best_count = 0;
   int count = 0;
@@ -45,6 +52,7 @@ core::Expected<core::Interval> ReachableAngles(const rig::Description& rig,
     return core::AbsentBecause(refused ? "no whole degree can be thrown"
                                        : refused.error().reason);
   }
+  // Each end is moved outwards by bisection within its last degree.
   const int last = best_first + best_count - 1;
   core::Interval out{best_first * kDegree, last * kDegree};
   if (best_first > 0) out.low = edge(out.low, (best_first - 1) * kDegree);

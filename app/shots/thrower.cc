@@ -18,6 +18,8 @@ Thrower ReadRig(const std::filesystem::path& rig_file,
                 const std::filesystem::path& db) {
   Thrower out;
   out.file = rig_file.string();
+  // A file of that name comes first; the register is asked only where there is
+  // none. With neither, ReadDescription below says what it looked for.
   std::error_code ignored;
   if (!db.empty() && !std::filesystem::exists(rig_file, ignored)) {
     const auto store = db::Store::Open(db, db::OpenMode::kRead);
@@ -30,6 +32,8 @@ Thrower ReadRig(const std::filesystem::path& rig_file,
       return out;
     }
   }
+  // The text is kept beside the parsed rig, because KeepRig compares texts:
+  // comments and notes in a rig.toml are part of its version.
   out.rig = rig::ReadDescription(rig_file);
   out.document = report::ReadTextFile(rig_file).value_or("");
   return out;
@@ -39,7 +43,9 @@ Thrower ReadRig(const std::filesystem::path& rig_file,
 
 core::Registered KeepRig(db::Store& store, const Thrower& thrower,
                          const std::string& author) {
+  // It was taken from the register: nothing to keep.
   if (!thrower.entry.name.empty()) return thrower.entry;
+  // The file's name stands in where the description has none.
   const std::string name =
       thrower.rig.name.empty()
           ? std::filesystem::path(thrower.file).stem().string()
@@ -48,6 +54,7 @@ core::Registered KeepRig(db::Store& store, const Thrower& thrower,
   if (entry && entry->texts.at("document") == thrower.document) {
     return {entry->name, entry->id};
   }
+  // A text that differs makes a further version; earlier trials keep theirs.
   const bool is_new = !entry;
   if (is_new) entry = db::NewEntry(db::RegisterKind::kRig, name);
   entry->texts["document"] = thrower.document;
@@ -64,6 +71,7 @@ Thrower MakeThrower(const std::filesystem::path& rig_file,
                     std::optional<core::Corner> corner,
                     const std::filesystem::path& db) {
   Thrower out = ReadRig(rig_file, db);
+  // Only the kind is compared, not the sizes.
   if (out.rig.body && out.rig.body->kind != campaign.body.kind) {
     throw std::invalid_argument(fmt::format(
         "--rig: the body of {} is a {}, the trials are of a {}", out.file,
@@ -102,6 +110,9 @@ report::ReachOf ReachOfRig(const std::filesystem::path& rig_file,
                            double speed_mps, std::optional<core::Corner> corner,
                            const std::filesystem::path& db) {
   ReadRig(rig_file, db);  // throws now, not for each campaign
+  // Reads the rig anew for each campaign. A campaign that this rig cannot serve
+  // has no reach, and the report says why; a file that went away in between
+  // still throws.
   return [=](const core::Campaign& campaign) -> core::Expected<report::Reach> {
     try {
       return ReachOfThrower(

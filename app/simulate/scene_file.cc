@@ -33,6 +33,8 @@ class Object {
     if (!value_.is_object()) Fail("", "must be an object");
   }
 
+  // "shot.json: /camera/fps is -1, must be positive". `name` is the member,
+  // empty for the object itself.
   [[noreturn]] void Fail(const std::string& name,
                          const std::string& expected) const {
     const std::string where = path_ + (name.empty() ? "" : "/" + name);
@@ -42,6 +44,7 @@ class Object {
 
   bool Has(const std::string& name) const { return value_.contains(name); }
 
+  // Returns a member that must be there, and notes that it was asked for.
   const json& Member(const std::string& name) {
     known_.insert(name);
     if (!value_.contains(name)) Fail(name, "is missing");
@@ -52,6 +55,9 @@ class Object {
     return {Member(name), source_, path_ + "/" + name};
   }
 
+  // Number and Whole have two forms: one returns a member that is required, the
+  // other overwrites `into`, which holds the default, where the member is
+  // given.
   double Number(const std::string& name) {
     const json& member = Member(name);
     if (!member.is_number()) {
@@ -66,11 +72,14 @@ class Object {
     }
     return value;
   }
+  // `unit` brings the member to SI: core::kMillimetre for "x_mm".
   void Number(const std::string& name, double unit, double& into) {
     known_.insert(name);
     if (Has(name)) into = Number(name) * unit;
   }
 
+  // Returns a whole number in low .. high. An unsigned one is compared first,
+  // since one above 2^63 would become negative in the conversion.
   std::int64_t Whole(const std::string& name, std::int64_t low,
                      std::int64_t high) {
     const json& member = Member(name);
@@ -99,6 +108,8 @@ class Object {
   }
   std::string Word(const std::string& name) { return Word(name, "a word"); }
 
+  // Refuses members that nobody asked for. Called when all known names of the
+  // object were read.
   void Done() const {
     for (const auto& [name, member] : value_.items()) {
       if (!known_.contains(name)) {
@@ -115,8 +126,10 @@ class Object {
   std::set<std::string> known_;
 };
 
+// A recording of more frames is none: at 2000 frames/s it would take 12 days.
 constexpr std::int64_t kMaxInt32 = std::numeric_limits<std::int32_t>::max();
 
+// Reads the body. Its sizes are exact, u = 0: they are the truth.
 core::Body ReadBody(Object body) {
   const std::string word = body.Word("kind", "sphere or rectangle");
   core::Body out;
@@ -152,8 +165,11 @@ calib::Lens ReadLens(Object object, const vision::SceneCamera& camera) {
   return lens;
 }
 
+// Reads the camera. Ranges that depend on several fields (an exposure longer
+// than a frame) are left to vision::Validate, which Parse calls at the end.
 vision::SceneCamera ReadCamera(Object object) {
   vision::SceneCamera camera;
+  // No sensor has more pixels along a side.
   object.Whole("width_px", 1, 65536, camera.width_px);
   object.Whole("height_px", 1, 65536, camera.height_px);
   object.Number("px_per_m", 1.0, camera.px_per_m);
@@ -179,6 +195,7 @@ vision::SceneCamera ReadCamera(Object object) {
   return camera;
 }
 
+// Reads brightness and texture. Levels are fractions of full scale.
 vision::SceneLook ReadLook(Object object) {
   vision::SceneLook look;
   object.Number("body_level", 1.0, look.body_level);
@@ -203,6 +220,8 @@ vision::SceneLook ReadLook(Object object) {
   return look;
 }
 
+// Reads what makes a recording hard: shading, highlights, shadows, flicker,
+// waves, specks, an obstacle. What is not named is not there.
 vision::SceneTrouble ReadTrouble(Object object) {
   vision::SceneTrouble trouble;
   object.Number("shading_x", 1.0, trouble.shading_x);
@@ -241,6 +260,8 @@ double CentreHeight(const core::Body& body, double angle_rad) {
   return -vision::Gap(body, {{0.0, 0.0}, angle_rad});
 }
 
+// Reads the state at frame lead_in_frames. The file tells the gap of the lowest
+// point; the state wants the height of the centre.
 analysis::BodyState ReadStart(Object object, const core::Body& body) {
   analysis::BodyState start;
   object.Number("x_mm", core::kMillimetre, start.centre.x_m);
@@ -260,6 +281,9 @@ analysis::BodyState ReadStart(Object object, const core::Body& body) {
 
 // Back along the flight from the state at first contact to frame
 // lead_in_frames.
+// `frame` counts from the beginning of the clip and may lie between two frames.
+// Throws where the flight back to frame lead_in_frames would pass through the
+// ground.
 analysis::BodyState ReadTouchdown(Object object, const core::Body& body,
                                   const Shot& shot) {
   const double fps = shot.camera.fps;
@@ -283,10 +307,13 @@ analysis::BodyState ReadTouchdown(Object object, const core::Body& body,
   object.Number("omega_rad_per_s", 1.0, at.omega_rad_per_s);
   object.Done();
   const double angle = approach * core::kDegree;
+  // cos(pi/2) is 6e-17 and not 0; a body that falls straight must not travel.
   at.vx_mps = approach == 90.0 ? 0.0 : speed * std::cos(angle);
   at.vy_mps = -speed * std::sin(angle);
   at.centre.y_m = CentreHeight(body, at.angle_rad);
 
+  // The free flight is solved backwards in closed form: spin and horizontal
+  // speed are constant, the vertical speed grows by g t.
   analysis::BodyState start = at;
   const double t = at.time_s;
   start.time_s = 0.0;
@@ -306,6 +333,8 @@ analysis::BodyState ReadTouchdown(Object object, const core::Body& body,
   return start;
 }
 
+// Reads the physics. Body, frames and camera must have been read before: the
+// state at touchdown is turned back in time by them.
 void ReadThrown(Object object, Shot& shot) {
   analysis::RigidMotionProblem& thrown = shot.thrown;
   thrown.mu = object.Number("mu");
@@ -323,6 +352,7 @@ void ReadThrown(Object object, Shot& shot) {
   object.Done();
 }
 
+// Reads the whole scene; every object refuses names that it does not know.
 Shot ReadShot(const json& document, const std::string& source,
               const std::string& default_name) {
   Object object(document, source, "");
@@ -333,6 +363,7 @@ Shot ReadShot(const json& document, const std::string& source,
   }
   Shot shot;
   shot.name = object.Has("name") ? object.Word("name") : default_name;
+  // The camera comes before the throw, which needs its frame rate.
   if (object.Has("camera")) shot.camera = ReadCamera(object.Child("camera"));
   if (object.Has("look")) shot.look = ReadLook(object.Child("look"));
   if (object.Has("trouble")) {
@@ -371,6 +402,8 @@ Shot ReadShot(const json& document, const std::string& source,
   return shot;
 }
 
+// Turns every way in which a text can be no scene into a core::InputError that
+// names the source.
 Shot Parse(const std::string& text, const std::string& source,
            const std::string& default_name) {
   json document;
@@ -389,6 +422,8 @@ Shot Parse(const std::string& text, const std::string& source,
   Shot shot = ReadShot(document, source, default_name);
   try {
     // What only the whole can tell: ranges of the renderer and of the physics.
+    // One frame of motion is enough to ask the physics for its ranges; the
+    // whole of it may take long and is computed when the clip is made.
     analysis::RigidMotionProblem first_instant = MakeProblem(shot);
     first_instant.end_s = first_instant.start.time_s + 1.0 / shot.camera.fps;
     vision::Validate(

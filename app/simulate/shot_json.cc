@@ -16,6 +16,8 @@ ordered_json BodyJson(const core::Body& body) {
           {"short_mm", body.short_m->value / core::kMillimetre}};
 }
 
+// Writes the sections that the reader of scene_file.h takes back. The state is
+// written as `start` in all cases, also where it was given at touchdown.
 ordered_json SceneJson(const Shot& shot) {
   ordered_json scene;
   scene["schema"] = "touchdown.scene/1";
@@ -28,6 +30,7 @@ ordered_json SceneJson(const Shot& shot) {
   motion["mu"] = thrown.mu;
   motion["restitution"] = thrown.restitution;
   motion["gravity_mps2"] = thrown.gravity_mps2;
+  // 0 stands for the homogeneous body, which is the default.
   if (thrown.gyration_radius_m > 0.0) {
     motion["gyration_radius_mm"] = thrown.gyration_radius_m / core::kMillimetre;
   }
@@ -91,6 +94,8 @@ ordered_json SceneJson(const Shot& shot) {
                              {"distance", look.mark->distance},
                              {"radius", look.mark->radius}};
   }
+  // A clean scene has no section of troubles, so that a reader sees at once
+  // that there are none.
   if (vision::HasTrouble(shot.trouble)) {
     const vision::SceneTrouble& t = shot.trouble;
     ordered_json& trouble = scene["trouble"];

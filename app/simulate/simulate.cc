@@ -29,6 +29,7 @@ namespace {
 // simulated contact are 2 nm high).
 constexpr double kLeft_m = 1e-6;
 
+// Returns the middle of the last frame's exposure, s from that of frame 0.
 double LastFrame_s(const Shot& shot) {
   return static_cast<double>(shot.frames - 1) / shot.camera.fps;
 }
@@ -42,6 +43,9 @@ bool Filmed(const analysis::RigidMotion& motion, analysis::StretchKind kind,
                      });
 }
 
+// Names what a body does that did not bounce, from what was filmed up to
+// `end_s`. A sphere is judged by its stretches; a rectangle, which hops and
+// tilts while it slides, by whether it travelled on.
 core::MotionState TrueState(const analysis::RigidMotion& motion,
                             const analysis::TouchdownTruth& touchdown,
                             double end_s) {
@@ -61,11 +65,14 @@ core::MotionState TrueState(const analysis::RigidMotion& motion,
   const double travelled =
       std::abs(analysis::ComputeState(motion, end_s).centre.x_m -
                touchdown.before.centre.x_m);
+  // 0.1 mm is far above the rounding of the simulation and, at 1000 px/m, a
+  // tenth of a pixel.
   constexpr double kTravelled_m = 1e-4;
   return travelled > kTravelled_m ? core::MotionState::kSlide
                                   : core::MotionState::kStick;
 }
 
+// Returns the word of --format, which is also the one of the truth file.
 std::string_view Word(ClipFormat format) {
   switch (format) {
     case ClipFormat::kMraw:
@@ -80,6 +87,8 @@ std::string_view Word(ClipFormat format) {
   return "?";
 }
 
+// Returns where the clip goes: a file, or for images a folder of the shot's
+// name.
 std::filesystem::path ClipPath(const Shot& shot,
                                const SimulateOptions& options) {
   std::filesystem::path base = options.folder / shot.name;
@@ -107,6 +116,8 @@ void RefuseFolderInUse(const std::filesystem::path& clip, ClipFormat format) {
   }
 }
 
+// The name becomes that of files: a slash or dots would lead out of the folder.
+// Throws std::invalid_argument.
 void CheckName(const std::string& name) {
   const bool good =
       !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
@@ -129,6 +140,8 @@ std::mt19937_64 NoiseEngine(std::uint64_t seed, const std::string& name) {
   return std::mt19937_64(sequence);
 }
 
+// Writes the frames that `next` gives until it gives none. The file has its
+// name only when it is complete. A folder of images keeps no frame rate.
 void WriteClip(const std::filesystem::path& path, ClipFormat format, double fps,
                const vision::FrameSource& next) {
   switch (format) {
@@ -187,6 +200,8 @@ analysis::RigidMotionProblem MakeProblem(const Shot& shot) {
 ShotTruth ComputeTruth(const Shot& shot) {
   ShotTruth truth;
   const analysis::RigidMotionProblem thrown = MakeProblem(shot);
+  // The truth is that of what was filmed: a body that rises after the last
+  // frame has not bounced here, as a camera would see it.
   const double last_s = LastFrame_s(shot);
   truth.motion = analysis::SimulateRigidMotion(thrown);
   if (!truth.motion.complete) {
@@ -199,6 +214,7 @@ ShotTruth ComputeTruth(const Shot& shot) {
           ? *shot.bounce_height_m
           : core::DefaultBounceHeight(core::Size(thrown.body)->value);
   const auto touchdown = analysis::FirstTouchdown(truth.motion);
+  // Without a touchdown the state stays undecided.
   if (!touchdown || touchdown->time_s > last_s) return truth;
   truth.touchdown = touchdown;
   truth.greatest =
@@ -207,6 +223,7 @@ ShotTruth ComputeTruth(const Shot& shot) {
     truth.state = core::MotionState::kBounce;
   } else {
     truth.state = TrueState(truth.motion, *touchdown, last_s);
+    // The body left the ground, but did not reach the bounce height.
     truth.micro_bounce = truth.greatest.gap_m > kLeft_m;
   }
   return truth;
@@ -225,6 +242,7 @@ vision::Scene BuildScene(const Shot& shot,
   // Exposures are no longer than a frame: none sees it come into sight.
   const double appears_s =
       (static_cast<double>(shot.lead_in_frames) - 0.5) / shot.camera.fps;
+  // The scene may outlive `motion`, so the function shares a copy of it.
   scene.pose = [shared, appears_s](double time_s) {
     constexpr double kOutOfSight_m = 1e4;
     if (time_s < appears_s) return vision::ScenePose{{0.0, kOutOfSight_m}, 0.0};
@@ -238,6 +256,8 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   CheckName(shot.name);
   SimulatedClip out;
   out.truth = ComputeTruth(shot);
+  // The renderer is made before any file or folder: a scene that cannot be
+  // rendered leaves nothing behind.
   const vision::SceneRenderer renderer(BuildScene(shot, out.truth.motion));
   out.clip = ClipPath(shot, options);
   out.truth_file = TruthPath(out.clip);
@@ -250,6 +270,8 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
                                         error.message()));
   }
   RefuseFolderInUse(out.clip, options.format);
+  // What an older run left is put aside until the new clip stands, not removed:
+  // a disk that is full must not cost the old clip its truth.
   const bool had_truth = std::filesystem::exists(out.truth_file, error);
   const std::string truth =
       TruthText(shot, out.truth, out.clip.filename().string(),
@@ -262,6 +284,8 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
   std::int64_t index = 0;
   vision::SensorImage image;
   const auto next = [&]() -> std::optional<core::Frame> {
+    // The writer asks once more after the last frame; here all is rendered, and
+    // the file is about to take its name.
     if (index == shot.frames) {
       if (!together) {
         together.emplace();

@@ -43,6 +43,8 @@ constexpr double kClearly = 3.0;
 // place never uncovers its background; these frames show it.
 constexpr std::int64_t kLeadInFrames = 40;
 
+// Makes the camera of all 18 shots: 1 px is 1 mm, and the ground line is rolled
+// by 0.4 deg, since no camera stands level.
 vision::SceneCamera WindowedCamera() {
   vision::SceneCamera camera;
   camera.width_px = 640;
@@ -57,6 +59,8 @@ vision::SceneCamera WindowedCamera() {
   return camera;
 }
 
+// Makes uneven light and a grainy ground, as in a laboratory; the other levels
+// are the defaults of SceneLook.
 vision::SceneLook TexturedLook() {
   vision::SceneLook look;
   look.gradient_x = 0.08;
@@ -69,6 +73,7 @@ vision::SceneLook TexturedLook() {
 // 1.1 % of full scale on the background.
 constexpr vision::SensorNoise kNoise{1.8, 0.03};
 
+// "sphere_approach_11_8_deg": a dot is not allowed in the name of a shot.
 std::string ShotName(const char* what, double angle_deg) {
   const int tenths = static_cast<int>(std::lround(10.0 * angle_deg));
   return fmt::format("{}_{:02}_{}_deg", what, tenths / 10, tenths % 10);
@@ -83,12 +88,16 @@ void Film(Shot& shot, double phase) {
   const analysis::RigidMotion whole = analysis::SimulateRigidMotion(thrown);
   const auto touchdown = analysis::FirstTouchdown(whole);
   const double contact = touchdown->time_s;
+  // The first frame, in s of the flight from its launch: a flight that is
+  // shorter than kFramesBefore is filmed from its launch on.
   const double begin = std::max(0.0, contact - (kFramesBefore + phase) / kFps);
   const double bounce_height =
       core::DefaultBounceHeight(core::Size(thrown.body)->value);
   double end = contact + kFramesAfter / kFps;
   const auto soon = analysis::ComputeGreatestGap(whole, contact, end);
   const auto ever = analysis::ComputeGreatestGap(whole, contact, thrown.end_s);
+  // The film goes on where it would end on a rising body close to the limit:
+  // such a trial is undecided by the rule, and the table has none.
   if (ever.gap_m > bounce_height && soon.gap_m < kClearly * bounce_height) {
     end = std::max(end, ever.time_s + kFramesAfterGreatest / kFps);
   }
@@ -96,9 +105,12 @@ void Film(Shot& shot, double phase) {
   shot.lead_in_frames = kLeadInFrames;
   shot.frames = seen + kLeadInFrames;
   thrown.start = analysis::ComputeState(whole, begin);
+  // The camera's ground_point is x = 0, so every touchdown is seen there.
   thrown.start.centre.x_m -= touchdown->before.centre.x_m;
 }
 
+// Makes one shot of the sphere. It is launched level, from the height at which
+// gravity alone gives the vertical speed of the wanted angle.
 Shot SphereShot(double angle_deg, double phase) {
   Shot shot;
   shot.name = ShotName("sphere_approach", angle_deg);
@@ -121,6 +133,8 @@ Shot SphereShot(double angle_deg, double phase) {
   return shot;
 }
 
+// Makes one shot of the rectangle. It is launched along its long side, so that
+// the elevation is its face angle, and keeps it without spin.
 Shot RectangleShot(double angle_deg, double phase) {
   Shot shot;
   shot.name = ShotName("rectangle_face", angle_deg);

@@ -12,6 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// Returns the word of an event under "events"/"kind".
 std::string_view EventName(analysis::EventKind kind) {
   switch (kind) {
     case analysis::EventKind::kImpact:
@@ -28,6 +29,7 @@ std::string_view EventName(analysis::EventKind kind) {
   return "?";
 }
 
+// Writes an angle in degrees, null where the body has none of this kind.
 ordered_json DegreesJson(const std::optional<double>& angle_rad) {
   if (!angle_rad) return nullptr;
   return *angle_rad / core::kDegree;
@@ -53,6 +55,9 @@ bool Rebounds(const analysis::TouchdownTruth& t, double rest_speed_mps) {
   return !t.from_start && t.contact_vy_after_mps > 2.0 * rest_speed_mps;
 }
 
+// Writes the first touchdown. One from the start has no instant. duration_s is
+// 0 for a rebound, since rigid bodies leave at once, and null for a body that
+// stays down, which has no release.
 ordered_json ContactJson(const Shot& shot, const ShotTruth& truth) {
   ordered_json contact;
   contact["found"] = truth.touchdown.has_value();
@@ -76,6 +81,8 @@ ordered_json ContactJson(const Shot& shot, const ShotTruth& truth) {
   return contact;
 }
 
+// Writes the true state by the same rule as the analysis, without an interval:
+// the greatest gap is exact.
 ordered_json StateJson(const ShotTruth& truth) {
   const bool contact = truth.touchdown.has_value();
   return {{"label", std::string(core::Name(truth.state))},
@@ -91,6 +98,9 @@ ordered_json StateJson(const ShotTruth& truth) {
           {"micro_bounce", truth.micro_bounce}};
 }
 
+// Writes what the physics was told (..._set) and the ratios that a perfect
+// measurement would find. The two may differ: friction and spin take part in an
+// impact.
 ordered_json MotionJson(const Shot& shot, const ShotTruth& truth) {
   ordered_json motion;
   motion["gravity_mps2"] = shot.thrown.gravity_mps2;
@@ -106,6 +116,8 @@ ordered_json MotionJson(const Shot& shot, const ShotTruth& truth) {
   motion["after"] = {{"normal_mps", t.after.vy_mps},
                      {"tangential_mps", t.after.vx_mps},
                      {"omega_rad_per_s", t.after.omega_rad_per_s}};
+  // The ratios need an impact: a body that is set down has no speed to divide
+  // by.
   const bool impact =
       !t.from_start && t.contact_vy_before_mps < 0.0 && t.before.vy_mps < 0.0;
   motion["restitution"] =
@@ -121,6 +133,8 @@ ordered_json MotionJson(const Shot& shot, const ShotTruth& truth) {
   return motion;
 }
 
+// Lists what happened up to the last frame, each event with the state just
+// before and just after it. Offsets are of the contact point from the centre.
 ordered_json EventsJson(const Shot& shot, const ShotTruth& truth) {
   ordered_json events = ordered_json::array();
   const double last_s = static_cast<double>(shot.frames - 1) / shot.camera.fps;
@@ -180,6 +194,7 @@ std::string TruthText(const Shot& shot, const ShotTruth& truth,
   out["motion"] = MotionJson(shot, truth);
   out["events"] = EventsJson(shot, truth);
 
+  // Frames of the lead-in show no body and have no row.
   const vision::Scene scene = BuildScene(shot, truth.motion);
   ordered_json rows = ordered_json::array();
   for (std::int64_t i = shot.lead_in_frames; i < shot.frames; ++i) {
@@ -195,6 +210,7 @@ std::string TruthText(const Shot& shot, const ShotTruth& truth,
        {"index", "time_s", "centre_x_px", "centre_y_px", "image_angle_deg",
         "face_angle_deg", "x_mm", "y_mm", "gap_px"}},
       {"rows", rows}};
+  // With the scene and the seed the clip can be made again.
   out["scene"] = SceneJson(shot);
   return out.dump(1) + "\n";
 }

@@ -17,6 +17,9 @@ using core::kDegree;
 using core::kMillimetre;
 
 // "3.5:4.5"
+// Reads a campaign's speed band at touchdown, in m/s: lowest, then highest.
+// Only the form is checked here; db::RequireStorable refuses a band that is
+// upside down or negative. Throws FieldError naming speed-mps.
 std::pair<double, double> ParseBand(const std::string& text) {
   std::pair<double, double> band;
   const char* const end = text.data() + text.size();
@@ -36,6 +39,7 @@ std::optional<core::Body> ParseBody(const BodyEntry& entry) {
       entry.sides_mm.empty()) {
     return std::nullopt;
   }
+  // Without a kind the size tells it: sides are a rectangle's.
   core::BodyKind kind = entry.sides_mm.empty() ? core::BodyKind::kSphere
                                                : core::BodyKind::kRectangle;
   if (!entry.kind.empty()) {
@@ -53,6 +57,8 @@ std::optional<core::Body> ParseBody(const BodyEntry& entry) {
                        "is given, but a sphere has a --diameter-mm");
     }
     if (entry.diameter_mm.empty()) {
+      // A body whose size nobody gave is a body all the same: a trial by hand
+      // can be logged without it.
       core::Body body;
       body.diameter_m = core::AbsentBecause("not recorded");
       return body;
@@ -64,6 +70,8 @@ std::optional<core::Body> ParseBody(const BodyEntry& entry) {
     throw FieldError("diameter-mm", "is given, but a rectangle has --sides-mm");
   }
   if (entry.sides_mm.empty()) {
+    // The default reasons are those of a sphere ("not a rectangle"), so all
+    // three are stated anew.
     core::Body body;
     body.kind = core::BodyKind::kRectangle;
     body.diameter_m = core::AbsentBecause("not a sphere");
@@ -79,6 +87,7 @@ std::optional<core::Body> ParseBody(const BodyEntry& entry) {
 core::Campaign MakeCampaign(const CampaignEntry& entry) {
   core::Campaign campaign;
   campaign.name = entry.name;
+  // A campaign cannot do without a body; a trial can (ParseBody).
   const auto body = ParseBody(entry.body);
   if (!body) {
     throw FieldError("body",
@@ -97,6 +106,8 @@ core::Campaign MakeCampaign(const CampaignEntry& entry) {
     }
     campaign.angle_kind = *kind;
   }
+  // The bounce height is fixed before the first trial. The default convention
+  // needs the size, so a body without one must come with a stated height.
   if (entry.bounce_height_mm) {
     campaign.bounce_height_m = *entry.bounce_height_mm * kMillimetre;
   } else {
@@ -108,6 +119,7 @@ core::Campaign MakeCampaign(const CampaignEntry& entry) {
     }
     campaign.bounce_height_m = core::DefaultBounceHeight(size->value);
   }
+  // No band: both ends stay 0, which means "not declared".
   if (!entry.speed_mps.empty()) {
     std::tie(campaign.speed_min_mps, campaign.speed_max_mps) =
         ParseBand(entry.speed_mps);

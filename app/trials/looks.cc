@@ -10,6 +10,9 @@ namespace touchdown::pipeline {
 std::string KeepLooks(const std::filesystem::path& store,
                       const std::set<std::string>& campaigns,
                       std::string_view command) {
+  // How long another process may hold the store, s. A commit takes some
+  // milliseconds; a person who asks for the answer is not to wait for a bulk
+  // import only so that the look is recorded.
   constexpr double kPatience_s = 1.0;
   try {
     db::OpenOptions options;
@@ -19,6 +22,8 @@ std::string KeepLooks(const std::filesystem::path& store,
       db::RecordLook(open, name, command);
     }
   } catch (const core::StoreError& error) {
+    // Also a store on a read-only disk ends here: the answer is shown all the
+    // same, and the caller says that the look is not on record.
     return error.what();
   }
   return "";
@@ -28,6 +33,8 @@ std::set<std::string> CampaignsWithAnswer(const std::filesystem::path& store) {
   std::set<std::string> names;
   for (const core::Campaign& campaign :
        db::Store::Open(store, db::OpenMode::kRead).Campaigns()) {
+    // Check shots have a control chart and no boundary: nothing in them is an
+    // answer that a look could bias.
     if (!core::HasCheckShots(campaign)) names.insert(campaign.name);
   }
   return names;

@@ -9,6 +9,9 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Makes a body of which only the kind is known. The sizes that this kind has
+// are absent because the paper does not state them; the others keep the reason
+// "not a sphere" or "not a rectangle".
 core::Body UnmeasuredBody(core::BodyKind kind) {
   core::Body body;
   body.kind = kind;
@@ -26,6 +29,7 @@ core::Body UnmeasuredBody(core::BodyKind kind) {
 
 PaperTrials PaperTable1Trials(double u_rad) {
   PaperTrials out;
+  // Each body has one campaign of nine trials.
   for (const auto kind :
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
     core::Campaign campaign;
@@ -40,6 +44,8 @@ PaperTrials PaperTable1Trials(double u_rad) {
     campaign.theory_boundary_rad = theory.boundary_rad;
     for (const auto& o : analysis::PaperTable1(kind, u_rad)) {
       core::Trial trial;
+      // A readable id, "paper-table1-sphere-11.8", unique because the paper has
+      // each angle of a body once. A store gives an id of its own.
       trial.id =
           fmt::format("{}-{:.1f}", campaign.name, o.angle_rad / core::kDegree);
       trial.campaign = campaign.name;
@@ -50,15 +56,19 @@ PaperTrials PaperTable1Trials(double u_rad) {
       core::Contact& contact = trial.first.contact;
       contact.found = true;
       const core::Estimate angle{o.angle_rad, o.u_rad};
+      // The other two angles stay absent: the paper prints one angle a trial.
       (kind == core::BodyKind::kSphere ? contact.approach_angle_rad
                                        : contact.radius_angle_rad) = angle;
       core::StateDecision& state = trial.first.state;
+      // The paper's two words; its "slide" is taken at its word here.
       state.label = o.outcome == analysis::Outcome::kBounce
                         ? core::MotionState::kBounce
                         : core::MotionState::kSlide;
       state.p_bounce = o.p_bounce;
       state.reason = "the paper's Table 1";
       const auto unknown = core::AbsentBecause("not in the paper");
+      // The gaps were not printed, so the label rests on the paper's word
+      // alone.
       state.max_gap_m = unknown;
       state.bounce_height_m = unknown;
       state.detectable_gap_m = unknown;

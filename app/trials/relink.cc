@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 // known clip's is not read; one that cannot be read is none.
 using ById = std::multimap<std::string, fs::path>;
 
+// Reading a clip's id costs up to 64 MiB of it, so the size is compared first.
+// A clip of unknown size (0) makes every recording a candidate.
 ById ReadIds(const std::vector<fs::path>& recordings,
              const std::vector<db::KnownClip>& clips) {
   ById out;
@@ -63,6 +65,8 @@ bool IsStillThere(const db::KnownClip& clip) {
   }
 }
 
+// Says whether `path` lies in `folder` or deeper, by names alone: both must be
+// absolute and normal. Links are not followed.
 bool IsBelow(const fs::path& path, const fs::path& folder) {
   const fs::path to = path.lexically_relative(folder);
   return !to.empty() && *to.begin() != "..";
@@ -75,12 +79,16 @@ Relinked Relink(db::Store& store, const fs::path& folder) {
   const auto recordings = FindRecordings(folder);
   const ById there = ReadIds(recordings, clips);
   const fs::path root = fs::absolute(folder).lexically_normal();
+  // This counts the clips of the store that share an id. Where only one has it
+  // the id decides; else the full SHA-256 does, which reads the whole file.
   std::map<std::string, int> sharing;
   for (const db::KnownClip& clip : clips) ++sharing[clip.id];
   Relinked out;
   out.looked_at = recordings.size();
   for (const db::KnownClip& clip : clips) {
     std::vector<fs::path> same;
+    // The candidates come in the order of their paths: FindRecordings sorts
+    // them, and a multimap keeps equal keys in the order of insertion.
     const auto [begin, end] = there.equal_range(clip.id);
     for (auto it = begin; it != end; ++it) {
       if (sharing[clip.id] == 1 || MatchesDigest(clip, it->second)) {
@@ -88,6 +96,7 @@ Relinked Relink(db::Store& store, const fs::path& folder) {
       }
     }
     const fs::path seen = clip.last_seen_path;
+    // A recording is in place, missing, or found elsewhere in the folder.
     if (std::ranges::find(same, seen) != same.end() ||
         (!IsBelow(seen, root) && IsStillThere(clip))) {
       ++out.in_place;

@@ -17,6 +17,8 @@ namespace {
 
 using core::kDegree;
 
+// Parses the word of a field. `words` is the list that the message shows.
+// Throws FieldError where `text` is none of them.
 template <class T>
 T RequireWord(const char* field, const std::string& text,
               std::optional<T> (*parse)(std::string_view), const char* words) {
@@ -24,6 +26,8 @@ T RequireWord(const char* field, const std::string& text,
   throw FieldError(field, fmt::format("is '{}', must be {}", text, words));
 }
 
+// Refuses an angle outside of low_deg .. 90 degrees; NaN fails as well, since
+// the comparison is written so that it must hold.
 void RequireAngle(const char* field, double angle_deg, double low_deg) {
   if (!(angle_deg >= low_deg && angle_deg <= 90.0)) {
     throw FieldError(
@@ -31,6 +35,8 @@ void RequireAngle(const char* field, double angle_deg, double low_deg) {
   }
 }
 
+// Makes a trial in which nothing is known but that the body touched down:
+// whoever logs a shot by hand has seen it land.
 core::Trial ManualTrial() {
   core::Trial trial;
   trial.origin = core::Origin::kManual;
@@ -47,6 +53,7 @@ core::Trial ManualTrial() {
 
 void Apply(const Statement& statement, core::Trial& trial) {
   core::Contact& contact = trial.first.contact;
+  // An angle without u could not be weighed against others.
   if (statement.angle_deg.has_value() != statement.angle_u_deg.has_value()) {
     const bool has_angle = statement.angle_deg.has_value();
     throw FieldError(
@@ -54,6 +61,8 @@ void Apply(const Statement& statement, core::Trial& trial) {
         "is missing: an angle and its uncertainty go together (a good "
         "protractor reads to 0.5 deg)");
   }
+  // The kind comes before the angle: it says which of the three is stated and
+  // whether it may be negative.
   if (!statement.angle_kind.empty()) {
     trial.angle_kind = RequireWord<core::AngleKind>(
         "angle-kind", statement.angle_kind, core::ParseAngleKind,
@@ -70,15 +79,20 @@ void Apply(const Statement& statement, core::Trial& trial) {
   if (!statement.state.empty()) {
     trial.first.state.label = RequireWord<core::MotionState>(
         "state", statement.state, core::ParseMotionState, kStateWords);
+    // A probability belongs to the evidence of the analysis; a person's word
+    // has none.
     trial.first.state.p_bounce.reset();
     trial.first.state.reason = "stated by hand";
   }
+  // After the state, so that a note replaces "stated by hand". A note alone
+  // keeps label and probability.
   if (!statement.note.empty()) trial.first.state.reason = statement.note;
   if (!statement.corner.empty()) {
     contact.corner =
         RequireWord<core::Corner>("corner", statement.corner, core::ParseCorner,
                                   "leading, trailing or flush");
   }
+  // Set-points may be face angles, so the sign is allowed for every kind.
   if (statement.set_angle_deg) {
     RequireAngle("set-angle-deg", *statement.set_angle_deg, -90.0);
     trial.set_angle_rad = *statement.set_angle_deg * kDegree;
@@ -105,6 +119,8 @@ core::Trial Restated(const std::string& field,
     throw FieldError(field, fmt::format("is {}, must be a revision in 1 .. {}",
                                         number, history.size()));
   }
+  // The content of the old revision with the number of the one in force: the
+  // store checks with it that nobody revised the trial meanwhile.
   core::Trial trial = found->trial;
   trial.revision = seen.revision;
   return trial;
@@ -113,6 +129,8 @@ core::Trial Restated(const std::string& field,
 db::Logged LogByHand(const std::filesystem::path& path,
                      const ManualEntry& entry) {
   core::Trial trial = ManualTrial();
+  // The state is the one thing that a trial by hand must say: the boundary is
+  // estimated from it.
   if (entry.statement.state.empty()) {
     throw FieldError("state",
                      fmt::format("is missing, must be {}", kStateWords));
@@ -127,6 +145,8 @@ db::Logged LogByHand(const std::filesystem::path& path,
         "body it is)");
   }
   // A store is made only for what has been found right.
+  // The rehearsal goes without the campaign, which only the store knows: its
+  // kind of angle is that of the body, or approach.
   core::Trial rehearsal = trial;
   if (body) {
     rehearsal.body = *body;
@@ -142,17 +162,23 @@ db::Logged LogByHand(const std::filesystem::path& path,
       path, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
   if (!entry.campaign.empty()) {
     const core::Campaign campaign = db::RequireCampaign(store, entry.campaign);
+    // The campaign's conventions hold for the trial, h_c among them; u = 0
+    // marks it as a convention and not a measurement.
     trial.body = campaign.body;
     trial.angle_kind = campaign.angle_kind;
     trial.first.state.bounce_height_m =
         core::Estimate{campaign.bounce_height_m, 0.0, std::nullopt};
   }
+  // A body given beside a campaign is not taken silently: LogTrial refuses one
+  // that is not the campaign's.
   if (body) {
     trial.body = *body;
     if (entry.campaign.empty()) {
       trial.angle_kind = core::DefaultAngleKind(body->kind);
     }
   }
+  // It is applied again, to the real trial: the kind of angle may now be the
+  // campaign's.
   Apply(entry.statement, trial);
   return store.LogTrial(trial);
 }

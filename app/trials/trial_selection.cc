@@ -15,6 +15,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Returns the campaign of that name, null for trials in none.
 const core::Campaign* Find(const std::vector<core::Campaign>& campaigns,
                            const std::string& name) {
   const auto found =
@@ -23,6 +24,8 @@ const core::Campaign* Find(const std::vector<core::Campaign>& campaigns,
   return found == campaigns.end() ? nullptr : &*found;
 }
 
+// Says whether a person ever corrected the trial. Exclusions are no review:
+// they say nothing of the measurement.
 bool IsReviewed(const db::Store& store, const std::string& id) {
   const auto history = store.History(id);
   return std::any_of(history.begin(), history.end(), [](const auto& revision) {
@@ -38,6 +41,9 @@ std::optional<TwoLabels> FindLabels(const std::vector<db::Revision>& history,
   bool person = false;
   for (const auto& revision : history) {
     const core::MotionState label = revision.trial.first.state.label;
+    // The program's last word is a logged revision with a document (one by hand
+    // has none); the person's is the last correction. Proposals count for
+    // neither.
     if (revision.kind == db::RevisionKind::kLogged &&
         !revision.trial.document_json.empty()) {
       out.by_program = label;
@@ -67,6 +73,9 @@ std::vector<db::Entry> CollectEntries(const db::Store& store,
   return out;
 }
 
+// Selects trials of a store. Filters that the store knows are part of the
+// query; SelectTrials applies the rest. Throws core::StoreError, and
+// std::invalid_argument for a campaign that is not there.
 Selection FromStore(const SelectionOptions& options) {
   const db::Store store = db::Store::Open(options.store, db::OpenMode::kRead);
   db::TrialFilter filter;
@@ -78,6 +87,8 @@ Selection FromStore(const SelectionOptions& options) {
   filter.with_documents = options.with_evidence;
   Selection out;
   out.campaigns = store.Campaigns();
+  // A misspelt name would give an empty report. The empty name stands for
+  // trials in no campaign.
   if (options.campaign && !options.campaign->empty() &&
       Find(out.campaigns, *options.campaign) == nullptr) {
     std::vector<std::string> names;
@@ -97,6 +108,7 @@ Selection FromStore(const SelectionOptions& options) {
   }
   if (options.with_evidence) {
     for (const core::Trial& trial : out.trials) {
+      // One revision: nobody has revised it, and it was logged when it says.
       if (trial.revision < 2) continue;
       const std::vector<db::Revision> history = store.History(trial.id);
       if (auto labels = FindLabels(history, trial.id)) {
@@ -111,6 +123,9 @@ Selection FromStore(const SelectionOptions& options) {
   return out;
 }
 
+// Reads the trials of a CSV file into one campaign that is made up here: its
+// name is the file's unless one was given. The options state what the file
+// cannot say (body, kind, origin, theory); they do not filter.
 Selection FromCsv(const SelectionOptions& options) {
   CsvTrials what;
   what.campaign = options.campaign.value_or(options.csv.stem().string());
@@ -137,6 +152,8 @@ Selection FromCsv(const SelectionOptions& options) {
   return out;
 }
 
+// Takes the 18 trials of the paper's Table 1; they have no plan and no
+// evidence.
 Selection FromPaper(const SelectionOptions& options) {
   PaperTrials paper = PaperTable1Trials(options.paper_u_rad);
   return {std::move(paper.trials),
@@ -168,6 +185,9 @@ Selection SelectTrials(const SelectionOptions& options) {
                   : options.paper_table1 ? FromPaper(options)
                                          : FromStore(options);
   if (from_csv) return out;
+  // The filters are applied once more, to the paper's trials and for what the
+  // store's query cannot ask (kind of angle, surface). A trial in no campaign
+  // has no surface, so a filter by surface drops it.
   std::erase_if(out.trials, [&](const core::Trial& trial) {
     const core::Campaign* campaign = Find(out.campaigns, trial.campaign);
     return (options.campaign && trial.campaign != *options.campaign) ||

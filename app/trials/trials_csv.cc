@@ -18,6 +18,8 @@ namespace {
 
 using core::kDegree;
 
+// Takes blanks, a carriage return and quotation marks from the ends of `text`.
+// Spreadsheets quote headings and write Windows line ends.
 std::string Trimmed(std::string_view text) {
   const auto is_blank = [](char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '"';
@@ -27,6 +29,8 @@ std::string Trimmed(std::string_view text) {
   return std::string(text);
 }
 
+// Divides a line into its cells, trimmed. Every comma divides: a quoted cell
+// must not hold one.
 std::vector<std::string> Cells(const std::string& line) {
   std::vector<std::string> out(1);
   for (const char c : line) {
@@ -40,16 +44,21 @@ std::vector<std::string> Cells(const std::string& line) {
   return out;
 }
 
+// Says where a message points to; lines count from 1, headings and comments
+// included.
 struct Place {
   const std::filesystem::path& path;
   int line = 0;
 };
 
+// "angles.csv: line 7: p_bounce is '2'; expected ...".
 [[noreturn]] void RefuseLine(const Place& place, const std::string& what) {
   throw core::InputError(
       fmt::format("{}: line {}: {}", place.path.string(), place.line, what));
 }
 
+// Reads the number in a cell, in the column's own unit, low <= value <= high;
+// `range` says that in words. An empty cell is refused, too.
 double ReadCell(const Place& place, std::string_view column,
                 const std::string& cell, double low, double high,
                 std::string_view range) {
@@ -74,6 +83,8 @@ core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
   core::Angle(contact, what.angle_kind) = core::Estimate{
       angle_deg * kDegree, std::hypot(u_deg, common_u_deg) * kDegree};
   if (common_u_deg > 0.0) {
+    // The budget keeps the two parts apart: statistics treat the common one as
+    // one error of the whole set-up, not as one a trial.
     core::Budget& budget = what.angle_kind == core::AngleKind::kApproach
                                ? contact.approach_budget
                                : contact.attitude_budget;
@@ -83,6 +94,8 @@ core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
   state.p_bounce = p_bounce;
   state.max_gap_m = core::AbsentBecause("not in the file");
   state.extrapolated_gap_m = core::AbsentBecause("not in the file");
+  // The label follows from the probability by the rule of the statistics, so
+  // that a CSV file and a store agree. The angle plays no part in it.
   switch (analysis::Observe(0.0, 0.0, p_bounce).outcome) {
     case analysis::Outcome::kBounce:
       state.label = core::MotionState::kBounce;
@@ -112,6 +125,8 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
   std::vector<core::Trial> trials;
   std::string line;
   Place place{path, 0};
+  // Returns the position of a column in the heading, nothing where it is not
+  // there.
   const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
     const auto at = std::find(header.begin(), header.end(), name);
     if (at == header.end()) return std::nullopt;
@@ -119,9 +134,12 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
   };
   while (std::getline(file, line)) {
     ++place.line;
+    // Spreadsheets begin UTF-8 files with a byte order mark, which would become
+    // part of the first column's name.
     if (place.line == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     if (Trimmed(line).empty() || line.front() == '#') continue;
     const std::vector<std::string> cells = Cells(line);
+    // The first line that is neither blank nor a comment is the heading.
     if (header.empty()) {
       header = cells;
       for (const char* column : {"angle_deg", "u_deg", "p_bounce"}) {
@@ -140,6 +158,7 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
       RefuseLine(place, fmt::format("{} cells; expected {}, as in the heading",
                                     cells.size(), header.size()));
     }
+    // Reads a cell of this line, from 0 to `high`; the column must exist.
     const auto number = [&](std::string_view column, double high,
                             std::string_view range) {
       return ReadCell(place, column, cells[*find(column)], 0.0, high, range);
@@ -152,6 +171,8 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
                       ? number("common_u_deg", 90.0, "from 0 to 90, or nothing")
                       : 0.0,
                   number("p_bounce", 1.0, "from 0 to 1")));
+    // Trials of one calibration share their common error; the name alone tells
+    // the set-ups apart, no entry of a register stands behind it.
     if (const auto setup = find("calibration");
         setup && !cells[*setup].empty()) {
       trials.back().conditions.emplace().calibration.name = cells[*setup];

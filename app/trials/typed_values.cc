@@ -16,6 +16,7 @@
 namespace touchdown::pipeline {
 namespace {
 
+// "--diameter-mm is '4O', must be a number, ...".
 [[noreturn]] void RefuseText(const std::string& flag, const std::string& text,
                              const std::string& form) {
   throw std::invalid_argument(
@@ -23,6 +24,8 @@ namespace {
 }
 
 // What `parse` of a flag makes of a field: its message names the flag first.
+// The flag is empty, so the message begins with a space, which is dropped:
+// FieldError puts the field's name in front.
 template <class Parse>
 auto OfField(const std::string& field, const Parse& parse) {
   try {
@@ -36,6 +39,8 @@ auto OfField(const std::string& field, const Parse& parse) {
 
 core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
                              double unit, DefaultU default_u) {
+  // The default u is taken before the unit is applied: `absolute` is in the
+  // unit that was typed.
   const std::string form =
       "a number, or one with its standard uncertainty as in 40+-0.02";
   const std::size_t sign = text.find("+-");
@@ -62,6 +67,8 @@ core::Estimate ParseEstimate(const std::string& flag, const std::string& text,
 std::pair<core::Estimate, core::Estimate> ParseSides(const std::string& flag,
                                                      const std::string& text,
                                                      double unit, DefaultU u) {
+  // The sides in the order in which they were typed; core::Rectangle sorts
+  // them.
   const std::size_t times = text.find('x');
   if (times == std::string::npos) {
     RefuseText(flag, text, "two lengths as in 60x20");
@@ -91,12 +98,15 @@ core::Measured ParseMeasured(const std::string& flag, const std::string& text,
   if (text.starts_with(kAbsent) && text.size() > kAbsent.size()) {
     return core::AbsentBecause(text.substr(kAbsent.size()));
   }
+  // A condition without u would be taken as exact, so it is refused.
   if (text.find("+-") == std::string::npos) {
     RefuseText(flag, text,
                "a number with its standard uncertainty as in 40+-0.02, or "
                "absent:REASON");
   }
   core::Estimate estimate = ParseEstimate(flag, text, unit);
+  // Only the value moves with the offset (20 degrees Celsius are 293.15 K); a
+  // difference of temperatures does not.
   estimate.value += offset;
   return estimate;
 }
@@ -105,6 +115,8 @@ const std::vector<std::string>& ConditionKeys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all;
     for (const auto& entry : db::kConditionEntries) {
+      // Keys stand in the order of the register's tables, with units as people
+      // type them: temperature_k of the store is temperature_c here.
       all.emplace_back(Name(entry.kind));
     }
     for (const auto& quantity : db::kConditionQuantities) {
@@ -121,6 +133,8 @@ bool SetCondition(const std::string& key, const std::string& value,
                   core::Conditions& conditions) {
   for (const auto& entry : db::kConditionEntries) {
     if (key != Name(entry.kind)) continue;
+    // Only the name is known here; db::Resolved adds the id of the version in
+    // force.
     conditions.*entry.member = {value, ""};
     return true;
   }
@@ -132,6 +146,7 @@ bool SetCondition(const std::string& key, const std::string& value,
     });
     return true;
   }
+  // Three keys are neither entries nor numbers.
   if (key == "anomaly") {
     const auto word = core::ParseAnomaly(value);
     if (!word) {
