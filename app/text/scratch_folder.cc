@@ -12,8 +12,8 @@
 namespace touchdown::pipeline {
 
 ScratchFolder::ScratchFolder() {
-  // Where TMPDIR names no folder, temp_directory_path() gives an empty path, and
-  // the folder is made in the current one.
+  // Where TMPDIR names no folder, temp_directory_path() gives an empty path,
+  // and the folder is made in the current one.
   std::error_code ignored;
   std::string name =
       (std::filesystem::temp_directory_path(ignored) / "touchdown-XXXXXX")
