@@ -1,9 +1,15 @@
+// One line of an export, schema touchdown.plan/1 (here on three lines):
+//   {"schema":"touchdown.plan/1","id":UUID,"campaign":"asphalt","kind":"plan",
+//    "design":"ascending 2 deg steps","stopping_rule":"after 40 trials",
+//    "error_rates":"","trials":0,"author":...,"reason":"","at_utc":...}
 #include "app/exchange/plan_json.h"
 
 #include "app/text/json_fields.h"
 
 namespace touchdown::report {
 
+// `trials` is a number of trials: how many the campaign had when the event
+// happened, which tells whether the plan was made before the first.
 std::string PlanEventJson(const db::PlanEvent& event) {
   const Json json = {{"schema", kPlanSchema},
                      {"id", TextJson(event.id)},
@@ -19,6 +25,8 @@ std::string PlanEventJson(const db::PlanEvent& event) {
   return json.dump();
 }
 
+// Every field must be there. A look has an empty plan, written as three empty
+// texts.
 db::PlanEvent PlanEventFromJson(std::string_view line) {
   const Json json = ParsedLine(line, kPlanSchema);
   db::PlanEvent event;

@@ -1,3 +1,6 @@
+// The fields of an entry depend on its kind (rig, camera, spring ...), so that
+// writing and reading walk over db::ListFields() instead of naming them: a new
+// field of the register is in the exchange without a change here.
 #include "app/exchange/register_json.h"
 
 #include <stdexcept>
@@ -7,11 +10,15 @@ namespace {
 
 using db::FieldType;
 
+// A reference to one version of an entry, {"name", "id"}; null where nothing is
+// referred to. The id says which version: the spring as it was at the shot.
 Json RegisteredJson(const core::Registered& entry) {
   if (entry.name.empty()) return nullptr;
   return {{"name", TextJson(entry.name)}, {"id", TextJson(entry.id)}};
 }
 
+// The inverse. Throws std::invalid_argument naming the field `name` where it is
+// missing or has no name in it.
 core::Registered ReadRegistered(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_null()) return {};
@@ -32,6 +39,8 @@ std::string EntryJson(const db::Entry& entry) {
                {"author", TextJson(entry.author)},
                {"reason", TextJson(entry.reason)},
                {"recorded_at_utc", TextJson(entry.recorded_at_utc)}};
+  // at() throws for a field that the entry does not hold. That is a defect of
+  // the program: the store gives every field of the kind.
   for (const db::RegisterField& field : db::ListFields(entry.kind)) {
     const std::string key(field.name);
     switch (field.type) {
@@ -50,6 +59,8 @@ std::string EntryJson(const db::Entry& entry) {
   return json.dump();
 }
 
+// Reads the form alone: whether words and numbers are allowed for their field
+// is asked by db::RequireStorable() when the store takes the entry.
 db::Entry EntryFromJson(std::string_view line) {
   const Json json = ParsedLine(line, kEntrySchema);
   db::Entry entry;
@@ -60,6 +71,7 @@ db::Entry EntryFromJson(std::string_view line) {
   entry.author = ReadTextField(json, "author");
   entry.reason = ReadTextField(json, "reason");
   entry.recorded_at_utc = ReadTextField(json, "recorded_at_utc");
+  // The kind has been read and says which fields must follow.
   for (const db::RegisterField& field : db::ListFields(entry.kind)) {
     const std::string key(field.name);
     switch (field.type) {
@@ -78,6 +90,8 @@ db::Entry EntryFromJson(std::string_view line) {
   return entry;
 }
 
+// Entries and numbers stand beside each other in one object, each under the
+// name that the tables of db/register.h give it. SI: kelvin, radians, metres.
 Json ConditionsJson(const core::Conditions& conditions) {
   Json json = Json::object();
   for (const auto& entry : db::kConditionEntries) {
@@ -94,6 +108,8 @@ Json ConditionsJson(const core::Conditions& conditions) {
   return json;
 }
 
+// Missing fields throw std::invalid_argument, except those that files of
+// earlier versions do not have.
 core::Conditions ReadConditions(const Json& json) {
   core::Conditions conditions;
   for (const auto& entry : db::kConditionEntries) {
@@ -102,7 +118,8 @@ core::Conditions ReadConditions(const Json& json) {
   }
   for (const auto& quantity : db::kConditionQuantities) {
     const std::string key(quantity.name);
-    // An earlier program wrote none.
+    // Files of earlier versions do not have it; it stays absent, "not
+    // recorded".
     if (quantity.is_later && !json.contains(key)) continue;
     conditions.*quantity.member = ReadMeasured(json, key);
   }

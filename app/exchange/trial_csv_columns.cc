@@ -1,3 +1,7 @@
+// The table of all columns, made once by MakeColumns(). A column is its name,
+// its meaning and two functions, so that reader and writer take them in any
+// order and no column is described twice. Cells bear degrees and millimetres;
+// the functions convert to and from SI and radians.
 #include "app/exchange/trial_csv_columns.h"
 
 #include <fmt/format.h>
@@ -18,6 +22,9 @@ using core::Trial;
 
 namespace {
 
+// The number in a cell, in the unit of its column. Throws std::invalid_argument
+// saying what was expected for anything else: a decimal comma, a unit behind
+// the number, inf or nan. A leading plus is taken, as people type it.
 double ToNumber(const std::string& cell) {
   std::string_view unsigned_cell = cell;
   if (unsigned_cell.starts_with('+')) unsigned_cell.remove_prefix(1);
@@ -28,6 +35,7 @@ double ToNumber(const std::string& cell) {
   return *value;
 }
 
+// A count or size; a negative one is the user's mistake.
 std::int64_t ToInteger(const std::string& cell) {
   const auto value = ParseNumber<std::int64_t>(cell);
   if (!value || *value < 0) {
@@ -36,16 +44,22 @@ std::int64_t ToInteger(const std::string& cell) {
   return *value;
 }
 
+// Words, and not 1 and 0: a spreadsheet shows what is meant.
 bool ToFlag(const std::string& cell) {
   if (cell == "yes") return true;
   if (cell == "no") return false;
   throw std::invalid_argument("yes or no was expected");
 }
 
+// The shortest digits that read as this double again.
 std::string Shortest(double value) { return fmt::format("{}", value); }
 
+// Collects the columns in the order of the file.
 class Columns {
  public:
+  // A column of free text. `at` gives the place of the text in a trial. It
+  // takes a trial that can be changed; for writing, the const is cast away and
+  // nothing is changed.
   void Text(std::string name, std::string meaning, std::string& (*at)(Trial&)) {
     columns_.push_back(
         {{std::move(name), std::move(meaning)},
@@ -53,6 +67,8 @@ class Columns {
          [at](Trial& t, const std::string& cell) { at(t) = cell; }});
   }
 
+  // A column of one of the words of an enumeration. `words` lists them for the
+  // column's meaning and for the message about a cell that is none of them.
   template <class T>
   void Word(std::string name, std::string meaning, T& (*at)(Trial&),
             std::optional<T> (*parse)(std::string_view),
@@ -72,6 +88,8 @@ class Columns {
   }
 
   // Two columns, value and standard uncertainty, in the unit of the edge.
+  // `inner` is the name in SI, as "diameter_m", which becomes diameter_mm and
+  // diameter_u_mm; `select` gives the index-th quantity of a trial.
   void Measured(std::string_view inner, std::string_view meaning,
                 core::Measured& (*select)(Trial&, std::size_t),
                 std::size_t index) {
@@ -83,7 +101,8 @@ class Columns {
         [select, index](Trial& t) { return &select(t, index); });
   }
 
-  // `get` may give nothing, which is an empty cell; `set` never does.
+  // The same for a quantity that the trial may not have a place for: `get` may
+  // give nothing, which is an empty cell; `set` never does.
   void Measured(std::string_view inner, std::string_view meaning,
                 const std::function<const core::Measured*(const Trial&)>& get,
                 const std::function<core::Measured*(Trial&)>& set) {
@@ -96,7 +115,8 @@ class Columns {
            const auto* m = get(t);
            if (m == nullptr || !*m) return std::string();
            const double value = (*m)->value;
-           // A sum does not come back to its last digit.
+           // A sum (degrees Celsius from kelvin) does not come back to its last
+           // digit: 12 digits hide what it adds.
            return unit.offset == 0.0
                       ? Shortest(value / unit.factor)
                       : fmt::format("{:.12g}",
@@ -105,6 +125,7 @@ class Columns {
          [set, unit](Trial& t, const std::string& cell) {
            const double value = ToNumber(cell) * unit.factor + unit.offset;
            auto& m = *set(t);
+           // ReadTrialsCsv() refuses the row if no column replaces this -1.
            if (m) {
              m->value = value;
            } else {
@@ -122,6 +143,8 @@ class Columns {
            const double u = ToNumber(cell) * unit.factor;
            if (u < 0) throw std::invalid_argument("a number >= 0 was expected");
            auto& m = *set(t);
+           // The values have been read: an uncertainty without a value is a
+           // slip of columns.
            if (!m) {
              throw std::invalid_argument("u of an empty value");
            }
@@ -137,6 +160,8 @@ class Columns {
   std::vector<TrialColumn> columns_;
 };
 
+// A number without uncertainty that may be absent (an empty cell), with
+// `factor` inner units in a unit of the column: kDegree for "_deg".
 TrialColumn OptionalNumber(std::string name, std::string meaning, double factor,
                            std::optional<double>& (*at)(Trial&)) {
   return {{std::move(name), std::move(meaning), true},
@@ -149,6 +174,7 @@ TrialColumn OptionalNumber(std::string name, std::string meaning, double factor,
           }};
 }
 
+// A column of yes and no.
 TrialColumn Flag(std::string name, std::string meaning, bool& (*at)(Trial&)) {
   return {{std::move(name), std::move(meaning) + ": yes or no"},
           [at](const Trial& t) {
@@ -157,10 +183,14 @@ TrialColumn Flag(std::string name, std::string meaning, bool& (*at)(Trial&)) {
           [at](Trial& t, const std::string& cell) { at(t) = ToFlag(cell); }};
 }
 
+// The trial's conditions, made at the first cell that states one: a trial
+// without any such cell has none, which is not the same as empty ones.
 core::Conditions& Stated(Trial& t) {
   return t.conditions ? *t.conditions : t.conditions.emplace();
 }
 
+// The columns of the circumstances of a shot: entries of the register by their
+// name, numbers in the unit of the edge, notes and the anomaly.
 void AddConditions(Columns& c) {
   for (const auto& [kind, member] : db::kConditionEntries) {
     c.Add({{std::string(Name(kind)), "name in the register; empty: none"},
@@ -172,6 +202,7 @@ void AddConditions(Columns& c) {
              Stated(t).*member = {cell, ""};
            }});
   }
+  // Two columns each, as for the quantities of the trial itself.
   for (const auto& quantity : db::kConditionQuantities) {
     c.Measured(
         quantity.name, quantity.meaning,
@@ -210,8 +241,13 @@ void AddConditions(Columns& c) {
          }});
 }
 
+// All columns in the order in which they are written: who the trial is, what
+// was thrown, what was seen, under what conditions, from which recording, and
+// who states it. `touchdown import --columns` prints the same order.
 std::vector<TrialColumn> MakeColumns() {
   Columns c;
+  // Columns that the store gives are written for people. Reading skips them, so
+  // that nobody has to take them out of an exported file.
   const auto ignore = [](Trial&, const std::string&) {};
   c.Text("id", "UUID; empty: a new trial",
          [](Trial& t) -> std::string& { return t.id; });
@@ -232,6 +268,7 @@ std::vector<TrialColumn> MakeColumns() {
     c.Measured(core::kBodyQuantities.at(i).name,
                core::kBodyQuantities.at(i).meaning, BodyMeasured, i);
   }
+  // What was thrown and how: kind of angle and set-points.
   c.Word<core::AngleKind>(
       "angle_kind", "which angle is the contact angle",
       [](Trial& t) -> core::AngleKind& { return t.angle_kind; },
@@ -242,6 +279,7 @@ std::vector<TrialColumn> MakeColumns() {
   c.Add(OptionalNumber(
       "set_speed_mps", "set-point of the launch speed", 1.0,
       [](Trial& t) -> std::optional<double>& { return t.set_speed_mps; }));
+  // What was seen at the first contact. Later contacts are not in this table.
   c.Word<core::MotionState>(
       "state", "must be there",
       [](Trial& t) -> core::MotionState& { return t.first.state.label; },
@@ -273,11 +311,13 @@ std::vector<TrialColumn> MakeColumns() {
                  "leading, trailing or flush was expected");
            }
          }});
+  // Every measured number of the contact, its state and its motion.
   for (std::size_t i = 0; i < core::kContactQuantities.size(); ++i) {
     c.Measured(core::kContactQuantities.at(i).name,
                core::kContactQuantities.at(i).meaning, ContactMeasured, i);
   }
   AddConditions(c);
+  // The recording, by which a trial finds its film again.
   c.Text("clip_path", "where the clip was last seen",
          [](Trial& t) -> std::string& { return t.clip.path; });
   c.Text("clip_id", "clip.id of `analyze`",
@@ -289,6 +329,7 @@ std::vector<TrialColumn> MakeColumns() {
          [](Trial& t, const std::string& cell) {
            t.clip.size_bytes = ToInteger(cell);
          }});
+  // The statement itself: who, why, and with which version of the program.
   c.Text("author", "who states this",
          [](Trial& t) -> std::string& { return t.author; });
   c.Text("reason", "why this revision was made",
@@ -317,6 +358,8 @@ core::Measured& ContactMeasured(Trial& trial, std::size_t i) {
 }
 
 const std::vector<TrialColumn>& AllColumns() {
+  // Made at the first call and never changed: the pointers of FindColumn() stay
+  // valid as long as the program runs.
   static const std::vector<TrialColumn> columns = MakeColumns();
   return columns;
 }

@@ -1,3 +1,10 @@
+// Reading and writing mirror each other, field by field and in one order: a
+// field that is added here stands in both. Measured numbers are not named but
+// walked over by the tables of core/quantities.h, as the store does.
+//
+// An export is read in one pass: ExportReader keeps one line ahead (`line_`)
+// and, where that line begins the next trial, one revision ahead (`ahead_`). A
+// file of 100 000 trials is never in memory as a whole.
 #include "app/exchange/trial_json.h"
 
 #include <fmt/format.h>
@@ -20,6 +27,8 @@ constexpr std::string_view kCampaignSchema = "touchdown.campaign/1";
 // Exports of stores below version 4 do not have it, and are read all the same.
 constexpr std::string_view kAddedLater = "extrapolated_gap_m";
 
+// Kind and sizes in metres; the sizes that the kind does not have are absent
+// with their reason.
 Json BodyJson(const core::Body& body) {
   Json json = {{"kind", core::Name(body.kind)}};
   for (const auto& quantity : core::kBodyQuantities) {
@@ -28,6 +37,8 @@ Json BodyJson(const core::Body& body) {
   return json;
 }
 
+// One contact with state and motion: all that a ContactRecord holds but
+// unresolved_impacts, which stands in the analysis document alone. SI, radians.
 Json ContactJson(const core::ContactRecord& record) {
   const core::Contact& contact = record.contact;
   Json json = {{"found", contact.found},
@@ -38,10 +49,12 @@ Json ContactJson(const core::ContactRecord& record) {
                {"p_bounce", OptionalNumberJson(record.state.p_bounce)},
                {"state_because", TextJson(record.state.reason)},
                {"micro_bounce", record.state.micro_bounce}};
+  // A sphere has no corner: null.
   if (contact.corner) json["corner"] = core::Name(*contact.corner);
   for (const auto& quantity : core::kContactQuantities) {
     json[std::string(quantity.name)] = MeasuredJson(core::At(record, quantity));
   }
+  // The budgets are arrays of {"source", "u_rad"}.
   for (const auto& budget : core::kBudgets) {
     Json lines = Json::array();
     for (const auto& line : contact.*budget.member) {
@@ -53,6 +66,8 @@ Json ContactJson(const core::ContactRecord& record) {
   return json;
 }
 
+// One revision as an object. The first contact and the later ones are one
+// array, in the order in which the body touched the ground.
 Json RevisionObject(const db::Revision& revision) {
   const core::Trial& trial = revision.trial;
   Json json = {
@@ -89,6 +104,8 @@ Json RevisionObject(const db::Revision& revision) {
   return json;
 }
 
+// These readers throw std::invalid_argument naming the field that is missing or
+// wrong; ExportReader adds file and line.
 core::Body ReadBodyFields(const Json& json) {
   core::Body body;
   body.kind = ReadWord(json, "kind", core::ParseBodyKind);
@@ -98,6 +115,7 @@ core::Body ReadBodyFields(const Json& json) {
   return body;
 }
 
+// The inverse of ContactJson().
 core::ContactRecord ReadContact(const Json& json) {
   core::ContactRecord record;
   core::Contact& contact = record.contact;
@@ -174,18 +192,24 @@ std::string RevisionJson(const db::Revision& revision) {
   return RevisionObject(revision).dump();
 }
 
+// The revision in force stands at the top, so that a script that asks for one
+// field need not know of revisions; all of them follow under "history".
 std::string HistoryJson(const std::vector<db::Revision>& history) {
   Json json = {{"schema", "touchdown.trial/1"}};
+  // A trial that the store does not hold: nothing but the schema.
   if (history.empty()) return json.dump(1);
   const db::Revision& in_force = db::RevisionInForce(history);
   Json current = RevisionObject(in_force);
+  // The object has the schema of a trial, not of a revision line.
   current.erase("schema");
-  // The analysis document as what it is, where it is one.
+  // The analysis document as an object where it is one, not as a text with
+  // escaped quotes: scripts look into it. Null where there is none.
   const Json document =
       Json::parse(in_force.trial.document_json, nullptr, false);
   current["document"] = document.is_discarded() ? Json(nullptr) : document;
   json.update(current);
   Json revisions = Json::array();
+  // Oldest first, each with what it changed.
   for (std::size_t i = 0; i < history.size(); ++i) {
     const auto& [id, kind, trial] = history[i];
     Json one = {{"revision", trial.revision},
@@ -195,6 +219,8 @@ std::string HistoryJson(const std::vector<db::Revision>& history) {
                 {"reason", TextJson(trial.reason)},
                 {"recorded_at_utc", TextJson(trial.recorded_at_utc)},
                 {"changes", Json::array()}};
+    // Compared with the revision that was in force until then: a proposal that
+    // nobody took is not a state that anything changed from.
     if (i > 0) {
       for (const auto& change :
            db::Changes(db::RevisionInForce({history.data(), i}).trial,
@@ -207,7 +233,8 @@ std::string HistoryJson(const std::vector<db::Revision>& history) {
     revisions.push_back(std::move(one));
   }
   json["history"] = std::move(revisions);
-  // Its differences are those of its entry in the history.
+  // The number of a proposal that waits for a person, else null. Its
+  // differences are those of its entry in the history.
   const db::Revision* proposal = db::OpenProposal(history);
   json["proposal"] =
       proposal != nullptr ? Json(proposal->trial.revision) : Json(nullptr);
@@ -238,12 +265,13 @@ db::Revision RevisionFromJson(std::string_view line) {
   trial.angle_kind = ReadWord(json, "angle_kind", core::ParseAngleKind);
   trial.set_angle_rad = ReadOptionalNumber(json, "set_angle_rad");
   trial.set_speed_mps = ReadOptionalNumber(json, "set_speed_mps");
-  // Exports of before have no conditions.
+  // Exports of earlier versions have no conditions; they stay unstated.
   const auto conditions = json.find("conditions");
   if (conditions != json.end() && !conditions->is_null()) {
     trial.conditions = ReadConditions(*conditions);
   }
   const Json& contacts = Field(json, "contacts");
+  // A trial always has a first contact, even one that was not found.
   if (!contacts.is_array() || contacts.empty()) {
     WrongField("contacts", "an array of at least one contact");
   }
@@ -257,11 +285,15 @@ db::Revision RevisionFromJson(std::string_view line) {
   return revision;
 }
 
+// The store's UUID tells a merge where the trials come from.
 void WriteExportHeader(std::ostream& out, const std::string& store_uuid) {
   const Json header = {{"schema", "touchdown.export/1"}, {"store", store_uuid}};
   out << header.dump() << '\n';
 }
 
+// The parts of a file stand in an order in which nothing refers to what
+// follows: register, campaigns, plans, trials. A line of another schema ends
+// the part.
 ExportReader::ExportReader(std::istream& in, std::string name)
     : in_(in), name_(std::move(name)) {
   try {
@@ -277,6 +309,8 @@ ExportReader::ExportReader(std::istream& in, std::string name)
     }
     for (; more && ReadSchema(line_) == kPlanSchema; more = NextLine()) {
       plan_.push_back(PlanEventFromJson(line_));
+      // A plan of a campaign that is not in the file would have no campaign in
+      // the store that takes it.
       const std::string& campaign = plan_.back().campaign;
       if (std::none_of(campaigns_.begin(), campaigns_.end(),
                        [&](const auto& c) { return c.name == campaign; })) {
@@ -289,6 +323,9 @@ ExportReader::ExportReader(std::istream& in, std::string name)
   }
 }
 
+// Reads the next line that is not empty into `line_`, and counts lines for
+// error messages. False at the end of the file, where `line_` is empty. The CR
+// of a file that went through Windows is dropped.
 bool ExportReader::NextLine() {
   while (std::getline(in_, line_)) {
     ++number_;
@@ -299,6 +336,7 @@ bool ExportReader::NextLine() {
   return false;
 }
 
+// Throws core::InputError: the fault is in the file, at the line read last.
 void ExportReader::Fail(const std::string& what) const {
   throw core::InputError(fmt::format("{}:{}: {}", name_, number_, what));
 }
@@ -306,6 +344,8 @@ void ExportReader::Fail(const std::string& what) const {
 std::optional<std::vector<db::Revision>> ExportReader::NextHistory() {
   std::vector<db::Revision> history;
   if (ahead_) history.push_back(*std::exchange(ahead_, std::nullopt));
+  // Revisions of one trial stand together, so a change of the id ends the
+  // history.
   while (!line_.empty()) {
     std::optional<db::Revision> revision;
     try {
@@ -313,6 +353,8 @@ std::optional<std::vector<db::Revision>> ExportReader::NextHistory() {
     } catch (const std::invalid_argument& error) {
       Fail(error.what());
     }
+    // The error above names the line that was read, so the next one is read
+    // only after it.
     NextLine();
     if (!history.empty() && revision->trial.id != history.front().trial.id) {
       ahead_ = std::move(revision);

@@ -11,6 +11,9 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
+// {"value", "u"} and, where the estimate has one, "interval95": [low, high],
+// all in the unit of the edge, of which `unit` is the size in SI. Null where it
+// is absent: a list has no room for reasons.
 Json EdgeJson(const core::Measured& measured, double unit) {
   if (!measured) return nullptr;
   Json json = {{"value", measured->value / unit}, {"u", measured->u / unit}};
@@ -21,6 +24,7 @@ Json EdgeJson(const core::Measured& measured, double unit) {
   return json;
 }
 
+// A set-point or probability, which has no u; null where there is none.
 Json OptionalJson(const std::optional<double>& value, double unit) {
   return value ? Json(*value / unit) : Json(nullptr);
 }

@@ -8,6 +8,8 @@
 namespace touchdown::report {
 namespace {
 
+// A text, a whole number or a number to six digits as it is printed; empty
+// where `json` is something else or null.
 std::string ScalarText(const nlohmann::json& json) {
   if (json.is_string()) return json.get<std::string>();
   if (json.is_number_integer()) {
@@ -16,6 +18,8 @@ std::string ScalarText(const nlohmann::json& json) {
   return json.is_number() ? fmt::format("{:.6g}", json.get<double>()) : "";
 }
 
+// "1000.0 ± 0.8 px/m" of a {"value", "u"} of the document, which is in `unit`
+// already; empty where one of the two is missing.
 std::string EstimateText(const nlohmann::json& json, const char* unit) {
   const nlohmann::json& value = EvaluateSpline(json, {"value"});
   const nlohmann::json& u = EvaluateSpline(json, {"u"});
@@ -23,6 +27,7 @@ std::string EstimateText(const nlohmann::json& json, const char* unit) {
   return WithU({value.get<double>(), u.get<double>(), {}}, 1.0) + " " + unit;
 }
 
+// The parts that say something, with commas between them.
 std::string Joined(std::initializer_list<std::string> parts) {
   std::string out;
   for (const std::string& part : parts) {
@@ -32,11 +37,14 @@ std::string Joined(std::initializer_list<std::string> parts) {
   return out;
 }
 
+// `text` between two pieces of a sentence, or nothing at all: "from " without a
+// source would end in the air.
 std::string Enclose(const char* before, const std::string& text,
                     const char* after = "") {
   return text.empty() ? "" : before + text + after;
 }
 
+// "2000 frames/s, from the header"; empty where the document has no frame rate.
 std::string FramesPerSecond(const nlohmann::json& json) {
   const nlohmann::json& base = EvaluateSpline(json, {"clip", "time_base"});
   const nlohmann::json& fps = EvaluateSpline(base, {"fps"});
@@ -46,6 +54,9 @@ std::string FramesPerSecond(const nlohmann::json& json) {
                      source.empty() ? "file" : source);
 }
 
+// "camera south, of 2026-08-01, lens to 0.12 px rms" of the calibration that
+// the analysis took; "none" where a clip was analysed without one, and empty
+// where the document says nothing of a clip either.
 std::string CalibrationText(const nlohmann::json& json) {
   const nlohmann::json& calibration = EvaluateSpline(json, {"calibration"});
   if (calibration.is_object()) {
@@ -60,6 +71,9 @@ std::string CalibrationText(const nlohmann::json& json) {
   return EvaluateSpline(json, {"clip"}).is_object() ? "none" : "";
 }
 
+// The items of a list with semicolons between them. Of an object, as
+// scene_model.left_out is one, each name with its reason: "spin (not
+// measured)".
 std::string ListText(const nlohmann::json& json) {
   std::string out;
   if (json.is_array()) {
@@ -76,6 +90,9 @@ std::string ListText(const nlohmann::json& json) {
 
 }  // namespace
 
+// All four are texts that repeat over the trials of a set-up, so that they can
+// be counted; numbers that differ from clip to clip are left to
+// AnalysisFacts().
 std::vector<NameValue> AnalysisSources(const core::Trial& trial) {
   const auto json = StoredDocument(trial);
   if (json.is_null()) return {};
@@ -90,6 +107,7 @@ std::vector<NameValue> AnalysisFacts(const core::Trial& trial) {
   const auto json = StoredDocument(trial);
   if (json.is_null()) return {};
   const nlohmann::json& clip = EvaluateSpline(json, {"clip"});
+  // The sides of the picture stand together or not at all.
   const std::string width = ScalarText(EvaluateSpline(clip, {"width_px"}));
   const nlohmann::json& scale = EvaluateSpline(json, {"scale"});
   const nlohmann::json& ground = EvaluateSpline(json, {"ground"});
@@ -126,6 +144,7 @@ std::vector<NameValue> AnalysisFacts(const core::Trial& trial) {
 }
 
 const core::Budget& AngleBudget(const core::Trial& trial) {
+  // Radius and face angle are both attitudes of the body and share one budget.
   const core::Contact& contact = trial.first.contact;
   return trial.angle_kind == core::AngleKind::kApproach
              ? contact.approach_budget

@@ -1,3 +1,7 @@
+// The JSON documents of a group of trials. BoundaryJson() makes the object of
+// one group; `touchdown boundary` prints it alone, and the report's table1.json
+// puts the trials and the checks of the group beside it. Angles are in degrees,
+// lengths in millimetres; the names are a contract with scripts.
 #include "app/report/boundary_json.h"
 
 #include <algorithm>
@@ -19,35 +23,45 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
+// Degrees; null where there is no such angle.
 Json DegreesJson(const std::optional<double>& angle_rad) {
   return angle_rad ? Json(*angle_rad / kDegree) : Json(nullptr);
 }
 
+// [low, high] of the angles that can be thrown; null without a rig.
 Json DegreesJson(const core::Expected<Reach>& reach) {
   if (!reach) return nullptr;
   return {reach->angle_rad.low / kDegree, reach->angle_rad.high / kDegree};
 }
 
+// A number without unit or uncertainty; null where it is absent.
 Json Optional(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+// [low, high] of an interval of a proportion, from 0 to 1; null where there is
+// none.
 Json Pair(const std::optional<core::Interval>& interval) {
   if (!interval) return nullptr;
   return Json::array({interval->low, interval->high});
 }
 
+// {"value", "u"} in the unit of the edge, of which `unit` is the size in SI;
+// null, without the reason, where the quantity is absent.
 Json Quantity(const core::Measured& m, double unit) {
   if (!m) return nullptr;
   return {{"value", m->value / unit}, {"u", m->u / unit}};
 }
 
-// What the verdict rests on: log likelihood ratios with the scatter free, and
-// the posterior's tails beyond the margin, and beyond margin and U.
+// The numbers that a verdict rests on: log likelihood ratios with the scatter
+// free, and the posterior's tails beyond the margin (and beyond margin and U of
+// the theory). Null for a theory that was not declared, as it gets no verdict.
 Json EvidenceJson(const analysis::TheoryComparison& t) {
   if (!t.declared || t.basis.counts.decided() == 0) return nullptr;
   const analysis::VerdictBasis& b = t.basis;
   const analysis::Evidence& e = b.evidence;
+  // A claim that no boundary supports has a log likelihood of minus infinity,
+  // which JSON does not hold.
   const auto finite = [](double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
   };
@@ -62,6 +76,9 @@ Json EvidenceJson(const analysis::TheoryComparison& t) {
           {"angles_span_deg", b.span_rad / kDegree}};
 }
 
+// A theory's boundary beside the trials. In `agreement`, `right` and `decided`
+// count all decided trials; every other count and statistic leaves out those
+// within 2 u of the boundary. slide_bounce: slide was predicted, bounce seen.
 Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
   const auto& a = t.agreement;
   const auto& verdict = t.judgement.verdict;
@@ -106,12 +123,18 @@ Json TheoryJson(const analysis::TheoryComparison& t, const std::string& note) {
             {"mcc", Optional(t.matthews)}}}};
 }
 
+// The prior on the scatter of the boundary from trial to trial. The log-normal
+// has a standard deviation of the logarithm; the half-Cauchy has none, which is
+// null.
 Json PriorJson(const analysis::ScatterPrior& prior) {
   return {{"scatter_family", prior.log_sd ? "log-normal" : "half-Cauchy"},
           {"scatter_median_deg", prior.median_rad / kDegree},
           {"scatter_log_sd", Optional(prior.log_sd)}};
 }
 
+// The posterior of the boundary angle and of its scatter, with the priors it
+// was made with. low95_deg and high95_deg hold under every prior that was used;
+// the two fields with one_prior do not.
 Json PosteriorJson(const Group& group) {
   const auto& p = group.study.posterior;
   Json out = {{"median_deg", p.median_rad / kDegree},
@@ -134,6 +157,7 @@ Json PosteriorJson(const Group& group) {
                p.cautious_prior ? PriorJson(*p.cautious_prior) : Json(nullptr)},
               {"low95_one_prior_deg", analysis::Quantile(p, 0.025) / kDegree},
               {"high95_one_prior_deg", analysis::Quantile(p, 0.975) / kDegree}};
+  // The same trials under other priors: how much of the answer is the prior's.
   Json sensitivity = Json::array();
   for (const auto& line : p.sensitivity) {
     Json row = PriorJson(line.prior);
@@ -146,6 +170,8 @@ Json PosteriorJson(const Group& group) {
   return out;
 }
 
+// Why the campaign may end, in the word of the document; "go-on" where it may
+// not.
 std::string StopWord(analysis::StopReason stop) {
   switch (stop) {
     case analysis::StopReason::kTargetReached:
@@ -158,6 +184,8 @@ std::string StopWord(analysis::StopReason stop) {
   return "go-on";
 }
 
+// One trial as a row of the report: what the statistics take of it, and why
+// they leave it out (`left_out`, null where they do not).
 Json TrialJson(const core::Trial& trial, const std::string* left_out) {
   const core::StateDecision& state = trial.first.state;
   return {
@@ -177,6 +205,9 @@ Json TrialJson(const core::Trial& trial, const std::string* left_out) {
       {"left_out", left_out != nullptr ? Json(*left_out) : Json(nullptr)}};
 }
 
+// One quantity of the check shots, each value with the id of its trial, and the
+// control chart; `chart` is null below two values. Limits and centre have the
+// unit of the quantity; `beyond` are indices into `values`.
 Json CheckSeriesJson(const CheckSeries& series, const CheckShots& checks,
                      std::span<const core::Trial> trials) {
   Json out = {{"quantity", series.quantity},
@@ -200,6 +231,8 @@ Json CheckSeriesJson(const CheckSeries& series, const CheckShots& checks,
   return out;
 }
 
+// The check shots of one campaign and origin: touchdown speed and approach
+// angle.
 Json CheckShotsJson(const CheckShots& checks,
                     std::span<const core::Trial> trials) {
   return {
@@ -244,6 +277,7 @@ Json BoundaryJson(const Group& group) {
                 {"scatter_deg", l.has_estimate ? Json(l.scatter_rad / kDegree)
                                                : Json(nullptr)}}},
               {"margin_deg", study.margin_rad / kDegree}};
+  // `notes` runs beside `theories`: where each comes from.
   Json theories = Json::array();
   for (std::size_t i = 0; i < study.theories.size(); ++i) {
     theories.push_back(TheoryJson(study.theories[i], group.notes[i]));
@@ -256,6 +290,7 @@ Json BoundaryJson(const Group& group) {
                  {"clipped", study.next.clipped},
                  {"stop", StopWord(study.next.stop)},
                  {"within_deg", DegreesJson(group.reach)}};
+  // The sentences of the page, so that what a script prints says the same.
   out["sentences"] = {{"boundary", BoundarySentence(study)},
                       {"bracket", BracketSentence(bracket)},
                       {"status", StatusSentence(study)},
@@ -273,6 +308,7 @@ Json BoundaryJson(const Group& group) {
 
 Json BoundaryDocument(std::span<const Group> groups) {
   Json out = {{"schema", "touchdown.boundary/1"}};
+  // A script for one campaign reads the fields without a step into an array.
   if (groups.size() == 1) {
     out.update(BoundaryJson(groups.front()));
     return out;
@@ -285,6 +321,7 @@ Json BoundaryDocument(std::span<const Group> groups) {
 
 namespace {
 
+// A check pooled over the trials, or {"absent": reason}.
 Json CheckJson(const core::Expected<analysis::PooledCheck>& check) {
   if (!check) return {{"absent", check.error().reason}};
   return {{"trials", check->trials},
@@ -317,6 +354,7 @@ Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
   for (const Group& group : groups) {
     Json entry = BoundaryJson(group);
     if (group.simulated()) entry["watermark"] = kWatermark;
+    // Which trials of the group the statistics leave out, and why.
     std::map<std::size_t, const std::string*> left_out;
     for (const auto& left : group.trials.left_out) {
       left_out[left.trial] = &left.reason;

@@ -1,3 +1,8 @@
+// The plot of a group as a gnuplot script: P(bounce) over the contact angle in
+// degrees. Trials are marks at 1 (bounced), 0 (stayed down) or their P(bounce)
+// (undecided); behind them stand the bracket, the posterior of the boundary and
+// the lines of theory. The data blocks ($slides, $density ...) come before the
+// one plot command that draws them.
 #include "app/report/boundary_plot.h"
 
 #include <fmt/core.h>
@@ -23,12 +28,16 @@ constexpr std::size_t kSpreadAbove = 40;
 // Half-height of that spread, in units of P(bounce).
 constexpr double kSpread = 0.06;
 
+// How far the mark of trial `i` of `n` is moved up or down: one of seven rows.
+// Stepping by three rows puts neighbours in angle far apart.
 double Spread(std::size_t i, std::size_t n) {
   if (n <= kSpreadAbove) return 0.0;
   constexpr int kRows = 7;
   return kSpread * (2.0 * static_cast<double>(i * 3 % kRows) / (kRows - 1) - 1);
 }
 
+// The horizontal axis. It goes up to 2 degrees beyond 0 and 90, so that marks
+// at these angles are drawn whole.
 struct AxisRange {
   double low_deg = 0.0;
   double high_deg = 90.0;
@@ -59,6 +68,9 @@ AxisRange ChooseAxisRange(const BoundaryPlot& plot) {
   return range;
 }
 
+// The data block `name` of the trials with one outcome, a line for each: angle
+// in degrees, height of the mark, and 2 u in degrees as the half-length of its
+// bar.
 std::string OutcomeBlock(const BoundaryPlot& plot, Outcome outcome,
                          std::string_view name) {
   std::string block = fmt::format("${} << EOD\n", name);
@@ -75,6 +87,7 @@ std::string OutcomeBlock(const BoundaryPlot& plot, Outcome outcome,
   return block + "EOD\n";
 }
 
+// Whether any trial had that outcome: else it has no place in the key.
 bool Any(const BoundaryPlot& plot, Outcome outcome) {
   return std::any_of(
       plot.observations.begin(), plot.observations.end(),
@@ -93,6 +106,8 @@ void AddInterval(const PlotInterval& interval, const AxisRange& range,
   const double high =
       interval.open_high ? range.high_deg : interval.angle_rad.high / kDegree;
   const double middle = interval.middle_rad / kDegree;
+  // One half of the bar, from the median outward, with a stop or an arrowhead
+  // at its end.
   const auto arrow = [&](double end, bool open) {
     script += fmt::format(
         "set arrow from {0:.6f},{1} to {2:.6f},{1} {3} lw 3 lc rgb '{4}' "
@@ -130,12 +145,15 @@ std::string BoundaryScript(const BoundaryPlot& plot) {
       "',13'\n",
       plot.id, range.low_deg, range.high_deg,
       GnuplotQuote(plot.angle_name + " (deg)"));
+  // More than half of the axis is labelled every 10 degrees, less every 5.
   s += range.high_deg - range.low_deg > 50 ? "set xtics 10\nset mxtics 2\n"
                                            : "set xtics 5\nset mxtics 5\n";
+  // The watermark lies behind all marks and stays in a plot that is copied out.
   if (plot.simulated) {
     s += "set label 'SIMULATED' at graph 0.5,0.5 center rotate by 12 font "
          "',60' tc rgb '#e9cfce' back\n";
   }
+  // The bracket as a grey column, then each theory with its +- 2 u.
   if (plot.bracket.closed()) {
     s += fmt::format(
         "set object rectangle from {:.6f},graph 0 to {:.6f},graph 1 fc rgb "
@@ -154,8 +172,12 @@ std::string BoundaryScript(const BoundaryPlot& plot) {
   s += OutcomeBlock(plot, Outcome::kBounce, "bounces");
   s += OutcomeBlock(plot, Outcome::kUndecided, "undecided");
 
+  // The elements of the plot command. Later ones lie over earlier ones: the
+  // hill of the posterior first, the marks of the trials last.
   std::vector<std::string> parts;
   if (!plot.density.angle_rad.empty()) {
+    // The density has another unit than the axis, so that its greatest value is
+    // put at 0.9: it shows where the boundary lies, not how probable that is.
     const double peak = *std::max_element(plot.density.height.begin(),
                                           plot.density.height.end());
     s += "$density << EOD\n";
@@ -180,11 +202,14 @@ std::string BoundaryScript(const BoundaryPlot& plot) {
         "$chance using 1:2 with lines lw 2 lc rgb '#1c2126' title {}",
         GnuplotQuote(plot.p_bounce.name)));
   }
+  // Dashes tell the lines apart where colours do not print.
   static constexpr std::string_view kDash[] = {"(10,5)", "(3,4)", "(12,4,3,4)",
                                                "(6,3)"};
   static constexpr std::string_view kLineColour[] = {"#1f6f3f", "#7a4a00",
                                                      "#5b2a86", "#40505c"};
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+    // A line is drawn as two points from below the axis to above it, so that it
+    // has a place in the key.
     s += fmt::format("$line{} << EOD\n{:.6f} -0.16\n{:.6f} 1.16\nEOD\n", i,
                      plot.lines[i].angle_rad / kDegree,
                      plot.lines[i].angle_rad / kDegree);
@@ -198,6 +223,8 @@ std::string BoundaryScript(const BoundaryPlot& plot) {
         "NaN with boxes fc rgb '#c3cfda' fs solid 0.75 noborder title "
         "'bracket'");
   }
+  // Marks of one outcome with their bars. The shapes differ (disc, triangle,
+  // square) for readers who do not see the colours.
   const auto marks = [&](Outcome outcome, std::string_view block, int mark,
                          std::string_view colour, std::string_view title) {
     if (!Any(plot, outcome)) return;
@@ -210,6 +237,7 @@ std::string BoundaryScript(const BoundaryPlot& plot) {
   marks(Outcome::kBounce, "bounces", 9, "#b3430f", "bounce");
   marks(Outcome::kUndecided, "undecided", 4, "#40505c", "undecided");
   if (plot.interval) AddInterval(*plot.interval, range, s, parts);
+  // gnuplot refuses a plot command without an element.
   if (parts.empty()) parts.push_back("NaN notitle");
   s += "plot ";
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -16,6 +16,9 @@ namespace {
 
 using core::kDegree;
 
+// One quantity of the shots in their order of time, in multiples of `unit`,
+// with its control chart. Excluded shots and those without the quantity are
+// left out; the chart is absent where fewer than two values remain.
 CheckSeries MakeSeries(std::string quantity, double unit,
                        const core::Measured& (*measured)(const core::Trial&),
                        const std::vector<std::size_t>& shots,
@@ -28,6 +31,8 @@ CheckSeries MakeSeries(std::string quantity, double unit,
     const core::Measured& m = measured(trial);
     if (trial.excluded || !m) continue;
     out.values.push_back(core::Scaled(*m, 1.0 / unit));
+    // Keeps the place in the table of all shots, by which a person finds a
+    // value that is beyond the limits.
     out.shots.push_back(i);
     values.push_back(out.values.back().value);
   }
@@ -35,6 +40,8 @@ CheckSeries MakeSeries(std::string quantity, double unit,
   return out;
 }
 
+// The control chart as a figure. `index` makes the identifiers inside the SVG
+// unique in the page. The series must have a chart.
 Figure MakeChart(const CheckShots& checks, const CheckSeries& series,
                  std::size_t index) {
   ControlPlot plot;
@@ -58,6 +65,7 @@ Figure MakeChart(const CheckShots& checks, const CheckSeries& series,
   return figure;
 }
 
+// Every shot with its number in the chart, also those that are excluded.
 Table MakeShotTable(const CheckShots& checks,
                     std::span<const core::Trial> trials,
                     const ReportInput& input) {
@@ -89,6 +97,8 @@ std::vector<CheckShots> CollectCheckShots(const ReportInput& input,
                                           std::span<const core::Trial> trials) {
   std::vector<CheckShots> out;
   for (const core::Campaign& campaign : input.campaigns) {
+    // A campaign is one of check shots by its surface. Its shots are split by
+    // origin, as nothing is pooled over origins.
     if (!core::HasCheckShots(campaign)) continue;
     for (const core::Origin origin :
          {core::Origin::kRecorded, core::Origin::kManual,
@@ -102,6 +112,8 @@ std::vector<CheckShots> CollectCheckShots(const ReportInput& input,
         }
       }
       if (checks.shots.empty()) continue;
+      // A control chart is about the order in time; the id settles equal times,
+      // so that the same store gives the same report.
       std::sort(checks.shots.begin(), checks.shots.end(),
                 [&](std::size_t a, std::size_t b) {
                   return std::tie(trials[a].recorded_at_utc, trials[a].id) <
@@ -140,6 +152,8 @@ std::string CheckSentence(const CheckSeries& series) {
     text += "all are within the limits.";
   } else {
     std::string numbers;
+    // Numbers as in the table, from 1: `shots` leads from the values to the
+    // shots.
     for (const std::size_t i : chart.beyond) {
       numbers +=
           fmt::format("{}{}", numbers.empty() ? "" : ", ", series.shots[i] + 1);

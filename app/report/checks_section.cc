@@ -10,13 +10,17 @@
 namespace touchdown::report {
 namespace {
 
-// Trials that were typed have no clip to check.
+// Whether any trial of the group was analysed from a clip. Trials that were
+// typed have none, and there is nothing to check.
 bool HasClips(const Group& group, std::span<const core::Trial> trials) {
   return std::any_of(
       group.members.begin(), group.members.end(),
       [&](std::size_t i) { return !trials[i].document_json.empty(); });
 }
 
+// One line of the table: trials, ratio in percent with its u, distance from 1
+// in units of u, and the result. A check that could not be made has its reason
+// in place of the result.
 std::vector<Cell> CheckRow(const char* what,
                            const core::Expected<analysis::PooledCheck>& check) {
   if (!check) {
@@ -44,6 +48,8 @@ std::vector<Block> MakeChecks(const Group& group,
                {"result"}},
               {CheckRow("gravity from the flights", checks.gravity),
                CheckRow("size in the picture", checks.size)}};
+  // A failed check gets its explanation in plain type; what the checks could
+  // have shown is small print.
   std::vector<Block> out;
   out.push_back(std::move(table));
   out.push_back(Paragraph{
@@ -58,6 +64,7 @@ std::optional<Callout> MakeChecksCallout(const Group& group,
   if (!HasClips(group, trials)) return std::nullopt;
   const CampaignChecks checks = CheckCampaign(group.members, trials);
   const std::string name = ShortName(group, groups);
+  // Only a failure is worth a box on the first page.
   if (checks.Failed()) {
     return Callout{name + ": scale, frame rate or size is wrong.",
                    checks.explanation, Tone::kBad};

@@ -1,3 +1,7 @@
+// A strip of photographs as SVG elements inside the page. The picture is an
+// image element with the bytes in its address, and all lines are drawn in px of
+// the recording, so that no coordinate is converted; the viewBox cuts out the
+// piece.
 #include "app/report/contact_strip.h"
 
 #include <fmt/core.h>
@@ -17,6 +21,7 @@ constexpr const char* kGround = "#56B4E9";
 constexpr const char* kBefore = "#00D89A";
 constexpr const char* kAfter = "#F0A0CC";
 
+// Points in the form of SVG, to a hundredth of a px: "12.50,80.25 13.00,81.00".
 std::string Points(const std::vector<core::PixelPoint>& points) {
   std::string out;
   for (const core::PixelPoint& p : points) {
@@ -26,7 +31,9 @@ std::string Points(const std::vector<core::PixelPoint>& points) {
   return out;
 }
 
-// A line with its rim; `element` is polyline or polygon.
+// A coloured line over a wider dark one, which is its rim. `element` is
+// polyline or polygon, `dashes` an SVG dash array or "". Empty below two
+// points. Widths are in px of the screen, whatever the scale of the picture.
 std::string RimmedLine(const char* element,
                        const std::vector<core::PixelPoint>& points,
                        const char* colour, const char* dashes) {
@@ -45,7 +52,7 @@ std::string RimmedLine(const char* element,
   return out;
 }
 
-// 1, 2 or 5 times a power of ten, at most `most`.
+// The greatest of 1, 2 or 5 times a power of ten that is at most `most` (> 0).
 double Round(double most) {
   const double ten = std::pow(10.0, std::floor(std::log10(most)));
   for (const double step : {5.0, 2.0}) {
@@ -54,13 +61,17 @@ double Round(double most) {
   return ten;
 }
 
-// A bar of a round length in the lower left corner.
+// A bar of a round length in the lower left corner, with its length in mm
+// beside it, or in px where there is no scale.
 std::string ScaleBar(const core::PixelRect& piece,
                      const std::optional<double>& px_per_m) {
   constexpr double kShare = 0.35;  // of the width, at most
+  // A unit of the bar is a mm, or a px without a scale.
   const double px_per_unit = px_per_m ? *px_per_m * 1e-3 : 1.0;
   const double units = Round(kShare * piece.width / px_per_unit);
   const double length = units * px_per_unit;
+  // Sizes are shares of the piece: the strip is shown at one width, however
+  // many px the piece has.
   const double text = piece.width / 17.0;
   const double x = piece.x + 0.05 * piece.width;
   const double y = piece.y + piece.height - 0.07 * piece.height;
@@ -73,6 +84,7 @@ std::string ScaleBar(const core::PixelRect& piece,
              px_per_m ? "mm" : "px");
 }
 
+// A white cross whose arms reach `reach` px to each side.
 std::string Cross(core::PixelPoint at, double reach) {
   return RimmedLine("polyline",
                     {{at.x_px - reach, at.y_px - reach},
@@ -84,6 +96,8 @@ std::string Cross(core::PixelPoint at, double reach) {
                     "#ffffff", "");
 }
 
+// One photograph with what was measured in it, as an SVG element. It is hidden
+// from screen readers, which read the alternative text of the whole strip.
 std::string DrawPicture(const StripPicture& picture, const ContactStrip& strip,
                         bool with_scale) {
   const core::PixelRect& piece = picture.piece;
@@ -95,6 +109,7 @@ std::string DrawPicture(const StripPicture& picture, const ContactStrip& strip,
       "href=\"data:image/png;base64,{4}\"/>",
       piece.x - 0.5, piece.y - 0.5, piece.width, piece.height,
       Base64(picture.png));
+  // The outline lies over the flights, and the contact point over all.
   out += RimmedLine("polyline", picture.ground, kGround, "6 3");
   out += RimmedLine("polyline", picture.before, kBefore, "1.5 3");
   out += RimmedLine("polyline", picture.after, kAfter, "7 2 1.5 2");
@@ -119,6 +134,7 @@ Strip DrawStrip(const ContactStrip& strip, const std::string& caption) {
   Strip out;
   out.caption = caption;
   for (const StripPicture& picture : strip.pictures) {
+    // The scale bar stands in the first picture: all have one scale.
     out.panels.push_back(
         {DrawPicture(picture, strip, out.panels.empty()), picture.label});
     out.alt += (out.alt.empty() ? "Pictures: " : "; ") + picture.label;

@@ -1,3 +1,5 @@
+// An individuals control chart as a gnuplot script: value over number of the
+// shot, with the mean, the limits at 3 sigma and a bar of +- 2 u on each value.
 #include "app/report/control_plot.h"
 
 #include <fmt/core.h>
@@ -9,12 +11,14 @@
 namespace touchdown::report {
 namespace {
 
+// A horizontal line of the plot command at `y`, with its title in the key.
 std::string LimitLine(double y, const char* style, const char* title) {
   return fmt::format("{:.9g} with lines {} title '{}'", y, style, title);
 }
 
 std::string ControlScript(const ControlPlot& plot) {
   const analysis::IndividualsChart& chart = plot.chart;
+  // The axis holds the limits and every bar.
   double low = chart.lower;
   double high = chart.upper;
   for (std::size_t i = 0; i < plot.values.size(); ++i) {
@@ -40,6 +44,8 @@ std::string ControlScript(const ControlPlot& plot) {
     s += "set label 'SIMULATED' at graph 0.5,0.5 center rotate by 12 font "
          "',60' tc rgb '#e9cfce' back\n";
   }
+  // The shots within the limits, or beyond them, as a data block: number from
+  // 1, value, 2 u. They are drawn with different marks.
   const auto block = [&](const char* name, bool beyond) {
     s += fmt::format("${} << EOD\n", name);
     for (std::size_t i = 0; i < n; ++i) {
@@ -51,6 +57,7 @@ std::string ControlScript(const ControlPlot& plot) {
     }
     s += "EOD\n";
   };
+  // A thin line through all shots in the order of time shows drifts and steps.
   s += "$all << EOD\n";
   for (std::size_t i = 0; i < n; ++i) {
     s += fmt::format("{} {:.9g}\n", i + 1, plot.values[i]);
@@ -68,6 +75,7 @@ std::string ControlScript(const ControlPlot& plot) {
            "notitle, \\\n  ",
            chart.lower) +
        "$all using 1:2 with lines lw 1 lc rgb '#9aa7b2' notitle";
+  // A block without shots has no place in the key.
   if (chart.beyond.size() < n) {
     s += ", \\\n  $within using 1:2:3 with yerrorbars pt 7 ps 0.8 lw 1.2 lc "
          "rgb '#17548f' title 'check shot'";

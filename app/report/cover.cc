@@ -1,4 +1,7 @@
-// The cover block: what a test report must hold beside its results.
+// The cover block: what a test report must hold beside its results (ISO/IEC
+// 17025, 7.8.2). What the trials and the store know comes first (dates,
+// operator, environment, equipment); report.toml fills in the rest. What
+// neither says is listed as absent instead of being left out.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,18 +19,23 @@
 namespace touchdown::report {
 namespace {
 
-// The day of a time in ISO 8601.
+// The day of a time in ISO 8601: "2026-08-01T..." gives "2026-08-01". Empty
+// stays empty.
 std::string Day(const std::string& utc) {
   constexpr std::size_t kDay = 10;
   return utc.substr(0, kDay);
 }
 
+// When the trial was first logged, in UTC. The time of a revision is that of
+// the correction, not of the shot.
 std::string FirstLogged(const core::Trial& trial, const ReportInput& input) {
   const auto found = input.first_logged_utc.find(trial.id);
   return found == input.first_logged_utc.end() ? trial.recorded_at_utc
                                                : found->second;
 }
 
+// The first and the last day on which trials were logged; empty where none has
+// a time.
 struct Days {
   std::string first;
   std::string last;
@@ -38,12 +46,14 @@ Days FindDays(const ReportInput& input) {
   for (const core::Trial& trial : input.trials) {
     const std::string day = Day(FirstLogged(trial, input));
     if (day.empty()) continue;
+    // Days in ISO 8601 sort as texts.
     if (out.first.empty() || day < out.first) out.first = day;
     out.last = std::max(out.last, day);
   }
   return out;
 }
 
+// "2026-08-01 to 2026-08-03 (UTC, as logged)", or empty.
 std::string DatesText(const ReportInput& input) {
   const Days days = FindDays(input);
   if (days.first.empty()) return "";
@@ -52,6 +62,8 @@ std::string DatesText(const ReportInput& input) {
              : fmt::format("{} to {} (UTC, as logged)", days.first, days.last);
 }
 
+// "M. Weber (9 trials); J. Ono (3 trials)"; trials that name nobody do not
+// count.
 std::string OperatorText(const ReportInput& input) {
   Tally people;
   for (const core::Trial& trial : input.trials) {
@@ -60,7 +72,8 @@ std::string OperatorText(const ReportInput& input) {
   return people.Text();
 }
 
-// "21.3 to 22.8 degC in 14 of 18 trials".
+// "21.3 to 22.8 degC in 14 of 18 trials" of one of the conditions: (SI value -
+// offset) / unit. Empty where no trial has it.
 std::string RangeText(const ReportInput& input,
                       core::Measured core::Conditions::*member, double offset,
                       double unit, const char* symbol) {
@@ -73,6 +86,7 @@ std::string RangeText(const ReportInput& input,
     const core::Estimate& value = *((*trial.conditions).*member);
     low = std::min(low, value.value);
     high = std::max(high, value.value);
+    // The least certain value decides on the digits.
     u = std::max(u, value.u);
     ++n;
   }
@@ -85,6 +99,8 @@ std::string RangeText(const ReportInput& input,
                      input.trials.size());
 }
 
+// Air temperature and humidity as the trials have them, then what report.toml
+// says of the environment.
 std::string EnvironmentText(const ReportInput& input) {
   std::string out;
   const auto add = [&out](const std::string& what, const std::string& text) {
@@ -98,7 +114,9 @@ std::string EnvironmentText(const ReportInput& input) {
   return out;
 }
 
-// What the trials themselves tell of things that were not as planned.
+// What was not as planned: the statement of report.toml, the anomalies noted
+// with trials, how many trials say nothing of anomalies, how many are excluded,
+// and changes of the plan after the first trial.
 std::string DeviationText(const ReportInput& input) {
   Tally noted;
   std::size_t silent = 0;
@@ -108,6 +126,7 @@ std::string DeviationText(const ReportInput& input) {
     const core::Anomaly anomaly = trial.conditions
                                       ? trial.conditions->anomaly
                                       : core::Anomaly::kNotRecorded;
+    // "Not recorded" is no "none": nobody said that all was well.
     if (anomaly == core::Anomaly::kNotRecorded) {
       ++silent;
     } else if (anomaly != core::Anomaly::kNone &&
@@ -117,6 +136,7 @@ std::string DeviationText(const ReportInput& input) {
                 (note.empty() ? "" : ": " + note));
     }
   }
+  // A look at the answer is an event of the plan, but changes nothing.
   const auto changes = std::count_if(
       input.plan.begin(), input.plan.end(), [](const db::PlanEvent& event) {
         return event.kind != db::PlanEventKind::kLook && event.trials > 0;
@@ -138,6 +158,8 @@ std::string DeviationText(const ReportInput& input) {
   return out;
 }
 
+// The version that made the report and those that analysed the trials: they
+// differ where trials are old.
 std::string SoftwareText(const ReportInput& input) {
   Tally versions;
   Tally options;
@@ -154,21 +176,25 @@ std::string SoftwareText(const ReportInput& input) {
   return out;
 }
 
+// A text field of an entry of the register; empty where it is not recorded.
 std::string EntryText(const db::Entry& entry, std::string_view field) {
   const auto found = entry.texts.find(field);
   if (found == entry.texts.end() || found->second == "not recorded") return "";
   return found->second;
 }
 
+// `kind` is the register's word ("camera"), empty for what report.toml alone
+// names.
 struct EquipmentRow {
   std::string kind;
   Equipment what;
 };
 
-// What the register says of the versions that the trials name.
+// The equipment in the register, in the versions that the trials name.
 std::vector<EquipmentRow> RegisteredEquipment(const ReportInput& input) {
   std::vector<EquipmentRow> out;
   for (const db::Entry& entry : input.register_entries) {
+    // What was thrown, on what, and by whom, is no equipment.
     if (entry.kind == db::RegisterKind::kBody ||
         entry.kind == db::RegisterKind::kSurface ||
         entry.kind == db::RegisterKind::kOperator) {
@@ -176,6 +202,7 @@ std::vector<EquipmentRow> RegisteredEquipment(const ReportInput& input) {
     }
     EquipmentRow row{std::string(db::Name(entry.kind)), {}};
     row.what.name = entry.name;
+    // "Photron, SA-Z, no. 4711, 50 mm": whichever of these the entry has.
     for (const char* field : {"maker", "model", "serial", "lens"}) {
       const std::string text = EntryText(entry, field);
       if (text.empty()) continue;
@@ -189,6 +216,8 @@ std::vector<EquipmentRow> RegisteredEquipment(const ReportInput& input) {
   return out;
 }
 
+// The register's equipment with what report.toml adds: entries of one name are
+// one piece, and what report.toml says of it replaces what the register says.
 std::vector<EquipmentRow> AllEquipment(const ReportInput& input) {
   std::vector<EquipmentRow> out = RegisteredEquipment(input);
   for (const Equipment& given : input.details.equipment) {
@@ -210,6 +239,8 @@ std::vector<EquipmentRow> AllEquipment(const ReportInput& input) {
   return out;
 }
 
+// The table of equipment, or a sentence that there is none and where it would
+// come from.
 std::vector<Block> MakeEquipment(const ReportInput& input) {
   const std::vector<EquipmentRow> rows = AllEquipment(input);
   if (rows.empty()) {
@@ -218,6 +249,8 @@ std::vector<Block> MakeEquipment(const ReportInput& input) {
                   "trials name none of the register, and " +
                   Where("[[equipment]]", input) + ")."}};
   }
+  // A calibration that was due before the last trial is marked: the days are
+  // compared as texts in ISO 8601.
   const std::string last = FindDays(input).last;
   Table table{"Equipment",
               {{"kind"},
@@ -245,6 +278,8 @@ std::vector<Block> MakeEquipment(const ReportInput& input) {
   return {std::move(table)};
 }
 
+// ISO/IEC 17025 asks a report that states conformity for its decision rule and
+// the risk that goes with it.
 constexpr const char* kDecisionRule =
     "A trial is a bounce where the 95 % interval of its greatest gap lies "
     "above "
@@ -267,6 +302,8 @@ Section MakeCover(const ReportInput& input) {
   Section section;
   auto& out = section.blocks;
   out.push_back(Heading{2, "Order, laboratory, equipment"});
+  // Lines of the cover that the trials themselves can fill. They replace what
+  // report.toml says under the same key; environment and deviations contain it.
   const std::map<std::string_view, std::string> known{
       {"trials.dates", DatesText(input)},
       {"trials.operator", OperatorText(input)},
@@ -279,6 +316,7 @@ Section MakeCover(const ReportInput& input) {
     std::string text = found == known.end() ? "" : found->second;
     if (text.empty()) text = input.details.*field.member;
     if (text.empty()) {
+      // The key stands beside the name, so that a reader knows what to write.
       absent.push_back(fmt::format("{} ({})", field.name, field.key));
       continue;
     }
@@ -306,6 +344,7 @@ Section MakeCover(const ReportInput& input) {
   for (Block& block : MakeEquipment(input)) out.push_back(std::move(block));
   Table signatures{
       "Signatures", {{"role"}, {"name"}, {"date and signature"}}, {}};
+  // Without names there are still lines to sign on.
   std::vector<Signature> lines = input.details.signatures;
   if (lines.empty()) lines = {{"tested by", ""}, {"authorised by", ""}};
   for (const Signature& line : lines) {

@@ -23,7 +23,8 @@ namespace {
 using core::kDegree;
 using Covariate = std::vector<std::optional<double>>;
 
-// Of five tests one below this is chance in one report of twenty.
+// A test below this p is called telling. Five are made for each group: one of
+// them falls below by chance in one report of twenty.
 constexpr double kTelling = 0.01;
 
 // The number in "line 12", the name of a trial from a CSV file.
@@ -33,11 +34,15 @@ std::optional<int> ParseLineNumber(std::string_view id) {
   return ParseNumber<int>(id.substr(kLine.size()));
 }
 
-// 0 for the first trial to 1 for the last, in the order in which a store took
-// them or a file lists them; all absent where neither is known.
+// The place of each observation in time: 0 for the first trial to 1 for the
+// last, in the order in which a store took them or a file lists them. All are
+// absent where neither is known, or where all have one time.
 Covariate Order(const Group& group, std::span<const core::Trial> trials) {
   const auto& observations = group.trials.observations;
+  // Time, line of the file, and index of the observation: sorts by the first
+  // that is known.
   std::vector<std::tuple<std::string, int, std::size_t>> order;
+  // A mixture of dated and undated trials has no order in time.
   bool dated = true;
   bool listed = true;
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -61,6 +66,8 @@ Covariate Order(const Group& group, std::span<const core::Trial> trials) {
   return out;
 }
 
+// `value` of the trial of each observation, in the order of the observations,
+// as the score tests take them.
 template <class Value>
 auto OfEach(const Group& group, std::span<const core::Trial> trials,
             Value value) {
@@ -71,17 +78,21 @@ auto OfEach(const Group& group, std::span<const core::Trial> trials,
   return out;
 }
 
+// The value without its u: the tests take a covariate as exact.
 std::optional<double> ValueIfMeasured(const core::Measured& measured) {
   if (!measured) return std::nullopt;
   return measured->value;
 }
 
-// The table, and what in it stands out.
+// The table of the tests, and those in it that stand out, as one text: "order
+// of the trials (+3.1 ± 0.9 deg from the first to the last)". Empty: none does.
 struct Dependence {
   Table table;
   std::string telling;
 };
 
+// All five tests for one group. A covariate that does not vary, or that fewer
+// than ten trials bear, has no row.
 Dependence Test(const Group& group, std::span<const core::Trial> trials) {
   Table table{"What the boundary might depend on besides the angle",
               {{"what"},
@@ -91,9 +102,13 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
                {"how the boundary moves"}},
               {}};
   const auto& posterior = group.study.posterior;
+  // The same angles as the boundary was fitted with: repeated set angles draw
+  // the measured ones towards their mean.
   const auto observations =
       analysis::UseSetAngles(group.trials.observations).observations;
   std::string telling;
+  // Adds a test to the table, and to `telling` where it is clear. `moves` says
+  // how the boundary moves.
   const auto row = [&](const std::string& what, const analysis::ScoreTest& test,
                        const std::string& moves) {
     const bool clear = test.p < kTelling;
@@ -108,6 +123,8 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
          {Probability(test.p), clear ? Tone::kBad : Tone::kPlain},
          {moves}});
   };
+  // A covariate that is a number: the slope of the boundary, in degrees `per`
+  // unit of it.
   const auto number = [&](const std::string& what, const char* per,
                           const Covariate& covariate) {
     const auto test =
@@ -119,6 +136,8 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
             DifferenceWithU({test->slope_rad, test->u_slope_rad, {}}, kDegree),
             per));
   };
+  // A covariate that is a name: the one that stands out most, against all
+  // others.
   const auto name = [&](const std::string& what,
                         const std::vector<std::string>& names) {
     const auto test = analysis::TestNames(observations, names, posterior);
@@ -149,6 +168,7 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
   return {std::move(table), std::move(telling)};
 }
 
+// For the page: what was found and what to do about it.
 std::string Sentence(const std::string& telling) {
   return fmt::format(
       "The boundary depends on more than the angle, or drifted: {}. One "

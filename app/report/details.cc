@@ -1,4 +1,6 @@
-// report.toml -> Details. toml++ stays in this file.
+// report.toml -> Details. toml++ stays in this file. kDetailFields is the table
+// of all single entries: reader, example and cover take keys and names from it.
+// A line of the file, in its section [customer]: name = "Bureau of Roads".
 #include "app/report/details.h"
 
 #include <fmt/core.h>
@@ -14,6 +16,8 @@
 namespace touchdown::report {
 namespace {
 
+// Key, name in print, meaning for the example file, and place in Details. The
+// order is that of the cover.
 constexpr std::array kDetailFields{
     DetailField{"report.number", "report number", "unique in the laboratory",
                 &Details::number},
@@ -52,19 +56,25 @@ constexpr std::array kDetailFields{
                 &Details::remarks},
 };
 
+// The keys of one section with the texts that they fill.
 using Texts = std::vector<std::pair<std::string_view, std::string*>>;
 
+// Throws core::InputError "report.toml:12: what": every mistake in the file is
+// the user's and is told with its line.
 [[noreturn]] void Fail(const std::string& file, const toml::source_region& at,
                        const std::string& what) {
   throw core::InputError(fmt::format("{}:{}: {}", file, at.begin.line, what));
 }
 
+// "number, remarks": the keys that would have been right.
 std::string Listed(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
   return out;
 }
 
+// Whether the text has the form 2026-08-31. The cover compares such dates as
+// texts; whether the day exists is not asked.
 bool IsDate(std::string_view text) {
   constexpr std::string_view kForm = "dddd-dd-dd";
   return text.size() == kForm.size() &&
@@ -74,7 +84,9 @@ bool IsDate(std::string_view text) {
                     });
 }
 
-// Takes the texts of one table; a date of TOML is as good as one in quotes.
+// Takes the texts of one table [section]; a date of TOML is as good as one in
+// quotes. Refuses keys that are not in `texts`: a typing error would else be an
+// entry that is absent from the report without a word.
 void Take(const std::string& file, std::string_view section,
           const toml::table& table, const Texts& texts) {
   for (const auto& [key, node] : table) {
@@ -88,6 +100,7 @@ void Take(const std::string& file, std::string_view section,
            fmt::format("unknown key {}.{}; expected one of {}", section,
                        key.str(), Listed(known)));
     }
+    // The stream writes it as YYYY-MM-DD.
     if (const auto* date = node.as_date()) {
       std::ostringstream text;
       text << date->get();
@@ -98,6 +111,8 @@ void Take(const std::string& file, std::string_view section,
       Fail(file, node.source(),
            fmt::format("{}.{} must be a text in quotes", section, key.str()));
     }
+    // The cover compares these dates; other dates are printed as they are, and
+    // may be a sentence.
     if (key.str().ends_with("_on") && section == "equipment" &&
         !found->second->empty() && !IsDate(*found->second)) {
       Fail(file, node.source(),
@@ -107,7 +122,8 @@ void Take(const std::string& file, std::string_view section,
   }
 }
 
-// Every [[section]] of the file, by `take`.
+// Calls `take` for every [[section]] of the file. Fails where it was written
+// with single brackets, which can stand in the file only once.
 template <class TakeOne>
 void ForEach(const std::string& file, std::string_view section,
              const toml::node& node, TakeOne take) {
@@ -119,10 +135,13 @@ void ForEach(const std::string& file, std::string_view section,
   for (const toml::node& one : *array) take(*one.as_table());
 }
 
+// "customer" of "customer.name".
 std::string SectionName(std::string_view key) {
   return std::string(key.substr(0, key.find('.')));
 }
 
+// Takes one section of the file: lists of equipment and signatures entry by
+// entry, all others by kDetailFields. Fails for a section that is not known.
 void TakeSection(const std::string& file, std::string_view section,
                  const toml::node& node, Details& out) {
   if (section == "equipment") {
@@ -134,6 +153,7 @@ void TakeSection(const std::string& file, std::string_view section,
             {"calibrated_on", &one.calibrated_on},
             {"due_on", &one.due_on},
             {"certificate", &one.certificate}});
+      // The name is what the register and the cover know a piece by.
       if (one.name.empty()) {
         Fail(file, table.source(), "equipment.name is missing");
       }
@@ -181,6 +201,8 @@ Details ReadDetails(const std::filesystem::path& path) {
         file));
   }
   Details out;
+  // The report names the file, not the folder of the machine that it was made
+  // on.
   out.file = path.filename().string();
   try {
     const toml::table table = toml::parse(in, file);
@@ -198,6 +220,8 @@ std::string DetailsExample() {
       "# What the cover of a report says beside what the store knows. An "
       "entry\n"
       "# that is left out, or empty, is named as absent.\n";
+  // Sections in the order of their first key: TOML allows each of them only
+  // once, and [report] has keys at both ends of the table.
   std::vector<std::string> sections;
   for (const DetailField& field : kDetailFields) {
     const std::string section = SectionName(field.key);
@@ -206,6 +230,7 @@ std::string DetailsExample() {
       sections.push_back(section);
     }
   }
+  // `number = ""  # unique in the laboratory`: every entry is there and empty.
   for (const std::string& section : sections) {
     out += fmt::format("\n[{}]\n", section);
     for (const DetailField& field : kDetailFields) {

@@ -1,3 +1,6 @@
+// A document as one HTML page without scripts. HtmlWriter has a function for
+// each kind of block (std::visit calls it) and appends to its text. Everything
+// passes HtmlText() or HtmlEscape() except SVG, which is our own plotter's.
 #include <fmt/core.h>
 
 #include <string>
@@ -16,6 +19,7 @@ constexpr std::size_t kKeepTogether = 12;
 // Longer cells of numbers are reasons why there is none: they may be broken.
 constexpr std::size_t kLongNumber = 28;
 
+// The class that page_style.cc gives a colour; "" for plain text.
 std::string_view CssClass(Tone tone) {
   switch (tone) {
     case Tone::kSlide:
@@ -36,12 +40,13 @@ std::string_view CssClass(Tone tone) {
   return "";
 }
 
-// Text with its signs.
+// Text with its signs: the minus and the plus-minus that a printer would set.
 std::string HtmlText(std::string_view text) {
   return HtmlEscape(Typeset(text));
 }
 
 // A number whose uncertainty may stand in a line of its own, in one piece.
+// Columns of Table 1 are narrow, and "± 0.048" must not be broken.
 std::string InTwoLines(const std::string& text) {
   const std::size_t at = text.find(kPlusMinus);
   if (at == std::string::npos) return HtmlText(text);
@@ -49,11 +54,14 @@ std::string InTwoLines(const std::string& text) {
                      HtmlText(text.substr(0, at)), HtmlText(text.substr(at)));
 }
 
-// Where the contents lead to: the headings of level 2 are numbered through.
+// The id that the contents lead to: "section-3" for the third heading of level
+// 2 (`heading` counts from 0).
 std::string Anchor(std::size_t heading) {
   return fmt::format("section-{}", heading + 1);
 }
 
+// Writes blocks of one section, of which `simulated` says whether captions bear
+// the watermark's word.
 class HtmlWriter {
  public:
   // `headings` counts those of level 2 written so far.
@@ -67,6 +75,8 @@ class HtmlWriter {
     out_ += fmt::format("<h{0}{1}>{2}</h{0}>\n", heading.level, id,
                         HtmlText(heading.text));
   }
+  // Lists the headings of the whole document, also of the sections that follow:
+  // the numbers of their anchors are counted anew and agree with `headings_`.
   void operator()(const Contents&) {
     out_ += "<nav aria-label=\"Contents\">\n<ol>\n";
     std::size_t at = 0;
@@ -110,6 +120,7 @@ class HtmlWriter {
         HtmlEscape(table.caption.empty() ? "table" : table.caption),
         table.rows.size() <= kKeepTogether ? "keep" : "",
         table.row_headings ? " across" : "");
+    // A table that is copied out of the page still says that it is simulated.
     if (!table.caption.empty()) {
       out_ += fmt::format("<caption>{}{}</caption>\n", HtmlText(table.caption),
                           simulated_ ? " (simulated)" : "");
@@ -126,6 +137,8 @@ class HtmlWriter {
     for (const auto& row : table.rows) WriteRow(table, row);
     out_ += "</tbody>\n</table>\n</div>\n";
   }
+  // The plot with its alternative text, and the numbers behind it, folded away
+  // on the screen and left out in print.
   void operator()(const Figure& figure) {
     out_ += fmt::format(
         "<figure>\n<div class=\"plot\" role=\"img\" aria-label=\"{}\" "
@@ -137,6 +150,7 @@ class HtmlWriter {
       out_ += "</details>\n";
     }
   }
+  // The bytes stand in the page, so that it loads nothing.
   void operator()(const Picture& picture) {
     out_ += fmt::format(
         "<figure>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
@@ -164,12 +178,15 @@ class HtmlWriter {
   const std::string& html() const { return out_; }
 
  private:
+  // One row. A cell has the class of its tone, and "num" in a column of
+  // numbers, which are set flush right.
   void WriteRow(const Table& table, const std::vector<Cell>& row) {
     out_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
       std::string classes(CssClass(row[i].tone));
       if (i < table.columns.size() && table.columns[i].numeric) {
         classes += classes.empty() ? "num" : " num";
+        // Such a cell holds a reason for an absence.
         if (row[i].text.size() > kLongNumber) classes += " long";
       }
       const bool is_heading = i == 0 && table.row_headings;
@@ -184,6 +201,8 @@ class HtmlWriter {
     out_ += "</tr>\n";
   }
 
+  // Text as a link where there is a target. A link is a name, in which hyphens
+  // stay hyphens.
   static std::string Linked(const std::string& to, const std::string& text) {
     if (to.empty()) return HtmlText(text);
     return fmt::format("<a href=\"{}\">{}</a>", HtmlEscape(to),
@@ -210,6 +229,8 @@ std::vector<Heading> ListHeadings(const Document& document) {
 }
 
 std::string ToHtml(const Document& document) {
+  // The policy lets the browser load nothing at all but styles and pictures in
+  // the page itself, even if a text of a trial held markup.
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n"
@@ -218,12 +239,14 @@ std::string ToHtml(const Document& document) {
       "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<main>\n"
       "<h1>{0}</h1>\n",
       HtmlText(document.title), kPageStyle, PrintedFooter(document.footer));
+  // Counted over all sections, as the anchors are.
   std::size_t headings = 0;
   for (const Section& section : document.sections) {
     out +=
         section.simulated ? "<section class=\"simulated\">\n" : "<section>\n";
     HtmlWriter writer(document, section.simulated, headings);
-    // The banner follows a leading page break and heading.
+    // The banner follows a leading page break and heading: it belongs to the
+    // page that they begin.
     auto block = section.blocks.begin();
     while (block != section.blocks.end() &&
            (std::holds_alternative<PageBreak>(*block) ||

@@ -1,3 +1,5 @@
+// A document as GitHub's Markdown. What a page shows by colour, fold or link
+// target is left out; plots and pictures are their alternative texts.
 #include <fmt/core.h>
 
 #include <string>
@@ -8,10 +10,13 @@
 namespace touchdown::report {
 namespace {
 
+// Escaped text with the signs of a printer.
 std::string MarkdownText(const std::string& text) {
   return MarkdownEscape(Typeset(text));
 }
 
+// Writes the blocks of one section. Headings, tables and figures of simulated
+// trials say so one by one: Markdown has no background.
 class MarkdownWriter {
  public:
   MarkdownWriter(const Document& document, bool simulated)
@@ -52,6 +57,7 @@ class MarkdownWriter {
       out_ += "**" + MarkdownText(table.caption) +
               (simulated_ ? " (SIMULATED)" : "") + "**\n\n";
     }
+    // Heading, rule with the alignment ("---:" is flush right), rows.
     for (const Column& column : table.columns) {
       out_ += "| " + MarkdownText(column.heading) + " ";
     }
@@ -89,6 +95,7 @@ class MarkdownWriter {
   const std::string& text() const { return out_; }
 
  private:
+  // Targets are relative paths of our own, which need no escaping.
   static std::string Linked(const std::string& to, const std::string& text) {
     if (to.empty()) return MarkdownText(text);
     return "[" + MarkdownEscape(text) + "](" + to + ")";
@@ -109,6 +116,8 @@ std::string ToMarkdown(const Document& document) {
     for (const Block& block : section.blocks) std::visit(writer, block);
     out += writer.text();
   }
+  // The last block leaves an empty line behind; a text file ends with one line
+  // break.
   while (out.size() > 1 && out[out.size() - 2] == '\n') out.pop_back();
   return out;
 }

@@ -1,3 +1,8 @@
+// The archive table1.eln, as an electronic laboratory notebook imports it:
+//
+//   table1/ro-crate-metadata.json   what the files are, as JSON-LD
+//   table1/table1.html, table1.csv, ...
+//   table1/evidence/<trial>.html    where the report has such pages
 #include "app/report/eln_file.h"
 
 #include <fmt/core.h>
@@ -23,6 +28,7 @@ namespace fs = std::filesystem;
 // The one folder in the archive bears its name.
 constexpr std::string_view kRoot = "table1";
 
+// By the ending of the name. The PDF is the only other kind of file here.
 std::string MediaType(const fs::path& name) {
   const std::string kind = name.extension().string();
   if (kind == ".html") return "text/html";
@@ -33,12 +39,14 @@ std::string MediaType(const fs::path& name) {
   return "application/pdf";
 }
 
-// Relative to the report's folder, in an order that does not depend on it.
+// The files of the report as paths relative to its folder, sorted, so that the
+// archive has the same order whatever the folder's own is.
 std::vector<std::string> ListFiles(const ReportInput& input,
                                    const fs::path& folder) {
   std::vector<std::string> out(std::begin(kReportFiles),
                                std::end(kReportFiles));
   std::error_code ignored;
+  // The PDF is there only where the user asked for it.
   if (fs::exists(folder / "table1.pdf", ignored))
     out.emplace_back("table1.pdf");
   for (const core::Trial& trial : input.trials) {
@@ -49,18 +57,24 @@ std::vector<std::string> ListFiles(const ReportInput& input,
   return out;
 }
 
+// A link to another object of the metadata, as JSON-LD has it.
 Json Reference(const std::string& id) { return {{"@id", id}}; }
 
+// A file of the archive. All are in memory at once: the metadata, which comes
+// first, states their sizes.
 struct Entry {
   std::string name;  // with folders, "/" between them
   std::string bytes;
 };
 
+// The text of ro-crate-metadata.json: a flat list ("@graph") of the metadata
+// file itself, the report, the laboratory, the program and every file.
 std::string Metadata(const ReportInput& input,
                      const std::vector<Entry>& files) {
   Json parts = Json::array();
   Json graph = Json::array();
   const std::string root = std::string(kRoot) + "/";
+  // Names in the metadata are relative to the folder of the metadata file.
   for (const Entry& file : files) {
     const std::string id = "./" + file.name.substr(root.size());
     parts.push_back(Reference(id));
@@ -83,6 +97,8 @@ std::string Metadata(const ReportInput& input,
   if (!input.details.number.empty()) {
     report["identifier"] = input.details.number;
   }
+  // The descriptor first, which leads to the root "./", the report, and from
+  // there to its parts.
   Json head = {
       {{"@id", "ro-crate-metadata.json"},
        {"@type", "CreativeWork"},
@@ -99,6 +115,8 @@ std::string Metadata(const ReportInput& input,
   for (Json& one : graph) head.push_back(std::move(one));
   const Json out = {{"@context", "https://w3id.org/ro/crate/1.1/context"},
                     {"@graph", std::move(head)}};
+  // Bytes that are not UTF-8 become replacement characters: a note of a trial
+  // must not keep the report from being made.
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -108,6 +126,8 @@ void WriteEln(const ReportInput& input, const fs::path& folder) {
   std::vector<Entry> entries;
   for (const std::string& name : ListFiles(input, folder)) {
     auto bytes = ReadTextFile(folder / name);
+    // A report that was moved or half deleted: the archive would promise what
+    // it does not hold.
     if (!bytes) {
       throw core::InputError(
           fmt::format("{}: cannot be read; make the report again",

@@ -1,3 +1,6 @@
+// The page of one trial, from what happened to who states it. All tables are
+// made of the stored trial; nothing is measured again. Contacts after the first
+// have the same tables under a heading each.
 #include "app/report/evidence_page.h"
 
 #include <fmt/core.h>
@@ -24,7 +27,8 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
-// A table of names and values; rows without a value are left out.
+// A table of names and values; rows without a value are left out. A measured
+// number that is absent is a row all the same: its reason is a fact.
 class Facts {
  public:
   explicit Facts(std::string caption)
@@ -32,6 +36,7 @@ class Facts {
   void Add(std::string name, const std::string& value) {
     if (!value.empty()) table_.rows.push_back({{std::move(name)}, {value}});
   }
+  // `m` in multiples of `unit`, with the name of that unit behind it.
   void Add(std::string name, const core::Measured& m, double unit,
            const char* symbol) {
     std::string text = WithUOrReason(m, unit);
@@ -46,6 +51,9 @@ class Facts {
   Table table_;
 };
 
+// Time, angles, corner and duration of one contact. The angle of `kind`, which
+// the protocol names, is marked as the contact angle. A face angle is shown
+// with its sign; the contact angle is its magnitude.
 void AddContact(const core::ContactRecord& record, core::AngleKind kind,
                 const std::string& caption, std::vector<Block>& out) {
   const core::Contact& contact = record.contact;
@@ -71,6 +79,8 @@ void AddContact(const core::ContactRecord& record, core::AngleKind kind,
   facts.AppendTable(out);
 }
 
+// What was seen between release and the end of the film, against the bounce
+// height, and why it is called what it is called.
 void AddState(const core::StateDecision& state, const std::string& caption,
               std::vector<Block>& out) {
   Facts facts(caption);
@@ -89,6 +99,9 @@ void AddState(const core::StateDecision& state, const std::string& caption,
   facts.AppendTable(out);
 }
 
+// Velocities of the centre in the plane frame (m/s, upward and along the
+// direction of travel positive) and spin (rad/s, counter-clockwise), then the
+// ratios made of them.
 void AddMotion(const core::Motion& m, const std::string& caption,
                std::vector<Block>& out) {
   Table table{caption,
@@ -101,6 +114,7 @@ void AddMotion(const core::Motion& m, const std::string& caption,
     table.rows.push_back(
         {{name}, {WithUOrReason(before, 1.0)}, {WithUOrReason(after, 1.0)}});
   };
+  // The speed at release is not a stored number; its cell stays empty.
   row("speed of the centre (m/s)", m.before_speed_mps,
       core::AbsentBecause("see its parts"));
   table.rows.back()[2].text.clear();
@@ -117,6 +131,9 @@ void AddMotion(const core::Motion& m, const std::string& caption,
   facts.AppendTable(out);
 }
 
+// The budget of the contact angle, the largest source first, with each share of
+// the variance. Shares are of the sum of the squares in the table, so that they
+// add up to the whole.
 void AddBudget(const core::Trial& trial, std::vector<Block>& out) {
   const core::Budget& budget = AngleBudget(trial);
   if (budget.empty()) {
@@ -126,6 +143,7 @@ void AddBudget(const core::Trial& trial, std::vector<Block>& out) {
   }
   double squares = 0.0;
   for (const auto& line : budget) squares += line.u * line.u;
+  // Stable, so that equal lines keep the order of the budget.
   core::Budget sorted = budget;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.u > b.u; });
@@ -147,6 +165,8 @@ void AddBudget(const core::Trial& trial, std::vector<Block>& out) {
   out.push_back(std::move(table));
 }
 
+// Who states this revision and why, from which recording, by which version with
+// which options.
 void AddRecord(const core::Trial& trial, std::vector<Block>& out) {
   Facts facts("The record");
   facts.Add("trial", trial.id);
@@ -165,6 +185,8 @@ void AddRecord(const core::Trial& trial, std::vector<Block>& out) {
   facts.AppendTable(out);
 }
 
+// The bytes of a picture that analyze or batch wrote. Throws core::InputError
+// where it cannot be read.
 std::string ReadPicture(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -176,6 +198,8 @@ std::string ReadPicture(const std::filesystem::path& path) {
   return bytes;
 }
 
+// The picture that --out wrote where the user gave its folder, else the strip
+// from the recording, else a sentence that says why there is neither.
 void AddPicture(const core::Trial& trial, const ReportInput& input,
                 std::vector<Block>& out) {
   const auto found = input.pictures.find(trial.id);
@@ -205,6 +229,8 @@ void AddPicture(const core::Trial& trial, const ReportInput& input,
 
 }  // namespace
 
+// The id of a trial is a UUID in a store, but any text in a file: "../x" must
+// not become a path.
 std::string EvidencePageName(const core::Trial& trial) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
@@ -217,7 +243,8 @@ std::string EvidencePageName(const core::Trial& trial) {
   std::string name = trial.id;
   std::replace_if(
       name.begin(), name.end(), [&](char c) { return !plain(c); }, '-');
-  // A path is limited to some 250 bytes, and names must differ.
+  // A file name is limited to some 250 bytes. What is cut off or replaced is in
+  // the digest, so that names differ where ids do.
   constexpr std::size_t kLongest = 80;
   return fmt::format("{}-{:016x}.html", name.substr(0, kLongest),
                      Digest(trial.id));
@@ -231,6 +258,7 @@ Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
   const core::Measured angle = core::ContactAngle(trial);
   const core::StateDecision& state = trial.first.state;
   Document document;
+  // "shot7.mraw: approach angle 12.400 ± 0.050 deg, bounce".
   document.title = fmt::format(
       "{}: {} angle {}, {}", TrialName(trial), core::Name(trial.angle_kind),
       angle ? WithU(*angle, kDegree) + " deg" : "absent",
@@ -238,6 +266,7 @@ Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
   document.footer = fmt::format("Evidence of trial {}", trial.id);
   Section section{trial.origin == core::Origin::kSimulated, {}};
   auto& out = section.blocks;
+  // The page lies in evidence/, one folder below the report.
   out.push_back(Link{"../table1.html", "The report"});
   if (trial.excluded) {
     out.push_back(Callout{"Excluded.", trial.exclusion_reason, Tone::kBad});
@@ -250,12 +279,15 @@ Document MakeEvidencePage(const core::Trial& trial, const ReportInput& input) {
   for (Block& block : MakeTrialSetPoints(trial, input)) {
     out.push_back(std::move(block));
   }
+  // Contacts are counted from 1, and the first is above.
   for (std::size_t i = 0; i < trial.later.size(); ++i) {
     out.push_back(Heading{2, fmt::format("Contact {}", i + 2)});
     AddState(trial.later[i].state, "What happened", out);
     AddContact(trial.later[i], trial.angle_kind, "The contact", out);
     AddMotion(trial.later[i].motion, "The motion", out);
   }
+  // What the stored analysis says of camera, scale and scene; empty for a trial
+  // that was typed.
   Facts seen("How it was seen");
   for (const auto& [name, value] : AnalysisFacts(trial)) seen.Add(name, value);
   seen.AppendTable(out);

@@ -22,7 +22,10 @@ using core::kDegree;
 
 Cell CountCell(int n) { return {fmt::format("{}", n)}; }
 
-// Program against person, by [program][person] of slide and bounce.
+// Program against person in the paper's two words, by [program][person] of
+// slide and bounce, with the proportion that agrees and McNemar's test of
+// whether one of the two sees more bounces. Nothing where no trial bears both
+// labels.
 std::vector<Block> MakeLabels(const Group& group) {
   if (group.labels.empty()) return {};
   int count[2][2] = {};
@@ -43,6 +46,8 @@ std::vector<Block> MakeLabels(const Group& group) {
       {{"slide"}, CountCell(count[0][0]), CountCell(count[0][1])});
   table.rows.push_back(
       {{"bounce"}, CountCell(count[1][0]), CountCell(count[1][1])});
+  // Only the trials on which the two differ tell which of them is inclined to
+  // which word.
   const analysis::McNemar test =
       analysis::McNemarTest(count[0][1], count[1][0]);
   // The interval first: with few trials it says more than a p.
@@ -69,7 +74,8 @@ std::vector<Block> MakeLabels(const Group& group) {
   return {table, Paragraph{text, true}};
 }
 
-// What one source gives to a budget: its lines, added in squares.
+// The u that one source gives to a budget, in its unit: its lines, added in
+// squares. 0 where the budget has no such line.
 double FromSource(const core::Budget& budget, const std::string& source) {
   double square = 0.0;
   for (const auto& line : budget) {
@@ -78,15 +84,18 @@ double FromSource(const core::Budget& budget, const std::string& source) {
   return std::sqrt(square);
 }
 
+// A u in degrees to two digits; a plain 0 where the source gives nothing.
 Cell UncertaintyCell(double u_rad) {
   return {u_rad > 0.0 ? fmt::format("{:.2g}", u_rad / kDegree) : "0"};
 }
 
 // One row a trial, one column a source with the largest first; the last row has
-// the root mean squares.
+// the root mean squares. All in degrees. Nothing where no trial has a budget.
 std::vector<Block> MakeBudget(const Group& group,
                               std::span<const core::Trial> trials,
                               const ReportInput& input) {
+  // Sum over the trials that count, by source: it orders the columns and makes
+  // the last row.
   std::map<std::string, double> squares;
   int n = 0;
   for (const auto& o : group.trials.observations) {
@@ -103,6 +112,8 @@ std::vector<Block> MakeBudget(const Group& group,
     sources.emplace_back(std::sqrt(sum / n), source);
     all += sum / n;
   }
+  // Equal sources in the order of their names, so that the same trials give the
+  // same table.
   std::sort(sources.begin(), sources.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first > b.first : a.second < b.second;
   });
@@ -113,6 +124,8 @@ std::vector<Block> MakeBudget(const Group& group,
     table.columns.push_back({source, true});
   }
   table.columns.push_back({"all", true});
+  // Trials that the statistics leave out have a row too, but are not in the
+  // means.
   for (const std::size_t t : group.members) {
     const core::Budget& budget = AngleBudget(trials[t]);
     if (budget.empty()) continue;
@@ -121,6 +134,8 @@ std::vector<Block> MakeBudget(const Group& group,
       row.push_back(UncertaintyCell(FromSource(budget, source)));
     }
     const core::Measured angle = core::ContactAngle(trials[t]);
+    // The stated u of the angle, not the sum of the row: a person may have
+    // stated it.
     row.push_back(angle ? UncertaintyCell(angle->u) : Cell{});
     table.rows.push_back(std::move(row));
   }
@@ -139,9 +154,13 @@ std::vector<Block> MakeBudget(const Group& group,
   return out;
 }
 
+// With what the group was measured: the rig, where scale, ground line,
+// calibration and time base come from, version and options of the analysis, and
+// who stated the revisions. Each value with the number of trials that have it.
 std::vector<Block> MakeProvenance(const Group& group,
                                   std::span<const core::Trial> trials,
                                   const ReportInput& input) {
+  // Names in the order of AnalysisSources(), which is the same for every trial.
   std::vector<std::pair<std::string, Tally>> sources;
   Tally software;
   Tally options;

@@ -1,4 +1,7 @@
-// The words of the report, for who meets them for the first time.
+// The words of the report, for who meets them for the first time: term and
+// meaning, in the order in which a reader comes to need them. The program's own
+// definitions are those of core/words.h and core/trial.h; these are the same in
+// plain words.
 #include "app/report/content.h"
 
 namespace touchdown::report {
@@ -6,6 +9,8 @@ namespace touchdown::report {
 Section MakeGlossary() {
   Section section;
   section.blocks.push_back(Heading{2, "Annex: glossary"});
+  // First the angles and the touchdown, then what is decided of a trial, then
+  // the statistics, then the words of the laboratory.
   section.blocks.push_back(Terms{
       {{"approach angle",
         "between the ground and the velocity of the body's centre at "

@@ -1,3 +1,6 @@
+// gnuplot as a child process with three pipes: the script goes in, the SVG and
+// the complaints come out. InlineSvg() then makes its answer fit for a page
+// that has several plots.
 #include "app/report/gnuplot.h"
 
 #include <fcntl.h>
@@ -20,7 +23,8 @@
 namespace touchdown::report {
 namespace {
 
-// A file descriptor that closes itself.
+// A file descriptor that closes itself: also where a later pipe cannot be
+// opened.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) : fd_(fd) {}
@@ -42,11 +46,16 @@ class Descriptor {
   int fd_;
 };
 
+// The read end is where one process reads what the other writes to the write
+// end.
 struct Pipe {
   Descriptor read_end;
   Descriptor write_end;
 };
 
+// Throws core::InputError where the process has no descriptors left. O_CLOEXEC:
+// the child keeps only the ends that Spawn() puts in place of its standard
+// streams, so that it sees the end of the script when we close our end.
 void Open(Pipe& pipe) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -57,7 +66,9 @@ void Open(Pipe& pipe) {
   pipe.write_end.Reset(ends[1]);
 }
 
-// A closed pipe answers with an error instead of a signal while this lives.
+// A closed pipe answers with an error instead of a signal while this lives:
+// gnuplot may end before it has read the whole script. The setting is the whole
+// process's.
 class IgnoreBrokenPipe {
  public:
   IgnoreBrokenPipe() {
@@ -73,6 +84,8 @@ class IgnoreBrokenPipe {
   struct sigaction before_ {};
 };
 
+// Appends what can be read at once; closes `from` at the end of the stream or
+// on an error, so that Converse() ends.
 void ReadSome(Descriptor& from, std::string& into) {
   std::array<char, 65536> buffer{};
   const ssize_t n = read(from.get(), buffer.data(), buffer.size());
@@ -83,11 +96,14 @@ void ReadSome(Descriptor& from, std::string& into) {
   }
 }
 
-// Feeds and drains at the same time: either pipe may fill up before the other.
+// Sends `script` and collects `answer` and `complaint` until gnuplot closes
+// both. Feeds and drains at the same time: either pipe may fill up before the
+// other.
 void Converse(const std::string& script, Descriptor& to, Descriptor& out,
               Descriptor& err, std::string& answer, std::string& complaint) {
   std::size_t sent = 0;
   while (out.open() || err.open()) {
+    // A closed descriptor is -1, which poll() passes over.
     std::array<pollfd, 3> polled{{{to.get(), POLLOUT, 0},
                                   {out.get(), POLLIN, 0},
                                   {err.get(), POLLIN, 0}}};
@@ -101,6 +117,7 @@ void Converse(const std::string& script, Descriptor& to, Descriptor& out,
       if (n > 0) sent += static_cast<std::size_t>(n);
       if ((n < 0 && errno != EINTR && errno != EAGAIN) ||
           sent == script.size()) {
+        // The end of the script is the end of the stream.
         to.Close();
       }
     }
@@ -109,6 +126,9 @@ void Converse(const std::string& script, Descriptor& to, Descriptor& out,
   }
 }
 
+// Starts gnuplot with the pipes as its standard streams and an environment of
+// its own. The process id; throws core::InputError, with the package to
+// install, where it is not there.
 pid_t Spawn(const Pipe& in, const Pipe& out, const Pipe& err) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -117,12 +137,14 @@ pid_t Spawn(const Pipe& in, const Pipe& out, const Pipe& err) {
                                    STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write_end.get(),
                                    STDERR_FILENO);
+  // posix_spawn takes words that can be changed, hence the strings.
   std::string name = "gnuplot";
   std::string defaults = "-d";  // no start-up files
   std::string stdin_word = "-";
   std::array<char*, 4> argv{name.data(), defaults.data(), stdin_word.data(),
                             nullptr};
-  // The locale decides the decimal sign; the path must reach execvp.
+  // The locale decides the decimal sign. PATH is passed on, and no other
+  // variable of the user: none of them may change a plot.
   std::string locale = "LC_ALL=C";
   const char* path_value = std::getenv("PATH");
   std::string path = std::string("PATH=") +
@@ -149,6 +171,7 @@ void ReplaceAll(std::string& text, const std::string& what,
   }
 }
 
+// The values of all id attributes of an SVG, in either kind of quotes.
 std::set<std::string> Identifiers(const std::string& svg) {
   std::set<std::string> out;
   for (std::size_t at = svg.find(" id="); at != std::string::npos;
@@ -170,6 +193,8 @@ std::string RunGnuplot(const std::string& script) {
   Open(err);
   const IgnoreBrokenPipe guard;
   const pid_t child = Spawn(in, out, err);
+  // Our copies of the child's ends: while one is open, neither side sees the
+  // end of a stream.
   in.read_end.Close();
   out.write_end.Close();
   err.write_end.Close();
@@ -179,9 +204,11 @@ std::string RunGnuplot(const std::string& script) {
   std::string complaint;
   Converse(script, in.write_end, out.read_end, err.read_end, answer, complaint);
   int status = 0;
+  // Without this the child would stay as a zombie.
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    // An error of the program is one line.
     for (char& c : complaint) {
       if (c == '\n') c = ' ';
     }
@@ -209,8 +236,12 @@ std::string GnuplotQuote(std::string_view text) {
 
 std::string InlineSvg(std::string svg, const std::string& id) {
   const std::size_t start = svg.find("<svg");
+  // An XML declaration and a doctype may not stand inside a page.
   if (start != std::string::npos) svg.erase(0, start);
   for (const std::string& name : Identifiers(svg)) {
+    // Names occur as id='...', href='#...' and url(#...). The character behind
+    // the name is part of what is replaced: "plot_1" must not match in
+    // "plot_10".
     for (const char end : {'\'', '"', ')'}) {
       const std::string own = name + end;
       for (const char* before : {"id='", "id=\"", "'#", "\"#", "(#"}) {
@@ -218,6 +249,7 @@ std::string InlineSvg(std::string svg, const std::string& id) {
       }
     }
   }
+  // Browsers would show the title, a name for programs, as a tooltip.
   const std::size_t title = svg.find("<title>");
   const std::size_t title_end = svg.find("</title>");
   if (title != std::string::npos && title_end != std::string::npos) {

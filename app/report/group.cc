@@ -1,3 +1,10 @@
+// From trials to groups. GroupTrials() splits them by what may be pooled; each
+// group then gets
+//
+//   ShareErrors()            which part of u its trials have in common
+//   its campaign             the registered one, or one made of the trials
+//   Study()                  boundary, theories, verdict, next angle
+//   WithholdWhereItDrifts()  no confirmation where there is no one boundary
 #include "app/report/group.h"
 
 #include <fmt/core.h>
@@ -15,6 +22,8 @@
 namespace touchdown::report {
 namespace {
 
+// Keys of the sort, in radians. Infinity where there is no set-point, or no
+// angle: such a trial stands behind all others.
 double OrLast(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::infinity());
 }
@@ -24,6 +33,9 @@ double AngleOrLast(const core::Trial& trial) {
   return angle ? angle->value : std::numeric_limits<double>::infinity();
 }
 
+// The campaigns by their name, as pointers into `campaigns`. Throws
+// std::invalid_argument where two have one name: the trials could not be given
+// to one of them.
 std::map<std::string, const core::Campaign*> ByName(
     const std::vector<core::Campaign>& campaigns) {
   std::map<std::string, const core::Campaign*> out;
@@ -37,12 +49,15 @@ std::map<std::string, const core::Campaign*> ByName(
   return out;
 }
 
-// The options of a study, with the angles that can be thrown in the group.
+// The options of a study, with the angles that can be thrown in the group. Asks
+// the rig for them and keeps the answer in group.reach.
 analysis::StudyOptions BoundedStudy(const ReportInput& input, Group& group) {
   analysis::StudyOptions options = input.study;
   if (input.reach_of) group.reach = input.reach_of(group.campaign);
   if (group.reach) {
     options.next.feasible_rad = group.reach->angle_rad;
+    // Only where it was asked for: a boundary beyond the reach would else be
+    // pressed into it.
     if (input.support_is_reach &&
         group.reach->angle_rad.high > group.reach->angle_rad.low) {
       options.fit.low_rad = group.reach->angle_rad.low;
@@ -52,12 +67,14 @@ analysis::StudyOptions BoundedStudy(const ReportInput& input, Group& group) {
   return options;
 }
 
-// The study of a group, with the theories that speak of it.
+// Makes the study of a group, with the theories that speak of it, and the notes
+// that run beside study.theories.
 void Study(const ReportInput& input, Group& group) {
   analysis::StudyOptions options = BoundedStudy(input, group);
   const core::Campaign& campaign = group.campaign;
   options.origin = group.trials.origin;
   options.margin_rad = campaign.margin_rad;
+  // The input's options are those of all groups; the theories are this one's.
   options.declared.reset();
   options.others.clear();
   // A theory declared for another body or another kind of angle says nothing
@@ -72,6 +89,8 @@ void Study(const ReportInput& input, Group& group) {
   }
   for (const ReportTheory& theory : input.theories) {
     if (theory.body != group.trials.body) continue;
+    // A published value that the campaign declares is one line and not two:
+    // equal name and number, with both notes.
     if (options.declared && options.declared->name == theory.boundary.name &&
         options.declared->boundary_rad == theory.boundary.boundary_rad) {
       group.notes.front() += "; " + theory.note;
@@ -84,11 +103,12 @@ void Study(const ReportInput& input, Group& group) {
   group.study = analysis::StudyBoundary(group.trials.observations, options);
 }
 
-// Confirmed says that the boundary lies within the margin in all trials. Where
-// it drifts, or depends on more than the angle, only its average may: no
-// confirmation then. A contradiction stands: no one boundary within the margin
-// explains the trials, drifting or not. What was inconclusive anyway says so,
-// too: more of the same trials would not mend it.
+// A verdict of confirmed says that the boundary lies within the margin in all
+// trials. Where it drifts, or depends on more than the angle, only its average
+// may: the verdict becomes inconclusive. A contradiction stands: no one
+// boundary within the margin explains the trials, drifting or not. A verdict
+// that was inconclusive before names the dependence as well, because more of
+// the same trials would not mend it.
 void WithholdWhereItDrifts(Group& group, std::span<const core::Trial> trials) {
   if (group.declared() == nullptr) return;
   analysis::TheoryComparison& theory = group.study.theories.front();
@@ -106,19 +126,23 @@ void WithholdWhereItDrifts(Group& group, std::span<const core::Trial> trials) {
           ? "only its average lies within the margin"
           : "these trials have no one boundary; besides, " + judgement.reason);
   judgement.verdict = core::Verdict::kInconclusive;
-  // A forecast plays on with one boundary.
+  // The forecast simulates further trials with one boundary, which these do not
+  // have.
   theory.trials_to_decide.reset();
 }
 
 }  // namespace
 
 const analysis::TheoryComparison* Group::declared() const {
+  // StudyBoundary() puts the declared theory first.
   return !study.theories.empty() && study.theories.front().declared
              ? &study.theories.front()
              : nullptr;
 }
 
 void SortTrials(std::vector<core::Trial>& trials) {
+  // The angle decides before clip and id, so that a table reads from flat to
+  // steep.
   const auto key = [](const core::Trial& t) {
     return std::tuple(t.campaign, t.body.kind, t.angle_kind, t.origin,
                       OrLast(t.set_angle_rad), AngleOrLast(t), t.clip.path,
@@ -133,6 +157,7 @@ void SortTrials(std::vector<core::Trial>& trials) {
 std::vector<Group> MakeGroups(const ReportInput& input,
                               std::span<const core::Trial> trials) {
   const auto campaigns = ByName(input.campaigns);
+  // Trials that bear the program's and a person's label.
   std::map<std::string, const LabelPair*> labels;
   for (const LabelPair& pair : input.labels) labels[pair.trial] = &pair;
   std::vector<Group> out;
@@ -144,6 +169,8 @@ std::vector<Group> MakeGroups(const ReportInput& input,
     }
     Group group;
     ShareErrors(trials, trial_group.observations);
+    // Members are all trials of the group, those left out too, in the order of
+    // `trials`: SortTrials() has put that right for the tables.
     for (const auto& o : trial_group.observations) {
       group.members.push_back(o.trial);
     }
@@ -157,6 +184,8 @@ std::vector<Group> MakeGroups(const ReportInput& input,
       const auto pair = labels.find(trials[t].id);
       if (pair != labels.end()) group.labels.push_back(*pair->second);
     }
+    // A group without a registered campaign (a CSV file) gets one with the
+    // first trial's body, no theory and the default margin.
     group.registered = known != campaigns.end();
     if (group.registered) {
       group.campaign = *known->second;

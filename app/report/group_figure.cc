@@ -20,6 +20,8 @@ namespace {
 // of trials at length.
 constexpr std::size_t kShowNumbersUpTo = 200;
 
+// The marks of the plot as a table: angle and 2 u in degrees, P(bounce).
+// Without rows for a large group.
 Table Numbers(const Group& group) {
   Table table{"",
               {{AngleName(group) + " (deg)", true},
@@ -45,6 +47,8 @@ PlotCurve MakeChance(const analysis::BoundaryPosterior& posterior) {
     const double x = i * 0.5 * kDegree;
     double sum = 0.0;
     std::size_t at = 0;
+    // The weights lie row by row: all scatters of the first boundary, then of
+    // the next.
     for (const double boundary : grid.angle_rad) {
       for (const double scatter : grid.scatter_rad) {
         sum += grid.weight[at++] * 0.5 *
@@ -52,12 +56,13 @@ PlotCurve MakeChance(const analysis::BoundaryPosterior& posterior) {
       }
     }
     curve.angle_rad.push_back(x);
+    // A share `lapse` of the trials goes wrong either way, whatever the angle.
     curve.height.push_back(posterior.lapse + (1 - 2 * posterior.lapse) * sum);
   }
   return curve;
 }
 
-// Why one end of the interval is an arrow.
+// Why one end of the interval is an arrow; empty where neither is.
 std::string OpenEndSentence(analysis::DataStatus status) {
   if (status == analysis::DataStatus::kOnlySlides) {
     return " Arrow: every body stayed down, so that the trials set no upper "
@@ -81,12 +86,15 @@ Figure MakeFigure(const Group& group, std::size_t index) {
   plot.bracket = study.bracket;
   plot.simulated = group.simulated();
   plot.id = fmt::format("p{}", index);
+  // Every theory of the group is a line, declared or not.
   for (const auto& theory : study.theories) {
     plot.lines.push_back(
         {fmt::format("{} {} deg", theory.theory.name,
                      Plain(theory.theory.boundary_rad / kDegree)),
          theory.theory.boundary_rad, theory.theory.u_rad});
   }
+  // Without a decided trial the posterior is nothing but the prior, and is not
+  // drawn.
   if (study.counts.decided() > 0) {
     plot.density = {"posterior", study.posterior.angle_rad,
                     study.posterior.density_per_rad};
@@ -95,6 +103,8 @@ Figure MakeFigure(const Group& group, std::size_t index) {
 
   const analysis::BoundaryPosterior& posterior = study.posterior;
   if (study.counts.decided() > 0) {
+    // Where all bounced the low end is open, where all stayed down the high
+    // one.
     plot.interval =
         PlotInterval{posterior.interval95_rad, posterior.median_rad,
                      posterior.status == analysis::DataStatus::kOnlyBounces,
@@ -112,6 +122,8 @@ Figure MakeFigure(const Group& group, std::size_t index) {
       group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,
       AngleName(group), kPlusMinus);
   figure.caption += OpenEndSentence(posterior.status);
+  // What the plot shows, for a reader who cannot see it: counts, bracket,
+  // boundary, lines.
   figure.alt = fmt::format(
       "{}Plot of {} trials of a {} over the {} in degrees: {} slide, {} "
       "bounce, {} undecided; {}. Posterior of the boundary: {}.",

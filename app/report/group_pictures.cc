@@ -18,6 +18,8 @@ constexpr std::size_t kMostLines = 200;
 // Shown of a path on either side of touchdown, in sizes of the body.
 constexpr double kBodiesShown = 4.0;
 
+// All paths of the group that are known, as one figure; nothing where none is.
+// `figures` counts the figures of the page.
 std::optional<Figure> MakeTrajectories(const Group& group,
                                        std::span<const core::Trial> trials,
                                        const ReportInput& input,
@@ -28,10 +30,13 @@ std::optional<Figure> MakeTrajectories(const Group& group,
     const auto found = input.trajectories.find(trials[t].id);
     if (found == input.trajectories.end()) continue;
     plot.lines.push_back({&found->second, trials[t].first.state.label});
+    // The largest body decides how much of the paths is shown.
     const core::Measured size = core::Size(trials[t].body);
     if (size) size_m = std::max(size_m, size->value);
   }
   if (plot.lines.empty()) return std::nullopt;
+  // Too many paths are thinned evenly: the group is sorted by angle, so that
+  // the whole range of angles stays.
   const std::size_t known = plot.lines.size();
   if (known > kMostLines) {
     std::vector<TrajectoryLine> some;
@@ -86,6 +91,7 @@ std::vector<Block> MakePictures(const Group& group,
     out.push_back(Heading{3, "Trajectories"});
     out.push_back(std::move(*figure));
   }
+  // Reasons for which trials have no strip, with how many have each.
   Tally without;
   std::vector<Block> strips;
   for (const std::size_t t : group.members) {
@@ -97,6 +103,7 @@ std::vector<Block> MakePictures(const Group& group,
     const auto why = input.no_strip.find(trials[t].id);
     if (why != input.no_strip.end()) without.Add(why->second);
   }
+  // A group without recordings has no heading either.
   const std::string reasons = without.Text();
   if (strips.empty() && reasons.empty()) return out;
   out.push_back(Heading{3, "The contacts"});

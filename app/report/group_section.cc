@@ -1,4 +1,7 @@
-// One group of trials: facts, verdict, statistics, every trial.
+// The pages of one group of trials in the order of reading: what was tested,
+// the plan on record, the checks over all trials, every trial, the pictures,
+// and what stands behind the numbers. The statistics are an annex
+// (group_statistics.cc).
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,7 +19,8 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
-// The one bounce height of the trials, or that they differ.
+// The one bounce height of the trials in mm, or that they differ: it is a
+// convention, and trials with another one mean another thing by "bounce".
 std::string BounceHeightText(const Group& group,
                              std::span<const core::Trial> trials) {
   double low = 1e300;
@@ -28,6 +32,7 @@ std::string BounceHeightText(const Group& group,
     high = std::max(high, height->value);
   }
   if (low > high) return "not recorded";
+  // A nanometre: what is left of a conversion between units.
   if (high - low < 1e-9) return Plain(low / kMillimetre, 3) + " mm";
   return fmt::format(
       "{} to {} mm: NOT the same for all trials, so they are not strictly "
@@ -35,7 +40,8 @@ std::string BounceHeightText(const Group& group,
       Plain(low / kMillimetre, 3), Plain(high / kMillimetre, 3));
 }
 
-// The part of u that does not become less with more trials.
+// The part of u that does not become less with more trials: the greatest of the
+// group, in degrees, and how many set-ups there are.
 std::string SharedErrorText(const Group& group) {
   double most = 0.0;
   std::set<int> setups;
@@ -53,6 +59,7 @@ std::string SharedErrorText(const Group& group) {
       Plain(most / kDegree, 3), setups.size(), setups.size() == 1 ? "" : "s");
 }
 
+// The head of a group as two columns, name and value.
 Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
   const core::Campaign& c = group.campaign;
   const analysis::BoundaryStudy& study = group.study;
@@ -61,6 +68,8 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
     table.rows.push_back({{std::move(name)}, {std::move(value)}});
   };
   row("origin of the trials", std::string(core::Name(group.trials.origin)));
+  // A campaign may have been registered for another kind of body than the
+  // trials have; the body of the first trial stands for them then.
   const core::Body& body = c.body.kind == group.trials.body
                                ? c.body
                                : trials[group.members.front()].body;
@@ -80,6 +89,7 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
                 WithU({*c.theory_boundary_rad, c.theory_u_rad, {}}, kDegree),
                 Plain(c.margin_rad / kDegree))
           : "none declared before the first trial");
+  // Own and common part together, from the least to the greatest.
   row("u of the angles",
       fmt::format("{} to {} deg", Plain(study.least_u_rad / kDegree, 3),
                   Plain(study.greatest_u_rad / kDegree, 3)));
@@ -95,7 +105,9 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
   return table;
 }
 
-// theory.md E6.
+// Why the paper's angles cannot be set with a body of finite thickness
+// (theory.md, E6). Needed where a rectangle is thrown at face angles and
+// compared with the paper's radius angle.
 std::string FaceAngleText(const Group& group) {
   std::string least = "atan(b/a) of its sides";
   const core::Body& body = group.campaign.body;

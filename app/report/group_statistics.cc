@@ -14,32 +14,41 @@ namespace {
 
 using core::kDegree;
 
+// "11.6 to 13.1" in degrees.
 std::string IntervalText(const core::Interval& interval, int decimals) {
   return fmt::format("{:.{}f} to {:.{}f}", interval.low / kDegree, decimals,
                      interval.high / kDegree, decimals);
 }
 
+// An angle in degrees, without its unit, which stands in the heading.
 std::string AngleText(double angle_rad, int decimals) {
   return fmt::format("{:.{}f}", angle_rad / kDegree, decimals);
 }
 
+// "0.664 to 1.000": an interval of a proportion.
 std::string Share(const core::Interval& interval) {
   return fmt::format("{:.3f} to {:.3f}", interval.low, interval.high);
 }
 
+// A prior on the scatter in words, with its median in degrees.
 std::string PriorName(const analysis::ScatterPrior& prior) {
   if (!prior.log_sd) {
     return fmt::format("scatter half-Cauchy, half of it below {} deg",
                        Plain(prior.median_rad / kDegree));
   }
+  // One standard deviation of the logarithm is a factor up or down.
   return fmt::format("scatter about {} deg, a factor {} either way",
                      Plain(prior.median_rad / kDegree),
                      Plain(std::exp(*prior.log_sd), 1));
 }
 
+// The boundary by the posterior, by the same with other priors, and by the
+// likelihood alone; then the scatter. Readers see at once whether the prior
+// made the answer.
 Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
   const auto& p = group.study.posterior;
   const auto& l = group.study.likelihood;
+  // All rows have the digits that the posterior's sd allows.
   const int decimals = Decimals(p.sd_rad / kDegree);
   Table table{"The boundary angle",
               {{"method"},
@@ -48,6 +57,8 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
                {"remark"}},
               {}};
   std::string remark = PriorName(prior);
+  // The interval in the table then holds under two priors; the remark has the
+  // narrower one under the first alone.
   if (p.cautious_prior) {
     remark += fmt::format(
         ", alone {}; the 95 % interval holds under {}, too, as outcomes that "
@@ -69,6 +80,8 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
                           {IntervalText(line.interval95_rad, decimals)},
                           {PriorName(line.prior)}});
   }
+  // An open end: the likelihood falls too little on that side to bound the
+  // angle.
   remark = l.has_estimate ? "no prior" : "no estimate, no prior";
   if (l.open_low) remark += "; open below";
   if (l.open_high) remark += "; open above";
@@ -88,6 +101,9 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
   return table;
 }
 
+// Each theory of the group: its distance from the boundary, how probable it is
+// that the two are equal within the margin, and the verdict on the declared
+// one.
 Table MakeTheories(const Group& group) {
   Table table{"Boundary angles of theory beside the trials",
               {{"theory"},
@@ -122,6 +138,9 @@ Table MakeTheories(const Group& group) {
   return table;
 }
 
+// What the theory predicted against what was seen, in the paper's two words.
+// Rows: prediction; trials too near to the boundary to decide are a row of
+// their own.
 Table MakeConfusion(const Group& group, const analysis::TheoryComparison& t) {
   const auto& a = t.agreement;
   Table table{fmt::format("Predicted by {} {} deg, and seen", t.theory.name,
@@ -150,6 +169,9 @@ Table MakeConfusion(const Group& group, const analysis::TheoryComparison& t) {
   return table;
 }
 
+// The proportion of right predictions among the trials that decide, with two
+// intervals: Wilson's, and the more cautious one of Clopper and Pearson. Kappa
+// and Matthews' correlation take off what chance would get right.
 std::string AgreementNumbers(const analysis::TheoryComparison& t) {
   const auto& m = t.agreement.deciding;
   if (m.total() == 0) return "No trial decides anything about this theory.";
@@ -171,11 +193,14 @@ std::string AgreementNumbers(const analysis::TheoryComparison& t) {
   return text;
 }
 
+// All about the theories; confusion and agreement for the first one only, which
+// is the declared theory where there is one.
 std::vector<Block> MakeComparison(const Group& group) {
   std::vector<Block> out;
   out.push_back(MakeTheories(group));
   const auto& first = group.study.theories.front();
   if (first.declared) {
+    // Said only of a declared theory: no other gets a verdict.
     const double theory = first.theory.boundary_rad;
     const double margin = group.study.margin_rad;
     out.push_back(Paragraph{

@@ -6,7 +6,13 @@ namespace touchdown::report {
 
 // The watermark is a background picture of each simulated section, so that it
 // lies behind every line of it, on the screen and on paper. What a colour says
-// is said by a word, a weight or a mark, too.
+// is said by a word, a weight or a mark, too: readers and printers may see
+// none.
+//
+// The parts, in order: colours in light and dark; text, tables and figures on a
+// screen of any width; A4 paper, where rows and figures are not split between
+// pages and what is folded on the screen is left out. The classes are those
+// that document_html.cc writes.
 const std::string_view kPageStyle = R"css(
 :root { color-scheme: light dark; --ink: #1c2126; --soft: #56616b;
   --line: #d4dadf; --paper: #fff; --box: #f3f5f7; --slide: #17548f;
@@ -127,7 +133,8 @@ summary { cursor: pointer; color: var(--soft); }
 
 std::string PrintedFooter(std::string_view footer) {
   // A string of CSS: whatever is no letter, digit or space is written as its
-  // number. Bytes of UTF-8 above 127 stand for themselves.
+  // number ("\2c " for a comma), so that no name of a laboratory ends the
+  // string. Bytes of UTF-8 above 127 stand for themselves.
   std::string text;
   for (const char c : footer) {
     const auto byte = static_cast<unsigned char>(c);
@@ -135,6 +142,7 @@ std::string PrintedFooter(std::string_view footer) {
                        (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     text += plain ? std::string(1, c) : fmt::format("\\{:x} ", byte);
   }
+  // Margin boxes take no style from the page.
   constexpr std::string_view kLook =
       "font: 8pt \"Liberation Sans\", Arial, sans-serif; color: #56616b;";
   return fmt::format(

@@ -28,13 +28,21 @@ constexpr double kAngle_deg = 0.01;
 // tenth.
 constexpr double kPaperAngle_deg = 0.05;
 
+// A column of the table: the angle in units of the column's width, rounded
+// where every angle has a column of its own, and rounded down where columns are
+// bins.
 using AngleKey = long long;  // units of the column's width
 
+// Where a trial stands in the table, in degrees: at its set-point, as in the
+// paper, or at its measured angle where it has none. The trial must count, so
+// that it has a contact angle.
 double Position_deg(const core::Trial& trial) {
   if (trial.set_angle_rad) return *trial.set_angle_rad / kDegree;
   return core::ContactAngle(trial)->value / kDegree;
 }
 
+// All columns of the table, from the smallest angle, with the trials of each
+// group at each of them.
 struct Angles {
   double width_deg = kAngle_deg;
   bool binned = false;
@@ -42,6 +50,8 @@ struct Angles {
   std::map<AngleKey, std::vector<std::vector<std::size_t>>> cells;
 };
 
+// Sorts the trials that count into columns of `width_deg`. A trial stands in
+// one column; `trials` decides on the order within it.
 Angles Collect(std::span<const Group> groups,
                std::span<const core::Trial> trials, double width_deg,
                bool binned) {
@@ -54,6 +64,8 @@ Angles Collect(std::span<const Group> groups,
     std::sort(members.begin(), members.end());
     for (const std::size_t t : members) {
       const double at = Position_deg(trials[t]) / width_deg;
+      // The small number keeps 12.0 deg, which radians and back may make
+      // 11.999..., in the bin that begins with it.
       const auto key = static_cast<AngleKey>(binned ? std::floor(at + 1e-9)
                                                     : std::round(at));
       auto& row = rows.cells[key];
@@ -64,6 +76,8 @@ Angles Collect(std::span<const Group> groups,
   return rows;
 }
 
+// The columns as the user asked for them (`bin_width_rad` > 0), else a column
+// for each angle, else the narrowest bins that leave no more than kMaxAngles.
 Angles CollectToFit(std::span<const Group> groups,
                     std::span<const core::Trial> trials, double bin_width_rad) {
   if (bin_width_rad > 0.0) {
@@ -77,6 +91,8 @@ Angles CollectToFit(std::span<const Group> groups,
   return rows;
 }
 
+// "12.400 ± 0.050" of one trial, "4 trials, 12.1 – 12.9" of several; empty
+// where the group has none at this angle.
 Cell AngleCell(const std::vector<std::size_t>& members,
                std::span<const core::Trial> trials) {
   if (members.empty()) return {};
@@ -94,6 +110,8 @@ Cell AngleCell(const std::vector<std::size_t>& members,
                       Plain(high))};
 }
 
+// "slide" of one trial, "slide 3, bounce 1" of several. The colour is that of
+// the word where all trials say the same.
 Cell StateCountsCell(const std::vector<std::size_t>& members,
                      std::span<const core::Trial> trials) {
   int n[3] = {0, 0, 0};
@@ -115,7 +133,8 @@ Cell StateCountsCell(const std::vector<std::size_t>& members,
   return cell;
 }
 
-// What the paper's table says at this angle, if it has it.
+// Whether the body bounces at this angle in the paper's table; nothing where
+// the table does not have the angle.
 std::optional<bool> PaperBounces(core::BodyKind body, double angle_deg) {
   for (const auto& o : analysis::PaperTable1(body, 0.0)) {
     if (std::abs(o.angle_rad / kDegree - angle_deg) <= kPaperAngle_deg) {
@@ -125,13 +144,15 @@ std::optional<bool> PaperBounces(core::BodyKind body, double angle_deg) {
   return std::nullopt;
 }
 
+// "12.4", or "12 – 14" of a bin.
 std::string AngleHeading(const Angles& angles, double angle_deg) {
   return angles.binned ? fmt::format("{} {} {}", Plain(angle_deg), kDash,
                                      Plain(angle_deg + angles.width_deg))
                        : Plain(angle_deg);
 }
 
-// Whether the paper has one of the angles at which the group was thrown.
+// Whether the paper has one of the angles at which the group was thrown: else
+// its row would be empty. Bins hold several angles and are not compared.
 bool HasPaperAngle(const Angles& angles, std::size_t group,
                    core::BodyKind body) {
   return !angles.binned &&
@@ -150,6 +171,8 @@ std::vector<Table> MakeTable1(std::span<const Group> groups,
                               std::span<const core::Trial> trials,
                               const ReportInput& input) {
   const Angles angles = CollectToFit(groups, trials, input.bin_width_rad);
+  // The heading says what the angles are: set-points as soon as one trial has
+  // one.
   const bool any_set =
       std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
         return std::any_of(group.trials.observations.begin(),
@@ -159,6 +182,7 @@ std::vector<Table> MakeTable1(std::span<const Group> groups,
                            });
       });
   const char* angle_word = any_set ? "set" : "contact";
+  // More columns than fit side by side become several tables.
   const std::size_t parts =
       (angles.cells.size() + kAnglesAcross - 1) / kAnglesAcross;
   std::vector<Table> out;
@@ -185,6 +209,7 @@ std::vector<Table> MakeTable1(std::span<const Group> groups,
                         static_cast<double>(at->first) * angles.width_deg),
            true});
     }
+    // Each body has two rows, or three with the paper's own.
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const core::BodyKind body = groups[g].trials.body;
       const std::string name = ShortName(groups[g], groups);

@@ -15,13 +15,16 @@ namespace {
 
 using core::kDegree;
 
+// "before the first trial" or "after trial 12": only the first is a declaration
+// in advance.
 std::string DescribeInstant(std::int64_t trials) {
   return trials == 0 ? "before the first trial"
                      : fmt::format("after trial {}", trials);
 }
 
-// One entry of the plan through its history: "declared ... before the first
-// trial: X", "changed after trial n: Y, because Z".
+// One field of the plan through its changes: "declared before the first trial
+// (2026-08-01T09:12:00Z, weber): X; changed after trial 12 (...): Y, because
+// Z". Events that leave the field as it is say nothing of it.
 std::string History(const std::vector<const db::PlanEvent*>& plans,
                     std::string db::Plan::*field) {
   std::string out;
@@ -44,6 +47,7 @@ std::string History(const std::vector<const db::PlanEvent*>& plans,
 std::vector<Block> MakePlan(const Group& group,
                             std::span<const core::Trial> trials,
                             const ReportInput& input) {
+  // Only a campaign of a store has a plan on record.
   if (!group.registered) return {};
   std::vector<const db::PlanEvent*> plans;
   std::vector<const db::PlanEvent*> looks;
@@ -55,6 +59,8 @@ std::vector<Block> MakePlan(const Group& group,
   const auto row = [&](const char* name, std::string value) {
     table.rows.push_back({{name}, {std::move(value)}});
   };
+  // The store fixes theory and margin with the campaign, before the first
+  // trial; the other entries are events that may follow.
   const core::Campaign& c = group.campaign;
   row("theory and margin",
       c.theory_boundary_rad
@@ -67,6 +73,7 @@ std::vector<Block> MakePlan(const Group& group,
   row("error rates", History(plans, &db::Plan::error_rates));
   row("design", History(plans, &db::Plan::design));
   row("stopping rule", History(plans, &db::Plan::stopping_rule));
+  // A reader may ask how often the answer was seen before the trials ended.
   if (looks.empty()) {
     row("looks at the answer", "none on record");
   } else {
@@ -78,6 +85,8 @@ std::vector<Block> MakePlan(const Group& group,
     }
     row("looks at the answer", when);
   }
+  // An exclusion after the answer was seen is the easiest way to a wanted
+  // answer: each is shown with its reason, time and author.
   std::string excluded;
   for (const std::size_t i : group.members) {
     const core::Trial& trial = trials[i];

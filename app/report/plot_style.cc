@@ -4,6 +4,8 @@
 
 namespace touchdown::report {
 
+// Only two of the four borders are drawn, and the background is white also on a
+// dark page: the colours are chosen for white.
 std::string PlotHead(int width, int height) {
   return fmt::format(
       "set encoding utf8\n"

@@ -1,3 +1,6 @@
+// The page is printed by Chromium, which reads the same HTML as the user's
+// browser: there is one layout. It prints into a folder of its own, and the PDF
+// is copied to its place only after the browser has ended well.
 #include "app/report/print_pdf.h"
 
 #include <fcntl.h>
@@ -31,7 +34,8 @@ namespace fs = std::filesystem;
 // A browser that takes longer for one page hangs.
 constexpr std::chrono::seconds kLimit{120};
 
-// A folder of its own for the browser's profile, gone with it.
+// A folder for the browser's profile, page and messages, gone with it. With a
+// profile of its own the browser runs beside the one that the user has open.
 class Scratch {
  public:
   Scratch() {
@@ -58,7 +62,8 @@ class Scratch {
   std::unique_ptr<core::Unfinished> unfinished_;  // gone with a Ctrl-C, too
 };
 
-// The path as an address: bytes that are no plain letters by their numbers.
+// The absolute path as a file:// address. Bytes that are no plain letters are
+// written as %XX: a "#" or "?" in the name of a folder would end the path.
 std::string FileUrl(const fs::path& path) {
   std::string out = "file://";
   for (const char c : fs::absolute(path).string()) {
@@ -71,6 +76,8 @@ std::string FileUrl(const fs::path& path) {
   return out;
 }
 
+// The command line that prints `page` to `pdf`; the name of the program comes
+// first and is filled in by Start(). Nothing in it asks for the network.
 std::vector<std::string> Arguments(const fs::path& page, const fs::path& pdf,
                                    const fs::path& scratch) {
   std::vector<std::string> out{
@@ -94,7 +101,9 @@ std::vector<std::string> Arguments(const fs::path& page, const fs::path& pdf,
   return out;
 }
 
-// Nothing where no program of that name is installed.
+// Starts the program `name` in an environment of its own, with its messages in
+// the file `log` of `scratch`. False where no such program is installed; else
+// `child` is its process id.
 bool Start(const char* name, std::vector<std::string> arguments,
            const fs::path& scratch, pid_t& child) {
   arguments[0] = name;
@@ -102,6 +111,8 @@ bool Start(const char* name, std::vector<std::string> arguments,
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const char* path = std::getenv("PATH");
+  // HOME is the scratch folder: the browser writes into it whatever its profile
+  // says.
   std::array<std::string, 3> variables{
       "HOME=" + scratch.string(), "LC_ALL=C.UTF-8",
       std::string("PATH=") + (path != nullptr ? path : "/usr/bin:/bin")};
@@ -121,7 +132,8 @@ bool Start(const char* name, std::vector<std::string> arguments,
   return trouble == 0;
 }
 
-// Whether it ended well within the limit.
+// Waits for the browser. True where it ended with status 0 within kLimit; one
+// that takes longer is killed.
 bool EndsWell(pid_t child) {
   const auto end = std::chrono::steady_clock::now() + kLimit;
   int status = 0;
@@ -134,10 +146,12 @@ bool EndsWell(pid_t child) {
       waitpid(child, &status, 0);
       return false;
     }
+    // Asked 50 times a second: little is added to the time of a page.
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }
 
+// The last line of the browser's messages that is not empty; "" without a file.
 std::string LastLine(const fs::path& log) {
   std::ifstream file(log);
   std::string last;
@@ -154,6 +168,8 @@ void PrintPdf(const fs::path& page, const fs::path& pdf) {
   const fs::path printed = scratch.path() / "page.pdf";
   pid_t child = -1;
   bool started = false;
+  // Debian's name first; the others are those of other distributions and of
+  // Google.
   for (const char* name : {"chromium", "chromium-browser", "google-chrome",
                            "google-chrome-stable"}) {
     started = Start(name, Arguments(page, printed, scratch.path()),
@@ -165,6 +181,7 @@ void PrintPdf(const fs::path& page, const fs::path& pdf) {
         "chromium: not found; the PDF needs it: install the package chromium, "
         "or print the page table1.html from any browser");
   }
+  // Absent also where the browser ended well and wrote no file.
   std::optional<std::string> bytes;
   if (EndsWell(child)) bytes = ReadTextFile(printed);
   if (!bytes) {
@@ -173,6 +190,7 @@ void PrintPdf(const fs::path& page, const fs::path& pdf) {
                     "browser instead",
                     LastLine(scratch.path() / "log")));
   }
+  // Throws core::OutputError where the target cannot be written.
   WriteTextFile(pdf, *bytes);
 }
 

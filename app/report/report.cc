@@ -1,3 +1,7 @@
+// From the input to the files of a report: the trials are sorted and put into
+// groups with all statistics (group.cc), the groups become one Document, and
+// the Document is rendered as HTML and Markdown. CSV, LaTeX and JSON are made
+// of the groups directly.
 #include "app/report/report.h"
 
 #include <fmt/core.h>
@@ -19,10 +23,12 @@
 namespace touchdown::report {
 namespace {
 
+// The order of the origins on the page: what was filmed stands first.
 constexpr core::Origin kOrigins[] = {
     core::Origin::kRecorded, core::Origin::kManual, core::Origin::kSimulated};
 
-// What is read first, of the groups of one origin: those are never pooled.
+// The first page: summary and warnings of the groups of one origin. Origins are
+// never pooled, and a section of simulated trials bears the watermark.
 Section MakeSummaries(std::span<const Group> groups,
                       std::span<const core::Trial> trials) {
   Section section{groups.front().simulated(), {}};
@@ -39,6 +45,8 @@ Section MakeSummaries(std::span<const Group> groups,
   return section;
 }
 
+// Table 1 of the groups of one origin, with a figure of each group. `figures`
+// counts the figures of the page, which makes their identifiers unique.
 Section MakeTable1Section(std::span<const Group> groups,
                           std::span<const core::Trial> trials,
                           const ReportInput& input, std::size_t& figures) {
@@ -63,6 +71,8 @@ Section MakeTable1Section(std::span<const Group> groups,
   return section;
 }
 
+// How the numbers are made, for whoever has to defend them, and what identifies
+// this report.
 Section MakeMethods(const ReportInput& input, const std::string& csv) {
   Section section;
   auto& out = section.blocks;
@@ -102,6 +112,8 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
        "By simulation at most 5 of 100 campaigns see a false verdict, in "
        "whatever of the designs tried, though they look after each of 60 "
        "trials. Simulated trials yield no verdict."}});
+  // The digest is that of table1.csv: two reports of the same trials have the
+  // same one, and a change in any cell of that file changes it.
   Table table{"", {{"made with"}, {""}}, {}};
   const auto row = [&](const char* name, const std::string& value) {
     if (!value.empty()) table.rows.push_back({{name}, {value}});
@@ -117,7 +129,8 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
   return section;
 }
 
-// "Report 2026-17 of the laboratory", what is known of it.
+// "Report 2026-17, Laboratory, 2026-08-31": number or title, then what is known
+// of laboratory and day. It stands below every printed page.
 std::string MakeFooter(const ReportInput& input) {
   std::string out = input.details.number.empty()
                         ? input.title
@@ -131,6 +144,7 @@ std::string MakeFooter(const ReportInput& input) {
 }  // namespace
 
 Report MakeReport(const ReportInput& input) {
+  // Groups hold indices into this sorted copy.
   std::vector<core::Trial> trials = input.trials;
   SortTrials(trials);
   const std::vector<Group> groups = MakeGroups(input, trials);
@@ -147,16 +161,19 @@ Report MakeReport(const ReportInput& input) {
         [origin](const Group& g) { return g.trials.origin == origin; });
     if (!same.empty()) by_origin.push_back(std::move(same));
   }
+  // A report of no trials is a report all the same: it says so.
   if (groups.empty()) {
     sections.push_back(
         {false,
          {Callout{"No trials.", "The store holds no trial for this report."}}});
   }
+  // Page 1 is the summary; the cover and the contents follow it.
   for (const auto& same : by_origin) {
     sections.push_back(MakeSummaries(same, trials));
   }
   sections.push_back(MakeCover(input));
   sections.push_back({false, {Heading{3, "Contents"}, Contents{}}});
+  // Results, then each group's pages, check shots, and the annexes.
   std::size_t figures = 0;
   for (const auto& same : by_origin) {
     sections.push_back(MakeTable1Section(same, trials, input, figures));
@@ -169,6 +186,7 @@ Report MakeReport(const ReportInput& input) {
   }
   for (const Group& group : groups) {
     sections.push_back(MakeStatistics(group, trials));
+    // The annexes begin on a page of their own.
     if (&group == &groups.front()) {
       auto& blocks = sections.back().blocks;
       blocks.insert(blocks.begin(), PageBreak{});
@@ -185,6 +203,8 @@ Report MakeReport(const ReportInput& input) {
   out.html = ToHtml(document);
   out.csv_schema = CsvSchema();
   out.latex = MakeLatex(groups, trials, input);
+  // Bytes that are not UTF-8 (in a path, say) become replacement characters
+  // here: this document is for reading, and the store keeps the bytes.
   out.json = ReportDocument(input, groups, trials)
                  .dump(1, ' ', false,
                        nlohmann::ordered_json::error_handler_t::replace) +
@@ -200,6 +220,7 @@ void WriteReport(const Report& report, const std::filesystem::path& folder) {
         fmt::format("{}: cannot be made: {}; give a folder that can",
                     folder.string(), trouble.message()));
   }
+  // In the order of kReportFiles. Each file appears whole or not at all.
   const std::string* const texts[] = {&report.markdown, &report.csv,
                                       &report.html,     &report.latex,
                                       &report.json,     &report.csv_schema};

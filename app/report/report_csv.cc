@@ -16,6 +16,7 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
+// A column of table1.csv and of its schema.
 struct CsvField {
   const char* name;
   const char* type;  // of XML Schema
@@ -53,6 +54,8 @@ std::string NumberText(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "";
 }
 
+// Value and u as cells: `unit` is the size of the column's unit in SI. Empty
+// where the quantity is absent. Six digits for the value, three for its u.
 std::string ValueText(const core::Measured& m, double unit) {
   return m ? fmt::format("{:.6g}", m->value / unit) : "";
 }
@@ -61,6 +64,7 @@ std::string UncertaintyText(const core::Measured& m, double unit) {
   return m ? fmt::format("{:.3g}", m->u / unit) : "";
 }
 
+// Why the statistics leave a trial out, by its index in the trials.
 std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group) {
   std::map<std::size_t, std::string> out;
   for (const auto& left : group.trials.left_out) {
@@ -78,6 +82,8 @@ std::string MakeCsv(std::span<const Group> groups,
     out += (out.empty() ? "" : ",") + std::string(field.name);
   }
   out += "\r\n";
+  // In the order of the groups and of their tables. Trials in no group (check
+  // shots) have no line.
   for (const Group& group : groups) {
     const auto left_out = ReasonsLeftOut(group);
     for (const std::size_t t : group.members) {
@@ -87,6 +93,7 @@ std::string MakeCsv(std::span<const Group> groups,
       const core::Measured angle = core::ContactAngle(trial);
       std::optional<double> set_deg;
       if (trial.set_angle_rad) set_deg = *trial.set_angle_rad / kDegree;
+      // One cell for each of kCsvFields, in its order.
       const std::string cells[] = {
           trial.campaign,
           std::string(core::Name(trial.origin)),
@@ -121,8 +128,8 @@ std::string MakeCsv(std::span<const Group> groups,
   return out;
 }
 
-// The W3C's vocabulary for tabular data, so that a program can read the columns
-// without a person.
+// Metadata in the W3C's vocabulary for tabular data on the web (CSVW), so that
+// a program can read the columns without a person.
 std::string CsvSchema() {
   Json columns = Json::array();
   for (const CsvField& field : kCsvFields) {

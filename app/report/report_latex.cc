@@ -1,4 +1,6 @@
-// table1.tex: Table 1 to \input into a paper.
+// table1.tex: Table 1 to \input into a paper. One tabular environment for each
+// part of the table, without a float around it, so that caption and place are
+// the author's.
 #include <fmt/core.h>
 
 #include "app/report/content.h"
@@ -10,6 +12,7 @@ std::string MakeLatex(std::span<const Group> groups,
                       std::span<const core::Trial> trials,
                       const ReportInput& input) {
   std::string out = "% Needs nothing beyond LaTeX itself.\n";
+  // A table for each origin: they are never pooled.
   for (const core::Origin origin :
        {core::Origin::kRecorded, core::Origin::kManual,
         core::Origin::kSimulated}) {
@@ -27,6 +30,8 @@ std::string MakeLatex(std::span<const Group> groups,
         out += column.numeric ? 'r' : 'l';
       }
       out += "}\n\\hline\n";
+      // One row: escaped cells with & between them. `text_of` gives the text of
+      // a cell.
       const auto write = [&](const auto& cells, const auto& text_of) {
         bool first = true;
         for (const auto& cell : cells) {
@@ -43,6 +48,8 @@ std::string MakeLatex(std::span<const Group> groups,
       }
       out += "\\hline\n";
       if (origin == core::Origin::kSimulated) {
+        // The watermark is a row of the table itself, so that it goes with it
+        // into the paper.
         out += fmt::format("\\multicolumn{{{}}}{{l}}{{\\textbf{{{}}}}} \\\\\n",
                            table.columns.size(), LatexEscape(kWatermark));
       }

@@ -1,3 +1,5 @@
+// Every sentence is made here once, and page, terminal and JSON print it alike.
+// Angles are in degrees with the digits that their uncertainty allows.
 #include "app/report/sentences.h"
 
 #include <fmt/core.h>
@@ -11,6 +13,8 @@ using analysis::DataStatus;
 using core::kDegree;
 
 std::string BracketSentence(const analysis::Bracket& bracket) {
+  // Both ends exist where outcomes overlap, with the low one above the high
+  // one.
   if (bracket.overlap) {
     return fmt::format(
         "no bracket: a body stayed down at {} deg and another bounced at {} "
@@ -35,8 +39,8 @@ std::string BracketSentence(const analysis::Bracket& bracket) {
 
 std::string BoundarySentence(const analysis::BoundaryStudy& study) {
   const auto& p = study.posterior;
-  // Outcomes of one kind bound one side; the other end, and the median, are
-  // the prior's.
+  // Outcomes of one kind bound one side; the other end, and the median, are the
+  // prior's and are not given.
   const analysis::Counts& counts = study.counts;
   if ((counts.bounce == 0) != (counts.not_bounce == 0)) {
     const bool is_below = counts.not_bounce == 0;
@@ -76,6 +80,7 @@ std::string AgreementSentence(const analysis::TheoryComparison& theory) {
 std::string VerdictWord(const Group& group) {
   const analysis::TheoryComparison* theory = group.declared();
   if (group.simulated()) return "no verdict";
+  // Published theories are shown for information and never judged.
   if (theory == nullptr) return "no verdict: no theory was declared";
   if (!theory->judgement.verdict) return "no verdict";
   return std::string(core::Name(*theory->judgement.verdict));
@@ -91,11 +96,13 @@ std::string VerdictSentence(const Group& group) {
     return "Only a theory that the campaign declares before its first trial "
            "gets a verdict.";
   }
+  // There is no verdict, and the judgement says why.
   if (!theory->judgement.verdict) return theory->judgement.reason + ".";
   const std::string boundary =
       fmt::format("the {} boundary, {} deg,", theory->theory.name,
                   Plain(theory->theory.boundary_rad / kDegree));
   const std::string margin = Plain(group.study.margin_rad / kDegree);
+  // The smallest margin tells how far from a confirmation the trials are.
   if (theory->judgement.verdict == core::Verdict::kInconclusive) {
     return fmt::format(
         "These trials neither confirm nor contradict {} with a margin of {} "
@@ -113,6 +120,7 @@ std::string VerdictSentence(const Group& group) {
 
 std::string OutlookSentence(const Group& group) {
   const analysis::TheoryComparison* theory = group.declared();
+  // A forecast for one boundary would be of no use.
   if (!group.dependence.empty()) {
     return "More trials of the same kind cannot confirm it: first what moves "
            "the boundary must be found and removed.";
@@ -141,7 +149,8 @@ std::string OutlookSentence(const Group& group) {
 
 namespace {
 
-// Where the next angle may lie.
+// Where the next angle may lie, in brackets: the reach of the rig, or why none
+// is known.
 std::string ReachClause(const Group& group) {
   if (!group.reach) {
     return fmt::format(" (not bounded by a rig: {})",
@@ -153,7 +162,8 @@ std::string ReachClause(const Group& group) {
                      group.reach->angle_rad.high / kDegree, group.reach->by);
 }
 
-// What is done where all trials say the same.
+// What is done where all trials say the same; empty where both outcomes were
+// seen.
 std::string OneSidedClause(const Group& group) {
   const analysis::BoundaryStudy& study = group.study;
   const DataStatus status = study.posterior.status;
@@ -165,10 +175,13 @@ std::string OneSidedClause(const Group& group) {
   const std::string seen =
       all_bounced ? ". Every body bounced: the boundary lies lower"
                   : ". Every body stayed down: the boundary lies higher";
+  // The rule still finds an angle on the open side that can be thrown.
   if (!study.next.clipped) {
     return fmt::format("{}, and the angle goes {}", seen,
                        all_bounced ? "down" : "up");
   }
+  // The angle is the end of the reach: if nothing changes there, no further
+  // trial of this campaign finds the boundary.
   return fmt::format(
       "{}, perhaps beyond what can be thrown; where this angle says the same "
       "again, a new campaign with another speed or bounce height can bring it "
@@ -185,6 +198,7 @@ std::string NextSentence(const Group& group) {
 
 std::string StatusSentence(const analysis::BoundaryStudy& study) {
   std::string text;
+  // How the outcomes lie to each other decides what the estimate rests on.
   switch (study.posterior.status) {
     case DataStatus::kNoTrials:
       text = "No trial is decided: the estimate is nothing but its prior.";

@@ -18,7 +18,8 @@ namespace {
 using core::kDegree;
 using Members = std::span<const std::size_t>;
 
-// With expanded uncertainties, k = 2.
+// E_n of a measured value against an expected one, with expanded uncertainties
+// (k = 2): "+0.42". Without any uncertainty there is no such number.
 std::string ErrorNumber(const core::Estimate& measured,
                         const core::Estimate& expected) {
   if (!(measured.u > 0.0) && !(expected.u > 0.0)) return "u = 0";
@@ -27,13 +28,16 @@ std::string ErrorNumber(const core::Estimate& measured,
                 2);
 }
 
+// Empty where one of the two is absent.
 std::string ErrorNumber(const core::Measured& measured,
                         const core::Measured& expected) {
   return measured && expected ? ErrorNumber(*measured, *expected) : "";
 }
 
-// Without E_n: it counts both uncertainties, and the setting's is the rig's,
-// not in a trial. MakePredictionTable() has it.
+// The trials with set-points: angle in degrees and, where one has it, launch
+// speed in m/s, each beside what was measured. Without E_n: it counts both
+// uncertainties, and the setting's is the rig's, not in a trial.
+// MakePredictionTable() has it.
 Table MakeSetTable(Members members, std::span<const core::Trial> trials,
                    const ReportInput& input) {
   const bool with_speed = std::any_of(
@@ -52,12 +56,14 @@ Table MakeSetTable(Members members, std::span<const core::Trial> trials,
   table.columns.push_back({"clip or trial"});
   for (const std::size_t t : members) {
     const core::Trial& trial = trials[t];
+    // A trial without set-points has no row.
     if (!trial.set_angle_rad && !trial.set_speed_mps) continue;
     std::vector<Cell> row(2);
     const core::Measured angle = core::ContactAngle(trial);
     if (trial.set_angle_rad) {
       row[0].text = Plain(*trial.set_angle_rad / kDegree);
       if (angle) {
+        // A set-point has no uncertainty here: the difference has the angle's.
         row[1].text = DifferenceWithU(
             {angle->value - *trial.set_angle_rad, angle->u, {}}, kDegree);
       }
@@ -73,8 +79,9 @@ Table MakeSetTable(Members members, std::span<const core::Trial> trials,
   return table;
 }
 
-// What the rig's description predicts for the set-points, with the uncertainty
-// of both sides in E_n.
+// What the rig's description predicts for the set-points, beside what was
+// measured, with the uncertainty of both sides in E_n. Without rows where no
+// rig was given.
 Table MakePredictionTable(Members members, std::span<const core::Trial> trials,
                           const ReportInput& input) {
   const std::string u = fmt::format(" {} u ", kPlusMinus);
@@ -93,6 +100,7 @@ Table MakePredictionTable(Members members, std::span<const core::Trial> trials,
     if (found == input.rig.predictions.end()) continue;
     const ShotPrediction& p = found->second;
     if (!p.launch_speed_mps && !p.approach_angle_rad) continue;
+    // The rig predicts the approach angle, whatever angle is the contact angle.
     const core::Measured& angle = trial.first.contact.approach_angle_rad;
     table.rows.push_back(
         {{WithUOrReason(p.launch_speed_mps, 1.0)},
@@ -107,7 +115,7 @@ Table MakePredictionTable(Members members, std::span<const core::Trial> trials,
 }
 
 // Why some trials have no prediction: "no set-point of the launch speed (9
-// trials)".
+// trials)". Empty where all have one.
 std::string WhyNotPredicted(Members members,
                             std::span<const core::Trial> trials,
                             const ReportInput& input) {
@@ -137,6 +145,8 @@ std::string WhyNotPredicted(Members members,
   return out;
 }
 
+// Both tables with their remarks, for a group or for one trial; nothing where
+// no trial has a set-point.
 std::vector<Block> MakeSetPointTables(Members members,
                                       std::span<const core::Trial> trials,
                                       const ReportInput& input) {
@@ -161,7 +171,9 @@ std::vector<Block> MakeSetPointTables(Members members,
   return out;
 }
 
-// Mean and root mean square of measured minus set angle.
+// Mean and root mean square of measured minus set angle, in degrees, over the
+// trials that count: the mean is the ejector's offset. Empty where none was
+// set.
 std::string SetPointText(const Group& group) {
   double sum = 0.0;
   double squares = 0.0;
@@ -183,6 +195,8 @@ std::string SetPointText(const Group& group) {
 }  // namespace
 
 std::string TrialName(const core::Trial& trial) {
+  // The first eight characters of a UUID tell the trials of a store apart;
+  // other names ("line 12") are shown whole.
   constexpr std::size_t kUuidLength = 36;
   constexpr std::size_t kShown = 8;
   if (!trial.clip.path.empty()) {

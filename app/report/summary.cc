@@ -17,16 +17,18 @@ namespace {
 using analysis::DataStatus;
 using core::kDegree;
 
+// The first letter as a capital: the text begins a sentence.
 std::string Upper(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] -= 'a' - 'A';
   return text;
 }
 
+// "1 trial", "9 trials".
 std::string Trials(std::size_t n) {
   return fmt::format("{} trial{}", n, n == 1 ? "" : "s");
 }
 
-// What the angle is, for who does not know the words.
+// What the angle is, for who does not know the words: the end of a sentence.
 const char* AngleMeaning(core::AngleKind kind) {
   switch (kind) {
     case core::AngleKind::kRadius:
@@ -40,6 +42,7 @@ const char* AngleMeaning(core::AngleKind kind) {
   return "between the ground and the path on which the body comes down";
 }
 
+// " from 3.9 to 74.4 deg" of the trials that count; empty without any.
 std::string AngleRange(const Group& group) {
   double low = 1e300;
   double high = -1e300;
@@ -54,6 +57,7 @@ std::string AngleRange(const Group& group) {
                     : fmt::format(" from {} to {} deg", from, to);
 }
 
+// What was thrown, at what, how often, and how it was seen.
 std::string Tested(const Group& group, std::span<const core::Trial> trials) {
   const core::Body& body = group.campaign.body.kind == group.trials.body
                                ? group.campaign.body
@@ -73,6 +77,7 @@ std::string Tested(const Group& group, std::span<const core::Trial> trials) {
       AngleMeaning(group.trials.angle_kind));
 }
 
+// How many stayed down and bounced, and the boundary as far as that tells one.
 std::string CameOut(const Group& group) {
   const analysis::Counts& counts = group.study.counts;
   std::string out = fmt::format(
@@ -87,6 +92,7 @@ std::string CameOut(const Group& group) {
   out += ". ";
   const bool both = counts.bounce > 0 && counts.not_bounce > 0;
   if (counts.decided() == 0) return out + "No angle follows from that.";
+  // One outcome bounds one side: the sentence says which.
   if (!both) {
     return out + fmt::format("The angle from which it bounces is {}.",
                              BoundarySentence(group.study));
@@ -98,6 +104,7 @@ std::string CameOut(const Group& group) {
                    p.median_rad / kDegree, Decimals(p.sd_rad / kDegree));
 }
 
+// The 95 % interval, the gap between the outcomes, and the u of a single angle.
 std::string HowSure(const Group& group) {
   const analysis::BoundaryStudy& study = group.study;
   std::string out;
@@ -126,6 +133,7 @@ std::string HowSure(const Group& group) {
                    Plain(study.greatest_u_rad / kDegree, 3));
 }
 
+// The verdict, its reason, and what would decide where it is inconclusive.
 std::string Agrees(const Group& group) {
   std::string out = Upper(VerdictWord(group));
   out += ". " + VerdictSentence(group);
@@ -134,6 +142,9 @@ std::string Agrees(const Group& group) {
   return out;
 }
 
+// The answer to "May I rely on it?", by the worst thing that is known:
+// simulated, scale or frame rate wrong, labels reversed, no one boundary; only
+// then yes.
 std::string MayRely(const Group& group, std::span<const core::Trial> trials) {
   if (group.simulated()) {
     return "Not for anything real: the pictures were rendered, to test the "
@@ -158,6 +169,7 @@ std::string MayRely(const Group& group, std::span<const core::Trial> trials) {
                 "campaigns see a false one."
               : "On what was seen and on the interval, yes; the trials are not "
                 "enough for a verdict on a theory.";
+  // Typed trials have no recording, so that no check speaks of them.
   const bool typed = group.trials.origin == core::Origin::kManual;
   if (typed) {
     return out + " The angles were typed in: nothing here can check them.";

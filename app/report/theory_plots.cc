@@ -1,3 +1,7 @@
+// The contact theory as plots. A contact is written as the linear
+// complementarity problem y = A f + B with f >= 0, y >= 0 and f y = 0: f is the
+// normal force, y the normal acceleration of the contact point. The signs of A
+// and B decide how many solutions there are, which is the regime.
 #include "app/report/theory_plots.h"
 
 #include <fmt/core.h>
@@ -15,6 +19,7 @@ namespace {
 
 using analysis::Regime;
 
+// A regime in the key of the map, with its colour.
 struct Shade {
   const char* label;
   const char* colour;
@@ -29,6 +34,7 @@ constexpr std::array<Shade, 5> kShades = {{
     {"on an edge within rounding", kBlack},
 }};
 
+// Index into kShades. Regimes that rounding leaves on an edge are the last.
 int ChooseShade(Regime regime) {
   switch (regime) {
     case Regime::kSlide:
@@ -44,7 +50,9 @@ int ChooseShade(Regime regime) {
   }
 }
 
-// The solutions of y = A f + B in the plane, as points.
+// The solutions of y = A f + B in the plane as lines "f y" of a data block:
+// where the line meets the axis f = 0 (B >= 0: the body detaches) and the axis
+// y = 0 (A and B of opposite sign: it stays in contact).
 std::string Solutions(double slope, double intercept) {
   std::string out;
   if (intercept >= 0.0) out += fmt::format("0 {:.9g}\n", intercept);
@@ -54,18 +62,21 @@ std::string Solutions(double slope, double intercept) {
   return out;
 }
 
-// The edges of the regimes as curves, over the staircase of the cells:
-// b = 0 and, on the leading corner, A_hat = 0.
+// The edges of the regimes as curves, over the staircase of the cells: b = 0
+// and, on the leading corner, A_hat = 0. Further elements of the plot command.
 std::string Edges(const analysis::RegimeMap& map) {
   constexpr const char* kStyle = "with lines lw 1.5 lc rgb '#303030' notitle";
   const analysis::ContactProblem& p = map.problem;
   const bool over_mu = map.axis == analysis::MapAxis::kMu;
   const double top = map.axis_value.back();
   std::string out;
+  // A vertical line at an angle: gnuplot's '+' runs through 400 samples, 0 to
+  // 399.
   const auto vertical = [&](double alpha_rad) {
     out += fmt::format(", \\\n  '+' using ({:.9g}):({:.9g}*$0/399.0) {}",
                        alpha_rad / core::kDegree, top, kStyle);
   };
+  // b = 0 where r omega^2 sin(alpha) = g: at one angle, whatever the friction.
   if (over_mu) {
     const double lift = p.radius_m * p.omega_rad_per_s * p.omega_rad_per_s;
     if (lift > p.gravity_mps2) vertical(std::asin(p.gravity_mps2 / lift));
@@ -78,9 +89,11 @@ std::string Edges(const analysis::RegimeMap& map) {
     }
     return out;
   }
+  // The same condition solved for the spin.
   out += fmt::format(", \\\n  [0.1:90] sqrt({:.9g}/sin(x*pi/180)) {}",
                      p.gravity_mps2 / p.radius_m, kStyle);
   if (p.slip == analysis::Slip::kLeading && p.kappa > 0.0) {
+    // A_hat does not depend on the spin: its edges are two angles.
     const analysis::Wedge wedge = analysis::PainleveWedge(p.kappa, p.mu);
     if (wedge.exists) {
       vertical(wedge.low_rad);
@@ -107,6 +120,8 @@ std::string DrawRegimeMap(const analysis::RegimeMap& map,
   script += "set xtics 15\nset ytics autofreq\n";
   script +=
       "set key below center Left reverse maxrows 3 samplen 1.5 spacing 1.2\n";
+  // The palette is five flat colours, one for each shade, with its number in
+  // the middle.
   script += "unset colorbox\nset cbrange [-0.5:4.5]\nset palette defined (";
   for (std::size_t i = 0; i < kShades.size(); ++i) {
     script += fmt::format("{}{} '{}', {} '{}'", i == 0 ? "" : ", ",
@@ -114,8 +129,8 @@ std::string DrawRegimeMap(const analysis::RegimeMap& map,
                           static_cast<double>(i) + 0.5, kShades[i].colour);
   }
   script += ") maxcolors 5\n";
-  // Cells as an image would be resampled by viewers: rows of boxes instead, one
-  // box for each run of equal cells.
+  // Viewers would resample an image of the cells: rows of boxes instead, one
+  // box for each run of equal cells. `cells` counts the cells of each shade.
   std::array<std::size_t, kShades.size()> cells{};
   script += "$boxes << EOD\n";
   const double width = map.alpha_rad[1] / core::kDegree;
@@ -125,11 +140,14 @@ std::string DrawRegimeMap(const analysis::RegimeMap& map,
     std::size_t start = 0;
     for (std::size_t i = 1; i <= map.alpha_rad.size(); ++i) {
       const int shade = ChooseShade(map.At(start, j).regime);
+      // The run goes on.
       if (i < map.alpha_rad.size() &&
           ChooseShade(map.At(i, j).regime) == shade) {
         continue;
       }
       cells[static_cast<std::size_t>(shade)] += i - start;
+      // Cells are centred on their grid points, so that a box begins half a
+      // step before its first one; boxes at the edges are cut to the axes.
       const double low = static_cast<double>(start) * width - 0.5 * width;
       const double high = static_cast<double>(i) * width - 0.5 * width;
       const double y = map.axis_value[j];
@@ -149,6 +167,7 @@ std::string DrawRegimeMap(const analysis::RegimeMap& map,
   script += Edges(map);
   for (std::size_t i = 0; i < kShades.size(); ++i) {
     constexpr std::size_t kVisible = 1000;  // a thousandth of the picture
+    // A regime that can hardly be seen has no place in the key.
     if (cells[i] * kVisible < map.cells.size()) continue;
     script += fmt::format(
         ", \\\n  NaN with boxes fs solid 1.0 noborder lc rgb '{}' title {}",
@@ -184,6 +203,7 @@ std::string DrawComplementarityCases() {
     script += "unset label\n";
     script += "set label 1 'F_{n}' at 2.4,-0.28 right\n";
     script += "set label 2 'g_{N}″' at 0.08,1.9 left\n";
+    // The verdict stands where no line crosses it.
     const bool none = c.slope < 0.0 && c.intercept < 0.0;
     script += fmt::format("set label 3 {} at {} tc rgb '{}'\n",
                           GnuplotQuote(c.verdict),
@@ -234,8 +254,10 @@ std::string DrawComplementarityLines(
       kBlue, kVermilion, kGreen, kOrange, kPurple, kSkyBlue, kBlack, kYellow};
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto& line = lines[i];
+    // Forces in units of m g, accelerations in units of g.
     points += Solutions(line.slope, line.intercept);
     std::string verdict(analysis::Name(line.regime));
+    // "slide", from a name with underscores.
     std::transform(verdict.begin(), verdict.end(), verdict.begin(),
                    [](char c) { return c == '_' ? ' ' : std::tolower(c); });
     std::string label =

@@ -34,6 +34,9 @@ constexpr LineStyle kLineStyles[] = {
 // More samples than this of one line no eye tells apart.
 constexpr std::size_t kMostPoints = 160;
 
+// The data block `name` of all paths in one style: way along the ground and gap
+// in mm, both from touchdown, with an empty line between two paths. `top` grows
+// to the greatest gap in metres. Empty where no path has the style.
 std::string PathsBlock(const TrajectoryPlot& plot, const LineStyle& style,
                        const std::string& name, double& top) {
   std::string block = fmt::format("${} << EOD\n", name);
@@ -41,6 +44,7 @@ std::string PathsBlock(const TrajectoryPlot& plot, const LineStyle& style,
   for (const TrajectoryLine& line : plot.lines) {
     if (!style.is(line.state)) continue;
     const Trajectory& path = *line.path;
+    // Long recordings are thinned; the last sample of a path may be left out.
     const std::size_t step =
         std::max<std::size_t>(1, path.centre.size() / kMostPoints);
     for (std::size_t i = 0; i < path.centre.size(); i += step) {
@@ -65,10 +69,12 @@ std::string DrawTrajectoryPlot(const TrajectoryPlot& plot) {
       seen = std::max(seen, std::abs(p.x_m));
     }
   }
+  // A little room beside the paths, and never an axis without length.
   const double reach_m = std::min(plot.reach_m, 1.05 * seen + 1e-3);
   std::string data;
   std::vector<std::string> parts;
   double top = 0.0;
+  // One element for each state, so that the key names a state once.
   for (const LineStyle& style : kLineStyles) {
     const std::string name = fmt::format("lines{}", parts.size());
     const std::string block = PathsBlock(plot, style, name, top);
@@ -79,6 +85,7 @@ std::string DrawTrajectoryPlot(const TrajectoryPlot& plot) {
         style.dash, style.colour, style.name));
   }
   if (parts.empty()) parts.emplace_back("NaN notitle");
+  // The ground and the instant of touchdown are thin lines through 0.
   std::string s = fmt::format(
       "set terminal svg size 940,300 dynamic noenhanced font 'Arial,14' name "
       "'{}'\n"

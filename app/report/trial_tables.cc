@@ -15,6 +15,8 @@ namespace {
 using core::kDegree;
 using core::kMillimetre;
 
+// The motion state in the program's own words, in the colour of the paper's
+// word.
 Cell StateCell(const core::StateDecision& state) {
   const std::string word = PaperWord(state.label);
   const Tone tone = word == "slide"    ? Tone::kSlide
@@ -25,7 +27,8 @@ Cell StateCell(const core::StateDecision& state) {
   return {text, tone};
 }
 
-// What was filmed, and where the film ends too early what would have followed.
+// The greatest gap that was filmed, in mm; where the film ends too early, also
+// what the flight would have reached.
 std::string GapText(const core::StateDecision& state) {
   std::string text = WithUOrReason(state.max_gap_m, kMillimetre);
   if (state.extrapolated_gap_m) {
@@ -34,6 +37,9 @@ std::string GapText(const core::StateDecision& state) {
   return text;
 }
 
+// Whether the outcome is what `theory` predicts at the measured angle: above
+// its boundary bounce, else slide. "decides nothing" within 2 u of the
+// boundary. `o` is null for a trial that the statistics leave out.
 Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
                 const analysis::TheoryComparison& theory) {
   if (o == nullptr) return {"left out", Tone::kMuted};
@@ -49,6 +55,7 @@ Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
                                               : Cell{"no", Tone::kBad};
 }
 
+// One row for each trial of the group, those left out too.
 Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials,
                      const ReportInput& input) {
   Table table;
@@ -60,6 +67,7 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials,
       {"paper's word"},
       {"P(bounce)", true},
       {fmt::format("greatest gap {} u (mm)", kPlusMinus), true}};
+  // The declared theory, or the first published one.
   const analysis::TheoryComparison* theory =
       group.study.theories.empty() ? nullptr : &group.study.theories.front();
   if (theory != nullptr) {
@@ -68,6 +76,7 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials,
                      Plain(theory->theory.boundary_rad / kDegree))});
   }
   table.columns.push_back({"clip or trial"});
+  // By the trial's index.
   std::map<std::size_t, const analysis::Observation*> observed;
   for (const auto& o : group.trials.observations) observed[o.trial] = &o;
   for (const std::size_t t : group.members) {
@@ -93,6 +102,7 @@ Table MakeTrialTable(const Group& group, std::span<const core::Trial> trials,
   return table;
 }
 
+// The trials that the statistics leave out, each with its reason.
 Table MakeLeftOut(const Group& group, std::span<const core::Trial> trials,
                   const ReportInput& input) {
   Table table{"Left out of the statistics", {{"trial"}, {"reason"}}, {}};

@@ -15,7 +15,9 @@
 namespace touchdown::pipeline {
 namespace {
 
-// The path from where the contact begins; nothing without a scale or a flight.
+// The centre's path and the gap in metres, x from where the first contact
+// begins and heights above the ground that was found at that contact. Nothing
+// without a scale, or without a flight before the contact.
 std::optional<report::Trajectory> MakeTrajectory(const Analysis& analysis) {
   const auto& evidence = analysis.contacts.evidence;
   if (!analysis.scale || !analysis.plane || evidence.empty() ||
@@ -24,6 +26,8 @@ std::optional<report::Trajectory> MakeTrajectory(const Analysis& analysis) {
   }
   const vision::ContactEvidence& first = evidence.front();
   const double px_per_m = analysis.scale->px_per_m.value;
+  // Position of the centre along the ground at touchdown, from the fitted
+  // flight: touchdown lies between two frames.
   const double along = first.before->At(first.time_s).along_px;
   report::Trajectory out;
   for (const vision::PlaneSample& sample : analysis.plane->samples) {
@@ -41,6 +45,8 @@ std::string WhyNotShown(const core::Trial& trial) {
   if (!std::filesystem::exists(trial.clip.path, ignored)) {
     return "the recording is not where it was";
   }
+  // A file of the same name may be another shot. Its digest tells: outlines
+  // drawn into the wrong film would look like a wrong measurement.
   if (!trial.clip.id.empty() &&
       vision::ClipId(trial.clip.path) != trial.clip.id) {
     return "another recording lies where it was";
@@ -48,6 +54,9 @@ std::string WhyNotShown(const core::Trial& trial) {
   return "";
 }
 
+// Adds the strip of a trial to `input`, and returns why there is none; empty
+// where it was added. A recording that is missing or damaged must not stop a
+// report whose numbers are all in the store.
 std::string AddStrip(const core::Trial& trial, Analysis& analysis,
                      report::ReportInput& input) {
   if (!analysis.track || analysis.track->poses.empty() || !analysis.plane ||
@@ -70,8 +79,12 @@ std::string AddStrip(const core::Trial& trial, Analysis& analysis,
 }  // namespace
 
 void AddPictures(report::ReportInput& input, std::size_t most_strips) {
+  // The limit is on the report, not on the trial: a strip for some trials and
+  // not for others of one group would look like a choice.
   const bool with_strips = input.trials.size() <= most_strips;
   for (const core::Trial& trial : input.trials) {
+    // The track comes out of the stored document; the clip is read only for
+    // pictures.
     core::Expected<Analysis> analysis = Replay(trial);
     std::string why;
     if (!analysis) {

@@ -10,14 +10,21 @@
 
 namespace touchdown::report {
 
+// The mark is the three bytes EF BB BF. Only the first is looked at: no name of
+// a column that this program reads begins with it.
 void SkipByteOrderMark(std::istream& in) {
   if (in.peek() == 0xef) in.ignore(3);
 }
 
+// Reads one character at a time, in one of two states: inside quotes, where
+// commas and line breaks belong to the cell, or outside of them. An empty line
+// is a record of one empty cell; the last line needs no line break.
 std::optional<std::vector<std::string>> ReadCsvRecord(std::istream& in,
                                                       const std::string& name,
                                                       std::size_t row) {
   std::vector<std::string> cells(1);
+  // Tells an empty line, which is a record, from the end of the file, which is
+  // none.
   bool any = false;
   bool quoted = false;
   for (int c = in.get(); c != EOF; c = in.get()) {
@@ -26,12 +33,15 @@ std::optional<std::vector<std::string>> ReadCsvRecord(std::istream& in,
       if (c != '"') {
         cells.back() += static_cast<char>(c);
       } else if (in.peek() == '"') {
+        // Two quotes inside a quoted cell stand for one.
         cells.back() += static_cast<char>(in.get());
       } else {
         quoted = false;
       }
       continue;
     }
+    // A quote opens a quoted cell only where the cell begins; in the middle of
+    // a cell (a size in inches) it is a character like any other.
     if (c == '"' && cells.back().empty()) {
       quoted = true;
     } else if (c == ',') {
@@ -42,6 +52,8 @@ std::optional<std::vector<std::string>> ReadCsvRecord(std::istream& in,
       cells.back() += static_cast<char>(c);
     }
   }
+  // The file ended inside quotes: everything behind the open quote would be one
+  // cell, and all rows in it would be lost without a word.
   if (quoted) {
     throw core::InputError(fmt::format(
         "{}: row {}: a quote is left open; a closing \" was expected", name,
@@ -52,7 +64,9 @@ std::optional<std::vector<std::string>> ReadCsvRecord(std::istream& in,
 }
 
 std::string CsvCellText(std::string cell) {
+  // The characters that CsvCell() in text.cc guards against.
   constexpr std::string_view kFormulaStart = "=+-@\t\r";
+  // An apostrophe before anything else was typed by a person and is kept.
   if (cell.size() > 1 && cell[0] == '\'' &&
       kFormulaStart.find(cell[1]) != std::string_view::npos) {
     cell.erase(0, 1);

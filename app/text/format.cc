@@ -8,7 +8,8 @@
 namespace touchdown::report {
 namespace {
 
-// Without the sign of a zero.
+// `value` with exactly so many decimals. A value that rounds to zero loses its
+// minus: "-0.00" would claim a direction that nobody measured.
 std::string Rounded(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.find_first_not_of("-0.") == std::string::npos && text[0] == '-') {
@@ -17,6 +18,7 @@ std::string Rounded(double value, int decimals) {
   return text;
 }
 
+// Whether the printed digits of a number, without its sign, are all zeros.
 bool IsZero(const std::string& number) {
   return number.find_first_not_of("0.") == std::string::npos;
 }
@@ -25,23 +27,32 @@ bool IsZero(const std::string& number) {
 
 std::string Plain(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
+  // Only zeros behind a decimal point mean nothing; those of "40" stay.
   if (text.find('.') != std::string::npos) {
     while (text.back() == '0') text.pop_back();
     if (text.back() == '.') text.pop_back();
   }
+  // A small negative value leaves "-0" behind.
   return text == "-0" ? "0" : text;
 }
 
 int Decimals(double u) {
   if (!(u > 0.0) || !std::isfinite(u)) return 2;
+  // At two significant digits everything from 9.95 on prints as 10, whose first
+  // digit stands one place higher. Without this factor it would have three
+  // digits.
   constexpr double kRoundsUp = 1.005;  // 9.95 has the digits of 10
   const int leading = static_cast<int>(std::floor(std::log10(u * kRoundsUp)));
+  // `leading` is the power of ten of the first digit: 0.048 has -2 and gets
+  // three decimals. A u of 10 or more gets none.
   return std::clamp(1 - leading, 0, 12);
 }
 
 std::string WithU(const core::Estimate& estimate, double unit) {
   const double value = estimate.value / unit;
+  // An uncertainty stays positive where the unit turns the sign of the value.
   const double u = estimate.u / std::abs(unit);
+  // Without an uncertainty nothing says how many digits are known.
   if (!(u > 0.0) || !std::isfinite(u)) return Plain(value);
   const int decimals = Decimals(u);
   return fmt::format("{} {} {:.{}f}", Rounded(value, decimals), kPlusMinus, u,
@@ -50,6 +61,8 @@ std::string WithU(const core::Estimate& estimate, double unit) {
 
 std::string DifferenceWithU(const core::Estimate& difference, double unit) {
   const std::string text = WithU(difference, unit);
+  // A minus stands there already, and a difference of zero has no direction.
+  // The value is the part of the text before the first space.
   const bool is_plain =
       text.front() == '-' || IsZero(text.substr(0, text.find(' ')));
   return is_plain ? text : "+" + text;
@@ -57,6 +70,7 @@ std::string DifferenceWithU(const core::Estimate& difference, double unit) {
 
 std::string InAscii(std::string text) {
   const std::string_view sign = kPlusMinus;
+  // The sign has two bytes in UTF-8, so it is replaced as a string.
   for (std::size_t at = text.find(sign); at != std::string::npos;
        at = text.find(sign, at)) {
     text.replace(at, sign.size(), "+-");
@@ -75,6 +89,8 @@ std::string Signed(double value, int decimals) {
 }
 
 std::string Probability(double p) {
+  // Half of the last printed digit: smaller values would print as 0.000, and a
+  // probability of exactly 0 or 1 is never known.
   constexpr double kLeast = 0.0005;  // rounds to 0.001
   if (p < kLeast) return "< 0.001";
   if (p > 1.0 - kLeast) return "> 0.999";
@@ -84,6 +100,8 @@ std::string Probability(double p) {
 std::string HalfOpen(const std::optional<double>& low,
                      const std::optional<double>& high, double unit) {
   if (low && high) {
+    // Half open as a bracket is: the low end belongs to the range, the high end
+    // does not.
     return fmt::format("[{}, {})", Plain(*low / unit), Plain(*high / unit));
   }
   if (low) return fmt::format("from {} on", Plain(*low / unit));

@@ -8,16 +8,22 @@
 namespace touchdown::report {
 namespace {
 
+// Whether all of `text` is UTF-8 (RFC 3629): no cut-off sequences, no overlong
+// forms, no surrogates, nothing above U+10FFFF. JSON holds UTF-8 alone, but
+// paths of files and old notes may hold any bytes.
 bool IsUtf8(std::string_view text) {
   std::size_t i = 0;
   while (i < text.size()) {
     const auto byte = static_cast<unsigned char>(text[i]);
+    // `more` counts the bytes that follow the first one; `code` collects their
+    // bits into the number of the character.
     std::size_t more = 0;
     unsigned code = 0;
     if (byte < 0x80) {
       ++i;
       continue;
     }
+    // C0 and C1 would begin overlong forms of ASCII and are refused here.
     if (byte >= 0xc2 && byte <= 0xdf) {
       more = 1;
       code = byte & 0x1fU;
@@ -30,12 +36,15 @@ bool IsUtf8(std::string_view text) {
     } else {
       return false;
     }
+    // The text ends inside a character.
     if (i + more >= text.size()) return false;
     for (std::size_t k = 1; k <= more; ++k) {
       const auto next = static_cast<unsigned char>(text[i + k]);
+      // Each following byte has the form 10xxxxxx and holds six bits.
       if ((next & 0xc0U) != 0x80U) return false;
       code = (code << 6U) | (next & 0x3fU);
     }
+    // One character in two spellings would make equal texts differ.
     const bool overlong =
         (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
     if (overlong || code > 0x10ffff || (code >= 0xd800 && code <= 0xdfff)) {
@@ -46,6 +55,10 @@ bool IsUtf8(std::string_view text) {
   return true;
 }
 
+// The number in `field`, in the unit that the field's name bears. JSON has no
+// infinities, so NumberJson() writes them as words. Throws
+// std::invalid_argument naming the field for anything else, null included: a
+// NaN is null in JSON.
 double NumberOrInfinity(const Json& field, const std::string& name) {
   if (field.is_number()) return field.get<double>();
   if (field == "inf") return std::numeric_limits<double>::infinity();
@@ -57,6 +70,8 @@ double NumberOrInfinity(const Json& field, const std::string& name) {
 
 Json TextJson(const std::string& text) {
   if (IsUtf8(text)) return text;
+  // The bytes come back unchanged from {"bytes": "66fc72"}. Replacing the wrong
+  // ones would change the name of a file that somebody has to find again.
   std::string hex;
   for (const char c : text) {
     hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
@@ -74,6 +89,8 @@ Json OptionalNumberJson(const std::optional<double>& value) {
 }
 
 Json MeasuredJson(const core::Measured& measured) {
+  // The reason travels with the absence: a reader of the file sees why there is
+  // no number.
   if (!measured) return {{"absent", TextJson(measured.error().reason)}};
   Json json = {{"value", NumberJson(measured->value)},
                {"u", NumberJson(measured->u)}};
@@ -86,6 +103,8 @@ Json MeasuredJson(const core::Measured& measured) {
 
 Json EstimateJson(const core::Estimate& estimate, double factor) {
   const core::Estimate e = core::Scaled(estimate, factor);
+  // nlohmann::json writes an infinite number as null. Lines that must not lose
+  // one use MeasuredJson().
   Json json = {{"value", e.value}, {"u", e.u}};
   if (e.interval95)
     json["interval95"] = {e.interval95->low, e.interval95->high};
@@ -100,6 +119,8 @@ const Json& Field(const Json& json, const std::string& name) {
   return *it;
 }
 
+// The message names the field and what it must be; the caller adds file and
+// line.
 [[noreturn]] void WrongField(const std::string& name,
                              std::string_view expected) {
   throw std::invalid_argument(
@@ -109,12 +130,14 @@ const Json& Field(const Json& json, const std::string& name) {
 std::string ReadTextField(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   if (field.is_string()) return field.get<std::string>();
+  // Else the field must be the form of TextJson() for bytes that are not UTF-8.
   const auto bytes = field.is_object() ? field.find("bytes") : field.end();
   if (!field.is_object() || bytes == field.end() || !bytes->is_string()) {
     WrongField(name, "a text");
   }
   const auto hex = bytes->get<std::string>();
   std::string text;
+  // Two digits a byte, in lower case as they were written.
   if (hex.size() % 2 != 0 ||
       hex.find_first_not_of("0123456789abcdef") != std::string::npos) {
     WrongField(name, "bytes in hexadecimal");
@@ -133,6 +156,7 @@ bool ReadFlag(const Json& json, const std::string& name) {
 
 std::int64_t ReadInteger(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
+  // A number with a fraction is refused instead of being cut off.
   if (!field.is_number_integer()) WrongField(name, "a whole number");
   return field.get<std::int64_t>();
 }
@@ -144,17 +168,21 @@ double ReadNumberField(const Json& json, const std::string& name) {
 std::optional<double> ReadOptionalNumber(const Json& json,
                                          const std::string& name) {
   const Json& field = Field(json, name);
+  // The field itself must be there: null says that there is no number, a
+  // missing field says that the file is damaged.
   if (field.is_null()) return std::nullopt;
   return NumberOrInfinity(field, name);
 }
 
 core::Measured ReadMeasured(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
+  // Either {"absent": reason} or {"value", "u"} with an optional "interval95".
   if (field.is_object() && field.contains("absent")) {
     return core::AbsentBecause(ReadTextField(field, "absent"));
   }
   if (!field.is_object()) WrongField(name, "a value with u, or absent");
   core::Estimate estimate;
+  // An error inside names the part, as in 'max_gap_m.u'.
   estimate.value = NumberOrInfinity(Field(field, "value"), name + ".value");
   estimate.u = NumberOrInfinity(Field(field, "u"), name + ".u");
   if (const auto interval = field.find("interval95"); interval != field.end()) {
@@ -169,6 +197,8 @@ core::Measured ReadMeasured(const Json& json, const std::string& name) {
 }
 
 core::Estimate ReadEstimate(const Json& json) {
+  // Documents that this program wrote are trusted to have the form; nlohmann's
+  // own exceptions are enough where one is damaged.
   core::Estimate e{json.at("value"), json.at("u"), std::nullopt};
   if (json.contains("interval95")) {
     e.interval95 =
@@ -178,10 +208,14 @@ core::Estimate ReadEstimate(const Json& json) {
 }
 
 Json ParsedLine(std::string_view line, std::string_view schema) {
+  // The parser does not throw: its messages speak of bytes in a buffer, which
+  // the user does not have.
   Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     throw std::invalid_argument("this is not JSON");
   }
+  // A line of another schema is refused before any field of it is read: fields
+  // of one name may mean different things in two schemas.
   const Json& found = Field(json, "schema");
   if (found != Json(schema)) {
     throw std::invalid_argument(
@@ -192,6 +226,8 @@ Json ParsedLine(std::string_view line, std::string_view schema) {
 
 std::string ReadSchema(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
+  // A line that is not JSON has no schema, either. The reader that takes it
+  // next reports the error.
   if (!json.is_object() || !json.contains("schema")) return "";
   const Json& schema = json["schema"];
   return schema.is_string() ? schema.get<std::string>() : "";

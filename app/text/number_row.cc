@@ -9,10 +9,13 @@
 namespace touchdown::report {
 namespace {
 
-// With a precision std::to_chars takes half of the time of fmt.
+// Appends `value` as printf would with %.*f or %.*g, whatever the locale.
+// Documents hold a row for each frame, and with a precision std::to_chars takes
+// half of the time of fmt.
 void Append(double value, std::chars_format format, int precision,
             std::string& text) {
-  // The longest double with 12 decimals has 309 digits before them.
+  // The longest double with 12 decimals has 309 digits before the point, a
+  // point, a sign and 12 digits behind it. No caller asks for more decimals.
   std::array<char, 340> room;
   const auto end = std::to_chars(room.data(), room.data() + room.size(), value,
                                  format, precision);
@@ -21,6 +24,7 @@ void Append(double value, std::chars_format format, int precision,
 
 }  // namespace
 
+// Puts the blank between two entries; the row neither begins nor ends with one.
 void NumberRow::Begin() {
   if (!text_.empty()) text_ += ' ';
 }

@@ -12,20 +12,27 @@
 namespace touchdown::pipeline {
 
 ScratchFolder::ScratchFolder() {
+  // Where TMPDIR names no folder, temp_directory_path() gives an empty path,
+  // and the folder is made in the current one.
   std::error_code ignored;
   std::string name =
       (std::filesystem::temp_directory_path(ignored) / "touchdown-XXXXXX")
           .string();
+  // mkdtemp() makes a new folder that only this user can enter: two commands at
+  // the same time never share one. It writes the name over the X's.
   if (mkdtemp(name.data()) == nullptr) {
     throw core::OutputError(name + ": no temporary folder can be made (" +
                             std::strerror(errno) +
                             "); make room, or set TMPDIR to another folder");
   }
+  // From here on a signal that ends the process removes the folder, too.
   path_ = name;
   unfinished_ = std::make_unique<core::Unfinished>(path_);
 }
 
 ScratchFolder::~ScratchFolder() {
+  // A destructor must not throw. What cannot be removed stays among the
+  // temporary files.
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }

@@ -1,5 +1,9 @@
 // APPNOTE.TXT of PKWARE, version 6.3: sections 4.3.7 (local header), 4.3.12
 // (central directory), 4.3.16 (its end).
+//
+// The archive is written in one pass. A member is its local header and its
+// bytes; its offset and checksum are kept in memory until Commit() writes the
+// central directory, by which readers find the members.
 #include "app/text/zip_file.h"
 
 #include <zlib.h>
@@ -11,13 +15,16 @@
 namespace touchdown::pipeline {
 namespace {
 
+// Fields that are the same in every header. The date is fixed, so that equal
+// members make equal bytes.
 constexpr std::uint16_t kVersion = 20;         // folders and stored members
 constexpr std::uint16_t kUtf8Names = 1 << 11;  // flag
 constexpr std::uint16_t kStored = 0;           // method
 constexpr std::uint16_t kMidnight = 0;
 constexpr std::uint16_t kFirstDay = (1 << 5) | 1;  // 1980-01-01
 
-// Little-endian fields, one after the other.
+// Little-endian fields, one after the other: a header is built as it stands in
+// the tables of APPNOTE.TXT, in the order of the calls.
 class Fields {
  public:
   Fields& U16(std::uint32_t value) { return Bytes(value, 2); }
@@ -29,6 +36,7 @@ class Fields {
   const std::string& bytes() const { return bytes_; }
 
  private:
+  // Appends the `n` lowest bytes of `value`, the lowest first.
   Fields& Bytes(std::uint32_t value, int n) {
     constexpr int kBitsOfAByte = 8;
     for (int i = 0; i < n; ++i) {
@@ -39,6 +47,9 @@ class Fields {
   std::string bytes_;
 };
 
+// Throws std::invalid_argument where the archive passes a limit of the format:
+// its offsets have 32 bits and its counts 16. The larger fields of ZIP64 are
+// not written.
 void Require(bool fits) {
   if (!fits) {
     throw std::invalid_argument(
@@ -50,6 +61,7 @@ void Require(bool fits) {
 
 ZipFile::ZipFile(std::filesystem::path target) : file_(std::move(target)) {}
 
+// `written_` is the offset at which the next byte will stand.
 void ZipFile::Write(std::string_view bytes) {
   file_.Write(bytes);
   written_ += bytes.size();
@@ -57,9 +69,11 @@ void ZipFile::Write(std::string_view bytes) {
 }
 
 void ZipFile::Add(std::string_view name, std::string_view bytes) {
+  // Both limits are checked before a byte of the member is written.
   Require(members_.size() < std::numeric_limits<std::uint16_t>::max());
   Require(written_ + bytes.size() + name.size() <=
           std::numeric_limits<std::uint32_t>::max());
+  // The checksum stands before the bytes, so it is computed first.
   const auto crc = static_cast<std::uint32_t>(
       crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
   const Member member{std::string(name), crc,
@@ -84,8 +98,11 @@ void ZipFile::Add(std::string_view name, std::string_view bytes) {
   members_.push_back(member);
 }
 
+// Writes the central directory and its end record, then gives the file its
+// name.
 void ZipFile::Commit() {
   const auto start = static_cast<std::uint32_t>(written_);
+  // One entry for each member, with the offset of its local header.
   constexpr std::uint32_t kCentralHeader = 0x02014b50;
   for (const Member& member : members_) {
     Write(Fields()
@@ -109,6 +126,7 @@ void ZipFile::Commit() {
               .Text(member.name)
               .bytes());
   }
+  // Readers look for this record from the end of the file.
   constexpr std::uint32_t kEnd = 0x06054b50;
   const auto count = static_cast<std::uint32_t>(members_.size());
   const auto size = static_cast<std::uint32_t>(written_) - start;
