@@ -184,9 +184,11 @@ std::string Explain(const CampaignChecks& checks, double px_per_m, double fps,
 }  // namespace
 
 TrialRatios ReadRatios(const core::Trial& trial) {
-  TrialRatios out{core::AbsentBecause("no document"),
-                  core::AbsentBecause("no document")};
   const nlohmann::json json = StoredDocument(trial);
+  TrialRatios out{
+      core::AbsentBecause("no document"),
+      core::AbsentBecause(json.is_object() ? "the document holds no scale"
+                                           : "no document")};
   const auto scale = FindEstimate(json, {"scale", "px_per_m"});
   out.scale_of_body = EvaluateSpline(json, {"scale", "source"}) == "body_size";
   if (const nlohmann::json& fps =
@@ -276,6 +278,18 @@ CampaignChecks CheckCampaign(std::span<const std::size_t> members,
         out.restitution->failed && out.restitution->z > 0.0;
   }
   out.explanation = Explain(out, px_per_m, fps, of_body);
+  return out;
+}
+
+std::string CampaignChecks::Suspects() const {
+  const auto failed = [](const core::Expected<analysis::PooledCheck>& check) {
+    return check && check->failed;
+  };
+  std::string out;
+  if (failed(gravity) || failed(size)) out = "scale, frame rate or size";
+  // Neither of these makes a rebound faster than the approach.
+  if (failed(restitution))
+    out += out.empty() ? "the ground line" : ", and the ground line";
   return out;
 }
 

@@ -36,6 +36,9 @@ struct CampaignChecks {
   std::string explanation;  // of what failed; empty where nothing did
 
   bool Failed() const { return !explanation.empty(); }
+  // "scale, frame rate or size", "the ground line", or both: what the failed
+  // checks accuse.
+  std::string Suspects() const;
 };
 
 // Of those of `members` that are recorded or simulated and not excluded; each

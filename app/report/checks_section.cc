@@ -47,7 +47,8 @@ std::vector<Block> MakeChecks(const Group& group,
                {"off by, u", true},
                {"result"}},
               {CheckRow("gravity from the flights", checks.gravity),
-               CheckRow("size in the picture", checks.size)}};
+               CheckRow("size in the picture", checks.size),
+               CheckRow("restitution, at most 1", checks.restitution)}};
   // A failed check gets its explanation in plain type; what the checks could
   // have shown is small print.
   std::vector<Block> out;
@@ -66,7 +67,7 @@ std::optional<Callout> MakeChecksCallout(const Group& group,
   const std::string name = ShortName(group, groups);
   // Only a failure is worth a box on the first page.
   if (checks.Failed()) {
-    return Callout{name + ": scale, frame rate or size is wrong.",
+    return Callout{name + ": " + checks.Suspects() + " is wrong.",
                    checks.explanation, Tone::kBad};
   }
   return std::nullopt;

@@ -95,7 +95,7 @@ std::vector<Block> MakePlan(const Group& group,
 std::vector<Block> MakeChecks(const Group& group,
                               std::span<const core::Trial> trials);
 
-// For page 1: that scale, frame rate or size are wrong in all trials alike;
+// For page 1: that scale, frame rate, size or ground are wrong in all trials;
 // nothing where no check failed.
 std::optional<Callout> MakeChecksCallout(const Group& group,
                                          std::span<const Group> groups,

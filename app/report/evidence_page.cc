@@ -236,16 +236,17 @@ std::string EvidencePageName(const core::Trial& trial) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
            (c >= '0' && c <= '9') || c == '-';
   };
-  if (!trial.id.empty() &&
+  // A file name is limited to some 250 bytes.
+  constexpr std::size_t kLongest = 80;
+  if (!trial.id.empty() && trial.id.size() <= kLongest &&
       std::all_of(trial.id.begin(), trial.id.end(), plain)) {
     return trial.id + ".html";
   }
   std::string name = trial.id;
   std::replace_if(
       name.begin(), name.end(), [&](char c) { return !plain(c); }, '-');
-  // A file name is limited to some 250 bytes. What is cut off or replaced is in
-  // the digest, so that names differ where ids do.
-  constexpr std::size_t kLongest = 80;
+  // What is cut off or replaced is in the digest, so that names differ where
+  // ids do.
   return fmt::format("{}-{:016x}.html", name.substr(0, kLongest),
                      Digest(trial.id));
 }

@@ -22,6 +22,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/text/scratch_folder.h"
 #include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/unfinished.h"
@@ -33,34 +34,6 @@ namespace fs = std::filesystem;
 
 // A browser that takes longer for one page hangs.
 constexpr std::chrono::seconds kLimit{120};
-
-// A folder for the browser's profile, page and messages, gone with it. With a
-// profile of its own the browser runs beside the one that the user has open.
-class Scratch {
- public:
-  Scratch() {
-    std::string name =
-        (fs::temp_directory_path() / "touchdown-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw core::OutputError(
-          fmt::format("{}: no folder for the browser can be made there",
-                      fs::temp_directory_path().string()));
-    }
-    path_ = name;
-    unfinished_ = std::make_unique<core::Unfinished>(path_);
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  std::unique_ptr<core::Unfinished> unfinished_;  // gone with a Ctrl-C, too
-};
 
 // The absolute path as a file:// address. Bytes that are no plain letters are
 // written as %XX: a "#" or "?" in the name of a folder would end the path.
@@ -164,7 +137,7 @@ std::string LastLine(const fs::path& log) {
 }  // namespace
 
 void PrintPdf(const fs::path& page, const fs::path& pdf) {
-  const Scratch scratch;
+  const pipeline::ScratchFolder scratch;
   const fs::path printed = scratch.path() / "page.pdf";
   pid_t child = -1;
   bool started = false;

@@ -143,8 +143,8 @@ std::string Agrees(const Group& group) {
 }
 
 // The answer to "May I rely on it?", by the worst thing that is known:
-// simulated, scale or frame rate wrong, labels reversed, no one boundary; only
-// then yes.
+// simulated, scale, frame rate or ground line wrong, labels reversed, no one
+// boundary; only then yes.
 std::string MayRely(const Group& group, std::span<const core::Trial> trials) {
   if (group.simulated()) {
     return "Not for anything real: the pictures were rendered, to test the "
@@ -152,7 +152,7 @@ std::string MayRely(const Group& group, std::span<const core::Trial> trials) {
   }
   const CampaignChecks checks = CheckCampaign(group.members, trials);
   if (checks.Failed()) {
-    return "No: scale, frame rate or size is wrong, see the box below.";
+    return "No: " + checks.Suspects() + " is wrong, see the box below.";
   }
   if (group.study.posterior.status == DataStatus::kReversed) {
     return "No: " + StatusSentence(group.study);

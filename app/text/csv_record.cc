@@ -2,18 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <istream>
+#include <iterator>
 #include <string_view>
 
 #include "touchdown/core/errors.h"
 
 namespace touchdown::report {
 
-// The mark is the three bytes EF BB BF. Only the first is looked at: no name of
-// a column that this program reads begins with it.
+// The mark is the three bytes EF BB BF. What begins otherwise is part of the
+// first column's name, and is put back.
 void SkipByteOrderMark(std::istream& in) {
-  if (in.peek() == 0xef) in.ignore(3);
+  constexpr int kMark[] = {0xef, 0xbb, 0xbf};
+  std::size_t seen = 0;
+  while (seen < std::size(kMark) && in.peek() == kMark[seen]) {
+    in.get();
+    ++seen;
+  }
+  for (; seen > 0 && seen < std::size(kMark); --seen) in.unget();
 }
 
 // Reads one character at a time, in one of two states: inside quotes, where

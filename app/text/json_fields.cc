@@ -157,7 +157,14 @@ bool ReadFlag(const Json& json, const std::string& name) {
 std::int64_t ReadInteger(const Json& json, const std::string& name) {
   const Json& field = Field(json, name);
   // A number with a fraction is refused instead of being cut off.
-  if (!field.is_number_integer()) WrongField(name, "a whole number");
+  // One above the largest std::int64_t would come out negative.
+  const bool too_large =
+      field.is_number_unsigned() &&
+      field.get<std::uint64_t>() >
+          std::uint64_t{std::numeric_limits<std::int64_t>::max()};
+  if (!field.is_number_integer() || too_large) {
+    WrongField(name, "a whole number below 2^63");
+  }
   return field.get<std::int64_t>();
 }
 

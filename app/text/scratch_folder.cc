@@ -12,12 +12,14 @@
 namespace touchdown::pipeline {
 
 ScratchFolder::ScratchFolder() {
-  // Where TMPDIR names no folder, temp_directory_path() gives an empty path,
-  // and the folder is made in the current one.
-  std::error_code ignored;
-  std::string name =
-      (std::filesystem::temp_directory_path(ignored) / "touchdown-XXXXXX")
-          .string();
+  std::error_code trouble;
+  const auto folder = std::filesystem::temp_directory_path(trouble);
+  if (trouble) {
+    throw core::OutputError("TMPDIR: no temporary folder is there (" +
+                            trouble.message() +
+                            "); let it name a folder, or unset it");
+  }
+  std::string name = (folder / "touchdown-XXXXXX").string();
   // mkdtemp() makes a new folder that only this user can enter: two commands at
   // the same time never share one. It writes the name over the X's.
   if (mkdtemp(name.data()) == nullptr) {

@@ -93,6 +93,29 @@ TEST(CampaignChecks, AScaleFromTheBodyIsCheckedByGravityAlone) {
   EXPECT_THAT(checks.explanation, HasSubstr("times the stated size"));
 }
 
+// The scale is in both speeds alike: what makes every rebound faster than the
+// approach is the line, and nothing else may be blamed.
+TEST(CampaignChecks, RestitutionAboveOneAccusesTheGroundLineAlone) {
+  auto trials = Trials({});
+  for (core::Trial& trial : trials) {
+    trial.first.motion.restitution = core::Estimate{1.08, 0.02, {}};
+  }
+  const auto checks = Checked(trials);
+  EXPECT_THAT(checks.explanation, HasSubstr("a ground line"));
+  EXPECT_EQ(checks.Suspects(), "the ground line");
+  EXPECT_EQ(Checked(Trials({.gravity = 1.03, .size = 1.03})).Suspects(),
+            "scale, frame rate or size");
+  EXPECT_EQ(Checked(Trials({})).Suspects(), "");
+}
+
+TEST(CampaignChecks, ADocumentWithoutAScaleIsNoMissingDocument) {
+  auto trials = Trials({});
+  for (core::Trial& trial : trials) trial.document_json = "{}";
+  const auto checks = Checked(trials);
+  ASSERT_FALSE(checks.size);
+  EXPECT_THAT(checks.size.error().reason, HasSubstr("holds no scale"));
+}
+
 TEST(CampaignChecks, WhereNothingCanShowItSaysSo) {
   const auto checks =
       Checked(Trials({.gravity = 0, .scale_from = "body_size"}));

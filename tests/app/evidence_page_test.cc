@@ -114,6 +114,8 @@ TEST(EvidencePage, NamesAreFileNamesAndDiffer) {
   core::Trial longest;
   longest.id = std::string(10'000, '_');
   EXPECT_LT(EvidencePageName(longest).size(), 200u);
+  longest.id = std::string(10'000, 'a');
+  EXPECT_LT(EvidencePageName(longest).size(), 200u);
 }
 
 TEST(EvidencePage, APictureLiesInsideThePage) {
