@@ -11,7 +11,6 @@
 #include "app/measure/answer_check.h"
 #include "app/measure/body_size.h"
 #include "app/measure/check_options.h"
-#include "app/measure/choose_ground.h"
 #include "app/measure/clip_calibration.h"
 #include "app/measure/footage.h"
 #include "app/measure/journal.h"
@@ -24,6 +23,7 @@
 #include "app/text/version.h"
 #include "touchdown/calib/ground_lines.h"
 #include "touchdown/vision/background/background.h"
+#include "touchdown/vision/contact/supported_path.h"
 #include "touchdown/vision/detection/frame_store.h"
 #include "touchdown/vision/explanation/explained_change.h"
 #include "touchdown/vision/footage/clip_digest.h"
@@ -40,10 +40,24 @@ double Since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// One clip, whose options and calibration were checked, to one Analysis. Data
-// flow in one direction: the track comes from the pixels, the ground from the
-// track and the still picture, the refined track from the pixels again, and all
-// else from the refined track.
+// A line that was tried as the ground, with all that follows from it.
+struct Judged {
+  calib::GroundLine ground;
+  vision::Track track;  // refined with this ground
+  vision::PlaneTrack plane;
+  vision::ContactResult contacts;
+};
+
+// How well a line serves as the ground of this track; more is better.
+int Merit(const vision::ContactResult& result) {
+  if (!result.ground_refuted.empty()) return 0;
+  if (!result.first.contact.found) return 1;
+  return 2;
+}
+
+// One clip, whose options and calibration were checked, to one Analysis: the
+// track from the pixels, the ground from the still picture and the track, the
+// refined track from the pixels again, and all else from the refined track.
 class Analyzer {
  public:
   Analyzer(Footage footage, const ClipCalibration& camera,
@@ -64,11 +78,12 @@ class Analyzer {
   }
   // The scale, the body's size and what hangs on them, from a track.
   void TakeSize(const vision::Track& track);
-  std::vector<calib::GroundLine> FindVisibleLines() const;
-  void MeasureContacts(const calib::GroundLine& ground,
-                       const vision::Track& track);
+  Judged Judge(const calib::GroundLine& ground, const vision::Track& track);
   void MeasureExplained();
   void JudgeSeveralBodies();
+  std::optional<Judged> JudgeBest(
+      const std::vector<calib::GroundLine>& candidates,
+      const vision::Track& track);
   void FindGroundAndContacts(vision::Track track);
   void DescribeScene();
   // How what need not be waited for is done.
@@ -108,82 +123,160 @@ void Analyzer::TakeSize(const vision::Track& track) {
   contact_options_ = MakeContactOptions(options_, camera_, result_.scale);
 }
 
-// Straight edges of the still picture, the likeliest ground first.
-std::vector<calib::GroundLine> Analyzer::FindVisibleLines() const {
-  // The background's own noise: that of a frame over the square root of the
-  // frames averaged.
-  const calib::StillImage still{background_.level.data(), background_.width_px,
-                                background_.height_px,
-                                std::sqrt(background_.UsualVariance() / 8.0)};
-  calib::GroundLineOptions options;
-  options.lens = camera_.lens;
-  options.threads = options_.decoder_threads;
-  return calib::FindGroundLines(still, options);
-}
-
-// The one look at the pixels near the ground, and the contacts on it.
-void Analyzer::MeasureContacts(const calib::GroundLine& ground,
-                               const vision::Track& track) {
+// Tries a line. Only the refined track can tell whether it serves: rough
+// outlines beside a line, or behind an obstacle, refute true grounds (one of
+// 153 recordings, of which the contact points then gave a line 1.3 deg off).
+Judged Analyzer::Judge(const calib::GroundLine& ground,
+                       const vision::Track& track) {
+  clip_->cancellation().Check();
+  Judged judged;
+  judged.ground = ground;
   calib::GroundLine in_image = ground;
   if (camera_.lens) {
     in_image = SeenGroundLine(SeenInPlane(camera_, Seen(track), ground),
                               *camera_.lens);
   }
-  result_.ground = ground;
-  result_.track = vision::Refine(*clip_, background_, track,
-                                 {in_image, aspect_, options_.decoder_threads});
+  judged.track = vision::Refine(*clip_, background_, track,
+                                {in_image, aspect_, options_.decoder_threads});
   // To give a large mapped file's pages back takes milliseconds: beside the
-  // rest.
+  // rest. Mostly no other line is tried.
   given_back_ =
       std::async(AsyncPolicy(), [clip = clip_.get()] { clip->HasRead(); });
-  TakeSize(*result_.track);
-  result_.plane = SeenInPlane(
-      camera_, WithStatedSize(Seen(*result_.track), options_), ground);
-  result_.contacts = FindPlaneContacts(*result_.plane, contact_options_);
+  TakeSize(judged.track);
+  judged.plane = SeenInPlane(
+      camera_, WithStatedSize(Seen(judged.track), options_), ground);
+  judged.contacts = FindPlaneContacts(judged.plane, contact_options_);
+  return judged;
 }
 
-// A ground that was given or calibrated is taken as it is, also where the path
-// refutes it: then the user is told. Else the picture and the path tell.
+// The one that serves best as the ground of this track; nothing of none.
+std::optional<Judged> Analyzer::JudgeBest(
+    const std::vector<calib::GroundLine>& candidates,
+    const vision::Track& track) {
+  // A first judgement by the track as it is; only the likely ones are worth
+  // fitting every outline again.
+  const vision::Track seen = Seen(track);
+  std::vector<std::pair<int, calib::GroundLine>> ranked;
+  for (const calib::GroundLine& candidate : candidates) {
+    if (!camera_.ideal_ground &&
+        PassesThroughGround(SeenInPlane(camera_, seen, candidate))) {
+      continue;
+    }
+    ranked.emplace_back(
+        candidates.size() == 1
+            ? 0
+            : Merit(FindPlaneContacts(SeenInPlane(camera_, seen, candidate),
+                                      contact_options_)),
+        candidate);
+  }
+  std::stable_sort(
+      ranked.begin(), ranked.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::optional<Judged> best;
+  int best_merit = -1;
+  for (const auto& [expected, candidate] : ranked) {
+    if (expected <= best_merit) break;
+    Judged judged = Judge(candidate, track);
+    const int merit = Merit(judged.contacts);
+    if (merit > best_merit) {
+      best_merit = merit;
+      best = std::move(judged);
+    }
+    if (merit == 2) break;
+  }
+  return best;
+}
+
 void Analyzer::FindGroundAndContacts(vision::Track track) {
   clip_->cancellation().Enter("the ground is looked for");
-  GroundChoice choice;
-  choice.line = camera_.ideal_ground;
-  if (!choice.line) {
-    const std::vector<calib::GroundLine> visible = FindVisibleLines();
-    choice = ChooseGround(visible, camera_, Seen(track), contact_options_);
-    if (track.step > 1 && !choice.serves) {
-      // What else there is to try needs all of the track.
-      track = vision::FitEveryFrame(*clip_, background_, track, track_options_);
-      choice = ChooseGround(visible, camera_, Seen(track), contact_options_);
+  std::vector<calib::GroundLine> candidates;
+  if (camera_.ideal_ground) {
+    candidates.push_back(*camera_.ideal_ground);
+  } else {
+    // The background's own noise: that of a frame over the square root of the
+    // frames averaged.
+    const calib::StillImage still{background_.level.data(),
+                                  background_.width_px, background_.height_px,
+                                  std::sqrt(background_.UsualVariance() / 8.0)};
+    calib::GroundLineOptions line_options;
+    line_options.lens = camera_.lens;
+    line_options.threads = options_.decoder_threads;
+    candidates = calib::FindGroundLines(still, line_options);
+  }
+  const auto merit_of = [](const std::optional<Judged>& judged) {
+    return judged ? Merit(judged->contacts) : -1;
+  };
+  // First what the picture shows, by every few frames; then by all of them.
+  std::optional<Judged> best = JudgeBest(candidates, track);
+  if (!camera_.ideal_ground && track.step > 1 && merit_of(best) < 2) {
+    // What else there is to try needs all of the track.
+    track = vision::FitEveryFrame(*clip_, background_, track, track_options_);
+    best = JudgeBest(candidates, track);
+  }
+  int best_merit = merit_of(best);
+  const vision::Track seen = Seen(track);
+  // A visible edge need not be the contact line: where none agrees with the
+  // track, the lowest points at the contacts tell.
+  if (!camera_.ideal_ground &&
+      (best_merit < 2 || IsAtTheEnd(best->contacts.first.contact, seen))) {
+    if (const auto from_path = vision::GroundFromPath(seen)) {
+      Judged judged = Judge(*from_path, track);
+      if (judged.contacts.first.contact.from_start) {
+        result_.warnings.emplace_back(
+            "no visible edge is the ground; the body moves along it all the "
+            "time, and its path tells where it is");
+        best = std::move(judged);
+        best_merit = 2;
+      }
     }
   }
-  result_.warnings.insert(result_.warnings.end(), choice.warnings.begin(),
-                          choice.warnings.end());
-  if (!choice.line) {
-    TakeSize(track);
+  if (!camera_.ideal_ground && best_merit < 1) {
+    if (const auto from_contacts = vision::GroundFromContacts(seen)) {
+      Judged judged = Judge(*from_contacts, track);
+      if (judged.contacts.first.contact.found) {
+        if (best) {
+          result_.warnings.push_back(
+              fmt::format("the visible edge is not the ground ({}); the "
+                          "contact points tell where it is",
+                          best->contacts.ground_refuted));
+        } else if (!candidates.empty()) {
+          result_.warnings.emplace_back(
+              "no visible edge is the ground (the body passes below each); the "
+              "contact points tell where it is");
+        }
+        best = std::move(judged);
+        best_merit = 2;
+      }
+    }
+  }
+  TakeSize(best ? best->track : track);
+  if (!best) {
     result_.no_ground_reason =
         "no straight edge was found that the body stays above, and it shows no "
         "rebound; give --ground X1,Y1,X2,Y2";
     result_.contacts.first.contact.reason = "the ground is not known";
     result_.contacts.first.state.reason = "the ground is not known";
-    result_.track = std::move(track);
+    result_.plane = std::nullopt;
+    result_.track = track;
     return;
   }
-  MeasureContacts(*choice.line, track);
-  const std::string& refuted = result_.contacts.ground_refuted;
-  if (!refuted.empty() && camera_.ideal_ground) {
+  if (best_merit == 0 && camera_.ideal_ground) {
     result_.warnings.push_back(
-        "ground: " + refuted +
+        "ground: " + best->contacts.ground_refuted +
         (options_.ground ? "; check --ground" : "; calibrate it again"));
-  } else if (!refuted.empty()) {
-    result_.no_ground_reason = refuted;
+  } else if (best_merit == 0) {
+    result_.no_ground_reason = best->contacts.ground_refuted;
   }
-  if (choice.line->source == calib::GroundSource::kDetected &&
-      IsAtTheEnd(result_.contacts.first.contact, Seen(track))) {
+  if (best->ground.source == calib::GroundSource::kDetected &&
+      IsAtTheEnd(best->contacts.first.contact, seen)) {
     result_.warnings.emplace_back(
         "no frame shows the body after it met the line, which was found in the "
         "picture: whether that is the ground is not known; give --ground");
   }
+  result_.ground = best->ground;
+  result_.track = std::move(best->track);
+  result_.plane = std::move(best->plane);
+  result_.contacts = std::move(best->contacts);
 }
 
 // The clip compared with what the track says that it shows.
