@@ -46,7 +46,7 @@ struct SessionFile {
 // FILE.session.json
 std::filesystem::path SessionPath(const std::filesystem::path& store);
 
-// touchdown.session/1; appears whole. Throws core::InputError.
+// touchdown.session/1; appears whole. Throws core::OutputError.
 void WriteSession(const std::filesystem::path& store,
                   const SessionFile& session);
 // Nothing where there is none, or it cannot be understood.
