@@ -27,7 +27,7 @@ constexpr std::size_t kShownId = 8;  // of a trial's id: enough to find it by
 std::vector<std::string> ReadWarnings(const core::Trial& trial) {
   std::vector<std::string> warnings;
   const auto document = report::StoredDocument(trial);
-  for (const auto& warning : report::EvaluateSpline(document, {"warnings"})) {
+  for (const auto& warning : report::FindValue(document, {"warnings"})) {
     if (warning.is_string()) warnings.push_back(warning);
   }
   return warnings;

@@ -23,9 +23,9 @@ constexpr double kOutline_px = 0.1;
 
 std::optional<core::Estimate> FindEstimate(
     const nlohmann::json& json, std::initializer_list<const char*> path) {
-  const nlohmann::json& at = EvaluateSpline(json, path);
-  const nlohmann::json& value = EvaluateSpline(at, {"value"});
-  const nlohmann::json& u = EvaluateSpline(at, {"u"});
+  const nlohmann::json& at = FindValue(json, path);
+  const nlohmann::json& value = FindValue(at, {"value"});
+  const nlohmann::json& u = FindValue(at, {"u"});
   if (!value.is_number() || !u.is_number() || !(value.get<double>() > 0.0)) {
     return std::nullopt;
   }
@@ -38,7 +38,7 @@ core::Measured SizeRatio(const nlohmann::json& json,
   if (scale_of_body) {
     return core::AbsentBecause("the scale is from the body's own size");
   }
-  if (!EvaluateSpline(json, {"calibration", "lens_rms_px"}).is_null()) {
+  if (!FindValue(json, {"calibration", "lens_rms_px"}).is_null()) {
     return core::AbsentBecause(
         "the size in the picture is not free of the lens");
   }
@@ -142,9 +142,8 @@ TrialRatios ReadRatios(const core::Trial& trial) {
                   core::AbsentBecause("no document")};
   const nlohmann::json json = StoredDocument(trial);
   const auto scale = FindEstimate(json, {"scale", "px_per_m"});
-  out.scale_of_body = EvaluateSpline(json, {"scale", "source"}) == "body_size";
-  if (const nlohmann::json& fps =
-          EvaluateSpline(json, {"clip", "time_base", "fps"});
+  out.scale_of_body = FindValue(json, {"scale", "source"}) == "body_size";
+  if (const nlohmann::json& fps = FindValue(json, {"clip", "time_base", "fps"});
       fps.is_number()) {
     out.fps = fps.get<double>();
   }

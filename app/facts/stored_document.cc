@@ -8,8 +8,8 @@ nlohmann::json StoredDocument(const core::Trial& trial) {
   return document;
 }
 
-const nlohmann::json& EvaluateSpline(const nlohmann::json& document,
-                                     std::initializer_list<const char*> path) {
+const nlohmann::json& FindValue(const nlohmann::json& document,
+                                std::initializer_list<const char*> path) {
   static const nlohmann::json none;
   const nlohmann::json* at = &document;
   for (const char* name : path) {
