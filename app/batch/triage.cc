@@ -13,6 +13,7 @@
 #include "app/text/format.h"
 #include "app/text/text.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/identity.h"
 #include "touchdown/db/records.h"
 
 namespace touchdown::pipeline {
@@ -20,8 +21,6 @@ namespace {
 
 using core::kDegree;
 using nlohmann::ordered_json;
-
-constexpr std::size_t kShownId = 8;  // of a trial's id: enough to find it by
 
 // The warnings of the analysis, from its document.
 std::vector<std::string> ReadWarnings(const core::Trial& trial) {
@@ -86,8 +85,8 @@ std::string ProposalSentence(const core::Trial& trial,
       "Accept it with `touchdown correct {} --accept {} --by NAME --why "
       "REASON`",
       words(trial), proposal.recorded_at_utc, words(proposal), differences,
-      differences == 1 ? "" : "s", trial.id.substr(0, kShownId),
-      trial.id.substr(0, kShownId), proposal.revision);
+      differences == 1 ? "" : "s", db::ShortId(trial.id), db::ShortId(trial.id),
+      proposal.revision);
 }
 
 TriageEntry MakeTriageEntry(const std::string& clip, Done done,

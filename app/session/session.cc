@@ -20,6 +20,7 @@
 #include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/identity.h"
 #include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 #include "touchdown/vision/footage/clip_digest.h"
@@ -55,10 +56,6 @@ std::string SomePictures(const fs::path& recording) {
   }
   return bytes;
 }
-
-// Returns the beginning of a trial's id, which is enough to find it by
-// (db::Store::Find).
-std::string Short(const std::string& id) { return id.substr(0, 8); }
 
 }  // namespace
 
@@ -335,7 +332,7 @@ void Session::Take(const fs::path& recording) {
     const std::string id = vision::ClipId(recording);
     if (const auto known = KnownAs(id)) {
       Say(fmt::format("{}: known, trial {}", recording.filename().string(),
-                      Short(*known)));
+                      db::ShortId(*known)));
       return;
     }
     file_.phase = Phase::kAnalysing;
@@ -506,7 +503,7 @@ void Session::Answer(const core::Trial& trial, double seconds_since_written,
   if (trial.set_angle_rad && !is_check) {
     text += fmt::format(" (set {:.2f})", *trial.set_angle_rad / kDegree);
   }
-  Say(fmt::format("trial {}: {}", Short(trial.id), text));
+  Say(fmt::format("trial {}: {}", db::ShortId(trial.id), text));
   if (is_check) Say("  " + trial.reason);
   if (!entry.reason.empty()) Say("  look at    " + entry.reason);
   Say(fmt::format("  {}, by {}, {:.1f} s after its last byte",

@@ -196,7 +196,7 @@ void Session::Exclude(const std::string& why) {
   const core::Trial& last = RequireLast();
   store_.Exclude(last.id, options_.operator_name, why);
   acts_.push_back({Act::kExcluded, last.id});
-  Say(fmt::format("trial {} no longer counts: {}", last.id.substr(0, 8), why));
+  Say(fmt::format("trial {} no longer counts: {}", db::ShortId(last.id), why));
   Plan();
   SayPlan();
 }
@@ -206,7 +206,7 @@ void Session::Include(const std::string& why) {
   const core::Trial& last = RequireLast();
   store_.Include(last.id, options_.operator_name, why);
   acts_.push_back({Act::kIncluded, last.id});
-  Say(fmt::format("trial {} counts again: {}", last.id.substr(0, 8), why));
+  Say(fmt::format("trial {} counts again: {}", db::ShortId(last.id), why));
   Plan();
   SayPlan();
 }
@@ -226,7 +226,7 @@ void Session::Undo() {
   // back.
   acts_.pop_back();
   Say(fmt::format(
-      "trial {} {}", act.trial.substr(0, 8),
+      "trial {} {}", db::ShortId(act.trial),
       act.kind == Act::kExcluded ? "counts again" : "no longer counts"));
   Plan();
   SayPlan();
