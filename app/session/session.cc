@@ -479,16 +479,18 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
 }
 
 // Returns the launch speed that the planned setting predicts, m/s: the
-// set-point of the speed is that at the muzzle. 0 where the rig predicts none.
-double Session::LaunchSpeedOfPlan() const {
+// set-point of the speed is that at the muzzle. Nothing where the rig predicts
+// none.
+std::optional<double> Session::LaunchSpeedOfPlan() const {
   const auto muzzle =
       rig::LaunchSpeed(rig::MakeLaunch(thrower_.rig, setting_->elevation_rad),
                        setting_->compression_m);
-  return muzzle ? muzzle->speed_mps : 0.0;
+  if (!muzzle) return std::nullopt;
+  return muzzle->speed_mps;
 }
 
 // Says what a trial is: state, angle and set-point, why to look at it, and how
-// long the answer took. The first line is kept in the session's file as well.
+// long the answer took. Its id is kept in the session's file as well.
 void Session::Answer(const core::Trial& trial, double seconds_since_written,
                      bool is_check) {
   const auto entry = pipeline::MakeTriageEntry(trial.clip.path,

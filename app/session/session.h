@@ -103,7 +103,7 @@ class Session {
   void Plan();
   void PlanAngle();  // file_.angle_rad
   double AngleBesides() const;
-  double LaunchSpeedOfPlan() const;
+  std::optional<double> LaunchSpeedOfPlan() const;
   // Of the shot that is logged now.
   core::Conditions ConditionsNow(bool belongs, bool is_check) const;
   bool Belongs(const std::filesystem::path& recording) const;
