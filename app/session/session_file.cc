@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -103,10 +104,10 @@ std::optional<SessionFile> ReadSession(const fs::path& store) {
     out.campaign = document.at("campaign");
     out.operator_name = document.at("operator");
     const std::string phase = document.at("phase");
-    // A phase that is unknown leaves the default: conventions are shown again.
-    for (const Phase one : kPhases) {
-      if (Name(one) == phase) out.phase = one;
-    }
+    const auto known =
+        std::ranges::find(kPhases, phase, [](Phase one) { return Name(one); });
+    if (known == kPhases.end()) return std::nullopt;
+    out.phase = *known;
     const auto& shot = document.at("shot");
     if (shot.is_object()) {
       out.planned = true;
