@@ -222,6 +222,12 @@ TEST_F(SessionTest, TheDailyCheckShotIsAskedForComparedAndLogged) {
   EXPECT_THAT(Take(bench_.Drop("high.mraw", 0.4)), HasSubstr("DOES NOT AGREE"));
   EXPECT_THAT(Obey("check"), HasSubstr("check shot: drop"));
   EXPECT_THAT(Obey("skip no time"), HasSubstr("skipped: no time"));
+  // Why is on record; the plan is as it was.
+  const auto events = db::PlanEvents(*store_, "asphalt");
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().reason, "check shot skipped: no time");
+  EXPECT_EQ(events.back().author, "A. Lee");
+  EXPECT_EQ(events.back().plan, db::Plan{});
   EXPECT_EQ(session_->phase(), Phase::kShot);
 }
 
