@@ -173,7 +173,7 @@ void Session::Plan() {
   file_.planned = true;
   file_.trials_before = CountTrials();
   const report::Group group = Now();
-  file_.boundary =
+  boundary_ =
       fmt::format("{} ({} stayed down, {} bounced, {} undecided, {} left out)",
                   report::BoundarySentence(group.study),
                   group.study.counts.not_bounce, group.study.counts.bounce,
@@ -336,7 +336,6 @@ void Session::Take(const fs::path& recording) {
       return;
     }
     file_.phase = Phase::kAnalysing;
-    file_.recording = recording.string();
     Save();
     Log(recording, id);
   } catch (const core::StoreError&) {
@@ -350,7 +349,6 @@ void Session::Take(const fs::path& recording) {
     // A recording that cannot be analysed leaves the plan as it is: the
     // technician throws the same shot again.
     file_.phase = waiting;
-    file_.recording.clear();
     Save();
   }
 }
@@ -425,7 +423,6 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   note_.clear();
   last_ = LastTaken{trial.clip.path, trial.clip.size_bytes, pictures, trial};
   acts_.push_back({Act::kLogged, trial.id});
-  file_.recording.clear();
   // A shot was made: what was skipped before it may be asked for again.
   skipped_rad_.clear();
   if (is_check) check_wanted_ = false;
@@ -437,7 +434,7 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   }
   Plan();
   if (!is_check) {
-    Say("  boundary   " + file_.boundary);
+    Say("  boundary   " + boundary_);
     // The boundary was shown: that is a look at the answer, and goes on record.
     db::RecordLook(store_, campaign_.name, "session");
   }
@@ -511,7 +508,7 @@ void Session::Answer(const core::Trial& trial, double seconds_since_written,
   Say(fmt::format("  {}, by {}, {:.1f} s after its last byte",
                   fs::path(trial.clip.path).filename().string(), trial.author,
                   seconds_since_written));
-  file_.last = {{"trial", trial.id}, {"text", text}, {"is_check", is_check}};
+  file_.last = {{"trial", trial.id}};
 }
 
 }  // namespace touchdown::session

@@ -145,6 +145,7 @@ class Session {
   std::vector<std::string> plan_lines_;  // as they were said
   std::set<double> skipped_rad_;         // since the last shot
   bool check_skipped_ = false;
+  std::string boundary_;                 // in a sentence
   bool check_wanted_ = false;  // beyond the daily one
   std::optional<LastTaken> last_;
   std::vector<Act> acts_;

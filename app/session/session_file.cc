@@ -67,9 +67,6 @@ void WriteSession(const fs::path& store, const SessionFile& session) {
   out["campaign"] = session.campaign;
   out["operator"] = session.operator_name;
   out["phase"] = Name(session.phase);
-  out["recording"] = session.recording.empty()
-                         ? ordered_json()
-                         : ordered_json(session.recording);
   // The angle stands twice: in degrees for people and other programs, and in
   // radians so that it is read back as the same number.
   out["shot"] = ordered_json();
@@ -82,9 +79,7 @@ void WriteSession(const fs::path& store, const SessionFile& session) {
                    {"set_points", session.set_points}};
   }
   out["last"] = session.last;
-  out["boundary"] = session.boundary;
   out["written_at_utc"] = db::UtcStamp(std::chrono::system_clock::now());
-  out["process"] = getpid();
   // A file's name need not be UTF-8.
   report::WriteTextFile(
       SessionPath(store),
