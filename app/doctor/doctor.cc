@@ -135,9 +135,7 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
     // server's, is ahead of this machine's. One that lags is not noticed.
     const auto ahead =
         of_newest.written - std::chrono::file_clock::from_sys(options.now);
-    // Clocks of two machines that are set by the same network agree to seconds.
-    constexpr std::chrono::minutes kAgree{2};
-    if (ahead > kAgree) {
+    if (ahead > kClocksAgree) {
       findings.push_back(
           {"camera clock", Health::kNote,
            fmt::format("{} is dated {} minutes after now",

@@ -286,11 +286,21 @@ void Session::SayPlan() const {
   for (const std::string& line : plan_lines_) Say(line);
 }
 
-// Says whether the shot was made after its set-points were shown. A camera
-// whose clock is behind loses its set-points that way.
-bool Session::Belongs(const fs::path& recording) const {
-  return file_.planned &&
-         WrittenAt_s(recording) >= file_.planned_at_s - kFileClock_s;
+// Returns why the shot is not the planned one: nothing where it was made after
+// its set-points were shown and before now. A camera whose clock is behind
+// loses its set-points that way, and so does one whose clock is far ahead, by
+// which any recording would be of the plan.
+std::optional<std::string> Session::FindWhyNotPlanned(
+    const fs::path& recording) const {
+  const double written_s = WrittenAt_s(recording);
+  if (!file_.planned || written_s < file_.planned_at_s - kFileClock_s) {
+    return "recorded before these set-points were shown";
+  }
+  const std::chrono::duration<double> agree = pipeline::kClocksAgree;
+  if (written_s > ends_.now_s() + agree.count()) {
+    return "dated after now: the clock of the camera is ahead";
+  }
+  return std::nullopt;
 }
 
 // Returns the trial that this campaign, or its check shots, have of the
@@ -357,7 +367,8 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   RequireSameConventions();
   // Set-points and campaign depend on whether it belongs to the plan: a
   // recording from before a check shot was asked for is an ordinary shot.
-  const bool belongs = Belongs(recording);
+  const std::optional<std::string> not_planned = FindWhyNotPlanned(recording);
+  const bool belongs = !not_planned;
   const bool is_check = belongs && file_.is_check;
   if (is_check && !store_.FindCampaign(check_campaign_->name)) {
     store_.AddCampaign(*check_campaign_);
@@ -416,7 +427,7 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     trial.set_angle_rad = file_.angle_rad;
     if (setting_) trial.set_speed_mps = LaunchSpeedOfPlan();
   }
-  if (!grown) trial.conditions = ConditionsNow(belongs, is_check);
+  if (!grown) trial.conditions = ConditionsNow(not_planned, is_check);
   // From here on the trial is on the disk: what fails below loses a line or a
   // picture and no trial.
   trial.id = store_.LogTrial(trial).id;
@@ -430,7 +441,7 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   // The picture comes after the answer, for which a person is waiting.
   if (ends_.keep_picture) ends_.keep_picture(trial);
   if (!belongs) {
-    Say("  (recorded before these set-points were shown: logged without them)");
+    Say(fmt::format("  ({}: logged without set-points)", *not_planned));
   }
   Plan();
   if (!is_check) {
@@ -444,7 +455,8 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
 // Returns the conditions of the shot that is being logged. The rig's settings
 // are those that the controller read back, else those that were asked for;
 // absent, with the reason, where the shot is not of this plan.
-core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
+core::Conditions Session::ConditionsNow(
+    const std::optional<std::string>& not_planned, bool is_check) const {
   core::Conditions now = options_.conditions;
   now.note = note_;
   // The operator's name refers to the register where it has an entry.
@@ -453,7 +465,7 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
                                       options_.operator_name);
     if (person) now.person = {person->name, person->id};
   }
-  if (belongs && !is_check && setting_) {
+  if (!not_planned && !is_check && setting_) {
     const rig::Setting& set = read_ ? *read_ : *setting_;
     const rig::Description& rig = thrower_.rig;
     now.elevation_rad =
@@ -464,9 +476,9 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
                                          rig.u_muzzle_height_m, std::nullopt};
     return now;
   }
-  const char* const why = is_check
-                              ? "dropped, not thrown"
-                              : "recorded before these set-points were shown";
+  const std::string why =
+      is_check ? "dropped, not thrown"
+               : not_planned.value_or("the rig cannot throw this angle");
   for (core::Measured* set :
        {&now.elevation_rad, &now.compression_m, &now.muzzle_height_m}) {
     // A setting that --condition stated stays.

@@ -42,6 +42,11 @@ struct Extent {
   friend bool operator==(const Extent&, const Extent&) = default;
 };
 
+// How far the clocks of two machines may be apart that are set by the same
+// network: they agree to seconds. Smaller calls a camera's clock ahead that is
+// not, larger misses one that is. Not studied.
+inline constexpr std::chrono::minutes kClocksAgree{2};
+
 // Of a recording that may be growing, or vanish, at this moment: what cannot be
 // seen counts nothing.
 Extent MeasureExtent(const std::filesystem::path& recording);

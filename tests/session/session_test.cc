@@ -301,8 +301,26 @@ TEST_F(SessionTest, GoesOnWhereItWas) {
         bench_.films() / file,
         std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   }
-  EXPECT_THAT(Take(old), HasSubstr("logged without them"));
+  EXPECT_THAT(Take(old), HasSubstr("shown: logged without set-points"));
   EXPECT_FALSE(Trials()[2].set_angle_rad);
+}
+
+// By a clock that is ahead, each recording seems to be of the plan.
+TEST_F(SessionTest, ARecordingFromTheFutureHasNoSetPoints) {
+  Begin();
+  Obey("");
+  const auto ahead = bench_.Film("a.mraw", 24.0, 1);
+  for (const char* file : {"a.mraw", "a.cihx"}) {
+    std::filesystem::last_write_time(
+        bench_.films() / file,
+        std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
+  }
+  EXPECT_THAT(Take(ahead), HasSubstr("camera is ahead: logged without"));
+  ASSERT_EQ(Trials().size(), 1u);
+  EXPECT_FALSE(Trials()[0].set_angle_rad);
+  EXPECT_FALSE(Trials()[0].set_speed_mps);
+  EXPECT_THAT(Trials()[0].conditions->elevation_rad.error().reason,
+              HasSubstr("clock of the camera is ahead"));
 }
 
 TEST_F(SessionTest, WhatCannotBeAnalysedIsSaidAndTheShotStays) {
