@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -39,7 +40,7 @@ struct Extent {
   std::filesystem::file_time_type written =
       std::filesystem::file_time_type::min();
 
-  friend bool operator==(const Extent&, const Extent&) = default;
+  friend auto operator<=>(const Extent&, const Extent&) = default;
 };
 
 // How far the clocks of two machines may be apart that are set by the same
