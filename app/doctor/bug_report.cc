@@ -16,11 +16,13 @@
 #include <set>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "app/measure/open_recording.h"
 #include "app/text/scratch_folder.h"
 #include "app/text/version.h"
 #include "app/text/zip_file.h"
+#include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/footage/clip.h"
 #include "touchdown/vision/footage/encode_image.h"
@@ -186,9 +188,8 @@ void AddFrames(const BugOptions& options, const std::string& document,
 // is passed over.
 void AddHeaders(const BugOptions& options, std::vector<BugFile>& files) {
   std::set<fs::path> headers(options.also.begin(), options.also.end());
-  for (const char* extension : {".cih", ".cihx", ".CIH", ".CIHX"}) {
-    fs::path header = options.clip;
-    headers.insert(header.replace_extension(extension));
+  for (fs::path& header : ListCameraHeaders(options.clip)) {
+    headers.insert(std::move(header));
   }
   for (const fs::path& header : headers) {
     std::error_code ignored;

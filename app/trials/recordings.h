@@ -26,6 +26,15 @@ std::vector<std::filesystem::path> FindRecordings(
 // nor one that can be read.
 bool IsRecording(const std::filesystem::path& path);
 
+// Whether `path` is `folder` or lies in it or deeper, by names alone: both must
+// be absolute and normal, or canonical where links are to be followed.
+bool IsBelow(const std::filesystem::path& path,
+             const std::filesystem::path& folder);
+
+// The camera's headers beside a recording, .cih and .cihx in either spelling.
+std::vector<std::filesystem::path> ListCameraHeaders(
+    const std::filesystem::path& recording);
+
 // The files that a recording is read from: itself, the header beside an .mraw
 // file, the images of a folder.
 std::vector<std::filesystem::path> ListFiles(
