@@ -128,12 +128,11 @@ TriageEntry MakeTriageEntry(const std::string& clip, Done done,
     entry.urgency = entry.angle_rad->u / kDegree;
   }
   if (proposal == nullptr) return entry;
-  // A proposal presses more than warnings do and less than a missing answer; in
-  // the latter case both reasons are told.
+  // A proposal presses more than warnings do and less than a missing answer;
+  // what else there is to look at is told as well.
   if (entry.attention > Attention::kProposed) {
     entry.attention = Attention::kProposed;
     entry.urgency = 0.0;
-    entry.reason.clear();
   }
   entry.reason +=
       (entry.reason.empty() ? "" : "; ") + ProposalSentence(trial, *proposal);
