@@ -166,7 +166,10 @@ std::set<std::int64_t> ChooseFrames(std::int64_t frames, int most,
 void AddFrames(const BugOptions& options, const std::string& document,
                std::vector<BugFile>& files) {
   try {
-    const auto clip = OpenRecording(options.clip);
+    // Images tell no frame rate; pictures need none.
+    vision::ClipOptions any_rate;
+    any_rate.fps = 1.0;
+    const auto clip = OpenRecording(options.clip, any_rate);
     for (const std::int64_t index : ChooseFrames(
              clip->info().frames, options.frames, ReadContactFrame(document))) {
       files.push_back({fmt::format("frames/{:06}.png", index),
