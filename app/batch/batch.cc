@@ -54,6 +54,9 @@ struct Answer {
   std::string clip_id;  // empty where it could not be read
   std::variant<Failed, Known, core::Trial> what;
   bool analysed = false;
+  // Empty until the clip's id is known: a clip that cannot even be read is not
+  // set aside.
+  SetAside::Key key = {};
 };
 
 // Runs one batch.
@@ -148,9 +151,6 @@ class Batch {
   // core::OutputError, which end the batch, and core::Cancelled.
   Answer AnswerClip(const BatchClip& clip, std::size_t index) {
     Answer answer;
-    // The key stays empty until the clip's id is known: a clip that cannot even
-    // be read is not set aside.
-    SetAside::Key key;
     try {
       AnalyzeOptions analyze = clip.options;
       const core::Campaign* campaign = nullptr;
@@ -183,7 +183,7 @@ class Batch {
           return answer;
         }
       }
-      key = {answer.clip_id, OptionsHash(analyze)};
+      answer.key = {answer.clip_id, OptionsHash(analyze)};
       // Threads and progress are set after the hash was taken: they decide no
       // answer.
       analyze.decoder_threads = decoder_threads_;
@@ -224,12 +224,18 @@ class Batch {
       throw;
     } catch (const std::exception& error) {
       // All else concerns this clip alone: the batch goes on.
-      Journal("batch: " + clip.name + " failed: " + error.what());
       answer.what = Failed{error.what()};
       const std::lock_guard lock(mutex_);
-      set_aside_.Failed(key, clip.name, error.what());
+      NoteFailure(clip, answer.key, error.what());
     }
     return answer;
+  }
+
+  // Keeps a failure for the journal and for the next start. Under the lock.
+  void NoteFailure(const BatchClip& clip, const SetAside::Key& key,
+                   const std::string& reason) {
+    Journal("batch: " + clip.name + " failed: " + reason);
+    set_aside_.Failed(key, clip.name, reason);
   }
 
   // Logs what is next in order, as far as it is there. Under the lock.
@@ -276,6 +282,7 @@ class Batch {
       return StoredEntry(clip.name, Done::kLogged, logged.id);
     } catch (const std::invalid_argument& refused) {
       entry.reason = refused.what();
+      NoteFailure(clip, answer.key, entry.reason);
       return entry;
     }
   }

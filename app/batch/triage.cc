@@ -13,6 +13,7 @@
 #include "app/text/format.h"
 #include "app/text/text.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/identity.h"
 #include "touchdown/db/records.h"
 
 namespace touchdown::pipeline {
@@ -21,13 +22,11 @@ namespace {
 using core::kDegree;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kShownId = 8;  // of a trial's id: enough to find it by
-
 // The warnings of the analysis, from its document.
 std::vector<std::string> ReadWarnings(const core::Trial& trial) {
   std::vector<std::string> warnings;
   const auto document = report::StoredDocument(trial);
-  for (const auto& warning : report::EvaluateSpline(document, {"warnings"})) {
+  for (const auto& warning : report::FindValue(document, {"warnings"})) {
     if (warning.is_string()) warnings.push_back(warning);
   }
   return warnings;
@@ -86,8 +85,8 @@ std::string ProposalSentence(const core::Trial& trial,
       "Accept it with `touchdown correct {} --accept {} --by NAME --why "
       "REASON`",
       words(trial), proposal.recorded_at_utc, words(proposal), differences,
-      differences == 1 ? "" : "s", trial.id.substr(0, kShownId),
-      trial.id.substr(0, kShownId), proposal.revision);
+      differences == 1 ? "" : "s", db::ShortId(trial.id), db::ShortId(trial.id),
+      proposal.revision);
 }
 
 TriageEntry MakeTriageEntry(const std::string& clip, Done done,
@@ -129,12 +128,11 @@ TriageEntry MakeTriageEntry(const std::string& clip, Done done,
     entry.urgency = entry.angle_rad->u / kDegree;
   }
   if (proposal == nullptr) return entry;
-  // A proposal presses more than warnings do and less than a missing answer; in
-  // the latter case both reasons are told.
+  // A proposal presses more than warnings do and less than a missing answer;
+  // what else there is to look at is told as well.
   if (entry.attention > Attention::kProposed) {
     entry.attention = Attention::kProposed;
     entry.urgency = 0.0;
-    entry.reason.clear();
   }
   entry.reason +=
       (entry.reason.empty() ? "" : "; ") + ProposalSentence(trial, *proposal);

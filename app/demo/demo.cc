@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
-#include <thread>
 
 #include "app/documents/evidence.h"
 #include "app/documents/log_analysis.h"
@@ -18,6 +16,7 @@
 #include "app/simulate/simulate.h"
 #include "app/trials/trial_selection.h"
 #include "touchdown/core/campaign.h"
+#include "touchdown/core/parallel.h"
 #include "touchdown/core/units.h"
 #include "touchdown/db/store.h"
 
@@ -73,37 +72,6 @@ AnalyzeOptions MakeOptions(const core::Campaign& campaign) {
   return options;
 }
 
-// Calls `work(i)` for i = 0 .. n - 1 on several threads; the first exception
-// stops them and is thrown here.
-void InParallel(int n, int threads, const std::function<void(int)>& work) {
-  std::atomic<int> next{0};
-  std::exception_ptr trouble;
-  std::mutex guard;
-  const auto run = [&] {
-    for (int i = next++; i < n; i = next++) {
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(guard);
-        if (!trouble) trouble = std::current_exception();
-        next = n;
-      }
-    }
-  };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < std::min(threads, n); ++t) pool.emplace_back(run);
-  run();
-  for (std::thread& thread : pool) thread.join();
-  if (trouble) std::rethrow_exception(trouble);
-}
-
-// Returns the contact angle in radians; the row must have one. Of a face angle
-// it is the magnitude, as the set angle is.
-double Angle(const DemoRow& row) {
-  const double value = row.angle_rad->value;
-  return row.kind == core::AngleKind::kFace ? std::abs(value) : value;
-}
-
 }  // namespace
 
 bool DemoRow::right() const {
@@ -118,18 +86,14 @@ DemoResult RunDemo(const DemoOptions& options) {
   // seed and its name, so the order of the threads changes no answer.
   const std::vector<Shot> shots = Table1Shots();
   const int n = static_cast<int>(shots.size());
-  const int threads =
-      options.threads > 0
-          ? options.threads
-          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int threads = core::CountThreads(options.threads);
   DemoResult result;
   result.rows.resize(shots.size());
   std::vector<Analysis> analyses(shots.size());
   std::mutex guard;
   int done = 0;
 
-  InParallel(n, threads, [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
+  const auto make = [&](std::size_t at) {
     const Shot& shot = shots[at];
     SimulateOptions simulate;
     simulate.folder = options.folder / "clips";
@@ -145,7 +109,8 @@ DemoResult RunDemo(const DemoOptions& options) {
     row.kind = shot.angle_kind;
     // The set angle is the true one: the shots of table1.cc land at it.
     row.true_angle_rad = *shot.set_angle_rad;
-    row.angle_rad = core::Angle(a.contacts.first.contact, shot.angle_kind);
+    row.angle_rad =
+        core::ContactAngle(a.contacts.first.contact, shot.angle_kind);
     row.true_state = made.truth.state;
     row.state = a.contacts.first.state.label;
     row.analyze_s = a.timing.total_s;
@@ -155,6 +120,11 @@ DemoResult RunDemo(const DemoOptions& options) {
     if (options.progress) {
       options.progress(static_cast<double>(done) / n, shot.name);
     }
+  };
+  // Whichever thread is free takes the next: clips take unlike times.
+  std::atomic<std::size_t> next{0};
+  core::InParallel(threads, threads, [&](auto, auto) {
+    for (std::size_t i = next++; i < shots.size(); i = next++) make(i);
   });
 
   result.store = options.folder / "demo.db";
@@ -177,7 +147,7 @@ DemoResult RunDemo(const DemoOptions& options) {
   for (const DemoRow& row : result.rows) {
     result.right += row.right();
     if (!row.angle_rad) continue;
-    const double error = Angle(row) - row.true_angle_rad;
+    const double error = row.angle_rad->value - row.true_angle_rad;
     square += error * error;
     ++result.angles;
   }

@@ -16,11 +16,13 @@
 #include <set>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "app/measure/open_recording.h"
 #include "app/text/scratch_folder.h"
 #include "app/text/version.h"
 #include "app/text/zip_file.h"
+#include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/footage/clip.h"
 #include "touchdown/vision/footage/encode_image.h"
@@ -164,7 +166,10 @@ std::set<std::int64_t> ChooseFrames(std::int64_t frames, int most,
 void AddFrames(const BugOptions& options, const std::string& document,
                std::vector<BugFile>& files) {
   try {
-    const auto clip = OpenRecording(options.clip);
+    // Images tell no frame rate; pictures need none.
+    vision::ClipOptions any_rate;
+    any_rate.fps = 1.0;
+    const auto clip = OpenRecording(options.clip, any_rate);
     for (const std::int64_t index : ChooseFrames(
              clip->info().frames, options.frames, ReadContactFrame(document))) {
       files.push_back({fmt::format("frames/{:06}.png", index),
@@ -186,9 +191,8 @@ void AddFrames(const BugOptions& options, const std::string& document,
 // is passed over.
 void AddHeaders(const BugOptions& options, std::vector<BugFile>& files) {
   std::set<fs::path> headers(options.also.begin(), options.also.end());
-  for (const char* extension : {".cih", ".cihx", ".CIH", ".CIHX"}) {
-    fs::path header = options.clip;
-    headers.insert(header.replace_extension(extension));
+  for (fs::path& header : ListCameraHeaders(options.clip)) {
+    headers.insert(std::move(header));
   }
   for (const fs::path& header : headers) {
     std::error_code ignored;

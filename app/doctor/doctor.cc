@@ -19,6 +19,7 @@
 #include "touchdown/db/maintenance.h"
 #include "touchdown/db/store.h"
 #include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/image_file.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -114,19 +115,29 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
       findings.push_back(finding);
       return;
     }
-    const auto clip = OpenRecording(newest);
+    // Images tell no frame rate; to look at them, any will do.
+    const bool tells_rate =
+        !fs::is_directory(newest) && !vision::IsImageName(newest);
+    vision::ClipOptions open;
+    if (!tells_rate) open.fps = 1.0;
+    const auto clip = OpenRecording(newest, open);
     const vision::ClipInfo& info = clip->info();
     // The first frame shows that the format is understood, the last that the
     // file is whole: one that was cut short fails there.
     clip->Read(0);
     clip->Read(info.frames - 1);
     finding.text = fmt::format(
-        "{} in {}; the newest, {}: {}, {}x{} px, {} bits, {} frames, {:g} "
-        "frames/s ({})",
+        "{} in {}; the newest, {}: {}, {}x{} px, {} bits, {} frames, {}",
         all.size(), options.recordings.string(), newest.filename().string(),
         info.format, info.width_px, info.height_px, info.bit_depth, info.frames,
-        info.time_base.fps, vision::Name(info.time_base.source));
-    if (!info.time_base.trusted) {
+        tells_rate ? fmt::format("{:g} frames/s ({})", info.time_base.fps,
+                                 vision::Name(info.time_base.source))
+                   : "no frame rate");
+    if (!tells_rate) {
+      finding.health = Health::kNote;
+      finding.advice =
+          "images tell no rate: give the camera's by --fps with every analysis";
+    } else if (!info.time_base.trusted) {
       finding.health = Health::kNote;
       finding.advice =
           "its rate may be that of playback: give --fps with every analysis";
@@ -135,9 +146,7 @@ void Recordings(const DoctorOptions& options, std::vector<Finding>& findings) {
     // server's, is ahead of this machine's. One that lags is not noticed.
     const auto ahead =
         of_newest.written - std::chrono::file_clock::from_sys(options.now);
-    // Clocks of two machines that are set by the same network agree to seconds.
-    constexpr std::chrono::minutes kAgree{2};
-    if (ahead > kAgree) {
+    if (ahead > kClocksAgree) {
       findings.push_back(
           {"camera clock", Health::kNote,
            fmt::format("{} is dated {} minutes after now",

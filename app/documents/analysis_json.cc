@@ -88,13 +88,14 @@ Json ContactField(Writer& writer, const std::string& at,
       at + "radius_angle_deg", contact.radius_angle_rad, kToDegrees);
   json["face_angle_deg"] =
       writer.Number(at + "face_angle_deg", contact.face_angle_rad, kToDegrees);
-  // Where a contact was found without a corner, the reason given is that of a
-  // sphere.
   if (contact.corner) {
     json["corner"] = Name(*contact.corner);
   } else {
+    // What leaves the face angle open leaves the corner open, too.
     json["corner"] = writer.Missing(at + "corner",
-                                    contact.found ? "sphere" : contact.reason);
+                                    contact.found && !contact.face_angle_rad
+                                        ? contact.face_angle_rad.error().reason
+                                        : contact.reason);
   }
   json["duration_s"] = writer.Number(at + "duration_s", contact.duration_s);
   json["budget"] = BudgetField(contact, kind);

@@ -18,8 +18,9 @@ std::optional<vision::ColourImage> MakeContactSheet(const Analysis& analysis);
 //   track.csv     one row a frame: image and plane coordinates with u
 //   contact.png   the frames around contact with what was measured drawn in
 //   analysis.json the touchdown.analysis/1 document
-// Each appears under its name only when it is complete. Throws core::InputError
-// naming the file that cannot be written or the clip that cannot be read again.
+// Each appears under its name only when it is complete. Throws
+// core::OutputError naming the file that cannot be written, core::InputError
+// naming the clip that cannot be read again.
 void WriteEvidence(const Analysis& analysis,
                    const std::filesystem::path& folder);
 

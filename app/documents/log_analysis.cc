@@ -7,16 +7,25 @@
 
 #include "app/documents/pictures.h"
 #include "app/documents/replay.h"
-#include "touchdown/db/names.h"
 #include "touchdown/db/store.h"
 #include "touchdown/vision/footage/clip_digest.h"
 
 namespace touchdown::pipeline {
+namespace {
 
-core::Campaign RequireCampaign(const db::Store& store,
-                               const std::string& name) {
-  return db::RequireCampaign(store, name);
+// Puts the trial into the campaign.
+void EnterCampaign(const Analysis& analysis, const core::Campaign& campaign,
+                   core::Trial& trial) {
+  trial.campaign = campaign.name;
+  // A clip that shows no body is a shot all the same: the campaign's body was
+  // thrown, and the store refuses a trial of another one.
+  if (!analysis.body) {
+    trial.body = campaign.body;
+    trial.angle_kind = campaign.angle_kind;
+  }
 }
+
+}  // namespace
 
 void FillFromCampaign(const std::filesystem::path& db,
                       const std::string& campaign, AnalyzeOptions& options) {
@@ -54,15 +63,7 @@ core::Trial LoggableTrial(const Analysis& analysis,
   trial.clip.size_bytes = vision::SizeBytes(analysis.clip.path);
   trial.clip.sha256 =
       sha256.empty() ? vision::Sha256(analysis.clip.path) : std::move(sha256);
-  if (campaign != nullptr) {
-    trial.campaign = campaign->name;
-    // A clip that shows no body is a shot all the same: the campaign's body was
-    // thrown, and the store refuses a trial of another one.
-    if (!analysis.body) {
-      trial.body = campaign->body;
-      trial.angle_kind = campaign->angle_kind;
-    }
-  }
+  if (campaign != nullptr) EnterCampaign(analysis, *campaign, trial);
   return trial;
 }
 
@@ -75,12 +76,7 @@ Logged LogAnalysis(const Analysis& analysis, const std::filesystem::path& db,
   db::Store store = db::Store::Open(
       db, campaign.empty() ? db::OpenMode::kCreate : db::OpenMode::kWrite);
   if (!campaign.empty()) {
-    const core::Campaign found = RequireCampaign(store, campaign);
-    trial.campaign = campaign;
-    if (!analysis.body) {
-      trial.body = found.body;
-      trial.angle_kind = found.angle_kind;
-    }
+    EnterCampaign(analysis, RequireCampaign(store, campaign), trial);
   }
   const db::Logged logged = store.LogTrial(trial);
   // The picture comes after the trial is on the disk: it may fail, the trial

@@ -8,6 +8,7 @@
 
 #include "app/measure/analyze.h"
 #include "touchdown/core/campaign.h"
+#include "touchdown/db/names.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown::pipeline {
@@ -19,8 +20,7 @@ void FillFromCampaign(const std::filesystem::path& db,
                       const std::string& campaign, AnalyzeOptions& options);
 void FillFromCampaign(const core::Campaign& campaign, AnalyzeOptions& options);
 
-// Throws core::StoreError if there is no campaign of that name.
-core::Campaign RequireCampaign(const db::Store& store, const std::string& name);
+using db::RequireCampaign;
 
 struct Logged {
   std::string trial_id;

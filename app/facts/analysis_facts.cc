@@ -21,8 +21,8 @@ std::string ScalarText(const nlohmann::json& json) {
 // "1000.0 ± 0.8 px/m" of a {"value", "u"} of the document, which is in `unit`
 // already; empty where one of the two is missing.
 std::string EstimateText(const nlohmann::json& json, const char* unit) {
-  const nlohmann::json& value = EvaluateSpline(json, {"value"});
-  const nlohmann::json& u = EvaluateSpline(json, {"u"});
+  const nlohmann::json& value = FindValue(json, {"value"});
+  const nlohmann::json& u = FindValue(json, {"u"});
   if (!value.is_number() || !u.is_number()) return "";
   return WithU({value.get<double>(), u.get<double>(), {}}, 1.0) + " " + unit;
 }
@@ -46,10 +46,10 @@ std::string Enclose(const char* before, const std::string& text,
 
 // "2000 frames/s, from the header"; empty where the document has no frame rate.
 std::string FramesPerSecond(const nlohmann::json& json) {
-  const nlohmann::json& base = EvaluateSpline(json, {"clip", "time_base"});
-  const nlohmann::json& fps = EvaluateSpline(base, {"fps"});
+  const nlohmann::json& base = FindValue(json, {"clip", "time_base"});
+  const nlohmann::json& fps = FindValue(base, {"fps"});
   if (!fps.is_number()) return "";
-  const std::string source = ScalarText(EvaluateSpline(base, {"source"}));
+  const std::string source = ScalarText(FindValue(base, {"source"}));
   return fmt::format("{:g} frames/s, from the {}", fps.get<double>(),
                      source.empty() ? "file" : source);
 }
@@ -58,17 +58,15 @@ std::string FramesPerSecond(const nlohmann::json& json) {
 // the analysis took; "none" where a clip was analysed without one, and empty
 // where the document says nothing of a clip either.
 std::string CalibrationText(const nlohmann::json& json) {
-  const nlohmann::json& calibration = EvaluateSpline(json, {"calibration"});
+  const nlohmann::json& calibration = FindValue(json, {"calibration"});
   if (calibration.is_object()) {
-    const std::string rms =
-        ScalarText(EvaluateSpline(calibration, {"lens_rms_px"}));
+    const std::string rms = ScalarText(FindValue(calibration, {"lens_rms_px"}));
     return Joined(
-        {Enclose("camera ",
-                 ScalarText(EvaluateSpline(calibration, {"camera"}))),
-         Enclose("of ", ScalarText(EvaluateSpline(calibration, {"date"}))),
+        {Enclose("camera ", ScalarText(FindValue(calibration, {"camera"}))),
+         Enclose("of ", ScalarText(FindValue(calibration, {"date"}))),
          rms.empty() ? "no lens" : "lens to " + rms + " px rms"});
   }
-  return EvaluateSpline(json, {"clip"}).is_object() ? "none" : "";
+  return FindValue(json, {"clip"}).is_object() ? "none" : "";
 }
 
 // The items of a list with semicolons between them. Of an object, as
@@ -96,51 +94,48 @@ std::string ListText(const nlohmann::json& json) {
 std::vector<NameValue> AnalysisSources(const core::Trial& trial) {
   const auto json = StoredDocument(trial);
   if (json.is_null()) return {};
-  return {{"scale from", ScalarText(EvaluateSpline(json, {"scale", "source"}))},
-          {"ground line from",
-           ScalarText(EvaluateSpline(json, {"ground", "source"}))},
-          {"calibration", CalibrationText(json)},
-          {"time base", FramesPerSecond(json)}};
+  return {
+      {"scale from", ScalarText(FindValue(json, {"scale", "source"}))},
+      {"ground line from", ScalarText(FindValue(json, {"ground", "source"}))},
+      {"calibration", CalibrationText(json)},
+      {"time base", FramesPerSecond(json)}};
 }
 
 std::vector<NameValue> AnalysisFacts(const core::Trial& trial) {
   const auto json = StoredDocument(trial);
   if (json.is_null()) return {};
-  const nlohmann::json& clip = EvaluateSpline(json, {"clip"});
+  const nlohmann::json& clip = FindValue(json, {"clip"});
   // The sides of the picture stand together or not at all.
-  const std::string width = ScalarText(EvaluateSpline(clip, {"width_px"}));
-  const nlohmann::json& scale = EvaluateSpline(json, {"scale"});
-  const nlohmann::json& ground = EvaluateSpline(json, {"ground"});
+  const std::string width = ScalarText(FindValue(clip, {"width_px"}));
+  const nlohmann::json& scale = FindValue(json, {"scale"});
+  const nlohmann::json& ground = FindValue(json, {"ground"});
   return {
       {"recording",
-       Joined({ScalarText(EvaluateSpline(clip, {"format"})),
-               width.empty() ? ""
-                             : fmt::format("{} x {} px", width,
-                                           ScalarText(EvaluateSpline(
-                                               clip, {"height_px"}))),
-               Enclose("", ScalarText(EvaluateSpline(clip, {"bit_depth"})),
-                       " bit"),
-               Enclose("", ScalarText(EvaluateSpline(clip, {"frames"})),
-                       " frames")})},
+       Joined(
+           {ScalarText(FindValue(clip, {"format"})),
+            width.empty()
+                ? ""
+                : fmt::format("{} x {} px", width,
+                              ScalarText(FindValue(clip, {"height_px"}))),
+            Enclose("", ScalarText(FindValue(clip, {"bit_depth"})), " bit"),
+            Enclose("", ScalarText(FindValue(clip, {"frames"})), " frames")})},
       {"time base", FramesPerSecond(json)},
       {"scale",
-       Joined(
-           {EstimateText(EvaluateSpline(scale, {"px_per_m"}), "px/m"),
-            Enclose("from ", ScalarText(EvaluateSpline(scale, {"source"})))})},
+       Joined({EstimateText(FindValue(scale, {"px_per_m"}), "px/m"),
+               Enclose("from ", ScalarText(FindValue(scale, {"source"})))})},
       {"calibration", CalibrationText(json)},
       {"ground line",
-       Joined({Enclose("from ", ScalarText(EvaluateSpline(ground, {"source"}))),
-               Enclose("u of its angle ",
-                       ScalarText(EvaluateSpline(ground, {"u_angle_deg"})),
-                       " deg"),
-               Enclose("u of its height ",
-                       ScalarText(EvaluateSpline(ground, {"u_offset_px"})),
-                       " px")})},
+       Joined(
+           {Enclose("from ", ScalarText(FindValue(ground, {"source"}))),
+            Enclose("u of its angle ",
+                    ScalarText(FindValue(ground, {"u_angle_deg"})), " deg"),
+            Enclose("u of its height ",
+                    ScalarText(FindValue(ground, {"u_offset_px"})), " px")})},
       {"model of the scene",
-       ListText(EvaluateSpline(json, {"scene_model", "used"}))},
+       ListText(FindValue(json, {"scene_model", "used"}))},
       {"left out of it",
-       ListText(EvaluateSpline(json, {"scene_model", "left_out"}))},
-      {"warnings", ListText(EvaluateSpline(json, {"warnings"}))}};
+       ListText(FindValue(json, {"scene_model", "left_out"}))},
+      {"warnings", ListText(FindValue(json, {"warnings"}))}};
 }
 
 const core::Budget& AngleBudget(const core::Trial& trial) {

@@ -35,9 +35,9 @@ constexpr double kOutline_px = 0.1;
 // is read here is a length or a scale, of which 0 says nothing.
 std::optional<core::Estimate> FindEstimate(
     const nlohmann::json& json, std::initializer_list<const char*> path) {
-  const nlohmann::json& at = EvaluateSpline(json, path);
-  const nlohmann::json& value = EvaluateSpline(at, {"value"});
-  const nlohmann::json& u = EvaluateSpline(at, {"u"});
+  const nlohmann::json& at = FindValue(json, path);
+  const nlohmann::json& value = FindValue(at, {"value"});
+  const nlohmann::json& u = FindValue(at, {"u"});
   if (!value.is_number() || !u.is_number() || !(value.get<double>() > 0.0)) {
     return std::nullopt;
   }
@@ -56,7 +56,7 @@ core::Measured SizeRatio(const nlohmann::json& json,
   }
   // The size in the document is that of the picture with the lens still in it,
   // and the scale is that without.
-  if (!EvaluateSpline(json, {"calibration", "lens_rms_px"}).is_null()) {
+  if (!FindValue(json, {"calibration", "lens_rms_px"}).is_null()) {
     return core::AbsentBecause(
         "the size in the picture is not free of the lens");
   }
@@ -190,9 +190,8 @@ TrialRatios ReadRatios(const core::Trial& trial) {
       core::AbsentBecause(json.is_object() ? "the document holds no scale"
                                            : "no document")};
   const auto scale = FindEstimate(json, {"scale", "px_per_m"});
-  out.scale_of_body = EvaluateSpline(json, {"scale", "source"}) == "body_size";
-  if (const nlohmann::json& fps =
-          EvaluateSpline(json, {"clip", "time_base", "fps"});
+  out.scale_of_body = FindValue(json, {"scale", "source"}) == "body_size";
+  if (const nlohmann::json& fps = FindValue(json, {"clip", "time_base", "fps"});
       fps.is_number()) {
     out.fps = fps.get<double>();
   }

@@ -10,8 +10,8 @@ nlohmann::json StoredDocument(const core::Trial& trial) {
   return document;
 }
 
-const nlohmann::json& EvaluateSpline(const nlohmann::json& document,
-                                     std::initializer_list<const char*> path) {
+const nlohmann::json& FindValue(const nlohmann::json& document,
+                                std::initializer_list<const char*> path) {
   // The references that are returned must outlive the call.
   static const nlohmann::json none;
   const nlohmann::json* at = &document;

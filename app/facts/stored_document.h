@@ -13,7 +13,7 @@ namespace touchdown::report {
 nlohmann::json StoredDocument(const core::Trial& trial);
 
 // The value at the end of these names; null where there is none.
-const nlohmann::json& EvaluateSpline(const nlohmann::json& document,
-                                     std::initializer_list<const char*> path);
+const nlohmann::json& FindValue(const nlohmann::json& document,
+                                std::initializer_list<const char*> path);
 
 }  // namespace touchdown::report

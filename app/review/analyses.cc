@@ -29,7 +29,8 @@ bool IsFinished(AnalysisState state) {
 }
 
 // Says whether two orders ask for the same analysis, so that two tabs look at
-// one. Who asked plays no part, nor does `again`.
+// one. Who asked plays no part. `again` does: an order without it is answered
+// by what the store knows.
 bool IsSame(const AnalysisOrder& a, const AnalysisOrder& b) {
   // Returns the hash of what the analysis is told. Of a test the campaign is
   // not in the store and may differ under one name, so its conventions are
@@ -39,7 +40,7 @@ bool IsSame(const AnalysisOrder& a, const AnalysisOrder& b) {
     if (order.is_test) pipeline::FillFromCampaign(order.campaign, options);
     return pipeline::OptionsHash(options);
   };
-  return a.path == b.path && a.is_test == b.is_test &&
+  return a.path == b.path && a.is_test == b.is_test && a.again == b.again &&
          a.campaign.name == b.campaign.name &&
          a.set_angle_rad == b.set_angle_rad &&
          a.set_speed_mps == b.set_speed_mps && a.conditions == b.conditions &&

@@ -18,6 +18,10 @@ constexpr int kJpegQuality = 88;
 // A person looks so many frames back first.
 constexpr std::int64_t kNear = 20;
 
+// Recordings of which size and white level stay known. One takes less than 1
+// kB; beyond them all are forgotten, and each is found again when it is opened.
+constexpr std::size_t kMostKnown = 4096;
+
 // A folder of images tells no frame rate; pictures need none.
 constexpr double kAnyRate_hz = 1.0;
 
@@ -108,23 +112,27 @@ ClipShelf::~ClipShelf() {
   warmer_.join();
 }
 
+ClipShelf::Film ClipShelf::DescribeFilm(const std::filesystem::path& path) {
+  return {path.string(), pipeline::MeasureExtent(path)};
+}
+
 // Returns what is known of a recording; nothing before it was first opened.
-std::optional<ClipShelf::Known> ClipShelf::Recall(
-    const std::string& path) const {
+std::optional<ClipShelf::Known> ClipShelf::Recall(const Film& film) const {
   const std::lock_guard lock(guard_);
-  const auto found = known_.find(path);
+  const auto found = known_.find(film);
   if (found == known_.end()) return std::nullopt;
   return found->second;
 }
 
 // Remembers a recording's facts. The white level is found once, in the first
 // frame: pictures of one recording must not flicker.
-ClipShelf::Known ClipShelf::Learn(const std::string& path, vision::Clip& clip) {
-  if (const auto known = Recall(path)) return *known;
+ClipShelf::Known ClipShelf::Learn(const Film& film, vision::Clip& clip) {
+  if (const auto known = Recall(film)) return *known;
   Known known = {clip.info(), 255};
   if (known.info.bit_depth > 8) known.white = FindWhiteLevel(clip.Read(0));
   const std::lock_guard lock(guard_);
-  return known_.emplace(path, std::move(known)).first->second;
+  if (known_.size() >= kMostKnown) known_.clear();
+  return known_.emplace(film, std::move(known)).first->second;
 }
 
 // Returns a picture that is kept, and makes it the last used.
@@ -159,17 +167,17 @@ std::size_t ClipShelf::bytes() const {
   return bytes_;
 }
 
-// The reader stays open in the pool: frames are mostly asked for next. What is
-// known of a path holds until the server ends.
+// The reader stays open in the pool: frames are mostly asked for next.
 vision::ClipInfo ClipShelf::Info(const std::filesystem::path& path) {
-  if (const auto known = Recall(path.string())) return known->info;
+  const Film film = DescribeFilm(path);
+  if (const auto known = Recall(film)) return known->info;
   const ReaderPool::Lease reader = readers_.Take(path);
-  return Learn(path.string(), reader.clip()).info;
+  return Learn(film, reader.clip()).info;
 }
 
 Picture ClipShelf::Frame(const std::filesystem::path& path,
                          std::int64_t index) {
-  const Key key{path.string(), index};
+  const Key key{DescribeFilm(path), index};
   if (const auto kept = Find(key)) return *kept;
   const ReaderPool::Lease reader = readers_.Take(path);
   // Somebody else, or the thread, may have made it while this one waited.
@@ -189,8 +197,9 @@ Picture ClipShelf::Frame(const std::filesystem::path& path,
 // ahead would push out what a person is looking at.
 Picture ClipShelf::Small(const std::filesystem::path& path, std::int64_t index,
                          core::PixelPoint centre, double width_px) {
+  const Film film = DescribeFilm(path);
   const ReaderPool::Lease reader = readers_.Take(path);
-  const Known known = Learn(path.string(), reader.clip());
+  const Known known = Learn(film, reader.clip());
   const vision::Image image =
       Shrunk(reader.clip().Read(index), centre, width_px, known.white);
   return {"image/jpeg", std::make_shared<const std::string>(
@@ -199,26 +208,30 @@ Picture ClipShelf::Small(const std::filesystem::path& path, std::int64_t index,
 
 // Asks the thread to decode a recording ahead. Of more than most_open the one
 // that was asked for longest ago is dropped, and its decoding ends.
-void ClipShelf::Ask(const std::string& path, std::int64_t index) {
+void ClipShelf::Ask(const Film& film, std::int64_t index) {
   const std::lock_guard lock(guard_);
+  // What it was before needs no decoding any more.
+  std::erase_if(asked_, [&](const Asked& asked) {
+    return asked.film.path == film.path && asked.film != film;
+  });
   const auto found =
       std::find_if(asked_.begin(), asked_.end(),
-                   [&](const Asked& asked) { return asked.path == path; });
+                   [&](const Asked& asked) { return asked.film == film; });
   if (found != asked_.end()) {
     asked_.splice(asked_.begin(), asked_, found);
     return;
   }
-  asked_.push_front({path, index});
+  asked_.push_front({film, index});
   if (asked_.size() > options_.most_open) asked_.pop_back();
   wake_.notify_one();
 }
 
 // Says whether the recording is still among those asked for; the thread asks
 // before each frame.
-bool ClipShelf::IsAsked(const std::string& path) const {
+bool ClipShelf::IsAsked(const Film& film) const {
   const std::lock_guard lock(guard_);
   return std::any_of(asked_.begin(), asked_.end(),
-                     [&](const Asked& asked) { return asked.path == path; });
+                     [&](const Asked& asked) { return asked.film == film; });
 }
 
 // The thread's loop: takes the recording that was asked for last and decodes it
@@ -250,15 +263,15 @@ void ClipShelf::WarmUp() {
 // Makes the pictures of a recording as long as it is among those asked for.
 void ClipShelf::Decode(const Asked& asked) {
   // A reader of its own: the other one jumps to what is asked for.
-  const auto clip = OpenShelfClip(asked.path);
-  const Known known = Learn(asked.path, *clip);
+  const auto clip = OpenShelfClip(asked.film.path);
+  const Known known = Learn(asked.film, *clip);
   // First what is near the frame that was asked for, then the rest.
   const std::int64_t frames = known.info.frames;
   const std::int64_t first = std::max<std::int64_t>(0, asked.from - kNear);
   std::size_t made = 0;
-  for (std::int64_t k = 0; k < frames && IsAsked(asked.path); ++k) {
+  for (std::int64_t k = 0; k < frames && IsAsked(asked.film); ++k) {
     // The order is from `first` to the end, then from the beginning.
-    const Key key{asked.path, (first + k) % frames};
+    const Key key{asked.film, (first + k) % frames};
     const core::Frame frame = clip->Read(key.second);
     if (Find(key)) continue;
     const Picture picture = Encode(frame, known.info, known.white);

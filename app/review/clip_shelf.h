@@ -7,9 +7,13 @@
 // what was asked for, and keeps the pictures; a frame that is not there yet is
 // decoded from the nearest key frame.
 //
+// A recording that has grown or was replaced, by its size or its date, is
+// opened anew.
+//
 // Memory: the pictures kept, most_open readers, and one more of the thread.
 #pragma once
 
+#include <compare>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +27,7 @@
 #include <utility>
 
 #include "app/review/reader_pool.h"
+#include "app/trials/recordings.h"
 #include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::review {
@@ -65,7 +70,13 @@ class ClipShelf {
   std::size_t bytes() const;  // of the pictures kept
 
  private:
-  using Key = std::pair<std::string, std::int64_t>;  // path and frame
+  // A recording as it is now: one that grows or is replaced becomes another.
+  struct Film {
+    std::string path;
+    pipeline::Extent extent;
+    friend auto operator<=>(const Film&, const Film&) = default;
+  };
+  using Key = std::pair<Film, std::int64_t>;  // and the frame
   struct Kept {
     Picture picture;
     std::list<Key>::iterator place;
@@ -77,15 +88,16 @@ class ClipShelf {
   };
   // A compressed recording that was asked for.
   struct Asked {
-    std::string path;
+    Film film;
     std::int64_t from = 0;  // the frame asked for first
     bool taken = false;     // the thread has begun with it
   };
 
-  std::optional<Known> Recall(const std::string& path) const;
-  Known Learn(const std::string& path, vision::Clip& clip);
-  void Ask(const std::string& path, std::int64_t index);
-  bool IsAsked(const std::string& path) const;
+  static Film DescribeFilm(const std::filesystem::path& path);
+  std::optional<Known> Recall(const Film& film) const;
+  Known Learn(const Film& film, vision::Clip& clip);
+  void Ask(const Film& film, std::int64_t index);
+  bool IsAsked(const Film& film) const;
   std::optional<Picture> Find(const Key& key);
   void Keep(const Key& key, const Picture& picture);
   void WarmUp();
@@ -94,7 +106,7 @@ class ClipShelf {
   const ShelfOptions options_;
   ReaderPool readers_;
   mutable std::mutex guard_;
-  std::map<std::string, Known> known_;
+  std::map<Film, Known> known_;
   std::map<Key, Kept> kept_;
   std::list<Key> order_;  // the last used first
   std::size_t bytes_ = 0;

@@ -27,17 +27,11 @@ using report::Json;
 // another type.
 pipeline::Correction ReadCorrection(const nlohmann::json& asked) {
   pipeline::Correction correction;
-  if (const auto ground = asked.find("ground_px");
-      ground != asked.end() && !ground->is_null()) {
-    const auto n = ground->get<std::vector<double>>();
-    if (n.size() != 4) {
-      throw std::invalid_argument(fmt::format(
-          "ground_px has {} numbers, must be two points x1, y1, x2, y2",
-          n.size()));
-    }
+  if (const auto ground = ReadTwoPoints(asked, "ground_px")) {
     correction.ground =
         // u of the line follows from how well a hand places its two points.
-        calib::MakeGroundLine({n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px);
+        calib::MakeGroundLine(ground->first, ground->second,
+                              pipeline::kByHand_px);
   }
   if (const auto frame = asked.find("contact_frame");
       frame != asked.end() && !frame->is_null()) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
 
 #include "app/text/parse_number.h"
 #include "app/trials/statement.h"
@@ -35,6 +37,19 @@ std::string RequiredText(const nlohmann::json& asked, const char* field,
     throw FieldError(Flag(field), fmt::format("is missing, must be {}", what));
   }
   return text;
+}
+
+std::optional<std::pair<core::PixelPoint, core::PixelPoint>> ReadTwoPoints(
+    const nlohmann::json& asked, const char* field) {
+  const auto given = asked.find(field);
+  if (given == asked.end() || given->is_null()) return std::nullopt;
+  const auto n = given->get<std::vector<double>>();
+  if (n.size() != 4) {
+    throw std::invalid_argument(
+        fmt::format("{} has {} numbers, must be two points x1, y1, x2, y2",
+                    field, n.size()));
+  }
+  return std::pair(core::PixelPoint{n[0], n[1]}, core::PixelPoint{n[2], n[3]});
 }
 
 std::optional<double> ReadNumberField(const nlohmann::json& asked,

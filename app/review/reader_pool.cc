@@ -16,16 +16,22 @@ ReaderPool::Lease::~Lease() {
   if (pool_ != nullptr) pool_->Return(reader_);
 }
 
-// Tries, until it succeeds: the recording's own reader if nobody uses it; a new
-// one if there is room; a new one in place of the idle one that was used
-// longest ago. Waits where none of the three can be done.
+// Tries, until it succeeds: the recording's own reader if nobody uses it, or a
+// new one in its place if the recording has changed; a new one if there is
+// room; a new one in place of the idle one that was used longest ago. Waits
+// where none of them can be done.
 ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
+  const pipeline::Extent extent = pipeline::MeasureExtent(path);
   std::list<Lease::Reader> closing;  // outside the lock, after it
   std::unique_lock lock(guard_);
   for (;;) {
     const auto own =
         std::find_if(readers_.begin(), readers_.end(),
                      [&](const auto& reader) { return reader.path == path; });
+    if (own != readers_.end() && !own->in_use && own->extent != extent) {
+      closing.splice(closing.begin(), readers_, own);
+      break;
+    }
     if (own != readers_.end() && !own->in_use) {
       own->in_use = true;
       readers_.splice(readers_.begin(), readers_, own);
@@ -44,7 +50,7 @@ ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
     freed_.wait(lock);
   }
   // The place is taken first, so that nobody opens the same one or one more.
-  readers_.push_front({path, nullptr});
+  readers_.push_front({path, extent, nullptr});
   const auto reader = readers_.begin();
   lock.unlock();
   // Closing a decoder takes time, which others must not wait for.

@@ -3,7 +3,8 @@
 // A decoder of 1280 x 800 holds some 30 MB, so what bounds the server's memory
 // is the number of readers. Each recording has one at most: requests for the
 // same one wait for each other, and those for one recording more than there may
-// be readers wait until one is free, which is then closed.
+// be readers wait until one is free, which is then closed. One that has grown
+// or was replaced is opened anew.
 #pragma once
 
 #include <condition_variable>
@@ -14,6 +15,7 @@
 #include <memory>
 #include <mutex>
 
+#include "app/trials/recordings.h"
 #include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::review {
@@ -42,6 +44,7 @@ class ReaderPool {
     friend class ReaderPool;
     struct Reader {
       std::filesystem::path path;
+      pipeline::Extent extent;  // when it was opened
       std::unique_ptr<vision::Clip> clip;
       bool in_use = true;
     };

@@ -13,8 +13,7 @@
 //   POST /api/tests                settings of a new campaign tested (setup.h)
 //   POST /api/lens                 a lens from pictures of a board (setup.h)
 //   POST /api/analyses/ID/keep     the campaign made and its first trial
-//   logged;
-//                                  {"who"}
+//                                  logged; {"who"}
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -19,13 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using pipeline::FieldError;
 
-// Says whether `path` is `folder` or lies in it; both must be canonical. Names
-// are compared whole: /data2 is not below /data.
-bool IsBelow(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end())
-             .first == folder.end();
-}
-
 }  // namespace
 
 RecordingFolders::RecordingFolders(const std::vector<fs::path>& folders) {
@@ -50,7 +43,8 @@ std::optional<fs::path> RecordingFolders::ResolvePath(
   std::error_code trouble;
   // Links are followed to their end before the place is judged.
   fs::path canonical = fs::canonical(path, trouble);
-  if (trouble || !IsBelow(canonical, folders_.at(folder))) return std::nullopt;
+  if (trouble || !pipeline::IsBelow(canonical, folders_.at(folder)))
+    return std::nullopt;
   return canonical;
 }
 

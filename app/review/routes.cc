@@ -24,6 +24,7 @@
 #include "app/text/text_file.h"
 #include "app/trials/statement.h"
 #include "touchdown/core/errors.h"
+#include "touchdown/db/identity.h"
 
 namespace touchdown::review {
 namespace {
@@ -157,11 +158,10 @@ Reply TrajectoryReply(Desk& desk, const Request& request,
   Reply reply;
   reply.type = "text/csv; charset=utf-8";
   reply.body = *csv;
-  constexpr std::size_t kShortId = 8;
   reply.headers = {
       {"Content-Disposition", fmt::format("attachment; filename=trajectory-"
                                           "{}.csv",
-                                          id.substr(0, kShortId))}};
+                                          db::ShortId(id))}};
   return reply;
 }
 

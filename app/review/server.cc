@@ -13,6 +13,7 @@
 #include "app/review/guard.h"
 #include "app/review/http_server.h"
 #include "app/review/routes.h"
+#include "app/text/text.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/db/identity.h"
 #include "touchdown/db/store.h"
@@ -24,13 +25,11 @@ namespace {
 constexpr int kFirstOwnPort = 61000;
 constexpr int kOwnPorts = 65536 - kFirstOwnPort;
 
-// The same for a store at every start: FNV-1a of its path.
+// The same for a store at every start: by a digest of its path.
 int OwnPort(const std::filesystem::path& store) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : std::filesystem::weakly_canonical(store).string()) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  }
-  return kFirstOwnPort + static_cast<int>(hash % kOwnPorts);
+  const std::uint64_t digest =
+      report::Digest(std::filesystem::weakly_canonical(store).string());
+  return kFirstOwnPort + static_cast<int>(digest % kOwnPorts);
 }
 
 // A store, or a folder in which one can be made.

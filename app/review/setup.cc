@@ -73,16 +73,10 @@ core::Campaign MakeCampaign(const nlohmann::json& asked) {
 // Two points of the picture; nothing where they were not marked.
 std::optional<calib::MarkedPair> ReadPair(const nlohmann::json& asked,
                                           const char* field) {
-  const auto given = asked.find(field);
-  if (given == asked.end() || given->is_null()) return std::nullopt;
-  const auto n = given->get<std::vector<double>>();
-  if (n.size() != 4) {
-    throw std::invalid_argument(
-        fmt::format("{} has {} numbers, must be two points x1, y1, x2, y2",
-                    field, n.size()));
-  }
-  const calib::MarkedPair pair{
-      {n[0], n[1]}, {n[2], n[3]}, pipeline::kByHand_px};
+  const auto points = ReadTwoPoints(asked, field);
+  if (!points) return std::nullopt;
+  const calib::MarkedPair pair{points->first, points->second,
+                               pipeline::kByHand_px};
   if (pair.p1 == pair.p2) {
     throw std::invalid_argument(
         fmt::format("{}: both points are the same, must be two", field));

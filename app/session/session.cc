@@ -20,6 +20,7 @@
 #include "app/trials/recordings.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/identity.h"
 #include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 #include "touchdown/vision/footage/clip_digest.h"
@@ -55,10 +56,6 @@ std::string SomePictures(const fs::path& recording) {
   }
   return bytes;
 }
-
-// Returns the beginning of a trial's id, which is enough to find it by
-// (db::Store::Find).
-std::string Short(const std::string& id) { return id.substr(0, 8); }
 
 }  // namespace
 
@@ -176,7 +173,7 @@ void Session::Plan() {
   file_.planned = true;
   file_.trials_before = CountTrials();
   const report::Group group = Now();
-  file_.boundary =
+  boundary_ =
       fmt::format("{} ({} stayed down, {} bounced, {} undecided, {} left out)",
                   report::BoundarySentence(group.study),
                   group.study.counts.not_bounce, group.study.counts.bounce,
@@ -289,11 +286,21 @@ void Session::SayPlan() const {
   for (const std::string& line : plan_lines_) Say(line);
 }
 
-// Says whether the shot was made after its set-points were shown. A camera
-// whose clock is behind loses its set-points that way.
-bool Session::Belongs(const fs::path& recording) const {
-  return file_.planned &&
-         WrittenAt_s(recording) >= file_.planned_at_s - kFileClock_s;
+// Returns why the shot is not the planned one: nothing where it was made after
+// its set-points were shown and before now. A camera whose clock is behind
+// loses its set-points that way, and so does one whose clock is far ahead, by
+// which any recording would be of the plan.
+std::optional<std::string> Session::FindWhyNotPlanned(
+    const fs::path& recording) const {
+  const double written_s = WrittenAt_s(recording);
+  if (!file_.planned || written_s < file_.planned_at_s - kFileClock_s) {
+    return "recorded before these set-points were shown";
+  }
+  const std::chrono::duration<double> agree = pipeline::kClocksAgree;
+  if (written_s > ends_.now_s() + agree.count()) {
+    return "dated after now: the clock of the camera is ahead";
+  }
+  return std::nullopt;
 }
 
 // Returns the trial that this campaign, or its check shots, have of the
@@ -335,11 +342,10 @@ void Session::Take(const fs::path& recording) {
     const std::string id = vision::ClipId(recording);
     if (const auto known = KnownAs(id)) {
       Say(fmt::format("{}: known, trial {}", recording.filename().string(),
-                      Short(*known)));
+                      db::ShortId(*known)));
       return;
     }
     file_.phase = Phase::kAnalysing;
-    file_.recording = recording.string();
     Save();
     Log(recording, id);
   } catch (const core::StoreError&) {
@@ -353,7 +359,6 @@ void Session::Take(const fs::path& recording) {
     // A recording that cannot be analysed leaves the plan as it is: the
     // technician throws the same shot again.
     file_.phase = waiting;
-    file_.recording.clear();
     Save();
   }
 }
@@ -362,7 +367,8 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   RequireSameConventions();
   // Set-points and campaign depend on whether it belongs to the plan: a
   // recording from before a check shot was asked for is an ordinary shot.
-  const bool belongs = Belongs(recording);
+  const std::optional<std::string> not_planned = FindWhyNotPlanned(recording);
+  const bool belongs = !not_planned;
   const bool is_check = belongs && file_.is_check;
   if (is_check && !store_.FindCampaign(check_campaign_->name)) {
     store_.AddCampaign(*check_campaign_);
@@ -421,14 +427,13 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     trial.set_angle_rad = file_.angle_rad;
     if (setting_) trial.set_speed_mps = LaunchSpeedOfPlan();
   }
-  if (!grown) trial.conditions = ConditionsNow(belongs, is_check);
+  if (!grown) trial.conditions = ConditionsNow(not_planned, is_check);
   // From here on the trial is on the disk: what fails below loses a line or a
   // picture and no trial.
   trial.id = store_.LogTrial(trial).id;
   note_.clear();
   last_ = LastTaken{trial.clip.path, trial.clip.size_bytes, pictures, trial};
   acts_.push_back({Act::kLogged, trial.id});
-  file_.recording.clear();
   // A shot was made: what was skipped before it may be asked for again.
   skipped_rad_.clear();
   if (is_check) check_wanted_ = false;
@@ -436,11 +441,11 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
   // The picture comes after the answer, for which a person is waiting.
   if (ends_.keep_picture) ends_.keep_picture(trial);
   if (!belongs) {
-    Say("  (recorded before these set-points were shown: logged without them)");
+    Say(fmt::format("  ({}: logged without set-points)", *not_planned));
   }
   Plan();
   if (!is_check) {
-    Say("  boundary   " + file_.boundary);
+    Say("  boundary   " + boundary_);
     // The boundary was shown: that is a look at the answer, and goes on record.
     db::RecordLook(store_, campaign_.name, "session");
   }
@@ -450,7 +455,8 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
 // Returns the conditions of the shot that is being logged. The rig's settings
 // are those that the controller read back, else those that were asked for;
 // absent, with the reason, where the shot is not of this plan.
-core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
+core::Conditions Session::ConditionsNow(
+    const std::optional<std::string>& not_planned, bool is_check) const {
   core::Conditions now = options_.conditions;
   now.note = note_;
   // The operator's name refers to the register where it has an entry.
@@ -459,7 +465,7 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
                                       options_.operator_name);
     if (person) now.person = {person->name, person->id};
   }
-  if (belongs && !is_check && setting_) {
+  if (!not_planned && !is_check && setting_) {
     const rig::Setting& set = read_ ? *read_ : *setting_;
     const rig::Description& rig = thrower_.rig;
     now.elevation_rad =
@@ -470,9 +476,9 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
                                          rig.u_muzzle_height_m, std::nullopt};
     return now;
   }
-  const char* const why = is_check
-                              ? "dropped, not thrown"
-                              : "recorded before these set-points were shown";
+  const std::string why =
+      is_check ? "dropped, not thrown"
+               : not_planned.value_or("the rig cannot throw this angle");
   for (core::Measured* set :
        {&now.elevation_rad, &now.compression_m, &now.muzzle_height_m}) {
     // A setting that --condition stated stays.
@@ -482,16 +488,18 @@ core::Conditions Session::ConditionsNow(bool belongs, bool is_check) const {
 }
 
 // Returns the launch speed that the planned setting predicts, m/s: the
-// set-point of the speed is that at the muzzle. 0 where the rig predicts none.
-double Session::LaunchSpeedOfPlan() const {
+// set-point of the speed is that at the muzzle. Nothing where the rig predicts
+// none.
+std::optional<double> Session::LaunchSpeedOfPlan() const {
   const auto muzzle =
       rig::LaunchSpeed(rig::MakeLaunch(thrower_.rig, setting_->elevation_rad),
                        setting_->compression_m);
-  return muzzle ? muzzle->speed_mps : 0.0;
+  if (!muzzle) return std::nullopt;
+  return muzzle->speed_mps;
 }
 
 // Says what a trial is: state, angle and set-point, why to look at it, and how
-// long the answer took. The first line is kept in the session's file as well.
+// long the answer took. Its id is kept in the session's file as well.
 void Session::Answer(const core::Trial& trial, double seconds_since_written,
                      bool is_check) {
   const auto entry = pipeline::MakeTriageEntry(trial.clip.path,
@@ -506,13 +514,13 @@ void Session::Answer(const core::Trial& trial, double seconds_since_written,
   if (trial.set_angle_rad && !is_check) {
     text += fmt::format(" (set {:.2f})", *trial.set_angle_rad / kDegree);
   }
-  Say(fmt::format("trial {}: {}", Short(trial.id), text));
+  Say(fmt::format("trial {}: {}", db::ShortId(trial.id), text));
   if (is_check) Say("  " + trial.reason);
   if (!entry.reason.empty()) Say("  look at    " + entry.reason);
   Say(fmt::format("  {}, by {}, {:.1f} s after its last byte",
                   fs::path(trial.clip.path).filename().string(), trial.author,
                   seconds_since_written));
-  file_.last = {{"trial", trial.id}, {"text", text}, {"is_check", is_check}};
+  file_.last = {{"trial", trial.id}};
 }
 
 }  // namespace touchdown::session

@@ -103,10 +103,12 @@ class Session {
   void Plan();
   void PlanAngle();  // file_.angle_rad
   double AngleBesides() const;
-  double LaunchSpeedOfPlan() const;
+  std::optional<double> LaunchSpeedOfPlan() const;
   // Of the shot that is logged now.
-  core::Conditions ConditionsNow(bool belongs, bool is_check) const;
-  bool Belongs(const std::filesystem::path& recording) const;
+  core::Conditions ConditionsNow(const std::optional<std::string>& not_planned,
+                                 bool is_check) const;
+  std::optional<std::string> FindWhyNotPlanned(
+      const std::filesystem::path& recording) const;
   std::optional<std::string> KnownAs(const std::string& clip_id) const;
   void Log(const std::filesystem::path& recording, const std::string& clip_id);
   void Answer(const core::Trial& trial, double seconds_since_written,
@@ -143,6 +145,7 @@ class Session {
   std::optional<rig::Setting> read_;     // as the controller read it back
   std::string note_;                     // of the next shot
   std::vector<std::string> plan_lines_;  // as they were said
+  std::string boundary_;                 // in a sentence
   std::set<double> skipped_rad_;         // since the last shot
   bool check_skipped_ = false;
   bool check_wanted_ = false;  // beyond the daily one

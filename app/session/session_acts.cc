@@ -12,6 +12,8 @@
 #include "app/trials/typed_values.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/identity.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/register.h"
 
 namespace touchdown::session {
@@ -137,10 +139,17 @@ void Session::Help() const {
 }
 
 // Skips what is planned. A check shot wants a reason, as a day without one must
-// be explained; an angle does not. `why` is said and not stored.
+// be explained; an angle does not. The reason goes on record as an event of the
+// campaign's plan, which stays as it is.
 void Session::Skip(const std::string& why) {
   if (file_.is_check) {
     RequireReason("skip", why);
+    db::Plan plan;
+    for (const db::PlanEvent& event : db::PlanEvents(store_, campaign_.name)) {
+      if (event.kind == db::PlanEventKind::kPlan) plan = event.plan;
+    }
+    db::SetPlan(store_, campaign_.name, plan, options_.operator_name,
+                "check shot skipped: " + why);
     check_skipped_ = true;
     check_wanted_ = false;
     Say("check shot skipped: " + why);
@@ -196,7 +205,7 @@ void Session::Exclude(const std::string& why) {
   const core::Trial& last = RequireLast();
   store_.Exclude(last.id, options_.operator_name, why);
   acts_.push_back({Act::kExcluded, last.id});
-  Say(fmt::format("trial {} no longer counts: {}", last.id.substr(0, 8), why));
+  Say(fmt::format("trial {} no longer counts: {}", db::ShortId(last.id), why));
   Plan();
   SayPlan();
 }
@@ -206,7 +215,7 @@ void Session::Include(const std::string& why) {
   const core::Trial& last = RequireLast();
   store_.Include(last.id, options_.operator_name, why);
   acts_.push_back({Act::kIncluded, last.id});
-  Say(fmt::format("trial {} counts again: {}", last.id.substr(0, 8), why));
+  Say(fmt::format("trial {} counts again: {}", db::ShortId(last.id), why));
   Plan();
   SayPlan();
 }
@@ -226,7 +235,7 @@ void Session::Undo() {
   // back.
   acts_.pop_back();
   Say(fmt::format(
-      "trial {} {}", act.trial.substr(0, 8),
+      "trial {} {}", db::ShortId(act.trial),
       act.kind == Act::kExcluded ? "counts again" : "no longer counts"));
   Plan();
   SayPlan();

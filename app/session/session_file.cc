@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -66,9 +67,6 @@ void WriteSession(const fs::path& store, const SessionFile& session) {
   out["campaign"] = session.campaign;
   out["operator"] = session.operator_name;
   out["phase"] = Name(session.phase);
-  out["recording"] = session.recording.empty()
-                         ? ordered_json()
-                         : ordered_json(session.recording);
   // The angle stands twice: in degrees for people and other programs, and in
   // radians so that it is read back as the same number.
   out["shot"] = ordered_json();
@@ -81,9 +79,7 @@ void WriteSession(const fs::path& store, const SessionFile& session) {
                    {"set_points", session.set_points}};
   }
   out["last"] = session.last;
-  out["boundary"] = session.boundary;
   out["written_at_utc"] = db::UtcStamp(std::chrono::system_clock::now());
-  out["process"] = getpid();
   // A file's name need not be UTF-8.
   report::WriteTextFile(
       SessionPath(store),
@@ -103,10 +99,10 @@ std::optional<SessionFile> ReadSession(const fs::path& store) {
     out.campaign = document.at("campaign");
     out.operator_name = document.at("operator");
     const std::string phase = document.at("phase");
-    // A phase that is unknown leaves the default: conventions are shown again.
-    for (const Phase one : kPhases) {
-      if (Name(one) == phase) out.phase = one;
-    }
+    const auto known =
+        std::ranges::find(kPhases, phase, [](Phase one) { return Name(one); });
+    if (known == kPhases.end()) return std::nullopt;
+    out.phase = *known;
     const auto& shot = document.at("shot");
     if (shot.is_object()) {
       out.planned = true;

@@ -1,7 +1,7 @@
 // What a session leaves beside its store, lab.db.session.json: what the next
-// shot is to be, for the page that shows it and for the session that goes on
-// after an interruption. Trials are in the store alone; a lost or damaged file
-// costs the set-points of the shot that was waited for, and no trial.
+// shot is to be, for the session that goes on after an interruption. Trials are
+// in the store alone; a lost or damaged file costs the set-points of the shot
+// that was waited for, and no trial.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ enum class Phase {
   kConventions,  // for a person to accept the campaign's conventions
   kCheck,        // for a recording of the check shot
   kShot,         // for a recording of the planned shot
-  kAnalysing,    // `recording` is being analysed
+  kAnalysing,    // for the analysis of a recording
   kEnded         // nobody is there
 };
 std::string_view Name(Phase phase);
@@ -26,7 +26,6 @@ struct SessionFile {
   std::string campaign;
   std::string operator_name;
   Phase phase = Phase::kConventions;
-  std::string recording;  // kAnalysing
 
   // The planned shot. It was shown at `planned_at_s` (seconds since 1970), when
   // the campaign had `trials_before` trials: what is recorded later, and is the
@@ -38,15 +37,13 @@ struct SessionFile {
   bool is_check = false;              // it is a check shot
   nlohmann::ordered_json set_points;  // SetPointsJson()
 
-  // For the page only.
-  nlohmann::ordered_json last;  // trial, text; null before the first
-  std::string boundary;         // in a sentence
+  nlohmann::ordered_json last;  // trial: its id; null before the first
 };
 
 // FILE.session.json
 std::filesystem::path SessionPath(const std::filesystem::path& store);
 
-// touchdown.session/1; appears whole. Throws core::InputError.
+// touchdown.session/1; appears whole. Throws core::OutputError.
 void WriteSession(const std::filesystem::path& store,
                   const SessionFile& session);
 // Nothing where there is none, or it cannot be understood.

@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include "app/text/format.h"
 #include "touchdown/core/units.h"
@@ -25,20 +29,38 @@ using core::kMillimetre;
 constexpr std::size_t kDraws = 2000;
 
 // The setting whose body leaves the muzzle at `launch_mps`: the speed at
-// touchdown, which set-points begin from, is found by iteration. Each turn
-// makes good what the launch was too slow or too fast; the share that is left
-// is sin^2 of the approach angle, so that steep angles need many.
+// touchdown, which set-points begin from, is found by the secant method in the
+// squares of both speeds. In them a level shot is a line, of slope cos^2 of the
+// approach angle, and any shot nearly one.
 core::Expected<rig::Setting> SettingAtLaunch(const rig::Description& rig,
                                              rig::ContactWish wish,
                                              double launch_mps) {
-  // This many turns reach kClose for approach angles up to 84 deg, where sin^2
-  // is 0.989. A turn costs one FindSetting.
-  constexpr int kTurns = 2000;
+  // A level shot takes one or two turns, each of which costs a FindSetting.
+  // This many halve an interval below kClose, where the line bends.
+  constexpr int kTurns = 60;
   // Relative error of the launch speed that ends the search: far below what any
   // rig sets, so that the result does not depend on where it stops.
   constexpr double kClose = 1e-9;
-  wish.speed_mps = launch_mps;
+  const double wanted = launch_mps * launch_mps;
+  double square = wanted;  // of the speed at touchdown, (m/s)^2
+  if (wish.kind == core::AngleKind::kApproach) {
+    // Of a level shot, or of one from the highest muzzle where a level one
+    // falls farther: the launch speed itself may be less than any fall gives.
+    const double across = std::cos(wish.angle_rad);
+    square =
+        std::min(wanted / (across * across),
+                 wanted + 2 * rig.gravity_mps2.value * rig.muzzle_height_max_m);
+  }
+  // Squares of which the launch is known to be too slow and too fast.
+  double low = 0.0;
+  double high = std::numeric_limits<double>::infinity();
+  // Energy adds up: where the fall stays the same, what the launch lacks in v^2
+  // is what touchdown lacks.
+  double slope = 1.0;
+  // Squares of the last turn, at touchdown and at launch.
+  std::optional<std::pair<double, double>> last;
   for (int i = 0; i < kTurns; ++i) {
+    wish.speed_mps = std::sqrt(square);
     auto setting = rig::FindSetting(rig, wish);
     if (!setting) return setting;
     const auto muzzle = rig::LaunchSpeed(
@@ -46,12 +68,16 @@ core::Expected<rig::Setting> SettingAtLaunch(const rig::Description& rig,
     if (!muzzle) return core::AbsentBecause(muzzle.error().reason);
     const double v = muzzle->speed_mps;
     if (std::abs(v - launch_mps) <= kClose * launch_mps) return setting;
-    // Energy adds up: what the launch lacks in v^2 is added to the wish at
-    // touchdown. Where nothing positive is left the fall alone is faster.
-    const double square =
-        wish.speed_mps * wish.speed_mps + launch_mps * launch_mps - v * v;
-    if (!(square > 0.0)) break;
-    wish.speed_mps = std::sqrt(square);
+    const double lacking = wanted - v * v;
+    (lacking > 0.0 ? low : high) = square;
+    if (last) slope = (v * v - last->second) / (square - last->first);
+    last = {square, v * v};
+    double next = square + lacking / slope;
+    // A step out of the interval, or none, comes of a bend.
+    if (!(next > low && next < high)) {
+      next = std::isfinite(high) ? (low + high) / 2 : square + lacking;
+    }
+    square = next;
   }
   return core::AbsentBecause(
       "the rig has no setting with this angle at this launch speed");

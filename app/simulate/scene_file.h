@@ -7,9 +7,8 @@
 //   body        {"kind": "sphere", "diameter_mm"}
 //               | {"kind": "rectangle", "long_mm", "short_mm"}
 //   thrown      mu, restitution, gravity_mps2, gyration_radius_mm, and either
-//     start     the state at frame lead_in_frames: x_mm, gap_mm (of the lowest
-//     point),
-//               vx_mps, vy_mps, angle_deg, omega_rad_per_s
+//     start     the state at frame lead_in_frames: x_mm, gap_mm (of the
+//               lowest point), vx_mps, vy_mps, angle_deg, omega_rad_per_s
 //     touchdown the state at first contact, free flight before it: frame,
 //               speed_mps, approach_angle_deg, x_mm, angle_deg,
 //               omega_rad_per_s

@@ -104,18 +104,6 @@ std::filesystem::path ClipPath(const Shot& shot,
   return base;
 }
 
-// A folder of images is never replaced: it may hold what somebody needs.
-void RefuseFolderInUse(const std::filesystem::path& clip, ClipFormat format) {
-  if (format != ClipFormat::kPng && format != ClipFormat::kTiff) return;
-  std::error_code error;
-  if (std::filesystem::exists(clip, error) &&
-      !std::filesystem::is_empty(clip, error)) {
-    throw core::InputError(fmt::format(
-        "{}: is there already, must be new; remove it or choose another --out",
-        clip.string()));
-  }
-}
-
 // The name becomes that of files: a slash or dots would lead out of the folder.
 // Throws std::invalid_argument.
 void CheckName(const std::string& name) {
@@ -269,7 +257,6 @@ SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options) {
                                         options.folder.string(),
                                         error.message()));
   }
-  RefuseFolderInUse(out.clip, options.format);
   // What an older run left is put aside until the new clip stands, not removed:
   // a disk that is full must not cost the old clip its truth.
   const bool had_truth = std::filesystem::exists(out.truth_file, error);

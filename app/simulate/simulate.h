@@ -81,8 +81,8 @@ struct SimulatedClip {
 // Writes <folder>/<name>.mraw (.mp4, or the folder <name> of images) and
 // <name>.truth.json beside it (schema touchdown.truth/1, truth_json.h), which
 // marks the footage as simulated. The truth is written first: there is never
-// a clip without its mark. Throws core::InputError naming what cannot be
-// written.
+// a clip without its mark. Throws core::OutputError naming what cannot be
+// written, or the folder of images that is in use.
 SimulatedClip WriteShot(const Shot& shot, const SimulateOptions& options);
 
 }  // namespace touchdown::pipeline

@@ -8,7 +8,7 @@
 
 namespace touchdown::report {
 
-// Writes beside `path`, then renames. Throws core::InputError naming the file
+// Writes beside `path`, then renames. Throws core::OutputError naming the file
 // if it cannot be written (no such folder, no right, disk full); nothing is
 // left.
 void WriteTextFile(const std::filesystem::path& path, std::string_view text);

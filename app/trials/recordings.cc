@@ -163,6 +163,22 @@ bool IsRecording(const fs::path& path) {
           (vision::IsImageName(path) && IsStack(path)));
 }
 
+bool IsBelow(const fs::path& path, const fs::path& folder) {
+  const fs::path to = path.lexically_relative(folder);
+  return !to.empty() && *to.begin() != "..";
+}
+
+std::vector<fs::path> ListCameraHeaders(const fs::path& recording) {
+  std::vector<fs::path> headers;
+  std::error_code trouble;
+  for (const char* extension : {".cih", ".cihx", ".CIH", ".CIHX"}) {
+    fs::path beside = recording;
+    beside.replace_extension(extension);
+    if (fs::exists(beside, trouble)) headers.push_back(std::move(beside));
+  }
+  return headers;
+}
+
 std::vector<fs::path> ListFiles(const fs::path& recording) {
   std::vector<fs::path> files;
   std::error_code trouble;
@@ -180,10 +196,8 @@ std::vector<fs::path> ListFiles(const fs::path& recording) {
   // without it the data cannot be read.
   files.push_back(recording);
   if (LowerExtension(recording) == ".mraw") {
-    for (const char* header : {".cih", ".cihx", ".CIH", ".CIHX"}) {
-      fs::path beside = recording;
-      beside.replace_extension(header);
-      if (fs::exists(beside, trouble)) files.push_back(std::move(beside));
+    for (fs::path& header : ListCameraHeaders(recording)) {
+      files.push_back(std::move(header));
     }
   }
   return files;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -25,6 +26,15 @@ std::vector<std::filesystem::path> FindRecordings(
 // nor one that can be read.
 bool IsRecording(const std::filesystem::path& path);
 
+// Whether `path` is `folder` or lies in it or deeper, by names alone: both must
+// be absolute and normal, or canonical where links are to be followed.
+bool IsBelow(const std::filesystem::path& path,
+             const std::filesystem::path& folder);
+
+// The camera's headers beside a recording, .cih and .cihx in either spelling.
+std::vector<std::filesystem::path> ListCameraHeaders(
+    const std::filesystem::path& recording);
+
 // The files that a recording is read from: itself, the header beside an .mraw
 // file, the images of a folder.
 std::vector<std::filesystem::path> ListFiles(
@@ -39,8 +49,13 @@ struct Extent {
   std::filesystem::file_time_type written =
       std::filesystem::file_time_type::min();
 
-  friend bool operator==(const Extent&, const Extent&) = default;
+  friend auto operator<=>(const Extent&, const Extent&) = default;
 };
+
+// How far the clocks of two machines may be apart that are set by the same
+// network: they agree to seconds. Smaller calls a camera's clock ahead that is
+// not, larger misses one that is. Not studied.
+inline constexpr std::chrono::minutes kClocksAgree{2};
 
 // Of a recording that may be growing, or vanish, at this moment: what cannot be
 // seen counts nothing.

@@ -65,13 +65,6 @@ bool IsStillThere(const db::KnownClip& clip) {
   }
 }
 
-// Says whether `path` lies in `folder` or deeper, by names alone: both must be
-// absolute and normal. Links are not followed.
-bool IsBelow(const fs::path& path, const fs::path& folder) {
-  const fs::path to = path.lexically_relative(folder);
-  return !to.empty() && *to.begin() != "..";
-}
-
 }  // namespace
 
 Relinked Relink(db::Store& store, const fs::path& folder) {

@@ -144,42 +144,32 @@ db::Logged LogByHand(const std::filesystem::path& path,
         "is missing, must be sphere or rectangle (or give --campaign, whose "
         "body it is)");
   }
-  // A store is made only for what has been found right.
-  // The rehearsal goes without the campaign, which only the store knows: its
-  // kind of angle is that of the body, or approach.
-  core::Trial rehearsal = trial;
-  if (body) {
-    rehearsal.body = *body;
-    rehearsal.angle_kind = core::DefaultAngleKind(body->kind);
+  if (body) trial.body = *body;
+  if (entry.campaign.empty()) {
+    trial.angle_kind = core::DefaultAngleKind(body->kind);
+    Apply(entry.statement, trial);
+    // A store is made only for what has been found right.
+    db::RequireStorable(trial);
   }
-  Apply(entry.statement, rehearsal);
-  db::RequireStorable(rehearsal);
   // Campaigns and entries of the register are in a store that exists.
+  const auto& conditions = entry.statement.conditions;
   const bool refers =
-      !entry.campaign.empty() ||
-      (rehearsal.conditions && db::NameEntries(*rehearsal.conditions));
+      !entry.campaign.empty() || (conditions && db::NameEntries(*conditions));
   auto store = db::Store::Open(
       path, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
   if (!entry.campaign.empty()) {
     const core::Campaign campaign = db::RequireCampaign(store, entry.campaign);
+    // A body given beside a campaign is not taken silently: LogTrial refuses
+    // one that is not the campaign's.
+    if (!body) trial.body = campaign.body;
     // The campaign's conventions hold for the trial, h_c among them; u = 0
     // marks it as a convention and not a measurement.
-    trial.body = campaign.body;
     trial.angle_kind = campaign.angle_kind;
     trial.first.state.bounce_height_m =
         core::Estimate{campaign.bounce_height_m, 0.0, std::nullopt};
+    // Only now, since the kind of angle is the campaign's.
+    Apply(entry.statement, trial);
   }
-  // A body given beside a campaign is not taken silently: LogTrial refuses one
-  // that is not the campaign's.
-  if (body) {
-    trial.body = *body;
-    if (entry.campaign.empty()) {
-      trial.angle_kind = core::DefaultAngleKind(body->kind);
-    }
-  }
-  // It is applied again, to the real trial: the kind of angle may now be the
-  // campaign's.
-  Apply(entry.statement, trial);
   return store.LogTrial(trial);
 }
 

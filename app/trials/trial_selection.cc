@@ -174,11 +174,11 @@ Selection SelectTrials(const SelectionOptions& options) {
                     "--db, --trials and --paper-table1",
                     sources));
   }
-  if (!options.csv.empty() &&
+  if (options.store.empty() &&
       (options.from_utc || options.until_utc || options.reviewed_only)) {
     throw std::invalid_argument(
-        "--from, --until and --reviewed need --db: a CSV file knows neither "
-        "dates nor reviews");
+        "--from, --until and --reviewed need --db: a CSV file and the paper's "
+        "Table 1 know neither dates nor reviews");
   }
   const bool from_csv = !options.csv.empty();
   Selection out = from_csv               ? FromCsv(options)

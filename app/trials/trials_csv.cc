@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string_view>
 
+#include "app/text/csv_record.h"
 #include "app/text/parse_number.h"
 #include "touchdown/analysis/statistics/observation.h"
 #include "touchdown/core/errors.h"
@@ -27,21 +29,6 @@ std::string Trimmed(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return std::string(text);
-}
-
-// Divides a line into its cells, trimmed. Every comma divides: a quoted cell
-// must not hold one.
-std::vector<std::string> Cells(const std::string& line) {
-  std::vector<std::string> out(1);
-  for (const char c : line) {
-    if (c == ',') {
-      out.emplace_back();
-    } else {
-      out.back() += c;
-    }
-  }
-  for (std::string& cell : out) cell = Trimmed(cell);
-  return out;
 }
 
 // Says where a message points to; lines count from 1, headings and comments
@@ -123,8 +110,8 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
   }
   std::vector<std::string> header;
   std::vector<core::Trial> trials;
-  std::string line;
   Place place{path, 0};
+  int lines = 0;  // read so far; a quoted cell may hold several
   // Returns the position of a column in the heading, nothing where it is not
   // there.
   const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
@@ -132,13 +119,22 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
     if (at == header.end()) return std::nullopt;
     return static_cast<std::size_t>(at - header.begin());
   };
-  while (std::getline(file, line)) {
-    ++place.line;
-    // Spreadsheets begin UTF-8 files with a byte order mark, which would become
-    // part of the first column's name.
-    if (place.line == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    if (Trimmed(line).empty() || line.front() == '#') continue;
-    const std::vector<std::string> cells = Cells(line);
+  report::SkipByteOrderMark(file);
+  while (true) {
+    place.line = ++lines;
+    if (file.peek() == '#') {
+      file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+      continue;
+    }
+    auto record = report::ReadCsvRecord(file, path.string(),
+                                        static_cast<std::size_t>(lines));
+    if (!record) break;
+    std::vector<std::string>& cells = *record;
+    for (std::string& cell : cells) {
+      lines += static_cast<int>(std::ranges::count(cell, '\n'));
+      cell = Trimmed(cell);
+    }
+    if (cells.size() == 1 && cells.front().empty()) continue;
     // The first line that is neither blank nor a comment is the heading.
     if (header.empty()) {
       header = cells;

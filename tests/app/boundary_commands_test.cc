@@ -392,6 +392,33 @@ TEST_F(BoundaryCommands, ABadLineOfACsvIsNamed) {
   ExpectOneLine(run(""), 3, "is empty");
 }
 
+TEST_F(BoundaryCommands, DatesAndReviewsNeedAStore) {
+  const std::string file =
+      Write("t.csv", "angle_deg,u_deg,p_bounce\n9,0.1,1\n");
+  for (const std::string& source :
+       {std::string("--paper-table1"), "--trials " + file}) {
+    for (const char* filter :
+         {" --from 2026-01-01", " --until 2026-01-01", " --reviewed"}) {
+      ExpectOneLine(RunProgram("boundary " + source + filter), 2, "need --db");
+    }
+  }
+}
+
+TEST(ReadTrialsCsv, ReadsQuotedCellsWhole) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "t.csv";
+  std::ofstream(path) << "angle_deg,u_deg,p_bounce,calibration\n"
+                         "\n"
+                         "# a remark, \"quoted\n"
+                         "12.5,0.2,1,\"lens A,\nsecond\"\n"
+                         "13.5,0.2,1,B\n";
+  const auto trials = pipeline::ReadTrialsCsv(path, {.campaign = "c"});
+  ASSERT_EQ(trials.size(), 2u);
+  EXPECT_EQ(trials[0].conditions->calibration.name, "lens A,\nsecond");
+  EXPECT_EQ(trials[0].id, "line 4");
+  EXPECT_EQ(trials[1].id, "line 6");
+}
+
 TEST(ReadTrialsCsv, ReadsColumnsInAnyOrderWithSpacesAndAMark) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "t.csv";

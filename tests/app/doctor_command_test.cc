@@ -103,6 +103,16 @@ TEST_F(Doctor, OpensTheNewestRecording) {
               ContainsRegex("note     camera clock .*dated 59 minutes after"));
 }
 
+// Images tell no frame rate, and can be looked at all the same.
+TEST_F(Doctor, OpensAFolderOfImages) {
+  pipeline::filmed::WriteImages(folder_ / "shot", 25.0, 1);
+  const auto ran = Run({"--recordings", folder_.path().string()});
+  EXPECT_THAT(ran.out,
+              ContainsRegex("note     recordings .*shot: png-folder, 240x120 "
+                            "px, 8 bits, 115 frames, no frame rate"));
+  EXPECT_THAT(ran.out, HasSubstr("--fps"));
+}
+
 TEST_F(Doctor, SaysThatNothingWasRecorded) {
   const auto none = Run({"--recordings", folder_.path().string()});
   EXPECT_THAT(none.out, ContainsRegex("note     recordings .*none is there"));

@@ -120,6 +120,18 @@ TEST_F(ReportBug, HoldsTheFramesOfTheContactAsTheyAre) {
   }
 }
 
+// They tell no frame rate.
+TEST_F(ReportBug, HoldsTheFramesOfAFolderOfImages) {
+  const fs::path images = folder_ / "images";
+  pipeline::filmed::WriteImages(images, 25.0, 1);
+  ASSERT_EQ(
+      Run("--yes --pictures 3 --fps 1000 --diameter-mm 24 " + images.string())
+          .status,
+      0);
+  EXPECT_THAT(FilesIn(Extracted() / "frames"),
+              AllOf(Contains("000080.png"), ::testing::SizeIs(3)));
+}
+
 TEST_F(ReportBug, HoldsAsManyPicturesAsAskedFor) {
   ASSERT_EQ(Run("--yes --pictures 0 " + clip_.string()).status, 0);
   EXPECT_FALSE(fs::exists(Extracted() / "frames"));

@@ -124,6 +124,24 @@ TEST_F(StoreCommand, LogListShowCorrect) {
   EXPECT_THAT(Run("list --db lab.db --counting").out, HasSubstr("0 trials"));
 }
 
+// The kind of angle is the campaign's, and with it the sign that is allowed.
+TEST_F(StoreCommand, LogsANegativeFaceAngleIntoAFaceCampaign) {
+  ASSERT_EQ(Run("campaign new faces --db lab.db --body rectangle --sides-mm "
+                "40x20 --angle-kind face")
+                .status,
+            0);
+  const Ran ran =
+      Run("log --db lab.db --campaign faces --by Ada --state bounce "
+          "--angle-deg=-12 --angle-u-deg 0.5");
+  ASSERT_EQ(ran.status, 0) << ran.error;
+  const auto trials =
+      db::Store::Open(folder_ / "lab.db", db::OpenMode::kRead).Trials();
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_EQ(trials[0].angle_kind, core::AngleKind::kFace);
+  EXPECT_NEAR(trials[0].first.contact.face_angle_rad->value,
+              -12.0 * core::kDegree, 1e-12);
+}
+
 TEST_F(StoreCommand, ShowsAProposalAndAcceptsIt) {
   std::string id;
   {

@@ -209,13 +209,18 @@ TEST(AnalyzeDocument, SlideOfABlock) {
   // On the ground from the first frame: approach angle 0.
   film.contact_frame = -400.0;
   film.thrown.x_m = -0.58;
-  const Analysis down = AnalyzeFilm(film);
+  Analysis down = AnalyzeFilm(film);
   const json from_start = ExpectDocument(down);
   EXPECT_EQ(from_start["contact"]["found"], true);
   EXPECT_EQ(from_start["contact"]["from_start"], true);
   EXPECT_EQ(from_start["contact"]["approach_angle_deg"]["value"], 0.0);
   EXPECT_TRUE(from_start["contact"]["time_s"].is_null());
   EXPECT_EQ(from_start["state"]["label"], "slide");
+  // One that turns meanwhile: the corner is as unknown as the face angle.
+  core::Contact& contact = down.contacts.first.contact;
+  contact.corner.reset();
+  contact.face_angle_rad = core::AbsentBecause("it turns");
+  EXPECT_EQ(json::parse(ToJson(down))["absent"]["contact.corner"], "it turns");
 }
 
 }  // namespace

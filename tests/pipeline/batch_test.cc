@@ -244,6 +244,22 @@ TEST_F(RunBatchTest, TroubleWithTheStoreEndsIt) {
   EXPECT_THROW(RunBatch(reader, Clips(), {.jobs = 2}), core::StoreError);
 }
 
+// A campaign that another analysis would be of: each start would end the same.
+TEST_F(RunBatchTest, WhatTheStoreRefusesIsSetAside) {
+  auto store = Open("lab.db");
+  AnalyzeOptions options;
+  options.angle_kind = core::AngleKind::kFace;
+  std::vector<BatchClip> clips = Clips(options);
+  clips.resize(1);
+  const auto run = [&] { return RunBatch(store, clips).front(); };
+  const TriageEntry first = run();
+  EXPECT_EQ(first.done, Done::kFailed);
+  EXPECT_THAT(first.reason, HasSubstr("never pooled"));
+  EXPECT_EQ(run().reason, first.reason);
+  EXPECT_THAT(run().reason,
+              AllOf(HasSubstr("set aside"), HasSubstr(first.reason)));
+}
+
 TEST_F(RunBatchTest, OptionsThatDoNotFitAClipAreItsFailure) {
   AnalyzeOptions options;
   options.last_frame = 100000;

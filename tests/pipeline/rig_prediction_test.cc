@@ -59,6 +59,20 @@ TEST(PredictShot, ALevelShotInClosedForm) {
   }
 }
 
+// Near the vertical the fall gives nearly all of the speed.
+TEST(PredictShot, ASteepLevelShotIsFound) {
+  const rig::Description rig = Ejector();
+  for (const double angle_deg : {80.0, 85.0, 88.0}) {
+    // From 0.3 m: v0 = sqrt(2 g h) / tan a.
+    const double launch_mps = std::sqrt(2 * rig.gravity_mps2.value * 0.3) /
+                              std::tan(angle_deg * kDegree);
+    const auto p = PredictShot(rig, Thrown(angle_deg, launch_mps));
+    ASSERT_TRUE(p.launch_speed_mps) << p.launch_speed_mps.error().reason;
+    EXPECT_NEAR(p.launch_speed_mps->value, launch_mps, 1e-8);
+    EXPECT_NEAR(p.approach_angle_rad->value, angle_deg * kDegree, 1e-6);
+  }
+}
+
 TEST(PredictShot, SaysWhyNot) {
   const rig::Description rig = Ejector();
   const auto why = [&](const core::Trial& trial) {

@@ -188,8 +188,8 @@ TEST(WriteShot, AFolderOfImagesIsNeverReplaced) {
   try {
     WriteShot(shot, other);
     ADD_FAILURE() << "replaced";
-  } catch (const core::InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("is there already"));
+  } catch (const core::OutputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("exists already"));
   }
   EXPECT_EQ(Bytes(made.truth_file), truth);
 }

@@ -105,6 +105,17 @@ TEST(TriageCsv, IsATableWithoutFormulas) {
   EXPECT_THAT(csv, HasSubstr("failed,failed,'@cannot be read"));
 }
 
+// What the analysis in force warned of is still to be looked at.
+TEST(MakeTriageEntry, AProposalHidesNoWarning) {
+  core::Trial trial = Bounce();
+  trial.document_json = R"({"warnings": ["dark"]})";
+  const core::Trial proposal = Undecided(0.5);
+  const TriageEntry entry =
+      MakeTriageEntry("a", Done::kKnown, trial, &proposal);
+  EXPECT_EQ(entry.attention, Attention::kProposed);
+  EXPECT_THAT(entry.reason, StartsWith("dark; a person's correction"));
+}
+
 // The document of a trial that came from elsewhere need not be JSON.
 TEST(MakeTriageEntry, ADocumentThatIsNone) {
   for (const char* document :

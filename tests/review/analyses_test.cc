@@ -85,6 +85,10 @@ TEST_F(AnalysisQueueTest, GivesTwoTabsOneAnalysis) {
   AnalysisOrder other = order;
   other.camera.fps = 999.0;
   EXPECT_NE(queue.Add(other), one);
+  // What is to be analysed again is not answered by what will be known.
+  AnalysisOrder again = order;
+  again.again = true;
+  EXPECT_NE(queue.Add(again), one);
   EXPECT_EQ(Over(one).state, kDone);
   EXPECT_EQ(Over(busy).state, kDone);
 }

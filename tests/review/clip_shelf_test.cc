@@ -42,7 +42,8 @@ TEST(ClipShelf, GivesTheSamplesOfARawRecording) {
 }
 
 // A compressed recording of `frames` frames, each of one level of its own.
-void WriteLevels(const std::filesystem::path& path, int frames) {
+void WriteLevels(const std::filesystem::path& path, int frames,
+                 int first = 20) {
   vision::VideoOptions options;
   options.codec = vision::VideoCodec::kH264;
   options.key_frame_distance = 25;
@@ -51,7 +52,8 @@ void WriteLevels(const std::filesystem::path& path, int frames) {
   std::int64_t n = 0;
   vision::WriteVideo(path, options, [&]() -> std::optional<core::Frame> {
     if (n == frames) return std::nullopt;
-    std::fill(pixels.begin(), pixels.end(), static_cast<std::byte>(20 + 3 * n));
+    std::fill(pixels.begin(), pixels.end(),
+              static_cast<std::byte>(first + 3 * n));
     core::Frame frame;
     frame.data = pixels.data();
     frame.stride_bytes = 64;
@@ -72,6 +74,20 @@ TEST(ClipShelf, GivesEachFrameOfACompressedRecordingInAnyOrder) {
     const auto level = Decode(picture, folder).View().at(32, 24);
     EXPECT_NEAR(static_cast<double>(level), 20 + 3 * n, 4.0) << n;
   }
+}
+
+// A recording that was replaced is another one: its frames, its pictures.
+TEST(ClipShelf, SeesThatARecordingHasChanged) {
+  const testing::TemporaryFolder folder;
+  const auto path = folder / "a.mp4";
+  WriteLevels(path, 60);
+  ClipShelf shelf;
+  EXPECT_EQ(shelf.Info(path).frames, 60);
+  shelf.Frame(path, 7);
+  WriteLevels(path, 30, 100);
+  EXPECT_EQ(shelf.Info(path).frames, 30);
+  const auto level = Decode(shelf.Frame(path, 7), folder).View().at(32, 24);
+  EXPECT_NEAR(static_cast<double>(level), 100 + 3 * 7, 4.0);
 }
 
 TEST(ClipShelf, KeepsNoMoreThanItMay) {

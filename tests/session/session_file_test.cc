@@ -52,6 +52,11 @@ TEST(SessionFile, DamagedIsAsIfItWereNotThere) {
   folder.Write("lab.db.session.json",
                "{\"schema\": \"touchdown.session/1\", \"campaign\": 5}");
   EXPECT_FALSE(ReadSession(store));
+  // A phase of another version of the program.
+  const std::size_t at = whole.find("conventions");
+  folder.Write("lab.db.session.json",
+               std::string(whole).replace(at, 11, "sleeping"));
+  EXPECT_FALSE(ReadSession(store));
 }
 
 TEST(SessionLock, IsForOneAtATime) {

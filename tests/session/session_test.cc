@@ -222,6 +222,12 @@ TEST_F(SessionTest, TheDailyCheckShotIsAskedForComparedAndLogged) {
   EXPECT_THAT(Take(bench_.Drop("high.mraw", 0.4)), HasSubstr("DOES NOT AGREE"));
   EXPECT_THAT(Obey("check"), HasSubstr("check shot: drop"));
   EXPECT_THAT(Obey("skip no time"), HasSubstr("skipped: no time"));
+  // Why is on record; the plan is as it was.
+  const auto events = db::PlanEvents(*store_, "asphalt");
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().reason, "check shot skipped: no time");
+  EXPECT_EQ(events.back().author, "A. Lee");
+  EXPECT_EQ(events.back().plan, db::Plan{});
   EXPECT_EQ(session_->phase(), Phase::kShot);
 }
 
@@ -295,8 +301,26 @@ TEST_F(SessionTest, GoesOnWhereItWas) {
         bench_.films() / file,
         std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   }
-  EXPECT_THAT(Take(old), HasSubstr("logged without them"));
+  EXPECT_THAT(Take(old), HasSubstr("shown: logged without set-points"));
   EXPECT_FALSE(Trials()[2].set_angle_rad);
+}
+
+// By a clock that is ahead, each recording seems to be of the plan.
+TEST_F(SessionTest, ARecordingFromTheFutureHasNoSetPoints) {
+  Begin();
+  Obey("");
+  const auto ahead = bench_.Film("a.mraw", 24.0, 1);
+  for (const char* file : {"a.mraw", "a.cihx"}) {
+    std::filesystem::last_write_time(
+        bench_.films() / file,
+        std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
+  }
+  EXPECT_THAT(Take(ahead), HasSubstr("camera is ahead: logged without"));
+  ASSERT_EQ(Trials().size(), 1u);
+  EXPECT_FALSE(Trials()[0].set_angle_rad);
+  EXPECT_FALSE(Trials()[0].set_speed_mps);
+  EXPECT_THAT(Trials()[0].conditions->elevation_rad.error().reason,
+              HasSubstr("clock of the camera is ahead"));
 }
 
 TEST_F(SessionTest, WhatCannotBeAnalysedIsSaidAndTheShotStays) {

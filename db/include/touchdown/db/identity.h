@@ -25,6 +25,11 @@ std::string RandomUuid(Engine& engine) {
 // True for 36 characters 8-4-4-4-12 of lower-case hexadecimal digits.
 bool IsUuid(std::string_view text);
 
+// The beginning of a UUID, which is enough to find a trial by (Store::Find).
+inline std::string ShortId(std::string_view uuid) {
+  return std::string(uuid.substr(0, 8));
+}
+
 // The UUID (version 8) of the statement that settles two diverged revisions:
 // the same whichever of the two comes first, so that two stores merged into
 // each other agree. Throws std::invalid_argument unless both are UUIDs.
