@@ -60,8 +60,10 @@ int RunDoctor(const DoctorCommandFlags& flags) {
 
 void AddDoctorFlags(CLI::App& command, DoctorFlags& flags) {
   AddOption(command, "--db", flags.store, "a trial store to look at");
-  AddOption(command, "--camera", flags.calibration,
+  AddOption(command, "--calibration", flags.calibration,
             "a calibration file to look at");
+  // The earlier name of --calibration, which scripts may still have.
+  AddOption(command, "--camera", flags.calibration, "as --calibration").Hide();
   AddOption(
       command, "--recordings", flags.recordings,
       "the folder that the camera writes into: its newest recording is opened");
