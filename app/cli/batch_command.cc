@@ -317,7 +317,7 @@ int RunBatch(const BatchFlags& flags) {
     throw std::invalid_argument(
         "FOLDER is missing, must be a folder of recordings or a manifest.csv");
   }
-  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  RequireDb(flags.db);
   // Each analysis is a thread that holds part of a recording in memory; more
   // than this is a typing error.
   constexpr int kMaxJobs = 1024;
@@ -330,9 +330,17 @@ int RunBatch(const BatchFlags& flags) {
   // store is made.
   const pipeline::AnalyzeOptions analyze = ToOptions(flags.analyze);
   if (flags.watch) {
-    if (!fs::is_directory(flags.source) || !flags.shard.empty()) {
+    if (!fs::is_directory(flags.source)) {
+      throw std::invalid_argument(fmt::format(
+          "FOLDER is '{}', must be a folder with --watch: the one that "
+          "recordings appear in",
+          flags.source));
+    }
+    if (!flags.shard.empty()) {
       throw std::invalid_argument(
-          "--watch needs a folder, and goes without --shard");
+          fmt::format("--shard is '{}', must be left out with --watch, which "
+                      "takes every recording",
+                      flags.shard));
     }
     return WatchFolder(flags, analyze);
   }

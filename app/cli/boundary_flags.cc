@@ -16,6 +16,7 @@
 
 #include "app/cli/messages.h"
 #include "app/cli/options.h"
+#include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/report_input/report_input.h"
 #include "app/shots/thrower.h"
@@ -121,12 +122,6 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
         "{}: '{}'; expected {}, low below high", flag, text, kForm));
   }
   return range;
-}
-
-// Returns nothing where no corner was asked for: the rig takes either.
-std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags) {
-  return OptionalWord("--corner", flags.corner, core::ParseCorner,
-                      "leading, trailing or flush");
 }
 
 // Check shots are drops from a known height at one angle: no boundary lies
@@ -263,8 +258,8 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   } else if (!flags.rig.empty()) {
     // Each campaign's reach is found by searching the rig's settings when it is
     // asked for, at the speed of --speed-mps or of that campaign's band.
-    input.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps,
-                                          ReadCorner(flags), flags.store);
+    input.reach_of = pipeline::ReachOfRig(
+        flags.rig, flags.speed_mps, ReadCorner(flags.corner), flags.store);
   }
   // The prior on the boundary is then confined to the angles that can be
   // thrown.

@@ -65,9 +65,6 @@ struct BoundaryFlags {
 // rule.
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags);
 
-// The corner that lands first. Throws std::invalid_argument naming the flag.
-std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags);
-
 // Check shots have no boundary and no next angle. Throws std::invalid_argument
 // where `--campaign` names theirs.
 void RefuseCheckShots(const BoundaryFlags& flags,

@@ -360,7 +360,7 @@ int ImportPaperTable1(const ImportFlags& flags) {
     throw std::invalid_argument(fmt::format(
         "--paper-u-deg is {}, must be from 0 to 90", flags.paper_u_deg));
   }
-  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  RequireDb(flags.db);
   auto paper = pipeline::PaperTable1Trials(flags.paper_u_deg * core::kDegree);
   auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
   for (const auto& campaign : paper.campaigns) {
@@ -386,7 +386,7 @@ int Import(const ImportFlags& flags) {
         "FILE is missing, must be a .csv or .jsonl file (or --columns, or "
         "--paper-table1)");
   }
-  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  RequireDb(flags.db);
   const Format format = ChooseFormat(flags.format, flags.file);
   if (format == Format::kTidy) {
     throw std::invalid_argument("--format is 'tidy', must be csv or jsonl");

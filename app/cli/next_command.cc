@@ -16,6 +16,7 @@
 #include "app/cli/command.h"
 #include "app/cli/options.h"
 #include "app/cli/rig_print.h"
+#include "app/cli/store_flags.h"
 #include "app/report/boundary_json.h"
 #include "app/report/group.h"
 #include "app/report/sentences.h"
@@ -166,7 +167,7 @@ int RunNext(const BoundaryFlags& flags) {
   std::optional<pipeline::Thrower> thrower;
   if (!flags.rig.empty()) {
     thrower = pipeline::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
-                                    ReadCorner(flags), flags.store);
+                                    ReadCorner(flags.corner), flags.store);
     // The rig's description was read, but it cannot throw for this campaign.
     if (!group.reach) throw std::invalid_argument(group.reach.error().reason);
   }
