@@ -182,6 +182,12 @@ int RunImpact(const TheoryFlags& flags) {
   double mirror = 1.0;
   // The velocity of the contact point is in the frame of corner.h already.
   if (i.tangential_mps || i.normal_mps) {
+    if (i.speed_mps || i.approach_deg || !f.corner.empty()) {
+      throw std::invalid_argument(
+          "--tangential-mps and --normal-mps are the velocity of the contact "
+          "point, --speed-mps, --approach-deg and --corner say that of the "
+          "centre; give the one or the other");
+    }
     p.tangential_mps = Need(i.tangential_mps, "--tangential-mps");
     p.normal_mps = Need(i.normal_mps, "--normal-mps");
     p.alpha_rate_rad_per_s = -omega;
