@@ -339,6 +339,13 @@ TEST_F(TheoryCommand, MapWritesTableAndDrawings) {
   }
 }
 
+TEST_F(TheoryCommand, AFolderMayHaveAnyName) {
+  const auto r = TheoryJson({"map", "--body", "rectangle", "--corner",
+                             "leading", "--alpha-points", "3", "--axis-points",
+                             "3", "--no-plots", "--out", folder_ / "m\xFFp"});
+  EXPECT_THAT(r["files"][0].get<std::string>(), HasSubstr("regime_map.csv"));
+}
+
 TEST_F(TheoryCommand, MonteCarloIsReproducible) {
   const std::vector<std::string> arguments = {"boundary",
                                               "--model",
