@@ -286,7 +286,6 @@ int WatchFolder(const BatchFlags& flags,
   // Returns when options.wait says that a signal came.
   pipeline::Watch(flags.source, options, take);
   const int status = FinishBatch(std::move(all), flags);
-  constexpr int kBySignal = 128;  // as shells count
   return batch_ended_by != 0 ? kBySignal + batch_ended_by : status;
 }
 
