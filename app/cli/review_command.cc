@@ -92,13 +92,23 @@ int RunReview(const ReviewFlags& flags) {
     if (!ended) EndSoon(signal);
     server.Stop();
   });
-  server.Run();
-  ended = true;
   // Where the server ended by itself, the waiter is woken: it waits for the
   // signal, which is blocked everywhere.
-  // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
-  pthread_kill(waiter.native_handle(), SIGTERM);
-  waiter.join();
+  const auto end_waiting = [&] {
+    ended = true;
+    // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
+    pthread_kill(waiter.native_handle(), SIGTERM);
+    waiter.join();
+  };
+  try {
+    server.Run();
+  } catch (...) {
+    // A thread that was not joined would end the process before main can say
+    // what is wrong.
+    end_waiting();
+    throw;
+  }
+  end_waiting();
   return 0;
 }
 
