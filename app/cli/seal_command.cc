@@ -145,12 +145,14 @@ int MakeSeal(const SealFlags& flags) {
   if (!flags.out.empty()) {
     report::WriteTextFile(flags.out, db::SealText(seal));
     // Without the signature that was asked for the seal goes again: it would
-    // look as if it had been left unsigned on purpose.
+    // look as if it had been left unsigned on purpose. So does what the signer
+    // has written of the signature: it was not there before.
     try {
       if (signer) RunSigner(signer->command);
     } catch (...) {
       std::error_code ignored;
       fs::remove(flags.out, ignored);
+      fs::remove(signer->signature, ignored);
       throw;
     }
   }
