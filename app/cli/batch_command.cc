@@ -12,6 +12,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -102,15 +103,18 @@ int PrintManifestColumns() {
 }
 
 // Opens --db for writing. Without a campaign a new store is made where there is
-// none; with --campaign alone the store must be there. With --campaign-from a
-// new store is made, too, and the campaign, its plan and the register's entries
-// are copied into it from that other store: so shards on several machines, each
-// with a store of its own, log by the same conventions.
-db::Store OpenStore(const BatchFlags& flags) {
+// none; with --campaign alone, or conditions that name entries of its register,
+// the store must be there. With --campaign-from a new store is made, too, and
+// the campaign, its plan and the register's entries are copied into it from
+// that other store: so shards on several machines, each with a store of its
+// own, log by the same conventions.
+db::Store OpenStore(const BatchFlags& flags,
+                    const std::optional<core::Conditions>& conditions) {
   if (flags.campaign_from.empty()) {
-    return db::Store::Open(flags.db, flags.campaign.empty()
-                                         ? db::OpenMode::kCreate
-                                         : db::OpenMode::kWrite);
+    const bool refers =
+        !flags.campaign.empty() || (conditions && db::NameEntries(*conditions));
+    return db::Store::Open(
+        flags.db, refers ? db::OpenMode::kWrite : db::OpenMode::kCreate);
   }
   if (flags.campaign.empty()) {
     throw std::invalid_argument(
@@ -182,11 +186,8 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
   }
   // The checks of scale, frame rate and size take all trials of a campaign, so
   // the store is read anew instead of this batch's entries.
-  std::vector<pipeline::CampaignWord> campaigns;
-  if (fs::exists(flags.db)) {
-    campaigns = pipeline::CampaignWords(
-        db::Store::Open(flags.db, db::OpenMode::kRead), entries);
-  }
+  const std::vector<pipeline::CampaignWord> campaigns = pipeline::CampaignWords(
+      db::Store::Open(flags.db, db::OpenMode::kRead), entries);
   if (flags.json) {
     fmt::print("{}\n", pipeline::TriageJson(entries, campaigns));
   } else {
@@ -210,15 +211,13 @@ int FinishBatch(std::vector<TriageEntry> entries, const BatchFlags& flags) {
 
 // Returns the options of one RunBatch(), which draws its progress on `bar`. The
 // conditions name entries of the register: each is fixed to the version that is
-// in force at this moment. Throws std::invalid_argument for a condition that is
-// no KEY=VALUE or names no entry.
-pipeline::BatchOptions MakeOptions(const BatchFlags& flags,
-                                   const db::Store& store, ProgressBar& bar) {
+// in force at this moment. Throws std::invalid_argument for a condition that
+// names no entry.
+pipeline::BatchOptions MakeOptions(
+    const BatchFlags& flags, const std::optional<core::Conditions>& conditions,
+    const db::Store& store, ProgressBar& bar) {
   pipeline::BatchOptions options;
-  ApplyConditions(flags.conditions, options.conditions);
-  if (options.conditions) {
-    options.conditions = db::Resolved(store, *options.conditions);
-  }
+  if (conditions) options.conditions = db::Resolved(store, *conditions);
   options.jobs = flags.jobs;
   options.again = flags.again;
   options.evidence = flags.out;
@@ -236,9 +235,11 @@ pipeline::BatchOptions MakeOptions(const BatchFlags& flags,
 // until SIGINT or SIGTERM. Prints a line for each at once, and the report of
 // all at the end. Returns the status of FinishBatch(), or 128 + signal where
 // the signal cut an analysis off.
-int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
+int WatchFolder(const BatchFlags& flags,
+                const std::optional<core::Conditions>& conditions,
+                pipeline::AnalyzeOptions analyze) {
   analyze.interrupted = &watch_interrupted;
-  auto store = OpenStore(flags);
+  auto store = OpenStore(flags, conditions);
   // Opening the store may wait for another process, so the signals are caught
   // afterwards: until here Ctrl-C ends the program at once.
   CatchWatchSignals();
@@ -251,7 +252,7 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
         pipeline::RunBatch(store,
                            pipeline::ListBatchClips(complete, flags.source,
                                                     flags.campaign, analyze),
-                           MakeOptions(flags, store, bar));
+                           MakeOptions(flags, conditions, store, bar));
     analysing_batch = false;
     bar.Finish();
     for (const TriageEntry& entry : entries) {
@@ -285,7 +286,6 @@ int WatchFolder(const BatchFlags& flags, pipeline::AnalyzeOptions analyze) {
   // Returns when options.wait says that a signal came.
   pipeline::Watch(flags.source, options, take);
   const int status = FinishBatch(std::move(all), flags);
-  constexpr int kBySignal = 128;  // as shells count
   return batch_ended_by != 0 ? kBySignal + batch_ended_by : status;
 }
 
@@ -317,7 +317,7 @@ int RunBatch(const BatchFlags& flags) {
     throw std::invalid_argument(
         "FOLDER is missing, must be a folder of recordings or a manifest.csv");
   }
-  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  RequireDb(flags.db);
   // Each analysis is a thread that holds part of a recording in memory; more
   // than this is a typing error.
   constexpr int kMaxJobs = 1024;
@@ -326,15 +326,25 @@ int RunBatch(const BatchFlags& flags) {
         fmt::format("--jobs is {}, must be 1 to {}, or 0 for one on each core",
                     flags.jobs, kMaxJobs));
   }
-  // The flags of the analysis are parsed before any recording is listed or the
-  // store is made.
+  // The flags of the analysis and the conditions are parsed before any
+  // recording is listed or the store is made.
   const pipeline::AnalyzeOptions analyze = ToOptions(flags.analyze);
+  std::optional<core::Conditions> conditions;
+  ApplyConditions(flags.conditions, conditions);
   if (flags.watch) {
-    if (!fs::is_directory(flags.source) || !flags.shard.empty()) {
-      throw std::invalid_argument(
-          "--watch needs a folder, and goes without --shard");
+    if (!fs::is_directory(flags.source)) {
+      throw std::invalid_argument(fmt::format(
+          "FOLDER is '{}', must be a folder with --watch: the one that "
+          "recordings appear in",
+          flags.source));
     }
-    return WatchFolder(flags, analyze);
+    if (!flags.shard.empty()) {
+      throw std::invalid_argument(
+          fmt::format("--shard is '{}', must be left out with --watch, which "
+                      "takes every recording",
+                      flags.shard));
+    }
+    return WatchFolder(flags, conditions, analyze);
   }
   auto clips = ListClips(flags, analyze);
   // The list has the same order on every machine that sees the same folder or
@@ -343,10 +353,10 @@ int RunBatch(const BatchFlags& flags) {
     clips = pipeline::SelectShard(std::move(clips),
                                   pipeline::ParseShard("--shard", flags.shard));
   }
-  auto store = OpenStore(flags);
+  auto store = OpenStore(flags, conditions);
   ProgressBar bar("batch");
-  auto entries =
-      pipeline::RunBatch(store, clips, MakeOptions(flags, store, bar));
+  auto entries = pipeline::RunBatch(store, clips,
+                                    MakeOptions(flags, conditions, store, bar));
   bar.Finish();
   return FinishBatch(std::move(entries), flags);
 }

@@ -1,7 +1,7 @@
 // touchdown boundary and report lead from trials to a boundary angle. Both
-// select trials by the same flags (boundary_flags.h), record that the answer is
-// looked at, and estimate one boundary for each group of trials that may be
-// pooled. `boundary` prints the groups, `report` writes files.
+// select trials by the same flags (boundary_flags.h), estimate one boundary for
+// each group of trials that may be pooled, and record that the answer is looked
+// at before they show it. `boundary` prints the groups, `report` writes files.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -28,6 +28,8 @@
 #include "app/shots/rig_prediction.h"
 #include "app/text/format.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/plan.h"
+#include "touchdown/db/store.h"
 
 namespace touchdown::cli {
 namespace {
@@ -49,18 +51,18 @@ struct Answer {
 Answer MakeAnswer(const BoundaryFlags& flags) {
   Answer out;
   out.input = MakeInput(flags);
-  KeepLook(flags, "boundary", out.input);
+  RefuseCheckShots(flags, out.input);
   out.trials = std::move(out.input.trials);
   out.input.trials.clear();
   // The order in which the store gives the trials must not change the answer.
   report::SortTrials(out.trials);
   out.groups = report::MakeGroups(out.input, out.trials);
-  RefuseCheckShots(flags, out.input);
   if (out.groups.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: no trial matches; give other filters or log trials first",
         out.input.source));
   }
+  KeepLook(flags, "boundary", out.trials);
   return out;
 }
 
@@ -169,8 +171,8 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
         "--trials: a report needs --body sphere or rectangle, which the file "
         "does not say");
   }
+  RequireDegrees("--bin-deg", flags.bin_deg);
   report::ReportInput input = MakeInput(flags, true);
-  KeepLook(flags, "report", input);
   input.options = options;
   input.details = flags.details.empty()
                       ? pipeline::ReadStoreDetails(flags.store)
@@ -184,10 +186,6 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
   }
   // Tables link to pages of evidence only where these are written below.
   input.evidence_pages = flags.evidence;
-  if (!(flags.bin_deg >= 0.0 && flags.bin_deg <= 90.0)) {
-    throw std::invalid_argument(
-        fmt::format("--bin-deg: {}; expected 0 to 90", flags.bin_deg));
-  }
   // 0 leaves it to the report: a row for each angle, or bins that fit a page.
   input.bin_width_rad = flags.bin_deg * kDegree;
   // Pictures that the store keeps take precedence over those of the folder:
@@ -203,6 +201,12 @@ int RunReport(const BoundaryFlags& flags, const std::string& options) {
     // Pages of evidence are one file a trial: they have room for all.
     pipeline::AddPictures(
         input, flags.evidence ? input.trials.size() : pipeline::kMostStrips);
+  }
+  KeepLook(flags, "report", input.trials);
+  // The plan is read again, so that the report shows this very look.
+  if (!flags.store.empty()) {
+    input.plan =
+        db::PlanEvents(db::Store::Open(flags.store, db::OpenMode::kRead));
   }
   // The five texts and the schema are on the disk before anything is made from
   // them: the PDF is printed from the page, the archive packs the files.

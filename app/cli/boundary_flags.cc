@@ -16,6 +16,7 @@
 
 #include "app/cli/messages.h"
 #include "app/cli/options.h"
+#include "app/cli/store_flags.h"
 #include "app/cli/store_text.h"
 #include "app/report_input/report_input.h"
 #include "app/shots/thrower.h"
@@ -23,8 +24,6 @@
 #include "app/trials/looks.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
-#include "touchdown/db/plan.h"
-#include "touchdown/db/store.h"
 
 namespace touchdown::cli {
 namespace {
@@ -60,6 +59,14 @@ auto OptionalWord(const char* flag, const std::string& text, Parse parse,
   return parsed;
 }
 
+// Throws std::invalid_argument where the flag's value is not above 0, or more
+// than any angle.
+void RequirePositiveDegrees(const char* flag, double value_deg) {
+  if (value_deg > 0.0 && value_deg <= 90.0) return;
+  throw std::invalid_argument(
+      fmt::format("{}: {}; expected more than 0, at most 90", flag, value_deg));
+}
+
 // An empty text means that the flag was not given: the filter lets all pass.
 std::optional<std::string> Given(const std::string& text) {
   if (text.empty()) return std::nullopt;
@@ -80,7 +87,7 @@ core::Estimate ParseTheory(const std::string& text) {
           ? 0.0
           : ReadFlagNumber("--theory-deg",
                            std::string_view(text).substr(sign + 2), kForm);
-  if (!(value >= 0.0 && value <= 90.0) || !(u >= 0.0)) {
+  if (!(value >= 0.0 && value <= 90.0) || !(u >= 0.0 && u <= 90.0)) {
     throw std::invalid_argument(
         fmt::format("--theory-deg: '{}'; expected {}", text, kForm));
   }
@@ -91,10 +98,7 @@ core::Estimate ReadTheory(const BoundaryFlags& flags) {
   core::Estimate theory = ParseTheory(flags.theory);
   if (!flags.theory_u_deg) return theory;
   const double u_deg = *flags.theory_u_deg;
-  if (!(u_deg >= 0.0 && u_deg <= 90.0)) {
-    throw std::invalid_argument(
-        fmt::format("--theory-u-deg: {}; expected 0 to 90", u_deg));
-  }
+  RequireDegrees("--theory-u-deg", u_deg);
   // Two different u's must not be resolved silently in favour of one.
   if (theory.u > 0.0) {
     throw std::invalid_argument(fmt::format(
@@ -105,8 +109,14 @@ core::Estimate ReadTheory(const BoundaryFlags& flags) {
   return theory;
 }
 
+void RequireDegrees(const char* flag, double value_deg) {
+  if (value_deg >= 0.0 && value_deg <= 90.0) return;
+  throw std::invalid_argument(
+      fmt::format("{}: {}; expected 0 to 90", flag, value_deg));
+}
+
 core::Interval ParseRange(const char* flag, const std::string& text) {
-  constexpr const char* kForm = "LOW:HIGH in degrees, e.g. 5:40";
+  constexpr const char* kForm = "LOW:HIGH in degrees within 0:90, e.g. 5:40";
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
     throw std::invalid_argument(
@@ -120,13 +130,11 @@ core::Interval ParseRange(const char* flag, const std::string& text) {
     throw std::invalid_argument(fmt::format(
         "{}: '{}'; expected {}, low below high", flag, text, kForm));
   }
+  if (range.low < 0.0 || range.high > 90.0 * kDegree) {
+    throw std::invalid_argument(
+        fmt::format("{}: '{}'; expected {}", flag, text, kForm));
+  }
   return range;
-}
-
-// Returns nothing where no corner was asked for: the rig takes either.
-std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags) {
-  return OptionalWord("--corner", flags.corner, core::ParseCorner,
-                      "leading, trailing or flush");
 }
 
 // Check shots are drops from a known height at one angle: no boundary lies
@@ -172,10 +180,7 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
   out.store = flags.store;
   out.csv = flags.csv;
   out.paper_table1 = flags.paper_table1;
-  if (!(flags.paper_u_deg >= 0.0 && flags.paper_u_deg <= 90.0)) {
-    throw std::invalid_argument(
-        fmt::format("--paper-u-deg: {}; expected 0 to 90", flags.paper_u_deg));
-  }
+  RequireDegrees("--paper-u-deg", flags.paper_u_deg);
   out.paper_u_rad = flags.paper_u_deg * kDegree;
   out.campaign = Given(flags.campaign);
   out.surface = Given(flags.surface);
@@ -189,9 +194,9 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
   out.from_utc = Given(flags.from);
   out.until_utc = Given(flags.until);
   out.reviewed_only = flags.reviewed;
-  if (flags.margin_deg < 0.0) {
-    throw std::invalid_argument(fmt::format(
-        "--margin-deg: {}; expected more than 0", flags.margin_deg));
+  if (flags.margin_deg) {
+    RequirePositiveDegrees("--margin-deg", *flags.margin_deg);
+    out.margin_rad = *flags.margin_deg * kDegree;
   }
   // A file has no campaign that could declare a theory, so --theory-deg
   // declares it. Of a store the flag is for information only (MakeInput).
@@ -201,12 +206,14 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags) {
     out.theory_rad = theory.value;
     out.theory_u_rad = theory.u;
   }
-  out.margin_rad = flags.margin_deg * kDegree;
   return out;
 }
 
-// The module checks the ranges of target, repeatability and trials itself.
+// The ranges are those of the module, which would name its own fields, and only
+// after the look has been recorded.
 analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
+  RequirePositiveDegrees("--target-deg", flags.target_deg);
+  RequireDegrees("--set-u-deg", flags.set_u_deg);
   analysis::StudyOptions out;
   out.next.target_half_width_rad = flags.target_deg * kDegree;
   out.next.set_u_rad = flags.set_u_deg * kDegree;
@@ -215,11 +222,6 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
   // campaign.
   if (!flags.support.empty() && flags.support != kOfTheRig) {
     const core::Interval support = ParseRange("--support-deg", flags.support);
-    if (support.low < 0.0 || support.high > 90.0 * kDegree) {
-      throw std::invalid_argument(fmt::format(
-          "--support-deg: '{}'; expected LOW:HIGH within 0:90, or rig",
-          flags.support));
-    }
     out.fit.low_rad = support.low;
     out.fit.high_rad = support.high;
   }
@@ -230,20 +232,16 @@ analysis::StudyOptions MakeStudy(const BoundaryFlags& flags) {
 // reach any verdict; therefore each look is on record beside the campaign's
 // plan.
 void KeepLook(const BoundaryFlags& flags, std::string_view command,
-              report::ReportInput& input) {
-  if (flags.store.empty() || input.trials.empty()) return;
+              std::span<const core::Trial> trials) {
+  if (flags.store.empty() || trials.empty()) return;
   // Each campaign that has a trial here gets one look.
   std::set<std::string> names;
-  for (const core::Trial& trial : input.trials) names.insert(trial.campaign);
+  for (const core::Trial& trial : trials) names.insert(trial.campaign);
   const std::string trouble = pipeline::KeepLooks(flags.store, names, command);
+  // A read-only store must not keep anybody from reading the answer.
   if (!trouble.empty()) {
-    // A read-only store must not keep anybody from reading the answer.
     Tell(fmt::format("this look is not on record: {}", trouble));
-    return;
   }
-  // The plan is read again, so that a report shows this very look.
-  input.plan =
-      db::PlanEvents(db::Store::Open(flags.store, db::OpenMode::kRead));
 }
 
 // Selects trials and sets what they are compared with and what can be thrown.
@@ -263,8 +261,8 @@ report::ReportInput MakeInput(const BoundaryFlags& flags, bool with_evidence) {
   } else if (!flags.rig.empty()) {
     // Each campaign's reach is found by searching the rig's settings when it is
     // asked for, at the speed of --speed-mps or of that campaign's band.
-    input.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps,
-                                          ReadCorner(flags), flags.store);
+    input.reach_of = pipeline::ReachOfRig(
+        flags.rig, flags.speed_mps, ReadCorner(flags.corner), flags.store);
   }
   // The prior on the boundary is then confined to the angles that can be
   // thrown.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -34,7 +35,7 @@ struct BoundaryFlags {
   std::string theory;
   std::optional<double> theory_u_deg;
   std::string theory_name;
-  double margin_deg = 0.0;
+  std::optional<double> margin_deg;
   double target_deg = 0.5;
   double set_u_deg = 0.5;
   std::string feasible;
@@ -65,9 +66,6 @@ struct BoundaryFlags {
 // rule.
 void AddBoundaryFlags(CLI::App& command, BoundaryFlags& flags);
 
-// The corner that lands first. Throws std::invalid_argument naming the flag.
-std::optional<core::Corner> ReadCorner(const BoundaryFlags& flags);
-
 // Check shots have no boundary and no next angle. Throws std::invalid_argument
 // where `--campaign` names theirs.
 void RefuseCheckShots(const BoundaryFlags& flags,
@@ -82,14 +80,18 @@ pipeline::SelectionOptions MakeSelection(const BoundaryFlags& flags);
 analysis::StudyOptions MakeStudy(const BoundaryFlags& flags);
 
 // The selected trials with what they are to be compared with.
-// Records that the answer of the campaigns is looked at (db/plan.h), each once
-// for the same trials, and puts it into `input`. A store that cannot be written
-// is told of, and the look goes on.
-void KeepLook(const BoundaryFlags& flags, std::string_view command,
-              report::ReportInput& input);
-
 report::ReportInput MakeInput(const BoundaryFlags& flags,
                               bool with_evidence = false);
+
+// Records that the answer of the trials' campaigns is looked at (db/plan.h),
+// each once for the same trials. Called when nothing can be refused any more,
+// since a refused command shows no answer. A store that cannot be written is
+// told of, and the look goes on.
+void KeepLook(const BoundaryFlags& flags, std::string_view command,
+              std::span<const core::Trial> trials);
+
+// Throws std::invalid_argument where the flag's value is not from 0 to 90.
+void RequireDegrees(const char* flag, double value_deg);
 
 // "11.8" or "11.8+-0.5", in degrees.
 core::Estimate ParseTheory(const std::string& text);
@@ -98,7 +100,7 @@ core::Estimate ParseTheory(const std::string& text);
 // both give one.
 core::Estimate ReadTheory(const BoundaryFlags& flags);
 
-// "5:40", in degrees.
+// "5:40", in degrees, within 0:90.
 core::Interval ParseRange(const char* flag, const std::string& text);
 
 // "11.80": an angle as these commands print it.

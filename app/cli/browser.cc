@@ -48,6 +48,8 @@ BrowserPage::BrowserPage(const std::string& address) {
   const int descriptor = mkostemps(name.data(), kSuffix, O_CLOEXEC);
   if (descriptor < 0) return;
   path_ = name;
+  // A signal may end the process without its destructors: the key goes, too.
+  unfinished_.emplace(path_);
   // The page sends the browser on to the address, and has a link for browsers
   // that do not follow. "no-referrer" keeps the session's key out of the
   // headers of later requests.

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "touchdown/core/unfinished.h"
 
 namespace touchdown::cli {
 
@@ -12,7 +15,8 @@ bool HasDesktop();
 // Arguments of programs are shown to every user of the machine (`ps`); so the
 // browser gets the name of a file of mode 600 in the user's own run-time folder
 // (XDG_RUNTIME_DIR, else that for temporary files), which leads on to the
-// address. The file is removed at the end of this.
+// address. The file is removed at the end of this, also where a signal ends the
+// process.
 class BrowserPage {
  public:
   // Writes the file, for an `address` that holds no quotes; empty path() where
@@ -30,6 +34,7 @@ class BrowserPage {
 
  private:
   std::filesystem::path path_;
+  std::optional<core::Unfinished> unfinished_;
 };
 
 }  // namespace touchdown::cli

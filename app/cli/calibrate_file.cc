@@ -19,19 +19,23 @@ void AddFileFlags(CLI::App& command, CalibrationFileFlags& flags, bool add) {
             "the calibration file to write, e.g. camera.json")
       .Require();
   AddOption(command, "--camera", flags.camera, "the camera's name");
-  AddOption(command, "--date", flags.date,
-            "day of the pictures, as in 2026-11-21 (default: today)");
-  AddOption(command, "--valid-days", flags.valid_days,
-            "after so many days `analyze` warns that it is old")
-      .Between(1, 36500)
-      .ShowDefault();
+  const Option date =
+      AddOption(command, "--date", flags.date,
+                "day of the pictures, as in 2026-11-21 (default: today)");
+  const Option valid_days =
+      AddOption(command, "--valid-days", flags.valid_days,
+                "after so many days `analyze` warns that it is old")
+          .Between(1, 36500)
+          .ShowDefault();
   AddOption(command, "--sensor-origin", flags.sensor_origin,
             "where the picture lies on the sensor, X,Y in pixels (default: as "
             "the file says, else 0,0)");
   if (add) {
     AddOption(command, "--calibration", flags.calibration,
-              "a calibration of this camera to add to: its lens is used, and "
-              "all of it goes into --out");
+              "a calibration of this camera to add to: its lens and its dates "
+              "are used, and all of it goes into --out")
+        .Exclude(date)
+        .Exclude(valid_days);
   }
 }
 
@@ -87,7 +91,8 @@ calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
     }
     out = *std::move(fitted);
     if (!flags.camera.empty()) out.camera = flags.camera;
-    // The oldest part decides how long the whole is good.
+    // The oldest part decides how long the whole is good, so --date and
+    // --valid-days are refused beside --calibration.
     return out;
   }
   return pipeline::NewCalibration(flags.camera, picture, flags.date,

@@ -31,7 +31,8 @@ using pipeline::ReadPicture;
 using pipeline::StillPicture;
 
 // The calibration that the command begins with: the file of --calibration, as
-// it fits the picture, or an empty one. Dates and names as the flags say.
+// it fits the picture, with its own dates; or an empty one with those of the
+// flags. A name of the flags goes before the file's.
 calib::Calibration BeginCalibration(const CalibrationFileFlags& flags,
                                     const calib::Picture& picture);
 

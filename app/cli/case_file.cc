@@ -14,7 +14,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -88,22 +87,10 @@ std::vector<RawRow> ParseRows(const std::string& file,
   return rows;
 }
 
-// Returns the bytes of a file without a byte order mark, which spreadsheets
-// write. Throws core::InputError with the system's reason.
-std::string ReadAll(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(
-        fmt::format("{}: is a folder; expected a CSV file of cases", path));
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  if (in) text << in.rdbuf();
-  if (!in) {
-    throw InputError(fmt::format("{}: cannot be read: {}", path,
-                                 std::strerror(errno == 0 ? EIO : errno)));
-  }
-  std::string out = text.str();
+// Returns the text of a file without a byte order mark, which spreadsheets
+// write. Throws core::InputError.
+std::string ReadTable(const std::string& path) {
+  std::string out = ReadInput(path);
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (out.starts_with(kByteOrderMark)) out.erase(0, kByteOrderMark.size());
   return out;
@@ -211,7 +198,7 @@ bool CaseTable::HasColumn(std::string_view column) const {
 // with a wrong last row gives an error and not half an answer.
 CaseTable ReadCases(const std::string& path,
                     const std::vector<std::string>& columns) {
-  auto raw = ParseRows(path, ReadAll(path));
+  auto raw = ParseRows(path, ReadTable(path));
   if (raw.empty()) {
     throw InputError(
         fmt::format("{}: is empty; expected a header and rows of cases", path));
@@ -275,6 +262,32 @@ void CaseWriter::Add(const std::vector<std::string>& cells) {
     csv_ += report::CsvCell(cells[i]);
   }
   csv_ += '\n';
+}
+
+// report::ReadTextFile() says neither why a file cannot be read nor that its
+// disk failed on the way.
+std::string ReadInput(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(
+        fmt::format("{}: is a folder; expected a file", path.string()));
+  }
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  // The buffer's iterators set no flag where reading fails: read() does.
+  std::string out;
+  constexpr std::size_t kPiece = 65536;  // bytes; any size gives the same text
+  while (in) {
+    const std::size_t before = out.size();
+    out.resize(before + kPiece);
+    in.read(out.data() + before, kPiece);
+    out.resize(before + static_cast<std::size_t>(in.gcount()));
+  }
+  if (!in.eof()) {
+    throw InputError(fmt::format("{}: cannot be read: {}", path.string(),
+                                 std::strerror(errno == 0 ? EIO : errno)));
+  }
+  return out;
 }
 
 // A short write to stdout is found here, while main's own check covers what was

@@ -37,12 +37,14 @@ void Describe(const CLI::App& app, const std::string& above,
   command.path = above + app.get_name();
   command.description = app.get_description();
   command.footer = app.get_footer();
+  // What has no group is hidden: earlier names of options, and this program's
+  // own tools.
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;
     // CLI11 calls an option nonpositional where it has a name with dashes.
     (option->nonpositional() ? command.options : command.positionals)
         .push_back(DescribeOption(*option, formatter));
   }
-  // What has no group is hidden: this program's own tools.
   const auto below = app.get_subcommands(
       [](const CLI::App* one) { return !one->get_group().empty(); });
   for (const CLI::App* one : below) command.commands.push_back(one->get_name());

@@ -27,12 +27,20 @@ std::string Variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
+// Returns where options end: at "--", behind which all is positional, else at
+// the end of the line.
+std::vector<std::string>::const_iterator FindEndOfOptions(
+    const std::vector<std::string>& arguments) {
+  return std::find(arguments.begin(), arguments.end(), "--");
+}
+
 // Returns whether the line has the option, as "--db lab.db" or "--db=lab.db".
 bool Has(const std::vector<std::string>& arguments, const std::string& name) {
-  return std::any_of(
-      arguments.begin(), arguments.end(), [&](const std::string& argument) {
-        return argument == name || argument.starts_with(name + "=");
-      });
+  return std::any_of(arguments.begin(), FindEndOfOptions(arguments),
+                     [&](const std::string& argument) {
+                       return argument == name ||
+                              argument.starts_with(name + "=");
+                     });
 }
 
 // Returns the command that the line calls: each word at its beginning that
@@ -106,13 +114,10 @@ void WriteDefaults(const Defaults& defaults,
 
 std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
                                       const CLI::App& app,
-                                      const Defaults& defaults) {
+                                      const std::filesystem::path& folder) {
   // `analyze` may be tried out on any clip: a default store would fill with
   // trials that nobody wanted to log.
-  if (defaults.store.empty() || arguments.empty() ||
-      arguments.front() == "analyze") {
-    return arguments;
-  }
+  if (arguments.empty() || arguments.front() == "analyze") return arguments;
   // With one of these the line names its own source of trials, or only prints
   // something.
   for (const char* own : {"--db", "--trials", "--paper-table1", "--help", "-h",
@@ -120,6 +125,15 @@ std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
     if (Has(arguments, own)) return arguments;
   }
   const CLI::App* command = CalledCommand(arguments, app);
+  // A broken file stops nobody who does not need it, and `use` mends it.
+  if (command->get_option_no_throw("--db") == nullptr) return arguments;
+  Defaults defaults;
+  try {
+    defaults = ReadDefaults(folder);
+  } catch (const core::InputError&) {
+    // It is one of the troubles that `doctor` finds.
+    if (arguments.front() != "doctor") throw;
+  }
   // Adds the option to the line where the command knows it and the user has not
   // given it; true where it was added.
   const auto add = [&](const char* option, const std::string& value) {
@@ -127,7 +141,8 @@ std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
         command->get_option_no_throw(option) == nullptr) {
       return false;
     }
-    arguments.push_back(fmt::format("{}={}", option, value));
+    arguments.insert(FindEndOfOptions(arguments),
+                     fmt::format("{}={}", option, value));
     return true;
   };
   // A campaign is a name in one store: it is added only together with it.

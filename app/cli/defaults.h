@@ -32,10 +32,12 @@ void WriteDefaults(const Defaults& defaults,
 // The arguments (without the program's name) with --db and --campaign where the
 // command has these options and the line names no source of trials of its own
 // (--db, --trials, --paper-table1). A campaign goes with its own store only.
-// `analyze` gets none: it logs nothing unless it is told to.
+// `analyze` gets none: it logs nothing unless it is told to. The defaults are
+// those of `folder`; they are read, and a file that cannot be understood is an
+// error, only where the line needs them. `doctor` goes without them then.
 std::vector<std::string> WithDefaults(std::vector<std::string> arguments,
                                       const CLI::App& app,
-                                      const Defaults& defaults);
+                                      const std::filesystem::path& folder);
 
 // touchdown use (use_command.cc).
 void AddUse(CLI::App& app, Action& action);

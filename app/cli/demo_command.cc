@@ -13,6 +13,7 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/demo/demo.h"
+#include "app/report/group.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
@@ -24,13 +25,6 @@ struct DemoFlags {
   std::uint64_t seed = 1;
   double limit_s = pipeline::kUsualLimit_s;
 };
-
-// Returns one of the paper's two words, or a third: "slide" is every state that
-// is decided not to be a bounce.
-std::string TwoWords(core::MotionState state) {
-  if (state == core::MotionState::kUndecided) return "undecided";
-  return core::IsNotBounce(state) ? "slide" : "bounce";
-}
 
 // Runs the whole chain and prints a table with a row for each clip. Returns 0
 // even where an answer is wrong: the table marks that row.
@@ -64,7 +58,7 @@ int RunDemo(const DemoFlags& flags) {
     }
     fmt::print("{:<26} {:>9.1f} {:>20} {:>9} {:>9} {:>9}{}\n", row.clip,
                row.true_angle_rad / core::kDegree, measured, error,
-               TwoWords(row.true_state), TwoWords(row.state),
+               report::PaperWord(row.true_state), report::PaperWord(row.state),
                row.right() ? "" : "  WRONG");
   }
   // The paths are absolute, so that they can be opened from any folder.

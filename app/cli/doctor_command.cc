@@ -8,10 +8,12 @@
 #include <string>
 
 #include "app/cli/command.h"
+#include "app/cli/defaults.h"
 #include "app/cli/doctor_flags.h"
 #include "app/cli/messages.h"
 #include "app/cli/options.h"
 #include "app/text/dates.h"
+#include "touchdown/core/errors.h"
 
 namespace touchdown::cli {
 namespace {
@@ -29,7 +31,14 @@ struct DoctorCommandFlags {
 // Prints every finding, as text or as touchdown.doctor/1. Returns 0, or
 // kTroubleFound where at least one finding is trouble.
 int RunDoctor(const DoctorCommandFlags& flags) {
-  const auto findings = pipeline::Examine(ToOptions(flags.doctor));
+  auto findings = pipeline::Examine(ToOptions(flags.doctor));
+  try {
+    ReadDefaults("");
+  } catch (const core::InputError& error) {
+    findings.push_back(
+        {"defaults", pipeline::Health::kTrouble, error.what(),
+         "mend or remove the file; `touchdown use STORE` writes a new one"});
+  }
   if (flags.json) {
     fmt::print("{}\n", pipeline::ToJson(findings));
   } else {
@@ -51,8 +60,10 @@ int RunDoctor(const DoctorCommandFlags& flags) {
 
 void AddDoctorFlags(CLI::App& command, DoctorFlags& flags) {
   AddOption(command, "--db", flags.store, "a trial store to look at");
-  AddOption(command, "--camera", flags.calibration,
+  AddOption(command, "--calibration", flags.calibration,
             "a calibration file to look at");
+  // The earlier name of --calibration, which scripts may still have.
+  AddOption(command, "--camera", flags.calibration, "as --calibration").Hide();
   AddOption(
       command, "--recordings", flags.recordings,
       "the folder that the camera writes into: its newest recording is opened");

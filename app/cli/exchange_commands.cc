@@ -320,8 +320,9 @@ int PrintImported(const Imported& done) {
   return done.errors.empty() ? 0 : 5;
 }
 
-// Holds a folder for a trial run of an import, which is removed with all in it
-// at the end, also when a signal ends the process (core::Unfinished).
+// Holds a folder for the store of a trial run of an import, which is removed
+// with all in it at the end, also when a signal ends the process
+// (core::Unfinished).
 class Rehearsal {
  public:
   Rehearsal() {
@@ -360,7 +361,7 @@ int ImportPaperTable1(const ImportFlags& flags) {
     throw std::invalid_argument(fmt::format(
         "--paper-u-deg is {}, must be from 0 to 90", flags.paper_u_deg));
   }
-  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  RequireDb(flags.db);
   auto paper = pipeline::PaperTable1Trials(flags.paper_u_deg * core::kDegree);
   auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
   for (const auto& campaign : paper.campaigns) {
@@ -370,9 +371,15 @@ int ImportPaperTable1(const ImportFlags& flags) {
           flags.db, campaign.name));
     }
   }
-  for (const auto& campaign : paper.campaigns) store.AddCampaign(campaign);
+  // Campaigns and trials come into the store in one transaction, that of a
+  // merge: an import that is cut off between them would leave campaigns without
+  // trials, and every later one would be refused.
+  const Rehearsal rehearsal;
+  auto made = db::Store::Open(rehearsal.store(), db::OpenMode::kCreate);
+  for (const auto& campaign : paper.campaigns) made.AddCampaign(campaign);
   for (auto& trial : paper.trials) trial.id.clear();  // the store gives one
-  const std::size_t n = store.LogTrials(paper.trials).size();
+  const std::size_t n = made.LogTrials(paper.trials).size();
+  db::Merge(store, made);
   fmt::print("{} trials in {} campaigns imported\n", n, paper.campaigns.size());
   return 0;
 }
@@ -386,7 +393,7 @@ int Import(const ImportFlags& flags) {
         "FILE is missing, must be a .csv or .jsonl file (or --columns, or "
         "--paper-table1)");
   }
-  if (flags.db.empty()) throw std::invalid_argument("--db is missing");
+  RequireDb(flags.db);
   const Format format = ChooseFormat(flags.format, flags.file);
   if (format == Format::kTidy) {
     throw std::invalid_argument("--format is 'tidy', must be csv or jsonl");

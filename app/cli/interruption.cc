@@ -47,7 +47,6 @@ void OnInterruption(int signal) {
   if (isatty(STDERR_FILENO) != 0) {
     [[maybe_unused]] const auto written = write(STDERR_FILENO, "\n", 1);
   }
-  constexpr int kBySignal = 128;  // as shells count
   _exit(kBySignal + signal);
 }
 

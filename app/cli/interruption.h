@@ -13,6 +13,10 @@
 
 namespace touchdown::cli {
 
+// The exit status of a process that a signal ended is this and the signal's
+// number, as shells count.
+inline constexpr int kBySignal = 128;
+
 // Once, before any other thread is started.
 void CatchInterruptions();
 

@@ -7,20 +7,21 @@
 #include <dlfcn.h>
 
 #include <cstddef>
-#include <stdexcept>
 #include <string>
+
+#include "touchdown/core/errors.h"
 
 namespace {
 
 // Returns the function of that name in liblapack or in what it depends on.
-// Throws std::runtime_error saying which package to install.
+// Throws core::InputError saying which package to install.
 void* Find(const char* name) {
   // With the BLAS that it needs. Never closed: it is used to the program's end.
   static void* const library = ::dlopen("liblapack.so.3", RTLD_LAZY);
   void* const found = library != nullptr ? ::dlsym(library, name) : nullptr;
   if (found == nullptr) {
     const char* const reason = ::dlerror();
-    throw std::runtime_error(
+    throw touchdown::core::InputError(
         "liblapack.so.3: " + std::string(reason != nullptr ? reason : name) +
         "; to calibrate needs it: install liblapack3");
   }

@@ -106,11 +106,11 @@ std::string UnknownCommand(std::string_view word) {
 }
 
 // Returns the arguments with the defaults of touchdown.toml added, last first:
-// in this order CLI11 takes a vector. Throws core::InputError where that file
-// cannot be understood.
+// in this order CLI11 takes a vector. Throws core::InputError where the line
+// needs that file and it cannot be understood.
 std::vector<std::string> Arguments(int argc, char** argv, const CLI::App& app) {
-  std::vector<std::string> out = touchdown::cli::WithDefaults(
-      {argv + 1, argv + argc}, app, touchdown::cli::ReadDefaults(""));
+  std::vector<std::string> out =
+      touchdown::cli::WithDefaults({argv + 1, argv + argc}, app, "");
   std::reverse(out.begin(), out.end());
   return out;
 }

@@ -9,9 +9,9 @@
 namespace touchdown::cli {
 namespace {
 
-// Returns `text` escaped for troff: a dot at its beginning would make a request
-// of it. Hyphens become minus signs, so that options can be copied from the
-// page.
+// Returns `text` escaped for troff: a dot at the beginning of a line would make
+// a request of it. Hyphens become minus signs, so that options can be copied
+// from the page.
 std::string Roff(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -31,11 +31,14 @@ std::string Roff(std::string_view text) {
       case '\n':
         out += "\n.br\n";
         break;
+      case '.':
+        if (out.empty() || out.back() == '\n') out += "\\&";
+        out += c;
+        break;
       default:
         out += c;
     }
   }
-  if (out.starts_with('.')) out.insert(0, "\\&");
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include "app/cli/command.h"
 #include "app/cli/options.h"
 #include "app/cli/rig_print.h"
+#include "app/cli/store_flags.h"
 #include "app/report/boundary_json.h"
 #include "app/report/group.h"
 #include "app/report/sentences.h"
@@ -140,7 +141,6 @@ core::Campaign EmptyCampaign(const BoundaryFlags& flags,
 int RunNext(const BoundaryFlags& flags) {
   report::ReportInput input = MakeInput(flags);
   RefuseCheckShots(flags, input);
-  KeepLook(flags, "next", input);
   // Two orders are kept: `as_given` for the rules that follow the throws,
   // `sorted` for the estimate, which must not depend on any order.
   const std::vector<core::Trial> as_given = std::move(input.trials);
@@ -166,7 +166,7 @@ int RunNext(const BoundaryFlags& flags) {
   std::optional<pipeline::Thrower> thrower;
   if (!flags.rig.empty()) {
     thrower = pipeline::MakeThrower(flags.rig, group.campaign, flags.speed_mps,
-                                    ReadCorner(flags), flags.store);
+                                    ReadCorner(flags.corner), flags.store);
     // The rig's description was read, but it cannot throw for this campaign.
     if (!group.reach) throw std::invalid_argument(group.reach.error().reason);
   }
@@ -174,6 +174,7 @@ int RunNext(const BoundaryFlags& flags) {
   // An angle that no setting gives is moved to the nearest that one does.
   if (group.reach) options.feasible_rad = group.reach->angle_rad;
   group.study.next = ApplyRule(flags, options, as_given, group);
+  KeepLook(flags, "next", as_given);
   const analysis::NextAngle& next = group.study.next;
   if (flags.json) {
     nlohmann::ordered_json document = report::BoundaryDocument(groups);

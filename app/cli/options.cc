@@ -39,6 +39,8 @@ Option Option::OneAtATime() const {
   return Option(option_->allow_extra_args(false));
 }
 
+Option Option::Hide() const { return Option(option_->group("")); }
+
 Option Option::Exclude(const Option& other) const {
   return Option(option_->excludes(other.option_));
 }

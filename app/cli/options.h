@@ -33,6 +33,8 @@ class Option {
   Option AllowNoValue() const;
   // Of a list: each value has the option's name before it.
   Option OneAtATime() const;
+  // Not in the help.
+  Option Hide() const;
   // Not both.
   Option Exclude(const Option& other) const;
   // On the command line that was parsed.

@@ -5,9 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/case_file.h"
 #include "app/cli/command.h"
 #include "app/cli/options.h"
 #include "app/cli/store_flags.h"
@@ -90,13 +88,6 @@ struct EntryFlags {
   bool json = false;
 };
 
-// Returns the bytes of a file that has been read as a rig or a calibration
-// already, so that an error here is not expected.
-std::string WholeText(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // Keeps a rig.toml or a calibration file whole in `entry`, with its SHA-256.
 // Throws core::InputError where it cannot be read as what it is to be.
 void ApplyFile(const std::string& file, Entry& entry) {
@@ -114,7 +105,7 @@ void ApplyFile(const std::string& file, Entry& entry) {
                                                   : "ground";
     entry.texts["made_on"] = calibration.date;
   }
-  entry.texts["document"] = WholeText(file);
+  entry.texts["document"] = ReadInput(file);
   entry.texts["sha256"] = vision::Sha256(file);
 }
 

@@ -56,14 +56,8 @@ int RunReview(const ReviewFlags& flags) {
   options.recordings.assign(flags.recordings.begin(), flags.recordings.end());
   // The page shows the next angle, which a rig's reach limits as in `next`.
   if (!flags.rig.empty()) {
-    std::optional<core::Corner> corner;
-    if (!flags.corner.empty()) {
-      corner =
-          ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
-                                  "leading, trailing or flush");
-    }
-    options.reach_of =
-        pipeline::ReachOfRig(flags.rig, flags.speed_mps, corner, flags.db);
+    options.reach_of = pipeline::ReachOfRig(flags.rig, flags.speed_mps,
+                                            ReadCorner(flags.corner), flags.db);
   }
   // The server's threads leave these signals to the one that waits for them.
   sigset_t signals;
@@ -98,13 +92,23 @@ int RunReview(const ReviewFlags& flags) {
     if (!ended) EndSoon(signal);
     server.Stop();
   });
-  server.Run();
-  ended = true;
   // Where the server ended by itself, the waiter is woken: it waits for the
   // signal, which is blocked everywhere.
-  // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
-  pthread_kill(waiter.native_handle(), SIGTERM);
-  waiter.join();
+  const auto end_waiting = [&] {
+    ended = true;
+    // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
+    pthread_kill(waiter.native_handle(), SIGTERM);
+    waiter.join();
+  };
+  try {
+    server.Run();
+  } catch (...) {
+    // A thread that was not joined would end the process before main can say
+    // what is wrong.
+    end_waiting();
+    throw;
+  }
+  end_waiting();
   return 0;
 }
 

@@ -96,11 +96,7 @@ void CalibrateEfficiency(const CalibrateFlags& flags, Json& out) {
   rig::EfficiencyFitOptions options;
   options.losses = ParseLosses(flags.losses);
   const rig::Description rig = MakeDescription(flags.rig);
-  // Without rig.toml the mass would be a default of the description, and the
-  // efficiency would be wrong.
-  if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
-    throw std::invalid_argument("--mass-g is missing: the mass of the body");
-  }
+  RequireMass(flags.rig);
   const rig::Launch launch =
       rig::MakeLaunch(rig, flags.elevation_deg * core::kDegree);
   std::mt19937_64 engine(1);  // the first order needs no draws

@@ -187,4 +187,11 @@ rig::Description MakeDescription(const RigFlags& flags) {
   return out;
 }
 
+void RequireMass(const RigFlags& flags) {
+  if (flags.rig.empty() && flags.mass_g.empty()) {
+    throw std::invalid_argument(
+        "--mass-g is missing: the mass of the body; give it, or --rig");
+  }
+}
+
 }  // namespace touchdown::cli

@@ -36,4 +36,8 @@ void AddLaunchFlags(CLI::App& app, RigFlags& flags);
 // flag that is missing or impossible, core::InputError for the file.
 rig::Description MakeDescription(const RigFlags& flags);
 
+// Throws std::invalid_argument where neither rig.toml nor --mass-g was given:
+// with the default mass of a description, speed and efficiency would be wrong.
+void RequireMass(const RigFlags& flags);
+
 }  // namespace touchdown::cli

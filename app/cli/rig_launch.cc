@@ -37,10 +37,7 @@ int RunLaunch(const LaunchFlags& flags) {
         "compression?)");
   }
   rig::Description rig = MakeDescription(flags.rig);
-  // A default mass would give a wrong speed without a word.
-  if (flags.rig.rig.empty() && flags.rig.mass_g.empty()) {
-    throw std::invalid_argument("--mass-g is missing: the mass of the body");
-  }
+  RequireMass(flags.rig);
   if (!flags.height_mm) rig.body.reset();  // a point that is not followed
   rig::Setting setting;
   setting.elevation_rad = flags.elevation_deg * core::kDegree;

@@ -12,6 +12,7 @@
 #include "app/cli/rig_commands.h"
 #include "app/cli/rig_flags.h"
 #include "app/cli/rig_print.h"
+#include "app/cli/store_flags.h"
 #include "touchdown/core/units.h"
 #include "touchdown/rig/setpoints.h"
 
@@ -48,14 +49,7 @@ rig::ContactWish MakeWish(const PlanFlags& flags, const rig::Description& rig) {
     }
     wish.kind = *kind;
   }
-  if (!flags.corner.empty()) {
-    wish.corner = core::ParseCorner(flags.corner);
-    if (!wish.corner) {
-      throw std::invalid_argument(
-          fmt::format("--corner is \"{}\", must be leading, trailing or flush",
-                      flags.corner));
-    }
-  }
+  wish.corner = ReadCorner(flags.corner);
   wish.speed_mps = flags.speed_mps;
   if (flags.height_mm) {
     wish.muzzle_height_m = *flags.height_mm * core::kMillimetre;

@@ -6,14 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "touchdown/core/units.h"
 
 namespace touchdown::cli {
 namespace {
 
-constexpr double kPerDegree = 180.0 / std::numbers::pi;  // deg in a rad
+constexpr double kPerDegree = 1.0 / core::kDegree;  // deg in a rad
 constexpr double kPerMm = 1e3;
 constexpr double kPerMpa = 1e-6;
 constexpr double kPerGram = 1e3;

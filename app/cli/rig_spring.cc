@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,16 @@ int RunSpring(const SpringFlags& flags, const CLI::App& app) {
     // unless the user typed others.
     RigCasesOptions options;
     for (const GivenOption& option : ListGiven(app)) {
-      if (option.name == "--draws") options.draws = flags.draw.draws;
-      if (option.name == "--seed") options.seed = flags.draw.seed;
+      if (option.name == "--draws") {
+        options.draws = flags.draw.draws;
+      } else if (option.name == "--seed") {
+        options.seed = flags.draw.seed;
+      } else if (option.name != "--cases") {
+        throw std::invalid_argument(fmt::format(
+            "{} goes without --cases, whose file has its own rigs and is "
+            "answered in CSV; leave one of the two away",
+            option.name));
+      }
     }
     RequireDraws(options.draws);
     fmt::print("{}", RigCases(flags.cases, options));

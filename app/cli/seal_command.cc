@@ -11,13 +11,12 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
+#include "app/cli/case_file.h"
 #include "app/cli/messages.h"
 #include "app/cli/options.h"
 #include "app/cli/store_flags.h"
@@ -38,17 +37,6 @@ struct SealFlags {
   std::string key;
 };
 
-// Returns the bytes of a key or a seal. Throws core::InputError.
-std::string Contents(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path)) {
-    throw core::InputError(
-        fmt::format("{}: cannot be read; check the path and its permissions",
-                    path.string()));
-  }
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // --- signing -----------------------------------------------------------------
 
 // Describes a program that signs files: how it is called, which file it writes,
@@ -63,7 +51,7 @@ struct Signer {
 // it is. Throws core::InputError where the key cannot be read,
 // std::invalid_argument where it is of none of the three programs.
 Signer ChooseSigner(const std::string& key, const std::string& file) {
-  const std::string text = Contents(key);
+  const std::string text = ReadInput(key);
   if (text.starts_with("untrusted comment:")) {
     return {{"minisign", "-S", "-s", key, "-m", file, "-x", file + ".minisig"},
             file + ".minisig",
@@ -145,12 +133,14 @@ int MakeSeal(const SealFlags& flags) {
   if (!flags.out.empty()) {
     report::WriteTextFile(flags.out, db::SealText(seal));
     // Without the signature that was asked for the seal goes again: it would
-    // look as if it had been left unsigned on purpose.
+    // look as if it had been left unsigned on purpose. So does what the signer
+    // has written of the signature: it was not there before.
     try {
       if (signer) RunSigner(signer->command);
     } catch (...) {
       std::error_code ignored;
       fs::remove(flags.out, ignored);
+      fs::remove(signer->signature, ignored);
       throw;
     }
   }
@@ -175,7 +165,7 @@ void CheckSeal(const db::Store& store, const std::string& seal) {
   if (const auto head = db::ParseHead(seal)) {
     sealed.head = *head;
   } else if (std::error_code ignored; fs::exists(seal, ignored)) {
-    sealed = db::ParseSeal(Contents(seal), seal);
+    sealed = db::ParseSeal(ReadInput(seal), seal);
   } else {
     throw std::invalid_argument(fmt::format(
         "--against is '{}', must be a file of `touchdown db seal --out`, or "

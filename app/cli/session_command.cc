@@ -267,12 +267,7 @@ int RunSession(const SessionFlags& flags) {
     throw std::invalid_argument(fmt::format(
         "--quiet-s is {:g}, must be above 0, up to 60", flags.quiet_s));
   }
-  std::optional<core::Corner> corner;
-  if (!flags.corner.empty()) {
-    corner =
-        ParseWord<core::Corner>("--corner", flags.corner, core::ParseCorner,
-                                "leading, trailing or flush");
-  }
+  const std::optional<core::Corner> corner = ReadCorner(flags.corner);
   // All that can be refused without touching the rig comes first.
   session::SessionOptions options;
   options.analyze = ToOptions(flags.analyze);

@@ -112,7 +112,6 @@ std::string Shown(const std::optional<double>& value, int decimals,
 // excluded or simulated trial is counted apart: nobody must take it for one
 // that counts.
 std::string ListText(const std::vector<core::Trial>& trials) {
-  constexpr std::size_t kShortId = 8;
   std::vector<std::vector<std::string>> rows = {
       {"id", "campaign", "origin", "body", "angle kind", "contact angle, deg",
        "set, deg", "state", "P(bounce)", "rev", "recorded, UTC", "remarks"}};
@@ -123,7 +122,7 @@ std::string ListText(const std::vector<core::Trial>& trials) {
     excluded += trial.excluded ? 1 : 0;
     // An id is cut to its beginning, by which `show` finds it; of a time the
     // fraction of the second is left out.
-    rows.push_back({trial.id.substr(0, kShortId), Printable(trial.campaign),
+    rows.push_back({trial.id.substr(0, kShownId), Printable(trial.campaign),
                     std::string(core::Name(trial.origin)), BodyText(trial.body),
                     std::string(core::Name(trial.angle_kind)),
                     WithU(core::ContactAngle(trial), kDegree),

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "app/cli/options.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
@@ -25,6 +27,19 @@ void AddBodyFlags(CLI::App& command, pipeline::BodyEntry& flags) {
   AddOption(command, "--sides-mm", flags.sides_mm,
             "of a rectangle; 60x20 or 60+-0.02x20+-0.02")
       .NameType("AxB");
+}
+
+void RequireDb(const std::string& db) {
+  if (!db.empty()) return;
+  throw std::invalid_argument(
+      "--db is missing, must be a trial store, e.g. lab.db; give it, or name "
+      "one for this folder with `touchdown use`");
+}
+
+std::optional<core::Corner> ReadCorner(const std::string& corner) {
+  if (corner.empty()) return std::nullopt;
+  return ParseWord<core::Corner>("--corner", corner, core::ParseCorner,
+                                 "leading, trailing or flush");
 }
 
 core::Trial RequireTrial(const db::Store& store, const std::string& id) {

@@ -21,6 +21,10 @@ namespace touchdown::cli {
 // --db FILE
 void AddDbFlag(CLI::App& command, std::string& db);
 
+// Throws std::invalid_argument where no store was given, for a command of which
+// some forms need none.
+void RequireDb(const std::string& db);
+
 // The word of an enumeration, e.g. ParseWord("--state", text, ParseMotionState,
 // "bounce, slide ...").
 template <class T>
@@ -33,6 +37,9 @@ T ParseWord(const std::string& flag, const std::string& text,
 
 // --body, --diameter-mm and --sides-mm.
 void AddBodyFlags(CLI::App& command, pipeline::BodyEntry& flags);
+
+// --corner as typed; nothing where it was not given.
+std::optional<core::Corner> ReadCorner(const std::string& corner);
 
 // The trial of that id or beginning of an id; core::StoreError where none is.
 core::Trial RequireTrial(const db::Store& store, const std::string& id);

@@ -200,12 +200,7 @@ std::string AnswerText(const BoundaryAnswer& a) {
 // Answers `theory boundary`. Returns 0, also where no model has a boundary.
 int RunBoundary(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    if (flags.result.json) {
-      throw std::invalid_argument(
-          "--cases answers in CSV; leave --json away, or the other");
-    }
-    WriteResult(BoundaryCases(flags.result.cases), flags.result.out);
-    return 0;
+    return AnswerCases(flags.result, BoundaryCases);
   }
   const bool sphere = CountsAsSphere(flags.corner);
   const BoundaryInputs inputs = MakeBoundaryInputs(flags, sphere);

@@ -42,7 +42,8 @@ analysis::Slip SlipOfCase(const CaseRow& row) {
 }  // namespace
 
 // The answer has columns for two solutions, the most that a sliding contact
-// has.
+// has. One at rest has a single solution: with b > 0 the sticking force pulls
+// and no slip keeps its direction, with b < 0 one of the three holds.
 std::string RegimeCases(const std::string& path) {
   const CaseTable table = ReadCases(
       path, {"id", "alpha_rad", "mu", "slip_sign", "m", "R", "omega", "g"});

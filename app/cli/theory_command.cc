@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "app/cli/case_file.h"
 #include "app/cli/command.h"
 #include "app/cli/options.h"
 #include "app/cli/theory_options.h"
@@ -222,7 +223,18 @@ void AddTheory(CLI::App& app, Action& action) {
 double Need(const std::optional<double>& value, const char* flag) {
   if (value) return *value;
   throw std::invalid_argument(
-      fmt::format("{} is missing; give it a value, or --cases a file", flag));
+      fmt::format("{} is missing; give it a value", flag));
+}
+
+// A CSV cannot be had as JSON.
+int AnswerCases(const ResultFlags& flags,
+                std::string (*answer)(const std::string& path)) {
+  if (flags.json) {
+    throw std::invalid_argument(
+        "--cases answers in CSV; leave --json away, or the other");
+  }
+  WriteResult(answer(flags.cases), flags.out);
+  return 0;
 }
 
 // A hoop is none of them: its contact point is fixed to the body, as that of a

@@ -33,16 +33,6 @@ int WriteAnswer(const TheoryFlags& flags, const Json& json,
   return 0;
 }
 
-// Writes the answers of a case file; returns 0. A CSV cannot be had as JSON.
-int WriteCases(const TheoryFlags& flags, const std::string& csv) {
-  if (flags.result.json) {
-    throw std::invalid_argument(
-        "--cases answers in CSV; leave --json away, or the other");
-  }
-  WriteResult(csv, flags.result.out);
-  return 0;
-}
-
 // JSON has no infinity: a margin that no change of the input reaches is null.
 Json FiniteOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -61,7 +51,7 @@ std::string ChangeText(double value, double per_unit, const char* unit) {
 // each input is from a change of regime.
 int RunRegime(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return WriteCases(flags, RegimeCases(flags.result.cases));
+    return AnswerCases(flags.result, RegimeCases);
   }
   const CornerFlags& f = flags.corner;
   analysis::ContactProblem p;
@@ -166,7 +156,7 @@ int RunRegime(const TheoryFlags& flags) {
 // approach angle) or of the contact point itself.
 int RunImpact(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return WriteCases(flags, ImpactCases(flags.result.cases));
+    return AnswerCases(flags.result, ImpactCases);
   }
   const CornerFlags& f = flags.corner;
   const ImpactFlags& i = flags.impact;
@@ -182,6 +172,12 @@ int RunImpact(const TheoryFlags& flags) {
   double mirror = 1.0;
   // The velocity of the contact point is in the frame of corner.h already.
   if (i.tangential_mps || i.normal_mps) {
+    if (i.speed_mps || i.approach_deg || !f.corner.empty()) {
+      throw std::invalid_argument(
+          "--tangential-mps and --normal-mps are the velocity of the contact "
+          "point, --speed-mps, --approach-deg and --corner say that of the "
+          "centre; give the one or the other");
+    }
     p.tangential_mps = Need(i.tangential_mps, "--tangential-mps");
     p.normal_mps = Need(i.normal_mps, "--normal-mps");
     p.alpha_rate_rad_per_s = -omega;
@@ -237,7 +233,7 @@ int RunImpact(const TheoryFlags& flags) {
 // side, or that no solution exists.
 int RunFlat(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return WriteCases(flags, FlatCases(flags.result.cases));
+    return AnswerCases(flags.result, FlatCases);
   }
   analysis::FlatProblem p;
   p.length_m = Need(flags.flat.length_m, "--length-m");
@@ -296,7 +292,7 @@ std::vector<double> ParseVector(const std::string& text, const char* flag) {
 // Answers `theory lcp`: all solutions of a small problem, up to 8 unknowns.
 int RunLcp(const TheoryFlags& flags) {
   if (!flags.result.cases.empty()) {
-    return WriteCases(flags, LcpCases(flags.result.cases));
+    return AnswerCases(flags.result, LcpCases);
   }
   if (flags.lcp.m.empty() || flags.lcp.q.empty()) {
     throw std::invalid_argument(

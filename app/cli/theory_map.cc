@@ -154,7 +154,11 @@ int RunMap(const TheoryFlags& flags) {
                                          {"axis_points", options.axis_points},
                                          {"axis_max", options.axis_max},
                                          {"files", written}};
-    WriteResult(json.dump(2) + "\n", "");
+    // The folder's name may be no UTF-8.
+    WriteResult(json.dump(2, ' ', false,
+                          nlohmann::ordered_json::error_handler_t::replace) +
+                    "\n",
+                "");
   } else {
     std::string text;
     for (const std::string& path : written) text += path + "\n";

@@ -97,6 +97,11 @@ bool IsSphere(const CornerFlags& flags);
 double NeedKappa(const CornerFlags& flags);
 analysis::Slip NeedSlip(const CornerFlags& flags);
 
+// Answers a case file by one function of theory_cases.h, and returns the exit
+// status. Throws std::invalid_argument where --json is given, too.
+int AnswerCases(const ResultFlags& flags,
+                std::string (*answer)(const std::string& path));
+
 // Each answers one command and returns the exit status.
 int RunRegime(const TheoryFlags& flags);
 int RunImpact(const TheoryFlags& flags);

@@ -124,6 +124,16 @@ TEST_F(BatchCommand, MistakesAreOneLineAndLeaveNoStore) {
                 "cannot be read");
   ExpectMistake({"batch", Films(), "--db", Db("new.db"), "--shard", "3/2"}, 2,
                 "--shard is '3/2'");
+  ExpectMistake({"batch", Films(), "--db", Db("new.db"), "--condition", "x=1"},
+                2, "--condition is 'x=1'");
+  ExpectMistake(
+      {"batch", Films(), "--db", Db("new.db"), "--condition", "spring=S 3"}, 4,
+      "no such trial store");
+  ExpectMistake({"batch", Films() + "/a.mraw", "--db", Db("new.db"), "--watch"},
+                2, "a.mraw', must be a folder with --watch");
+  ExpectMistake(
+      {"batch", Films(), "--db", Db("new.db"), "--watch", "--shard", "1/2"}, 2,
+      "--shard is '1/2', must be left out with --watch");
   ExpectMistake({"batch", Films(), "--db", Db("new.db"), "--jobs", "-1"}, 2,
                 "--jobs is -1");
   ExpectMistake({"batch", Films(), "--db", Db("new.db"), "--campaign", "x"}, 4,

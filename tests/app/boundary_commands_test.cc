@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "tests/support/run_program.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/plan.h"
 #include "touchdown/db/store.h"
 
 namespace touchdown {
@@ -250,6 +252,25 @@ TEST_F(BoundaryCommands, ImportOfThePapersTable1MakesItsReport) {
                 "must be left out");
 }
 
+// Where no file may grow beyond a limit, which lies in turn before and behind
+// every step of the import: all of it is there, or it can be done again.
+TEST_F(BoundaryCommands, AnImportOfThePapersTable1ThatFailsCanBeRepeated) {
+  constexpr int kStep = 50;  // blocks of 512 bytes; the whole store has 584
+  int failed = 0;
+  for (int blocks = 450; blocks <= 900; blocks += kStep) {
+    const std::string import = "import --paper-table1 --db " +
+                               (folder_ / std::to_string(blocks)).string();
+    const std::string limited = "ulimit -f " + std::to_string(blocks) + "; " +
+                                TOUCHDOWN_BINARY + " " + import +
+                                " >/dev/null 2>&1";
+    if (std::system(limited.c_str()) == 0) continue;  // NOLINT
+    ++failed;
+    const Ran again = RunProgram(import);
+    EXPECT_EQ(again.status, 0) << blocks << ": " << again.err;
+  }
+  EXPECT_GT(failed, 0);
+}
+
 TEST_F(BoundaryCommands, FiltersChooseTrials) {
   const std::string store = Store();
   const Ran body = RunProgram("boundary --json --body sphere --db " + store);
@@ -260,6 +281,44 @@ TEST_F(BoundaryCommands, FiltersChooseTrials) {
   ExpectOneLine(RunProgram("boundary --reviewed --db " + store), 2,
                 "no trial matches");
   ExpectOneLine(RunProgram("next --db " + store), 2, "choose one with");
+}
+
+// Who is refused has seen no answer.
+TEST_F(BoundaryCommands, ARefusedCommandIsNoLook) {
+  const std::string store = Store();
+  const std::string rest =
+      " --db " + store + " --out " + (folder_.path() / "refused").string();
+  const auto paper = pipeline::PaperTable1Trials(0.01);
+  core::Campaign checks = paper.campaigns.front();
+  checks.name = "checks";
+  checks.surface = core::kCheckShotSurface;
+  core::Trial drop = paper.trials.front();
+  drop.id.clear();
+  drop.campaign = checks.name;
+  {
+    db::Store open = db::Store::Open(store, db::OpenMode::kWrite);
+    open.AddCampaign(checks);
+    open.LogTrial(drop);
+  }
+  const auto looks = [&] {
+    return db::PlanEvents(db::Store::Open(store, db::OpenMode::kRead)).size();
+  };
+  const std::size_t before = looks();
+  for (const char* command :
+       {"boundary --campaign checks", "next", "next --rule neyer --body sphere",
+        "next --body rectangle --rule magic", "report --bin-deg 100",
+        "report --details /none.toml", "report --target-deg=-1"}) {
+    const bool is_report = std::string(command).starts_with("report");
+    const Ran ran = RunProgram(command + (is_report ? rest : " --db " + store));
+    EXPECT_NE(ran.status, 0) << command;
+    EXPECT_EQ(looks(), before) << command;
+  }
+  EXPECT_EQ(
+      RunProgram("next --campaign paper-table1-sphere --db " + store).status,
+      0);
+  EXPECT_EQ(looks(), before + 1);
+  EXPECT_EQ(RunProgram("report" + rest).status, 0);
+  EXPECT_GT(looks(), before + 1);
 }
 
 TEST_F(BoundaryCommands, NextPrintsTheAngle) {
@@ -363,8 +422,18 @@ TEST_F(BoundaryCommands, MistakesAreOneLine) {
   ExpectOneLine(RunProgram("boundary --db /nowhere.db"), 4, "/nowhere.db");
   ExpectOneLine(RunProgram("boundary --paper-table1 --body cube"), 2,
                 "--body: 'cube'; expected sphere or rectangle");
-  ExpectOneLine(RunProgram("boundary --paper-table1 --target-deg=-1"), 2,
-                "target");
+  for (const char* flag : {"--target-deg=-1", "--target-deg=0",
+                           "--margin-deg=0", "--margin-deg=nan"}) {
+    ExpectOneLine(RunProgram(std::string("boundary --paper-table1 ") + flag), 2,
+                  std::string(flag).substr(0, 12) + ": ");
+  }
+  ExpectOneLine(RunProgram("boundary --paper-table1 --set-u-deg=-1"), 2,
+                "--set-u-deg: -1; expected 0 to 90");
+  ExpectOneLine(RunProgram("boundary --paper-table1 --theory-deg 10+-inf"), 2,
+                "--theory-deg: '10+-inf'; expected degrees from 0 to 90");
+  ExpectOneLine(RunProgram("boundary --paper-table1 --feasible-deg 50:200"), 2,
+                "--feasible-deg: '50:200'; expected LOW:HIGH in degrees within "
+                "0:90");
   ExpectOneLine(RunProgram("boundary --paper-table1 --feasible-deg 9"), 2,
                 "LOW:HIGH");
   ExpectOneLine(RunProgram("report --trials " + Sharp()), 2, "--body");

@@ -79,6 +79,15 @@ TEST(CalibrateLensCommand, MakesAFileThatAnalyzeTakes) {
   const auto both = calib::ReadCalibration(out);
   ASSERT_TRUE(both.lens && both.scale);
   EXPECT_TRUE(both.scale->check_error_m);
+  // Its oldest part decides how long the whole is good.
+  const auto other = folder.path() / "other.json";
+  for (const char* flag : {"--date 2026-03-01", "--valid-days 9"}) {
+    ExpectRefused(
+        "scale " + (pictures / "board_0.png").string() +
+            " --points 40,120,240,120 --length-mm 200 --calibration " +
+            out.string() + " --out " + other.string() + " " + flag,
+        2, std::string(flag).substr(0, 6), other);
+  }
 
   // A clip of another size is refused.
   const auto refused =

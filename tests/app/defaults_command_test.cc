@@ -97,5 +97,31 @@ TEST_F(DefaultsCommand, AMistakeIsOneLineThatSaysWhatWasMeant) {
   EXPECT_THAT(key.err, HasSubstr("touchdown.toml:2: store; expected db ="));
 }
 
+// It hinders only who needs it; `doctor` names it, and `use` mends it.
+TEST_F(DefaultsCommand, ABrokenFileCanBeMended) {
+  std::ofstream(lab_ / "touchdown.toml") << "db = lab.db\n";
+  EXPECT_EQ(Run("boundary").status, 3);
+  for (const char* command : {"--help", "--version", "boundary --help",
+                              "boundary --db lab.db", "rig plan --help"}) {
+    const Ran ran = Run(command);
+    EXPECT_EQ(ran.status, 0) << command << ": " << ran.err;
+  }
+  const Ran doctor = Run("doctor");
+  EXPECT_EQ(doctor.status, 3);
+  EXPECT_THAT(doctor.out,
+              HasSubstr("TROUBLE  defaults     touchdown.toml:1: "));
+  EXPECT_EQ(Run("use lab.db paper-table1-sphere").status, 0);
+  EXPECT_EQ(Run("boundary").status, 0);
+  EXPECT_EQ(Run("doctor").out.find("defaults"), std::string::npos);
+}
+
+// What stands behind "--" is positional.
+TEST_F(DefaultsCommand, DefaultsStandBeforePositionalArguments) {
+  ASSERT_EQ(Run("use lab.db").status, 0);
+  const Ran show = Run("campaign show -- paper-table1-sphere");
+  EXPECT_EQ(show.status, 0) << show.err;
+  EXPECT_THAT(show.out, HasSubstr("paper-table1-sphere"));
+}
+
 }  // namespace
 }  // namespace touchdown

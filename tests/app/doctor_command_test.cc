@@ -131,9 +131,13 @@ TEST_F(Doctor, SaysThatTheCalibrationIsOld) {
   camera.scale = calib::ScaleRecord{{1000.0, 1.0}, 0.1, std::nullopt};
   const auto file = folder_ / "camera.json";
   calib::WriteCalibration(file, camera);
-  EXPECT_THAT(Run({"--camera", file.string()}).out,
-              ContainsRegex("note     camera .*left, 640x400 px, scale; of "
-                            "2019-01-01, valid until 2020-01-01"));
+  // --camera is the flag's earlier name.
+  for (const char* flag : {"--calibration", "--camera"}) {
+    EXPECT_THAT(Run({flag, file.string()}).out,
+                ContainsRegex("note     camera .*left, 640x400 px, scale; of "
+                              "2019-01-01, valid until 2020-01-01"))
+        << flag;
+  }
 }
 
 }  // namespace

@@ -217,6 +217,16 @@ TEST(RigCases, HexWinsAndLossesCount) {
   EXPECT_EQ(std::stod(rows[0].at("MC_u_rel")), 0.0);
 }
 
+// What would be of no effect is refused.
+TEST(RigCases, TheFileHasTheRigs) {
+  for (const char* flag : {"--json", "--wire-mm 2", "--compression-mm 5"}) {
+    const Ran ran = Rig(std::string("spring --cases x.csv ") + flag, true);
+    EXPECT_EQ(ran.status, 2) << flag;
+    EXPECT_THAT(ran.out, HasSubstr("goes without --cases")) << flag;
+    EXPECT_THAT(ran.out, HasSubstr(std::string(flag).substr(0, 6))) << flag;
+  }
+}
+
 TEST(RigCases, BadFilesAreNamed) {
   Ran ran = Rig("spring --cases /no/such.csv", true);
   EXPECT_EQ(ran.status, 3);

@@ -332,6 +332,19 @@ TEST_F(StoreCommand, ASealIsSignedWithWhatIsThere) {
   std::ofstream(folder_ / "no.key") << "no key";
   ExpectMistake("db seal --db lab.db --out x.seal --key no.key", 2,
                 "no private key");
+  // A signer that fails half-way.
+  std::filesystem::create_directory(folder_ / "bin");
+  std::ofstream(folder_ / "bin" / "minisign")
+      << "#!/bin/sh\necho half >broken.seal.minisig\nexit 1\n";
+  std::filesystem::permissions(folder_ / "bin" / "minisign",
+                               std::filesystem::perms::owner_all);
+  std::ofstream(folder_ / "broken.key") << "untrusted comment: a key\n";
+  EXPECT_TRUE(shell("PATH=$PWD/bin:$PATH " TOUCHDOWN_BINARY
+                    " db seal --db lab.db --out broken.seal --key broken.key; "
+                    "test $? = 6"));
+  EXPECT_THAT(Slurp(folder_ / "sh.out"), HasSubstr("nothing was written"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "broken.seal"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "broken.seal.minisig"));
   if (signed_by == 0) GTEST_SKIP() << "no ssh-keygen, openssl or minisign here";
 }
 

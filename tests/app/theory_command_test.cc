@@ -247,6 +247,31 @@ TEST_F(TheoryCommand, WrongUsageIsOneLine) {
   ExpectOneLine(Theory({"lcp", "--matrix", "1,2;3", "--vector", "1,1"}), 2);
   ExpectOneLine(Theory({"map", "--body", "rectangle", "--corner", "leading"}),
                 2);
+  // A map has no --cases that could be advised.
+  const ProgramResult map = Theory({"map", "--body", "rectangle", "--corner",
+                                    "leading", "--over", "omega", "--mu", "1"});
+  ExpectOneLine(map, 2);
+  EXPECT_THAT(map.err, HasSubstr("--radius-m is missing; give it a value\n"));
+}
+
+// The velocity of the contact point, and what would give it, at once.
+TEST_F(TheoryCommand, TheVelocityIsGivenOnce) {
+  const std::vector<std::string> common = {
+      "impact",    "--alpha-deg",   "46.57",   "--body",
+      "rectangle", "--radius-m",    "0.03354", "--mu",
+      "0.4",       "--restitution", "0.5",     "--tangential-mps",
+      "5",         "--normal-mps",  "-2"};
+  EXPECT_EQ(Theory(common).status, 0);
+  for (const std::vector<std::string>& flag :
+       {std::vector<std::string>{"--speed-mps", "6"},
+        {"--approach-deg", "25"},
+        {"--corner", "trailing"}}) {
+    auto both = common;
+    both.insert(both.end(), flag.begin(), flag.end());
+    const ProgramResult r = Theory(both);
+    ExpectOneLine(r, 2);
+    EXPECT_THAT(r.err, HasSubstr(flag[0])) << flag[0];
+  }
 }
 
 TEST_F(TheoryCommand, AnUnwritableOutputLeavesNothing) {
@@ -312,6 +337,13 @@ TEST_F(TheoryCommand, MapWritesTableAndDrawings) {
     EXPECT_THAT(svg, HasSubstr("<svg")) << name;
     EXPECT_THAT(svg, HasSubstr("</svg>")) << name;
   }
+}
+
+TEST_F(TheoryCommand, AFolderMayHaveAnyName) {
+  const auto r = TheoryJson({"map", "--body", "rectangle", "--corner",
+                             "leading", "--alpha-points", "3", "--axis-points",
+                             "3", "--no-plots", "--out", folder_ / "m\xFFp"});
+  EXPECT_THAT(r["files"][0].get<std::string>(), HasSubstr("regime_map.csv"));
 }
 
 TEST_F(TheoryCommand, MonteCarloIsReproducible) {
