@@ -20,6 +20,7 @@
 #include "app/documents/evidence.h"
 #include "app/documents/log_analysis.h"
 #include "app/measure/analyze.h"
+#include "touchdown/db/identity.h"
 
 namespace touchdown::cli {
 namespace {
@@ -123,7 +124,7 @@ int RunAnalyze(const AnalyzeCommandFlags& flags) {
         fmt::print(
             "proposed   a person's correction stays in force; `touchdown show "
             "{} --db {}` says what differs and how to accept this analysis\n",
-            logged->trial_id.substr(0, 8), flags.db);
+            db::ShortId(logged->trial_id), flags.db);
       }
     }
   }

@@ -19,6 +19,7 @@
 #include "app/trials/statement.h"
 #include "touchdown/core/quantities.h"
 #include "touchdown/core/units.h"
+#include "touchdown/db/identity.h"
 #include "touchdown/db/register.h"
 #include "touchdown/db/store.h"
 
@@ -30,7 +31,6 @@ using core::kMillimetre;
 using report::Json;
 
 constexpr double kPercent = 0.01;
-constexpr std::size_t kShownId = 8;  // characters of a UUID, enough for people
 
 // --- list --------------------------------------------------------------------
 
@@ -122,7 +122,7 @@ std::string ListText(const std::vector<core::Trial>& trials) {
     excluded += trial.excluded ? 1 : 0;
     // An id is cut to its beginning, by which `show` finds it; of a time the
     // fraction of the second is left out.
-    rows.push_back({trial.id.substr(0, kShownId), Printable(trial.campaign),
+    rows.push_back({db::ShortId(trial.id), Printable(trial.campaign),
                     std::string(core::Name(trial.origin)), BodyText(trial.body),
                     std::string(core::Name(trial.angle_kind)),
                     WithU(core::ContactAngle(trial), kDegree),
@@ -185,9 +185,9 @@ void ShowConditions(const core::Conditions& conditions,
   for (const auto& entry : db::kConditionEntries) {
     const core::Registered& named = conditions.*entry.member;
     if (named.name.empty()) continue;
-    rows.push_back({fmt::format("  {}", db::Name(entry.kind)),
-                    fmt::format("{} ({})", Printable(named.name),
-                                named.id.substr(0, kShownId))});
+    rows.push_back(
+        {fmt::format("  {}", db::Name(entry.kind)),
+         fmt::format("{} ({})", Printable(named.name), db::ShortId(named.id))});
   }
   if (auto celsius = conditions.temperature_k) {
     // A shift leaves u as it is.
