@@ -44,7 +44,7 @@ struct AnalyzeCommandFlags {
 std::string MakeDocument(const pipeline::Analysis& analysis,
                          const std::optional<pipeline::Logged>& logged,
                          const AnalyzeCommandFlags& flags) {
-  const std::string document = pipeline::ToJson(analysis);
+  std::string document = pipeline::ToJson(analysis);
   if (!logged) return document;
   using nlohmann::ordered_json;
   ordered_json json = ordered_json::parse(document);
