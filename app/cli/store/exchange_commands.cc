@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -24,6 +23,7 @@
 #include "app/exchange/register_json.h"
 #include "app/exchange/trial_csv.h"
 #include "app/exchange/trial_json.h"
+#include "app/text/scratch_folder.h"
 #include "app/trials/paper_trials.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/core/output_file.h"
@@ -320,35 +320,6 @@ int PrintImported(const Imported& done) {
   return done.errors.empty() ? 0 : 5;
 }
 
-// Holds a folder for the store of a trial run of an import, which is removed
-// with all in it at the end, also when a signal ends the process
-// (core::Unfinished).
-class Rehearsal {
- public:
-  Rehearsal() {
-    std::string name =
-        (fs::temp_directory_path() / "touchdown-import-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw core::InputError(fmt::format(
-          "{}: no folder can be made here; make room, or set TMPDIR",
-          fs::temp_directory_path().string()));
-    }
-    folder_ = name;
-    unfinished_.emplace(folder_);
-  }
-  ~Rehearsal() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Rehearsal(const Rehearsal&) = delete;
-  Rehearsal& operator=(const Rehearsal&) = delete;
-  fs::path store() const { return folder_ / "rehearsal.db"; }
-
- private:
-  fs::path folder_;
-  std::optional<core::Unfinished> unfinished_;
-};
-
 // Imports the paper's Table 1 with its two campaigns; the angles get the u of
 // --paper-u-deg, since the paper states none. Refused where the store has a
 // campaign of one of these names.
@@ -374,8 +345,9 @@ int ImportPaperTable1(const ImportFlags& flags) {
   // Campaigns and trials come into the store in one transaction, that of a
   // merge: an import that is cut off between them would leave campaigns without
   // trials, and every later one would be refused.
-  const Rehearsal rehearsal;
-  auto made = db::Store::Open(rehearsal.store(), db::OpenMode::kCreate);
+  const pipeline::ScratchFolder rehearsal;
+  auto made =
+      db::Store::Open(rehearsal.path() / "rehearsal.db", db::OpenMode::kCreate);
   for (const auto& campaign : paper.campaigns) made.AddCampaign(campaign);
   for (auto& trial : paper.trials) trial.id.clear();  // the store gives one
   const std::size_t n = made.LogTrials(paper.trials).size();
@@ -416,8 +388,8 @@ int Import(const ImportFlags& flags) {
   if (!fs::exists(flags.db, ignored) &&
       fs::is_regular_file(flags.file, ignored) &&
       fs::is_directory(fs::absolute(flags.db).parent_path(), ignored)) {
-    const Rehearsal rehearsal;
-    const Imported tried = import_into(rehearsal.store());
+    const pipeline::ScratchFolder rehearsal;
+    const Imported tried = import_into(rehearsal.path() / "rehearsal.db");
     if (tried.count == 0) return PrintImported(tried);
   }
   return PrintImported(import_into(flags.db));
