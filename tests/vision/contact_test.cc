@@ -60,6 +60,33 @@ TEST(Contact, SoftContactOverSeveralFrames) {
   EXPECT_EQ(sweep.later, 0);
 }
 
+// Of frames that are coded alone a drift is the same before and after the
+// impact: only the height has it. A texture lies otherwise on the outline then.
+TEST(Contact, TimeIsWidenedByWhatTheImpactChanges) {
+  Throw thrown;
+  thrown.before = {1.4, -0.8, 0.0};
+  thrown.after = {1.2, 0.5, 0.0};
+  const Filming filming;
+  const PlaneTrack clean = FilmPlane(thrown, filming);
+  const auto find_time_u = [&](const PlaneTrack& track) {
+    return FindContacts(track, WithScale(filming)).first.contact.time_s->u;
+  };
+  const double u = find_time_u(clean);
+  constexpr double kOff_px = 0.01;
+  PlaneTrack drifting = clean;
+  drifting.u_drift_px = kOff_px;
+  EXPECT_NEAR(find_time_u(drifting), u, 0.02 * u);
+  PlaneTrack textured = clean;
+  textured.u_common_px = kOff_px;
+  const double fall_px_per_s = 0.8 * filming.camera.px_per_m;
+  EXPECT_NEAR(find_time_u(textured), std::hypot(u, kOff_px / fall_px_per_s),
+              0.02 * u);
+  drifting.is_predicted = true;  // frames lag behind the body
+  EXPECT_NEAR(find_time_u(drifting),
+              std::hypot(u, 0.5 * kOff_px / fall_px_per_s), 0.02 * u);
+  EXPECT_GT(kOff_px / fall_px_per_s, 0.2 * u);  // the above tell them apart
+}
+
 TEST(Contact, SlideAfterTouchdown) {
   Throw thrown;
   thrown.before = {1.4, -0.25, 0.0};

@@ -361,8 +361,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   // then the correlation of the flights' residuals, which needs the flights. If
   // that widens the poses, the path is cut once more under the new weights.
   const ExcessNoise excess = WidenToScatter(track);
-  const double u_common_px =
-      std::hypot(kCommonPlace * excess.height_px, track.u_common_px);
+  const double u_common_px = std::hypot(kCommonPlace * excess.height_px,
+                                        track.u_common_px, track.u_drift_px);
   const double u_common_face =
       std::hypot(kCommonPlace * excess.face_rad, track.u_common_face_rad);
   track.u_half_px =

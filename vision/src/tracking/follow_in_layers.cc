@@ -336,7 +336,7 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
   constexpr double kTurns = 0.2;
   const double drift = Median(std::move(drifts));
   BodyImage& body = out.body;
-  body.u_common_px = std::hypot(body.u_common_px, drift);
+  body.u_drift_px = drift;
   if (options.turns) {
     body.u_common_angle_rad = std::hypot(
         body.u_common_angle_rad, kTurns * drift / fit.layers.shape.half_long);
