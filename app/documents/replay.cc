@@ -180,7 +180,7 @@ Json TrackJson(const vision::Track& track) {
                {"shutter_fraction", body.shutter_fraction},
                {"u_common_px", body.u_common_px},
                {"u_common_angle_rad", body.u_common_angle_rad},
-               {"u_drift_px", body.u_drift_px},
+               {"u_texture_px", body.u_texture_px},
                {"frames", {track.first_frame, track.last_frame}},
                {"frame_interval_s", track.frame_interval_s},
                {"known_background", track.known_background},
@@ -223,7 +223,7 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   // Earlier documents have none.
   track.body.u_common_px = json.value("u_common_px", 0.0);
   track.body.u_common_angle_rad = json.value("u_common_angle_rad", 0.0);
-  track.body.u_drift_px = json.value("u_drift_px", 0.0);
+  track.body.u_texture_px = json.value("u_texture_px", track.body.u_common_px);
   track.body.shutter_fraction = json.value("shutter_fraction", 0.0);
   track.body.gamma = Optional<double>(json, "gamma");
   if (json.contains("step")) track.step = WholeNumber(json["step"], "step");

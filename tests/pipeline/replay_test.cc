@@ -266,9 +266,9 @@ auto ListFields(const vision::Pose& pose) {
 
 auto ListFields(const vision::BodyImage& body) {
   const auto& [kind, radius, half_long, half_short, whole, blur, shutter,
-               u_common, u_common_angle, u_drift, gamma, contrast] = body;
+               u_common, u_common_angle, u_texture, gamma, contrast] = body;
   return std::make_tuple(kind, radius, half_long, half_short, whole, blur,
-                         shutter, u_common, u_common_angle, u_drift, gamma,
+                         shutter, u_common, u_common_angle, u_texture, gamma,
                          contrast);
 }
 
@@ -294,7 +294,7 @@ TEST(Replay, KeepsEveryFieldOfTheTrack) {
   track.body.shutter_fraction = 0.5;
   track.body.u_common_px = 0.0625;
   track.body.u_common_angle_rad = 0.03125;
-  track.body.u_drift_px = 0.015625;
+  track.body.u_texture_px = 0.015625;
   track.body.gamma = 2.25;
   track.body.contrast_dn = 100.5;
   track.first_frame = 2;

@@ -60,8 +60,8 @@ TEST(Contact, SoftContactOverSeveralFrames) {
   EXPECT_EQ(sweep.later, 0);
 }
 
-// Of frames that are coded alone a drift is the same before and after the
-// impact: only the height has it. A texture lies otherwise on the outline then.
+// What all poses have in common is the same before and after the impact: only
+// the height has it. A texture lies otherwise on the outline then.
 TEST(Contact, TimeIsWidenedByWhatTheImpactChanges) {
   Throw thrown;
   thrown.before = {1.4, -0.8, 0.0};
@@ -74,10 +74,10 @@ TEST(Contact, TimeIsWidenedByWhatTheImpactChanges) {
   const double u = find_time_u(clean);
   constexpr double kOff_px = 0.01;
   PlaneTrack drifting = clean;
-  drifting.u_drift_px = kOff_px;
+  drifting.u_common_px = kOff_px;
   EXPECT_NEAR(find_time_u(drifting), u, 0.02 * u);
   PlaneTrack textured = clean;
-  textured.u_common_px = kOff_px;
+  textured.u_common_px = textured.u_texture_px = kOff_px;
   const double fall_px_per_s = 0.8 * filming.camera.px_per_m;
   EXPECT_NEAR(find_time_u(textured), std::hypot(u, kOff_px / fall_px_per_s),
               0.02 * u);

@@ -103,7 +103,7 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
              : std::fmax(track.body.half_long_px.u, track.body.half_short_px.u);
   plane.u_common_px = track.body.u_common_px;
   plane.u_common_face_rad = track.body.u_common_angle_rad;
-  plane.u_drift_px = track.body.u_drift_px;
+  plane.u_texture_px = track.body.u_texture_px;
   plane.is_predicted = track.is_predicted;
   // Of a body that was followed in part, the whole size is known from
   // elsewhere.

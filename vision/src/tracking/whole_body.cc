@@ -220,6 +220,7 @@ std::optional<Track> FindWhole(Clip& clip, const Background& background,
     whole.body.u_common_angle_rad = kCellU_px / outline.half_long_px;
   }
   whole.body.u_common_px = kCellU_px;
+  whole.body.u_texture_px = kCellU_px;
   for (Pose& pose : whole.poses) {
     const double cosine = best_turns ? std::cos(pose.angle_rad) : 1.0;
     const double sine = best_turns ? std::sin(pose.angle_rad) : 0.0;

@@ -55,9 +55,10 @@ struct BodyImage {
   // What outline and poses may be off together in all frames, along any
   // direction of the body, and in angle: a texture hides it.
   double u_common_px = 0.0;
-  double u_common_angle_rad = 0.0;  // with what follows
-  // What a codec leaves out of slow changes, in all frames near each other.
-  double u_drift_px = 0.0;
+  double u_common_angle_rad = 0.0;
+  // The part of u_common_px that is a texture's: a body that turned has another
+  // one at the same side, and it lies before another background.
+  double u_texture_px = 0.0;
   // Of the camera (linear_clip.h), as far as outlines show it.
   std::optional<double> gamma;
   double contrast_dn = 0.0;  // body minus background, median over frames
