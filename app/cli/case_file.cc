@@ -1,10 +1,8 @@
-// CSV by RFC 4180: quoted cells may hold commas, line feeds and "" for a quote;
-// lines end with LF or CRLF. Lines that are blank are skipped and still
-// counted, so that messages name the line that an editor shows.
+// Lines that are blank are skipped and still counted, so that messages name the
+// line that an editor shows.
 #include "app/cli/case_file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,11 +10,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "app/text/csv_record.h"
 #include "app/text/text.h"
 #include "app/text/text_file.h"
 #include "touchdown/core/errors.h"
@@ -41,59 +39,25 @@ struct RawRow {
   std::vector<std::string> cells;
 };
 
-// Splits the text of a file into rows. Throws core::InputError where a quote is
-// left open, naming the line where that row begins.
-std::vector<RawRow> ParseRows(const std::string& file,
-                              const std::string& text) {
+// Rows of a file that are not blank. Throws core::InputError.
+std::vector<RawRow> ReadRows(const std::string& path) {
+  std::istringstream in(report::ReadTextFile(path));
+  report::SkipByteOrderMark(in);
   std::vector<RawRow> rows;
-  RawRow row;
-  std::string cell;
   std::size_t line = 1;
-  bool quoted = false;
-  const auto end_row = [&] {
-    row.cells.push_back(std::exchange(cell, {}));
-    const bool blank = row.cells.size() == 1 && Trim(row.cells[0]).empty();
-    if (!blank) rows.push_back(std::move(row));
-    row = RawRow{};
-    // `line` is counted up after this call, by the line feed that ended the
-    // row.
-    row.line = line + 1;
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    // A quoted line feed belongs to the cell, and is a line of the file too.
-    if (c == '\n' && quoted) ++line;
-    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
-      cell += '"';
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (!quoted && c == ',') {
-      row.cells.push_back(std::exchange(cell, {}));
-    } else if (!quoted && c == '\n') {
-      end_row();
-      ++line;
-    } else if (quoted || c != '\r') {
-      cell += c;
+  while (auto cells = report::ReadCsvRecord(in, path, line)) {
+    std::size_t lines = 1;
+    for (const std::string& cell : *cells) {
+      // A quoted line feed belongs to the cell, and is a line of the file too.
+      lines +=
+          static_cast<std::size_t>(std::count(cell.begin(), cell.end(), '\n'));
     }
+    if (cells->size() > 1 || !Trim(cells->front()).empty()) {
+      rows.push_back({line, std::move(*cells)});
+    }
+    line += lines;
   }
-  if (quoted) {
-    throw InputError(fmt::format(
-        "{}: line {}: a quoted cell is never closed; expected a closing \"",
-        file, row.line));
-  }
-  // The last line may lack its line feed.
-  if (!cell.empty() || !row.cells.empty()) end_row();
   return rows;
-}
-
-// Returns the text of a file without a byte order mark, which spreadsheets
-// write. Throws core::InputError.
-std::string ReadTable(const std::string& path) {
-  std::string out = ReadInput(path);
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (out.starts_with(kByteOrderMark)) out.erase(0, kByteOrderMark.size());
-  return out;
 }
 
 }  // namespace
@@ -198,7 +162,7 @@ bool CaseTable::HasColumn(std::string_view column) const {
 // with a wrong last row gives an error and not half an answer.
 CaseTable ReadCases(const std::string& path,
                     const std::vector<std::string>& columns) {
-  auto raw = ParseRows(path, ReadTable(path));
+  auto raw = ReadRows(path);
   if (raw.empty()) {
     throw InputError(
         fmt::format("{}: is empty; expected a header and rows of cases", path));
@@ -262,32 +226,6 @@ void CaseWriter::Add(const std::vector<std::string>& cells) {
     csv_ += report::CsvCell(cells[i]);
   }
   csv_ += '\n';
-}
-
-// report::ReadTextFile() says neither why a file cannot be read nor that its
-// disk failed on the way.
-std::string ReadInput(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(
-        fmt::format("{}: is a folder; expected a file", path.string()));
-  }
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  // The buffer's iterators set no flag where reading fails: read() does.
-  std::string out;
-  constexpr std::size_t kPiece = 65536;  // bytes; any size gives the same text
-  while (in) {
-    const std::size_t before = out.size();
-    out.resize(before + kPiece);
-    in.read(out.data() + before, kPiece);
-    out.resize(before + static_cast<std::size_t>(in.gcount()));
-  }
-  if (!in.eof()) {
-    throw InputError(fmt::format("{}: cannot be read: {}", path.string(),
-                                 std::strerror(errno == 0 ? EIO : errno)));
-  }
-  return out;
 }
 
 // A short write to stdout is found here, while main's own check covers what was

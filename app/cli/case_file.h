@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -89,10 +88,6 @@ class CaseWriter {
   std::size_t n_columns_;
   std::string csv_;
 };
-
-// The bytes of a file. Throws core::InputError with the system's reason where
-// it cannot be read.
-std::string ReadInput(const std::filesystem::path& path);
 
 // Writes to `path`, whole or not at all (a temporary file beside it is
 // renamed), or to standard output where `path` is empty. Throws

@@ -64,10 +64,11 @@ Defaults ReadDefaults(const std::filesystem::path& folder) {
   Defaults out;
   const std::filesystem::path path = folder / kDefaultsFile;
   // No file is the usual case and no error.
-  if (const auto text = report::ReadTextFile(path)) {
+  if (std::filesystem::exists(path)) {
     const std::string name = path.string();
+    const std::string text = report::ReadTextFile(path);
     try {
-      const toml::table table = toml::parse(*text, name);
+      const toml::table table = toml::parse(text, name);
       for (const auto& [key, node] : table) {
         // A key that is not known is refused: a misspelt "campain" would
         // otherwise send trials into no campaign without a word.

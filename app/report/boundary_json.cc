@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -354,17 +353,13 @@ Json ReportDocument(const ReportInput& input, std::span<const Group> groups,
   for (const Group& group : groups) {
     Json entry = BoundaryJson(group);
     if (group.simulated()) entry["watermark"] = kWatermark;
-    // Which trials of the group the statistics leave out, and why.
-    std::map<std::size_t, const std::string*> left_out;
-    for (const auto& left : group.trials.left_out) {
-      left_out[left.trial] = &left.reason;
-    }
+    const auto left_out = ReasonsLeftOut(group);
     entry["campaign_checks"] = ChecksJson(group, trials);
     entry["trials"] = Json::array();
     for (const std::size_t t : group.members) {
       const auto why = left_out.find(t);
       entry["trials"].push_back(
-          TrialJson(trials[t], why == left_out.end() ? nullptr : why->second));
+          TrialJson(trials[t], why == left_out.end() ? nullptr : &why->second));
     }
     out["groups"].push_back(std::move(entry));
   }

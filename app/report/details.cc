@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "touchdown/calib/calibration_file.h"
 #include "touchdown/core/errors.h"
 
 namespace touchdown::report {
@@ -73,17 +74,6 @@ std::string Listed(const std::vector<std::string>& words) {
   return out;
 }
 
-// Whether the text has the form 2026-08-31. The cover compares such dates as
-// texts; whether the day exists is not asked.
-bool IsDate(std::string_view text) {
-  constexpr std::string_view kForm = "dddd-dd-dd";
-  return text.size() == kForm.size() &&
-         std::equal(text.begin(), text.end(), kForm.begin(),
-                    [](char c, char form) {
-                      return form == 'd' ? c >= '0' && c <= '9' : c == form;
-                    });
-}
-
 // Takes the texts of one table [section]; a date of TOML is as good as one in
 // quotes. Refuses keys that are not in `texts`: a typing error would else be an
 // entry that is absent from the report without a word.
@@ -114,7 +104,7 @@ void Take(const std::string& file, std::string_view section,
     // The cover compares these dates; other dates are printed as they are, and
     // may be a sentence.
     if (key.str().ends_with("_on") && section == "equipment" &&
-        !found->second->empty() && !IsDate(*found->second)) {
+        !found->second->empty() && !calib::IsDate(*found->second)) {
       Fail(file, node.source(),
            fmt::format("equipment.{} is '{}', must be a date as in 2026-08-31",
                        key.str(), *found->second));

@@ -125,15 +125,14 @@ std::string Metadata(const ReportInput& input,
 void WriteEln(const ReportInput& input, const fs::path& folder) {
   std::vector<Entry> entries;
   for (const std::string& name : ListFiles(input, folder)) {
-    auto bytes = ReadTextFile(folder / name);
     // A report that was moved or half deleted: the archive would promise what
     // it does not hold.
-    if (!bytes) {
-      throw core::InputError(
-          fmt::format("{}: cannot be read; make the report again",
-                      (folder / name).string()));
+    if (!fs::exists(folder / name)) {
+      throw core::InputError(fmt::format("{}: not found; make the report again",
+                                         (folder / name).string()));
     }
-    entries.push_back({fmt::format("{}/{}", kRoot, name), std::move(*bytes)});
+    entries.push_back(
+        {fmt::format("{}/{}", kRoot, name), ReadTextFile(folder / name)});
   }
   pipeline::ZipFile zip(folder / "table1.eln");
   zip.Add(fmt::format("{}/ro-crate-metadata.json", kRoot),

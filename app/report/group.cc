@@ -217,6 +217,14 @@ Group EmptyGroup(const ReportInput& input, const core::Campaign& campaign) {
   return group;
 }
 
+std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group) {
+  std::map<std::size_t, std::string> out;
+  for (const auto& left : group.trials.left_out) {
+    out[left.trial] = left.reason;
+  }
+  return out;
+}
+
 std::string FullName(const Group& group) {
   return fmt::format(
       "{}: {}, {}, {}",

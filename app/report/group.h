@@ -2,6 +2,7 @@
 // commands print and the report is made of.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,6 +56,9 @@ std::vector<Group> MakeGroups(const ReportInput& input,
 // A group without a trial yet: there is nothing but the prior, and the angle to
 // begin with.
 Group EmptyGroup(const ReportInput& input, const core::Campaign& campaign);
+
+// Why the statistics leave a trial out, by its index in the trials.
+std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group);
 
 // "asphalt: sphere, approach angle, recorded": tells any two groups apart.
 std::string FullName(const Group& group);

@@ -16,7 +16,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -154,17 +153,15 @@ void PrintPdf(const fs::path& page, const fs::path& pdf) {
         "chromium: not found; the PDF needs it: install the package chromium, "
         "or print the page table1.html from any browser");
   }
-  // Absent also where the browser ended well and wrote no file.
-  std::optional<std::string> bytes;
-  if (EndsWell(child)) bytes = ReadTextFile(printed);
-  if (!bytes) {
+  // A browser can end well and write no file.
+  if (!EndsWell(child) || !std::filesystem::exists(printed)) {
     throw core::InputError(
         fmt::format("chromium: printed no page: {}; print table1.html from any "
                     "browser instead",
                     LastLine(scratch.path() / "log")));
   }
   // Throws core::OutputError where the target cannot be written.
-  WriteTextFile(pdf, *bytes);
+  WriteTextFile(pdf, ReadTextFile(printed));
 }
 
 }  // namespace touchdown::report

@@ -1,7 +1,6 @@
 // table1.csv: one line a trial, units in the heading; and its schema.
 #include <fmt/core.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -62,15 +61,6 @@ std::string ValueText(const core::Measured& m, double unit) {
 
 std::string UncertaintyText(const core::Measured& m, double unit) {
   return m ? fmt::format("{:.3g}", m->u / unit) : "";
-}
-
-// Why the statistics leave a trial out, by its index in the trials.
-std::map<std::size_t, std::string> ReasonsLeftOut(const Group& group) {
-  std::map<std::size_t, std::string> out;
-  for (const auto& left : group.trials.left_out) {
-    out[left.trial] = left.reason;
-  }
-  return out;
 }
 
 }  // namespace

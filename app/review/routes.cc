@@ -199,11 +199,11 @@ Reply ReportFile(Desk& desk, const Request& request, const std::string& name) {
                 name) == std::end(report::kReportFiles)) {
     throw NotThere(request.path);
   }
-  const auto text = report::ReadTextFile(desk.reports() / name);
-  if (!text) throw NotThere(request.path);
+  const std::filesystem::path path = desk.reports() / name;
+  if (!std::filesystem::exists(path)) throw NotThere(request.path);
   Reply reply;
   reply.type = ContentType(name);
-  reply.body = *text;
+  reply.body = report::ReadTextFile(path);
   // As the report says of itself: styles stand in it, nothing is loaded.
   reply.headers = {{"Content-Security-Policy",
                     "default-src 'none'; style-src 'unsafe-inline'; img-src "

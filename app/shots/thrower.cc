@@ -35,7 +35,7 @@ Thrower ReadRig(const std::filesystem::path& rig_file,
   // The text is kept beside the parsed rig, because KeepRig compares texts:
   // comments and notes in a rig.toml are part of its version.
   out.rig = rig::ReadDescription(rig_file);
-  out.document = report::ReadTextFile(rig_file).value_or("");
+  out.document = report::ReadTextFile(rig_file);
   return out;
 }
 

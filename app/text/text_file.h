@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,7 +12,8 @@ namespace touchdown::report {
 // left.
 void WriteTextFile(const std::filesystem::path& path, std::string_view text);
 
-// The whole of a file; nothing where there is none that can be read.
-std::optional<std::string> ReadTextFile(const std::filesystem::path& path);
+// The whole of a file, byte by byte. Throws core::InputError with the system's
+// reason where it cannot be read, also where its disk fails on the way.
+std::string ReadTextFile(const std::filesystem::path& path);
 
 }  // namespace touchdown::report

@@ -24,7 +24,7 @@ TEST(WriteEln, IsACrateOfTheReport) {
   input.details.number = "17";
   WriteReport(MakeReport(input), folder.path());
   WriteEln(input, folder.path());
-  const std::string zip = *ReadTextFile(folder.path() / "table1.eln");
+  const std::string zip = ReadTextFile(folder.path() / "table1.eln");
   const std::size_t begin = zip.find('{');
   const std::size_t end = zip.find("\n}\n", begin);
   const auto crate = nlohmann::json::parse(zip.substr(begin, end + 3 - begin));
@@ -50,7 +50,7 @@ TEST(WriteEln, AMissingFileIsNamed) {
     WriteEln({}, folder.path());
     FAIL();
   } catch (const core::InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("table1.csv: cannot be read"));
+    EXPECT_THAT(error.what(), HasSubstr("table1.csv: not found; make"));
   }
 }
 

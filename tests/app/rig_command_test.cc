@@ -258,7 +258,7 @@ TEST(RigCases, BadFilesAreNamed) {
               HasSubstr(": line 2: has 3 cells; expected 2 as in the header"));
   const TemporaryFile open_quote("quote.csv", "id,G\n\"A,1\n");
   EXPECT_THAT(Rig("spring --cases " + open_quote.path(), true).out,
-              HasSubstr(": line 2: a quoted cell is never closed"));
+              HasSubstr(": row 2: a quote is left open"));
   const TemporaryFile empty("empty.csv", "");
   EXPECT_EQ(Rig("spring --cases " + empty.path(), true).status, 3);
 }

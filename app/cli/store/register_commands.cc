@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/case_file.h"
 #include "app/cli/command.h"
 #include "app/cli/options.h"
 #include "app/cli/store/store_flags.h"
 #include "app/cli/store/store_text.h"
 #include "app/cli/values.h"
 #include "app/exchange/register_json.h"
+#include "app/text/text_file.h"
 #include "touchdown/calib/calibration_file.h"
 #include "touchdown/core/edge_unit.h"
 #include "touchdown/db/names.h"
@@ -105,7 +105,7 @@ void ApplyFile(const std::string& file, Entry& entry) {
                                                   : "ground";
     entry.texts["made_on"] = calibration.date;
   }
-  entry.texts["document"] = ReadInput(file);
+  entry.texts["document"] = report::ReadTextFile(file);
   entry.texts["sha256"] = vision::Sha256(file);
 }
 

@@ -16,7 +16,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "app/cli/case_file.h"
 #include "app/cli/messages.h"
 #include "app/cli/options.h"
 #include "app/cli/store/store_flags.h"
@@ -51,7 +50,7 @@ struct Signer {
 // it is. Throws core::InputError where the key cannot be read,
 // std::invalid_argument where it is of none of the three programs.
 Signer ChooseSigner(const std::string& key, const std::string& file) {
-  const std::string text = ReadInput(key);
+  const std::string text = report::ReadTextFile(key);
   if (text.starts_with("untrusted comment:")) {
     return {{"minisign", "-S", "-s", key, "-m", file, "-x", file + ".minisig"},
             file + ".minisig",
@@ -165,7 +164,7 @@ void CheckSeal(const db::Store& store, const std::string& seal) {
   if (const auto head = db::ParseHead(seal)) {
     sealed.head = *head;
   } else if (std::error_code ignored; fs::exists(seal, ignored)) {
-    sealed = db::ParseSeal(ReadInput(seal), seal);
+    sealed = db::ParseSeal(report::ReadTextFile(seal), seal);
   } else {
     throw std::invalid_argument(fmt::format(
         "--against is '{}', must be a file of `touchdown db seal --out`, or "
