@@ -18,11 +18,16 @@ if(found)
     OPENCV_ARCHIVES_LINK SOURCES
     "${PROJECT_SOURCE_DIR}/cmake/opencv_archives_check.cxx"
     "${OPENCV_ARCHIVES_SOURCE}"
-    CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${OPENCV_INCLUDE_DIR}"
+    CMAKE_FLAGS
+      "-DINCLUDE_DIRECTORIES=${OPENCV_INCLUDE_DIR};${PROJECT_SOURCE_DIR}/core/include"
     LINK_LIBRARIES ${archives}
-    CXX_STANDARD 20)
+    CXX_STANDARD 20
+    OUTPUT_VARIABLE said)
   if(OPENCV_ARCHIVES_LINK)
     set(OPENCV_ARCHIVES ${archives})
+  else()
+    # Every command starts 9 ms later then, and nothing else shows it.
+    message(WARNING "OpenCV's archives are there and do not link:\n${said}")
   endif()
 endif()
 if(NOT OPENCV_ARCHIVES)
