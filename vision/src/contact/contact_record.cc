@@ -8,6 +8,7 @@
 
 #include "contact/greatest_gap.h"
 #include "contact/impacts.h"
+#include "contact/pixel_locking.h"
 #include "touchdown/vision/contact/state.h"
 
 namespace touchdown::vision {
@@ -423,9 +424,17 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
 
 }  // namespace
 
-core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
+core::ContactRecord MakeRecord(const RecordContext& given, const Event& event,
                                std::vector<std::string>& warnings) {
-  const PlaneTrack& track = context.track;
+  const PlaneTrack& track = given.track;
+  const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
+                                                   track.samples.size() - 1)];
+  const PixelLocking locking = EstimatePixelLocking(track, near.face_rad);
+  RecordContext context = given;
+  context.u_common_place_px =
+      std::hypot(given.u_common_place_px, locking.place_px);
+  context.u_common_face_rad =
+      std::hypot(given.u_common_face_rad, locking.face_rad);
   core::ContactRecord record;
   core::Contact& contact = record.contact;
   contact.found = true;
@@ -451,11 +460,11 @@ core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
   const double pace = std::max(
       std::abs(event.fit->EstimateFunction(ApproachNormal).value), kMinPace_px);
   const double change_px = track.is_predicted
-                               ? kLagShare * context.u_common_place_px
+                               ? kLagShare * given.u_common_place_px
                                : std::min(track.u_texture_px, kMostChange_px);
-  contact.time_s->u = std::hypot(contact.time_s->u, change_px / pace * dt);
-  const PlaneSample& near = track.samples[std::min(event.before_frames.end - 1,
-                                                   track.samples.size() - 1)];
+  // Edges beside the pixels' rows have another phase in each frame.
+  contact.time_s->u = std::hypot(
+      contact.time_s->u, std::hypot(change_px, locking.place_px) / pace * dt);
   contact.frame = Estimate{
       static_cast<double>(near.frame) + (event.time_s.value - near.time_s) / dt,
       contact.time_s->u / dt};

@@ -42,6 +42,7 @@ struct PlaneTrack {
   double u_common_px = 0.0;    // BodyImage's, of all poses together
   double u_common_face_rad = 0.0;
   double u_texture_px = 0.0;
+  double blur_px = 0.0;
   bool is_predicted = false;  // ClipInfo's
   double size_px = 0.0;       // of the whole body: diameter or long side
   int direction = 1;          // +1: travels to the right in the image, -1: left
