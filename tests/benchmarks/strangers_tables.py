@@ -3,6 +3,10 @@
 usage: strangers_tables.py GENERATORS NAME:SEED:ROWS_FILE...
 The tables are drawn by score.py of the folder GENERATORS, as the generators do.
 Scenes are named SEED_SCENE. Formats stand in the order of the rows.
+
+The exit status is 1, and stderr says why, where a state is wrong, or where the
+99.9 % band (Wilson's) of a share lies wholly on the wrong side of what is asked:
+values within 1.96 u below 0.95, gross answers above 2 in 480.
 """
 import json
 import sys
@@ -19,18 +23,41 @@ def pool(files):
     return pooled
 
 
+NORMAL_9995 = 3.2905  # 0.9995 quantile of the normal distribution
+
+
+def judge(score, name, rows):
+    """What is not as asked, a sentence each."""
+    for row in rows:
+        if score.state(row) == 'wrong':
+            yield f"{name}: the state of scene {row['scene']} is wrong"
+    gross = sum(map(score.gross, rows))
+    if score.wilson(gross, len(rows), NORMAL_9995)[0] > 2 / 480:
+        yield f'{name}: {gross} of {len(rows)} clips are gross'
+    for quantity, *_ in score.QUANTITIES:
+        told = [row for row in rows if row.get(quantity) is not None]
+        held = sum(abs(row[quantity]) <= 1.96 * row[quantity + '_u'] for row in told)
+        if score.wilson(held, len(told), NORMAL_9995)[1] < 0.95:
+            yield f'{name}: {held} of {len(told)} values of {quantity} lie within 1.96 u'
+
+
 def main():
     sys.path.insert(0, sys.argv[1])
     import score
 
+    faults = []
     for generator, formats in pool(sys.argv[2:]).items():
         print(f'\n## {generator}.py\n\n```', end='')
         for name, rows in formats.items():
             score.table(name, rows)
+            faults += judge(score, f'{generator}, {name}', rows)
         for kind in dict.fromkeys(row['kind'] for row in formats.get('raw', [])):
             score.table(f'raw, {kind}', [row for row in formats['raw'] if row['kind'] == kind])
         print('```')
+    for fault in faults:
+        print(f'bench: strangers: {fault}', file=sys.stderr)
+    return 1 if faults else 0
 
 
 if __name__ == '__main__':
-    main()
+    sys.exit(main())

@@ -344,7 +344,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
     for (const double common : kCommon_deg) {
       for (const double scatter : kScatters_deg) {
         if (only_scatter_deg >= 0.0 && only_scatter_deg != scatter) continue;
-        const Cell cell{design, scatter, 0.0, common};
+        Cell cell{design, scatter, 0.0, common};
         std::seed_seq sequence{
             static_cast<std::uint32_t>(seed), 0xC0u,
             static_cast<std::uint32_t>(
@@ -363,6 +363,10 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
         };
         At at[std::size(kCoverageAt)];
         for (int r = 0; r < n; ++r) {
+          // A theory that is the truth would give it away to the designs that
+          // choose their angles by it.
+          cell.distance =
+              kDistances[static_cast<std::size_t>(r) % std::size(kDistances)];
           const Campaign campaign = Begin(cell, engine);
           const TheoryBoundary theory{"t", campaign.theory_deg * kDegree, 0.0};
           EvidenceOptions coarse;
