@@ -154,6 +154,8 @@ Json PosteriorJson(const Group& group) {
               {"prior", PriorJson(group.prior)},
               {"cautious_prior",
                p.cautious_prior ? PriorJson(*p.cautious_prior) : Json(nullptr)},
+              {"sharp_prior",
+               p.sharp_prior ? PriorJson(*p.sharp_prior) : Json(nullptr)},
               {"low95_one_prior_deg", analysis::Quantile(p, 0.025) / kDegree},
               {"high95_one_prior_deg", analysis::Quantile(p, 0.975) / kDegree}};
   // The same trials under other priors: how much of the answer is the prior's.

@@ -57,16 +57,25 @@ Table MakeEstimates(const Group& group, const analysis::ScatterPrior& prior) {
                {"remark"}},
               {}};
   std::string remark = PriorName(prior);
-  // The interval in the table then holds under two priors; the remark has the
-  // narrower one under the first alone.
+  // The interval in the table may hold under other priors, too; the remark has
+  // the narrower one under the first alone.
+  if (p.cautious_prior || p.sharp_prior) {
+    remark +=
+        fmt::format(", alone {}", IntervalText({analysis::Quantile(p, 0.025),
+                                                analysis::Quantile(p, 0.975)},
+                                               decimals));
+  }
   if (p.cautious_prior) {
     remark += fmt::format(
-        ", alone {}; the 95 % interval holds under {}, too, as outcomes that "
-        "do not overlap tell nothing of the scatter",
-        IntervalText(
-            {analysis::Quantile(p, 0.025), analysis::Quantile(p, 0.975)},
-            decimals),
+        "; the 95 % interval holds under {}, too, as outcomes that do not "
+        "overlap tell nothing of the scatter",
         PriorName(*p.cautious_prior));
+  }
+  if (p.sharp_prior) {
+    remark += fmt::format(
+        "; the 95 % interval holds under {}, too, as trials at few angles do "
+        "not tell a small scatter",
+        PriorName(*p.sharp_prior));
   }
   table.rows.push_back({{"posterior median"},
                         {AngleText(p.median_rad, decimals)},

@@ -14,6 +14,7 @@
 #include "tests/support/shared_data.h"
 #include "touchdown/analysis/statistics/likelihood_profile.h"
 #include "touchdown/analysis/statistics/paper_table1.h"
+#include "touchdown/analysis/statistics/set_angles.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::analysis {
@@ -37,6 +38,7 @@ BoundaryFitOptions NoLapse(double median_deg = 2.0, double log_sd = 1.5) {
   BoundaryFitOptions options;
   options.lapse_rule = LapseRule::kNever;
   options.cautious_scatter.reset();
+  options.sharp_scatter.reset();
   options.scatter = {median_deg * kDegree, log_sd};
   return options;
 }
@@ -284,6 +286,7 @@ TEST(FitBoundary, TheCautiousPriorIsForOutcomesThatDoNotOverlap) {
     BoundaryFitOptions second;
     second.scatter = {4.0 * kDegree, std::nullopt};
     second.cautious_scatter.reset();
+    second.sharp_scatter.reset();
     const auto other = FitBoundary(Trials(x, y, 0.3), second);
     const double low = Quantile(p, 0.025);
     const double high = Quantile(p, 0.975);
@@ -306,6 +309,66 @@ TEST(FitBoundary, TheCautiousPriorIsForOutcomesThatDoNotOverlap) {
   EXPECT_TRUE(joins({8, 10, 12, 14}, {0, 0, 1, 1}));
   EXPECT_TRUE(joins({8, 10, 10, 12}, {0, 0, 1, 1}));   // touching
   EXPECT_FALSE(joins({8, 10, 12, 14}, {0, 1, 0, 1}));  // overlap
+}
+
+// Trials at one angle do not tell a scatter of some tenths of a degree from one
+// of some degrees: the boundary may be near.
+TEST(FitBoundary, TrialsAtOneAngleHoldUnderTheSharpPriorToo) {
+  std::vector<double> x;
+  std::vector<int> y;
+  for (int i = 0; i < 40; ++i) {
+    x.push_back(10.0 + 0.5 * std::sin(i));
+    y.push_back(i % 20 == 0);
+  }
+  BoundaryFitOptions alone;
+  alone.sharp_scatter.reset();
+  const auto without = FitBoundary(Trials(x, y, 0.3), alone);
+  const auto with = FitBoundary(Trials(x, y, 0.3));
+  ASSERT_TRUE(with.sharp_prior.has_value());
+  EXPECT_FALSE(without.sharp_prior.has_value());
+  BoundaryFitOptions sharp = alone;
+  sharp.scatter = *with.sharp_prior;
+  const auto other = FitBoundary(Trials(x, y, 0.3), sharp);
+  // The grid is as fine as the first prior asks for.
+  constexpr double kClose = 0.1 * kDegree;
+  EXPECT_NEAR(with.interval95_rad.low, other.interval95_rad.low, kClose);
+  EXPECT_LT(with.interval95_rad.low, without.interval95_rad.low - kClose);
+  EXPECT_DOUBLE_EQ(with.interval95_rad.high, without.interval95_rad.high);
+  EXPECT_DOUBLE_EQ(with.median_rad, without.median_rad);
+}
+
+// A small extract of `./dev bench verdicts`: all trials at one angle, 1 deg
+// from a boundary of scatter 0.3 deg.
+TEST(FitBoundary, CoversABoundaryBesideTheOneAngle) {
+  std::mt19937_64 engine(25);
+  std::normal_distribution<double> normal;
+  constexpr int kCampaigns = 200;
+  BoundaryFitOptions options;
+  options.sensitivity.clear();
+  options.max_cell_mass = 1.0 / 32;
+  options.scatter_levels = 16;
+  int hits = 0;
+  int hits_one_prior = 0;
+  for (int r = 0; r < kCampaigns; ++r) {
+    const double theta =
+        std::uniform_real_distribution<double>(5.0, 40.0)(engine);
+    const double set = theta + (r % 2 == 0 ? 1.0 : -1.0);
+    std::vector<Observation> trials;
+    for (int i = 0; i < 40; ++i) {
+      const double angle = set + 0.5 * normal(engine);
+      const bool bounces = angle > theta + 0.3 * normal(engine);
+      trials.push_back(Observe((angle + 0.3 * normal(engine)) * kDegree,
+                               0.3 * kDegree, bounces ? 1.0 : 0.0));
+      trials.back().set_angle_rad = set * kDegree;
+    }
+    const auto p = FitBoundary(UseSetAngles(trials).observations, options);
+    const double truth = theta * kDegree;
+    hits += p.interval95_rad.low <= truth && truth <= p.interval95_rad.high;
+    hits_one_prior +=
+        Quantile(p, 0.025) <= truth && truth <= Quantile(p, 0.975);
+  }
+  EXPECT_GE(hits, 0.93 * kCampaigns);
+  EXPECT_GT(hits, hits_one_prior + 0.1 * kCampaigns);
 }
 
 // Twenty slides at 10 and twenty bounces at 20 deg agree with every boundary
@@ -354,7 +417,7 @@ TEST(FitBoundary, CoversABoundaryThatScatters) {
     const bool hit =
         p.interval95_rad.low <= truth && truth <= p.interval95_rad.high;
     hits += hit ? 1 : 0;
-    hits_one_prior += p.cautious_prior
+    hits_one_prior += p.cautious_prior || p.sharp_prior
                           ? (0.025 <= below && below <= 0.975 ? 1 : 0)
                           : (hit ? 1 : 0);
   }

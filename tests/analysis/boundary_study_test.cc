@@ -38,6 +38,7 @@ TEST(StudyBoundary, PaperTable1IsInconclusive) {
   options.fit.lapse_rule = LapseRule::kNever;
   // The reference's figures are of one prior.
   options.fit.cautious_scatter.reset();
+  options.fit.sharp_scatter.reset();
   options.origin = core::Origin::kManual;
   const auto trials = PaperTable1(BodyKind::kSphere, 0.5 * kDegree);
   const BoundaryStudy study = StudyBoundary(trials, options);

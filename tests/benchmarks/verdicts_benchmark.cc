@@ -8,7 +8,7 @@
 //           95 % interval of the posterior alone)
 // coverage  of the boundary's 95 % interval after 20, 40 and 100 trials: of all
 //           campaigns, of those whose outcomes overlap, and of the equal tails
-//           under the one prior, without the second one
+//           under the first prior alone
 //
 // Every campaign: boundary U(2, 40) deg, margin 1 deg, ejector's sd 0.5 deg,
 // own u 0.3 deg. CAMPAIGNS (400) is for each cell without common error; cells
@@ -391,7 +391,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
             const bool hit = interval.low <= truth && truth <= interval.high;
             const double below = CumulativeProbability(posterior, truth);
             const bool hit_one_prior =
-                posterior.cautious_prior
+                posterior.cautious_prior || posterior.sharp_prior
                     ? kTail95 <= below && below <= 1.0 - kTail95
                     : hit;
             const bool overlap = Classify(trials) == DataStatus::kOverlap;

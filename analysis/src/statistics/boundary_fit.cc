@@ -58,6 +58,7 @@ void CheckFitOptions(const BoundaryFitOptions& o) {
   };
   check(o.scatter);
   if (o.cautious_scatter) check(*o.cautious_scatter);
+  if (o.sharp_scatter) check(*o.sharp_scatter);
   for (const ScatterPrior& prior : o.sensitivity) check(prior);
 }
 
@@ -505,21 +506,42 @@ void FillMarginal(const JointTable& table, const ScatterPrior& prior,
                    {Quantile(out, 0.025), Quantile(out, 0.975)});
 }
 
-// The 95 % interval together with that under the second prior, where outcomes
-// say nothing of the scatter, and with the bracket of separated ones. Where a
-// few angles repeat, a bracket's ends are likely boundaries only if the scatter
-// is small; any prior that allows for more has its tails inside.
-void WidenUnlessScatterIsSeen(const JointTable& table, const Bracket& bracket,
-                              const std::optional<ScatterPrior>& prior,
-                              BoundaryPosterior& out) {
-  const bool separated = out.status == DataStatus::kSeparated;
-  if (!prior || (!separated && out.status != DataStatus::kTouching)) return;
+// The 95 % interval together with that under another prior.
+void HoldUnder(const JointTable& table, const ScatterPrior& prior,
+               BoundaryPosterior& out) {
   BoundaryPosterior other;
-  FillMarginal(table, *prior, out.status, other);
+  FillMarginal(table, prior, out.status, other);
   core::Interval& interval = out.interval95_rad;
   interval.low = std::min(interval.low, other.interval95_rad.low);
   interval.high = std::max(interval.high, other.interval95_rad.high);
+}
+
+void HoldUnderSharpPrior(const JointTable& table,
+                         const std::optional<ScatterPrior>& prior,
+                         BoundaryPosterior& out) {
+  if (!prior || out.status == DataStatus::kNoTrials) return;
+  // Of the interval: less is not worth a word.
+  constexpr double kLeastGain = 0.01;
+  const core::Interval alone = out.interval95_rad;
+  HoldUnder(table, *prior, out);
+  const core::Interval& both = out.interval95_rad;
+  if (both.high - both.low > (1.0 + kLeastGain) * (alone.high - alone.low)) {
+    out.sharp_prior = prior;
+  }
+}
+
+// Where outcomes do not overlap also under the cautious prior, and with the
+// bracket of separated ones. Where a few angles repeat, a bracket's ends are
+// likely boundaries only if the scatter is small; any prior that allows for
+// more has its tails inside.
+void HoldUnlessScatterIsSeen(const JointTable& table, const Bracket& bracket,
+                             const std::optional<ScatterPrior>& prior,
+                             BoundaryPosterior& out) {
+  const bool separated = out.status == DataStatus::kSeparated;
+  if (!prior || (!separated && out.status != DataStatus::kTouching)) return;
+  HoldUnder(table, *prior, out);
   if (separated) {
+    core::Interval& interval = out.interval95_rad;
     interval.low =
         std::clamp(*bracket.low_rad, out.angle_rad.front(), interval.low);
     interval.high =
@@ -684,8 +706,9 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   }
   out.max_log_likelihood = table.Max();
   FillMarginal(table, options.scatter, out.status, out);
-  WidenUnlessScatterIsSeen(table, FindBracket(observations),
-                           options.cautious_scatter, out);
+  HoldUnderSharpPrior(table, options.sharp_scatter, out);
+  HoldUnlessScatterIsSeen(table, FindBracket(observations),
+                          options.cautious_scatter, out);
   FillGrid(table, options.scatter, out.grid);
   FillMoments(out);
   FillScatter(out);

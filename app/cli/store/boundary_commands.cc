@@ -84,11 +84,11 @@ void PrintGroup(const report::Group& group) {
              DegreesText(p.interval95_rad.high),
              DegreesText(p.interval90_rad.low),
              DegreesText(p.interval90_rad.high));
-  // The interval above covers two priors on the scatter; how far it reaches
-  // under the first alone shows what the second adds.
-  if (p.cautious_prior) {
+  // The interval above may cover several priors on the scatter; how far it
+  // reaches under the first alone shows what the others add.
+  if (p.cautious_prior || p.sharp_prior) {
     fmt::print(
-        "              {} to {} deg under the first of its two priors on the "
+        "              {} to {} deg under the first of its priors on the "
         "scatter\n",
         DegreesText(analysis::Quantile(p, 0.025)),
         DegreesText(analysis::Quantile(p, 0.975)));
