@@ -8,7 +8,8 @@
 //           95 % interval of the posterior alone)
 // coverage  of the boundary's 95 % interval after 20, 40 and 100 trials: of all
 //           campaigns, of those whose outcomes overlap, and of the equal tails
-//           under the first prior alone
+//           under the first prior alone; of the likelihood's profile, where
+//           outcomes overlap
 //
 // Every campaign: boundary U(2, 40) deg, margin 1 deg, ejector's sd 0.5 deg,
 // own u 0.3 deg. CAMPAIGNS (400) is for each cell without common error; cells
@@ -30,6 +31,7 @@
 #include "touchdown/analysis/statistics/boundary_fit.h"
 #include "touchdown/analysis/statistics/classic_designs.h"
 #include "touchdown/analysis/statistics/evidence.h"
+#include "touchdown/analysis/statistics/likelihood_profile.h"
 #include "touchdown/analysis/statistics/next_angle.h"
 #include "touchdown/analysis/statistics/set_angles.h"
 #include "touchdown/analysis/statistics/verdict.h"
@@ -335,7 +337,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
   fmt::print(
       "design,common_deg,scatter_deg,trials,campaigns,coverage,low99,high99,"
       "overlapping,coverage_overlapping,low99_overlapping,median_width_deg,"
-      "coverage_one_prior\n");
+      "coverage_one_prior,coverage_overlapping_profile\n");
   for (const char* design : kDesigns) {
     // The angles of one-sided campaigns follow the theory, which is no matter
     // of the interval.
@@ -359,6 +361,7 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
           int overlapping = 0;
           int hits_overlapping = 0;
           int hits_one_prior = 0;
+          int hits_overlapping_profile = 0;
           std::vector<int> width_millideg;
         };
         At at[std::size(kCoverageAt)];
@@ -399,6 +402,11 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
             at[k].overlapping += overlap ? 1 : 0;
             at[k].hits_overlapping += hit && overlap ? 1 : 0;
             at[k].hits_one_prior += hit_one_prior ? 1 : 0;
+            if (overlap) {
+              const auto profile = ProfileOfPosterior(posterior).interval95_rad;
+              at[k].hits_overlapping_profile +=
+                  profile.low <= truth && truth <= profile.high ? 1 : 0;
+            }
             at[k].width_millideg.push_back(static_cast<int>(
                 std::lround(1e3 * (interval.high - interval.low) / kDegree)));
           }
@@ -414,11 +422,16 @@ void Coverage(int campaigns, std::uint64_t seed, const std::string& only,
                         Band99(a.hits_overlapping, a.overlapping).low)
                   : "-,-";
           fmt::print(
-              "{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.4f}\n",
+              "{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.4f},{}\n",
               design, common, scatter, kCoverageAt[k], n,
               static_cast<double>(a.hits) / n, band.low, band.high,
               a.overlapping, overlapping, Median(a.width_millideg) / 1e3,
-              static_cast<double>(a.hits_one_prior) / n);
+              static_cast<double>(a.hits_one_prior) / n,
+              a.overlapping > 0
+                  ? fmt::format("{:.4f}", static_cast<double>(
+                                              a.hits_overlapping_profile) /
+                                              a.overlapping)
+                  : "-");
         }
         std::fflush(stdout);
       }
