@@ -149,6 +149,11 @@ TEST_F(BatchCommand, MistakesAreOneLineAndLeaveNoStore) {
   ExpectMistake({"batch", Films(), "--db", Db("new.db"), "--campaign-from",
                  Db(), "--campaign", "x"},
                 4, "there is no campaign 'x'");
+  // Nor does a condition that the other store's register does not have leave a
+  // store with the campaign alone.
+  ExpectMistake({"batch", Films(), "--db", Db("new.db"), "--campaign-from",
+                 Db(), "--campaign", "asphalt", "--condition", "rig=none"},
+                2, "rig");
   EXPECT_FALSE(std::filesystem::exists(Db("new.db")));
 }
 

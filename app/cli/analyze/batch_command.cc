@@ -123,6 +123,9 @@ db::Store OpenStore(const BatchFlags& flags,
   const auto from = db::Store::Open(flags.campaign_from, db::OpenMode::kRead);
   const core::Campaign campaign =
       pipeline::RequireCampaign(from, flags.campaign);
+  // A new store gets its register from there: a condition that names none of
+  // its entries is refused before the store is made.
+  if (conditions && !fs::exists(flags.db)) db::Resolved(from, *conditions);
   auto store = db::Store::Open(flags.db, db::OpenMode::kCreate);
   // A campaign that --db has already is left alone: if its conventions
   // differed, Restore() would add it a second time under another name.
