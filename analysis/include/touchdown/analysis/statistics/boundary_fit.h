@@ -63,10 +63,10 @@ struct BoundaryFitOptions {
   // 95 % intervals hold the equal tails under this prior, too, whatever the
   // outcomes. Trials at one angle tell how many scatters it lies from the
   // boundary, not the scatter, and `scatter` has little room for small ones:
-  // alone it covers 0.60 to 0.90 of boundaries 1 deg from twenty to a hundred
-  // trials, at scatters up to 1 deg; with this median, near the least that the
-  // grid has, 0.92 or more. Larger covers fewer of them; other designs hardly
-  // change (STATISTICS.md). Absent: without it.
+  // alone it covers 0.86 to 0.98 of the campaigns of `bench verdicts` at one
+  // angle, up to 3 deg from the boundary; with this median, near the least that
+  // the grid has, 0.95 or more. Larger covers fewer of them; other designs
+  // hardly change (STATISTICS.md). Absent: without it.
   std::optional<ScatterPrior> sharp_scatter =
       ScatterPrior{0.1 * core::kDegree, 0.7};
   // The same posterior under other priors: how much of it is prior.
