@@ -36,12 +36,16 @@ void Cancellation::Enter(const char* stage) const {
 }
 
 void Cancellation::Check(std::int64_t frame) const {
+  if (state_) Check(frame, Clock::now());
+}
+
+void Cancellation::Check(std::int64_t frame, Clock::time_point now) const {
   if (!state_) return;
   if (frame >= 0) state_->frame.store(frame, std::memory_order_relaxed);
   if (state_->interrupted != nullptr && state_->interrupted->load()) {
     throw Cancelled("interrupted");
   }
-  if (Clock::now() >= state_->deadline) Throw(*state_);
+  if (now >= state_->deadline) Throw(*state_);
 }
 
 void Cancellation::Throw(const State& state) {

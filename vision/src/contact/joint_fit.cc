@@ -178,7 +178,12 @@ void Solver::Start() {
 void Solver::Add(const Predicted& predicted, double measured, double u) {
   const double w = 1.0 / (u * u);
   const double r = measured - predicted.value;
-  fit_.information.noalias() += w * predicted.d * predicted.d.transpose();
+  const JointVector weighted = w * predicted.d;
+  for (Eigen::Index k = 0; k < predicted.d.size(); ++k) {
+    // A number depends on a few parameters only.
+    if (predicted.d[k] == 0.0) continue;
+    fit_.information.col(k) += predicted.d[k] * weighted;
+  }
   gradient_.noalias() += (w * r) * predicted.d;
   fit_.chi2 += w * r * r;
 }

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 
+#include "numbers/lanes.h"
 #include "numbers/moments.h"
 #include "touchdown/core/units.h"
 
@@ -81,8 +82,11 @@ struct MotionFit {
 
 // The coordinates of a frame: of the path by time, in frames; the gap by place.
 enum Coordinate : int { kAlong, kHeight, kFaceAngle, kGap, kCoordinates };
-using Each = double __attribute__((vector_size(kCoordinates * sizeof(double))));
-struct WeightedValues {
+constexpr std::size_t kBytesOfEach = kCoordinates * sizeof(double);
+using Each = double __attribute__((vector_size(kBytesOfEach)));
+// AddUntil may take it for aligned as avx2 wants it, of which other functions
+// do not know: say so wherever one is kept.
+struct alignas(kBytesOfEach) WeightedValues {
   Each at, value, weight;
 };
 
@@ -120,16 +124,17 @@ class Segmenter {
   const SegmentationOptions& options_;
   const std::vector<PlaneSample>& samples_;
   bool turns_;
-  std::size_t least_flight_;  // frames
-  int per_frame_;             // numbers measured in a frame
-  Each falls_;                // half of gravity, px per frame^2
+  std::size_t least_flight_;          // frames
+  int per_frame_;                     // numbers measured in a frame
+  alignas(kBytesOfEach) Each falls_;  // half of gravity, px per frame^2
   // Schwarz's criterion: (ln N) / 2 for each parameter, ln n for each cut (N
   // numbers measured, n frames), in units of ln odds.
   double per_parameter_;
   double per_cut_;
   double level_precision_;  // of a supported stretch's level and slope
   double slope_precision_;
-  std::vector<bool> allowed_;  // cuts before these samples
+  std::vector<bool> allowed_;      // cuts before these samples
+  std::vector<std::size_t> cuts_;  // the same, in order
   // best_[b][s]: the cheapest way to explain the samples before boundary b that
   // ends in state s.
   std::vector<std::array<PathStep, kStates>> best_;  // by boundary
@@ -141,7 +146,7 @@ struct Segmenter::Fits {
   std::size_t begin = 0;
   std::size_t frames = 0;
   WeightedValues first;  // but the gap, which is not relative to it
-  MomentsOf<Each> sums;
+  alignas(kBytesOfEach) MomentsOf<Each> sums;
   double lowest_px = kInfinity;
   double highest_px = -kInfinity;
   // Of the frames so far, once they were fitted.
@@ -153,7 +158,8 @@ struct Segmenter::Fits {
     first.at[kGap] = first.value[kGap] = 0.0;
   }
   std::size_t end() const { return begin + frames; }
-  void Add(const Segmenter& of);
+  // Adds the frames before `end` that are still missing.
+  void AddUntil(std::size_t end, const Segmenter& of);
   void Fit();
   double ComputeRss(StretchKind kind, const Segmenter& of) const;
   MotionFit As(StretchKind kind, int parameters, const Segmenter& of) const {
@@ -163,12 +169,19 @@ struct Segmenter::Fits {
 
 // Adds half of gravity times t^2 to each height, so that a flight under known
 // gravity becomes a straight line: its residuals are those of degree 1.
-void Segmenter::Fits::Add(const Segmenter& of) {
-  const WeightedValues& s = of.seen_[begin + frames++];
-  const Each at = s.at - first.at;
-  sums.Add(at, s.value - first.value + of.falls_ * at * at, s.weight);
-  lowest_px = std::min(lowest_px, s.value[kGap]);
-  highest_px = std::max(highest_px, s.value[kGap]);
+// A long clip adds a thousand frames to each of a hundred stretches: most of
+// what a segmentation costs.
+TOUCHDOWN_WIDEST
+void Segmenter::Fits::AddUntil(std::size_t end, const Segmenter& of) {
+  alignas(kBytesOfEach) MomentsOf<Each> total = sums;  // in registers
+  for (; begin + frames < end; ++frames) {
+    const WeightedValues& s = of.seen_[begin + frames];
+    const Each at = s.at - first.at;
+    total.Add(at, s.value - first.value + of.falls_ * at * at, s.weight);
+    lowest_px = std::min(lowest_px, s.value[kGap]);
+    highest_px = std::max(highest_px, s.value[kGap]);
+  }
+  sums = total;
 }
 
 void Segmenter::Fits::Fit() {
@@ -413,9 +426,10 @@ void Segmenter::GrowStretches(std::size_t begin) {
   const bool early = options_.touchdown && begin < *options_.touchdown;
   const std::size_t limit = early ? *options_.touchdown : samples_.size();
   Fits fits(*this, begin);
-  for (std::size_t end = begin + 1; end <= limit; ++end) {
-    fits.Add(*this);
-    if (!allowed_[end]) continue;
+  for (auto cut = std::upper_bound(cuts_.begin(), cuts_.end(), begin);
+       cut != cuts_.end() && *cut <= limit; ++cut) {
+    const std::size_t end = *cut;
+    fits.AddUntil(end, *this);
     fits.Fit();
     OfferFlight(fits);
     OfferSupport(fits);
@@ -439,7 +453,7 @@ void Segmenter::GrowStretches(std::size_t begin) {
 double Segmenter::ComputeCost(const Stretch& stretch,
                               bool touches_at_end) const {
   Fits fits(*this, stretch.begin);
-  while (fits.frames < stretch.size()) fits.Add(*this);
+  fits.AddUntil(stretch.end, *this);
   fits.Fit();
   double cost = 0.5 * fits.ComputeRss(stretch.kind, *this);
   if (stretch.kind != StretchKind::kFlight) return cost;
@@ -526,8 +540,12 @@ std::vector<Stretch> Segmenter::BestPath() {
   const std::size_t n = samples_.size();
   best_.assign(n + 1, {});
   best_[0][kAtStart].cost = 0.0;
-  for (std::size_t begin = 0; begin < n; ++begin) {
-    if (allowed_[begin]) GrowStretches(begin);
+  cuts_.clear();
+  for (std::size_t i = 0; i <= n; ++i) {
+    if (allowed_[i]) cuts_.push_back(i);
+  }
+  for (const std::size_t begin : cuts_) {
+    if (begin < n) GrowStretches(begin);
   }
   State state = kTouched;
   for (const State other : {kBeforeFlights, kInAir, kAfterFlights}) {

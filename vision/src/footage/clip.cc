@@ -65,8 +65,8 @@ core::Frame Clip::Read(std::int64_t index, const core::PixelRect& window) {
         "window is {},{},{},{}, must lie within the {}x{} picture", window.x,
         window.y, window.width, window.height, clip.width_px, clip.height_px));
   }
-  cancellation_.Check(index);
   const auto start = std::chrono::steady_clock::now();
+  cancellation_.Check(index, start);
   core::Frame frame = ReadWindow(index, window);
   frame.width_px = window.width;
   frame.height_px = window.height;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "numbers/lanes.h"
+
 namespace touchdown::vision {
 
 // Weighted sums of one coordinate over some frames, with the time in frames and
@@ -13,7 +15,7 @@ struct MomentsOf {
   T w = {}, t = {}, tt = {}, ttt = {}, tttt = {};
   T y = {}, ty = {}, tty = {}, yy = {};
 
-  void Add(const T& time, const T& value, const T& weight) {
+  TOUCHDOWN_INLINE void Add(const T& time, const T& value, const T& weight) {
     const T wt = weight * time;
     const T wtt = wt * time;
     const T wy = weight * value;
