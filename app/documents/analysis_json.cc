@@ -192,7 +192,9 @@ Json ClipField(Writer& writer, const Analysis& analysis) {
 // Writes what was thrown: sizes in mm where they are known, and as seen in the
 // picture, whole sides in px where the track has half ones.
 Json BodyField(Writer& writer, const Analysis& analysis) {
-  if (!analysis.body) return writer.Missing("body", analysis.no_body_reason);
+  if (!analysis.body) {
+    return writer.Missing("body", analysis.body.error().reason);
+  }
   const core::Body& body = *analysis.body;
   Json json;
   json["kind"] = Name(body.kind);
@@ -256,10 +258,13 @@ calib::GroundLine InImage(const Analysis& analysis,
 // Where and how fast the body is over the whole track, in image coordinates: a
 // straight line through the centres.
 Json TrackField(Writer& writer, const Analysis& analysis) {
-  if (!analysis.track || analysis.track->poses.size() < 2) {
-    return writer.Missing("track", analysis.no_body_reason);
+  if (!analysis.track) {
+    return writer.Missing("track", analysis.track.error().reason);
   }
   const auto& poses = analysis.track->poses;
+  if (poses.size() < 2) {
+    return writer.Missing("track", "only one frame shows the body");
+  }
   Json json;
   json["frames"] = poses.size();
   json["first_frame"] = poses.front().frame;
@@ -341,7 +346,7 @@ std::string ToJson(const Analysis& analysis) {
     json["scale"] = {{"px_per_m", EstimateJson(analysis.scale->px_per_m)},
                      {"source", calib::Name(analysis.scale->source)}};
   } else {
-    json["scale"] = writer.Missing("scale", analysis.no_scale_reason);
+    json["scale"] = writer.Missing("scale", analysis.scale.error().reason);
   }
   json["calibration"] = CalibrationField(writer, analysis);
   if (analysis.ground) {
@@ -361,7 +366,7 @@ std::string ToJson(const Analysis& analysis) {
                                     ideal.p2.y_px};
     }
   } else {
-    json["ground"] = writer.Missing("ground", analysis.no_ground_reason);
+    json["ground"] = writer.Missing("ground", analysis.ground.error().reason);
   }
   json["body"] = BodyField(writer, analysis);
   json["track"] = TrackField(writer, analysis);

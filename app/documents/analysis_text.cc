@@ -118,13 +118,13 @@ std::string ToText(const Analysis& a) {
     }
     Line(out, "body", text);
   } else {
-    Line(out, "body", "none: " + a.no_body_reason);
+    Line(out, "body", "none: " + a.body.error().reason);
   }
   Line(out, "scale",
        a.scale ? fmt::format("{} ({})",
                              MeasuredText(a.scale->px_per_m, 1.0, "px/m"),
                              calib::Name(a.scale->source))
-               : "none: " + a.no_scale_reason);
+               : "none: " + a.scale.error().reason);
   if (a.ground) {
     Line(out, "ground",
          fmt::format(
@@ -133,7 +133,7 @@ std::string ToText(const Analysis& a) {
              a.ground->p2.y_px, a.ground->u_angle_rad * kDeg,
              calib::Name(a.ground->source)));
   } else {
-    Line(out, "ground", "none: " + a.no_ground_reason);
+    Line(out, "ground", "none: " + a.ground.error().reason);
   }
   // A body that is down from the first frame has no instant of touchdown.
   if (!contact.found) {

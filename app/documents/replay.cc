@@ -321,9 +321,13 @@ Analysis RestoreAnalysis(const core::Trial& trial, const Json& document) {
                            Named(scale.at("source").get<std::string>(),
                                  {kUser, kCalibration, kBodySize})};
   } else {
-    a.no_scale_reason = document.at("absent").at("scale");
+    a.scale = core::AbsentBecause(document.at("absent").at("scale"));
   }
-  if (replay.contains("ground")) a.ground = ReadGroundLine(replay["ground"]);
+  if (replay.contains("ground")) {
+    a.ground = ReadGroundLine(replay["ground"]);
+  } else {
+    a.ground = core::AbsentBecause(document.at("absent").at("ground"));
+  }
   a.body = trial.body;
   a.angle_kind = trial.angle_kind;
   a.track = ReadTrack(replay.at("track"), trial.body.kind);

@@ -111,14 +111,6 @@ class Analyzer {
 void Analyzer::TakeSize(const vision::Track& track) {
   const vision::BodyImage body = Seen(track).body;
   result_.scale = FindScale(options_, body);
-  result_.no_scale_reason.clear();
-  if (!result_.scale) {
-    result_.no_scale_reason =
-        body.whole_px > 0.0
-            ? "the body shows in parts; give --scale-px-per-m"
-            : "give --calibration, --scale-px-per-m, --diameter-mm or "
-              "--sides-mm";
-  }
   result_.body = DetermineBody(options_, body, result_.scale);
   contact_options_ = MakeContactOptions(options_, camera_, result_.scale);
 }
@@ -251,9 +243,9 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
   }
   TakeSize(best ? best->track : track);
   if (!best) {
-    result_.no_ground_reason =
+    result_.ground = core::AbsentBecause(
         "no straight edge was found that the body stays above, and it shows no "
-        "rebound; give --ground X1,Y1,X2,Y2";
+        "rebound; give --ground X1,Y1,X2,Y2");
     result_.contacts.first.contact.reason = "the ground is not known";
     result_.contacts.first.state.reason = "the ground is not known";
     result_.plane = std::nullopt;
@@ -264,8 +256,6 @@ void Analyzer::FindGroundAndContacts(vision::Track track) {
     result_.warnings.push_back(
         "ground: " + best->contacts.ground_refuted +
         (options_.ground ? "; check --ground" : "; calibrate it again"));
-  } else if (best_merit == 0) {
-    result_.no_ground_reason = best->contacts.ground_refuted;
   }
   if (best->ground.source == calib::GroundSource::kDetected &&
       IsAtTheEnd(best->contacts.first.contact, seen)) {
@@ -407,9 +397,10 @@ Analysis Analyzer::Run() {
   // From here on the time counts as that of contacts.
   const auto lap = Clock::now();
   if (!tracked) {
-    result_.no_body_reason = tracked.error().reason;
-    result_.no_ground_reason = "no body was found";
-    result_.no_scale_reason = "no body was found";
+    result_.body = tl::unexpected(tracked.error());
+    result_.track = tl::unexpected(tracked.error());
+    result_.ground = core::AbsentBecause("no body was found");
+    result_.scale = core::AbsentBecause("no body was found");
     result_.contacts.first.contact.reason = tracked.error().reason;
     result_.contacts.first.state.reason = tracked.error().reason;
   } else {
@@ -458,10 +449,12 @@ Analysis Analyzer::Run() {
   return result_;
 }
 
-// Whether the analysis found a single moving body, so that no other channel of
-// a colour recording needs to be tried.
-bool OneBody(const Analysis& analysis) {
-  return analysis.body && !analysis.track->several_bodies;
+// The share of all that changes in the clip that a single body explains: 1 is
+// all. A body whose share was not measured has 1.
+double ShareExplained(const Analysis& analysis) {
+  if (!analysis.body || analysis.track->several_bodies) return 0.0;
+  if (!analysis.explained) return 1.0;
+  return analysis.explained->near * (1.0 - analysis.explained->elsewhere);
 }
 
 // One clip of one channel: options are checked before the first frame is
@@ -598,22 +591,27 @@ Analysis Analyze(const std::filesystem::path& path,
   };
   try {
     Analysis analysis = AnalyzeOpenClip(std::move(clip), options, until);
-    if (analysis.clip.has_colour && !OneBody(analysis)) {
+    if (analysis.clip.has_colour) {
       // A shadow is dark in luma and has no colour: in a colour difference it
-      // is not there. The first channel with one body is taken.
+      // is not there; a ball of one colour may be all that is there. The first
+      // channel that shows one body and little else is taken, or the one that
+      // does so best.
+      constexpr double kStandsOut = 0.5;  // more than all else together
       for (const vision::Channel channel : {vision::Channel::kRedDifference,
                                             vision::Channel::kBlueDifference}) {
-        clip_options.channel = channel;
+        if (ShareExplained(analysis) >= kStandsOut) break;
+        vision::ClipOptions in_channel = clip_options;
+        in_channel.channel = channel;
         Analysis other =
-            AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
-        if (!OneBody(other)) continue;
+            AnalyzeOpenClip(OpenRecording(path, in_channel), options, until);
+        if (!(ShareExplained(other) > ShareExplained(analysis))) continue;
+        clip_options = in_channel;
         other.channel = channel;
         other.scene_model.used.push_back(std::string(vision::Name(channel)));
         other.warnings.push_back(
             fmt::format("in luma no single body stands out; the {} was used",
                         vision::Name(channel)));
         analysis = std::move(other);
-        break;
       }
     }
     if (auto light = AnalyzeLight(path, clip_options, analysis, until)) {

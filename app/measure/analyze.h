@@ -95,23 +95,24 @@ struct SizeConflict {
   double relative = 0.0;  // of the stated size
 };
 
+// The reason of all that an Analysis does not hold yet.
+inline constexpr const char* kNotAnalysed = "the clip was not analysed";
+
 struct Analysis {
   vision::ClipInfo clip;
   vision::Channel channel = vision::Channel::kLuma;  // what was looked at
   std::string clip_id;
   bool simulated = false;  // a truth file lies beside the clip
-  std::optional<calib::Scale> scale;
-  std::string no_scale_reason;
+  core::Expected<calib::Scale> scale = core::AbsentBecause(kNotAnalysed);
   // In the ideal picture where there is a lens, as `plane` is.
-  std::optional<calib::GroundLine> ground;
-  std::string no_ground_reason;
-  std::optional<core::Body> body;  // nothing where none was found
-  std::string no_body_reason;
+  core::Expected<calib::GroundLine> ground = core::AbsentBecause(kNotAnalysed);
+  core::Expected<core::Body> body = core::AbsentBecause(kNotAnalysed);
   core::AngleKind angle_kind = core::AngleKind::kApproach;
   vision::ContactResult contacts;
   // As it fits this clip (AdaptToPicture).
   std::optional<calib::Calibration> calibration;
-  std::optional<vision::Track> track;  // in the image as it was recorded
+  // In the image as it was recorded.
+  core::Expected<vision::Track> track = core::AbsentBecause(kNotAnalysed);
   std::optional<vision::PlaneTrack> plane;
   // How much of what changes in the clip the track explains.
   core::Expected<vision::ExplainedChange> explained =

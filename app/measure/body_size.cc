@@ -117,8 +117,8 @@ core::Estimate Divide(const core::Estimate& a, const core::Estimate& b) {
           std::nullopt};
 }
 
-std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
-                                      const vision::BodyImage& image) {
+core::Expected<calib::Scale> FindScale(const AnalyzeOptions& options,
+                                       const vision::BodyImage& image) {
   if (options.scale_px_per_m) {
     return calib::Scale{*options.scale_px_per_m, calib::ScaleSource::kUser};
   }
@@ -127,7 +127,10 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
                         calib::ScaleSource::kCalibration};
   }
   // The size of a part is not that of the body.
-  if (image.whole_px > 0.0) return std::nullopt;
+  if (image.whole_px > 0.0) {
+    return core::AbsentBecause(
+        "the body shows in parts; give --scale-px-per-m");
+  }
   if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
     return calib::Scale{
         Divide(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
@@ -141,7 +144,8 @@ std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
                                a.value >= b.value ? a : b),
                         calib::ScaleSource::kBodySize};
   }
-  return std::nullopt;
+  return core::AbsentBecause(
+      "give --calibration, --scale-px-per-m, --diameter-mm or --sides-mm");
 }
 
 std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
@@ -155,7 +159,7 @@ std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
   // that the answer cannot come of that size.
   vision::BodyImage unseen;
   unseen.whole_px = 1.0;
-  const std::optional<calib::Scale> scale = FindScale(options, unseen);
+  const auto scale = FindScale(options, unseen);
   if (!scale) return std::nullopt;
   const core::Estimate& s = scale->px_per_m;
   const auto in_px = [&s](const core::Estimate& length_m) {
@@ -175,7 +179,7 @@ std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options) {
 
 core::Body DetermineBody(const AnalyzeOptions& options,
                          const vision::BodyImage& image,
-                         const std::optional<calib::Scale>& scale) {
+                         const core::Expected<calib::Scale>& scale) {
   // Half a size in px to a whole one in m, with u of pixels and of scale.
   const auto metres = [&](const core::Estimate& half_px) -> core::Measured {
     if (!scale) return core::AbsentBecause("no scale");

@@ -27,10 +27,10 @@ vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options);
 std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
                                              const AnalyzeOptions& options);
 
-// Pixels per metre: given, calibrated, or from the body's known size; nothing
+// Pixels per metre: given, calibrated, or from the body's known size; absent
 // where none of them is there. `image`: of the body in the ideal picture.
-std::optional<calib::Scale> FindScale(const AnalyzeOptions& options,
-                                      const vision::BodyImage& image);
+core::Expected<calib::Scale> FindScale(const AnalyzeOptions& options,
+                                       const vision::BodyImage& image);
 
 // The body's size in the picture, where both its sides and a scale of their own
 // are told; else nothing.
@@ -39,6 +39,6 @@ std::optional<vision::BodySize> StatedSize(const AnalyzeOptions& options);
 // The body's size: as given, or from the image and the scale.
 core::Body DetermineBody(const AnalyzeOptions& options,
                          const vision::BodyImage& image,
-                         const std::optional<calib::Scale>& scale);
+                         const core::Expected<calib::Scale>& scale);
 
 }  // namespace touchdown::pipeline

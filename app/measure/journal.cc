@@ -79,14 +79,13 @@ void JournalAnalysis(const Analysis& analysis) {
   for (const auto& [what, why] : analysis.scene_model.left_out) {
     Journal(fmt::format("left out: {}, because: {}", what, why));
   }
-  // Empty reasons belong to what was found.
-  for (const auto& [what, why] : {std::pair("scale", &analysis.no_scale_reason),
-                                  {"ground", &analysis.no_ground_reason},
-                                  {"body", &analysis.no_body_reason}}) {
-    if (!why->empty()) {
-      Journal(fmt::format("no {}, because: {}", what, *why));
-    }
-  }
+  const auto journal_absence = [](const char* what, const auto& part) {
+    if (part) return;
+    Journal(fmt::format("no {}, because: {}", what, part.error().reason));
+  };
+  journal_absence("scale", analysis.scale);
+  journal_absence("ground", analysis.ground);
+  journal_absence("body", analysis.body);
   const core::StateDecision& state = analysis.contacts.first.state;
   Journal(fmt::format("state: {}, because: {}; {} later contacts",
                       core::Name(state.label), state.reason,

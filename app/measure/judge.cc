@@ -115,10 +115,10 @@ vision::ContactResult FindPlaneContacts(const vision::PlaneTrack& plane,
 
 vision::ContactOptions MakeContactOptions(
     const AnalyzeOptions& options, const ClipCalibration& camera,
-    const std::optional<calib::Scale>& scale) {
+    const core::Expected<calib::Scale>& scale) {
   vision::ContactOptions out;
   out.gravity_mps2 = camera.gravity_mps2;
-  out.scale = scale;
+  if (scale) out.scale = *scale;
   out.bounce_height_m = options.bounce_height_m;
   out.contact_frame = options.contact_frame;
   return out;
@@ -269,8 +269,7 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
     if (!camera.ideal_ground) {
       throw std::invalid_argument("ground is missing, must be two points");
     }
-    analysis.ground = camera.ideal_ground;
-    analysis.no_ground_reason.clear();
+    analysis.ground = *camera.ideal_ground;
   }
   const vision::ContactOptions contact_options =
       MakeContactOptions(analysis.options, camera, analysis.scale);

@@ -40,7 +40,7 @@ vision::ContactResult FindPlaneContacts(const vision::PlaneTrack& plane,
 // How contacts are found with these options and this scale.
 vision::ContactOptions MakeContactOptions(
     const AnalyzeOptions& options, const ClipCalibration& camera,
-    const std::optional<calib::Scale>& scale);
+    const core::Expected<calib::Scale>& scale);
 
 // Adds what the lens's own uncertainty does to the contacts of `analysis`, of
 // which track, plane and contacts are there.

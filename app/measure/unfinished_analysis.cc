@@ -32,9 +32,11 @@ Unfinished UnfinishedAnalysis(const vision::ClipInfo& clip,
   so_far.clip = clip;
   so_far.warnings = clip.warnings;
   so_far.warnings.push_back(reason);
-  so_far.no_body_reason = reason;
-  so_far.no_ground_reason = reason;
-  so_far.no_scale_reason = reason;
+  const auto absent = core::AbsentBecause(reason);
+  so_far.body = absent;
+  so_far.track = absent;
+  so_far.ground = absent;
+  so_far.scale = absent;
   so_far.contacts.first.contact.reason = reason;
   so_far.contacts.first.state.reason = reason;
   // The body was not found, so that its kind is what the options say of it.

@@ -165,8 +165,9 @@ void RequireWithoutTrials(const db::Store& store, const std::string& name) {
 // Tells what the analysis used of the camera and where it came from, so that a
 // person sees whether a mark was taken or something else was found.
 Json SettingsJson(const pipeline::Analysis& analysis) {
-  const auto said = [](const auto& part, const std::string& reason) {
-    return part ? std::string(calib::Name(part->source)) : "none: " + reason;
+  const auto source = [](const auto& part) {
+    return part ? std::string(calib::Name(part->source))
+                : "none: " + part.error().reason;
   };
   return {{"fps", analysis.clip.time_base.fps},
           {"fps_trusted", analysis.clip.time_base.trusted},
@@ -174,8 +175,8 @@ Json SettingsJson(const pipeline::Analysis& analysis) {
            analysis.scale
                ? Json(report::WithU(analysis.scale->px_per_m, 1.0) + " px/m")
                : Json(nullptr)},
-          {"scale_source", said(analysis.scale, analysis.no_scale_reason)},
-          {"ground_source", said(analysis.ground, analysis.no_ground_reason)}};
+          {"scale_source", source(analysis.scale)},
+          {"ground_source", source(analysis.ground)}};
 }
 
 }  // namespace
@@ -236,8 +237,9 @@ Json TestJson(const AnalysisStatus& status) {
   // The numbers and pictures are those of a stored trial, so that a person
   // judges the test by what the trial will show.
   json["numbers"] = NumbersJson(pipeline::ToTrial(analysis));
-  json["view"] = analysis.track ? ViewJson(analysis)
-                                : Json{{"absent", analysis.no_body_reason}};
+  json["view"] = analysis.track
+                     ? ViewJson(analysis)
+                     : Json{{"absent", analysis.track.error().reason}};
   json["warnings"] = analysis.warnings;
   json["settings"] = SettingsJson(analysis);
   json["checks"] = pipeline::ChecksJson(analysis);

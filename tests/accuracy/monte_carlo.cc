@@ -256,7 +256,7 @@ BudgetTrial Of(std::string name, const Throw& thrown, Filming filming,
       core::Estimate{px_per_m, u_scale * px_per_m, std::nullopt};
   a.scale = calib::Scale{*a.options.scale_px_per_m, calib::ScaleSource::kUser};
   a.options.ground = vision::synthetic::FilmGround(filming);
-  a.ground = a.options.ground;
+  a.ground = *a.options.ground;
   return trial;
 }
 

@@ -41,7 +41,7 @@ using ::testing::UnorderedElementsAre;
 
 void ExpectTruth(const Analysis& analysis, const Film& film) {
   const vision::synthetic::Throw& t = film.thrown;
-  ASSERT_TRUE(analysis.body) << analysis.no_body_reason;
+  ASSERT_TRUE(analysis.body) << analysis.body.error().reason;
   EXPECT_EQ(analysis.body->kind, t.kind);
   const core::ContactRecord& first = analysis.contacts.first;
   ASSERT_TRUE(first.contact.found) << first.contact.reason;
@@ -362,10 +362,10 @@ TEST(Analyze, ARingOnARampIsCarriedByIt) {
     return vision::ScenePose{{x, 0.025}, -x / 0.025};
   };
   const Analysis a = AnalyzeClip(vision::OpenScene(scene, 7));
-  ASSERT_TRUE(a.track) << a.no_body_reason;
+  ASSERT_TRUE(a.track) << a.track.error().reason;
   EXPECT_GE(a.track->poses.size(), 25u);
   EXPECT_NEAR(a.track->body.radius_px.value, 25.0, 1.0);
-  ASSERT_TRUE(a.ground) << a.no_ground_reason;
+  ASSERT_TRUE(a.ground) << a.ground.error().reason;
   EXPECT_EQ(a.ground->source, calib::GroundSource::kContactPoints);
   EXPECT_NEAR(calib::ImageAngle(*a.ground), 32.0 * core::kDegree,
               0.5 * core::kDegree);

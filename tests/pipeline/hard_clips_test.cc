@@ -129,7 +129,8 @@ TEST_P(HardClips, FramesThatAreAllEqualShowNothing) {
                        [frame](const SampleOf& of, std::int64_t, std::int32_t x,
                                std::int32_t y) { return of(frame, x, y); });
     EXPECT_FALSE(a.contacts.first.contact.found);
-    EXPECT_FALSE(a.no_body_reason.empty());
+    ASSERT_FALSE(a.body);
+    EXPECT_FALSE(a.body.error().reason.empty());
     ExpectDocument(a);
   }
 }
@@ -214,7 +215,7 @@ TEST_P(HardClips, ContactNextToTheFirstOrLastFrameOfTheBody) {
       ExpectDocument(a);
       const core::Contact& found = a.contacts.first.contact;
       if (!found.found) {
-        EXPECT_FALSE(found.reason.empty() && a.no_body_reason.empty());
+        EXPECT_FALSE(found.reason.empty());
       } else if (found.frame) {
         EXPECT_NEAR(found.frame->value, film.contact_frame,
                     5.0 * found.frame->u);

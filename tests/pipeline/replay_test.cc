@@ -309,7 +309,8 @@ TEST(Replay, KeepsEveryFieldOfTheTrack) {
   track.is_predicted = true;
   track.poses = {
       {7, 0.0035, {12.5, 30.25}, 0.5, 0.25, 0.125, 0.75, 0.0625, 1.25, 1.5}};
-  shot.analysis.ground.reset();  // else it would be judged again
+  shot.analysis.ground =
+      core::AbsentBecause("no line");  // else it would be judged again
   const auto again = Replay(ToTrial(shot.analysis));
   ASSERT_TRUE(again) << again.error().reason;
   EXPECT_EQ(ListFields(*again->track), ListFields(track));
@@ -338,7 +339,7 @@ TEST(Replay, KeepsTheOptionsThatDecideTheAnswer) {
   told.bounce_height_m = 0.125;
   told.stop_early = true;
   told.crop = calib::SensorCorner{16, 32};
-  shot.analysis.ground.reset();
+  shot.analysis.ground = core::AbsentBecause("no line");
   const auto again = Replay(ToTrial(shot.analysis));
   ASSERT_TRUE(again) << again.error().reason;
   const AnalyzeOptions& kept = again->options;

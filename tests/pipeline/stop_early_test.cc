@@ -331,9 +331,9 @@ TEST(StopRule, EachConditionCounts) {
   };
   expect([](Analysis& a) { a.track->several_bodies = true; });
   expect([](Analysis& a) { a.track->known_background = false; });
-  expect([](Analysis& a) { a.track.reset(); });
+  expect([](Analysis& a) { a.track = core::AbsentBecause("lost"); });
   expect([](Analysis& a) { a.plane.reset(); });
-  expect([](Analysis& a) { a.scale.reset(); });
+  expect([](Analysis& a) { a.scale = core::AbsentBecause("lost"); });
   expect([](Analysis& a) { a.warnings.emplace_back("anything"); });
   expect([](Analysis& a) { a.contacts.ground_refuted = "anything"; });
   expect([](Analysis& a) { a.contacts.evidence.front().ground_px = 0.1; });
