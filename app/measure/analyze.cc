@@ -345,8 +345,9 @@ void Analyzer::DescribeScene() {
             : "most of the picture is at full scale: not to be told";
   }
   if (result_.plane) {
-    scene.used.push_back(result_.scale ? "free flight with known gravity"
-                                       : "free flight with gravity fitted");
+    const bool known = result_.scale && !result_.contacts.gravity_refuted;
+    scene.used.push_back(known ? "free flight with known gravity"
+                               : "free flight with gravity fitted");
   }
   DescribeCalibration(result_.calibration, scene);
   scene.left_out["drag"] = "below what the frames show";

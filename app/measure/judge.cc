@@ -130,6 +130,7 @@ namespace {
 vision::ContactOptions KeepPath(const Analysis& analysis,
                                 vision::ContactOptions options) {
   options.path = analysis.contacts.path;
+  options.gravity_refuted = analysis.contacts.gravity_refuted;
   return options;
 }
 

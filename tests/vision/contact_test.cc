@@ -87,6 +87,36 @@ TEST(Contact, TimeIsWidenedByWhatTheImpactChanges) {
   EXPECT_GT(kOff_px / fall_px_per_s, 0.2 * u);  // the above tell them apart
 }
 
+// A scale that is wrong makes gravity wrong: flights that are clear in the
+// picture stay what they are, and lengths say that they may be off. Thirty
+// frames of fall tell of a tenth.
+TEST(Contact, WrongScaleLeavesTheContact) {
+  for (const double off : {-0.3, -0.2, -0.1, 0.1, 0.2, 0.4}) {
+    SCOPED_TRACE(off);
+    for (Throw thrown : {Throw{}, Block(10.0_deg)}) {
+      thrown.before = {1.5, -1.2, 0.0};
+      Rebound(thrown, 0.7);
+      Filming filming;
+      filming.frames = 90;
+      const PlaneTrack track = FilmPlane(thrown, filming);
+      ContactOptions options = WithScale(filming);
+      const ContactResult right = FindContacts(track, options);
+      EXPECT_FALSE(right.gravity_refuted);
+      options.scale->px_per_m.value *= 1.0 + off;
+      const ContactResult result = FindContacts(track, options);
+      EXPECT_TRUE(result.gravity_refuted);
+      ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
+      EXPECT_EQ(result.first.state.label, right.first.state.label);
+      const core::Estimate& time = *result.first.contact.time_s;
+      EXPECT_NEAR(time.value, right.first.contact.time_s->value, 4.0 * time.u);
+      ASSERT_TRUE(result.first.motion.before_normal_mps);
+      const core::Estimate& normal = *result.first.motion.before_normal_mps;
+      EXPECT_NEAR(normal.value, right.first.motion.before_normal_mps->value,
+                  4.0 * normal.u);
+    }
+  }
+}
+
 TEST(Contact, SlideAfterTouchdown) {
   Throw thrown;
   thrown.before = {1.4, -0.25, 0.0};

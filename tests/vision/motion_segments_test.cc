@@ -33,7 +33,7 @@ std::string KindsOf(const std::vector<Stretch>& stretches) {
 }
 
 std::string KindsOf(const PlaneTrack& track, const Filming& filming) {
-  return KindsOf(SegmentMotion(track, OptionsFor(filming)));
+  return KindsOf(SegmentMotion(track, OptionsFor(filming)).stretches);
 }
 
 // Heights as `gap` says, at a sphere's radius above the ground.
@@ -54,7 +54,8 @@ TEST(MotionSegments, StretchesCoverTheTrackWithoutAGap) {
     filming.seed = seed;
     const PlaneTrack track = FilmPlane(Throw(), filming);
     std::size_t at = 0;
-    for (const Stretch& s : SegmentMotion(track, OptionsFor(filming))) {
+    for (const Stretch& s :
+         SegmentMotion(track, OptionsFor(filming)).stretches) {
       EXPECT_EQ(s.begin, at);
       EXPECT_GT(s.end, s.begin);
       at = s.end;
@@ -71,7 +72,8 @@ TEST(MotionSegments, BounceIsTwoFlights) {
       Filming filming;
       filming.seed = seed;
       const PlaneTrack track = FilmPlane(thrown, filming);
-      const auto stretches = SegmentMotion(track, OptionsFor(filming));
+      const auto stretches =
+          SegmentMotion(track, OptionsFor(filming)).stretches;
       ASSERT_GE(stretches.size(), 2u);
       EXPECT_EQ(KindsOf(stretches).substr(0, 2), "ff") << seed;
       // The cut lies at the true instant.
@@ -123,7 +125,7 @@ TEST(MotionSegments, HopOfTwoFramesIsAFlight) {
       FilmPlane(thrown, filming), [&](std::size_t i, const PlaneSample& s) {
         return s.gap_px + (i == 21 ? rise(0.5) : i == 22 ? rise(1.5) : 0.0);
       });
-  const auto stretches = SegmentMotion(track, OptionsFor(filming));
+  const auto stretches = SegmentMotion(track, OptionsFor(filming)).stretches;
   ASSERT_EQ(KindsOf(stretches), "ffs");
   EXPECT_EQ(track.samples[stretches[1].begin].frame, 21);
   EXPECT_EQ(track.samples[stretches[1].end - 1].frame, 22);
@@ -140,7 +142,7 @@ TEST(MotionSegments, SoftContactIsBetweenTwoFlights) {
   thrown.contact_s = 40.3 / 30000.0;
   thrown.duration_s = 13.0 / 30000.0;
   const PlaneTrack track = FilmPlane(thrown, filming);
-  const auto stretches = SegmentMotion(track, OptionsFor(filming));
+  const auto stretches = SegmentMotion(track, OptionsFor(filming)).stretches;
   ASSERT_GE(stretches.size(), 3u);
   EXPECT_EQ(stretches.front().kind, StretchKind::kFlight);
   EXPECT_EQ(stretches.back().kind, StretchKind::kFlight);
@@ -166,7 +168,7 @@ TEST(MotionSegments, HeldBeforeItsFlightIsOther) {
     s.gap_px = held.gap_px + wave;
     s.height_px = held.height_px + wave;
   }
-  const auto stretches = SegmentMotion(track, OptionsFor(filming));
+  const auto stretches = SegmentMotion(track, OptionsFor(filming)).stretches;
   const std::string kinds = KindsOf(stretches);
   const std::size_t flight = kinds.find('f');
   ASSERT_NE(flight, std::string::npos);
@@ -194,7 +196,7 @@ TEST(MotionSegments, BiasBesideTheGroundIsNoImpact) {
 }
 
 TEST(MotionSegments, NothingIsCutOutOfAnEmptyTrack) {
-  EXPECT_TRUE(SegmentMotion(PlaneTrack{}).empty());
+  EXPECT_TRUE(SegmentMotion(PlaneTrack{}).stretches.empty());
 }
 
 }  // namespace

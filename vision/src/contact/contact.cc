@@ -346,6 +346,78 @@ std::vector<Stretch> CutAs(const std::vector<PathStretch>& path,
   return stretches;
 }
 
+// Standard deviations by which what is seen may differ from what was stated
+// before that is doubted. 4: one right clip of 16 000. Larger lets a wrong
+// scale pass; smaller doubts right ones, whose u is rarely better known.
+constexpr double kMostSigmas = 4.0;
+
+// The gravity of the flights as a share of the one that the scale tells, where
+// they differ by more than kMostSigmas; else 1.
+double GravityShare(const PlaneTrack& track,
+                    const std::vector<Stretch>& stretches,
+                    const core::Estimate& told) {
+  double weights = 0.0;
+  double sum = 0.0;
+  for (const Stretch& stretch : stretches) {
+    // Frames: three determine a parabola; so few do not judge it.
+    constexpr std::size_t kMinFrames = 6;
+    if (stretch.kind != StretchKind::kFlight || stretch.size() < kMinFrames) {
+      continue;
+    }
+    const Flight flight = FitFlight(SelectSamples(track, stretch));
+    const double weight = 1.0 / flight.height_cov(2, 2);
+    weights += weight;
+    sum += weight * flight.height[2];
+  }
+  if (!(weights > 0.0)) return 1.0;
+  const core::Estimate seen{sum / weights, 1.0 / std::sqrt(weights)};
+  return core::Disagreement(seen, told) > kMostSigmas ? seen.value / told.value
+                                                      : 1.0;
+}
+
+// How the path is cut, and whether under the gravity that the scale tells.
+struct Cut {
+  std::vector<Stretch> stretches;
+  bool gravity_refuted = false;
+};
+
+// Cuts the path. The gravity that the scale tells may be wrong, as the scale or
+// the frame rate is. Where the flights have another, or frames are left whose
+// motion is none of those known, the path is cut without it, too, and the
+// likelier cut is taken.
+Cut CutPath(const PlaneTrack& track, const SegmentationOptions& options,
+            const std::optional<core::Estimate>& gravity_px_per_s2) {
+  Segmentation best = SegmentMotion(track, options);
+  if (!gravity_px_per_s2) return {std::move(best.stretches), false};
+  const bool unknown = std::any_of(
+      best.stretches.begin(), best.stretches.end(), [](const Stretch& s) {
+        return s.kind == StretchKind::kOther && s.degrees > 0;
+      });
+  if (!unknown) {
+    // About flights of a wrong gravity all residuals are correlated, which
+    // would hide it.
+    PlaneTrack freely_seen = track;
+    WidenToCorrelation(best.stretches, {}, freely_seen);
+    if (GravityShare(freely_seen, best.stretches, *gravity_px_per_s2) == 1.0) {
+      return {std::move(best.stretches), false};
+    }
+  }
+  SegmentationOptions without = options;
+  without.gravity_px_per_s2.reset();
+  Segmentation freely = SegmentMotion(track, without);
+  // A share that no wrong scale explains is that of no flight: what stands or
+  // moves evenly would pass for one. Not studied.
+  constexpr double kMostOff = 2.0;
+  const double share =
+      GravityShare(track, freely.stretches, *gravity_px_per_s2);
+  if (!(share > 1.0 / kMostOff && share < kMostOff) ||
+      freely.stretches.empty() ||
+      freely.cost + 0.5 * kMostSigmas * kMostSigmas > best.cost) {
+    return {std::move(best.stretches), false};
+  }
+  return {std::move(freely.stretches), true};
+}
+
 }  // namespace
 
 ContactResult FindContacts(const PlaneTrack& given,
@@ -371,17 +443,29 @@ ContactResult FindContacts(const PlaneTrack& given,
   track.u_half_px =
       std::hypot(track.u_half_px, kOutline_px, kCommonSize * excess.height_px);
   track.ground.u_offset_px = std::hypot(track.ground.u_offset_px, u_common_px);
-  const FlightOptions flight = MakeFlightOptions(options);
-  const SegmentationOptions segmentation =
-      MakeSegmentationOptions(track, options, flight);
-  const bool cut = options.path.empty();
-  std::vector<Stretch> stretches =
-      cut ? SegmentMotion(track, segmentation) : CutAs(options.path, track);
-  if (WidenToCorrelation(stretches, flight, track) && cut) {
-    stretches = SegmentMotion(track, segmentation);
+  const FlightOptions told = MakeFlightOptions(options);
+  SegmentationOptions segmentation =
+      MakeSegmentationOptions(track, options, told);
+  Cut cut = options.path.empty()
+                ? CutPath(track, segmentation, told.gravity_px_per_s2)
+                : Cut{CutAs(options.path, track), options.gravity_refuted};
+  FlightOptions flight = told;
+  if (cut.gravity_refuted) {
+    flight.gravity_px_per_s2.reset();
+    segmentation.gravity_px_per_s2.reset();
   }
+  if (WidenToCorrelation(cut.stretches, flight, track) &&
+      options.path.empty()) {
+    cut.stretches = SegmentMotion(track, segmentation).stretches;
+  }
+  const std::vector<Stretch>& stretches = cut.stretches;
+  result.gravity_refuted = cut.gravity_refuted;
   RecordContext context{track,     options,     flight,
                         stretches, u_common_px, u_common_face};
+  if (const auto& gravity = told.gravity_px_per_s2) {
+    context.scale_doubt =
+        std::abs(GravityShare(track, stretches, *gravity) - 1.0);
+  }
   for (const Stretch& stretch : stretches) {
     result.path.push_back({stretch.kind, track.samples[stretch.begin].frame,
                            track.samples[stretch.end - 1].frame, stretch.chi2,
@@ -479,7 +563,7 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   // The first contact below which the body does not sink by its own size: what
   // is met later lies elsewhere in perspective, and a body does not pass below
   // its ground.
-  for (Touch& touch : FindTouches(plane, SegmentMotion(plane), {})) {
+  for (Touch& touch : FindTouches(plane, SegmentMotion(plane).stretches, {})) {
     std::string reason;
     if (!MeasureEvent(plane, {}, touch.event, reason)) continue;
     const ContactEvidence at = MakeContactEvidence(plane, touch.event);

@@ -40,12 +40,13 @@ void MakeAbsent(std::initializer_list<Measured*> values, const char* reason) {
 }
 
 // Converts px (or px/s) to metres (or m/s); the scale's relative u is added in
-// quadrature.
+// quadrature, and what the flights say against it.
 Measured InMetres(const RecordContext& context, const Estimate& px) {
   if (!context.options.scale) return AbsentBecause(kNoScale);
   const Estimate& s = context.options.scale->px_per_m;
   const double value = px.value / s.value;
-  return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value)};
+  return Estimate{value, std::hypot(px.u / s.value, value * s.u / s.value,
+                                    value * context.scale_doubt)};
 }
 
 // Velocities along and normal to the true ground, px per frame. The ground is
@@ -278,7 +279,9 @@ void FillMotion(const RecordContext& context, const Event& event,
     add(event.before_frames);
     if (event.after) add(event.after_frames);
     if (sw > 0.0) {
-      const Measured g_si = InMetres(context, {swx / sw, 1.0 / std::sqrt(sw)});
+      RecordContext stated = context;  // what is checked
+      stated.scale_doubt = 0.0;
+      const Measured g_si = InMetres(stated, {swx / sw, 1.0 / std::sqrt(sw)});
       // Relative u, by the document's definition: a frame rate or a scale that
       // is off by less would not show.
       constexpr double kMaxInformativeU = 0.03;

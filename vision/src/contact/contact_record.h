@@ -19,6 +19,9 @@ struct RecordContext {
   // Of neighbouring poses together, in place and attitude.
   double u_common_place_px = 0.0;
   double u_common_face_rad = 0.0;
+  // Of the scale, relative, beyond its own u: what the flights' gravity says
+  // against it.
+  double scale_doubt = 0.0;
 };
 
 core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,

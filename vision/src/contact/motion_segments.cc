@@ -82,6 +82,7 @@ struct MotionFit {
 
 // The coordinates of a frame: of the path by time, in frames; the gap by place.
 enum Coordinate : int { kAlong, kHeight, kFaceAngle, kGap, kCoordinates };
+// What a vector of them takes, and how avx2 wants it aligned.
 constexpr std::size_t kBytesOfEach = kCoordinates * sizeof(double);
 using Each = double __attribute__((vector_size(kBytesOfEach)));
 // AddUntil may take it for aligned as avx2 wants it, of which other functions
@@ -95,13 +96,13 @@ class Segmenter {
   // `floor_px`: added to the poses' own u.
   Segmenter(const PlaneTrack& track, const SegmentationOptions& options,
             double floor_px);
-  std::vector<Stretch> Run();
+  Segmentation Run();
   // Moves each cut by some frames to where its neighbours cost the least.
   void PlaceCuts(std::vector<Stretch>& stretches) const;
 
  private:
   struct Fits;
-  std::vector<Stretch> BestPath();
+  Segmentation BestPath();
   double ComputeCost(const Stretch& stretch, bool touches_at_end) const;
   double ComputeCost(const Fits& fits, const MotionFit& motion) const;
   void GrowStretches(std::size_t begin);
@@ -499,7 +500,7 @@ void Segmenter::PlaceCuts(std::vector<Stretch>& stretches) const {
   }
 }
 
-std::vector<Stretch> Segmenter::Run() {
+Segmentation Segmenter::Run() {
   const std::size_t n = samples_.size();
   if (n < 2) return {};
   // Cuts at every few frames first; then at every frame beside those found,
@@ -514,13 +515,13 @@ std::vector<Stretch> Segmenter::Run() {
   grid[n] = true;
   if (options_.touchdown) grid[*options_.touchdown] = true;
   allowed_ = grid;
-  std::vector<Stretch> stretches = BestPath();
+  Segmentation best = BestPath();
   // A bound on time only: the cuts found last stand if it is reached. Not
   // studied.
   constexpr int kMaxRefinements = 4;
   for (int round = 0; round < kMaxRefinements && step > 1; ++round) {
     const std::vector<bool> before = allowed_;
-    for (const Stretch& stretch : stretches) {
+    for (const Stretch& stretch : best.stretches) {
       const std::size_t reach = 2 * step;
       const std::size_t from =
           stretch.begin > reach ? stretch.begin - reach : 0;
@@ -528,15 +529,15 @@ std::vector<Stretch> Segmenter::Run() {
       for (std::size_t i = from; i <= to; ++i) allowed_[i] = true;
     }
     if (allowed_ == before) break;
-    stretches = BestPath();
+    best = BestPath();
   }
-  return stretches;
+  return best;
 }
 
 // Dynamic programming over boundaries (Jackson et al. 2005): each boundary
 // offers all stretches that begin there, then the path is read backwards from
 // the cheapest state at the end.
-std::vector<Stretch> Segmenter::BestPath() {
+Segmentation Segmenter::BestPath() {
   const std::size_t n = samples_.size();
   best_.assign(n + 1, {});
   best_[0][kAtStart].cost = 0.0;
@@ -551,27 +552,27 @@ std::vector<Stretch> Segmenter::BestPath() {
   for (const State other : {kBeforeFlights, kInAir, kAfterFlights}) {
     if (best_[n][other].cost < best_[n][state].cost) state = other;
   }
-  std::vector<Stretch> stretches;
+  Segmentation best;
+  best.cost = best_[n][state].cost;
   for (std::size_t end = n; end > 0;) {
     const PathStep& step = best_[end][state];
     if (!(step.cost < kInfinity)) return {};
-    stretches.push_back(
+    best.stretches.push_back(
         {{step.begin, end}, step.kind, step.chi2, step.degrees});
     end = step.begin;
     state = step.from;
   }
-  std::reverse(stretches.begin(), stretches.end());
-  return stretches;
+  std::reverse(best.stretches.begin(), best.stretches.end());
+  return best;
 }
 
 }  // namespace
 
-std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
-                                   const SegmentationOptions& options) {
-  std::vector<Stretch> stretches =
-      Segmenter(track, options, options.floor_px).Run();
-  Segmenter(track, options, 0.0).PlaceCuts(stretches);
-  return stretches;
+Segmentation SegmentMotion(const PlaneTrack& track,
+                           const SegmentationOptions& options) {
+  Segmentation best = Segmenter(track, options, options.floor_px).Run();
+  Segmenter(track, options, 0.0).PlaceCuts(best.stretches);
+  return best;
 }
 
 }  // namespace touchdown::vision

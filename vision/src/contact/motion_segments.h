@@ -65,9 +65,14 @@ struct SegmentationOptions {
   double rebound_cost = 8.0;
 };
 
-// Stretches that follow each other without a gap and cover all samples.
-// Throws nothing; an empty track has none.
-std::vector<Stretch> SegmentMotion(const PlaneTrack& track,
-                                   const SegmentationOptions& options = {});
+struct Segmentation {
+  // They follow each other without a gap and cover all samples.
+  std::vector<Stretch> stretches;
+  double cost = 0.0;  // what was minimised, in units of ln odds
+};
+
+// Throws nothing; an empty track has no stretches.
+Segmentation SegmentMotion(const PlaneTrack& track,
+                           const SegmentationOptions& options = {});
 
 }  // namespace touchdown::vision

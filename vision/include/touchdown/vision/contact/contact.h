@@ -49,6 +49,9 @@ struct ContactOptions {
   // change of an answer is a difference of one reading of the clip: where the
   // path was cut anew it could be that of two contacts.
   std::vector<PathStretch> path;
+
+  // As ContactResult::gravity_refuted says; where `path` is given.
+  bool gravity_refuted = false;
 };
 
 // How one contact was measured; for drawings and tests.
@@ -81,6 +84,11 @@ struct ContactResult {
   // The body rebounds well above the line, or passes through it: the line is
   // not the ground. Empty where line and track agree.
   std::string ground_refuted;
+
+  // The gravity that the scale tells explains the path less well, by far, than
+  // one that each flight may choose: scale or frame rate are wrong. Gravity was
+  // fitted freely, and lengths have the u of a scale that is as far off.
+  bool gravity_refuted = false;
   std::vector<std::string> warnings;
 };
 
