@@ -595,12 +595,15 @@ Analysis Analyze(const std::filesystem::path& path,
     if (analysis.clip.has_colour) {
       // A shadow is dark in luma and has no colour: in a colour difference it
       // is not there; a ball of one colour may be all that is there. The first
-      // channel that shows one body and little else is taken, or the one that
-      // does so best.
+      // channel that shows one body with a contact, or little else than one
+      // body, is taken, or the one that does so best.
       constexpr double kStandsOut = 0.5;  // more than all else together
       for (const vision::Channel channel : {vision::Channel::kRedDifference,
                                             vision::Channel::kBlueDifference}) {
-        if (ShareExplained(analysis) >= kStandsOut) break;
+        if (analysis.contacts.first.contact.found ||
+            ShareExplained(analysis) >= kStandsOut) {
+          break;
+        }
         vision::ClipOptions in_channel = clip_options;
         in_channel.channel = channel;
         Analysis other =
