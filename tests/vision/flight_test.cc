@@ -71,6 +71,29 @@ TEST(Flight, ExactParabolaComesBack) {
   }
 }
 
+TEST(Flight, GravityOfSeveralFlightsIsPooled) {
+  PlaneTrack track;
+  Path rebound;
+  rebound.v_n = 250.0;
+  const std::vector<SampleRange> flights = {{0, 20}, {20, 50}};
+  track.samples = Film(Path{}, 20, 2000.0);
+  for (const PlaneSample& s : Film(rebound, 30, 2000.0, 0.01)) {
+    track.samples.push_back(s);
+  }
+  const auto pooled = FitGravity(track, flights);
+  ASSERT_TRUE(pooled);
+  EXPECT_NEAR(pooled->value / rebound.g, 1.0, 1e-8);
+  double precision = 0.0;
+  for (const SampleRange& range : flights) {
+    precision += 1.0 / FitFlight(SelectSamples(track, range)).height_cov(2, 2);
+  }
+  EXPECT_NEAR(pooled->u * pooled->u * precision, 1.0, 1e-12);
+  // Five frames do not judge it, and six do.
+  EXPECT_FALSE(FitGravity(track, std::vector<SampleRange>{{0, 5}, {20, 25}}));
+  EXPECT_TRUE(FitGravity(track, std::vector<SampleRange>{{0, 5}, {20, 26}}));
+  EXPECT_FALSE(FitGravity(track, {}));
+}
+
 TEST(Flight, WithGravityKnownTwoFramesSuffice) {
   const Path path;
   FlightOptions known;

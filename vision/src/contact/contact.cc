@@ -356,23 +356,15 @@ constexpr double kMostSigmas = 4.0;
 double GravityShare(const PlaneTrack& track,
                     const std::vector<Stretch>& stretches,
                     const core::Estimate& told) {
-  double weights = 0.0;
-  double sum = 0.0;
+  std::vector<SampleRange> flights;
   for (const Stretch& stretch : stretches) {
-    // Frames: three determine a parabola; so few do not judge it.
-    constexpr std::size_t kMinFrames = 6;
-    if (stretch.kind != StretchKind::kFlight || stretch.size() < kMinFrames) {
-      continue;
-    }
-    const Flight flight = FitFlight(SelectSamples(track, stretch));
-    const double weight = 1.0 / flight.height_cov(2, 2);
-    weights += weight;
-    sum += weight * flight.height[2];
+    if (stretch.kind == StretchKind::kFlight)
+      flights.push_back({stretch.begin, stretch.end});
   }
-  if (!(weights > 0.0)) return 1.0;
-  const core::Estimate seen{sum / weights, 1.0 / std::sqrt(weights)};
-  return core::Disagreement(seen, told) > kMostSigmas ? seen.value / told.value
-                                                      : 1.0;
+  const auto seen = FitGravity(track, flights);
+  return seen && core::Disagreement(*seen, told) > kMostSigmas
+             ? seen->value / told.value
+             : 1.0;
 }
 
 // How the path is cut, and whether under the gravity that the scale tells.

@@ -265,23 +265,12 @@ void FillMotion(const RecordContext& context, const Event& event,
   if (context.options.scale) {
     m.gravity_check_mps2 =
         AbsentBecause("uninformative: its uncertainty exceeds 3 %");
-    double sw = 0.0;
-    double swx = 0.0;
-    const auto add = [&](const SampleRange& range) {
-      // Frames: three determine a parabola; so few do not judge it.
-      constexpr std::size_t kMinFrames = 6;
-      if (range.size() < kMinFrames) return;
-      const Flight free = FitFlight(SelectSamples(track, range));
-      const double w = 1.0 / free.height_cov(2, 2);
-      sw += w;
-      swx += w * free.height[2];
-    };
-    add(event.before_frames);
-    if (event.after) add(event.after_frames);
-    if (sw > 0.0) {
+    std::vector<SampleRange> flights = {event.before_frames};
+    if (event.after) flights.push_back(event.after_frames);
+    if (const auto gravity_px = FitGravity(track, flights)) {
       RecordContext stated = context;  // what is checked
       stated.scale_doubt = 0.0;
-      const Measured g_si = InMetres(stated, {swx / sw, 1.0 / std::sqrt(sw)});
+      const Measured g_si = InMetres(stated, *gravity_px);
       // Relative u, by the document's definition: a frame rate or a scale that
       // is off by less would not show.
       constexpr double kMaxInformativeU = 0.03;

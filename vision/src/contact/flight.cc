@@ -167,4 +167,20 @@ Flight FitFlight(std::span<const PlaneSample> samples,
   return f;
 }
 
+std::optional<core::Estimate> FitGravity(const PlaneTrack& track,
+                                         std::span<const SampleRange> flights) {
+  constexpr std::size_t kMinFrames = 6;  // with fewer u says nothing
+  double weights = 0.0;
+  double sum = 0.0;
+  for (const SampleRange& range : flights) {
+    if (range.size() < kMinFrames) continue;
+    const Flight flight = FitFlight(SelectSamples(track, range));
+    const double weight = 1.0 / flight.height_cov(2, 2);
+    weights += weight;
+    sum += weight * flight.height[2];
+  }
+  if (!(weights > 0.0)) return std::nullopt;
+  return core::Estimate{sum / weights, 1.0 / std::sqrt(weights)};
+}
+
 }  // namespace touchdown::vision

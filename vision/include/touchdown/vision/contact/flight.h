@@ -66,4 +66,10 @@ struct Flight {
 Flight FitFlight(std::span<const PlaneSample> samples,
                  const FlightOptions& options = {});
 
+// Gravity as the flights themselves have it, px/s^2: fitted freely to each of
+// these ranges and pooled by weight. Nothing where none of them has six frames:
+// three determine a parabola, and so few do not judge it.
+std::optional<core::Estimate> FitGravity(const PlaneTrack& track,
+                                         std::span<const SampleRange> flights);
+
 }  // namespace touchdown::vision
