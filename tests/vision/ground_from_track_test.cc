@@ -1,6 +1,7 @@
 // Ground lines that only the track tells. No pixel is needed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -91,6 +92,38 @@ TEST(GroundFromContacts, AtTheFirstRebound) {
   const Track flat = synthetic::FilmTrack(
       slides, [&](double t) { return slides.At(t); }, Filming{});
   EXPECT_FALSE(GroundFromContacts(flat));
+}
+
+// It falls off an edge later: then three contacts at one level tell the ground.
+// A hand makes two.
+TEST(GroundFromContacts, ThreeAtOneLevel) {
+  constexpr double kRebound_mps = 0.6;
+  constexpr double kBetween_s =
+      2.0 * kRebound_mps / core::kStandardGravity_mps2;
+  constexpr double kFirst_s = 0.05;
+  Filming filming;
+  filming.camera.fps = 500.0;
+  const auto film = [&](int contacts) {
+    const double edge_s = kFirst_s + contacts * kBetween_s;
+    filming.frames = static_cast<int>(filming.camera.fps * (edge_s + 0.1));
+    return synthetic::FilmTrack(
+        Throw{},
+        [&](double t) {
+          const double hop =
+              std::clamp(std::floor((t - kFirst_s) / kBetween_s), -1.0,
+                         static_cast<double>(contacts - 1));
+          const double s = t - kFirst_s - hop * kBetween_s;
+          return ScenePose{
+              {0.3 * t, 0.02 + kRebound_mps * s -
+                            0.5 * core::kStandardGravity_mps2 * s * s},
+              0.0};
+        },
+        filming);
+  };
+  const auto ground = GroundFromContacts(film(4));
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->reference.y_px, 330.0, 4.0 * ground->u_offset_px);
+  EXPECT_FALSE(GroundFromContacts(film(2)));
 }
 
 }  // namespace

@@ -552,21 +552,38 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   // px: nothing is known of the line yet, so that flights may end at any level.
   constexpr double kUnknownLine_px = 1e3;
   plane.ground.u_offset_px = kUnknownLine_px;
-  // The first contact below which the body does not sink by its own size: what
-  // is met later lies elsewhere in perspective, and a body does not pass below
-  // its ground.
-  for (Touch& touch : FindTouches(plane, SegmentMotion(plane).stretches, {})) {
-    std::string reason;
-    if (!MeasureEvent(plane, {}, touch.event, reason)) continue;
-    const ContactEvidence at = MakeContactEvidence(plane, touch.event);
-    if (deepest - at.touching.y_px > plane.size_px) continue;
+  const auto line_at = [&](const ContactEvidence& at) {
     calib::GroundLine ground = level_at(at.touching.y_px);
     ground.reference = at.touching;
     // At most 5 px: with a larger u the line would say nothing of later
     // contacts. Not studied.
-    ground.u_offset_px = std::min(touch.event.ground_px.u, 5.0);
+    ground.u_offset_px = std::min(at.u_ground_px, 5.0);
     ground.source = calib::GroundSource::kContactPoints;
     return ground;
+  };
+  // The first contact below which the body does not sink by its own size: what
+  // is met later lies elsewhere in perspective, and a body does not pass below
+  // its ground.
+  std::vector<ContactEvidence> met;
+  for (Touch& touch : FindTouches(plane, SegmentMotion(plane).stretches, {})) {
+    std::string reason;
+    if (!MeasureEvent(plane, {}, touch.event, reason)) continue;
+    met.push_back(MakeContactEvidence(plane, touch.event));
+    if (deepest - met.back().touching.y_px <= plane.size_px) {
+      return line_at(met.back());
+    }
+  }
+  // Or the first of three and more at one level, though the body rolls down
+  // towards the camera later, or falls off an edge.
+  for (auto first = met.begin(); first != met.end(); ++first) {
+    const auto at_its_level =
+        std::count_if(first, met.end(), [&](const ContactEvidence& later) {
+          return std::abs(later.touching.y_px - first->touching.y_px) <
+                 0.5 * plane.size_px;
+        });
+    constexpr std::ptrdiff_t kEnough =
+        3;  // a hand makes one or two. Not studied
+    if (at_its_level >= kEnough) return line_at(*first);
   }
   return std::nullopt;
 }

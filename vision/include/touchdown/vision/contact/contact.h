@@ -98,7 +98,9 @@ ContactResult FindContacts(const PlaneTrack& track,
 // Where no edge is known to be the ground: the line through the lowest point of
 // the body at its first rebound, level in the image. Its direction is no better
 // known than the camera was levelled: u_level_rad (default 0.5 degrees, a
-// camera levelled with care by eye). Nothing where the track shows no rebound.
+// camera levelled with care by eye). Nothing where the track shows no rebound,
+// or sinks below all of them by the body's size and fewer than three are at one
+// level.
 std::optional<calib::GroundLine> GroundFromContacts(
     const Track& track, double u_level_rad = 0.5 * core::kDegree);
 
