@@ -249,8 +249,8 @@ INSTANTIATE_TEST_SUITE_P(
                       GolfShot{"shallow_2", 68.5, 30.8, 0.837}),
     [](const auto& shot) { return std::string(shot.param.name); });
 
-// Balls filmed in passing: hands, people, a soft net, a rolling shutter. Few are
-// found yet; none may be found wrong.
+// Balls filmed in passing: hands, people, a soft net, a rolling shutter. Few
+// are found yet; none may be found wrong.
 struct EverydayClip {
   const char* name;
   double fps;
