@@ -220,7 +220,7 @@ std::string ToText(const Analysis& a) {
   }
   for (const std::string& warning : a.warnings) Line(out, "warning", warning);
   for (const auto& [what, why] : a.scene_model.left_out) {
-    Line(out, "left out", what + ": " + why);
+    Line(out, "left out", fmt::format("{}: {}", what, why));
   }
   // The rate is that of the whole analysis, frames over wall time.
   Line(out, "time",

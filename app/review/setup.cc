@@ -266,7 +266,7 @@ db::Logged Keep(const std::filesystem::path& store,
   } else {
     open.AddCampaign(campaign);
   }
-  const db::Logged logged = open.LogTrial(trial);
+  db::Logged logged = open.LogTrial(trial);
   pipeline::KeepPicture(store, trial);
   return logged;
 }
