@@ -105,6 +105,8 @@ TEST(Contact, WrongScaleLeavesTheContact) {
       options.scale->px_per_m.value *= 1.0 + off;
       const ContactResult result = FindContacts(track, options);
       EXPECT_TRUE(result.gravity_refuted);
+      EXPECT_THAT(result.warnings,
+                  ::testing::Contains(HasSubstr("check both")));
       ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
       EXPECT_EQ(result.first.state.label, right.first.state.label);
       const core::Estimate& time = *result.first.contact.time_s;

@@ -358,8 +358,8 @@ double GravityShare(const PlaneTrack& track,
                     const core::Estimate& told) {
   std::vector<SampleRange> flights;
   for (const Stretch& stretch : stretches) {
-    if (stretch.kind == StretchKind::kFlight)
-      flights.push_back({stretch.begin, stretch.end});
+    if (stretch.kind != StretchKind::kFlight) continue;
+    flights.push_back({stretch.begin, stretch.end});
   }
   const auto seen = FitGravity(track, flights);
   return seen && core::Disagreement(*seen, told) > kMostSigmas
@@ -455,8 +455,15 @@ ContactResult FindContacts(const PlaneTrack& given,
   RecordContext context{track,     options,     flight,
                         stretches, u_common_px, u_common_face};
   if (const auto& gravity = told.gravity_px_per_s2) {
-    context.scale_doubt =
-        std::abs(GravityShare(track, stretches, *gravity) - 1.0);
+    const double share = GravityShare(track, stretches, *gravity);
+    context.scale_doubt = std::abs(share - 1.0);
+    if (cut.gravity_refuted) {
+      result.warnings.push_back(
+          fmt::format("the flights have {:.2f} of the gravity that the scale "
+                      "and the frame rate tell: gravity was fitted, and "
+                      "lengths are as uncertain; check both",
+                      share));
+    }
   }
   for (const Stretch& stretch : stretches) {
     result.path.push_back({stretch.kind, track.samples[stretch.begin].frame,
@@ -574,15 +581,15 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
     }
   }
   // Or the first of three and more at one level, though the body rolls down
-  // towards the camera later, or falls off an edge.
+  // towards the camera later, or falls off an edge. A hand makes one or two.
+  // Not studied.
+  constexpr std::ptrdiff_t kEnough = 3;
   for (auto first = met.begin(); first != met.end(); ++first) {
     const auto at_its_level =
         std::count_if(first, met.end(), [&](const ContactEvidence& later) {
           return std::abs(later.touching.y_px - first->touching.y_px) <
                  0.5 * plane.size_px;
         });
-    constexpr std::ptrdiff_t kEnough =
-        3;  // a hand makes one or two. Not studied
     if (at_its_level >= kEnough) return line_at(*first);
   }
   return std::nullopt;
