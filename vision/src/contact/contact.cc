@@ -170,6 +170,34 @@ std::string RefuteGround(const PlaneTrack& track,
   return {};
 }
 
+// Standard deviations by which what is seen may differ from what was stated
+// before that is doubted. 4: one right clip of 16 000. Larger lets a wrong
+// scale pass; smaller doubts right ones, whose u is rarely better known.
+constexpr double kMostSigmas = 4.0;
+
+// Why the rebounds say that the line is not the ground: most of them, and three
+// or more, meet the same side of it. Empty where they do not. A hand makes one
+// or two, and so does a flight that was cut a frame off.
+std::string RefuteByRebounds(const std::vector<double>& disagreements) {
+  constexpr std::ptrdiff_t kEnough = 3;  // rebounds
+  const auto count = [&](double sign) {
+    return std::count_if(
+        disagreements.begin(), disagreements.end(),
+        [sign](double sigmas) { return sign * sigmas > kMostSigmas; });
+  };
+  for (const double sign : {1.0, -1.0}) {
+    const std::ptrdiff_t off = count(sign);
+    if (off < kEnough ||
+        2 * off <= static_cast<std::ptrdiff_t>(disagreements.size())) {
+      continue;
+    }
+    return fmt::format(
+        "{} of {} rebounds are more than {:.0f} standard deviations {} it", off,
+        disagreements.size(), kMostSigmas, sign > 0.0 ? "above" : "below");
+  }
+  return {};
+}
+
 core::ContactRecord NoContact(const std::string& reason) {
   core::ContactRecord record;
   record.contact.reason = reason;
@@ -346,11 +374,6 @@ std::vector<Stretch> CutAs(const std::vector<PathStretch>& path,
   return stretches;
 }
 
-// Standard deviations by which what is seen may differ from what was stated
-// before that is doubted. 4: one right clip of 16 000. Larger lets a wrong
-// scale pass; smaller doubts right ones, whose u is rarely better known.
-constexpr double kMostSigmas = 4.0;
-
 // The gravity of the flights as a share of the one that the scale tells, where
 // they differ by more than kMostSigmas; else 1.
 double GravityShare(const PlaneTrack& track,
@@ -489,7 +512,9 @@ ContactResult FindContacts(const PlaneTrack& given,
         track.samples[stretches.front().end - 1].frame));
   }
   std::string reason;
+  std::vector<double> disagreements;  // of rebounds
   const auto add = [&](const Event& event) {
+    if (event.after) disagreements.push_back(event.disagreement);
     core::ContactRecord record = MakeRecord(context, event, result.warnings);
     result.evidence.push_back(MakeContactEvidence(track, event));
     if (first) {
@@ -524,6 +549,9 @@ ContactResult FindContacts(const PlaneTrack& given,
     first = NoContact(result.ground_refuted);
   } else {
     first = NoContact(reason);
+  }
+  if (result.ground_refuted.empty()) {
+    result.ground_refuted = RefuteByRebounds(disagreements);
   }
   result.first = std::move(*first);
   result.restitution = PoolRestitution(result);
