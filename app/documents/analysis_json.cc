@@ -398,6 +398,9 @@ std::string ToJson(const Analysis& analysis) {
   json["scene_model"] = {{"used", analysis.scene_model.used},
                          {"left_out", analysis.scene_model.left_out}};
   if (analysis.stopped_at) json["stopped_at_frame"] = *analysis.stopped_at;
+  if (analysis.camera_moved_px) {
+    json["camera_moved_px"] = EstimateJson(*analysis.camera_moved_px);
+  }
   json["warnings"] = analysis.warnings;
   json["timing_s"] = {{"total", analysis.timing.total_s},
                       {"open", analysis.timing.open_s},

@@ -341,6 +341,9 @@ Analysis RestoreAnalysis(const core::Trial& trial, const Json& document) {
     a.stopped_at =
         WholeNumber(document["stopped_at_frame"], "stopped_at_frame");
   }
+  if (document.contains("camera_moved_px")) {
+    a.camera_moved_px = ReadEstimate(document["camera_moved_px"]);
+  }
   a.explained = ReadExplained(document);
   if (a.explained) {
     a.outlines_corrected =

@@ -67,6 +67,7 @@ class Analyzer {
         clip_(std::move(footage_.clip)),
         camera_(camera) {
     result_.clip = footage_.info;
+    result_.camera_moved_px = footage_.camera_moved_px;
   }
 
   Analysis Run();
@@ -344,6 +345,11 @@ void Analyzer::DescribeScene() {
             ? "the light is steady to 1 %"
             : "most of the picture is at full scale: not to be told";
   }
+  if (result_.camera_moved_px) {
+    scene.used.push_back(
+        fmt::format("motion of the camera of up to {:.2f} px taken out",
+                    result_.camera_moved_px->value));
+  }
   if (result_.plane) {
     const bool known = result_.scale && !result_.contacts.gravity_refuted;
     scene.used.push_back(known ? "free flight with known gravity"
@@ -365,6 +371,13 @@ Analysis Analyzer::Run() {
   result_.options.progress = nullptr;
   result_.options.interrupted = nullptr;
   result_.warnings = result_.clip.warnings;
+  if (result_.camera_moved_px) {
+    result_.warnings.push_back(fmt::format(
+        "the camera moved by up to {:.1f} px: that was taken out, and pixels "
+        "are those of frame {}; what is nearer or farther than most of the "
+        "scene may have moved otherwise; use a tripod",
+        result_.camera_moved_px->value, options_.first_frame));
+  }
   const std::int64_t last =
       options_.last_frame < 0 ? result_.clip.frames : options_.last_frame;
 
@@ -475,8 +488,8 @@ Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
     if (options.stop_early && info.format != kRawFormat) {
       return AnalyzeUntilDecided(std::move(clip), camera, options);
     }
-    until.Enter("the light is measured");
-    Footage footage = InSteadyLight(std::move(clip), options);
+    until.Enter("light and camera are looked at");
+    Footage footage = MakeSteady(std::move(clip), options);
     until.Enter("the clip is decoded");
     footage.clip = vision::KeepFrames(std::move(footage.clip),
                                       MakeKeepOptions(options, info));

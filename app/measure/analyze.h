@@ -124,6 +124,9 @@ struct Analysis {
   std::vector<std::string> warnings;
   // One past the last frame that was looked at, where that is not all.
   std::optional<std::int64_t> stopped_at;
+  // How far the farthest corner of the picture went while it was filmed, where
+  // the camera moved: pixels are those of the first frame (steady_camera.h).
+  std::optional<core::Estimate> camera_moved_px;
   Timing timing;
   AnalyzeOptions options;  // that it was made with
   std::string options_hash;

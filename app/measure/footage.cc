@@ -2,12 +2,13 @@
 
 #include <utility>
 
+#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/background/steady_light.h"
 
 namespace touchdown::pipeline {
 
-Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
-                      const AnalyzeOptions& options) {
+Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
+                   const AnalyzeOptions& options) {
   Footage footage;
   // To measure the light reads frames: it is part of the time of the track.
   footage.begun = std::chrono::steady_clock::now();
@@ -18,10 +19,13 @@ Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
   light_options.threads = options.decoder_threads;
   vision::SteadyLight light = vision::Deflicker(
       std::move(clip), options.first_frame, last, light_options);
-  footage.clip = std::move(light.clip);
   footage.light_told = light.told;
   // Absent where nothing was taken out: the scene model tells the two apart.
   if (light.corrected) footage.light_spread = light.spread;
+  vision::SteadyCamera camera =
+      vision::Stabilise(std::move(light.clip), options.first_frame, last);
+  footage.clip = std::move(camera.clip);
+  footage.camera_moved_px = camera.most_moved_px;
   return footage;
 }
 

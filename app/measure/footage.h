@@ -18,17 +18,19 @@ inline constexpr const char* kRawFormat = "mraw";
 
 struct Footage {
   vision::ClipInfo info;               // of the recording itself
-  std::unique_ptr<vision::Clip> clip;  // under steady light
+  std::unique_ptr<vision::Clip> clip;  // under steady light, of a still camera
   std::optional<double> light_spread;  // relative, where it was taken out
   bool light_told = true;
+  std::optional<core::Estimate> camera_moved_px;  // where it was taken out
   // Backgrounds are made of these; empty: of any.
   std::vector<std::int64_t> still_frames;
   std::chrono::steady_clock::time_point begun;  // from when time counts
 };
 
-// The clip without flicker, of which nothing is kept yet.
-Footage InSteadyLight(std::unique_ptr<vision::Clip> clip,
-                      const AnalyzeOptions& options);
+// The clip without flicker and motion of the camera, of which nothing is kept
+// yet.
+Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
+                   const AnalyzeOptions& options);
 
 // How frames are kept for these options, which fit `clip` (check_options.h).
 vision::FrameStoreOptions MakeKeepOptions(const AnalyzeOptions& options,

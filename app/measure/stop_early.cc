@@ -210,11 +210,12 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
                              const ClipCalibration& camera,
                              const AnalyzeOptions& options,
                              const StopRule& rule, std::size_t most_bytes) {
+  Footage footage = MakeSteady(std::move(clip), options);
   // Those of file and camera are there from the first frame on and do not speak
   // against stopping.
-  const std::size_t known_warnings =
-      clip->info().warnings.size() + camera.warnings.size();
-  Footage footage = InSteadyLight(std::move(clip), options);
+  const std::size_t known_warnings = footage.info.warnings.size() +
+                                     camera.warnings.size() +
+                                     (footage.camera_moved_px ? 1 : 0);
   vision::FrameStoreOptions keep = MakeKeepOptions(options, footage.info);
   keep.most_bytes = most_bytes;
   const auto frames = vision::GrowFrames(std::move(footage.clip), keep);
@@ -225,6 +226,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     part.clip = std::make_unique<Borrowed>(*frames);
     part.light_spread = footage.light_spread;
     part.light_told = footage.light_told;
+    part.camera_moved_px = footage.camera_moved_px;
     part.still_frames = frames->StillFrames();
     part.begun = footage.begun;
     Analysis analysis = AnalyzeFootage(std::move(part), camera, of);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/measure/open_recording.h"
+#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/contact/lens_track.h"
 
 namespace touchdown::pipeline {
@@ -82,6 +83,13 @@ Drawable OpenToDraw(const Analysis& analysis) {
   // A rate that the user gave numbers the frames of the document.
   options.fps = analysis.options.fps;
   Drawable out{OpenRecording(analysis.clip.path, options), *analysis.track};
+  if (analysis.camera_moved_px) {
+    const std::int64_t last = analysis.options.last_frame;
+    out.clip =
+        vision::Stabilise(std::move(out.clip), analysis.options.first_frame,
+                          last < 0 ? analysis.clip.frames : last)
+            .clip;
+  }
   if (analysis.calibration && analysis.calibration->lens) {
     const calib::Lens& lens = analysis.calibration->lens->lens;
     out.clip = UndistortedClip(std::move(out.clip), lens);

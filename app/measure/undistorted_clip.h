@@ -17,7 +17,7 @@ std::unique_ptr<vision::Clip> UndistortedClip(
     std::unique_ptr<vision::Clip> clip, const calib::Lens& lens);
 
 // A recording with its track as lines are drawn into it: undistorted, where a
-// lens was undone.
+// lens was undone, and put back, where the camera moved.
 struct Drawable {
   std::unique_ptr<vision::Clip> clip;
   vision::Track track;

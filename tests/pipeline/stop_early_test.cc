@@ -23,6 +23,7 @@
 #include "tests/pipeline/document.h"
 #include "tests/vision/long_clip.h"
 #include "touchdown/vision/background/background.h"
+#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline {
@@ -122,7 +123,7 @@ Both AnalyzeBoth(const vision::Scene& scene, const Keeping& keeping,
   auto clip = open(both.decoded_whole);
   const vision::ClipInfo info = clip->info();
   const ClipCalibration camera = FitToClip(options, info);
-  Footage footage = InSteadyLight(std::move(clip), options);
+  Footage footage = MakeSteady(std::move(clip), options);
   vision::FrameStoreOptions keep = MakeKeepOptions(options, info);
   keep.most_bytes = keeping.most_bytes;
   footage.clip = vision::KeepFrames(std::move(footage.clip), keep);
@@ -164,13 +165,23 @@ void ExpectStopped(const Both& both, std::int64_t latest,
     keys.insert(frame / keeping.group * keeping.group);
     if (keeping.group == 1) keys.insert(frame + 1);  // to be sure of it
   }
-  // Once, but for keys of groups and the frames that told the light.
+  // Those in which was looked whether the camera moved.
+  std::set<std::int64_t> looks = {0, 1};
+  const int count_of_looks = vision::SteadyCameraOptions{}.looks;
+  for (std::int64_t k = 1; k <= count_of_looks; ++k) {
+    looks.insert(k * (kFrames - 1) / count_of_looks / keeping.group *
+                 keeping.group);
+  }
+  keys.insert(looks.begin(), looks.end());
+  // Once, but for keys of groups and the frames that told light and camera.
   constexpr std::int64_t kLight = 30;
   for (const auto& [frame, count] : both.decoded_early) {
     EXPECT_TRUE(frame < stop || keys.contains(frame)) << frame;
     const bool twice =
         keeping.group > 1 && frame < stop && keys.contains(frame);
-    EXPECT_LE(count, 1 + (twice ? 1 : 0) + (frame < kLight ? 1 : 0)) << frame;
+    EXPECT_LE(count, 1 + (twice ? 1 : 0) + (frame < kLight ? 1 : 0) +
+                         (looks.contains(frame) ? 1 : 0))
+        << frame;
   }
   const auto document = filmed::ExpectDocument(both.early);
   EXPECT_EQ(document["stopped_at_frame"], stop);
