@@ -67,7 +67,8 @@ TEST_F(Journal, SaysAStageOfWhatIsNeverDone) {
   const auto ran = testing::RunProgram(kAnalyze + clip_.string() +
                                        " --verbose --limit-s 0.000001");
   EXPECT_EQ(ran.status, 3);
-  EXPECT_THAT(ran.err, HasSubstr("shot.mraw: light and camera are looked at, from "));
+  EXPECT_THAT(ran.err,
+              HasSubstr("shot.mraw: light and camera are looked at, from "));
 }
 
 TEST_F(Journal, GoesIntoAFileWithInstants) {
