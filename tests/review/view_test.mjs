@@ -39,7 +39,9 @@ test('it plays to the end, stops there, and begins again', async () => {
   await frameShown(page, 129);
   await page.waitForSelector('.playback[data-playing="false"]');
   await page.keyboard.press(' ');
-  await frameShown(page, 3);  // from the first frame on
+  // From the first frame on: on a busy machine single frames are left out.
+  await page.waitForFunction(
+      () => Number(document.querySelector('.picture').dataset.shown) < 64);
   await page.keyboard.press(' ');
   await page.waitForSelector('.playback[data-playing="false"]');
   assert.ok(await frameOf(page) < 129);
