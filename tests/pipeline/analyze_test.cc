@@ -193,19 +193,13 @@ TEST(AnalyzeOptionsRefused, ByName) {
               HasSubstr("region"));
 }
 
-// A hand moves the camera by 6 px: touchdown and angle are those of a still
-// one.
+// Touchdown and angle are those that a still camera sees.
 TEST(Analyze, AMovingCameraIsPutBack) {
   Film film = Default(kSphere);
   film.look.texture_amplitude = 0.2;
-  const auto by_hand = [](std::int64_t frame) {
-    const auto t = static_cast<double>(frame);
-    return filmed::Shake{static_cast<std::int32_t>(std::lround(0.2 * t)),
-                         static_cast<std::int32_t>(
-                             std::lround(-0.1 * t + 3.0 * std::sin(0.2 * t)))};
-  };
-  const Analysis analysis = AnalyzeClip(
-      std::make_unique<filmed::ShakenClip>(film, by_hand), filmed::Known(film));
+  const Analysis analysis =
+      AnalyzeClip(std::make_unique<filmed::ShakenClip>(film, filmed::ByHand),
+                  filmed::Known(film));
   EXPECT_THAT(analysis.scene_model.used,
               ::testing::Contains(HasSubstr("motion of the camera")));
   ExpectTruth(analysis, film);

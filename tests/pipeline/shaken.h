@@ -3,6 +3,7 @@
 // quarters of a pixel needs no interpolation.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -24,6 +25,15 @@ struct Shake {
   std::int32_t y = 0;
 };
 using ShakeOf = std::function<Shake(std::int64_t frame)>;
+
+// A hand: a slow drift, and a tremor over it, by 7 px in all. Frame 0 is where
+// a still camera is.
+inline Shake ByHand(std::int64_t frame) {
+  const auto t = static_cast<double>(frame);
+  return {static_cast<std::int32_t>(std::lround(0.2 * t)),
+          static_cast<std::int32_t>(
+              std::lround(-0.1 * t + 3.0 * std::sin(0.2 * t)))};
+}
 
 class ShakenClip : public vision::Clip {
  public:

@@ -94,36 +94,58 @@ TEST(GroundFromContacts, AtTheFirstRebound) {
   EXPECT_FALSE(GroundFromContacts(flat));
 }
 
-// It falls off an edge later: then three contacts at one level tell the ground.
-// A hand makes two.
-TEST(GroundFromContacts, ThreeAtOneLevel) {
+// A sphere that hops along the ground `contacts` times and then falls past it,
+// until `after_s` from there.
+Track FilmHops(int contacts, double after_s) {
   constexpr double kRebound_mps = 0.6;
   constexpr double kBetween_s =
       2.0 * kRebound_mps / core::kStandardGravity_mps2;
   constexpr double kFirst_s = 0.05;
   Filming filming;
   filming.camera.fps = 500.0;
-  const auto film = [&](int contacts) {
-    const double edge_s = kFirst_s + contacts * kBetween_s;
-    filming.frames = static_cast<int>(filming.camera.fps * (edge_s + 0.1));
-    return synthetic::FilmTrack(
-        Throw{},
-        [&](double t) {
-          const double hop =
-              std::clamp(std::floor((t - kFirst_s) / kBetween_s), -1.0,
-                         static_cast<double>(contacts - 1));
-          const double s = t - kFirst_s - hop * kBetween_s;
-          return ScenePose{
-              {0.3 * t, 0.02 + kRebound_mps * s -
-                            0.5 * core::kStandardGravity_mps2 * s * s},
-              0.0};
-        },
-        filming);
-  };
-  const auto ground = GroundFromContacts(film(4));
+  const double edge_s = kFirst_s + contacts * kBetween_s;
+  filming.frames = static_cast<int>(filming.camera.fps * (edge_s + after_s));
+  return synthetic::FilmTrack(
+      Throw{},
+      [&](double t) {
+        const double hop = std::clamp(std::floor((t - kFirst_s) / kBetween_s),
+                                      -1.0, static_cast<double>(contacts - 1));
+        const double s = t - kFirst_s - hop * kBetween_s;
+        return ScenePose{
+            {0.3 * t, 0.02 + kRebound_mps * s -
+                          0.5 * core::kStandardGravity_mps2 * s * s},
+            0.0};
+      },
+      filming);
+}
+
+// It falls off an edge later: then three contacts at one level tell the ground.
+// A hand makes two.
+TEST(GroundFromContacts, ThreeAtOneLevel) {
+  const auto ground = GroundFromContacts(FilmHops(4, 0.1));
   ASSERT_TRUE(ground);
   EXPECT_NEAR(ground->reference.y_px, 330.0, 4.0 * ground->u_offset_px);
-  EXPECT_FALSE(GroundFromContacts(film(2)));
+  EXPECT_FALSE(GroundFromContacts(FilmHops(2, 0.1)));
+}
+
+// A line 1 px off is near enough for any one contact; three that agree refute
+// it, two do not.
+TEST(GroundRefuted, ByReboundsOffTheLine) {
+  const auto refuted = [](int contacts, double off_px) {
+    const double y_px = 330.0 + off_px;
+    calib::GroundLine line = calib::MakeGroundLine({0.0, y_px}, {640.0, y_px});
+    line.u_offset_px = 0.02;
+    return FindContacts(SeenFromGround(FilmHops(contacts, -0.01), line))
+        .ground_refuted;
+  };
+  EXPECT_EQ(refuted(4, 0.0), "");
+  EXPECT_EQ(refuted(2, 1.0), "");
+  EXPECT_EQ(refuted(4, 1.0),
+            "4 of 4 rebounds are more than 4 standard deviations above the "
+            "ground line");
+  EXPECT_EQ(refuted(4, -1.0),
+            "4 of 4 rebounds are more than 4 standard deviations below the "
+            "ground line");
 }
 
 }  // namespace

@@ -16,26 +16,17 @@ namespace touchdown::vision {
 namespace {
 
 using pipeline::filmed::BuildScene;
+using pipeline::filmed::ByHand;
 using pipeline::filmed::Default;
 using pipeline::filmed::Film;
 using pipeline::filmed::Shake;
 using pipeline::filmed::ShakenClip;
-using pipeline::filmed::ShakeOf;
 
 // A sphere above ground with grains that can be seen.
 Film OverGrains() {
   Film film = Default(core::BodyKind::kSphere);
   film.look.texture_amplitude = 0.2;
   return film;
-}
-
-// A hand: a slow drift, and a tremor over it. Frame 0 is where a still camera
-// is.
-Shake ByHand(std::int64_t frame) {
-  const auto t = static_cast<double>(frame);
-  return {static_cast<std::int32_t>(std::lround(0.2 * t)),
-          static_cast<std::int32_t>(
-              std::lround(-0.1 * t + 3.0 * std::sin(0.2 * t)))};
 }
 
 // The farthest that any corner of the picture goes, px.
@@ -124,15 +115,20 @@ TEST(SteadyCamera, ABodyAlongAnEdgeIsNoCamera) {
   const SteadyCamera camera =
       Stabilise(OpenScene(BuildScene(film), 1), 0, film.frames);
   EXPECT_FALSE(camera.most_moved_px) << camera.most_moved_px->value;
+  // It is the parts at rest that say so.
+  SteadyCameraOptions blind;
+  blind.least_support = blind.least_support_of_third = 0.0;
+  blind.most_moved = 1.0;
+  EXPECT_TRUE(Stabilise(OpenScene(BuildScene(film), 1), 0, film.frames, blind)
+                  .most_moved_px);
 }
 
-TEST(SteadyCamera, ReadersOfTheSameClipShowTheSame) {
+TEST(SteadyCamera, AWindowIsAPartOfTheWhole) {
   const Film film = OverGrains();
   const SteadyCamera camera =
       Stabilise(std::make_unique<ShakenClip>(film, ByHand), 0, film.frames);
   ASSERT_TRUE(camera.most_moved_px);
   EXPECT_EQ(camera.clip->info().bit_depth, 16);
-  // A window is a part of the whole.
   const std::uint32_t whole = camera.clip->Read(60).at(100, 105);
   EXPECT_EQ(camera.clip->Read(60, {90, 100, 20, 10}).at(10, 5), whole);
 }

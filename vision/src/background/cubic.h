@@ -3,10 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
-
-#include "touchdown/core/frame.h"
 
 namespace touchdown::vision {
 
@@ -20,15 +19,16 @@ inline std::array<float, 4> CubicWeights(float t) {
           0.5F * (-3.0F * t3 + 4.0F * t2 + t), 0.5F * (t3 - t2)};
 }
 
-// Of samples of one type; (x, y) counts from sample (0, 0) of the view. Nothing
-// where a sample that it takes lies outside.
-template <class Sample>
-std::optional<float> InterpolateCubic(const core::Frame& frame, double x,
-                                      double y) {
+// Of a picture whose sample (i, j) is level_at(i, j), for places from its
+// sample (0, 0) on. Nothing where a sample that it takes lies outside.
+template <class LevelAt>
+std::optional<float> InterpolateCubic(std::int32_t width, std::int32_t height,
+                                      double x, double y,
+                                      const LevelAt& level_at) {
   const double left = std::floor(x);
   const double top = std::floor(y);
-  if (!(left >= 1.0 && top >= 1.0 && left + 2.0 < frame.width_px &&
-        top + 2.0 < frame.height_px)) {
+  if (!(left >= 1.0 && top >= 1.0 && left + 2.0 < width &&
+        top + 2.0 < height)) {
     return std::nullopt;
   }
   const std::array<float, 4> across =
@@ -38,10 +38,10 @@ std::optional<float> InterpolateCubic(const core::Frame& frame, double x,
   const auto row = static_cast<std::int32_t>(top) - 1;
   float sum = 0.0F;
   for (std::int32_t j = 0; j < 4; ++j) {
-    const Sample* const levels = frame.row<Sample>(row + j) + column;
     float of_row = 0.0F;
-    for (std::size_t i = 0; i < 4; ++i) {
-      of_row += across[i] * static_cast<float>(levels[i]);
+    for (std::int32_t i = 0; i < 4; ++i) {
+      of_row += across[static_cast<std::size_t>(i)] *
+                static_cast<float>(level_at(column + i, row + j));
     }
     sum += down[static_cast<std::size_t>(j)] * of_row;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -38,26 +39,9 @@ class Means {
   }
 
   std::optional<float> Between(double x, double y) const {
-    const double left = std::floor(x);
-    const double top = std::floor(y);
-    if (!(left >= 1.0 && top >= 1.0 && left + 2.0 < width() &&
-          top + 2.0 < height())) {
-      return std::nullopt;
-    }
-    const auto across = CubicWeights(static_cast<float>(x - left));
-    const auto down = CubicWeights(static_cast<float>(y - top));
-    float sum = 0.0F;
-    for (std::size_t j = 0; j < 4; ++j) {
-      float of_row = 0.0F;
-      for (std::size_t i = 0; i < 4; ++i) {
-        of_row += across[i] * At(static_cast<std::int32_t>(left) - 1 +
-                                     static_cast<std::int32_t>(i),
-                                 static_cast<std::int32_t>(top) - 1 +
-                                     static_cast<std::int32_t>(j));
-      }
-      sum += down[j] * of_row;
-    }
-    return sum;
+    return InterpolateCubic(
+        width(), height(), x, y,
+        [this](std::int32_t i, std::int32_t j) { return At(i, j); });
   }
 
  private:
@@ -286,7 +270,10 @@ SceneMotion SceneReference::Fit(const core::Frame& frame,
       offs[i] = Residual(means, points_[i], centre_, out.motion, out.gain);
       if (offs[i]) sizes.push_back(std::abs(*offs[i]));
     }
-    if (sizes.size() < kFewPoints) return {};
+    if (sizes.size() < kFewPoints) {  // lost
+      out.corner_px = std::numeric_limits<double>::infinity();
+      return out;
+    }
     out.sigma_dn = std::max(
         rounding, kSigmaPerMedian * static_cast<double>(MedianInPlace(sizes)));
     Information information = Information::Zero();

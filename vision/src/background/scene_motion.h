@@ -28,6 +28,7 @@ struct SceneMotion {
   Similarity motion;
   double gain = 1.0;  // of the light
   // How far the corner of the picture goes that goes farthest, and its u.
+  // Infinite where the scene was lost.
   double corner_px = 0.0;
   double u_corner_px = 0.0;
   // Residual of a point, robust standard deviation, DN.

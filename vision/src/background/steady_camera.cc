@@ -88,9 +88,13 @@ class SteadyClip final : public Clip {
               static_cast<std::size_t>(info_.width_px);
       for (std::int32_t x = window.x; x < window.x + window.width; ++x) {
         const double dx = x - centre_x;
-        const auto level = InterpolateCubic<Sample>(
-            frame, x + m.shift_x_px + m.grow * dx - m.turn * dy,
-            y + m.shift_y_px + m.turn * dx + m.grow * dy);
+        const auto level =
+            InterpolateCubic(frame.width_px, frame.height_px,
+                             x + m.shift_x_px + m.grow * dx - m.turn * dy,
+                             y + m.shift_y_px + m.turn * dx + m.grow * dy,
+                             [&frame](std::int32_t i, std::int32_t j) {
+                               return frame.row<Sample>(j)[i];
+                             });
         samples_[out++] = level ? static_cast<std::uint16_t>(std::clamp(
                                       scale * *level + 0.5F, 0.0F, kFull))
                                 : outside[x];

@@ -175,11 +175,13 @@ std::string RefuteGround(const PlaneTrack& track,
 // scale pass; smaller doubts right ones, whose u is rarely better known.
 constexpr double kMostSigmas = 4.0;
 
-// Why the rebounds say that the line is not the ground: most of them, and three
-// or more, meet the same side of it. Empty where they do not. A hand makes one
-// or two, and so does a flight that was cut a frame off.
+// Contacts that tell the ground together. A hand makes one or two, and so does
+// a flight that was cut a frame off. Not studied.
+constexpr std::ptrdiff_t kEnoughContacts = 3;
+
+// Why the rebounds say that the line is not the ground: most of them, and
+// enough, lie on the same side of it. Empty where they do not.
 std::string RefuteByRebounds(const std::vector<double>& disagreements) {
-  constexpr std::ptrdiff_t kEnough = 3;  // rebounds
   const auto count = [&](double sign) {
     return std::count_if(
         disagreements.begin(), disagreements.end(),
@@ -187,13 +189,14 @@ std::string RefuteByRebounds(const std::vector<double>& disagreements) {
   };
   for (const double sign : {1.0, -1.0}) {
     const std::ptrdiff_t off = count(sign);
-    if (off < kEnough ||
+    if (off < kEnoughContacts ||
         2 * off <= static_cast<std::ptrdiff_t>(disagreements.size())) {
       continue;
     }
     return fmt::format(
-        "{} of {} rebounds are more than {:.0f} standard deviations {} it", off,
-        disagreements.size(), kMostSigmas, sign > 0.0 ? "above" : "below");
+        "{} of {} rebounds are more than {:.0f} standard deviations {} the "
+        "ground line",
+        off, disagreements.size(), kMostSigmas, sign > 0.0 ? "above" : "below");
   }
   return {};
 }
@@ -608,17 +611,15 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
       return line_at(met.back());
     }
   }
-  // Or the first of three and more at one level, though the body rolls down
-  // towards the camera later, or falls off an edge. A hand makes one or two.
-  // Not studied.
-  constexpr std::ptrdiff_t kEnough = 3;
+  // Or the first of enough at one level, though the body rolls down towards the
+  // camera later, or falls off an edge.
   for (auto first = met.begin(); first != met.end(); ++first) {
     const auto at_its_level =
         std::count_if(first, met.end(), [&](const ContactEvidence& later) {
           return std::abs(later.touching.y_px - first->touching.y_px) <
                  0.5 * plane.size_px;
         });
-    if (at_its_level >= kEnough) return line_at(*first);
+    if (at_its_level >= kEnoughContacts) return line_at(*first);
   }
   return std::nullopt;
 }

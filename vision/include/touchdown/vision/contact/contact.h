@@ -81,8 +81,8 @@ struct ContactResult {
   std::vector<ContactEvidence> evidence;  // of first, then of later
   std::vector<PathStretch> path;          // all of it, by time
 
-  // The body rebounds well above the line, or passes through it: the line is
-  // not the ground. Empty where line and track agree.
+  // The body rebounds well above the line, again and again off it, or passes
+  // through it: the line is not the ground. Empty where line and track agree.
   std::string ground_refuted;
 
   // The gravity that the scale tells explains the path less well, by far, than
