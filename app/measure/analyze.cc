@@ -15,6 +15,7 @@
 #include "app/measure/footage.h"
 #include "app/measure/journal.h"
 #include "app/measure/judge.h"
+#include "app/measure/left_out.h"
 #include "app/measure/open_recording.h"
 #include "app/measure/options_hash.h"
 #include "app/measure/stop_early.h"
@@ -356,7 +357,7 @@ void Analyzer::DescribeScene() {
                                : "free flight with gravity fitted");
   }
   DescribeCalibration(result_.calibration, scene);
-  scene.left_out["drag"] = "below what the frames show";
+  DescribeDrag(result_);
   if (track.body.kind == core::BodyKind::kSphere) {
     scene.left_out["spin"] = "no mark on the sphere";
   }
@@ -424,6 +425,7 @@ Analysis Analyzer::Run() {
     FindGroundAndContacts(track);
     AddLens(result_, camera_, contact_options_);
     AddYaw(result_, camera_, contact_options_);
+    AddDrag(result_, contact_options_);
     // Warnings in the order of the steps: what a person reads first is what
     // spoils all that follows.
     const std::vector<std::string> of_track = Seen(*result_.track).warnings;

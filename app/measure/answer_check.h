@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "touchdown/core/estimate.h"
 #include "touchdown/core/expected.h"
 #include "touchdown/vision/explanation/explained_change.h"
 
@@ -57,7 +58,7 @@ struct AnswerCheckLimits {
   // deviations beyond which there is a warning, and, for restitution, how far
   // out of 0 .. 1 an answer is refused. 0.25: more than a block's second corner
   // between two frames makes of it.
-  double most_sigmas = 4.0;
+  double most_sigmas = core::kBeyondDoubt;
   double most_beyond = 0.25;
 };
 

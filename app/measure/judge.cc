@@ -192,6 +192,16 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
   AddShared(analysis.contacts, "yaw", moved);
 }
 
+void AddDrag(Analysis& analysis,
+             const vision::ContactOptions& contact_options) {
+  const auto drag = DragBeyondDoubt(analysis.contacts);
+  if (!drag || !analysis.plane) return;
+  vision::ContactOptions options = KeepPath(analysis, contact_options);
+  options.drag_per_px = drag->value;
+  AddShared(analysis.contacts, "drag",
+            {{FindPlaneContacts(*analysis.plane, options)}});
+}
+
 namespace {
 
 // The frames at another rate: the same poses, closer in time.
@@ -281,6 +291,8 @@ Analysis Rejudge(Analysis analysis, const Correction& correction) {
   analysis.contacts = FindPlaneContacts(*analysis.plane, contact_options);
   AddLens(analysis, camera, contact_options);
   AddYaw(analysis, camera, contact_options);
+  AddDrag(analysis, contact_options);
+  DescribeDrag(analysis);
   DescribeBudget(analysis, contact_options);
   // Stored warnings stay. One that the new contacts repeat is not said twice.
   for (const std::string& warning : analysis.contacts.warnings) {

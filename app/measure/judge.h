@@ -53,6 +53,11 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
 void AddYaw(Analysis& analysis, const ClipCalibration& camera,
             const vision::ContactOptions& contact_options);
 
+// Adds the change that the drag of the flights would make, where it is beyond
+// doubt, as the line `drag` of the budgets. Nothing is corrected by it: lens,
+// parallax and frames of uneven time bend a path alike.
+void AddDrag(Analysis& analysis, const vision::ContactOptions& contact_options);
+
 // Says in the scene model what the budgets leave out and why: the frame rate,
 // with what an error of it would do, and the choice of the model.
 void DescribeBudget(Analysis& analysis,

@@ -17,7 +17,7 @@ using core::kDegree;
 struct ApproachFacts {
   double angle_rad = 0.0;
   double u_rad = 0.0;
-  double speed_mps = 0.0;
+  core::Estimate speed_mps;
   double down_mps = 0.0;
   double px_per_m = 0.0;
   double lever = 0.0;  // r / f
@@ -36,7 +36,7 @@ std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
       !(speed->value > 0.0) || !first.contact.frame) {
     return std::nullopt;
   }
-  ApproachFacts out{angle->value, angle->u, speed->value, std::abs(down->value),
+  ApproachFacts out{angle->value, angle->u, *speed, std::abs(down->value),
                     a.scale->px_per_m.value};
   const double frame = first.contact.frame->value;
   const auto& poses = a.track->poses;
@@ -62,6 +62,14 @@ std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
 std::string Size(double error_rad, double u_rad) {
   return fmt::format("{:.2g} deg of the approach angle, {:.2g} u",
                      error_rad / kDegree, u_rad > 0 ? error_rad / u_rad : 0.0);
+}
+
+// A correction judges again: nothing is said twice.
+void Warn(const std::string& warning, Analysis& analysis) {
+  std::vector<std::string>& warnings = analysis.warnings;
+  if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
+    warnings.push_back(warning);
+  }
 }
 
 // A path that leaves the plane by psi: nearer to the camera it grows away from
@@ -103,7 +111,8 @@ LeftOutEffect Rolling(const Analysis& a, const ApproachFacts& s,
 LeftOutEffect Slope(const ApproachFacts& s, const LeftOutSizes& sizes) {
   LeftOutEffect out{"gravity along the ground"};
   out.error_rad = core::kStandardGravity_mps2 * std::sin(sizes.slope_rad) *
-                  s.flight_s / (2.0 * s.speed_mps) * std::sin(s.angle_rad);
+                  s.flight_s / (2.0 * s.speed_mps.value) *
+                  std::sin(s.angle_rad);
   out.text = fmt::format(
       "no level: a ground that slopes by {:g} deg would be up to {}",
       sizes.slope_rad / kDegree, Size(out.error_rad, s.u_rad));
@@ -142,7 +151,58 @@ std::optional<LeftOutEffect> Compression(const Analysis& a) {
   return out;
 }
 
+// A straight line fitted to a path s on which drag takes the share k s of the
+// speed is off by half of that at its end; so is a parabola of known gravity.
+std::string DragOnALightBody(const Analysis& a, const ApproachFacts& s,
+                             const LeftOutSizes& sizes) {
+  // Of a sphere between Reynolds numbers of 1e3 and 2e5; of air at 20 degrees.
+  constexpr double kDragCoefficient = 0.47;
+  constexpr double kAir_kg_per_m3 = 1.2;
+  const vision::BodyImage& body = a.track->body;
+  const double size_px =
+      2.0 * (body.kind == core::BodyKind::kSphere ? body.radius_px.value
+                                                  : body.half_short_px.value);
+  const double k = 0.75 * kDragCoefficient * kAir_kg_per_m3 * s.px_per_m /
+                   (sizes.density_kg_per_m3 * size_px);
+  const double error_mps =
+      0.5 * k * s.speed_mps.value * s.flight_s * s.speed_mps.value;
+  return fmt::format(
+      "of a body as dense as water it would be {:.2g} % of the speed at "
+      "touchdown, {:.2g} u",
+      100.0 * error_mps / s.speed_mps.value,
+      s.speed_mps.u > 0.0 ? error_mps / s.speed_mps.u : 0.0);
+}
+
 }  // namespace
+
+std::optional<core::Estimate> DragBeyondDoubt(
+    const vision::ContactResult& contacts) {
+  const auto& seen = contacts.drag_per_px;
+  return seen && seen->value > core::kBeyondDoubt * seen->u ? seen
+                                                            : std::nullopt;
+}
+
+void DescribeDrag(Analysis& analysis, const LeftOutSizes& sizes) {
+  const auto& seen = analysis.contacts.drag_per_px;
+  std::string text = "too few frames of flight to tell it";
+  if (seen) {
+    const double per_m = analysis.scale ? analysis.scale->px_per_m.value : 1.0;
+    text = fmt::format("{:.2g} +- {:.2g} of the speed lost on a {}",
+                       seen->value * per_m, seen->u * per_m,
+                       analysis.scale ? "metre" : "px");
+    if (DragBeyondDoubt(analysis.contacts)) {
+      Warn("the flights bend as air bends them, " + text +
+               ": u contains what taking that out would change; a camera that "
+               "moves, perspective, and frames of uneven time bend them, too",
+           analysis);
+    }
+    text = "the flights show " + text;
+  }
+  if (const auto facts = SeenAtContact(analysis)) {
+    text += "; " + DragOnALightBody(analysis, *facts, sizes);
+  }
+  analysis.scene_model.left_out["drag"] = text;
+}
 
 std::vector<LeftOutEffect> LeftOutEffects(const Analysis& analysis,
                                           const LeftOutSizes& sizes) {
@@ -178,11 +238,7 @@ void DescribeLeftOut(Analysis& analysis, const LeftOutSizes& sizes) {
       yaw->second += "; " + effect.text;
     }
     if (!effect.warns) continue;
-    const std::string warning = effect.name + ": " + effect.text;
-    if (std::find(analysis.warnings.begin(), analysis.warnings.end(),
-                  warning) == analysis.warnings.end()) {
-      analysis.warnings.push_back(warning);
-    }
+    Warn(effect.name + ": " + effect.text, analysis);
   }
 }
 

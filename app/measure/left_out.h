@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct LeftOutSizes {
   // Of the frame interval in which a rolling shutter reads the picture: the
   // worst there is.
   double readout = 1.0;
+  // Of a body that the air may slow: as light as water. Lighter names larger
+  // errors; wood has 500 to 900, steel 7800, a table-tennis ball 80.
+  double density_kg_per_m3 = 1000.0;
   // From which error on a rolling shutter is worth a warning: half the default
   // margin of a verdict.
   double warn_rad = 0.5 * core::kDegree;
@@ -43,8 +47,18 @@ struct LeftOutEffect {
 //              are no camera's raw data
 //   slope      g sin(s) T / (2 v) sin(b), T the flight that was seen
 //   outline    none: all of the path moves; contact time and gaps do
+//   drag       none: of the speed k s / 2, s the path to the contact, k = 3 c_D
+//              rho / (4 d rho_body) of a sphere of diameter d (drag.h)
 std::vector<LeftOutEffect> LeftOutEffects(const Analysis& analysis,
                                           const LeftOutSizes& sizes = {});
+
+// The drag that the flights show, where it differs from none beyond doubt.
+std::optional<core::Estimate> DragBeyondDoubt(
+    const vision::ContactResult& contacts);
+
+// Says what the flights show of drag, and what that of a light body would do.
+// May be called again.
+void DescribeDrag(Analysis& analysis, const LeftOutSizes& sizes = {});
 
 // Puts them into the model of the scene, and what warns among the warnings.
 void DescribeLeftOut(Analysis& analysis, const LeftOutSizes& sizes = {});

@@ -58,6 +58,15 @@ void AddShared(vision::ContactResult& contacts, const std::string& source,
       }
     }
   }
+  if (core::Measured& pooled = contacts.restitution.value) {
+    double variance = 0.0;
+    for (const auto& [other, weight] : moved) {
+      if (!other.restitution.value) continue;
+      const double change = other.restitution.value->value - pooled->value;
+      variance += weight * change * change;
+    }
+    Widen(*pooled, std::sqrt(variance));
+  }
   for (std::size_t i = 0; i < records.size(); ++i) {
     for (std::size_t q = 0; q < kContactQuantities.size(); ++q) {
       if (!IsMoved(kContactQuantities[q])) continue;

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
+#include "app/measure/judge.h"
 #include "tests/pipeline/filmed.h"
+#include "tests/vision/bounce_in_air.h"
 #include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::pipeline {
@@ -65,6 +68,57 @@ TEST(LeftOut, ByHand) {
               core::kStandardGravity_mps2 * std::sin(1.0 * kDegree) * 0.04 /
                   8.0 * std::sin(20.0 * kDegree),
               1e-12);
+}
+
+// k = 0.75 0.47 1.2 / (1000 0.04) = 0.0106/m over 0.16 m: half of it is 0.085 %
+// of 4 m/s, of which u is 0.25 %.
+TEST(LeftOut, DragOfALightBodyByHand) {
+  Analysis a = AtTwenty();
+  a.track->body.radius_px.value = 20.0;
+  DescribeDrag(a);
+  EXPECT_EQ(a.scene_model.left_out["drag"],
+            "too few frames of flight to tell it; of a body as dense as water "
+            "it would be 0.085 % of the speed at touchdown, 0.34 u");
+  a.contacts.drag_per_px = core::Estimate{3e-5, 1e-5};
+  DescribeDrag(a);
+  EXPECT_TRUE(a.scene_model.left_out["drag"].starts_with(
+      "the flights show 0.03 +- 0.01 of the speed lost on a metre; "));
+  EXPECT_TRUE(a.warnings.empty());
+  a.contacts.drag_per_px = core::Estimate{5e-5, 1e-5};
+  DescribeDrag(a);
+  DescribeDrag(a);
+  EXPECT_EQ(a.warnings.size(), 1u);
+}
+
+// What the flights show beyond doubt is in u, and the truth within it; what
+// they do not show changes nothing.
+TEST(LeftOut, DragThatTheFlightsShowIsInU) {
+  for (const double k : {0.0, vision::synthetic::kLight}) {
+    std::mt19937_64 engine(5);
+    vision::synthetic::Bounce bounce;
+    bounce.k = k;
+    Analysis a;
+    a.plane = bounce.Film(engine);
+    a.contacts = vision::FindContacts(*a.plane);
+    ASSERT_TRUE(a.contacts.first.motion.restitution);
+    const core::Estimate alone = *a.contacts.first.motion.restitution;
+    const core::Estimate pooled = *a.contacts.restitution.value;
+    AddDrag(a, {});
+    const core::Estimate& with = *a.contacts.first.motion.restitution;
+    EXPECT_EQ(with.value, alone.value);
+    const auto& budget = a.contacts.first.contact.approach_budget;
+    const bool named =
+        std::any_of(budget.begin(), budget.end(),
+                    [](const auto& line) { return line.source == "drag"; });
+    EXPECT_EQ(named, k > 0.0);
+    if (k == 0.0) {
+      EXPECT_EQ(with.u, alone.u);
+      continue;
+    }
+    EXPECT_GT(std::abs(alone.value - bounce.restitution), 4.0 * alone.u);
+    EXPECT_LT(std::abs(with.value - bounce.restitution), 1.5 * with.u);
+    EXPECT_GT(a.contacts.restitution.value->u, pooled.u);
+  }
 }
 
 TEST(LeftOut, RawCamerasDoNotRoll) {

@@ -7,6 +7,7 @@
 
 #include "contact/contact_event.h"
 #include "contact/contact_record.h"
+#include "contact/drag.h"
 #include "contact/impacts.h"
 #include "contact/motion_segments.h"
 #include "contact/track_noise.h"
@@ -170,11 +171,6 @@ std::string RefuteGround(const PlaneTrack& track,
   return {};
 }
 
-// Standard deviations by which what is seen may differ from what was stated
-// before that is doubted. 4: one right clip of 16 000. Larger lets a wrong
-// scale pass; smaller doubts right ones, whose u is rarely better known.
-constexpr double kMostSigmas = 4.0;
-
 // Contacts that tell the ground together. A hand makes one or two, and so does
 // a flight that was cut a frame off. Not studied.
 constexpr std::ptrdiff_t kEnoughContacts = 3;
@@ -185,7 +181,7 @@ std::string RefuteByRebounds(const std::vector<double>& disagreements) {
   const auto count = [&](double sign) {
     return std::count_if(
         disagreements.begin(), disagreements.end(),
-        [sign](double sigmas) { return sign * sigmas > kMostSigmas; });
+        [sign](double sigmas) { return sign * sigmas > core::kBeyondDoubt; });
   };
   for (const double sign : {1.0, -1.0}) {
     const std::ptrdiff_t off = count(sign);
@@ -196,7 +192,8 @@ std::string RefuteByRebounds(const std::vector<double>& disagreements) {
     return fmt::format(
         "{} of {} rebounds are more than {:.0f} standard deviations {} the "
         "ground line",
-        off, disagreements.size(), kMostSigmas, sign > 0.0 ? "above" : "below");
+        off, disagreements.size(), core::kBeyondDoubt,
+        sign > 0.0 ? "above" : "below");
   }
   return {};
 }
@@ -377,18 +374,21 @@ std::vector<Stretch> CutAs(const std::vector<PathStretch>& path,
   return stretches;
 }
 
+std::vector<SampleRange> SelectFlights(const std::vector<Stretch>& stretches) {
+  std::vector<SampleRange> flights;
+  for (const Stretch& stretch : stretches) {
+    if (stretch.kind == StretchKind::kFlight) flights.push_back(stretch);
+  }
+  return flights;
+}
+
 // The gravity of the flights as a share of the one that the scale tells, where
-// they differ by more than kMostSigmas; else 1.
+// they differ by more than core::kBeyondDoubt; else 1.
 double GravityShare(const PlaneTrack& track,
                     const std::vector<Stretch>& stretches,
                     const core::Estimate& told) {
-  std::vector<SampleRange> flights;
-  for (const Stretch& stretch : stretches) {
-    if (stretch.kind != StretchKind::kFlight) continue;
-    flights.push_back({stretch.begin, stretch.end});
-  }
-  const auto seen = FitGravity(track, flights);
-  return seen && core::Disagreement(*seen, told) > kMostSigmas
+  const auto seen = FitGravity(track, SelectFlights(stretches));
+  return seen && core::Disagreement(*seen, told) > core::kBeyondDoubt
              ? seen->value / told.value
              : 1.0;
 }
@@ -430,7 +430,7 @@ Cut CutPath(const PlaneTrack& track, const SegmentationOptions& options,
       GravityShare(track, freely.stretches, *gravity_px_per_s2);
   if (!(share > 1.0 / kMostOff && share < kMostOff) ||
       freely.stretches.empty() ||
-      freely.cost + 0.5 * kMostSigmas * kMostSigmas > best.cost) {
+      freely.cost + 0.5 * core::kBeyondDoubt * core::kBeyondDoubt > best.cost) {
     return {std::move(best.stretches), false};
   }
   return {std::move(freely.stretches), true};
@@ -472,6 +472,10 @@ ContactResult FindContacts(const PlaneTrack& given,
     flight.gravity_px_per_s2.reset();
     segmentation.gravity_px_per_s2.reset();
   }
+  if (options.path.empty()) {
+    result.drag_per_px = FitDrag(track, SelectFlights(cut.stretches));
+  }
+  flight.drag_per_px = options.drag_per_px;
   if (WidenToCorrelation(cut.stretches, flight, track) &&
       options.path.empty()) {
     cut.stretches = SegmentMotion(track, segmentation).stretches;

@@ -118,6 +118,7 @@ JointInput MakeJointInput(const PlaneTrack& track, const Event& event,
   if (event.after) input.after = SelectSamples(track, event.after_frames);
   input.u_slope_rad = track.ground.u_angle_rad;
   input.gravity_px_per_s2 = options.gravity_px_per_s2;
+  input.drag_per_px = options.drag_per_px;
   // px: a line without u still needs a finite weight.
   input.ground_px = {0.0, std::max(track.ground.u_offset_px, 1e-6)};
   return input;

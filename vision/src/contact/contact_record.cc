@@ -267,7 +267,8 @@ void FillMotion(const RecordContext& context, const Event& event,
         AbsentBecause("uninformative: its uncertainty exceeds 3 %");
     std::vector<SampleRange> flights = {event.before_frames};
     if (event.after) flights.push_back(event.after_frames);
-    if (const auto gravity_px = FitGravity(track, flights)) {
+    if (const auto gravity_px =
+            FitGravity(track, flights, context.flight.drag_per_px)) {
       RecordContext stated = context;  // what is checked
       stated.scale_doubt = 0.0;
       const Measured g_si = InMetres(stated, *gravity_px);

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
+
+#include "contact/drag.h"
 
 namespace touchdown::vision {
 namespace {
@@ -83,6 +86,37 @@ double WideningFactor(double chi2, int degrees) {
   return degrees > 0 ? std::max(1.0, chi2 / degrees) : 1.0;
 }
 
+// Takes what drag does out of the places and fits the parabola that is left,
+// `fit`, until neither changes.
+template <typename FitParabola>
+void FitUnderDrag(std::span<const PlaneSample> samples,
+                  const FlightOptions& options, const FitParabola& fit,
+                  Flight& f) {
+  f.drag_per_px = options.drag_per_px;
+  std::vector<PlaneSample> parabola(samples.begin(), samples.end());
+  // Each pass leaves the share k times the path of the last one's change. A
+  // bound only.
+  constexpr int kMaxPasses = 30;
+  // px: far below any pose's u.
+  constexpr double kSame_px = 1e-7;
+  double change = 1.0;
+  for (int i = 0; i < kMaxPasses && change > kSame_px; ++i) {
+    change = 0.0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const DragOffset drag =
+          ComputeDragOffset(f.along[1], f.height[1], f.height[2], f.drag_per_px,
+                            samples[k].time_s - f.t0_s);
+      const double along = samples[k].along_px - drag.along_px;
+      const double height = samples[k].height_px - drag.height_px;
+      change = std::max({change, std::abs(along - parabola[k].along_px),
+                         std::abs(height - parabola[k].height_px)});
+      parabola[k].along_px = along;
+      parabola[k].height_px = height;
+    }
+    fit(parabola);
+  }
+}
+
 }  // namespace
 
 FlightState Flight::At(double time_s) const {
@@ -92,6 +126,12 @@ FlightState Flight::At(double time_s) const {
   s.v_t = along[1];
   s.height_px = height[0] + height[1] * t - 0.5 * height[2] * t * t;
   s.v_n = height[1] - height[2] * t;
+  const DragOffset drag =
+      ComputeDragOffset(along[1], height[1], height[2], drag_per_px, t);
+  s.along_px += drag.along_px;
+  s.v_t += drag.v_t;
+  s.height_px += drag.height_px;
+  s.v_n += drag.v_n;
   s.face_rad = face[0] + face[1] * t;
   s.omega = face[1];
   // Derivatives of place and velocity with respect to the coefficients.
@@ -131,13 +171,20 @@ Flight FitFlight(std::span<const PlaneSample> samples,
   // height(t) = h + v t - g t^2 / 2: the third coefficient is gravity itself,
   // so that its prior and its covariance need no conversion.
   const Eigen::Vector3d height_factors(1.0, 1.0, -0.5);
-  const double chi2_h = FitPolynomial<3>(
-      samples, f.t0_s, unit, &PlaneSample::height_px, &PlaneSample::u_height_px,
-      height_factors, known ? &*options.gravity_px_per_s2 : nullptr, f.height,
-      f.height_cov);
-  const double chi2_s = FitPolynomial<2>(
-      samples, f.t0_s, unit, &PlaneSample::along_px, &PlaneSample::u_along_px,
-      Eigen::Vector2d(1.0, 1.0), nullptr, f.along, f.along_cov);
+  double chi2_h = 0.0;
+  double chi2_s = 0.0;
+  const auto fit = [&](std::span<const PlaneSample> parabola) {
+    chi2_h = FitPolynomial<3>(parabola, f.t0_s, unit, &PlaneSample::height_px,
+                              &PlaneSample::u_height_px, height_factors,
+                              known ? &*options.gravity_px_per_s2 : nullptr,
+                              f.height, f.height_cov);
+    chi2_s =
+        FitPolynomial<2>(parabola, f.t0_s, unit, &PlaneSample::along_px,
+                         &PlaneSample::u_along_px, Eigen::Vector2d(1.0, 1.0),
+                         nullptr, f.along, f.along_cov);
+  };
+  fit(samples);
+  if (options.drag_per_px != 0.0) FitUnderDrag(samples, options, fit, f);
   const bool turns = samples.front().u_face_rad > 0.0;
   double chi2_f = 0.0;
   if (turns) {
@@ -168,13 +215,16 @@ Flight FitFlight(std::span<const PlaneSample> samples,
 }
 
 std::optional<core::Estimate> FitGravity(const PlaneTrack& track,
-                                         std::span<const SampleRange> flights) {
+                                         std::span<const SampleRange> flights,
+                                         double drag_per_px) {
+  FlightOptions options;
+  options.drag_per_px = drag_per_px;
   constexpr std::size_t kMinFrames = 6;  // with fewer u says nothing
   double weights = 0.0;
   double sum = 0.0;
   for (const SampleRange& range : flights) {
     if (range.size() < kMinFrames) continue;
-    const Flight flight = FitFlight(SelectSamples(track, range));
+    const Flight flight = FitFlight(SelectSamples(track, range), options);
     const double weight = 1.0 / flight.height_cov(2, 2);
     weights += weight;
     sum += weight * flight.height[2];

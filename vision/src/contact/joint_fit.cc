@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/drag.h"
+
 namespace touchdown::vision {
 namespace {
 
@@ -63,6 +65,31 @@ struct PredictedPose {
   Predicted face;
 };
 
+// Adds what drag does within s frames of the contact, with its derivatives by
+// the velocities there; those by gravity are of second order.
+void AddDrag(const JointFit& fit, const Side& side, double s,
+             PredictedPose& pose) {
+  if (fit.drag_per_px == 0.0) return;
+  const JointVector& p = fit.p;
+  const auto offset = [&](double more_x, double more_y) {
+    return ComputeDragOffset(p[side.vx] + more_x, p[side.vy] + more_y,
+                             p[side.gravity], fit.drag_per_px, s);
+  };
+  const DragOffset drag = offset(0.0, 0.0);
+  pose.along.value += drag.along_px;
+  pose.height.value += drag.height_px;
+  pose.along.d[side.t] -= drag.v_t;
+  pose.height.d[side.t] -= drag.v_n;
+  // px a frame: small against any speed that drag shows at.
+  constexpr double kStep = 1e-3;
+  const DragOffset by_x = offset(kStep, 0.0);
+  const DragOffset by_y = offset(0.0, kStep);
+  pose.along.d[side.vx] += (by_x.along_px - drag.along_px) / kStep;
+  pose.height.d[side.vx] += (by_x.height_px - drag.height_px) / kStep;
+  pose.along.d[side.vy] += (by_y.along_px - drag.along_px) / kStep;
+  pose.height.d[side.vy] += (by_y.height_px - drag.height_px) / kStep;
+}
+
 // The model of joint_fit.h at time t (frames after the origin).
 PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
   const JointVector& p = fit.p;
@@ -96,6 +123,7 @@ PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
     pose.face.d[side.omega] = s;
     pose.face.d[side.t] = -p[side.omega];
   }
+  AddDrag(fit, side, s, pose);
   return pose;
 }
 
@@ -129,9 +157,10 @@ void Solver::Start() {
   fit_.turns = track_.kind == core::BodyKind::kRectangle;
   fit_.instant = input_.instant;
   fit_.interval_s = track_.frame_interval_s;
+  fit_.drag_per_px = input_.drag_per_px;
   fit_.origin_s = input_.touchdown_s;
   const double dt = fit_.interval_s;
-  const FlightOptions options{input_.gravity_px_per_s2};
+  const FlightOptions options{input_.gravity_px_per_s2, input_.drag_per_px};
   const Flight before = FitFlight(input_.before, options);
   const FlightState b = before.At(input_.touchdown_s);
   fit_.origin_px = b.along_px;
@@ -338,6 +367,7 @@ Flight MakeFlight(const JointFit& fit, const Side& side,
   const double fps = 1.0 / fit.interval_s;
   const double t = fit.p[side.t];
   flight.t0_s = fit.ToSeconds(t);
+  flight.drag_per_px = fit.drag_per_px;
   flight.frames = static_cast<int>(samples.size());
   flight.first_frame = samples.front().frame;
   flight.last_frame = samples.back().frame;
@@ -428,8 +458,11 @@ double JointFit::ReboundGap(const JointVector& q, double t) const {
       ComputeSupport(turns, q,
                      turns ? q[side.face] + q[side.omega] * s - q[kSlope] : 0.0)
           .value;
+  const DragOffset drag = ComputeDragOffset(q[side.vx], q[side.vy],
+                                            q[side.gravity], drag_per_px, s);
   return at_release - then + (q[side.vy] - q[kSlope] * q[side.vx]) * s -
-         0.5 * q[side.gravity] * s * s;
+         0.5 * q[side.gravity] * s * s + drag.height_px -
+         q[kSlope] * drag.along_px;
 }
 
 Flight JointFit::IncomingFlight(std::span<const PlaneSample> samples) const {

@@ -5,11 +5,12 @@
 //   along(t)  = X + VX (t - T)
 //   height(t) = ground(X) + S(FACE) + VY (t - T) - G (t - T)^2 / 2
 //   face(t)   = FACE + OMEGA (t - T)
-// with the velocities 2 after it. An instant contact shares T, X and FACE
-// between the flights; one that lasts has its own T2, X2, FACE2. Ground, sizes
-// and gravity are parameters with priors, so that the covariance carries them
-// and all that they have in common. Lengths in px, time in frames, relative to
-// the start values: a far origin costs no digits.
+// with the velocities 2 after it, and what drag does until t (drag.h) added. An
+// instant contact shares T, X and FACE between the flights; one that lasts has
+// its own T2, X2, FACE2. Ground, sizes and gravity are parameters with priors,
+// so that the covariance carries them and all that they have in common. Lengths
+// in px, time in frames, relative to the start values: a far origin costs no
+// digits.
 #pragma once
 
 #include <Eigen/Core>
@@ -61,6 +62,7 @@ struct JointInput {
   // px/s^2; nothing: free, and another after than before, since without a scale
   // nothing says that the body keeps its distance from the camera.
   std::optional<core::Estimate> gravity_px_per_s2;
+  double drag_per_px = 0.0;  // FlightOptions'
 };
 
 struct JointFit {
@@ -73,6 +75,7 @@ struct JointFit {
   double origin_px = 0.0;  // X = 0 lies here
   double reference_px = 0.0;
   double interval_s = 0.0;
+  double drag_per_px = 0.0;
   bool turns = false;
   double chi2 = 0.0;
   int degrees = 0;

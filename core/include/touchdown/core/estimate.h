@@ -72,6 +72,12 @@ inline double Disagreement(const Estimate& a, const Estimate& b) {
   return u > 0.0 ? std::abs(a.value - b.value) / u : 0.0;
 }
 
+// Standard deviations by which what is seen differs from what was stated, or
+// from nothing, before that is acted upon. 4: one right clip of 16 000. Larger
+// lets a wrong scale pass; smaller doubts right ones, whose u is rarely better
+// known.
+inline constexpr double kBeyondDoubt = 4.0;
+
 // Every measured number is present with its uncertainty or absent with a
 // reason; a number that was not measured is never 0.
 using Measured = Expected<Estimate>;

@@ -52,6 +52,9 @@ struct ContactOptions {
 
   // As ContactResult::gravity_refuted says; where `path` is given.
   bool gravity_refuted = false;
+
+  // The share of the speed that the air takes on a px of the path.
+  double drag_per_px = 0.0;
 };
 
 // How one contact was measured; for drawings and tests.
@@ -89,6 +92,10 @@ struct ContactResult {
   // one that each flight may choose: scale or frame rate are wrong. Gravity was
   // fitted freely, and lengths have the u of a scale that is as far off.
   bool gravity_refuted = false;
+
+  // As the flights show it; it may be negative, by noise. Nothing: they are too
+  // short to show it, or the path was given.
+  std::optional<core::Estimate> drag_per_px;
   std::vector<std::string> warnings;
 };
 

@@ -7,8 +7,8 @@
 // by weighted least squares. Gravity is a parameter with a prior: known where
 // the scale is (its uncertainty that of the scale and of local gravity), free
 // where not; so one fit serves both, and its covariance carries what is not
-// known. Drag is left out: at 2 m/s it bends the path of a 40 mm ball of wood
-// by 1e-4 of gravity's share.
+// known. Where the air slows the body, the coefficients are those at t0, and
+// what drag does to the path until t is added (drag.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -23,6 +23,8 @@ namespace touchdown::vision {
 struct FlightOptions {
   // Gravity along the ground's normal, px/s^2; nothing: free.
   std::optional<core::Estimate> gravity_px_per_s2;
+  // Of the speed, lost on a px of the path; 0: no air.
+  double drag_per_px = 0.0;
 };
 
 // State at an instant, with the covariance of (height, v_n).
@@ -46,6 +48,7 @@ struct Flight {
   double t0_s = 0.0;           // reference time: the middle of the frames
   Eigen::Vector2d along;       // s0, v_t
   Eigen::Vector3d height;      // h0, v_n, g
+  double drag_per_px = 0.0;    // FlightOptions'
   Eigen::Vector2d face;        // f0, omega
   Eigen::Matrix2d along_cov;   //
   Eigen::Matrix3d height_cov;  //
@@ -67,9 +70,10 @@ Flight FitFlight(std::span<const PlaneSample> samples,
                  const FlightOptions& options = {});
 
 // Gravity as the flights themselves have it, px/s^2: fitted freely to each of
-// these ranges and pooled by weight. Nothing where none of them has six frames:
-// three determine a parabola, and so few do not judge it.
+// these ranges, under this drag, and pooled by weight. Nothing where none of
+// them has six frames: three determine a parabola, and so few do not judge it.
 std::optional<core::Estimate> FitGravity(const PlaneTrack& track,
-                                         std::span<const SampleRange> flights);
+                                         std::span<const SampleRange> flights,
+                                         double drag_per_px = 0.0);
 
 }  // namespace touchdown::vision
