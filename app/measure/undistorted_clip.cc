@@ -78,16 +78,22 @@ std::unique_ptr<vision::Clip> UndistortedClip(
   return std::make_unique<Straightened>(std::move(clip), lens);
 }
 
+std::optional<std::pair<std::int64_t, std::int64_t>> SteadyFrames(
+    const Analysis& analysis) {
+  if (!analysis.camera_moved_px) return std::nullopt;
+  const std::int64_t last = analysis.options.last_frame;
+  return std::pair(analysis.options.first_frame,
+                   last < 0 ? analysis.clip.frames : last);
+}
+
 Drawable OpenToDraw(const Analysis& analysis) {
   vision::ClipOptions options;
   // A rate that the user gave numbers the frames of the document.
   options.fps = analysis.options.fps;
   Drawable out{OpenRecording(analysis.clip.path, options), *analysis.track};
-  if (analysis.camera_moved_px) {
-    const std::int64_t last = analysis.options.last_frame;
+  if (const auto steady = SteadyFrames(analysis)) {
     out.clip =
-        vision::Stabilise(std::move(out.clip), analysis.options.first_frame,
-                          last < 0 ? analysis.clip.frames : last)
+        vision::Stabilise(std::move(out.clip), steady->first, steady->second)
             .clip;
   }
   if (analysis.calibration && analysis.calibration->lens) {

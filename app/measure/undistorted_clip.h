@@ -2,7 +2,10 @@
 // look at, with straight lines and flights drawn in. Nothing is measured in it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "app/measure/analyze.h"
 #include "touchdown/calib/lens.h"
@@ -22,6 +25,12 @@ struct Drawable {
   std::unique_ptr<vision::Clip> clip;
   vision::Track track;
 };
+
+// The frames, first and one past the last, of which the camera's motion was
+// taken out (vision::Stabilise): all that is told of the picture is told of the
+// first of them. Nothing where the camera stood still.
+std::optional<std::pair<std::int64_t, std::int64_t>> SteadyFrames(
+    const Analysis& analysis);
 
 // Opens the analysis's recording again; it must have a track. Throws
 // core::InputError where that cannot be read.

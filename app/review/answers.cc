@@ -39,4 +39,15 @@ std::int64_t ParsePathNumber(const std::string& text, const std::string& path) {
   return *n;
 }
 
+std::optional<std::pair<std::int64_t, std::int64_t>> AskedSteady(
+    const Request& request) {
+  const auto found = request.query.find("steady");
+  if (found == request.query.end()) return std::nullopt;
+  const std::string& text = found->second;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw NotThere(request.path);
+  return std::pair(ParsePathNumber(text.substr(0, colon), request.path),
+                   ParsePathNumber(text.substr(colon + 1), request.path));
+}
+
 }  // namespace touchdown::review

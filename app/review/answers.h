@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "app/review/clip_shelf.h"
 #include "app/review/message.h"
@@ -28,5 +30,10 @@ nlohmann::ordered_json ClipJson(const vision::ClipInfo& info);
 
 // A number from 0 on; throws NotThere naming `path` where `text` is none.
 std::int64_t ParsePathNumber(const std::string& text, const std::string& path);
+
+// The frames FIRST:LAST of ?steady, nothing where it is not asked for; throws
+// NotThere where it is something else (ShownRecording::steady).
+std::optional<std::pair<std::int64_t, std::int64_t>> AskedSteady(
+    const Request& request);
 
 }  // namespace touchdown::review

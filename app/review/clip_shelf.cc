@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 #include <vector>
 
 #include "app/measure/open_recording.h"
 #include "app/review/thumbnail.h"
+#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/footage/encode_image.h"
 #include "touchdown/vision/footage/image_file.h"
 
@@ -26,12 +28,15 @@ constexpr std::size_t kMostKnown = 4096;
 constexpr double kAnyRate_hz = 1.0;
 
 // Opens a recording to look at. Throws like vision::OpenClip.
-std::unique_ptr<vision::Clip> OpenShelfClip(const std::filesystem::path& path) {
+std::unique_ptr<vision::Clip> OpenShelfClip(const ShownRecording& shown) {
   vision::ClipOptions options;
   options.fps = kAnyRate_hz;
   // One frame after another: threads would hold more frames each.
   options.decoder_threads = 1;
-  return pipeline::OpenRecording(path, options);
+  auto clip = pipeline::OpenRecording(shown.path, options);
+  if (!shown.steady) return clip;
+  const auto [first, last] = *shown.steady;
+  return vision::Stabilise(std::move(clip), first, last).clip;
 }
 
 // The level of which one sample in a thousand lies above.
@@ -112,8 +117,8 @@ ClipShelf::~ClipShelf() {
   warmer_.join();
 }
 
-ClipShelf::Film ClipShelf::DescribeFilm(const std::filesystem::path& path) {
-  return {path.string(), pipeline::MeasureExtent(path)};
+ClipShelf::Film ClipShelf::DescribeFilm(const ShownRecording& shown) {
+  return {shown, pipeline::MeasureExtent(shown.path)};
 }
 
 // Returns what is known of a recording; nothing before it was first opened.
@@ -168,18 +173,17 @@ std::size_t ClipShelf::bytes() const {
 }
 
 // The reader stays open in the pool: frames are mostly asked for next.
-vision::ClipInfo ClipShelf::Info(const std::filesystem::path& path) {
-  const Film film = DescribeFilm(path);
+vision::ClipInfo ClipShelf::Info(const ShownRecording& shown) {
+  const Film film = DescribeFilm(shown);
   if (const auto known = Recall(film)) return known->info;
-  const ReaderPool::Lease reader = readers_.Take(path);
+  const ReaderPool::Lease reader = readers_.Take(shown);
   return Learn(film, reader.clip()).info;
 }
 
-Picture ClipShelf::Frame(const std::filesystem::path& path,
-                         std::int64_t index) {
-  const Key key{DescribeFilm(path), index};
+Picture ClipShelf::Frame(const ShownRecording& shown, std::int64_t index) {
+  const Key key{DescribeFilm(shown), index};
   if (const auto kept = Find(key)) return *kept;
-  const ReaderPool::Lease reader = readers_.Take(path);
+  const ReaderPool::Lease reader = readers_.Take(shown);
   // Somebody else, or the thread, may have made it while this one waited.
   if (const auto kept = Find(key)) return *kept;
   const Known known = Learn(key.first, reader.clip());
@@ -195,10 +199,10 @@ Picture ClipShelf::Frame(const std::filesystem::path& path,
 
 // A list shows hundreds of these, each of another recording: decoding them
 // ahead would push out what a person is looking at.
-Picture ClipShelf::Small(const std::filesystem::path& path, std::int64_t index,
+Picture ClipShelf::Small(const ShownRecording& shown, std::int64_t index,
                          core::PixelPoint centre, double width_px) {
-  const Film film = DescribeFilm(path);
-  const ReaderPool::Lease reader = readers_.Take(path);
+  const Film film = DescribeFilm(shown);
+  const ReaderPool::Lease reader = readers_.Take(shown);
   const Known known = Learn(film, reader.clip());
   const vision::Image image =
       Shrunk(reader.clip().Read(index), centre, width_px, known.white);
@@ -212,7 +216,7 @@ void ClipShelf::Ask(const Film& film, std::int64_t index) {
   const std::lock_guard lock(guard_);
   // What it was before needs no decoding any more.
   std::erase_if(asked_, [&](const Asked& asked) {
-    return asked.film.path == film.path && asked.film != film;
+    return asked.film.shown == film.shown && asked.film != film;
   });
   const auto found =
       std::find_if(asked_.begin(), asked_.end(),
@@ -263,7 +267,7 @@ void ClipShelf::WarmUp() {
 // Makes the pictures of a recording as long as it is among those asked for.
 void ClipShelf::Decode(const Asked& asked) {
   // A reader of its own: the other one jumps to what is asked for.
-  const auto clip = OpenShelfClip(asked.film.path);
+  const auto clip = OpenShelfClip(asked.film.shown);
   const Known known = Learn(asked.film, *clip);
   // First what is near the frame that was asked for, then the rest.
   const std::int64_t frames = known.info.frames;

@@ -56,15 +56,15 @@ class ClipShelf {
   ClipShelf& operator=(const ClipShelf&) = delete;
 
   // Both throw like vision::OpenClip, Frame also like vision::Clip::Read.
-  vision::ClipInfo Info(const std::filesystem::path& path);
+  vision::ClipInfo Info(const ShownRecording& shown);
   // PNG with the samples as recorded where the recording is raw, else JPEG.
   // Frames deeper than 8 bits are brought to 8, so that the brightest
   // thousandth of the first frame is white.
-  Picture Frame(const std::filesystem::path& path, std::int64_t index);
+  Picture Frame(const ShownRecording& shown, std::int64_t index);
 
   // JPEG of a part of a frame (thumbnail.h). Not kept, and the recording is not
   // decoded ahead for it.
-  Picture Small(const std::filesystem::path& path, std::int64_t index,
+  Picture Small(const ShownRecording& shown, std::int64_t index,
                 core::PixelPoint centre, double width_px);
 
   std::size_t bytes() const;  // of the pictures kept
@@ -72,7 +72,7 @@ class ClipShelf {
  private:
   // A recording as it is now: one that grows or is replaced becomes another.
   struct Film {
-    std::string path;
+    ShownRecording shown;
     pipeline::Extent extent;
     friend auto operator<=>(const Film&, const Film&) = default;
   };
@@ -93,7 +93,7 @@ class ClipShelf {
     bool taken = false;     // the thread has begun with it
   };
 
-  static Film DescribeFilm(const std::filesystem::path& path);
+  static Film DescribeFilm(const ShownRecording& shown);
   std::optional<Known> Recall(const Film& film) const;
   Known Learn(const Film& film, vision::Clip& clip);
   void Ask(const Film& film, std::int64_t index);

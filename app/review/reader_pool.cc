@@ -20,14 +20,14 @@ ReaderPool::Lease::~Lease() {
 // new one in its place if the recording has changed; a new one if there is
 // room; a new one in place of the idle one that was used longest ago. Waits
 // where none of them can be done.
-ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
-  const pipeline::Extent extent = pipeline::MeasureExtent(path);
+ReaderPool::Lease ReaderPool::Take(const ShownRecording& shown) {
+  const pipeline::Extent extent = pipeline::MeasureExtent(shown.path);
   std::list<Lease::Reader> closing;  // outside the lock, after it
   std::unique_lock lock(guard_);
   for (;;) {
     const auto own =
         std::find_if(readers_.begin(), readers_.end(),
-                     [&](const auto& reader) { return reader.path == path; });
+                     [&](const auto& reader) { return reader.shown == shown; });
     if (own != readers_.end() && !own->in_use && own->extent != extent) {
       closing.splice(closing.begin(), readers_, own);
       break;
@@ -50,13 +50,13 @@ ReaderPool::Lease ReaderPool::Take(const std::filesystem::path& path) {
     freed_.wait(lock);
   }
   // The place is taken first, so that nobody opens the same one or one more.
-  readers_.push_front({path, extent, nullptr});
+  readers_.push_front({shown, extent, nullptr});
   const auto reader = readers_.begin();
   lock.unlock();
   // Closing a decoder takes time, which others must not wait for.
   closing.clear();
   try {
-    reader->clip = open_(path);
+    reader->clip = open_(shown);
   } catch (...) {
     lock.lock();
     // The place is given back; whoever waited for it tries to open it again.

@@ -7,24 +7,38 @@
 // or was replaced is opened anew.
 #pragma once
 
+#include <compare>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include "app/trials/recordings.h"
 #include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::review {
 
+// A recording as it is looked at.
+struct ShownRecording {
+  std::filesystem::path path;
+  // The frames, first and one past the last, that are shown as a camera that
+  // stood still would have seen them (vision::Stabilise); nothing: as recorded.
+  std::optional<std::pair<std::int64_t, std::int64_t>> steady = {};
+  friend auto operator<=>(const ShownRecording&,
+                          const ShownRecording&) = default;
+};
+
 // Safe between threads.
 class ReaderPool {
  public:
-  using OpenClip = std::function<std::unique_ptr<vision::Clip>(
-      const std::filesystem::path&)>;
+  using OpenClip =
+      std::function<std::unique_ptr<vision::Clip>(const ShownRecording&)>;
 
   // `most` readers, at least 1; `open` makes one and throws where it cannot.
   ReaderPool(std::size_t most, OpenClip open);
@@ -43,7 +57,7 @@ class ReaderPool {
    private:
     friend class ReaderPool;
     struct Reader {
-      std::filesystem::path path;
+      ShownRecording shown;
       pipeline::Extent extent;  // when it was opened
       std::unique_ptr<vision::Clip> clip;
       bool in_use = true;
@@ -57,7 +71,7 @@ class ReaderPool {
 
   // Waits for the recording's reader, or for room for it. Throws what `open`
   // throws.
-  Lease Take(const std::filesystem::path& path);
+  Lease Take(const ShownRecording& shown);
 
  private:
   void Return(std::list<Lease::Reader>::iterator reader);

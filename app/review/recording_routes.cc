@@ -157,7 +157,7 @@ std::filesystem::path PathAsked(Desk& desk, const Request& request) {
 // The shelf opens everything with a rate of its own, so the rate is asked for
 // by opening the recording once more.
 Json RecordingJson(Desk& desk, const std::filesystem::path& path) {
-  Json json = ClipJson(desk.shelf().Info(path));
+  Json json = ClipJson(desk.shelf().Info({path}));
   try {
     const vision::TimeBase time =
         pipeline::OpenRecording(path)->info().time_base;
@@ -171,7 +171,8 @@ Json RecordingJson(Desk& desk, const std::filesystem::path& path) {
 Reply RecordingFrameReply(Desk& desk, const Request& request) {
   const auto path = PathAsked(desk, request);
   return PictureReply(desk.shelf().Frame(
-      path, ParsePathNumber(Asked(request, "frame"), request.path)));
+      {path, AskedSteady(request)},
+      ParsePathNumber(Asked(request, "frame"), request.path)));
 }
 
 // --- analyses ----------------------------------------------------------------
@@ -216,7 +217,7 @@ std::string Kept(Desk& desk, const AnalysisStatus& status,
 // Queues an analysis and returns its id.
 std::string QueueOrder(Desk& desk, AnalysisOrder order) {
   // What cannot be read is refused now, by whoever asked.
-  order.frames = desk.shelf().Info(order.path).frames;
+  order.frames = desk.shelf().Info({order.path}).frames;
   return desk.analyses().Add(std::move(order));
 }
 

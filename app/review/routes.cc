@@ -92,7 +92,7 @@ core::Trial FindRevision(const std::vector<db::Revision>& history,
 Json ClipOfTrialJson(Desk& desk, const core::Trial& trial) {
   if (trial.clip.path.empty()) return {{"absent", "logged by hand"}};
   try {
-    return ClipJson(desk.shelf().Info(trial.clip.path));
+    return ClipJson(desk.shelf().Info({trial.clip.path}));
   } catch (const core::InputError& error) {
     return {{"absent", error.what()}};
   }
@@ -130,7 +130,7 @@ Reply FrameReply(Desk& desk, const Request& request, const std::string& id,
   const std::int64_t n = ParsePathNumber(number, request.path);
   const std::string clip = desk.FindClipPath(id);
   if (clip.empty()) throw NotThere(request.path);
-  return PictureReply(desk.shelf().Frame(clip, n));
+  return PictureReply(desk.shelf().Frame({clip, AskedSteady(request)}, n));
 }
 
 // The trial as it stands, or the revision asked for.

@@ -193,7 +193,7 @@ AnalysisOrder ReadTestOrder(Desk& desk, const nlohmann::json& asked) {
   // The shelf has looked at the recording already: the person marked points on
   // it.
   order.camera =
-      ReadCameraOptions(Part(asked, "camera"), desk.shelf().Info(order.path));
+      ReadCameraOptions(Part(asked, "camera"), desk.shelf().Info({order.path}));
   return order;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "app/documents/replay.h"
+#include "app/measure/undistorted_clip.h"
 
 namespace touchdown::review {
 namespace {
@@ -67,7 +68,8 @@ vision::Image Shrunk(const core::Frame& frame, core::PixelPoint centre,
 }
 
 Picture RenderThumbnail(ClipShelf& shelf, const core::Trial& trial) {
-  const vision::ClipInfo info = shelf.Info(trial.clip.path);
+  ShownRecording shown{trial.clip.path};
+  const vision::ClipInfo info = shelf.Info(shown);
   // Without a contact the whole width of the middle frame is shown.
   core::PixelPoint centre{info.width_px / 2.0, info.height_px / 2.0};
   double width_px = info.width_px;
@@ -82,8 +84,9 @@ Picture RenderThumbnail(ClipShelf& shelf, const core::Trial& trial) {
                std::max(body.radius_px.value, body.half_long_px.value);
     frame = std::clamp<std::int64_t>(
         std::llround(trial.first.contact.frame->value), 0, info.frames - 1);
+    shown.steady = pipeline::SteadyFrames(*analysis);
   }
-  return shelf.Small(trial.clip.path, frame, centre, width_px);
+  return shelf.Small(shown, frame, centre, width_px);
 }
 
 }  // namespace touchdown::review

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/documents/analysis_json.h"
+#include "app/measure/undistorted_clip.h"
 #include "app/review/words.h"
 #include "app/text/format.h"
 #include "app/text/json.h"
@@ -186,6 +187,10 @@ Json ViewJson(const pipeline::Analysis& analysis) {
                {"warnings", analysis.warnings},
                {"corrections", analysis.corrections},
                {"checks", pipeline::ChecksJson(analysis)}};
+  // Drawn over the frames as a camera that stood still would have seen them.
+  if (const auto steady = pipeline::SteadyFrames(analysis)) {
+    view["steady"] = fmt::format("{}:{}", steady->first, steady->second);
+  }
   if (!analysis.plane) {
     view["ground"] = nullptr;
     return view;

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <utility>
 
 #include "tests/pipeline/film_file.h"
+#include "tests/pipeline/shaken.h"
 #include "tests/support/temporary_folder.h"
 #include "touchdown/core/errors.h"
 #include "touchdown/vision/footage/clip_writer.h"
@@ -26,7 +29,7 @@ TEST(ClipShelf, GivesTheSamplesOfARawRecording) {
   const testing::TemporaryFolder folder;
   WriteSphere(folder / "a.mraw", 25.0, 1);
   ClipShelf shelf;
-  const Picture picture = shelf.Frame(folder / "a.mraw", 70);
+  const Picture picture = shelf.Frame({folder / "a.mraw"}, 70);
   EXPECT_EQ(picture.type, "image/png");
   const vision::Image image = Decode(picture, folder);
   const auto clip = vision::OpenClip(folder / "a.mraw");
@@ -69,7 +72,7 @@ TEST(ClipShelf, GivesEachFrameOfACompressedRecordingInAnyOrder) {
   WriteLevels(folder / "a.mp4", 60);
   ClipShelf shelf;
   for (const int n : {59, 0, 30, 29, 31, 5, 58, 30}) {
-    const Picture picture = shelf.Frame(folder / "a.mp4", n);
+    const Picture picture = shelf.Frame({folder / "a.mp4"}, n);
     EXPECT_EQ(picture.type, "image/jpeg");
     const auto level = Decode(picture, folder).View().at(32, 24);
     EXPECT_NEAR(static_cast<double>(level), 20 + 3 * n, 4.0) << n;
@@ -82,12 +85,51 @@ TEST(ClipShelf, SeesThatARecordingHasChanged) {
   const auto path = folder / "a.mp4";
   WriteLevels(path, 60);
   ClipShelf shelf;
-  EXPECT_EQ(shelf.Info(path).frames, 60);
-  shelf.Frame(path, 7);
+  EXPECT_EQ(shelf.Info({path}).frames, 60);
+  shelf.Frame({path}, 7);
   WriteLevels(path, 30, 100);
-  EXPECT_EQ(shelf.Info(path).frames, 30);
-  const auto level = Decode(shelf.Frame(path, 7), folder).View().at(32, 24);
+  EXPECT_EQ(shelf.Info({path}).frames, 30);
+  const auto level = Decode(shelf.Frame({path}, 7), folder).View().at(32, 24);
   EXPECT_NEAR(static_cast<double>(level), 100 + 3 * 7, 4.0);
+}
+
+// What stands still is where frame 0 shows it; as recorded it is not.
+TEST(ClipShelf, PutsTheFramesOfACameraThatMovedBack) {
+  const testing::TemporaryFolder folder;
+  const auto path = folder / "a.mraw";
+  constexpr std::int64_t kFrames = 30;
+  constexpr std::int64_t kLate = 25;  // by then it has gone 5 px
+  {
+    pipeline::filmed::Film film =
+        pipeline::filmed::Default(core::BodyKind::kSphere);
+    film.look.texture_amplitude = 0.2;
+    pipeline::filmed::ShakenClip clip(film, pipeline::filmed::ByHand);
+    std::int64_t frame = 0;
+    vision::WriteMraw(path, {}, [&]() -> std::optional<core::Frame> {
+      if (frame == kFrames) return std::nullopt;
+      return clip.Read(frame++);
+    });
+  }
+  ClipShelf shelf;
+  const vision::Image first = Decode(shelf.Frame({path}, 0), folder);
+  const auto rms = [&](const Picture& picture) {
+    const vision::Image image = Decode(picture, folder);
+    double square = 0.0;
+    int n = 0;
+    // A part of what stands still.
+    for (int y = 90; y < 110; ++y) {
+      for (int x = 12; x < 60; ++x, ++n) {
+        const double d = static_cast<double>(image.View().at(x, y)) -
+                         static_cast<double>(first.View().at(x, y));
+        square += d * d;
+      }
+    }
+    return std::sqrt(square / n);
+  };
+  const double recorded = rms(shelf.Frame({path}, kLate));
+  const double steady = rms(shelf.Frame(
+      {path, std::pair<std::int64_t, std::int64_t>{0, kFrames}}, kLate));
+  EXPECT_LT(steady, 0.3 * recorded);
 }
 
 TEST(ClipShelf, KeepsNoMoreThanItMay) {
@@ -99,7 +141,7 @@ TEST(ClipShelf, KeepsNoMoreThanItMay) {
   options.most_open = 1;
   ClipShelf shelf(options);
   for (int n = 0; n < 60; ++n) {
-    shelf.Frame(folder / (n % 2 == 0 ? "a.mp4" : "b.mp4"), n);
+    shelf.Frame({folder / (n % 2 == 0 ? "a.mp4" : "b.mp4")}, n);
     EXPECT_LE(shelf.bytes(), options.most_bytes);
   }
 }
@@ -107,9 +149,10 @@ TEST(ClipShelf, KeepsNoMoreThanItMay) {
 TEST(ClipShelf, SaysWhatIsWrong) {
   const testing::TemporaryFolder folder;
   ClipShelf shelf;
-  EXPECT_THROW(shelf.Frame(folder / "none.mraw", 0), core::InputError);
+  EXPECT_THROW(shelf.Frame({folder / "none.mraw"}, 0), core::InputError);
   WriteSphere(folder / "a.mraw", 25.0, 1);
-  EXPECT_THROW(shelf.Frame(folder / "a.mraw", 100'000), std::invalid_argument);
+  EXPECT_THROW(shelf.Frame({folder / "a.mraw"}, 100'000),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ class CountedClip final : public vision::Clip {
 };
 
 ReaderPool::OpenClip Counting(Count& count) {
-  return [&count](const std::filesystem::path& path) {
-    if (path == "damaged") throw core::InputError("damaged");
+  return [&count](const ShownRecording& shown) {
+    if (shown.path == "damaged") throw core::InputError("damaged");
     return std::make_unique<CountedClip>(count);
   };
 }
@@ -61,7 +61,7 @@ TEST(ReaderPool, HasNeverMoreReadersThanItMayHoweverManyAsk) {
     for (int person = 0; person < 12; ++person) {
       people.emplace_back([&, person] {
         for (int n = 0; n < 200; ++n) {
-          const auto lease = pool.Take(std::to_string((person + n) % 7));
+          const auto lease = pool.Take({std::to_string((person + n) % 7)});
           auto& clip = dynamic_cast<CountedClip&>(lease.clip());
           if (++clip.users > 1) ++shared;
           std::this_thread::yield();
@@ -80,14 +80,14 @@ TEST(ReaderPool, HasNeverMoreReadersThanItMayHoweverManyAsk) {
 TEST(ReaderPool, ClosesWhatWasNotUsedForLongest) {
   Count count;
   ReaderPool pool(2, Counting(count));
-  pool.Take("a");
-  pool.Take("b");
-  pool.Take("a");
+  pool.Take({"a"});
+  pool.Take({"b"});
+  pool.Take({"a"});
   EXPECT_EQ(count.opened, 2);
-  pool.Take("c");  // in the place of b
-  pool.Take("a");
+  pool.Take({"c"});  // in the place of b
+  pool.Take({"a"});
   EXPECT_EQ(count.opened, 3);
-  pool.Take("b");
+  pool.Take({"b"});
   EXPECT_EQ(count.opened, 4);
   EXPECT_EQ(count.now, 2);
 }
@@ -95,9 +95,9 @@ TEST(ReaderPool, ClosesWhatWasNotUsedForLongest) {
 TEST(ReaderPool, KeepsNoPlaceForWhatCannotBeOpened) {
   Count count;
   ReaderPool pool(1, Counting(count));
-  EXPECT_THROW(pool.Take("damaged"), core::InputError);
-  EXPECT_THROW(pool.Take("damaged"), core::InputError);
-  pool.Take("a");  // would wait for ever
+  EXPECT_THROW(pool.Take({"damaged"}), core::InputError);
+  EXPECT_THROW(pool.Take({"damaged"}), core::InputError);
+  pool.Take({"a"});  // would wait for ever
   EXPECT_EQ(count.now, 1);
 }
 

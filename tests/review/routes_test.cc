@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/documents/replay.h"
+#include "app/review/trial_view.h"
 #include "tests/review/lab.h"
 #include "touchdown/db/plan.h"
 
@@ -144,6 +146,29 @@ TEST_F(Routes, GivesFrames) {
   EXPECT_EQ(reply.type, "image/png");
   EXPECT_EQ(Get(Trial("/frames/115")).status, 400);
   EXPECT_EQ(Get(Trial("/frames/-1")).status, 404);
+}
+
+// As a camera that stood still in these frames would have shown it. This one
+// did.
+TEST_F(Routes, GivesFramesThatArePutBack) {
+  const auto get = [&](const std::string& steady) {
+    Request request;
+    request.path = Trial("/frames/80");
+    request.query["steady"] = steady;
+    return Route(desk, request);
+  };
+  const Reply still = get("0:115");
+  EXPECT_EQ(still.status, 200);
+  EXPECT_EQ(still.body, Get(Trial("/frames/80")).body);
+  for (const char* wrong : {"", "0", ":", "0:", "a:b", "-1:115"}) {
+    EXPECT_EQ(get(wrong).status, 404) << wrong;
+  }
+  EXPECT_EQ(get("0:116").status, 400);
+  EXPECT_EQ(get("5:5").status, 400);
+  pipeline::Analysis moved = *pipeline::Replay(lab.Now());
+  EXPECT_FALSE(ViewJson(moved).contains("steady"));
+  moved.camera_moved_px = core::Estimate{7.0, 0.1};
+  EXPECT_EQ(ViewJson(moved)["steady"], "0:115");
 }
 
 TEST_F(Routes, JudgesACorrectionAndStoresNothing) {

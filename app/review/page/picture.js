@@ -94,7 +94,11 @@ export class Picture {
   // Resolves when the picture is on the screen.
   async showFrame(frame) {
     this.frame = frame;
-    const url = this.frameUrl(frame);
+    const plain = this.frameUrl(frame);
+    // Of a camera that moved, the frame put back, as outlines and ground are.
+    const steady = this.view?.steady;
+    const url = steady
+        ? `${plain}${plain.includes('?') ? '&' : '?'}steady=${steady}` : plain;
     this.image.setAttribute('href', url);
     this.node.dataset.frame = frame;
     this.draw();
