@@ -194,12 +194,14 @@ void AddYaw(Analysis& analysis, const ClipCalibration& camera,
 
 void AddDrag(Analysis& analysis,
              const vision::ContactOptions& contact_options) {
-  const auto drag = DragBeyondDoubt(analysis.contacts);
-  if (!drag || !analysis.plane) return;
+  // Below it u would grow by less than a tenth of the change.
+  constexpr double kNegligible = 0.01;
+  const double probability = ProbabilityOfDrag(analysis.contacts);
+  if (probability < kNegligible || !analysis.plane) return;
   vision::ContactOptions options = KeepPath(analysis, contact_options);
-  options.drag_per_px = drag->value;
+  options.drag_per_px = analysis.contacts.drag_per_px->value;
   AddShared(analysis.contacts, "drag",
-            {{FindPlaneContacts(*analysis.plane, options)}});
+            {{FindPlaneContacts(*analysis.plane, options), probability}});
 }
 
 namespace {

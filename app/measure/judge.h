@@ -53,9 +53,10 @@ void AddLens(Analysis& analysis, const ClipCalibration& camera,
 void AddYaw(Analysis& analysis, const ClipCalibration& camera,
             const vision::ContactOptions& contact_options);
 
-// Adds the change that the drag of the flights would make, where it is beyond
-// doubt, as the line `drag` of the budgets. Nothing is corrected by it: lens,
-// parallax and frames of uneven time bend a path alike.
+// Adds the change that the drag of the flights would make, by its probability,
+// as the line `drag` of the budgets: the variance between two models. Nothing
+// is corrected by it: lens, parallax and frames of uneven time bend a path
+// alike.
 void AddDrag(Analysis& analysis, const vision::ContactOptions& contact_options);
 
 // Says in the scene model what the budgets leave out and why: the frame rate,

@@ -175,11 +175,12 @@ std::string DragOnALightBody(const Analysis& a, const ApproachFacts& s,
 
 }  // namespace
 
-std::optional<core::Estimate> DragBeyondDoubt(
-    const vision::ContactResult& contacts) {
+double ProbabilityOfDrag(const vision::ContactResult& contacts) {
+  constexpr double kAgainst = 1000.0;
   const auto& seen = contacts.drag_per_px;
-  return seen && seen->value > core::kBeyondDoubt * seen->u ? seen
-                                                            : std::nullopt;
+  if (!seen || !(seen->value > 0.0)) return 0.0;
+  const double z = seen->value / seen->u;
+  return 1.0 / (1.0 + kAgainst * std::exp(-0.5 * z * z));
 }
 
 void DescribeDrag(Analysis& analysis, const LeftOutSizes& sizes) {
@@ -190,7 +191,7 @@ void DescribeDrag(Analysis& analysis, const LeftOutSizes& sizes) {
     text = fmt::format("{:.2g} +- {:.2g} of the speed lost on a {}",
                        seen->value * per_m, seen->u * per_m,
                        analysis.scale ? "metre" : "px");
-    if (DragBeyondDoubt(analysis.contacts)) {
+    if (ProbabilityOfDrag(analysis.contacts) > 0.5) {
       Warn("the flights bend as air bends them, " + text +
                ": u contains what taking that out would change; a camera that "
                "moves, perspective, and frames of uneven time bend them, too",

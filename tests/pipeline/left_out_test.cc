@@ -84,6 +84,8 @@ TEST(LeftOut, DragOfALightBodyByHand) {
   EXPECT_TRUE(a.scene_model.left_out["drag"].starts_with(
       "the flights show 0.03 +- 0.01 of the speed lost on a metre; "));
   EXPECT_TRUE(a.warnings.empty());
+  EXPECT_NEAR(ProbabilityOfDrag(a.contacts), 1.0 / (1.0 + 1e3 * std::exp(-4.5)),
+              1e-12);
   a.contacts.drag_per_px = core::Estimate{5e-5, 1e-5};
   DescribeDrag(a);
   DescribeDrag(a);

@@ -70,13 +70,17 @@ TEST(Drag, AFlightInAirComesBack) {
 TEST(Drag, FlightsTellItWithinU) {
   std::mt19937_64 engine(2);
   const std::vector<SampleRange> flights = {{0, 60}, {60, 120}};
-  for (const double k : {0.0, kLight}) {
+  FlightOptions known;
+  known.gravity_px_per_s2 = core::Estimate{kGravity, 1e-4 * kGravity};
+  for (int i = 0; i < 4; ++i) {
+    const FlightOptions options = i < 2 ? FlightOptions{} : known;
+    const double k = i % 2 == 0 ? 0.0 : kLight;
     Bounce bounce;
     bounce.k = k;
     std::vector<double> pulls;
     constexpr int kTracks = 100;
-    for (int i = 0; i < kTracks; ++i) {
-      const auto seen = FitDrag(bounce.Film(engine), flights);
+    for (int n = 0; n < kTracks; ++n) {
+      const auto seen = FitDrag(bounce.Film(engine), flights, options);
       ASSERT_TRUE(seen);
       if (k > 0.0) EXPECT_GT(seen->value, core::kBeyondDoubt * seen->u);
       if (k == 0.0) EXPECT_LT(seen->value, core::kBeyondDoubt * seen->u);
@@ -85,6 +89,11 @@ TEST(Drag, FlightsTellItWithinU) {
     EXPECT_GT(testing::Rms(pulls), 0.6) << k;  // u is never narrowed
     EXPECT_LT(testing::Rms(pulls), 1.25) << k;
   }
+  // One flight that only falls: gravity that is known tells its drag.
+  std::mt19937_64 engine_of_fall(3);
+  const PlaneTrack fall = Bounce().Film(engine_of_fall);
+  const std::vector<SampleRange> falls = {{20, 60}};
+  EXPECT_LT(FitDrag(fall, falls, known)->u, 0.5 * FitDrag(fall, falls)->u);
 }
 
 TEST(Drag, ShortFlightsTellNothingOfIt) {

@@ -149,6 +149,12 @@ constexpr double kSinkShare = 0.1;
 // An edge of the ground that is seen may be so far off the line of contact.
 constexpr double kEdgeShare = 0.3;
 
+std::string DescribeEnd(const Touch& touch, const PlaneSample& last) {
+  return fmt::format(
+      "the body's flight ends {:.1f} px {} the ground line at frame {}",
+      std::abs(touch.gap_px), touch.gap_px > 0 ? "above" : "below", last.frame);
+}
+
 // Why the line is not the ground: the body passes through it, or is thrown back
 // well above or below it. Empty where line and track agree.
 std::string RefuteGround(const PlaneTrack& track,
@@ -162,10 +168,7 @@ std::string RefuteGround(const PlaneTrack& track,
   for (const Touch& touch : touches) {
     const PlaneSample& s = track.samples[touch.event.before_frames.end - 1];
     if (std::abs(touch.gap_px) > NearLine(track, s, kImpactShare)) {
-      return fmt::format(
-          "the body rebounds {:.1f} px {} the ground line at frame {}",
-          std::abs(touch.gap_px), touch.gap_px > 0 ? "above" : "below",
-          s.frame);
+      return DescribeEnd(touch, s);
     }
   }
   return {};
@@ -473,7 +476,7 @@ ContactResult FindContacts(const PlaneTrack& given,
     segmentation.gravity_px_per_s2.reset();
   }
   if (options.path.empty()) {
-    result.drag_per_px = FitDrag(track, SelectFlights(cut.stretches));
+    result.drag_per_px = FitDrag(track, SelectFlights(cut.stretches), flight);
   }
   flight.drag_per_px = options.drag_per_px;
   if (WidenToCorrelation(cut.stretches, flight, track) &&
@@ -534,6 +537,12 @@ ContactResult FindContacts(const PlaneTrack& given,
     const PlaneSample& last = track.samples[touch.event.before_frames.end - 1];
     if (!options.contact_frame &&
         std::abs(touch.gap_px) > NearLine(track, last, kImpactShare)) {
+      // Before the first contact it is a hand that lets go.
+      if (first && touch.gap_px > 0.0) {
+        result.warnings.push_back(DescribeEnd(touch, last) +
+                                  ": something struck it, or frames are "
+                                  "missing or of uneven time");
+      }
       continue;
     }
     Event event = touch.event;

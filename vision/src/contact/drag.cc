@@ -10,16 +10,15 @@ namespace touchdown::vision {
 namespace {
 
 // What one flight tells of k: the derivatives of its coordinates by it, less
-// what place, velocity and gravity could take up, against the residuals.
+// what place, velocity and gravity could take up, against the residuals: the
+// Schur complement of the normal equations.
 struct DragEvidence {
   double information = 0.0;  // in the unit of the flight's own residuals
   double gradient = 0.0;
 };
 
 DragEvidence ComputeDragEvidence(std::span<const PlaneSample> samples,
-                                 double drag_per_px) {
-  FlightOptions options;
-  options.drag_per_px = drag_per_px;
+                                 const FlightOptions& options) {
   const Flight flight = FitFlight(samples, options);
   // Of the speed, over the whole flight: far above rounding, far below what
   // bends the derivative.
@@ -38,13 +37,16 @@ DragEvidence ComputeDragEvidence(std::span<const PlaneSample> samples,
       return ComputeDragOffset(flight.along[1], flight.height[1],
                                flight.height[2], k, s.time_s - flight.t0_s);
     };
-    const DragOffset here = offset(drag_per_px);
-    const DragOffset more = offset(drag_per_px + step);
+    const DragOffset here = offset(options.drag_per_px);
+    const DragOffset more = offset(options.drag_per_px + step);
     s.along_px = (more.along_px - here.along_px) / step;
     s.height_px = (more.height_px - here.height_px) / step;
     s.u_face_rad = 0.0;
   }
-  const Flight taken_up = FitFlight(derivative);
+  const auto& known = options.gravity_px_per_s2;
+  FlightOptions of_derivative;
+  if (known) of_derivative.gravity_px_per_s2 = core::Estimate{0.0, known->u};
+  const Flight taken_up = FitFlight(derivative, of_derivative);
   std::vector<double> along, height;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const PlaneSample& s = samples[i];
@@ -61,10 +63,16 @@ DragEvidence ComputeDragEvidence(std::span<const PlaneSample> samples,
     add(s.height_px - at.height_px, derivative[i].height_px - lost.height_px,
         s.u_height_px, height);
   }
+  if (known) {
+    // The prior of gravity is a measured number, as a place is.
+    const double left = taken_up.height[2] / known->u;
+    out.information += left * left;
+    out.gradient += left * (flight.height[2] - known->value) / known->u;
+  }
   // Place and velocity of both coordinates, and gravity.
-  constexpr int kFitted = 5;
+  const int fitted = known ? 4 : 5;
   const double inflation = ComputeInflation(
-      {along, height}, 2 * static_cast<int>(samples.size()) - kFitted);
+      {along, height}, 2 * static_cast<int>(samples.size()) - fitted);
   out.information /= inflation * inflation;
   out.gradient /= inflation * inflation;
   return out;
@@ -107,7 +115,8 @@ DragOffset ComputeDragOffset(double v_t, double v_n, double gravity,
 }
 
 std::optional<core::Estimate> FitDrag(const PlaneTrack& track,
-                                      std::span<const SampleRange> flights) {
+                                      std::span<const SampleRange> flights,
+                                      const FlightOptions& options) {
   // Frames: residuals of shorter flights are mostly taken up by the fit, as in
   // WidenToCorrelation.
   constexpr std::size_t kMinFrames = 8;
@@ -116,6 +125,8 @@ std::optional<core::Estimate> FitDrag(const PlaneTrack& track,
   constexpr int kMaxSteps = 6;
   core::Estimate k;
   for (int i = 0; i < kMaxSteps; ++i) {
+    FlightOptions under = options;
+    under.drag_per_px = k.value;
     double information = 0.0;
     double gradient = 0.0;
     double square = 0.0;  // of what each flight alone would change, over its u
@@ -123,7 +134,7 @@ std::optional<core::Estimate> FitDrag(const PlaneTrack& track,
     for (const SampleRange& range : flights) {
       if (range.size() < kMinFrames) continue;
       const DragEvidence flight =
-          ComputeDragEvidence(SelectSamples(track, range), k.value);
+          ComputeDragEvidence(SelectSamples(track, range), under);
       if (!(flight.information > 0.0)) continue;
       information += flight.information;
       gradient += flight.gradient;
@@ -137,12 +148,12 @@ std::optional<core::Estimate> FitDrag(const PlaneTrack& track,
     const double chi2 = square - step * gradient;
     k.u = std::sqrt(std::max(1.0, seen > 1 ? chi2 / (seen - 1) : 1.0) /
                     information);
-    // Of u: a further step would not show. Nor is what may be none made better.
+    // Of u: a further step would not show.
     constexpr double kNegligible = 0.01;
-    if (k.value < core::kBeyondDoubt * k.u ||
-        std::abs(step) < kNegligible * k.u) {
-      break;
-    }
+    // Of u: what may be none is not made better. Larger would leave the first
+    // u, of residuals that drag is in, to what lies near the limit of doubt.
+    constexpr double kMaybe = 2.0;
+    if (k.value < kMaybe * k.u || std::abs(step) < kNegligible * k.u) break;
   }
   return k;
 }

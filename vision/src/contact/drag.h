@@ -34,12 +34,13 @@ struct DragOffset {
 DragOffset ComputeDragOffset(double v_t, double v_n, double gravity,
                              double drag_per_px, double t);
 
-// k as these flights have it, gravity free in each of them: what drag does to a
-// rise and to a fall, gravity of another size does not. Gauss and Newton's
-// steps, all flights together, each weighted by its own residuals and their
+// k as these flights have it, under the gravity of the options; where that is
+// not known, by the difference between rise and fall. Gauss and Newton's steps,
+// all flights together, each weighted by its own residuals and their
 // correlation; u grows where the flights disagree. Nothing where no flight has
 // eight frames. It may be negative, by noise.
 std::optional<core::Estimate> FitDrag(const PlaneTrack& track,
-                                      std::span<const SampleRange> flights);
+                                      std::span<const SampleRange> flights,
+                                      const FlightOptions& options = {});
 
 }  // namespace touchdown::vision
