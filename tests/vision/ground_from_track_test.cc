@@ -66,6 +66,36 @@ TEST(GroundFromPath, OfWhatIsCarried) {
       filming)));
 }
 
+// No frame shows the body near the ground, on which it lay for a while: how
+// long, and so how deep, nothing tells. The line says so, and the contact's
+// time and the line hold the truth.
+TEST(GroundFromContacts, IsKnownNoBetterThanTheWayThatWasNotSeen) {
+  Throw thrown;
+  thrown.before = {1.4, -2.0, 0.0};
+  thrown.after = {-1.2, 1.0, 0.0};
+  thrown.duration_s = 0.005;
+  Filming filming;
+  filming.frames = 80;
+  Track track = synthetic::FilmTrack(
+      thrown, [&](double t) { return thrown.At(t); }, filming);
+  const double contact = thrown.contact_s * filming.camera.fps;
+  const double release = contact + thrown.duration_s * filming.camera.fps;
+  std::erase_if(track.poses, [&](const Pose& pose) {
+    const auto frame = static_cast<double>(pose.frame);
+    return frame > contact - 10.0 && frame < release + 5.0;
+  });
+  const auto ground = GroundFromContacts(track);
+  ASSERT_TRUE(ground);
+  const double truth_px = ToImage(filming.camera, {0.0, 0.0}).y_px;
+  const double off_px = std::abs(ground->p1.y_px - truth_px);
+  EXPECT_GT(ground->u_offset_px, 5.0);
+  EXPECT_LT(off_px, 3.0 * ground->u_offset_px);
+  const ContactResult found = FindContacts(SeenFromGround(track, *ground));
+  ASSERT_TRUE(found.first.contact.frame) << found.first.contact.reason;
+  EXPECT_LT(std::abs(found.first.contact.frame->value - contact),
+            3.0 * found.first.contact.frame->u);
+}
+
 // Without any line: the ground through the lowest point at the first rebound.
 TEST(GroundFromContacts, AtTheFirstRebound) {
   Throw thrown;

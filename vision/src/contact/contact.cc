@@ -606,9 +606,18 @@ std::optional<calib::GroundLine> GroundFromContacts(const Track& track,
   const auto line_at = [&](const ContactEvidence& at) {
     calib::GroundLine ground = level_at(at.touching.y_px);
     ground.reference = at.touching;
-    // At most 5 px: with a larger u the line would say nothing of later
-    // contacts. Not studied.
-    ground.u_offset_px = std::min(at.u_ground_px, 5.0);
+    // The body touched it between two frames that show it: the way from one to
+    // the other, evenly spread, bounds what is not known. At least 5 px, so
+    // that contacts which follow each other closely are told by one line. Not
+    // studied.
+    constexpr double kLeastBound_px = 5.0;
+    const double unseen_s =
+        plane.frame_interval_s *
+        static_cast<double>(
+            at.after ? at.after->first_frame - at.before->last_frame : 1);
+    const double way_px = std::abs(at.before->At(at.time_s).v_n) * unseen_s;
+    ground.u_offset_px = std::min(
+        at.u_ground_px, std::max(kLeastBound_px, way_px / std::sqrt(12.0)));
     ground.source = calib::GroundSource::kContactPoints;
     return ground;
   };
