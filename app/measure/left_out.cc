@@ -53,8 +53,12 @@ std::optional<ApproachFacts> SeenAtContact(const Analysis& a) {
   out.lever = std::hypot(at->centre.x_px - 0.5 * a.clip.width_px,
                          at->centre.y_px - 0.5 * a.clip.height_px) /
               focal_px;
-  out.flight_s =
-      (frame - static_cast<double>(poses.front().frame)) / a.clip.time_base.fps;
+  // What flies is not what a hand still holds.
+  const auto& evidence = a.contacts.evidence;
+  const std::int64_t from = !evidence.empty() && evidence.front().before
+                                ? evidence.front().before->first_frame
+                                : poses.front().frame;
+  out.flight_s = (frame - static_cast<double>(from)) / a.clip.time_base.fps;
   return out;
 }
 

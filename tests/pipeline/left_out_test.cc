@@ -79,6 +79,12 @@ TEST(LeftOut, DragOfALightBodyByHand) {
   EXPECT_EQ(a.scene_model.left_out["drag"],
             "too few frames of flight to tell it; of a body as dense as water "
             "it would be 0.085 % of the speed at touchdown, 0.34 u");
+  // A hand held it until frame 30: half of the path.
+  a.contacts.evidence.emplace_back().before.emplace().first_frame = 30;
+  DescribeDrag(a);
+  EXPECT_TRUE(a.scene_model.left_out["drag"].find("0.042 %") !=
+              std::string::npos)
+      << a.scene_model.left_out["drag"];
   a.contacts.drag_per_px = core::Estimate{3e-5, 1e-5};
   DescribeDrag(a);
   EXPECT_TRUE(a.scene_model.left_out["drag"].starts_with(
