@@ -209,7 +209,7 @@ std::string Kept(Desk& desk, const AnalysisStatus& status,
                  const nlohmann::json& asked) {
   const std::string who = RequiredText(asked, "who", "your name");
   if (!status.trial_id.empty()) return status.trial_id;  // by another tab
-  const std::string id = Keep(desk.store(), status, who).id;
+  std::string id = Keep(desk.store(), status, who).id;
   desk.analyses().SetTrial(status.id, id);
   return id;
 }
