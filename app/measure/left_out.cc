@@ -197,7 +197,8 @@ void DescribeDrag(Analysis& analysis, const LeftOutSizes& sizes) {
                        analysis.scale ? "metre" : "px");
     if (ProbabilityOfDrag(analysis.contacts) > 0.5) {
       Warn("the flights bend as air bends them, " + text +
-               ": u contains what taking that out would change; a camera that "
+               ": u contains what taking that out would change, by its "
+               "probability; a camera that "
                "moves, perspective, and frames of uneven time bend them, too",
            analysis);
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tests/support/statistics.h"
@@ -176,6 +177,41 @@ TEST(GroundRefuted, ByReboundsOffTheLine) {
   EXPECT_EQ(refuted(4, -1.0),
             "4 of 4 rebounds are more than 4 standard deviations below the "
             "ground line");
+}
+
+// Struck at the top of its first hop, in the air: that is told, and is no
+// contact. Without the blow nothing is told.
+TEST(Contact, ABlowInTheAirIsTold) {
+  constexpr double kRebound_mps = 0.6;
+  constexpr double kFirst_s = 0.05;
+  constexpr double kTop_s =
+      kFirst_s + kRebound_mps / core::kStandardGravity_mps2;
+  Filming filming;
+  filming.camera.fps = 500.0;
+  filming.frames = 100;
+  const auto warnings = [&](double blow_mps) {
+    const auto motion = [=](double t) {
+      const double s = t - kFirst_s;
+      const double up = s < 0.0 ? -kRebound_mps : kRebound_mps;
+      const double blow = std::max(0.0, t - kTop_s) * blow_mps;
+      return ScenePose{{0.3 * t, 0.02 + up * s + blow -
+                                     0.5 * core::kStandardGravity_mps2 * s * s},
+                       0.0};
+    };
+    calib::GroundLine line =
+        calib::MakeGroundLine({0.0, 330.0}, {640.0, 330.0});
+    line.u_offset_px = 0.02;
+    const ContactResult found = FindContacts(
+        SeenFromGround(synthetic::FilmTrack(Throw{}, motion, filming), line));
+    EXPECT_TRUE(found.first.contact.found) << found.first.contact.reason;
+    return std::count_if(found.warnings.begin(), found.warnings.end(),
+                         [](const std::string& warning) {
+                           return warning.find("something struck it") !=
+                                  std::string::npos;
+                         });
+  };
+  EXPECT_EQ(warnings(0.0), 0);
+  EXPECT_EQ(warnings(0.4), 1);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "touchdown/core/estimate.h"
 #include "touchdown/vision/contact/flight.h"
@@ -29,8 +28,8 @@ struct DragOffset {
 };
 
 // t after the state (v_t, v_n), or before it where t < 0, under `gravity`
-// downward. Any unit of time. Runge and Kutta's steps of fourth order: to 1e-5
-// of the offset where k times the path is below 0.5.
+// downward. Any unit of time. Runge and Kutta's steps of fourth order: to 1e-4
+// of the offset where k times the path is below 0.25.
 DragOffset ComputeDragOffset(double v_t, double v_n, double gravity,
                              double drag_per_px, double t);
 

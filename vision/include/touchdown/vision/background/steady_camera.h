@@ -38,9 +38,9 @@ struct SteadyCameraOptions {
   // motion must explain better, and the same share of its left, middle and
   // right third; the largest displacement, as a share of the picture's smaller
   // side; and the share of the frames in which all that holds. Else it may be
-  // the body that moves, and nothing is put back. Of 13
-  // recordings and 140 of the strangers' clips, those are put back whose scene
-  // moves as a plane: one, filmed by hand.
+  // the body that moves, and nothing is put back. Of 13 recordings and 140 of
+  // the strangers' clips, those are put back whose scene moves as a plane: one,
+  // filmed by hand.
   double least_support = 0.65;
   double least_support_of_third = 0.55;
   double most_moved = 0.15;
