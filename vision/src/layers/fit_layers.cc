@@ -225,6 +225,8 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
     Judge(stack, options, step, fit, frames);
     // First steps are not worth more.
     solve.tolerance = step < kFlatSteps ? kRough : kFine;
+    // A disc's angles hang on its picture alone, which is learned first.
+    solve.turns = options.turns && (!shape.disc || step >= kFlatSteps);
     const StillEvidence evidence =
         WeighStill(stack, layers, frames, options.threads);
     const double moved = Advance(

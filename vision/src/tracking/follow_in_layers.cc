@@ -5,6 +5,7 @@
 #include <span>
 
 #include "layers/align_pose.h"
+#include "layers/disc_turn.h"
 #include "layers/fit_layers.h"
 #include "numbers/robust.h"
 #include "outline/track_shape.h"
@@ -45,6 +46,9 @@ constexpr double kCommonShare = 0.4;
 // likely with 0.001; without it the median |error| / u is 0.73 and 0.924 lie
 // within 1.96 u.
 constexpr double kModel_px = 0.001;
+
+// DN over the body's reach: of shading that stays with the light.
+constexpr double kShadingU_dn = 20.0;
 
 Shape LayerShape(const BodyImage& body, const std::optional<BodySize>& size) {
   Shape shape;
@@ -88,11 +92,10 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   u[layers::kShort] = shape.disc ? 0.0
                       : size     ? std::max(0.5 * size->short_px.u, kLeastU)
                                  : kSeenU;
-  const double slope = shape.disc ? 0.0 : 20.0;  // DN
-  u[layers::kSlopeX] = slope;
-  u[layers::kSlopeY] = slope;
-  // A disc's shading and size look alike: only corners tell.
-  u[layers::kCurve] = shape.disc ? 0.0 : 1.0;
+  u[layers::kSlopeX] = shape.disc ? 0.0 : kShadingU_dn;
+  u[layers::kSlopeY] = u[layers::kSlopeX];
+  // A disc's curve and size look alike: corners tell, or a size that is stated.
+  u[layers::kCurve] = shape.disc && !size ? 0.0 : 1.0;
   constexpr double kAnyLevel_dn = 1e4;  // as good as free
   for (std::size_t k = 0; k < layers::kTerms; ++k) {
     u[layers::kQuadratic + k] = kAnyLevel_dn;
@@ -231,6 +234,23 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
     evidence.stack = ReadPath(clip, evidence.still, path, shape, evidence.box);
   }
   return !fit.layers.flat;
+}
+
+// A disc turns where its face shows it. What it shows of the light does not
+// turn with it: a slope over the body, as on a block.
+bool TurnWithFace(const Shape& disc, Evidence& evidence,
+                  FitLayersOptions& options) {
+  const auto angles = layers::FindTurns(evidence.stack, disc,
+                                        options.prior.value[layers::kBlur],
+                                        evidence.path.poses);
+  if (!angles) return false;
+  for (std::size_t t = 0; t < angles->size(); ++t) {
+    evidence.path.poses[t].angle_rad = (*angles)[t];
+  }
+  options.turns = true;
+  options.prior.u[layers::kSlopeX] = kShadingU_dn;
+  options.prior.u[layers::kSlopeY] = kShadingU_dn;
+  return true;
 }
 
 // A texture costs more, and hides the body's size where it meets the outline:
@@ -373,9 +393,9 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   options.threads = threads;
   Evidence evidence = GatherEvidence(clip, background, track, shape, options);
   until.Check();
-  if (FitRoughly(clip, track, shape, options, evidence)) {
-    PrepareForTexture(size, options, evidence);
-  }
+  const bool textured = FitRoughly(clip, track, shape, options, evidence);
+  const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
+  if (textured || turning) PrepareForTexture(size, options, evidence);
   until.Check();
   const LayerFit fit = FitLayers(evidence.stack, shape, evidence.path.poses,
                                  evidence.still, evidence.noise_dn, options);
