@@ -32,17 +32,15 @@ std::string TrackCsv(const Analysis& analysis) {
       "along_px,height_px,gap_px,u_gap_px,face_deg\n";
   if (!analysis.track) return csv;
   const auto& poses = analysis.track->poses;
-  const bool rectangle =
-      analysis.track->body.kind == core::BodyKind::kRectangle;
+  const bool turns = analysis.plane && vision::ShowsTurn(*analysis.plane);
   std::size_t at = 0;  // of the plane's samples: frames may be missing there
   for (const vision::Pose& p : poses) {
     csv +=
         fmt::format("{},{:.9f},{:.5f},{:.5f},{:.5f},{:.5f},", p.frame, p.time_s,
                     p.centre.x_px, p.centre.y_px, p.u_x_px, p.u_y_px);
-    csv += rectangle
-               ? fmt::format("{:.6f},{:.6f},", p.angle_rad / core::kDegree,
-                             p.u_angle_rad / core::kDegree)
-               : std::string(",,");
+    csv += turns ? fmt::format("{:.6f},{:.6f},", p.angle_rad / core::kDegree,
+                               p.u_angle_rad / core::kDegree)
+                 : std::string(",,");
     csv += fmt::format("{:.3f},", p.misfit);
     // Both lists are in the order of frames, so one index walks along.
     if (analysis.plane && at < analysis.plane->samples.size() &&
@@ -50,7 +48,7 @@ std::string TrackCsv(const Analysis& analysis) {
       const vision::PlaneSample& s = analysis.plane->samples[at++];
       csv += fmt::format("{:.5f},{:.5f},{:.5f},{:.5f},", s.along_px,
                          s.height_px, s.gap_px, s.u_gap_px);
-      if (rectangle) csv += fmt::format("{:.6f}", s.face_rad / core::kDegree);
+      if (turns) csv += fmt::format("{:.6f}", s.face_rad / core::kDegree);
     } else {
       csv += ",,,,";
     }

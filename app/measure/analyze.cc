@@ -359,7 +359,11 @@ void Analyzer::DescribeScene() {
   DescribeCalibration(result_.calibration, scene);
   DescribeDrag(result_);
   if (track.body.kind == core::BodyKind::kSphere) {
-    scene.left_out["spin"] = "no mark on the sphere";
+    if (result_.plane && vision::ShowsTurn(*result_.plane)) {
+      scene.used.emplace_back("the ball's face, which turns");
+    } else {
+      scene.left_out["spin"] = "no mark on the sphere";
+    }
   }
 }
 

@@ -354,6 +354,30 @@ TEST(AnalyzeFiles, UnwritableFolderIsNamedAndLeavesNothing) {
   }
 }
 
+// The dot that docs/camera.md asks for shows the spin.
+TEST(Analyze, ADotOnABallShowsItsSpin) {
+  filmed::Film film = filmed::Default(core::BodyKind::kSphere);
+  film.thrown.before.omega = -20.0;
+  film.thrown.after.omega = -55.0;
+  film.look.mark = vision::SceneMark{0.5, 0.66, 0.25};
+  AnalyzeOptions options = filmed::Known(film);
+  options.diameter_m = core::Estimate{2.0 * film.thrown.half_long_m, 1e-5};
+  const auto analyze = [&] {
+    return AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 7), options);
+  };
+  const Analysis dotted = analyze();
+  const core::Motion& motion = dotted.contacts.first.motion;
+  filmed::ExpectMeasured(motion.before_omega_rad_per_s, -20.0, "before");
+  filmed::ExpectMeasured(motion.after_omega_rad_per_s, -55.0, "after");
+  EXPECT_LT(motion.after_omega_rad_per_s->u, 2.0);
+  EXPECT_THAT(dotted.scene_model.used,
+              ::testing::Contains("the ball's face, which turns"));
+  film.look.mark.reset();
+  const Analysis plain = analyze();
+  EXPECT_FALSE(plain.contacts.first.motion.before_omega_rad_per_s);
+  EXPECT_EQ(plain.scene_model.left_out.count("spin"), 1U);
+}
+
 // A dark ring that rolls down a ramp of 32 degrees, with a bright mark on it:
 // steeper than any edge that is taken for ground.
 TEST(Analyze, ARingOnARampIsCarriedByIt) {

@@ -87,6 +87,56 @@ TEST(Contact, TimeIsWidenedByWhatTheImpactChanges) {
   EXPECT_GT(kOff_px / fall_px_per_s, 0.2 * u);  // the above tell them apart
 }
 
+TEST(Contact, MarksShowTheSpinOfABall) {
+  Throw thrown;
+  thrown.marked = true;
+  thrown.face_rad = 2.0;
+  thrown.before = {1.5, -1.0, -12.0};
+  thrown.after = {1.2, 0.6, -41.0};
+  Filming filming;
+  for (const bool left : {false, true}) {
+    filming.camera.travels_left = left;
+    const core::Motion motion =
+        FindContacts(FilmPlane(thrown, filming), WithScale(filming))
+            .first.motion;
+    ASSERT_TRUE(motion.before_omega_rad_per_s);
+    ASSERT_TRUE(motion.after_omega_rad_per_s);
+    EXPECT_NEAR(motion.before_omega_rad_per_s->value, -12.0,
+                4.0 * motion.before_omega_rad_per_s->u);
+    EXPECT_NEAR(motion.after_omega_rad_per_s->value, -41.0,
+                4.0 * motion.after_omega_rad_per_s->u);
+    EXPECT_LT(motion.after_omega_rad_per_s->u, 0.1);
+  }
+  thrown.marked = false;
+  const core::Motion motion =
+      FindContacts(FilmPlane(thrown, filming), WithScale(filming)).first.motion;
+  ASSERT_FALSE(motion.before_omega_rad_per_s);
+  EXPECT_EQ(motion.before_omega_rad_per_s.error().reason,
+            "no mark on the sphere");
+}
+
+// A contact point that slips goes by v + R omega.
+TEST(Contact, MarksTellARollFromASlide) {
+  const Filming filming;
+  const auto name = [&](double speed_mps, double omega) {
+    Throw thrown;
+    thrown.stays = true;
+    thrown.marked = true;
+    thrown.before = {1.4, -0.8, 0.0};
+    thrown.after = {speed_mps, 0.0, omega};
+    return FindContacts(FilmPlane(thrown, filming), WithScale(filming))
+        .first.state;
+  };
+  const double radius_m = Throw{}.half_long_m;
+  EXPECT_EQ(name(1.0, -1.0 / radius_m).label, MotionState::kRoll);
+  EXPECT_EQ(name(1.0, 0.0).label, MotionState::kSlide);
+  EXPECT_EQ(name(1.0, -0.5 / radius_m).label, MotionState::kRollSlide);
+  EXPECT_EQ(name(0.0, -1.0 / radius_m).label, MotionState::kRollSlide);
+  EXPECT_EQ(name(0.0, 0.0).label, MotionState::kStick);
+  EXPECT_THAT(name(1.0, -1.0 / radius_m).reason,
+              HasSubstr("its contact point slips by"));
+}
+
 // A scale that is wrong makes gravity wrong: flights that are clear in the
 // picture stay what they are, and lengths say that they may be off. Thirty
 // frames of fall tell of a tenth.

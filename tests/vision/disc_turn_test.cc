@@ -33,7 +33,8 @@ LayeredScene SpinningBall() {
 
 TEST(FindTurns, OfAFaceBeforeAndAfterABlow) {
   const LayeredScene scene = SpinningBall();
-  const auto turns = FindTurns(Film(scene, 3), scene.shape, 1.0, scene.poses);
+  const auto turns =
+      FindTurns(Film(scene, 3), scene.shape, 1.0, 1.0, scene.poses);
   ASSERT_TRUE(turns);
   ASSERT_EQ(turns->size(), scene.poses.size());
   EXPECT_EQ(turns->front(), 0.0);
@@ -47,24 +48,49 @@ TEST(FindTurns, OfAFaceThatTurnsByAThirdBetweenTwoPictures) {
   for (std::size_t t = 0; t < scene.poses.size(); ++t) {
     scene.poses[t].angle_rad = 2.0 * static_cast<double>(t);
   }
-  const auto turns = FindTurns(Film(scene, 3), scene.shape, 1.0, scene.poses);
+  const auto turns =
+      FindTurns(Film(scene, 3), scene.shape, 1.0, 1.0, scene.poses);
   ASSERT_TRUE(turns);
   for (std::size_t t = 0; t < turns->size(); ++t) {
     EXPECT_NEAR((*turns)[t], scene.poses[t].angle_rad, 0.03) << t;
   }
 }
 
+TEST(FindTurns, OfPicturesThatDoNotShowAllOfTheFaceByTheOthers) {
+  LayeredScene scene = SpinningBall();
+  for (LayerPose& pose : scene.poses) pose.x -= 18.0;
+  const auto turns =
+      FindTurns(Film(scene, 3), scene.shape, 1.0, 1.0, scene.poses);
+  ASSERT_TRUE(turns);
+  for (std::size_t t = 1; t < turns->size(); ++t) {
+    EXPECT_NEAR((*turns)[t] - (*turns)[0],
+                scene.poses[t].angle_rad - scene.poses[0].angle_rad, 0.04)
+        << t;
+  }
+}
+
+TEST(MeasureFaceChange, IsNoiseUnlessMarksTurn) {
+  LayeredScene scene = SpinningBall();
+  const auto change = [&] {
+    return MeasureFaceChange(Film(scene, 3), scene.shape, 1.0, scene.poses);
+  };
+  EXPECT_GT(change(), 50.0);
+  for (LayerPose& pose : scene.poses) pose.angle_rad = 0.0;
+  EXPECT_LT(change(), 2.0);
+}
+
 TEST(FindTurns, NotOfAFaceThatKeepsItsAngle) {
   LayeredScene scene = SpinningBall();
   for (LayerPose& pose : scene.poses) pose.angle_rad = 0.0;
-  EXPECT_FALSE(FindTurns(Film(scene, 3), scene.shape, 1.0, scene.poses));
+  EXPECT_FALSE(FindTurns(Film(scene, 3), scene.shape, 1.0, 1.0, scene.poses));
 }
 
 TEST(FindTurns, NotOfAFaceWithoutMarks) {
   LayeredScene scene = SpinningBall();
   scene.body = [](double, double) { return 60.0; };
   for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
-    EXPECT_FALSE(FindTurns(Film(scene, seed), scene.shape, 1.0, scene.poses))
+    EXPECT_FALSE(
+        FindTurns(Film(scene, seed), scene.shape, 1.0, 1.0, scene.poses))
         << seed;
   }
 }
@@ -72,7 +98,7 @@ TEST(FindTurns, NotOfAFaceWithoutMarks) {
 TEST(FindTurns, NotOfADiscTooSmallToShowAFace) {
   LayeredScene scene = SpinningBall();
   scene.shape = Shape{true, 4.0, 4.0};
-  EXPECT_FALSE(FindTurns(Film(scene, 3), scene.shape, 1.0, scene.poses));
+  EXPECT_FALSE(FindTurns(Film(scene, 3), scene.shape, 1.0, 1.0, scene.poses));
 }
 
 TEST(FitLayers, AFaceThatTurnsDoesNotDrawABallAside) {
@@ -91,7 +117,7 @@ TEST(FitLayers, AFaceThatTurnsDoesNotDrawABallAside) {
   const auto worst = [&](bool turns) {
     options.turns = turns;
     std::vector<LayerPose> start = scene.poses;
-    const auto angles = FindTurns(stack, scene.shape, 1.0, start);
+    const auto angles = FindTurns(stack, scene.shape, 1.0, 1.0, start);
     for (std::size_t t = 0; t < start.size(); ++t) {
       start[t].angle_rad = turns ? (*angles)[t] : 0.0;
     }

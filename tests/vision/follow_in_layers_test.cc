@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
+#include <optional>
 
 #include "tests/vision/drawn_block.h"
+#include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
 namespace {
@@ -119,6 +122,54 @@ TEST(NeedsLayers, WhereTheBackgroundOrTheOutlineIsADoubtfulWitness) {
   track.known_background = true;
   for (Pose& each : track.poses) each.misfit = 1.5;
   EXPECT_TRUE(NeedsLayers(track, 0.1));
+}
+
+// A bright ball of 20 px that passes, and how it turns.
+struct PassingBall {
+  std::unique_ptr<Clip> clip;
+  Track track;
+};
+PassingBall FilmBall(std::optional<SceneMark> mark, double omega) {
+  Scene scene;
+  scene.body = core::Sphere({0.04, 0.0});
+  scene.camera.width_px = 240;
+  scene.camera.height_px = 120;
+  scene.camera.ground_point = {120.0, 100.0};
+  scene.camera.fps = 1000.0;
+  scene.look.body_level = 0.8;
+  scene.look.background_level = 0.3;
+  scene.look.mark = mark;
+  scene.noise = {1.0, 0.02};
+  scene.frames = 60;
+  scene.pose = [omega](double t) {
+    return ScenePose{{-0.08 + 2.6 * t, 0.05}, omega * t};
+  };
+  PassingBall ball{OpenScene(scene, 3), {}};
+  ball.track.body.radius_px = {20.0, 0.01};
+  ball.track.body.blur_px = 0.8;
+  for (std::int64_t f = 0; f < scene.frames; ++f) {
+    Pose pose;
+    pose.frame = f;
+    pose.centre =
+        ToImage(scene.camera,
+                scene.pose(static_cast<double>(f) / scene.camera.fps).centre);
+    ball.track.poses.push_back(pose);
+  }
+  return ball;
+}
+
+TEST(ShowsMarks, OfABallWithADotThatTurns) {
+  const SceneMark dot{0.3, 0.66, 0.15};
+  const auto shows = [](const PassingBall& ball) {
+    return ShowsMarks(*ball.clip, EstimateBackground(*ball.clip, 0, 60),
+                      ball.track);
+  };
+  EXPECT_TRUE(shows(FilmBall(dot, 60.0)));
+  EXPECT_FALSE(shows(FilmBall(dot, 0.0)));
+  EXPECT_FALSE(shows(FilmBall(std::nullopt, 60.0)));
+  PassingBall block = FilmBall(dot, 60.0);
+  block.track.body.kind = core::BodyKind::kRectangle;
+  EXPECT_FALSE(shows(block));
 }
 
 }  // namespace

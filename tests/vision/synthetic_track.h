@@ -37,6 +37,7 @@ struct Throw {
   Velocity after{1.2, 0.3, 0.0};
   double duration_s = 0.0;
   bool stays = false;
+  bool marked = false;  // a sphere whose marks show how it turns
   double gravity_mps2 = core::kStandardGravity_mps2;
 
   double Support(double face) const {
@@ -67,6 +68,7 @@ struct Throw {
     if (stays) {
       pose.centre = {x_m + after.vx * t, down};
       pose.angle_rad = face_rad;
+      if (marked) pose.angle_rad += after.omega * t;
       return pose;
     }
     // Down for a while: from one velocity to the other without a jump (the
@@ -152,7 +154,7 @@ inline Track FilmTrack(const Throw& body, const Motion& motion,
     pose.centre.y_px += filming.u_px * normal(engine);
     pose.u_x_px = pose.u_y_px = filming.u_px;
     pose.misfit = 1.0;
-    if (body.kind == core::BodyKind::kRectangle) {
+    if (body.kind == core::BodyKind::kRectangle || body.marked) {
       const double direction = camera.travels_left ? -1.0 : 1.0;
       pose.angle_rad = camera.roll_rad - direction * truth.angle_rad +
                        filming.u_angle_rad * normal(engine);

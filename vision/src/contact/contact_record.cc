@@ -131,13 +131,8 @@ void FillAngles(const RecordContext& context, const Event& event,
       std::max(std::hypot(fit.EstimateFunction(ApproachNormal).value,
                           fit.EstimateFunction(ApproachTangential).value),
                kMinPace_px);
-  const double turns =
-      track.kind == core::BodyKind::kSphere
-          ? 0.0
-          : fit.EstimateFunction([](const JointVector& p) { return p[kOmega]; })
-                .value;
   const double picture =
-      std::hypot(context.u_common_place_px * turns,
+      std::hypot(context.u_common_place_px * fit.p[kOmega],
                  CommonDrift(context.u_common_place_px, event.before_frames)) /
       paces;
   angle.u = std::hypot(angle.u, picture);
@@ -195,10 +190,9 @@ void FillMotion(const RecordContext& context, const Event& event,
       speed([](const JointVector& p) { return std::hypot(p[kVx], p[kVy]); });
   m.before_normal_mps = speed(ApproachNormal);
   m.before_tangential_mps = speed(ApproachTangential);
-  const bool turns = track.kind == core::BodyKind::kRectangle;
   const auto omega = [&](JointParameter k,
                          const SampleRange& flight) -> Measured {
-    if (!turns) return AbsentBecause("no mark on the sphere");
+    if (!ShowsTurn(track)) return AbsentBecause("no mark on the sphere");
     // face grows as the leading end rises: counter-clockwise with x' ahead.
     Estimate rate =
         fit.EstimateFunction([k](const JointVector& p) { return p[k]; });
@@ -378,18 +372,60 @@ void FillState(const RecordContext& context, std::size_t from,
                        event->after && gap.value > core::kNormal975 * gap.u;
 }
 
+// Names what a ball with marks does from `a` to `b`, on the ground: the contact
+// point goes by  along + R face,  which is nothing where it rolls (face is
+// positive with the leading end up, so that rolling on turns it backward).
+void NameBallThatStaysDown(const RecordContext& context, const PlaneSample& a,
+                           const PlaneSample& b, core::StateDecision& state) {
+  const double radius_px = context.track.half_long_px;
+  const Estimate path{
+      b.along_px - a.along_px,
+      std::hypot(a.u_along_px, b.u_along_px,
+                 std::numbers::sqrt2 * context.u_common_place_px)};
+  const double angle = b.face_rad - a.face_rad;
+  const double u_angle =
+      std::hypot(a.u_face_rad, b.u_face_rad, context.u_common_face_rad);
+  const Estimate turned{
+      radius_px * angle,
+      std::hypot(radius_px * u_angle, context.track.u_half_px * angle)};
+  const Estimate slipped{path.value + turned.value,
+                         std::hypot(path.u, turned.u)};
+  // px, and standard deviations: less is nothing. As below.
+  constexpr double kLeast_px = 1.0;
+  constexpr double kClearSigmas = 3.0;
+  const auto is_nothing = [&](const Estimate& way) {
+    return std::abs(way.value) <= std::fmax(kLeast_px, kClearSigmas * way.u);
+  };
+  if (is_nothing(path) && is_nothing(turned)) {
+    state.label = core::MotionState::kStick;
+    state.reason += "; it stays where it touched down";
+    return;
+  }
+  state.label = is_nothing(slipped)  ? core::MotionState::kRoll
+                : is_nothing(turned) ? core::MotionState::kSlide
+                                     : core::MotionState::kRollSlide;
+  state.reason += fmt::format(
+      "; it moves by {:.2f} px along the ground and its contact point slips by "
+      "{:.2f} +- {:.2f} px",
+      path.value, slipped.value, slipped.u);
+}
+
 // Names what stays down as slide, roll-slide or stick, where that can be seen.
 void NameWhatStaysDown(const RecordContext& context, std::size_t from,
                        core::StateDecision& state) {
   if (state.label != core::MotionState::kStaysDown) return;
   const PlaneTrack& track = context.track;
-  if (track.kind == core::BodyKind::kSphere) {
-    state.reason += "; without a mark slip and roll look alike";
-    return;
-  }
   const std::span<const PlaneSample> samples(track.samples);
   const PlaneSample& a = samples[from];
   const PlaneSample& b = samples.back();
+  if (track.kind == core::BodyKind::kSphere) {
+    if (ShowsTurn(track)) {
+      NameBallThatStaysDown(context, a, b, state);
+    } else {
+      state.reason += "; without a mark slip and roll look alike";
+    }
+    return;
+  }
   double path = 0.0;
   for (std::size_t i = from; i < samples.size(); ++i) {
     path = std::max(path, std::abs(samples[i].along_px - a.along_px));

@@ -23,9 +23,9 @@ struct Support {
   double d_face = 0.0;
 };
 
-Support ComputeSupport(bool turns, const JointVector& p, double face) {
+Support ComputeSupport(bool sphere, const JointVector& p, double face) {
   Support s;
-  if (!turns) {
+  if (sphere) {
     s.value = p[kHalfLong];
     s.d_long = 1.0;
     return s;
@@ -101,7 +101,7 @@ PredictedPose PredictPose(const JointFit& fit, const Side& side, double t) {
   pose.along.d[side.t] = -p[side.vx];
 
   const Support support =
-      ComputeSupport(fit.turns, p, fit.turns ? p[side.face] - p[kSlope] : 0.0);
+      ComputeSupport(fit.sphere, p, p[side.face] - p[kSlope]);
   // The ground at the contact: level plus slope times the distance from the
   // line's reference point.
   const double reach = p[side.x] - fit.reference_px;
@@ -154,7 +154,8 @@ class Solver {
 // free: a sphere has no attitude; without a rebound there is no second side;
 // with known gravity one parameter holds for both flights.
 void Solver::Start() {
-  fit_.turns = track_.kind == core::BodyKind::kRectangle;
+  fit_.sphere = track_.kind == core::BodyKind::kSphere;
+  fit_.turns = ShowsTurn(track_);
   fit_.instant = input_.instant;
   fit_.interval_s = track_.frame_interval_s;
   fit_.drag_per_px = input_.drag_per_px;
@@ -185,7 +186,8 @@ void Solver::Start() {
   const auto leave_out = [&](std::initializer_list<JointParameter> unused) {
     for (const JointParameter k : unused) fit_.active[k] = false;
   };
-  if (!fit_.turns) leave_out({kHalfShort, kFace, kOmega, kOmega2, kFace2});
+  if (fit_.sphere) leave_out({kHalfShort});
+  if (!fit_.turns) leave_out({kFace, kOmega, kOmega2, kFace2});
   if (input_.after.empty()) leave_out({kVx2, kVy2, kOmega2});
   if (input_.after.empty() || input_.instant) leave_out({kT2, kX2, kFace2});
   if (input_.after.empty() || input_.gravity_px_per_s2) leave_out({kGravity2});
@@ -257,8 +259,8 @@ void Solver::Accumulate() {
   Prior(kSlope, 0.0, std::max(kMinPriorU, input_.u_slope_rad));
   const double u_half = std::max(kMinPriorU, track_.u_half_px);
   Prior(kHalfLong, start_[kHalfLong], u_half);
-  if (fit_.turns) Prior(kHalfShort, start_[kHalfShort], u_half);
-  int with_prior = fit_.turns ? 4 : 3;
+  if (!fit_.sphere) Prior(kHalfShort, start_[kHalfShort], u_half);
+  int with_prior = fit_.sphere ? 3 : 4;
   if (input_.gravity_px_per_s2) {
     Prior(kGravity, gravity_, std::max(1e-9 * gravity_, u_gravity_));
     ++with_prior;
@@ -453,10 +455,9 @@ double JointFit::ReboundGap(const JointVector& q, double t) const {
   const Side side = SideParameters(*this, true);
   const double s = t - q[side.t];
   const double at_release =
-      ComputeSupport(turns, q, turns ? q[side.face] - q[kSlope] : 0.0).value;
+      ComputeSupport(sphere, q, q[side.face] - q[kSlope]).value;
   const double then =
-      ComputeSupport(turns, q,
-                     turns ? q[side.face] + q[side.omega] * s - q[kSlope] : 0.0)
+      ComputeSupport(sphere, q, q[side.face] + q[side.omega] * s - q[kSlope])
           .value;
   const DragOffset drag = ComputeDragOffset(q[side.vx], q[side.vy],
                                             q[side.gravity], drag_per_px, s);

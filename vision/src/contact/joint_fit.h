@@ -7,10 +7,11 @@
 //   face(t)   = FACE + OMEGA (t - T)
 // with the velocities 2 after it, and what drag does until t (drag.h) added. An
 // instant contact shares T, X and FACE between the flights; one that lasts has
-// its own T2, X2, FACE2. Ground, sizes and gravity are parameters with priors,
-// so that the covariance carries them and all that they have in common. Lengths
-// in px, time in frames, relative to the start values: a far origin costs no
-// digits.
+// its own T2, X2, FACE2. A sphere has FACE and OMEGA where marks show how it
+// turns, and S is its radius. Ground, sizes and gravity are parameters with
+// priors, so that the covariance carries them and all that they have in common.
+// Lengths in px, time in frames, relative to the start values: a far origin
+// costs no digits.
 #pragma once
 
 #include <Eigen/Core>
@@ -76,7 +77,8 @@ struct JointFit {
   double reference_px = 0.0;
   double interval_s = 0.0;
   double drag_per_px = 0.0;
-  bool turns = false;
+  bool sphere = false;  // its support does not hang on its attitude
+  bool turns = false;   // attitude and spin are parameters
   double chi2 = 0.0;
   int degrees = 0;
 

@@ -115,6 +115,9 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   if (track.poses.empty()) return plane;
 
   const double ground_angle = calib::ImageAngle(ground);
+  const bool ball_turns =
+      sphere && std::all_of(track.poses.begin(), track.poses.end(),
+                            [](const Pose& p) { return p.u_angle_rad > 0.0; });
   // x' points in the direction of travel, from the first pose to the last.
   const double displacement =
       calib::PositionOnLine(ground, track.poses.back().centre) -
@@ -143,7 +146,10 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
                                      cosine * cosine * yy));
     double support = plane.half_long_px;
     double u_support = 0.0;
-    if (!sphere) {
+    if (ball_turns) {
+      s.face_rad = -plane.direction * pose.angle_rad;
+      s.u_face_rad = pose.u_angle_rad;
+    } else if (!sphere) {
       // The image's y points down, the plane's up.
       s.face_rad = -plane.direction * (pose.angle_rad - ground_angle);
       if (plane.samples.empty()) {

@@ -134,7 +134,7 @@ bool WidenToCorrelation(const std::vector<Stretch>& stretches,
   std::vector<std::vector<double>> along, height, face;
   int flat_degrees = 0;  // of a straight line
   int bent_degrees = 0;  // of a parabola
-  const bool turns = track.kind == core::BodyKind::kRectangle;
+  const bool turns = ShowsTurn(track);
 
   // Frames: residuals of shorter flights are mostly taken up by the fit. Not
   // studied.
@@ -181,7 +181,7 @@ ExcessNoise WidenToScatter(PlaneTrack& track) {
   WidenToNoise(samples, &PlaneSample::along_px, &PlaneSample::u_along_px);
   excess.height_px =
       WidenToNoise(samples, &PlaneSample::height_px, &PlaneSample::u_height_px);
-  if (track.kind == core::BodyKind::kRectangle) {
+  if (ShowsTurn(track)) {
     excess.face_rad =
         WidenToNoise(samples, &PlaneSample::face_rad, &PlaneSample::u_face_rad);
     // An attitude that was smoothed over frames does not scatter, and is known

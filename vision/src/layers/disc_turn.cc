@@ -102,6 +102,29 @@ void RemoveSmooth(Face& face) {
   }
 }
 
+// The faces of the pictures that show them whole. None where there are too few
+// of them, or of the circles.
+struct Faces {
+  std::vector<Face> faces;
+  std::vector<std::size_t> pictures;  // that they are of
+};
+Faces SampleFaces(const PictureStack& stack, const Circles& circles,
+                  const std::vector<LayerPose>& poses) {
+  constexpr std::size_t kLeastCircles = 3;
+  constexpr std::size_t kLeastFaces = 5;
+  Faces whole;
+  if (circles.pixels.size() < kLeastCircles) return whole;
+  for (std::size_t t = 0; t < poses.size(); ++t) {
+    auto face = SampleFace(stack, t, circles, poses[t]);
+    if (!face) continue;
+    RemoveSmooth(*face);
+    whole.faces.push_back(std::move(*face));
+    whole.pictures.push_back(t);
+  }
+  if (whole.faces.size() < kLeastFaces) return {};
+  return whole;
+}
+
 // Adds a face turned back by `angle`, to the nearest cell: a mean of two cells
 // would take noise for a better fit.
 void AddTurnedBack(const Face& face, double angle, Face& sum) {
@@ -221,39 +244,51 @@ double HeldOutGain(const std::vector<Face>& faces, const Circles& circles,
                                circles, other));
 }
 
-// Each angle within half a turn of where the two before it lead.
-void Unwind(const std::vector<std::int64_t>& frames,
-            std::vector<double>& angles) {
-  angles.front() = 0.0;
+// Angles of pictures of which some have one: between two of them, and beyond
+// the ends, along straight lines.
+std::vector<double> Interpolate(const std::vector<std::int64_t>& frames,
+                                const std::vector<std::size_t>& known,
+                                const std::vector<double>& angles) {
+  std::vector<double> all;
+  std::size_t next = 1;
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    while (next + 1 < known.size() && known[next] < t) ++next;
+    const auto begin = static_cast<double>(frames[known[next - 1]]);
+    const auto end = static_cast<double>(frames[known[next]]);
+    const double share =
+        (static_cast<double>(frames[t]) - begin) / (end - begin);
+    all.push_back(angles[next - 1] + share * (angles[next] - angles[next - 1]));
+  }
+  return all;
+}
+
+// Each angle within half a turn of the one before it.
+void Unwind(std::vector<double>& angles) {
   for (std::size_t t = 1; t < angles.size(); ++t) {
-    double expected = angles[t - 1];
-    if (t > 1) {
-      const auto step = static_cast<double>(frames[t] - frames[t - 1]);
-      const auto before = static_cast<double>(frames[t - 1] - frames[t - 2]);
-      expected += (angles[t - 1] - angles[t - 2]) * step / before;
-    }
-    angles[t] = expected + std::remainder(angles[t] - expected, kCircle);
+    angles[t] =
+        angles[t - 1] + std::remainder(angles[t] - angles[t - 1], kCircle);
   }
 }
 
 }  // namespace
 
+double MeasureFaceChange(const PictureStack& stack, const Shape& disc,
+                         double blur_px, const std::vector<LayerPose>& poses) {
+  const Circles circles = ChooseCircles(disc, blur_px);
+  const std::vector<Face> faces = SampleFaces(stack, circles, poses).faces;
+  if (faces.empty()) return 0.0;
+  const std::vector<double> still(faces.size(), 0.0);
+  return SumOfSquares(faces, still, circles, {0, circles.pixels.size()}) /
+         (circles.all_pixels * static_cast<double>(faces.size() - 1));
+}
+
 std::optional<std::vector<double>> FindTurns(
     const PictureStack& stack, const Shape& disc, double blur_px,
-    const std::vector<LayerPose>& poses) {
-  constexpr std::size_t kLeastCircles = 3;
-  constexpr std::size_t kLeastPictures = 5;
+    double noise_dn, const std::vector<LayerPose>& poses) {
   const Circles circles = ChooseCircles(disc, blur_px);
-  if (circles.pixels.size() < kLeastCircles || poses.size() < kLeastPictures) {
-    return std::nullopt;
-  }
-  std::vector<Face> faces;
-  for (std::size_t t = 0; t < poses.size(); ++t) {
-    auto face = SampleFace(stack, t, circles, poses[t]);
-    if (!face) return std::nullopt;
-    RemoveSmooth(*face);
-    faces.push_back(std::move(*face));
-  }
+  const Faces whole = SampleFaces(stack, circles, poses);
+  const std::vector<Face>& faces = whole.faces;
+  if (faces.empty()) return std::nullopt;
   // An inner and an outer part of as many pixels: each must show the turns of
   // the other, which noise does not.
   const std::size_t all = circles.pixels.size();
@@ -272,10 +307,22 @@ std::optional<std::vector<double>> FindTurns(
     return std::nullopt;
   }
   std::vector<double> angles = FollowFace(faces, circles, {0, all});
+  // Of what changes in the face beyond noise: more that is left tells of
+  // another motion than a turn in the plane of the picture, or of light that
+  // plays on a rough face. Five golf balls leave 0.38 to 0.49 of it, three
+  // photographed faces 0.02 and less.
+  constexpr double kMostLeft = 0.25;
+  const double noise = noise_dn * noise_dn * circles.all_pixels *
+                       static_cast<double>(faces.size());
+  const std::vector<double> at_rest(faces.size(), 0.0);
+  const auto left = [&](const std::vector<double>& turned) {
+    return SumOfSquares(faces, turned, circles, {0, all}) - noise;
+  };
+  if (left(angles) > kMostLeft * left(at_rest)) return std::nullopt;
   const double first = angles.front();
   for (double& angle : angles) angle -= first;
-  Unwind(stack.frames, angles);
-  return angles;
+  Unwind(angles);
+  return Interpolate(stack.frames, whole.pictures, angles);
 }
 
 }  // namespace touchdown::vision::layers

@@ -17,13 +17,20 @@
 
 namespace touchdown::vision::layers {
 
-// Angles of all pictures, radians, from +x to +y, beginning with 0; each within
-// half a turn of where the two before it lead. Nothing where the pictures are
-// not explained better by a face that turns than by one that does not, by
-// Schwarz's criterion; where the disc is too small to show a face, or reaches
-// beyond the pictures.
+// Mean square of what changes in the face from picture to picture, DN^2, the
+// first harmonics left out: noise alone, where it has no marks or keeps still.
+// 0 where FindTurns has nothing to look at.
+double MeasureFaceChange(const PictureStack& stack, const Shape& disc,
+                         double blur_px, const std::vector<LayerPose>& poses);
+
+// Angles of all pictures, radians, from +x to +y, 0 where the face is first
+// seen whole; each within half a turn of the one before it, and on a straight
+// line where it is not seen whole. Nothing where one half of the face is not
+// explained better by the turns that the other shows than by none; where turns
+// leave more than a quarter of what changes beyond noise; where the disc is too
+// small to show a face, or fewer than five pictures do.
 std::optional<std::vector<double>> FindTurns(
     const PictureStack& stack, const Shape& disc, double blur_px,
-    const std::vector<LayerPose>& poses);
+    double noise_dn, const std::vector<LayerPose>& poses);
 
 }  // namespace touchdown::vision::layers

@@ -242,7 +242,7 @@ bool TurnWithFace(const Shape& disc, Evidence& evidence,
                   FitLayersOptions& options) {
   const auto angles = layers::FindTurns(evidence.stack, disc,
                                         options.prior.value[layers::kBlur],
-                                        evidence.path.poses);
+                                        evidence.noise_dn, evidence.path.poses);
   if (!angles) return false;
   for (std::size_t t = 0; t < angles->size(); ++t) {
     evidence.path.poses[t].angle_rad = (*angles)[t];
@@ -274,7 +274,8 @@ void PrepareForTexture(const std::optional<BodySize>& size,
 // The track's body as the layers have it, and what they say of all poses.
 // A size that was not stated stays that of the outlines: layers know it no
 // better, and the scale may hang on it.
-Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized) {
+Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized,
+                 bool turns) {
   Track out = track;
   out.poses.clear();
   out.step = 1;
@@ -297,7 +298,7 @@ Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized) {
   // them within 0.01.
   constexpr double kSizeU_px = 0.003;
   const double u_size = std::hypot(kSizeU_px, out.body.u_common_px);
-  if (!shape.disc) {
+  if (turns) {
     out.body.u_common_angle_rad = out.body.u_common_px / shape.half_long;
   }
   if (is_sized && shape.disc) {
@@ -374,6 +375,27 @@ bool NeedsLayers(const Track& track, double most_covered) {
          MedianMisfit(track.poses) > kExplained;
 }
 
+bool ShowsMarks(Clip& clip, const Background& background, const Track& track) {
+  // A dozen frames show a mark somewhere else; more cost time in every clip.
+  constexpr std::size_t kLookedAt = 12;
+  // Times the background's variance. Smaller: bright balls, whose noise is
+  // larger, are taken for marked ones, which costs time; larger: faint marks
+  // are not found. A dot of a tenth of the radius is ten times that. Not
+  // studied.
+  constexpr double kMarked = 4.0;
+  if (track.body.kind != core::BodyKind::kSphere) return false;
+  LayerPath path;
+  for (const std::size_t i : SpreadEvenly(track.poses.size(), kLookedAt)) {
+    const Pose& pose = track.poses[i];
+    path.frames.push_back(pose.frame);
+    path.poses.push_back({pose.centre.x_px, pose.centre.y_px, 0.0});
+  }
+  const Shape disc = LayerShape(track.body, std::nullopt);
+  return layers::MeasureFaceChange(ReadAround(clip, path, disc), disc,
+                                   track.body.blur_px, path.poses) >
+         kMarked * background.UsualVariance();
+}
+
 core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
                                      const Track& given,
                                      const std::optional<BodySize>& size,
@@ -400,7 +422,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const LayerFit fit = FitLayers(evidence.stack, shape, evidence.path.poses,
                                  evidence.still, evidence.noise_dn, options);
   until.Check();
-  Track out = WithLayers(track, fit, size.has_value());
+  Track out = WithLayers(track, fit, size.has_value(), options.turns);
   evidence.path.poses = fit.poses;
   // Frames between the learned ones begin where they are expected.
   const Track learned = TrackInPicture(out, evidence.path, evidence.box);

@@ -21,6 +21,10 @@ inline constexpr double kUntouched = 0.2;
 // and the same pixel.
 bool NeedsLayers(const Track& track, double most_covered);
 
+// Whether marks show that a ball turns: its face changes by more than noise
+// from frame to frame. Its outlines need no pictures, its spin does.
+bool ShowsMarks(Clip& clip, const Background& background, const Track& track);
+
 // The same body in all frames between the first and the last pose of `track`,
 // which are within some pixels of the truth; Track::layered then. `size`: what
 // was stated. Absent, with the reason, where layers cannot be told apart.

@@ -36,6 +36,32 @@ void AddPicture(Clip& clip, std::int64_t frame, const core::PixelRect& box,
   stack.times_s.back() = seen.time_s;
 }
 
+// Around the body: what a rough pose may be off, and the blurred edge. More
+// takes memory and time.
+double WindowReach(const Shape& shape) {
+  constexpr double kRoom_px = 12.0;
+  return shape.Reach() + kRoom_px;
+}
+
+// Within `box`. Begins and ends at even pixels (Halve), as the box does.
+core::PixelRect ClippedWindow(const LayerPose& pose, const core::PixelRect& box,
+                              double reach_px) {
+  const auto from = [&](double at, std::int32_t size) {
+    const auto begin = static_cast<std::int32_t>(std::floor(at - reach_px));
+    return std::clamp(begin, 0, size - 2) / 2 * 2;
+  };
+  const auto to = [&](double at, std::int32_t begin, std::int32_t size) {
+    const auto end = static_cast<std::int32_t>(std::ceil(at + reach_px));
+    return (std::clamp(end, begin + 2, size) + 1) / 2 * 2;
+  };
+  core::PixelRect window;
+  window.x = from(pose.x, box.width);
+  window.y = from(pose.y, box.height);
+  window.width = to(pose.x, window.x, box.width) - window.x;
+  window.height = to(pose.y, window.y, box.height) - window.y;
+  return window;
+}
+
 }  // namespace
 
 core::PixelRect SweptBox(const Background& background, const Track& track,
@@ -149,30 +175,7 @@ PictureStack ReadPictures(Clip& clip, std::span<const std::int64_t> frames,
 
 PictureReader::PictureReader(Clip& clip, const std::vector<float>& still,
                              const Shape& shape, const core::PixelRect& box)
-    : clip_(clip), still_(still), box_(box) {
-  // Around the body: what a rough pose may be off, and the blurred edge. More
-  // takes memory and time.
-  constexpr double kRoom_px = 12.0;
-  reach_px_ = shape.Reach() + kRoom_px;
-}
-
-// Begins and ends at even pixels (Halve), as the box does.
-core::PixelRect PictureReader::ClippedWindow(const LayerPose& pose) const {
-  const auto from = [this](double at, std::int32_t size) {
-    const auto begin = static_cast<std::int32_t>(std::floor(at - reach_px_));
-    return std::clamp(begin, 0, size - 2) / 2 * 2;
-  };
-  const auto to = [this](double at, std::int32_t begin, std::int32_t size) {
-    const auto end = static_cast<std::int32_t>(std::ceil(at + reach_px_));
-    return (std::clamp(end, begin + 2, size) + 1) / 2 * 2;
-  };
-  core::PixelRect window;
-  window.x = from(pose.x, box_.width);
-  window.y = from(pose.y, box_.height);
-  window.width = to(pose.x, window.x, box_.width) - window.x;
-  window.height = to(pose.y, window.y, box_.height) - window.y;
-  return window;
-}
+    : clip_(clip), still_(still), box_(box), reach_px_(WindowReach(shape)) {}
 
 void PictureReader::Read(const LayerPath& path, PictureStack& stack) const {
   stack.Clear();
@@ -187,10 +190,23 @@ void PictureReader::Read(const LayerPath& path, PictureStack& stack) const {
   }
   for (std::size_t t = 0; t < path.frames.size(); ++t) {
     AddPicture(clip_, path.frames[t], box_,
-               keeps_changes ? ClippedWindow(path.poses[t])
+               keeps_changes ? ClippedWindow(path.poses[t], box_, reach_px_)
                              : core::PixelRect{0, 0, box_.width, box_.height},
                stack);
   }
+}
+
+PictureStack ReadAround(Clip& clip, const LayerPath& path, const Shape& shape) {
+  const core::PixelRect whole{0, 0, clip.info().width_px / 2 * 2,
+                              clip.info().height_px / 2 * 2};
+  PictureStack stack;
+  stack.width = whole.width;
+  stack.height = whole.height;
+  for (std::size_t t = 0; t < path.frames.size(); ++t) {
+    AddPicture(clip, path.frames[t], whole,
+               ClippedWindow(path.poses[t], whole, WindowReach(shape)), stack);
+  }
+  return stack;
 }
 
 PictureStack ReadPath(Clip& clip, const std::vector<float>& still,

@@ -62,13 +62,16 @@ class PictureReader {
   void Read(const LayerPath& path, layers::PictureStack& stack) const;
 
  private:
-  core::PixelRect ClippedWindow(const layers::LayerPose& pose) const;
-
   Clip& clip_;
   const std::vector<float>& still_;
   core::PixelRect box_;
   double reach_px_ = 0.0;
 };
+
+// The surroundings of the body alone, of poses in the whole picture. Throws
+// what Clip::Read throws.
+layers::PictureStack ReadAround(Clip& clip, const LayerPath& path,
+                                const layers::Shape& shape);
 
 // Those of one path.
 layers::PictureStack ReadPath(Clip& clip, const std::vector<float>& still,

@@ -498,7 +498,9 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   const bool is_told =
       options.size ||
       (options.measured && options.kind == core::BodyKind::kSphere);
-  if (is_told && NeedsLayers(track, covers.most) &&
+  if (is_told &&
+      (NeedsLayers(track, covers.most) ||
+       ShowsMarks(clip, result.background, track)) &&
       TakeLayers(clip, options, covers.most, result)) {
     whole_px = 0.0;
   } else {

@@ -24,7 +24,8 @@ struct PlaneSample {
   double u_height_px = 0.0;
 
   // Inclination of the long side to the ground, positive with the leading end
-  // up; continuous over the track. Rectangles only.
+  // up; continuous over the track. Of a sphere how far its face has turned in
+  // that sense, from anywhere (ShowsTurn).
   double face_rad = 0.0;
   double u_face_rad = 0.0;
 
@@ -59,6 +60,12 @@ struct PlaneTrack {
   double along_stretch = 1.0;
   double size_stretch = 1.0;
 };
+
+// Whether face angles are measured: of a sphere only where marks show them.
+inline bool ShowsTurn(const PlaneTrack& track) {
+  return track.kind == core::BodyKind::kRectangle ||
+         (!track.samples.empty() && track.samples.front().u_face_rad > 0.0);
+}
 
 // Seen from `ground`, in the plane of travel where its yaw is known. The
 // direction of travel is that of the whole displacement; right where there is

@@ -21,7 +21,8 @@ struct Pose {
   core::PixelPoint centre;
 
   // Direction of the long side in the image, from +x towards +y (image y points
-  // down), continuous over the track; 0 for a sphere. Rectangles only.
+  // down), continuous over the track. Of a sphere how far its face has turned,
+  // from anywhere; 0, and its u as well, where no mark shows it.
   double angle_rad = 0.0;
 
   // Standard uncertainties and correlation from the fit: the image noise
