@@ -168,6 +168,22 @@ JointStepOptions SolveOptions(const FitLayersOptions& options, double u_curve) {
   return solve;
 }
 
+// By how much outlines would lie outside of sizes that are held, from one step
+// with sizes that are not: the larger of both sides'.
+double MeasureBeyond(const Layers& layers,
+                     const std::vector<FrameSamples>& frames,
+                     const StillEvidence& evidence, const FreePart& free,
+                     const FitLayersOptions& options) {
+  constexpr double kHeld = 0.0;     // u of the curve
+  constexpr double kFree_px = 1.0;  // more than any outline is off
+  JointStepOptions solve = SolveOptions(options, kHeld);
+  solve.prior.u[kLong] = kFree_px;
+  solve.prior.u[kShort] = layers.shape.disc ? 0.0 : kFree_px;
+  const JointStep joint = SolveJointStep(layers, frames, evidence, free, solve);
+  return std::max(std::abs(joint.shared[kLong]),
+                  std::abs(joint.shared[kShort]));
+}
+
 // C, from layers that hold 0 and are settled. One step tells whether there is
 // any; its size takes some more.
 double MeasureCurve(const PictureStack& stack, const FreePart& free,
@@ -247,6 +263,9 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
       layers.still_weight[static_cast<std::size_t>(samples.pixel[i])] +=
           samples.weight[i] * samples.open[i] * samples.open[i];
     }
+  }
+  if (options.textured && options.prior.u[kLong] == 0.0) {
+    fit.beyond_px = MeasureBeyond(fit.layers, frames, evidence, free, options);
   }
   if (options.prior.u[kCurve] > 0.0) {
     fit.curve = MeasureCurve(stack, free, options, fit, frames);

@@ -26,6 +26,11 @@ struct LayerFit {
   Layers layers;
   std::vector<LayerPose> poses;  // of each picture of the stack
   bool converged = false;
+  // px by which outlines lie beside sizes that are held before a texture; 0 of
+  // others. What moves outlines, as a camera's gamma does, moves all edges of a
+  // body in the air outward alike; at the ground one of them counts for less,
+  // and the place is off by up to as much.
+  double beyond_px = 0.0;
   // C as the outlines show it, where the prior's u leaves it free: what a
   // camera's gamma makes of them, but a blur of another kind than Gauss's looks
   // alike. `layers` hold 0.

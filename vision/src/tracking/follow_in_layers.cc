@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "layers/align_pose.h"
@@ -291,8 +292,12 @@ Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized,
   const Shape& shape = fit.layers.shape;
   const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
   const double share = std::min(1.0, fit.layers.texture_dn / contrast);
+  // From 0, where all edges count alike, to beyond_px, where one counts alone;
+  // evenly spread.
   out.body.u_texture_px =
-      fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share;
+      fit.layers.flat ? 0.0
+                      : std::hypot(kCommonShare * fit.layers.blur * share,
+                                   fit.beyond_px / std::numbers::sqrt3);
   out.body.u_common_px = std::hypot(kModel_px, out.body.u_texture_px);
   // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
   // them within 0.01.
