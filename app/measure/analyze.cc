@@ -519,6 +519,20 @@ core::Cancellation MakeCancellation(const std::filesystem::path& path,
       options.interrupted, std::move(on_stage));
 }
 
+// Whether outlines agree with a stated size at least twice as well in light as
+// in levels (follow_in_layers.cc has it in u of all poses), though light
+// explains no more of the clip: of a clip that both explain, the share says
+// nothing.
+bool FitsStatedSize(const Analysis& light, const Analysis& seen,
+                    double explained) {
+  // Of the explained share: less is noise's. Not studied.
+  constexpr double kAlike = 0.01;
+  constexpr double kClearlyBetter = 0.5;
+  return light.explained->near > explained - kAlike &&
+         light.track->body.u_common_px <
+             kClearlyBetter * seen.track->body.u_common_px;
+}
+
 // A camera that made pictures to look at, as a block's outlines show it: the
 // same once more with light in place of levels; nothing where they do not.
 // Light must explain more of the clip than levels do (explained_change.h): in
@@ -549,7 +563,8 @@ std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
     Analysis light =
         AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
     if (!light.track || !light.track->layered || !light.explained ||
-        light.explained->near <= explained) {
+        (light.explained->near <= explained &&
+         !FitsStatedSize(light, seen, explained))) {
       break;
     }
     explained = light.explained->near;

@@ -115,6 +115,37 @@ TEST(Contact, MarksShowTheSpinOfABall) {
             "no mark on the sphere");
 }
 
+// An outline that marks draw to one side of the body bends the path by
+// u omega^2: that is no wrong scale, and speeds have it in u.
+TEST(Contact, WhatPosesShareGoesRoundWithTheBody) {
+  constexpr double kOff_px = 0.1;
+  Throw thrown;
+  thrown.marked = true;
+  thrown.before = {1.5, -1.0, 0.0};
+  thrown.after = {1.2, 0.9, -110.0};
+  Filming filming;
+  filming.frames = 80;
+  PlaneTrack track = FilmPlane(thrown, filming);
+  for (PlaneSample& s : track.samples) {
+    s.along_px += kOff_px * std::cos(s.face_rad);
+    s.height_px += kOff_px * std::sin(s.face_rad);
+  }
+  const auto find = [&](double u_common_px) {
+    track.u_common_px = u_common_px;
+    return FindContacts(track, WithScale(filming));
+  };
+  const ContactResult blind = find(0.0);
+  EXPECT_TRUE(blind.gravity_refuted);
+  const ContactResult told = find(kOff_px);
+  EXPECT_FALSE(told.gravity_refuted);
+  const core::Motion& motion = told.first.motion;
+  ASSERT_TRUE(motion.after_normal_mps);
+  EXPECT_GT(motion.after_normal_mps->u,
+            0.9 * kOff_px * 110.0 / filming.camera.px_per_m);
+  EXPECT_NEAR(motion.after_normal_mps->value, 0.9,
+              4.0 * motion.after_normal_mps->u);
+}
+
 // A contact point that slips goes by v + R omega.
 TEST(Contact, MarksTellARollFromASlide) {
   const Filming filming;

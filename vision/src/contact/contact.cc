@@ -439,6 +439,26 @@ Cut CutPath(const PlaneTrack& track, const SegmentationOptions& options,
   return {std::move(freely.stretches), true};
 }
 
+// What an error that all poses share in the body's own directions makes of
+// gravity: it goes round with the body, u omega^2, px/s^2. omega: in a tenth of
+// the track it is larger.
+double SpinAcceleration(const PlaneTrack& track, double u_common_px) {
+  if (!ShowsTurn(track)) return 0.0;
+  // Frames: over fewer, noise of the attitude is taken for spin.
+  constexpr std::size_t kApart = 4;
+  std::vector<double> rates{0.0};
+  for (std::size_t i = kApart; i < track.samples.size(); ++i) {
+    const PlaneSample& a = track.samples[i - kApart];
+    const PlaneSample& b = track.samples[i];
+    rates.push_back(
+        std::abs((b.face_rad - a.face_rad) / (b.time_s - a.time_s)));
+  }
+  const auto high =
+      rates.begin() + static_cast<std::ptrdiff_t>(9 * (rates.size() - 1) / 10);
+  std::nth_element(rates.begin(), high, rates.end());
+  return u_common_px * *high * *high;
+}
+
 }  // namespace
 
 ContactResult FindContacts(const PlaneTrack& given,
@@ -467,8 +487,13 @@ ContactResult FindContacts(const PlaneTrack& given,
   const FlightOptions told = MakeFlightOptions(options);
   SegmentationOptions segmentation =
       MakeSegmentationOptions(track, options, told);
+  // What flights are asked to contradict.
+  std::optional<core::Estimate> asked = told.gravity_px_per_s2;
+  if (asked) {
+    asked->u = std::hypot(asked->u, SpinAcceleration(track, u_common_px));
+  }
   Cut cut = options.path.empty()
-                ? CutPath(track, segmentation, told.gravity_px_per_s2)
+                ? CutPath(track, segmentation, asked)
                 : Cut{CutAs(options.path, track), options.gravity_refuted};
   FlightOptions flight = told;
   if (cut.gravity_refuted) {
@@ -487,8 +512,8 @@ ContactResult FindContacts(const PlaneTrack& given,
   result.gravity_refuted = cut.gravity_refuted;
   RecordContext context{track,     options,     flight,
                         stretches, u_common_px, u_common_face};
-  if (const auto& gravity = told.gravity_px_per_s2) {
-    const double share = GravityShare(track, stretches, *gravity);
+  if (asked) {
+    const double share = GravityShare(track, stretches, *asked);
     context.scale_doubt = std::abs(share - 1.0);
     if (cut.gravity_refuted) {
       result.warnings.push_back(

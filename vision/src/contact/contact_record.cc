@@ -182,14 +182,22 @@ void FillMotion(const RecordContext& context, const Event& event,
   const PlaneTrack& track = context.track;
   const JointFit& fit = *event.fit;
   core::Motion& m = record.motion;
-  const auto speed = [&](const JointFit::Function& f) {
-    return InMetres(
-        context, core::Scaled(fit.EstimateFunction(f), 1.0 / fit.interval_s));
+  // A common error in the body's own directions goes round with the body, by
+  // this many px a frame before and after.
+  const double round_before =
+      context.u_common_place_px * std::abs(fit.p[kOmega]);
+  const double round_after =
+      context.u_common_place_px * std::abs(fit.p[kOmega2]);
+  const auto speed = [&](const JointFit::Function& f, double round) {
+    Estimate pace = fit.EstimateFunction(f);
+    pace.u = std::hypot(pace.u, round);
+    return InMetres(context, core::Scaled(pace, 1.0 / fit.interval_s));
   };
   m.before_speed_mps =
-      speed([](const JointVector& p) { return std::hypot(p[kVx], p[kVy]); });
-  m.before_normal_mps = speed(ApproachNormal);
-  m.before_tangential_mps = speed(ApproachTangential);
+      speed([](const JointVector& p) { return std::hypot(p[kVx], p[kVy]); },
+            round_before);
+  m.before_normal_mps = speed(ApproachNormal, round_before);
+  m.before_tangential_mps = speed(ApproachTangential, round_before);
   const auto omega = [&](JointParameter k,
                          const SampleRange& flight) -> Measured {
     if (!ShowsTurn(track)) return AbsentBecause("no mark on the sphere");
@@ -206,8 +214,8 @@ void FillMotion(const RecordContext& context, const Event& event,
          &m.restitution, &m.centre_rebound_ratio, &m.impulse_ratio},
         "no release from the ground was seen");
   } else {
-    m.after_normal_mps = speed(ReboundNormal);
-    m.after_tangential_mps = speed(ReboundTangential);
+    m.after_normal_mps = speed(ReboundNormal, round_after);
+    m.after_tangential_mps = speed(ReboundTangential, round_after);
     m.after_omega_rad_per_s = omega(kOmega2, event.after_frames);
     // Normal velocity of the contact point: the centre's and that of the lowest
     // point about it, omega times its arm along the ground.
@@ -227,8 +235,11 @@ void FillMotion(const RecordContext& context, const Event& event,
         return AbsentBecause(
             fmt::format("the {} is below five times its uncertainty", what));
       }
-      return fit.EstimateFunction(
+      Estimate ratio = fit.EstimateFunction(
           [&](const JointVector& p) { return above(p) / below(p); });
+      ratio.u = std::hypot(ratio.u, round_after / denominator.value,
+                           ratio.value * round_before / denominator.value);
+      return ratio;
     };
     m.restitution =
         quotient([&](const JointVector& p) { return -point_after(p); },
@@ -261,8 +272,13 @@ void FillMotion(const RecordContext& context, const Event& event,
         AbsentBecause("uninformative: its uncertainty exceeds 3 %");
     std::vector<SampleRange> flights = {event.before_frames};
     if (event.after) flights.push_back(event.after_frames);
-    if (const auto gravity_px =
+    if (auto gravity_px =
             FitGravity(track, flights, context.flight.drag_per_px)) {
+      const double fastest =
+          std::max(std::abs(fit.p[kOmega]), std::abs(fit.p[kOmega2])) /
+          fit.interval_s;
+      gravity_px->u = std::hypot(gravity_px->u,
+                                 context.u_common_place_px * fastest * fastest);
       RecordContext stated = context;  // what is checked
       stated.scale_doubt = 0.0;
       const Measured g_si = InMetres(stated, *gravity_px);

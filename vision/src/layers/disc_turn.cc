@@ -9,7 +9,7 @@
 namespace touchdown::vision::layers {
 namespace {
 
-constexpr double kCircle = 2.0 * std::numbers::pi;
+constexpr double kCircle = 2.0 * std::numbers::pi;  // rad
 
 // Cells of a circle: 3 degrees. The peak of a correlation lies between cells,
 // by a parabola. More cost time with their square. Not studied.
@@ -24,8 +24,8 @@ struct Circles {
 };
 
 Circles ChooseCircles(const Shape& disc, double blur_px) {
-  constexpr double kRimBlurs = 3.0;  // beyond, the edge has a say
-  constexpr double kLeastRadius_px = 2.0;
+  constexpr double kRimBlurs = 3.0;        // beyond, the edge has a say
+  constexpr double kLeastRadius_px = 2.0;  // nearer, a cell is no pixel
   // More tell nothing new, since levels of neighbours are alike.
   constexpr double kMostCircles = 24.0;
   const double outer = disc.half_long - kRimBlurs * blur_px;
@@ -80,6 +80,8 @@ std::optional<Face> SampleFace(const PictureStack& stack, std::size_t picture,
 
 // Takes the first harmonics out of each circle.
 void RemoveSmooth(Face& face) {
+  // 0, 1 and 2: a slope over the face is the first, a bend the second. More
+  // takes marks away, too. Not studied.
   constexpr int kHarmonics = 3;
   for (std::size_t from = 0; from < face.size(); from += kCells) {
     for (int m = 0; m < kHarmonics; ++m) {
@@ -110,7 +112,9 @@ struct Faces {
 };
 Faces SampleFaces(const PictureStack& stack, const Circles& circles,
                   const std::vector<LayerPose>& poses) {
+  // Two halves need a circle each, and one to spare. Not studied.
   constexpr std::size_t kLeastCircles = 3;
+  // Fewer pictures do not tell a turn from chance. Not studied.
   constexpr std::size_t kLeastFaces = 5;
   Faces whole;
   if (circles.pixels.size() < kLeastCircles) return whole;

@@ -36,9 +36,9 @@ void AddPicture(Clip& clip, std::int64_t frame, const core::PixelRect& box,
   stack.times_s.back() = seen.time_s;
 }
 
-// Around the body: what a rough pose may be off, and the blurred edge. More
-// takes memory and time.
 double WindowReach(const Shape& shape) {
+  // Around the body: what a rough pose may be off, and the blurred edge. More
+  // takes memory and time.
   constexpr double kRoom_px = 12.0;
   return shape.Reach() + kRoom_px;
 }
