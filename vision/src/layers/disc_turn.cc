@@ -31,7 +31,10 @@ Circles ChooseCircles(const Shape& disc, double blur_px) {
   const double outer = disc.half_long - kRimBlurs * blur_px;
   const double apart = std::max(1.0, outer / kMostCircles);
   Circles circles;
-  for (double r = std::max(kLeastRadius_px, apart); r <= outer; r += apart) {
+  const double inner = std::max(kLeastRadius_px, apart);
+  const int count = static_cast<int>(std::floor((outer - inner) / apart)) + 1;
+  for (int k = 0; k < count; ++k) {
+    const double r = inner + k * apart;
     circles.radius_px.push_back(r);
     circles.pixels.push_back(static_cast<float>(kCircle * r * apart / kCells));
     circles.all_pixels += kCircle * r * apart;

@@ -354,6 +354,56 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
   return true;
 }
 
+// Before the background without the body, `behind`: the kind of the body and
+// its outlines once more where the background that it was found before held it,
+// or was not known, and may have misled the choice. Kept, with `behind` as the
+// result's background, if enough outlines are as smooth.
+void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
+                  Background behind, Look& first, TrackResult& result) {
+  Track& track = result.track;
+  const Chain& chain = first.found.chains.front();
+  if (most_covered <= kUntouched && track.known_background) {
+    // A body of another shape would show through its mask.
+    if (IsWellModelled(track)) result.background = std::move(behind);
+    return;
+  }
+  const Choice again =
+      ChooseKind(clip, behind, chain, options, Surround::kBackground);
+  if (again.badness >= first.choice.badness && !track.known_background) return;
+  // At least half of the outlines must remain.
+  const auto enough = [&](const std::vector<Fitted>& fits) {
+    return fits.size() * 2 >= first.fits.size();
+  };
+  std::vector<Fitted> better;
+  if (again.kind == first.choice.kind) {
+    OutlineOptions fit_options;
+    fit_options.blur_px = again.blur_px;
+    better =
+        FitFromTrack(clip, behind, track, options, fit_options,
+                     ListFrames(track.poses.front().frame,
+                                track.poses.back().frame, first.found.step));
+  }
+  // The track's outlines may be those of the ghost: start from the blobs.
+  if (!enough(better)) {
+    better =
+        FitChain(clip, behind, chain, again, options, Surround::kBackground);
+  }
+  DropStrangers(better);
+  // Ratio of position noise (plus 0.01 px, below which it says nothing). The
+  // new background is right in itself, so that a little more noise is allowed.
+  // Set with the recorded ball_12bit.
+  constexpr double kMaxNoiseRatio = 1.5;
+  if (!enough(better) ||
+      Roughness(better) > kMaxNoiseRatio * Roughness(first.fits) + 0.01) {
+    return;
+  }
+  result.background = std::move(behind);
+  track.known_background = true;
+  track.warnings.clear();
+  FillTrack(better, again.kind, track);
+  first.fits = std::move(better);
+}
+
 // From frames to a track, in this order: the first hypothesis (detection), the
 // background without the body, the same hypothesis before that background where
 // the body was lost, the kind of body once more, outlines of all frames, and at
@@ -424,7 +474,12 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
       behind = look_behind(first->background);
     }
   }
-  result.background = once ? std::move(behind) : std::move(first->background);
+  if (once) {
+    result.background = std::move(behind);
+  } else {
+    result.background = std::move(first->background);
+    ChooseBehind(clip, options, covers.most, std::move(behind), *first, result);
+  }
   const Chain& chain = first->found.chains.front();
   double whole_px = 0.0;
   if (first->choice.kind == core::BodyKind::kRectangle) {
@@ -432,51 +487,6 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
       whole_px =
           std::max(whole_px, LengthTogether(chain, first->found.chains[i]));
     }
-  }
-  // A background that held the body, or was not known, may have misled the
-  // choice of the kind: both are chosen again, and kept if enough outlines are
-  // as smooth.
-  if (covers.most > kUntouched || !track.known_background) {
-    const Choice again =
-        ChooseKind(clip, behind, chain, options, Surround::kBackground);
-    if (again.badness < first->choice.badness || track.known_background) {
-      std::swap(result.background, behind);
-      // At least half of the outlines must remain.
-      const auto enough = [&](const std::vector<Fitted>& fits) {
-        return fits.size() * 2 >= first->fits.size();
-      };
-      std::vector<Fitted> better;
-      if (again.kind == first->choice.kind) {
-        OutlineOptions fit_options;
-        fit_options.blur_px = again.blur_px;
-        better = FitFromTrack(
-            clip, result.background, track, options, fit_options,
-            ListFrames(track.poses.front().frame, track.poses.back().frame,
-                       first->found.step));
-      }
-      // The track's outlines may be those of the ghost: start from the blobs.
-      if (!enough(better)) {
-        better = FitChain(clip, result.background, chain, again, options,
-                          Surround::kBackground);
-      }
-      DropStrangers(better);
-      // Ratio of position noise (plus 0.01 px, below which it says nothing).
-      // The new background is right in itself, so that a little more noise is
-      // allowed. Set with the recorded ball_12bit.
-      constexpr double kMaxNoiseRatio = 1.5;
-      if (enough(better) &&
-          Roughness(better) <= kMaxNoiseRatio * Roughness(first->fits) + 0.01) {
-        track.known_background = true;
-        track.warnings.clear();
-        FillTrack(better, again.kind, track);
-        first->fits = std::move(better);
-      } else {
-        std::swap(result.background, behind);
-      }
-    }
-  } else if (!once && IsWellModelled(track)) {
-    // A body of another shape would show through its mask.
-    result.background = std::move(behind);
   }
   until.Enter("outlines are fitted");
   // The frames between tell where each fit begins. After rough starts the
