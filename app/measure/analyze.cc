@@ -519,12 +519,12 @@ core::Cancellation MakeCancellation(const std::filesystem::path& path,
       options.interrupted, std::move(on_stage));
 }
 
-// Whether outlines agree with a stated size at least twice as well in light as
-// in levels (follow_in_layers.cc has it in u of all poses), though light
-// explains no more of the clip: of a clip that both explain, the share says
-// nothing.
-bool FitsStatedSize(const Analysis& light, const Analysis& seen,
-                    double explained) {
+// Whether a block's outlines agree with its stated sides at least twice as well
+// in light as in levels (follow_in_layers.cc has it in u of all poses), though
+// light explains no more of the clip: of a clip that both explain, the share
+// says nothing.
+bool FitsStatedSides(const Analysis& light, const Analysis& seen,
+                     double explained) {
   // Of the explained share: less is noise's. Not studied.
   constexpr double kAlike = 0.01;
   constexpr double kClearlyBetter = 0.5;
@@ -564,7 +564,7 @@ std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
         AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
     if (!light.track || !light.track->layered || !light.explained ||
         (light.explained->near <= explained &&
-         !FitsStatedSize(light, seen, explained))) {
+         !FitsStatedSides(light, seen, explained))) {
       break;
     }
     explained = light.explained->near;

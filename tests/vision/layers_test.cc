@@ -371,27 +371,6 @@ TEST(FitLayers, CornersTellTheCamerasGamma) {
   }
 }
 
-// A disc has no corners: its size must be known.
-TEST(FitLayers, ASizeThatIsHeldTellsTheCamerasGamma) {
-  for (const double gamma : {1.0, 0.45}) {
-    LayeredScene scene = LightScene();
-    scene.shape = Shape{true, 9.0, 9.0};
-    scene.noise_dn = 0.5;
-    PictureStack stack = Film(scene, 7);
-    for (float& level : stack.levels) level = Level(level, gamma);
-    std::vector<float> still = Paint(scene, nullptr);
-    for (float& level : still) level = Level(level, gamma);
-    FitLayersOptions options = OptionsOf(scene);
-    options.prior.u[kLong] = 0.01;
-    options.prior.u[kCurve] = 1.0;
-    const LayerFit fit = FitLayers(stack, scene.shape, Shaken(scene.poses, 0.3),
-                                   still, scene.noise_dn, options);
-    // Of first order, and the size has a say of its own.
-    ASSERT_TRUE(fit.curve);
-    EXPECT_NEAR(1.0 / (1.0 + *fit.curve), gamma, 0.12);
-  }
-}
-
 // An outline that settled on the ground's edge, a pixel below the body.
 TEST(LeaveLocalMinima, FindsABodyThatLiesBesideItsPose) {
   const LayeredScene scene = BlockOnGround();

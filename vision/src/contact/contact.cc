@@ -513,7 +513,9 @@ ContactResult FindContacts(const PlaneTrack& given,
   RecordContext context{track,     options,     flight,
                         stretches, u_common_px, u_common_face};
   if (asked) {
-    const double share = GravityShare(track, stretches, *asked);
+    const double share =
+        GravityShare(track, stretches,
+                     cut.gravity_refuted ? *told.gravity_px_per_s2 : *asked);
     context.scale_doubt = std::abs(share - 1.0);
     if (cut.gravity_refuted) {
       result.warnings.push_back(

@@ -95,8 +95,8 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
                                  : kSeenU;
   u[layers::kSlopeX] = shape.disc ? 0.0 : kShadingU_dn;
   u[layers::kSlopeY] = u[layers::kSlopeX];
-  // A disc's curve and size look alike: corners tell, or a size that is stated.
-  u[layers::kCurve] = shape.disc && !size ? 0.0 : 1.0;
+  // A disc's curve and size look alike: only corners tell.
+  u[layers::kCurve] = shape.disc ? 0.0 : 1.0;
   constexpr double kAnyLevel_dn = 1e4;  // as good as free
   for (std::size_t k = 0; k < layers::kTerms; ++k) {
     u[layers::kQuadratic + k] = kAnyLevel_dn;
@@ -254,10 +254,10 @@ bool TurnWithFace(const Shape& disc, Evidence& evidence,
   return true;
 }
 
-// A texture costs more, and hides the body's size where it meets the outline:
-// fewer pictures, which tell a texture well enough, and sizes that were stated
+// A texture costs more, and hides a block's size where it meets the outline:
+// fewer pictures, which tell a texture well enough, and sides that were stated
 // are held.
-void PrepareForTexture(const std::optional<BodySize>& size,
+void PrepareForTexture(const std::optional<BodySize>& size, bool disc,
                        FitLayersOptions& options, Evidence& evidence) {
   constexpr std::size_t kMostTextured = 40;  // pictures
   options.textured = true;
@@ -266,7 +266,8 @@ void PrepareForTexture(const std::optional<BodySize>& size,
     evidence.path = Choose(evidence.path, chosen);
     evidence.stack = Choose(evidence.stack, chosen);
   }
-  if (size) {
+  // Of a ball that is not as large as was stated nothing else would tell.
+  if (size && !disc) {
     options.prior.u[layers::kLong] = 0.0;
     options.prior.u[layers::kShort] = 0.0;
   }
@@ -275,8 +276,8 @@ void PrepareForTexture(const std::optional<BodySize>& size,
 // The track's body as the layers have it, and what they say of all poses.
 // A size that was not stated stays that of the outlines: layers know it no
 // better, and the scale may hang on it.
-Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized,
-                 bool turns) {
+Track WithLayers(const Track& track, const LayerFit& fit,
+                 std::optional<double> stated_px, bool turns) {
   Track out = track;
   out.poses.clear();
   out.step = 1;
@@ -292,23 +293,28 @@ Track WithLayers(const Track& track, const LayerFit& fit, bool is_sized,
   const Shape& shape = fit.layers.shape;
   const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
   const double share = std::min(1.0, fit.layers.texture_dn / contrast);
-  // From 0, where all edges count alike, to beyond_px, where one counts alone;
-  // evenly spread.
+  // By how much outlines lie beside a stated size. What they do to the place is
+  // between nothing, where all edges count alike, and that, where one counts
+  // alone; evenly spread.
+  const double beyond_px = shape.disc && stated_px
+                               ? std::abs(shape.half_long - *stated_px)
+                               : fit.beyond_px;
+  const double texture_px =
+      fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share;
   out.body.u_texture_px =
       fit.layers.flat ? 0.0
-                      : std::hypot(kCommonShare * fit.layers.blur * share,
-                                   fit.beyond_px / std::numbers::sqrt3);
+                      : std::hypot(texture_px, beyond_px / std::numbers::sqrt3);
   out.body.u_common_px = std::hypot(kModel_px, out.body.u_texture_px);
   // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
   // them within 0.01.
   constexpr double kSizeU_px = 0.003;
-  const double u_size = std::hypot(kSizeU_px, out.body.u_common_px);
+  const double u_size = std::hypot(kSizeU_px, kModel_px, texture_px);
   if (turns) {
     out.body.u_common_angle_rad = out.body.u_common_px / shape.half_long;
   }
-  if (is_sized && shape.disc) {
+  if (stated_px && shape.disc) {
     out.body.radius_px = {shape.half_long, u_size};
-  } else if (is_sized) {
+  } else if (stated_px) {
     out.body.half_long_px = {shape.half_long, u_size};
     out.body.half_short_px = {shape.half_short, u_size};
   }
@@ -422,12 +428,15 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   until.Check();
   const bool textured = FitRoughly(clip, track, shape, options, evidence);
   const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
-  if (textured || turning) PrepareForTexture(size, options, evidence);
+  if (textured || turning)
+    PrepareForTexture(size, shape.disc, options, evidence);
   until.Check();
   const LayerFit fit = FitLayers(evidence.stack, shape, evidence.path.poses,
                                  evidence.still, evidence.noise_dn, options);
   until.Check();
-  Track out = WithLayers(track, fit, size.has_value(), options.turns);
+  std::optional<double> stated_px;
+  if (size) stated_px = shape.half_long;
+  Track out = WithLayers(track, fit, stated_px, options.turns);
   evidence.path.poses = fit.poses;
   // Frames between the learned ones begin where they are expected.
   const Track learned = TrackInPicture(out, evidence.path, evidence.box);
