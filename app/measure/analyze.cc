@@ -520,9 +520,8 @@ core::Cancellation MakeCancellation(const std::filesystem::path& path,
 }
 
 // Whether a block's outlines agree with its stated sides at least twice as well
-// in light as in levels (follow_in_layers.cc has it in u of all poses), though
-// light explains no more of the clip: of a clip that both explain, the share
-// says nothing.
+// in light as in levels. How far they lie beside them is in u_common_px. It
+// decides where both explain the clip: the explained share then says nothing.
 bool FitsStatedSides(const Analysis& light, const Analysis& seen,
                      double explained) {
   // Of the explained share: less is noise's. Not studied.

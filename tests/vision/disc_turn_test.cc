@@ -3,12 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <utility>
 
 #include "tests/vision/layered_scene.h"
-#include "vision/src/layers/align_pose.h"
 #include "vision/src/layers/fit_layers.h"
 
 namespace touchdown::vision::layers {

@@ -388,6 +388,13 @@ void FillState(const RecordContext& context, std::size_t from,
                        event->after && gap.value > core::kNormal975 * gap.u;
 }
 
+// Standard deviations of a way or a turn on the ground. Fewer: noise of a body
+// at rest is called a slide. Not studied.
+constexpr double kClearSigmas = 3.0;
+// A way that is no motion, whatever its u. Larger: short slides are called
+// stuck. Not studied.
+constexpr double kLeastWay_px = 1.0;
+
 // Names what a ball with marks does from `a` to `b`, on the ground: the contact
 // point goes by  along + R face,  which is nothing where it rolls (face is
 // positive with the leading end up, so that rolling on turns it backward).
@@ -406,11 +413,8 @@ void NameBallThatStaysDown(const RecordContext& context, const PlaneSample& a,
       std::hypot(radius_px * u_angle, context.track.u_half_px * angle)};
   const Estimate slipped{path.value + turned.value,
                          std::hypot(path.u, turned.u)};
-  // px, and standard deviations: less is nothing. As below.
-  constexpr double kLeast_px = 1.0;
-  constexpr double kClearSigmas = 3.0;
   const auto is_nothing = [&](const Estimate& way) {
-    return std::abs(way.value) <= std::fmax(kLeast_px, kClearSigmas * way.u);
+    return std::abs(way.value) <= std::fmax(kLeastWay_px, kClearSigmas * way.u);
   };
   if (is_nothing(path) && is_nothing(turned)) {
     state.label = core::MotionState::kStick;
@@ -448,9 +452,6 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
   }
   const double turned = std::abs(b.face_rad - a.face_rad);
   const double u_turned = std::hypot(a.u_face_rad, b.u_face_rad);
-  // Standard deviations of path and turn. Fewer: noise of a body at rest is
-  // called a slide. Not studied.
-  constexpr double kClearSigmas = 3.0;
   // rad: 45 deg. Beyond it another face comes down; a rocking block turns back
   // before. From geometry (a square's).
   constexpr double kTurnsOver_rad = 0.25 * std::numbers::pi;
@@ -458,7 +459,7 @@ void NameWhatStaysDown(const RecordContext& context, std::size_t from,
   if (turned > kTurnsOver_rad && turned > kClearSigmas * u_turned) {
     state.label = core::MotionState::kRollSlide;
     state.reason += "; it turns over along the ground";
-  } else if (path > std::max(1.0, kClearSigmas * u_path)) {
+  } else if (path > std::max(kLeastWay_px, kClearSigmas * u_path)) {
     state.label = core::MotionState::kSlide;
     state.reason += "; it moves along the ground without turning over";
   } else {

@@ -178,7 +178,7 @@ double MeasureBeyond(const Layers& layers,
   constexpr double kFree_px = 1.0;  // more than any outline is off
   JointStepOptions solve = SolveOptions(options, kHeld);
   solve.prior.u[kLong] = kFree_px;
-  solve.prior.u[kShort] = layers.shape.disc ? 0.0 : kFree_px;
+  solve.prior.u[kShort] = kFree_px;
   const JointStep joint = SolveJointStep(layers, frames, evidence, free, solve);
   return std::max(std::abs(joint.shared[kLong]),
                   std::abs(joint.shared[kShort]));

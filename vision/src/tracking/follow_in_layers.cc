@@ -277,7 +277,7 @@ void PrepareForTexture(const std::optional<BodySize>& size, bool disc,
 // A size that was not stated stays that of the outlines: layers know it no
 // better, and the scale may hang on it.
 Track WithLayers(const Track& track, const LayerFit& fit,
-                 std::optional<double> stated_px, bool turns) {
+                 const std::optional<BodySize>& size, bool turns) {
   Track out = track;
   out.poses.clear();
   out.step = 1;
@@ -296,9 +296,9 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   // By how much outlines lie beside a stated size. What they do to the place is
   // between nothing, where all edges count alike, and that, where one counts
   // alone; evenly spread.
-  const double beyond_px = shape.disc && stated_px
-                               ? std::abs(shape.half_long - *stated_px)
-                               : fit.beyond_px;
+  const double beyond_px =
+      shape.disc && size ? std::abs(shape.half_long - 0.5 * size->long_px.value)
+                         : fit.beyond_px;
   const double texture_px =
       fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share;
   out.body.u_texture_px =
@@ -312,9 +312,9 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   if (turns) {
     out.body.u_common_angle_rad = out.body.u_common_px / shape.half_long;
   }
-  if (stated_px && shape.disc) {
+  if (size && shape.disc) {
     out.body.radius_px = {shape.half_long, u_size};
-  } else if (stated_px) {
+  } else if (size) {
     out.body.half_long_px = {shape.half_long, u_size};
     out.body.half_short_px = {shape.half_short, u_size};
   }
@@ -391,8 +391,7 @@ bool ShowsMarks(Clip& clip, const Background& background, const Track& track) {
   constexpr std::size_t kLookedAt = 12;
   // Times the background's variance. Smaller: bright balls, whose noise is
   // larger, are taken for marked ones, which costs time; larger: faint marks
-  // are not found. A dot of a tenth of the radius is ten times that. Not
-  // studied.
+  // are not found. Not studied.
   constexpr double kMarked = 4.0;
   if (track.body.kind != core::BodyKind::kSphere) return false;
   LayerPath path;
@@ -434,9 +433,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const LayerFit fit = FitLayers(evidence.stack, shape, evidence.path.poses,
                                  evidence.still, evidence.noise_dn, options);
   until.Check();
-  std::optional<double> stated_px;
-  if (size) stated_px = shape.half_long;
-  Track out = WithLayers(track, fit, stated_px, options.turns);
+  Track out = WithLayers(track, fit, size, options.turns);
   evidence.path.poses = fit.poses;
   // Frames between the learned ones begin where they are expected.
   const Track learned = TrackInPicture(out, evidence.path, evidence.box);
