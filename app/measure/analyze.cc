@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <limits>
+#include <string_view>
 
 #include "app/measure/answer_check.h"
 #include "app/measure/body_size.h"
@@ -55,6 +56,10 @@ int Merit(const vision::ContactResult& result) {
   if (!result.first.contact.found) return 1;
   return 2;
 }
+
+// Of vision::CameraMotion::unexplained.
+constexpr std::string_view kAllMoves =
+    "the scene moves in all parts of the picture";
 
 // One clip, whose options and calibration were checked, to one Analysis: the
 // track from the pixels, the ground from the still picture and the track, the
@@ -350,6 +355,9 @@ void Analyzer::DescribeScene() {
     scene.used.push_back(
         fmt::format("motion of the camera of up to {:.2f} px taken out",
                     result_.camera_moved_px->value));
+  } else if (footage_.motion_unexplained) {
+    scene.left_out["motion of the camera"] =
+        "no one shift, turn and zoom explains it";
   }
   if (result_.plane) {
     const bool known = result_.scale && !result_.contacts.gravity_refuted;
@@ -382,6 +390,13 @@ Analysis Analyzer::Run() {
         "are those of frame {}; what is nearer or farther than most of the "
         "scene may have moved otherwise; use a tripod",
         result_.camera_moved_px->value, options_.first_frame));
+  }
+  if (footage_.motion_unexplained) {
+    result_.warnings.push_back(
+        std::string(kAllMoves) +
+        ", and no one shift, turn and zoom explains it (parallax of a camera "
+        "that is carried, or a rolling shutter): it was not taken out; use a "
+        "tripod");
   }
   const std::int64_t last =
       options_.last_frame < 0 ? result_.clip.frames : options_.last_frame;
@@ -444,6 +459,10 @@ Analysis Analyzer::Run() {
     if (track.several_bodies) JudgeSeveralBodies();
     CheckAnswer(result_);
   }
+  if (core::Contact& contact = result_.contacts.first.contact;
+      footage_.motion_unexplained && !contact.found) {
+    contact.reason += fmt::format("; {}", kAllMoves);
+  }
   result_.angle_kind =
       options_.angle_kind
           ? *options_.angle_kind
@@ -478,11 +497,13 @@ double ShareExplained(const Analysis& analysis) {
 }
 
 // One clip of one channel: options are checked before the first frame is
-// decoded, so that a user's mistake costs no time. Ends by the limit with
-// Unfinished; a user's interruption passes as core::Cancelled.
+// decoded, so that a user's mistake costs no time. `motion`: the recording's,
+// measured where it is not known yet. Ends by the limit with Unfinished; a
+// user's interruption passes as core::Cancelled.
 Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
                          const AnalyzeOptions& options,
-                         const core::Cancellation& until) {
+                         const core::Cancellation& until,
+                         std::optional<vision::CameraMotion>& motion) {
   const vision::ClipInfo info = clip->info();
   CheckOptions(options, info);
   if (options.gamma) {
@@ -491,11 +512,11 @@ Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
   clip->set_cancellation(until);
   try {
     const ClipCalibration camera = FitToClip(options, info);
-    if (options.stop_early && info.format != kRawFormat) {
-      return AnalyzeUntilDecided(std::move(clip), camera, options);
-    }
     until.Enter("light and camera are looked at");
-    Footage footage = MakeSteady(std::move(clip), options);
+    Footage footage = MakeSteady(std::move(clip), options, motion);
+    if (options.stop_early && info.format != kRawFormat) {
+      return AnalyzeUntilDecided(std::move(footage), camera, options);
+    }
     until.Enter("the clip is decoded");
     footage.clip = vision::KeepFrames(std::move(footage.clip),
                                       MakeKeepOptions(options, info));
@@ -538,10 +559,10 @@ bool FitsStatedSides(const Analysis& light, const Analysis& seen,
 // six clips of cameras with 0.45, which showed 0.45 to 0.59, the unexplained
 // rest fell to between a tenth and two thirds; in five of linear cameras, whose
 // outlines seemed to show 0.29 to 0.70, it rose.
-std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
-                                     const vision::ClipOptions& clip_options,
-                                     const Analysis& seen,
-                                     const core::Cancellation& until) {
+std::optional<Analysis> AnalyzeLight(
+    const std::filesystem::path& path, const vision::ClipOptions& clip_options,
+    const Analysis& seen, const core::Cancellation& until,
+    std::optional<vision::CameraMotion>& motion) {
   constexpr double kClearlyNot1 = 0.72;
   constexpr double kLeast = 0.3;  // no camera has less: the outlines err
   constexpr double kNear1 = 0.05;
@@ -559,8 +580,8 @@ std::optional<Analysis> AnalyzeLight(const std::filesystem::path& path,
     // A clip that was made linear has no gamma left: what the outlines still
     // show is the factor to the next round's.
     *options.gamma *= more;
-    Analysis light =
-        AnalyzeOpenClip(OpenRecording(path, clip_options), options, until);
+    Analysis light = AnalyzeOpenClip(OpenRecording(path, clip_options), options,
+                                     until, motion);
     if (!light.track || !light.track->layered || !light.explained ||
         (light.explained->near <= explained &&
          !FitsStatedSides(light, seen, explained))) {
@@ -624,7 +645,9 @@ Analysis Analyze(const std::filesystem::path& path,
     JournalAnalysis(analysis);
   };
   try {
-    Analysis analysis = AnalyzeOpenClip(std::move(clip), options, until);
+    std::optional<vision::CameraMotion> motion;
+    Analysis analysis =
+        AnalyzeOpenClip(std::move(clip), options, until, motion);
     if (analysis.clip.has_colour) {
       // A shadow is dark in luma and has no colour: in a colour difference it
       // is not there; a ball of one colour may be all that is there. The first
@@ -639,8 +662,8 @@ Analysis Analyze(const std::filesystem::path& path,
         }
         vision::ClipOptions in_channel = clip_options;
         in_channel.channel = channel;
-        Analysis other =
-            AnalyzeOpenClip(OpenRecording(path, in_channel), options, until);
+        Analysis other = AnalyzeOpenClip(OpenRecording(path, in_channel),
+                                         options, until, motion);
         if (!(ShareExplained(other) > ShareExplained(analysis))) continue;
         clip_options = in_channel;
         other.channel = channel;
@@ -651,7 +674,8 @@ Analysis Analyze(const std::filesystem::path& path,
         analysis = std::move(other);
       }
     }
-    if (auto light = AnalyzeLight(path, clip_options, analysis, until)) {
+    if (auto light =
+            AnalyzeLight(path, clip_options, analysis, until, motion)) {
       analysis = std::move(*light);
     }
     if (witness) witness->RequireWhole();
@@ -672,7 +696,8 @@ Analysis AnalyzeFootage(Footage footage, const ClipCalibration& camera,
 Analysis AnalyzeClip(std::unique_ptr<vision::Clip> clip,
                      const AnalyzeOptions& options) {
   const core::Cancellation until = MakeCancellation(clip->info().path, options);
-  return AnalyzeOpenClip(std::move(clip), options, until);
+  std::optional<vision::CameraMotion> motion;
+  return AnalyzeOpenClip(std::move(clip), options, until, motion);
 }
 
 }  // namespace touchdown::pipeline

@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/background/steady_light.h"
 
 namespace touchdown::pipeline {
 
 Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
-                   const AnalyzeOptions& options) {
+                   const AnalyzeOptions& options,
+                   std::optional<vision::CameraMotion>& motion) {
   Footage footage;
   // To measure the light reads frames: it is part of the time of the track.
   footage.begun = std::chrono::steady_clock::now();
@@ -22,10 +22,13 @@ Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
   footage.light_told = light.told;
   // Absent where nothing was taken out: the scene model tells the two apart.
   if (light.corrected) footage.light_spread = light.spread;
-  vision::SteadyCamera camera =
-      vision::Stabilise(std::move(light.clip), options.first_frame, last);
-  footage.clip = std::move(camera.clip);
-  footage.camera_moved_px = camera.most_moved_px;
+  if (!motion) {
+    motion =
+        vision::MeasureCameraMotion(*light.clip, options.first_frame, last);
+  }
+  footage.clip = vision::PutBack(std::move(light.clip), *motion);
+  footage.camera_moved_px = motion->most_moved_px;
+  footage.motion_unexplained = motion->unexplained;
   return footage;
 }
 

@@ -9,6 +9,7 @@
 
 #include "app/measure/analyze.h"
 #include "app/measure/clip_calibration.h"
+#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/detection/frame_store.h"
 
 namespace touchdown::pipeline {
@@ -22,6 +23,7 @@ struct Footage {
   std::optional<double> light_spread;  // relative, where it was taken out
   bool light_told = true;
   std::optional<core::Estimate> camera_moved_px;  // where it was taken out
+  bool motion_unexplained = false;                // vision::CameraMotion's
   // Backgrounds are made of these; empty: of any.
   std::vector<std::int64_t> still_frames;
   std::chrono::steady_clock::time_point begun;  // from when time counts
@@ -29,8 +31,10 @@ struct Footage {
 
 // The clip without flicker and motion of the camera, of which nothing is kept
 // yet.
+// `motion` is the recording's; measured where it is not known yet.
 Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
-                   const AnalyzeOptions& options);
+                   const AnalyzeOptions& options,
+                   std::optional<vision::CameraMotion>& motion);
 
 // How frames are kept for these options, which fit `clip` (check_options.h).
 vision::FrameStoreOptions MakeKeepOptions(const AnalyzeOptions& options,

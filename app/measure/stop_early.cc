@@ -206,16 +206,14 @@ bool SayTheSame(const Analysis& fewer, const Analysis& more,
          alike(a.contact.radius_angle_rad, b.contact.radius_angle_rad);
 }
 
-Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
-                             const ClipCalibration& camera,
+Analysis AnalyzeUntilDecided(Footage footage, const ClipCalibration& camera,
                              const AnalyzeOptions& options,
                              const StopRule& rule, std::size_t most_bytes) {
-  Footage footage = MakeSteady(std::move(clip), options);
   // Those of file and camera are there from the first frame on and do not speak
   // against stopping.
-  const std::size_t known_warnings = footage.info.warnings.size() +
-                                     camera.warnings.size() +
-                                     (footage.camera_moved_px ? 1 : 0);
+  const std::size_t known_warnings =
+      footage.info.warnings.size() + camera.warnings.size() +
+      (footage.camera_moved_px || footage.motion_unexplained ? 1 : 0);
   vision::FrameStoreOptions keep = MakeKeepOptions(options, footage.info);
   keep.most_bytes = most_bytes;
   const auto frames = vision::GrowFrames(std::move(footage.clip), keep);
@@ -227,6 +225,7 @@ Analysis AnalyzeUntilDecided(std::unique_ptr<vision::Clip> clip,
     part.light_spread = footage.light_spread;
     part.light_told = footage.light_told;
     part.camera_moved_px = footage.camera_moved_px;
+    part.motion_unexplained = footage.motion_unexplained;
     part.still_frames = frames->StillFrames();
     part.begun = footage.begun;
     Analysis analysis = AnalyzeFootage(std::move(part), camera, of);

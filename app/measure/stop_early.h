@@ -12,6 +12,7 @@
 
 #include "app/measure/analyze.h"
 #include "app/measure/clip_calibration.h"
+#include "app/measure/footage.h"
 #include "touchdown/vision/detection/frame_store.h"
 
 namespace touchdown::pipeline {
@@ -81,7 +82,7 @@ bool SayTheSame(const Analysis& fewer, const Analysis& more,
 // the clip, which is not raw; `most_bytes` of its frames are kept
 // (frame_store.h).
 Analysis AnalyzeUntilDecided(
-    std::unique_ptr<vision::Clip> clip, const ClipCalibration& camera,
+    Footage footage, const ClipCalibration& camera,
     const AnalyzeOptions& options, const StopRule& rule = {},
     std::size_t most_bytes = vision::FrameStoreOptions{}.most_bytes);
 

@@ -92,9 +92,9 @@ Drawable OpenToDraw(const Analysis& analysis) {
   options.fps = analysis.options.fps;
   Drawable out{OpenRecording(analysis.clip.path, options), *analysis.track};
   if (const auto steady = SteadyFrames(analysis)) {
-    out.clip =
-        vision::Stabilise(std::move(out.clip), steady->first, steady->second)
-            .clip;
+    const vision::CameraMotion motion =
+        vision::MeasureCameraMotion(*out.clip, steady->first, steady->second);
+    out.clip = vision::PutBack(std::move(out.clip), motion);
   }
   if (analysis.calibration && analysis.calibration->lens) {
     const calib::Lens& lens = analysis.calibration->lens->lens;

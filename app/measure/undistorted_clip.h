@@ -27,7 +27,7 @@ struct Drawable {
 };
 
 // The frames, first and one past the last, of which the camera's motion was
-// taken out (vision::Stabilise): all that is told of the picture is told of the
+// taken out (vision::PutBack): all that is told of the picture is told of the
 // first of them. Nothing where the camera stood still.
 std::optional<std::pair<std::int64_t, std::int64_t>> SteadyFrames(
     const Analysis& analysis);

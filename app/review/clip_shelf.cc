@@ -7,7 +7,6 @@
 
 #include "app/measure/open_recording.h"
 #include "app/review/thumbnail.h"
-#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/footage/encode_image.h"
 #include "touchdown/vision/footage/image_file.h"
 
@@ -24,20 +23,12 @@ constexpr std::int64_t kNear = 20;
 // kB; beyond them all are forgotten, and each is found again when it is opened.
 constexpr std::size_t kMostKnown = 4096;
 
+// Recordings of which the camera's motion stays known: of a few thousand frames
+// it takes 100 kB, and seconds to measure.
+constexpr std::size_t kMostMotions = 64;
+
 // A folder of images tells no frame rate; pictures need none.
 constexpr double kAnyRate_hz = 1.0;
-
-// Opens a recording to look at. Throws like vision::OpenClip.
-std::unique_ptr<vision::Clip> OpenShelfClip(const ShownRecording& shown) {
-  vision::ClipOptions options;
-  options.fps = kAnyRate_hz;
-  // One frame after another: threads would hold more frames each.
-  options.decoder_threads = 1;
-  auto clip = pipeline::OpenRecording(shown.path, options);
-  if (!shown.steady) return clip;
-  const auto [first, last] = *shown.steady;
-  return vision::Stabilise(std::move(clip), first, last).clip;
-}
 
 // The level of which one sample in a thousand lies above.
 // It is never below 255: a dark recording keeps its levels. `frame` has more
@@ -104,7 +95,8 @@ Picture Encode(const core::Frame& frame, const vision::ClipInfo& info,
 
 ClipShelf::ClipShelf(const ShelfOptions& options)
     : options_(options),
-      readers_(options.most_open, OpenShelfClip),
+      readers_(options.most_open,
+               [this](const ShownRecording& shown) { return Open(shown); }),
       warmer_([this] { WarmUp(); }) {}
 
 ClipShelf::~ClipShelf() {
@@ -119,6 +111,31 @@ ClipShelf::~ClipShelf() {
 
 ClipShelf::Film ClipShelf::DescribeFilm(const ShownRecording& shown) {
   return {shown, pipeline::MeasureExtent(shown.path)};
+}
+
+// Opens a recording to look at. Throws like vision::OpenClip.
+std::unique_ptr<vision::Clip> ClipShelf::Open(const ShownRecording& shown) {
+  vision::ClipOptions options;
+  options.fps = kAnyRate_hz;
+  // One frame after another: threads would hold more frames each.
+  options.decoder_threads = 1;
+  auto clip = pipeline::OpenRecording(shown.path, options);
+  if (!shown.steady) return clip;
+  const Film film = DescribeFilm(shown);
+  std::optional<vision::CameraMotion> motion;
+  {
+    const std::lock_guard lock(guard_);
+    const auto found = motions_.find(film);
+    if (found != motions_.end()) motion = found->second;
+  }
+  if (!motion) {
+    const auto [first, last] = *shown.steady;
+    motion = vision::MeasureCameraMotion(*clip, first, last);
+    const std::lock_guard lock(guard_);
+    if (motions_.size() >= kMostMotions) motions_.clear();
+    motions_.emplace(film, *motion);
+  }
+  return vision::PutBack(std::move(clip), *motion);
 }
 
 // Returns what is known of a recording; nothing before it was first opened.
@@ -267,7 +284,7 @@ void ClipShelf::WarmUp() {
 // Makes the pictures of a recording as long as it is among those asked for.
 void ClipShelf::Decode(const Asked& asked) {
   // A reader of its own: the other one jumps to what is asked for.
-  const auto clip = OpenShelfClip(asked.film.shown);
+  const auto clip = Open(asked.film.shown);
   const Known known = Learn(asked.film, *clip);
   // First what is near the frame that was asked for, then the rest.
   const std::int64_t frames = known.info.frames;

@@ -22,12 +22,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "app/review/reader_pool.h"
 #include "app/trials/recordings.h"
+#include "touchdown/vision/background/steady_camera.h"
 #include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::review {
@@ -93,6 +95,7 @@ class ClipShelf {
     bool taken = false;     // the thread has begun with it
   };
 
+  std::unique_ptr<vision::Clip> Open(const ShownRecording& shown);
   static Film DescribeFilm(const ShownRecording& shown);
   std::optional<Known> Recall(const Film& film) const;
   Known Learn(const Film& film, vision::Clip& clip);
@@ -107,6 +110,7 @@ class ClipShelf {
   ReaderPool readers_;
   mutable std::mutex guard_;
   std::map<Film, Known> known_;
+  std::map<Film, vision::CameraMotion> motions_;  // of those shown steady
   std::map<Key, Kept> kept_;
   std::list<Key> order_;  // the last used first
   std::size_t bytes_ = 0;

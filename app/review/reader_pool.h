@@ -28,7 +28,7 @@ namespace touchdown::review {
 struct ShownRecording {
   std::filesystem::path path;
   // The frames, first and one past the last, that are shown as a camera that
-  // stood still would have seen them (vision::Stabilise); nothing: as recorded.
+  // stood still would have seen them (vision::PutBack); nothing: as recorded.
   std::optional<std::pair<std::int64_t, std::int64_t>> steady = {};
   friend auto operator<=>(const ShownRecording&,
                           const ShownRecording&) = default;

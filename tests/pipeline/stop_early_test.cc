@@ -123,13 +123,16 @@ Both AnalyzeBoth(const vision::Scene& scene, const Keeping& keeping,
   auto clip = open(both.decoded_whole);
   const vision::ClipInfo info = clip->info();
   const ClipCalibration camera = FitToClip(options, info);
-  Footage footage = MakeSteady(std::move(clip), options);
+  std::optional<vision::CameraMotion> motion;
+  Footage footage = MakeSteady(std::move(clip), options, motion);
   vision::FrameStoreOptions keep = MakeKeepOptions(options, info);
   keep.most_bytes = keeping.most_bytes;
   footage.clip = vision::KeepFrames(std::move(footage.clip), keep);
   both.whole = AnalyzeFootage(std::move(footage), camera, options);
-  both.early = AnalyzeUntilDecided(open(both.decoded_early), camera, options,
-                                   {}, keeping.most_bytes);
+  motion.reset();  // what its measurement decodes counts for both
+  both.early =
+      AnalyzeUntilDecided(MakeSteady(open(both.decoded_early), options, motion),
+                          camera, options, {}, keeping.most_bytes);
   return both;
 }
 

@@ -364,24 +364,31 @@ MotionSupport SceneReference::CountSupport(const core::Frame& frame,
   }
   struct Votes {
     double better = 0.0;
+    double restless = 0.0;
     double all = 0.0;
-    double share() const { return all > 0.0 ? better / all : 0.0; }
+    double ShareOf(double votes) const { return all > 0.0 ? votes / all : 0.0; }
   };
   Votes whole_picture;
   std::array<Votes, 3> thirds;
   for (std::size_t k = 0; k < tiles.size(); ++k) {
     const Tile& tile = tiles[k];
     if (tile.telling < kTelling) continue;
-    const bool is_better =
-        tile.at_rest > kNotAtRest * tile.points && tile.moved < tile.at_rest;
+    const bool is_restless = tile.at_rest > kNotAtRest * tile.points;
+    const bool is_better = is_restless && tile.moved < tile.at_rest;
     const std::size_t third = 3 * (k % kAcross) / kAcross;
     for (Votes* votes : {&whole_picture, &thirds[third]}) {
       votes->all += 1.0;
       votes->better += is_better ? 1.0 : 0.0;
+      votes->restless += is_restless ? 1.0 : 0.0;
     }
   }
-  return {whole_picture.share(),
-          std::min({thirds[0].share(), thirds[1].share(), thirds[2].share()})};
+  MotionSupport support{whole_picture.ShareOf(whole_picture.better), 1.0, 1.0};
+  for (const Votes& third : thirds) {
+    support.of_third = std::min(support.of_third, third.ShareOf(third.better));
+    support.restless =
+        std::min(support.restless, third.ShareOf(third.restless));
+  }
+  return support;
 }
 
 }  // namespace touchdown::vision

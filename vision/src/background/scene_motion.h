@@ -8,21 +8,9 @@
 
 #include "touchdown/core/frame.h"
 #include "touchdown/core/points.h"
+#include "touchdown/vision/background/steady_camera.h"
 
 namespace touchdown::vision {
-
-// Where a point x of the reference lies in a frame, about the picture's
-// centre c:
-//
-//   x' = c + [1 + grow, -turn; turn, 1 + grow] (x - c) + shift
-struct Similarity {
-  double shift_x_px = 0.0;
-  double shift_y_px = 0.0;
-  double grow = 0.0;
-  double turn = 0.0;  // rad, for small angles; clockwise in the picture
-
-  friend bool operator==(const Similarity&, const Similarity&) = default;
-};
 
 struct SceneMotion {
   Similarity motion;
@@ -38,9 +26,12 @@ struct SceneMotion {
 // Of the tiles of the picture whose points tell a motion from rest, the share
 // that are not at rest and that the motion explains better: of all, and the
 // least of the picture's left, middle and right third. 0 where there are none.
+// And the share that are not at rest, whatever explains them, in the third that
+// has the least of it.
 struct MotionSupport {
   double of_all = 0.0;
   double of_third = 0.0;
+  double restless = 0.0;
 };
 
 // The points of one frame, against which others of the same size are compared.

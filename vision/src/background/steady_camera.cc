@@ -23,7 +23,7 @@ class SteadyClip final : public Clip {
   // What all readers of the clip share.
   struct Motions {
     std::int64_t first = 0;
-    std::vector<Similarity> of;          // each frame from `first` on
+    std::vector<Similarity> of;
     std::vector<std::uint16_t> outside;  // frame `first`, as it is given out
   };
 
@@ -190,47 +190,52 @@ FirstLooks LookForMotion(Clip& clip, std::int64_t first, std::int64_t last,
 
 }  // namespace
 
-SteadyCamera Stabilise(std::unique_ptr<Clip> clip, std::int64_t first,
-                       std::int64_t last, const SteadyCameraOptions& options) {
-  const ClipInfo info = clip->info();
+CameraMotion MeasureCameraMotion(Clip& clip, std::int64_t first,
+                                 std::int64_t last,
+                                 const SteadyCameraOptions& options) {
+  const ClipInfo& info = clip.info();
   if (first < 0 || last > info.frames || first >= last) {
     throw std::invalid_argument(
         fmt::format("frames is {}:{}, must be a range within 0:{}", first, last,
                     info.frames));
   }
-  SteadyCamera out;
-  const FirstLooks looks = LookForMotion(*clip, first, last, options);
-  if (!looks.may_have_moved) {
-    out.clip = std::move(clip);
-    return out;
-  }
-  const SceneReference reference(clip->Read(first), options.points);
-  auto motions = std::make_shared<SteadyClip::Motions>();
-  motions->first = first;
-  motions->outside = SamplesOf(clip->Read(first));
+  CameraMotion out;
+  out.first = first;
+  const FirstLooks looks = LookForMotion(clip, first, last, options);
+  if (!looks.may_have_moved) return out;
+  const SceneReference reference(clip.Read(first), options.points);
   // Each frame, from where the one before was.
   Similarity last_known;
   double most_px = 0.0;
   double u_px = 0.0;
   double moved = 0.0;  // frames
   double of_the_camera = 0.0;
+  double all_move = 0.0;
   // Frames, after which it is given up where most of them say that it is not
   // the camera. Not studied.
   constexpr double kEnough = 16.0;
+  // Frames that a motion of the camera explains, from which on the rest of a
+  // restless scene is its parallax: the near and the far part ways as the
+  // camera goes on. A flickering scene has none. One could be chance.
+  constexpr double kFewExplained = 2.0;
   const auto is_refuted = [&](double least) {
     return of_the_camera < least * moved;
   };
   for (std::int64_t index = first; index < last; ++index) {
     if (moved >= kEnough && is_refuted(0.5)) break;
     try {
-      const core::Frame frame = clip->Read(index);
+      const core::Frame frame = clip.Read(index);
       const SceneMotion seen = reference.Align(frame, last_known);
       const bool has_moved = HasMoved(seen, options);
+      MotionSupport support;
+      if (has_moved) {
+        support = reference.CountSupport(frame, seen, looks.noise_dn);
+        moved += 1.0;
+        all_move +=
+            support.restless >= options.least_support_of_third ? 1.0 : 0.0;
+      }
       const bool is_of_the_camera =
-          !has_moved ||
-          IsOfTheCamera(reference.CountSupport(frame, seen, looks.noise_dn),
-                        seen, info, options);
-      moved += has_moved ? 1.0 : 0.0;
+          !has_moved || IsOfTheCamera(support, seen, info, options);
       if (is_of_the_camera) {
         last_known = seen.motion;
         of_the_camera += has_moved ? 1.0 : 0.0;
@@ -240,15 +245,26 @@ SteadyCamera Stabilise(std::unique_ptr<Clip> clip, std::int64_t first,
     } catch (const core::InputError&) {
       // The place of the frame before.
     }
-    motions->of.push_back(last_known);
+    out.of.push_back(last_known);
   }
   if (of_the_camera == 0.0 || is_refuted(options.least_frames)) {
-    out.clip = std::move(clip);
+    out.of.clear();
+    out.unexplained = of_the_camera >= kFewExplained &&
+                      all_move >= options.least_frames * moved;
     return out;
   }
   out.most_moved_px = core::Estimate{most_px, u_px};
-  out.clip = std::make_unique<SteadyClip>(std::move(clip), std::move(motions));
   return out;
+}
+
+std::unique_ptr<Clip> PutBack(std::unique_ptr<Clip> clip,
+                              const CameraMotion& motion) {
+  if (motion.of.empty()) return clip;
+  auto motions = std::make_shared<SteadyClip::Motions>();
+  motions->first = motion.first;
+  motions->of = motion.of;
+  motions->outside = SamplesOf(clip->Read(motion.first));
+  return std::make_unique<SteadyClip>(std::move(clip), std::move(motions));
 }
 
 }  // namespace touchdown::vision

@@ -6,11 +6,24 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "touchdown/core/estimate.h"
 #include "touchdown/vision/footage/clip.h"
 
 namespace touchdown::vision {
+
+// Where a point x of one frame lies in another, about the picture's centre c:
+//
+//   x' = c + [1 + grow, -turn; turn, 1 + grow] (x - c) + shift
+struct Similarity {
+  double shift_x_px = 0.0;
+  double shift_y_px = 0.0;
+  double grow = 0.0;
+  double turn = 0.0;  // rad, for small angles; clockwise in the picture
+
+  friend bool operator==(const Similarity&, const Similarity&) = default;
+};
 
 struct SteadyCameraOptions {
   // Frames, evenly spaced (key frames where frames need others), in which is
@@ -47,20 +60,25 @@ struct SteadyCameraOptions {
   double least_frames = 0.8;
 };
 
-struct SteadyCamera {
-  std::unique_ptr<Clip> clip;  // the one given, or one that puts frames back
-  // Where the camera moved: the farthest that any corner of the picture went,
+struct CameraMotion {
+  // From frame `first` to each frame from it on; empty where the camera stood
+  // still, or what moved is not the camera alone.
+  std::vector<Similarity> of;
+  std::int64_t first = 0;
+  // Where it is not empty: the farthest that any corner of the picture went,
   // px, and the u of a frame's place.
   std::optional<core::Estimate> most_moved_px;
+  // Whether the scene moves in the left, the middle and the right third of the
+  // picture, and a similarity explains it in some frames only: parallax of a
+  // camera that is carried, or the skew of a rolling shutter.
+  bool unexplained = false;
 };
 
 // The motion of the still scene in each frame of [first, last) against frame
 // `first`: a similarity (shift, turn, scale), by robust least squares over
 // points of strong gradient (Lucas and Kanade 1981, with Tukey's weights and a
-// factor of the light). Where the camera moved, the clip that comes back has
-// the frames put back by cubic interpolation (Keys 1981, a = -1/2), as 16-bit
-// samples; places that a frame does not show have the levels of frame `first`.
-// Coordinates are those of frame `first`.
+// factor of the light). It is the recording's, in whatever channel or light its
+// frames are looked at.
 //
 // One plane moves so: what lies nearer or farther than most of what stands
 // still moves otherwise when the camera is shifted, not when it is turned.
@@ -68,8 +86,16 @@ struct SteadyCamera {
 // Throws what Clip::Read throws for frame `first`; a later frame that cannot be
 // read keeps the place of the one before. std::invalid_argument if the range is
 // empty or outside the clip.
-SteadyCamera Stabilise(std::unique_ptr<Clip> clip, std::int64_t first,
-                       std::int64_t last,
-                       const SteadyCameraOptions& options = {});
+CameraMotion MeasureCameraMotion(Clip& clip, std::int64_t first,
+                                 std::int64_t last,
+                                 const SteadyCameraOptions& options = {});
+
+// The clip as a camera at rest would have shown it: frames put back by cubic
+// interpolation (Keys 1981, a = -1/2), as 16-bit samples; places that a frame
+// does not show have the levels of frame `first`. Coordinates are those of
+// frame `first`. The clip itself where `motion` is empty. Throws what
+// Clip::Read throws for frame `first`.
+std::unique_ptr<Clip> PutBack(std::unique_ptr<Clip> clip,
+                              const CameraMotion& motion);
 
 }  // namespace touchdown::vision
