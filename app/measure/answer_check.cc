@@ -106,11 +106,18 @@ AnswerCheck CheckSize(const Analysis& analysis,
   check.verdict = Verdict::kPassed;
   if (!analysis.size_conflict) return check;
   check.reason = analysis.size_conflict->reason;
-  check.verdict =
-      analysis.size_conflict->relative > limits.most_size_conflict &&
-              analysis.corrections.empty()
-          ? Verdict::kRefused
-          : Verdict::kDoubtful;
+  const bool other_changes =
+      analysis.explained &&
+      analysis.explained->elsewhere > limits.most_elsewhere;
+  const bool refused =
+      analysis.size_conflict->relative > limits.most_size_conflict ||
+      other_changes;
+  check.verdict = refused && analysis.corrections.empty() ? Verdict::kRefused
+                                                          : Verdict::kDoubtful;
+  if (other_changes) {
+    check.reason += fmt::format("; {:.0f} % of the change is elsewhere",
+                                100.0 * analysis.explained->elsewhere);
+  }
   return check;
 }
 

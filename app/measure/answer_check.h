@@ -47,6 +47,10 @@ struct AnswerCheckLimits {
   // were wrong by up to 0.02 through light and gamma, ghosts by 0.05 and more
   // (117 clips).
   double most_size_conflict = 0.04;
+  // Of all change, what the body does not explain and is not near it. Other
+  // things may move, but where the body has not its stated size either, one of
+  // them is the body. 0.25: see the check's test.
+  double most_elsewhere = 0.25;
 
   // Of chi^2 per degree of freedom of the flights beside the first contact,
   // after u has grown to the poses' scatter. 3: of normal poses one in 1e4 with

@@ -36,12 +36,17 @@ TEST(EdgeProduct, OfCoincidentEdgesIsThatOfOneEdge) {
 }
 
 TEST(EdgeProduct, AgreesWithIntegrationOverThePlane) {
-  for (const auto& [z1, z2, rho] :
-       {std::array{0.5, -0.3, 0.8}, {1.2, 0.9, -0.6}, {-0.8, 0.4, 0.95}}) {
+  for (const auto& [z1, z2, rho] : {std::array{0.5, -0.3, 0.8},
+                                    {1.2, 0.9, -0.6},
+                                    {-0.8, 0.4, 0.95},
+                                    {0.3, 0.25, 0.9985},
+                                    {0.1, 0.1, 0.9999},
+                                    {-0.2, 0.6, 0.9999},
+                                    {0.4, -0.43, -0.9995}}) {
     // Phi2 = int_{-inf}^{z1} phi(t) Phi((z2 - rho t) / sqrt(1 - rho^2)) dt.
     double both = 0.0;
     constexpr double kStep = 1e-3;
-    for (double t = -8.0; t < z1; t += kStep) {
+    for (double t = -8.0 + 0.5 * kStep; t < z1; t += kStep) {
       both += kStep * std::exp(-0.5 * t * t) /
               std::sqrt(2.0 * std::numbers::pi) *
               Phi((z2 - rho * t) / std::sqrt(1.0 - rho * rho));

@@ -11,8 +11,25 @@ double Phi(double z) { return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0); }
 
 // 1 / (2 pi), of the normal density of two variables.
 constexpr float kPerTwoPi = static_cast<float>(0.5 * std::numbers::inv_pi);
-// Parallel edges are taken as a little askew: the integrand stays finite.
-constexpr float kMostRho = 0.9999F;
+// Parallel edges are taken as a little askew: quotients stay finite.
+constexpr float kMostRho = 0.999999F;
+// Beyond it edges are nearly parallel, and the integrand is too steep.
+constexpr float kNearlyParallel = 0.998F;
+
+// Phi2(z1, z2; rho) - Phi(z1) Phi(z2) of nearly parallel edges: as if the
+// second distance were the first and a little noise, w = sqrt(1 - rho^2), more:
+//   Phi(min) - phi w (phi(k) - k Phi(-k)),  k = |z1 - z2| / w.
+float NearlyParallel(double z1, double z2, double rho) {
+  const auto density = [](double z) {
+    return std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
+           std::numbers::sqrt2;
+  };
+  const double w = std::sqrt(1.0 - rho * rho);
+  const double k = std::abs(z1 - z2) / w;
+  const double blunt =
+      density(0.5 * (z1 + z2)) * w * (density(k) - k * Phi(-k));
+  return static_cast<float>(Phi(std::min(z1, z2)) - blunt - Phi(z1) * Phi(z2));
+}
 
 }  // namespace
 
@@ -100,7 +117,12 @@ float EdgeProduct(float z1, float z2, float rho) {
   static constexpr std::array<float, 6> kWeights = {0.085662246F, 0.180380787F,
                                                     0.233956967F, 0.233956967F,
                                                     0.180380787F, 0.085662246F};
-  const float end = std::asin(std::clamp(rho, -kMostRho, kMostRho));
+  if (rho < 0.0F) return -EdgeProduct(z1, -z2, -rho);
+  if (rho > kNearlyParallel) {
+    return NearlyParallel(static_cast<double>(z1), static_cast<double>(z2),
+                          static_cast<double>(std::min(rho, kMostRho)));
+  }
+  const float end = std::asin(rho);
   const float squares = z1 * z1 + z2 * z2;
   float sum = 0.0F;
   for (std::size_t i = 0; i < kNodes.size(); ++i) {

@@ -13,13 +13,19 @@ namespace {
 // Blurs of the rim of T's grid: coverage beyond is nothing.
 constexpr double kRimBlurs = 3.5;
 
-// All derivatives of all frames; takes the place of what `frames` held.
-void LinearizeAll(const PictureStack& stack, const Layers& layers,
-                  const std::vector<LayerPose>& poses, int threads,
+// All derivatives of all frames, about the edges that B has now; takes the
+// place of what `frames` held. `clear`: how often B was seen without the body.
+void LinearizeAll(const PictureStack& stack, Layers& layers,
+                  const std::vector<float>& clear,
+                  const std::vector<LayerPose>& poses,
+                  const FitLayersOptions& options,
                   std::vector<FrameSamples>& frames) {
+  layers.edges = FindStillEdges(
+      {layers.still.data(), clear, stack.width, stack.height}, options.lines,
+      layers.blur, kLeastStillStep * layers.noise_dn);
   const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
   frames.resize(poses.size());
-  core::InParallel(static_cast<std::int64_t>(poses.size()), threads,
+  core::InParallel(static_cast<std::int64_t>(poses.size()), options.threads,
                    [&](std::int64_t begin, std::int64_t end) {
                      for (auto t = static_cast<std::size_t>(begin);
                           t < static_cast<std::size_t>(end); ++t) {
@@ -82,7 +88,8 @@ constexpr double kMostBlur = 2.0;  // times the first
 
 // What of a picture's noise and texture the residuals show at step `step`.
 void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
-           LayerFit& fit, std::vector<FrameSamples>& frames) {
+           const std::vector<float>& clear, LayerFit& fit,
+           std::vector<FrameSamples>& frames) {
   Layers& layers = fit.layers;
   // At first residuals are those of rough poses: as if all were noise.
   constexpr double kAnything = 1e4;  // DN
@@ -99,7 +106,7 @@ void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
     if (step >= kFlatSteps && texture > kMatters * layers.noise_dn) {
       LearnTexture(layers);
       layers.texture_dn = texture;
-      LinearizeAll(stack, layers, fit.poses, options.threads, frames);
+      LinearizeAll(stack, layers, clear, fit.poses, options, frames);
     }
   } else {
     layers.picture_weight = WeighPicture(layers, frames);
@@ -205,7 +212,8 @@ double MeasureCurve(const PictureStack& stack, const FreePart& free,
     constexpr double kSettled = 0.02;
     if (curve < kWorthIt || std::abs(curve - before) < kSettled) break;
     Advance(joint, options, fit);
-    LinearizeAll(stack, fit.layers, fit.poses, options.threads, frames);
+    LinearizeAll(stack, fit.layers, evidence.weight, fit.poses, options,
+                 frames);
   }
   return curve;
 }
@@ -228,7 +236,8 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   layers.picture.assign(layers.grid.size(), 0.0F);
   const FreePart free(layers.grid);
   std::vector<FrameSamples> frames;
-  LinearizeAll(stack, layers, fit.poses, options.threads, frames);
+  StillEvidence evidence;
+  LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
   layers.quadratic = {static_cast<double>(MeanLevel(frames))};
   if (options.textured) LearnTexture(layers);
 
@@ -237,26 +246,24 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
   for (int step = 0; step < options.steps && !fit.converged; ++step) {
-    LinearizeAll(stack, layers, fit.poses, options.threads, frames);
-    Judge(stack, options, step, fit, frames);
+    LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
+    Judge(stack, options, step, evidence.weight, fit, frames);
     // First steps are not worth more.
     solve.tolerance = step < kFlatSteps ? kRough : kFine;
     // A disc's angles hang on its picture alone, which is learned first.
     solve.turns = options.turns && (!shape.disc || step >= kFlatSteps);
-    const StillEvidence evidence =
-        WeighStill(stack, layers, frames, options.threads);
+    evidence = WeighStill(stack, layers, frames, options.threads);
     const double moved = Advance(
         SolveJointStep(layers, frames, evidence, free, solve), options, fit);
     fit.converged = moved < kStill_px && step > kFlatSteps;
   }
-  LinearizeAll(stack, layers, fit.poses, options.threads, frames);
+  LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
   layers.noise_dn = MeasureNoise(frames, layers.noise_dn);
   if (!layers.flat) {
     layers.picture_weight = WeighPicture(layers, frames);
     layers.texture_dn = MeasureTexture(layers, layers.picture_weight);
   }
-  const StillEvidence evidence =
-      WeighStill(stack, layers, frames, options.threads);
+  evidence = WeighStill(stack, layers, frames, options.threads);
   layers.still_weight = evidence.weight;
   for (const FrameSamples& samples : frames) {
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -7,6 +7,7 @@
 
 #include "layers/joint_step.h"
 #include "layers/layer_model.h"
+#include "layers/still_edges.h"
 
 namespace touchdown::vision::layers {
 
@@ -20,6 +21,8 @@ struct FitLayersOptions {
   // Steps at the most; fewer where the poses no longer move.
   int steps = 8;
   int threads = 0;
+  // Straight edges of the whole still picture, in the stack's coordinates.
+  std::vector<StillLine> lines;
 };
 
 struct LayerFit {

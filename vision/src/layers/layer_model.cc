@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 
 #include "layers/edge_product.h"
@@ -162,11 +161,8 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   const float* const still = layers.still.data();
   const auto blur2 = static_cast<float>(layers.blur * layers.blur);
   const auto twice_blur = static_cast<float>(2.0 * layers.blur);
-  constexpr double kLeastStep = 2.0;  // of the noise
   const auto most_slope =
-      static_cast<float>(0.5 * kLeastStep * layers.noise_dn);
-  StillEdges edges(still, stack.width, layers.blur,
-                   kLeastStep * layers.noise_dn);
+      static_cast<float>(0.5 * kLeastStillStep * layers.noise_dn);
   const auto per_reach = static_cast<float>(1.0 / reach);
   const auto slope_x = static_cast<float>(layers.slope_x) * per_reach;
   const auto slope_y = static_cast<float>(layers.slope_y) * per_reach;
@@ -189,7 +185,9 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
       const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);
       const float step_y =
           0.5F * (still[pixel + stack.width] - still[pixel - stack.width]);
-      std::optional<StillEdge> edge;  // looked for where the body's own is
+      const StillEdge edge =
+          layers.edges.empty() ? StillEdge{}
+                               : layers.edges[static_cast<std::size_t>(pixel)];
       float covered = 0.0F;
       float lifted = 0.0F;  // by what covers it: sum of w M (T + S - B)
       float model = behind;
@@ -228,9 +226,8 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
         }
         Product product;
         if (m.by_long != 0.0F || m.by_short != 0.0F) {
-          if (!edge) edge = edges.FindEdge(pixel);
-          if (edge->contrast != 0.0F) {
-            product = cover.WithEdge(x, y, *edge, node.cosine, node.sine);
+          if (edge.contrast != 0.0F) {
+            product = cover.WithEdge(x, y, edge, node.cosine, node.sine);
           } else if (std::max(std::abs(step_x), std::abs(step_y)) <
                      most_slope) {
             t_x -= step_x;

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "layers/body_picture.h"
+#include "layers/edge_product.h"
 #include "layers/picture_stack.h"
 #include "layers/shape_cover.h"
 
@@ -66,10 +67,15 @@ struct Layers {
   // showed a pixel alone.
   std::vector<float> still_weight;
   std::vector<float> picture_weight;
+  // B's edges, as each pixel sees them (still_edges.h); empty: none.
+  std::vector<StillEdge> edges;
 
   double noise_dn = 2.0;    // of a pixel
   double texture_dn = 0.0;  // standard deviation of T about a quadratic
 };
+
+// Of the noise: less over two pixels of B is no edge.
+inline constexpr double kLeastStillStep = 2.0;
 
 // A step of no more than `most` to either side.
 inline double Limited(double value, double most) {

@@ -202,6 +202,47 @@ Evidence GatherEvidence(Clip& clip, const Background& background,
   return evidence;
 }
 
+// The straight edges of the whole background, in the box's coordinates. What
+// the body covers in many frames may be itself there.
+std::vector<layers::StillLine> FindLines(const Background& background,
+                                         const Evidence& evidence,
+                                         const Shape& shape, double blur) {
+  // Of the frames. A background is the middle of what was seen.
+  constexpr float kMostCovered = 0.2F;
+  constexpr double kRim = 3.5;  // blurs, beyond which a body is not seen
+  const core::PixelRect whole{0, 0, background.width_px, background.height_px};
+  const std::vector<float> levels = CropBackground(background, whole);
+  const auto frames = static_cast<float>(evidence.path.poses.size());
+  std::vector<float> clear(levels.size(), 2.0F + kMostCovered * frames);
+  const double reach = shape.Reach() + kRim * blur;
+  for (const LayerPose& pose : evidence.path.poses) {
+    const double x = pose.x + evidence.box.x;
+    const double y = pose.y + evidence.box.y;
+    const auto column = [&](double at) {
+      return std::clamp(static_cast<std::int32_t>(std::lround(at)), 0,
+                        whole.width);
+    };
+    const auto row = [&](double at) {
+      return std::clamp(static_cast<std::int32_t>(std::lround(at)), 0,
+                        whole.height);
+    };
+    for (std::int32_t j = row(y - reach); j < row(y + reach); ++j) {
+      for (std::int32_t i = column(x - reach); i < column(x + reach); ++i) {
+        clear[static_cast<std::size_t>(j) *
+                  static_cast<std::size_t>(whole.width) +
+              static_cast<std::size_t>(i)] -= 1.0F;
+      }
+    }
+  }
+  std::vector<layers::StillLine> lines =
+      layers::FindStillLines({levels.data(), clear, whole.width, whole.height},
+                             blur, layers::kLeastStillStep * evidence.noise_dn);
+  for (layers::StillLine& line : lines) {
+    line = line.Within(evidence.box.x, evidence.box.y);
+  }
+  return lines;
+}
+
 // A first fit at half the resolution, from rough poses, which goes on beyond
 // both ends of the path. Whether the body has a texture.
 bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
@@ -210,6 +251,7 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
   // A bound on time: the fit at full resolution goes on from there.
   constexpr int kCoarseSteps = 6;
   coarse.steps = kCoarseSteps;
+  coarse.lines.clear();  // of the full resolution
   const Shape half{shape.disc, 0.5 * shape.half_long, 0.5 * shape.half_short};
   LayerPath& path = evidence.path;
   for (LayerPose& pose : path.poses) pose = Halved(pose);
@@ -424,6 +466,8 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   FitLayersOptions options = MakeLayerOptions(track, shape, size);
   options.threads = threads;
   Evidence evidence = GatherEvidence(clip, background, track, shape, options);
+  options.lines = FindLines(background, evidence, shape,
+                            options.prior.value[layers::kBlur]);
   until.Check();
   const bool textured = FitRoughly(clip, track, shape, options, evidence);
   const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
