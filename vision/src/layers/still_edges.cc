@@ -114,13 +114,12 @@ class Chains {
 
   // Those that are long enough.
   std::vector<Chain> TakeLong() {
-    End(growing_.empty() ? 0 : kFarOff);
+    std::erase_if(growing_,
+                  [](const Chain& chain) { return chain.size() < kShort; });
     return std::move(growing_);
   }
 
  private:
-  static constexpr std::int32_t kFarOff = 1 << 30;
-
   // Where a chain is expected to cross u.
   static double Expected(const Chain& chain, std::int32_t u) {
     if (chain.size() < kShort) return chain.back().v;
@@ -233,7 +232,7 @@ class LineDrawer {
       : still_(still),
         seen_(seen),
         blur_(blur),
-        edges(seen),
+        edges_(seen),
         distance_(seen.size(), kFarthest) {}
 
   void Draw(const StillLine& line) {
@@ -253,7 +252,7 @@ class LineDrawer {
     }
   }
 
-  std::vector<StillEdge> Take() { return std::move(edges); }
+  std::vector<StillEdge> Take() { return std::move(edges_); }
 
  private:
   // Blurs from an edge, as far as a body's edge has any (kFar in
@@ -315,7 +314,7 @@ class LineDrawer {
       // Of two lines beside a pixel the nearer one.
       if (std::abs(z) >= distance_[pixel]) continue;
       distance_[pixel] = std::abs(z);
-      StillEdge& edge = edges[pixel];
+      StillEdge& edge = edges_[pixel];
       edge.contrast = static_cast<float>(contrast);
       edge.z = z;
       edge.normal_x = axes.along_rows ? beside : across;
@@ -326,7 +325,7 @@ class LineDrawer {
   const StillPicture& still_;
   const std::vector<StillEdge>& seen_;
   double blur_;
-  std::vector<StillEdge> edges;
+  std::vector<StillEdge> edges_;
   std::vector<float> distance_;  // to the line that was drawn, in blurs
 };
 
