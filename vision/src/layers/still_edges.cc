@@ -106,7 +106,7 @@ class Chains {
   // again where the body leaves it; one that begins is followed over no more
   // than some noise.
   void End(std::int32_t u) {
-    constexpr std::int32_t kShortGap_px = 3;
+    constexpr std::int32_t kShortGap_px = 3;  // longer: of another edge
     std::erase_if(growing_, [&](const Chain& chain) {
       return chain.size() < kShort && u - chain.back().u > kShortGap_px;
     });
@@ -379,7 +379,7 @@ std::vector<StillLine> FindStillLines(const StillPicture& still, double blur,
 std::vector<StillEdge> FindStillEdges(const StillPicture& still,
                                       std::span<const StillLine> lines,
                                       double blur, double least_dn) {
-  const std::vector<StillEdge> seen = SeenByPixels(still, blur, least_dn);
+  std::vector<StillEdge> seen = SeenByPixels(still, blur, least_dn);
   if (lines.empty()) return seen;
   LineDrawer drawer(still, seen, blur);
   for (const StillLine& line : lines) drawer.Draw(line);
