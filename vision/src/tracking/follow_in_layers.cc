@@ -315,6 +315,19 @@ void PrepareForTexture(const std::optional<BodySize>& size, bool disc,
   }
 }
 
+// By how much outlines lie beside a stated size, px, beyond its own u: the
+// larger of both sides'. 0 of sizes that are held.
+double OutlinesBeside(const Shape& shape, const BodySize& size) {
+  const auto beside = [](double half_px, const core::Estimate& stated) {
+    const double off = half_px - 0.5 * stated.value;
+    const double u = 0.5 * stated.u;
+    return std::sqrt(std::max(0.0, off * off - u * u));
+  };
+  const double across = beside(shape.half_long, size.long_px);
+  return shape.disc ? across
+                    : std::max(across, beside(shape.half_short, size.short_px));
+}
+
 // The track's body as the layers have it, and what they say of all poses.
 // A size that was not stated stays that of the outlines: layers know it no
 // better, and the scale may hang on it.
@@ -335,17 +348,15 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   const Shape& shape = fit.layers.shape;
   const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
   const double share = std::min(1.0, fit.layers.texture_dn / contrast);
-  // By how much outlines lie beside a stated size. What they do to the place is
-  // between nothing, where all edges count alike, and that, where one counts
-  // alone; evenly spread.
-  const double beyond_px =
-      shape.disc && size ? std::abs(shape.half_long - 0.5 * size->long_px.value)
-                         : fit.beyond_px;
   const double texture_px =
       fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share;
+  // What outlines that lie beside a stated size do to the place is between
+  // nothing, where all edges count alike, and that, where one counts alone;
+  // evenly spread.
+  const double beyond_px =
+      size ? std::hypot(fit.beyond_px, OutlinesBeside(shape, *size)) : 0.0;
   out.body.u_texture_px =
-      fit.layers.flat ? 0.0
-                      : std::hypot(texture_px, beyond_px / std::numbers::sqrt3);
+      std::hypot(texture_px, beyond_px / std::numbers::sqrt3);
   out.body.u_common_px = std::hypot(kModel_px, out.body.u_texture_px);
   // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
   // them within 0.01.
