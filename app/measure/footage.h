@@ -30,8 +30,7 @@ struct Footage {
 };
 
 // The clip without flicker and motion of the camera, of which nothing is kept
-// yet.
-// `motion` is the recording's; measured where it is not known yet.
+// yet. `motion` is the recording's; it is measured where it is not known.
 Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
                    const AnalyzeOptions& options,
                    std::optional<vision::CameraMotion>& motion);

@@ -130,7 +130,7 @@ TEST(StillEdges, ABentEdgeIsSeveralLines) {
   }
 }
 
-// Two photographs side by side have no edge of one contrast.
+// Crossings of noise are on no line.
 TEST(StillEdges, NoiseIsNoLine) {
   const std::vector<float> levels =
       DrawEdge([](double) { return -50.0; }, 20.0);

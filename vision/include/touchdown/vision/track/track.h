@@ -57,8 +57,10 @@ struct BodyImage {
   // direction of the body, and in angle: a texture hides it.
   double u_common_px = 0.0;
   double u_common_angle_rad = 0.0;
-  // The part of u_common_px that is a texture's: a body that turned has another
-  // one at the same side, and it lies before another background.
+  // The part of u_common_px that changes over an impact: a texture's, since a
+  // body that turned has another one at the same side, before another
+  // background; and that of outlines beside a stated size, since light or gamma
+  // moves each edge by what lies behind it.
   double u_texture_px = 0.0;
   // Of the camera (linear_clip.h), as far as outlines show it.
   std::optional<double> gamma;
