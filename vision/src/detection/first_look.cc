@@ -389,18 +389,29 @@ BackgroundOptions ChooseBackgroundOptions(const Clip& clip,
   return background;
 }
 
-// One hypothesis: a background and a detector give tracklets; the best one
-// gives a kind and outlines. `rival`: the best so far; a hypothesis that cannot
-// win is not fitted to the end.
-Look TryHypothesis(Clip& clip, Background background,
-                   const TrackOptions& options, Detector detector,
-                   std::int64_t last, const Look* rival, double least_fits) {
+namespace {
+
+// What a detector finds before a background: tracklets, and no outlines yet.
+Look LookWith(Clip& clip, Background background, const TrackOptions& options,
+              Detector detector, std::int64_t last) {
   Look look;
   look.background = std::move(background);
   look.surround = detector == Detector::kLevels ? Surround::kPolynomial
                                                 : Surround::kBackground;
   look.found = Detect(clip, look.background, options, detector, last);
   look.rough_starts = detector == Detector::kChange;
+  return look;
+}
+
+}  // namespace
+
+// One hypothesis: a background and a detector give tracklets; the best one
+// gives a kind and outlines. `rival`: the best so far; a hypothesis that cannot
+// win is not fitted to the end.
+Look TryHypothesis(Clip& clip, Background background,
+                   const TrackOptions& options, Detector detector,
+                   std::int64_t last, const Look* rival, double least_fits) {
+  Look look = LookWith(clip, std::move(background), options, detector, last);
   if (look.found.chains.empty() ||
       static_cast<double>(look.found.chains.front().links.size()) <
           least_fits) {
@@ -514,25 +525,43 @@ std::string ReasonAgainstKind(Clip& clip, const Look& look,
 
 }  // namespace
 
+Look LookPlainly(Clip& clip, const TrackOptions& options, std::int64_t last) {
+  Look look =
+      LookWith(clip,
+               EstimateBackground(clip, options.first, last,
+                                  ChooseBackgroundOptions(clip, options)),
+               options, Detector::kDifference, last);
+  if (look.found.chains.empty()) return look;
+  look.choice = ChooseKind(clip, look.background, look.found.chains.front(),
+                           options, look.surround);
+  return look;
+}
+
+bool IsWellExplained(const Look& look) {
+  return look.choice.badness <= kMaxGoodCost;
+}
+
 // The best of five hypotheses. A body that stays long in one place leaves its
 // ghost in the background of all frames, and outlines fit badly. Then the
 // background of the beginning is tried, where the picture may be empty, and
 // that of the end; then the frame's own two levels; and last everything that
 // changes.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
-                               std::int64_t last) {
+                               Look plain) {
+  Look best = std::move(plain);
   const BackgroundOptions still = ChooseBackgroundOptions(clip, options);
-  Look best =
-      TryHypothesis(clip, EstimateBackground(clip, options.first, last, still),
-                    options, Detector::kDifference, last);
   // A body of another kind fits badly by every background: that is told before
   // any other is tried.
   if (auto reason = ReasonAgainstKind(clip, best, options); !reason.empty()) {
     return core::AbsentBecause(std::move(reason));
   }
+  if (!best.found.chains.empty()) {
+    best.fits = FitLinks(clip, best, options, 0.0);
+    DropStrangers(best.fits);
+  }
+  const std::int64_t last = best.found.last;
   const std::int64_t part = EndPart(options.first, last);
-  for (int attempt = 0; attempt < 4 && best.choice.badness > kMaxGoodCost;
-       ++attempt) {
+  for (int attempt = 0; attempt < 4 && !IsWellExplained(best); ++attempt) {
     // The detector of each attempt; the comment above names their backgrounds.
     constexpr Detector kDetectors[] = {Detector::kDifference,
                                        Detector::kDifference, Detector::kLevels,
@@ -545,7 +574,7 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
     constexpr double kMinFrameGain = 1.5;
     const double least = kMinFrameGain * static_cast<double>(best.fits.size());
     const bool change = detector == Detector::kChange;
-    if (change && static_cast<double>(best.found.last - options.first) <
+    if (change && static_cast<double>(last - options.first) <
                       least * static_cast<double>(best.found.step)) {
       continue;
     }
@@ -555,11 +584,10 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
           clip, options.first, std::min(options.first + part, last), still);
     } else if (attempt == 1) {
       background = EstimateBackground(
-          clip, std::max(options.first, best.found.last - part),
-          best.found.last, still);
+          clip, std::max(options.first, last - part), last, still);
     }
     Look look = TryHypothesis(clip, std::move(background), options, detector,
-                              best.found.last, &best, change ? least : 0.0);
+                              last, &best, change ? least : 0.0);
     look.found.warning = best.found.warning;
     if (change && static_cast<double>(look.fits.size()) < least) continue;
     if (!Moves(look.fits)) continue;

@@ -61,9 +61,18 @@ Look TryHypothesis(Clip& clip, Background background,
                    double least_fits = 0.0);
 bool IsBetter(const Look& look, const Look& other);
 
-// Absent where nothing moves, or nothing with an outline.
+// What differs from the background of all frames, and its kind; outlines are
+// not fitted yet.
+Look LookPlainly(Clip& clip, const TrackOptions& options, std::int64_t last);
+
+// Whether outlines explain the body, in the frames that its kind was chosen by.
+bool IsWellExplained(const Look& look);
+
+// The best of some hypotheses, of which the plain look is the first; it is the
+// only one where outlines explain the body. Absent where nothing moves, or
+// nothing with an outline.
 core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
-                               std::int64_t last);
+                               Look plain);
 
 // Tries the kinds on a few frames spread over the chain, away from the border.
 Choice ChooseKind(Clip& clip, const Background& background, const Chain& chain,
