@@ -17,6 +17,7 @@
 #include "app/measure/journal.h"
 #include "app/measure/judge.h"
 #include "app/measure/left_out.h"
+#include "app/measure/light_evidence.h"
 #include "app/measure/open_recording.h"
 #include "app/measure/options_hash.h"
 #include "app/measure/stop_early.h"
@@ -540,25 +541,9 @@ core::Cancellation MakeCancellation(const std::filesystem::path& path,
       options.interrupted, std::move(on_stage));
 }
 
-// Whether a block's outlines agree with its stated sides at least twice as well
-// in light as in levels. How far they lie beside them is in u_common_px. It
-// decides where both explain the clip: the explained share then says nothing.
-bool FitsStatedSides(const Analysis& light, const Analysis& seen,
-                     double explained) {
-  // Of the explained share: less is noise's. Not studied.
-  constexpr double kAlike = 0.01;
-  constexpr double kClearlyBetter = 0.5;
-  return light.explained->near > explained - kAlike &&
-         light.track->body.u_common_px <
-             kClearlyBetter * seen.track->body.u_common_px;
-}
-
 // A camera that made pictures to look at, as a block's outlines show it: the
 // same once more with light in place of levels; nothing where they do not.
-// Light must explain more of the clip than levels do (explained_change.h): in
-// six clips of cameras with 0.45, which showed 0.45 to 0.59, the unexplained
-// rest fell to between a tenth and two thirds; in five of linear cameras, whose
-// outlines seemed to show 0.29 to 0.70, it rose.
+// Light must be the better answer (light_evidence.h).
 std::optional<Analysis> AnalyzeLight(
     const std::filesystem::path& path, const vision::ClipOptions& clip_options,
     const Analysis& seen, const core::Cancellation& until,
@@ -571,7 +556,12 @@ std::optional<Analysis> AnalyzeLight(
   if (more < kLeast || more > kClearlyNot1) return std::nullopt;
   AnalyzeOptions options = seen.options;
   options.gamma = 1.0;
-  double explained = seen.explained->near;
+  const auto evidence = [](const Analysis& analysis) {
+    return LightEvidence{analysis.explained->near,
+                         analysis.track->body.u_common_px};
+  };
+  // Of levels; a second round must explain as much as the first.
+  LightEvidence levels = evidence(seen);
   std::optional<Analysis> best;
   // First order is not exact: what remains is measured again.
   constexpr int kRounds = 2;
@@ -583,11 +573,10 @@ std::optional<Analysis> AnalyzeLight(
     Analysis light = AnalyzeOpenClip(OpenRecording(path, clip_options), options,
                                      until, motion);
     if (!light.track || !light.track->layered || !light.explained ||
-        (light.explained->near <= explained &&
-         !FitsStatedSides(light, seen, explained))) {
+        !IsBetterInLight(evidence(light), levels)) {
       break;
     }
-    explained = light.explained->near;
+    levels.explained = light.explained->near;
     more = light.track->body.gamma.value_or(1.0);
     light.scene_model.used.push_back(fmt::format(
         "gamma of {:.2f}, from the body's outlines", *options.gamma));

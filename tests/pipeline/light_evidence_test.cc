@@ -1,0 +1,38 @@
+#include "app/measure/light_evidence.h"
+
+#include <gtest/gtest.h>
+
+namespace touchdown::pipeline {
+namespace {
+
+// Explained shares and distances of clips of known truth, rendered by
+// generators of another hand (strangers, seeds 14 to 16).
+
+TEST(LightEvidence, BothWitnessesSpeakForIt) {
+  EXPECT_TRUE(IsBetterInLight({.explained = 0.98715, .u_common_px = 0.1410},
+                              {.explained = 0.95430, .u_common_px = 0.1575}));
+}
+
+TEST(LightEvidence, SidesDecideWhereBothExplainTheClip) {
+  EXPECT_TRUE(IsBetterInLight({.explained = 0.99813, .u_common_px = 0.0586},
+                              {.explained = 0.99833, .u_common_px = 0.2115}));
+  EXPECT_FALSE(IsBetterInLight({.explained = 0.95871, .u_common_px = 0.0189},
+                               {.explained = 1.00822, .u_common_px = 0.0382}));
+}
+
+// A linear camera, in H.264: light explains a little more by chance, and the
+// outlines lie farther beside the stated sides.
+TEST(LightEvidence, SidesMaySpeakAgainstIt) {
+  EXPECT_FALSE(IsBetterInLight({.explained = 0.99341, .u_common_px = 0.1027},
+                               {.explained = 0.99292, .u_common_px = 0.0893}));
+  EXPECT_FALSE(IsBetterInLight({.explained = 0.99765, .u_common_px = 0.0668},
+                               {.explained = 0.99749, .u_common_px = 0.0254}));
+}
+
+TEST(LightEvidence, SidesALittleNearerAreNotEnough) {
+  EXPECT_FALSE(IsBetterInLight({.explained = 0.99013, .u_common_px = 0.0534},
+                               {.explained = 0.99242, .u_common_px = 0.0788}));
+}
+
+}  // namespace
+}  // namespace touchdown::pipeline
