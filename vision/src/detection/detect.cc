@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
@@ -26,12 +27,16 @@ double SmoothedSigma(const Background& background,
   return options.noise * std::sqrt(background.UsualVariance()) / 3.0;
 }
 
-// Keeps the strongest regions, by area times contrast.
+// By which regions are ranked: area times contrast.
+template <class Part>
+double Strength(const Part& part) {
+  return part.area_px2 * std::abs(part.contrast_dn);
+}
+
 template <class Part>
 void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return a.area_px2 * std::abs(a.contrast_dn) >
-           b.area_px2 * std::abs(b.contrast_dn);
+    return Strength(a) > Strength(b);
   });
   if (parts.size() > static_cast<std::size_t>(options.most_blobs)) {
     parts.resize(static_cast<std::size_t>(options.most_blobs));
@@ -115,6 +120,95 @@ std::vector<Blob> MakeBlobs(std::vector<ContourRegion> regions,
   return blobs;
 }
 
+// A connected region of all that differs, and a bound on the strength of its
+// parts.
+struct OuterRegion {
+  const std::vector<cv::Point>* contour = nullptr;
+  cv::Rect box;
+  double most = 0.0;
+};
+
+// The regions that are large enough, by the bound. In compressed pictures there
+// are hundreds of specks, of which none will be among the strongest.
+std::vector<OuterRegion> StrongestFirst(
+    const std::vector<std::vector<cv::Point>>& contours,
+    const cv::Mat& difference, const DetectOptions& options) {
+  std::vector<OuterRegion> out;
+  for (const std::vector<cv::Point>& contour : contours) {
+    const double area = RegionArea(contour);
+    if (area < options.least_area_px2) continue;
+    const cv::Rect box = cv::boundingRect(contour);
+    float peak = 0.0F;
+    float sum = 0.0F;
+    for (int y = box.y; y < box.y + box.height; ++y) {
+      const float* row = difference.ptr<float>(y);
+      for (int x = box.x; x < box.x + box.width; ++x) {
+        const float size = std::abs(row[x]);
+        peak = std::max(peak, size);
+        sum += size;
+      }
+    }
+    // RegionArea is at least the number of pixels (Pick's theorem), and of a
+    // part, along whose diagonals it is larger, at most sqrt(2) times that.
+    out.push_back(
+        {&contour, box,
+         std::numbers::sqrt2 *
+             std::min(area * static_cast<double>(peak), double{sum})});
+  }
+  std::sort(out.begin(), out.end(),
+            [](const OuterRegion& a, const OuterRegion& b) {
+              return a.most > b.most;
+            });
+  return out;
+}
+
+// The strength that a further region must have to be among those kept.
+double LeastKept(const std::vector<ContourRegion>& found,
+                 const DetectOptions& options) {
+  const auto kept = static_cast<std::size_t>(options.most_blobs);
+  if (found.size() < kept) return 0.0;
+  std::vector<double> strengths;
+  strengths.reserve(found.size());
+  for (const ContourRegion& region : found) {
+    strengths.push_back(Strength(region));
+  }
+  const auto last = strengths.begin() + static_cast<std::ptrdiff_t>(kept) - 1;
+  std::nth_element(strengths.begin(), last, strengths.end(), std::greater<>());
+  return *last;
+}
+
+// Adds the parts of a region that differ strongly.
+void AddStrongParts(const OuterRegion& outer, const cv::Mat& magnitude,
+                    const cv::Mat& difference, double threshold,
+                    const DetectOptions& options,
+                    std::vector<ContourRegion>& found) {
+  const cv::Rect& box = outer.box;
+  cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
+  cv::drawContours(own, std::vector<std::vector<cv::Point>>{*outer.contour}, 0,
+                   255, cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
+  // The region's strong level is the 95th percentile of its difference: a few
+  // specks or a highlight do not set it.
+  std::vector<float> inside;
+  for (int y = 0; y < box.height; ++y) {
+    const float* row = magnitude.ptr<float>(box.y + y) + box.x;
+    const auto* in = own.ptr<std::uint8_t>(y);
+    for (int x = 0; x < box.width; ++x) {
+      if (in[x] != 0) inside.push_back(row[x]);
+    }
+  }
+  if (static_cast<double>(inside.size()) < options.least_area_px2) return;
+  const auto high =
+      inside.begin() + static_cast<std::ptrdiff_t>(inside.size() * 95 / 100);
+  std::nth_element(inside.begin(), high, inside.end());
+  const double cut =
+      std::max(threshold, options.share_of_peak * static_cast<double>(*high));
+  cv::Mat strong = (magnitude(box) > cut) & own;
+  std::vector<std::vector<cv::Point>> parts;
+  cv::findContours(strong, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
+                   box.tl());
+  AddRegions(std::move(parts), difference, options, found);
+}
+
 // Regions that differ from the background after a 3 x 3 mean. kDifference keeps
 // the strong part of each region, which leaves out penumbras and faint shadows;
 // kChange keeps all of it.
@@ -156,35 +250,11 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
     return MakeBlobs(std::move(found), region, frame, options);
   }
   std::vector<std::vector<cv::Point>> regions;
-  cv::findContours(mask.clone(), regions, cv::RETR_EXTERNAL,
-                   cv::CHAIN_APPROX_NONE);
-  for (const auto& outer : regions) {
-    if (RegionArea(outer) < options.least_area_px2) continue;
-    const cv::Rect box = cv::boundingRect(outer);
-    cv::Mat own = cv::Mat::zeros(box.size(), CV_8UC1);
-    cv::drawContours(own, std::vector<std::vector<cv::Point>>{outer}, 0, 255,
-                     cv::FILLED, cv::LINE_8, cv::noArray(), 0, -box.tl());
-    // The region's strong level is the 95th percentile of its difference: a few
-    // specks or a highlight do not set it.
-    std::vector<float> inside;
-    for (int y = 0; y < box.height; ++y) {
-      const float* row = magnitude.ptr<float>(box.y + y) + box.x;
-      const auto* in = own.ptr<std::uint8_t>(y);
-      for (int x = 0; x < box.width; ++x) {
-        if (in[x] != 0) inside.push_back(row[x]);
-      }
-    }
-    if (static_cast<double>(inside.size()) < options.least_area_px2) continue;
-    const auto high =
-        inside.begin() + static_cast<std::ptrdiff_t>(inside.size() * 95 / 100);
-    std::nth_element(inside.begin(), high, inside.end());
-    const double cut =
-        std::max(threshold, options.share_of_peak * static_cast<double>(*high));
-    cv::Mat strong = (magnitude(box) > cut) & own;
-    std::vector<std::vector<cv::Point>> parts;
-    cv::findContours(strong, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
-                     box.tl());
-    AddRegions(std::move(parts), difference, options, found);
+  cv::findContours(mask, regions, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  for (const OuterRegion& outer :
+       StrongestFirst(regions, difference, options)) {
+    if (outer.most < LeastKept(found, options)) break;
+    AddStrongParts(outer, magnitude, difference, threshold, options, found);
   }
   return MakeBlobs(std::move(found), region, frame, options);
 }
