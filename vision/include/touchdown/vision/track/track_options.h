@@ -33,11 +33,11 @@ struct TrackOptions {
   // ball then is a whole circle, whatever its face shows.
   bool measured = false;
 
-  // Given with `kind`: what is followed must be of this size. Where the track
-  // may be that of a ghost (the body covers a pixel in three quarters of
-  // the frames, or the size found is another), the body is sought once more
-  // together with the picture behind it (src/detection/layered_start.h).
-  // Nothing: not asked.
+  // Given with `kind`: what is followed must be of this size. Where outlines
+  // explain the body badly, or the track may be that of a ghost (the body
+  // covers a pixel in three quarters of the frames, or the size found is
+  // another), the body is sought together with the picture behind it
+  // (src/detection/layered_start.h). Nothing: not asked.
   std::optional<BodySize> size;
 
   // Pixels below it are left out of the outline's fit.
