@@ -56,22 +56,6 @@ TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
   }
 }
 
-TEST(CountExplainedFrames, CountsNoneOfAnotherSize) {
-  Track track;
-  track.body.kind = core::BodyKind::kRectangle;
-  track.body.half_long_px = {24.0, 0.01, std::nullopt};
-  track.body.half_short_px = {8.0, 0.01, std::nullopt};
-  Pose pose;
-  pose.misfit = 0.9;
-  track.poses.push_back(pose);
-  pose.misfit = 2.0;
-  track.poses.push_back(pose);
-  const BodySize size{{48.1, 0.05, std::nullopt}, {16.1, 0.05, std::nullopt}};
-  EXPECT_DOUBLE_EQ(CountExplainedFrames(track, size), 1.25);
-  track.body.half_short_px.value = 10.0;
-  EXPECT_EQ(CountExplainedFrames(track, size), 0.0);
-}
-
 TEST(MayFollowGhost, NeedsAStatedSize) {
   const DrawnBlock block = Slow();
   const auto clip = DrawBlock(block);

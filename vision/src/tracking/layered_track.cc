@@ -113,17 +113,13 @@ bool CanStartFromLayers(const Clip& clip, const TrackOptions& options) {
          clip.KnownChanges(options.first) == nullptr;
 }
 
-bool IsTheBackground(double most_covered) {
+bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
+                    const Track& track, double most_covered) {
+  if (!CanStartFromLayers(clip, options)) return false;
   // Share of the time. The background is an interquartile mean: what covers a
   // pixel in more than three quarters of the samples is what it takes for
   // background. From that definition.
   constexpr double kMaxCovered = 0.75;
-  return most_covered > kMaxCovered;
-}
-
-bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
-                    const Track& track, double most_covered) {
-  if (!CanStartFromLayers(clip, options)) return false;
   // Share of the frames. A body that is seen at its stated size in so many is
   // no ghost. Larger costs time in clips that are right: with 0.9, 174 raw
   // clips took no more time than before (80 s instead of 86 s).
@@ -135,21 +131,10 @@ bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                                                  pose.misfit <= kWellModelled;
                                         })
                         : 0;
-  return IsTheBackground(most_covered) ||
+  return most_covered > kMaxCovered ||
          static_cast<double>(seen * track.step) <
              kSeenShare *
                  static_cast<double>(track.last_frame - track.first_frame);
-}
-
-// A frame counts 1 where its misfit is at the noise, and 1/misfit^2 above it.
-double CountExplainedFrames(const Track& track, const BodySize& size) {
-  if (!IsOfSize(track.body, size)) return 0.0;
-  double count = 0.0;
-  for (const Pose& pose : track.poses) {
-    const double misfit = std::max(1.0, pose.misfit);
-    count += 1.0 / (misfit * misfit);
-  }
-  return count;
 }
 
 core::Expected<TrackResult> TrackFromLayers(Clip& clip,

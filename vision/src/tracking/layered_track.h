@@ -13,10 +13,6 @@ namespace touchdown::vision {
 // and rims do to its edges.
 bool IsOfSize(const BodyImage& body, const BodySize& size);
 
-// Whether a pixel that the body covers in this share of the frames shows
-// nothing but the body in their mid-mean.
-bool IsTheBackground(double most_covered);
-
 // Whether a track may be that of a ghost, so that a second opinion is worth its
 // time: the body is the background somewhere, or the stated body is not seen
 // well modelled in nine of ten frames. `most_covered`: the largest share of the
@@ -29,10 +25,6 @@ bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
 // Whether a layered start can be tried: as above, and in the whole picture
 // only (TrackOptions::region).
 bool CanStartFromLayers(const Clip& clip, const TrackOptions& options);
-
-// Frames of a track that show the stated body: none where its size is another,
-// and each counts as 1 / misfit^2 beyond a misfit of 1.
-double CountExplainedFrames(const Track& track, const BodySize& size);
 
 // Outlines from the poses of a layered start, before a background of what they
 // leave uncovered (Background::unknown where nothing is); `fallback` has the
