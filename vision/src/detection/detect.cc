@@ -33,6 +33,7 @@ double Strength(const Part& part) {
   return part.area_px2 * std::abs(part.contrast_dn);
 }
 
+// Keeps the strongest regions.
 template <class Part>
 void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {

@@ -439,18 +439,21 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   until.Enter("the body is looked for");
   TrackResult result;
   std::string warning;
+  // Of a damaged file what can be read is looked at.
+  const auto look = [&](const auto& once) {
+    try {
+      once();
+    } catch (const core::InputError&) {
+      std::string reason;
+      last = FirstUnreadable(clip, options.first, last, reason);
+      if (last == options.first) throw;
+      warning =
+          fmt::format("frames from {} on cannot be read: {}", last, reason);
+      once();
+    }
+  };
   Look plain;
-  try {
-    plain = LookPlainly(clip, options, last);
-  } catch (const core::InputError&) {
-    // The background's samples reach the damage first: look at what can be
-    // read.
-    std::string reason;
-    last = FirstUnreadable(clip, options.first, last, reason);
-    if (last == options.first) throw;
-    warning = fmt::format("frames from {} on cannot be read: {}", last, reason);
-    plain = LookPlainly(clip, options, last);
-  }
+  look([&] { plain = LookPlainly(clip, options, last); });
   if (warning.empty()) warning = plain.found.warning;
   std::optional<core::Expected<TrackResult>> layered;
   if (!IsWellExplained(plain) && CanStartFromLayers(clip, options)) {
@@ -466,7 +469,13 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     }
     until.Enter("the body is looked for");
   }
-  core::Expected<Look> first = FirstLook(clip, options, std::move(plain));
+  // Other backgrounds are made of other frames, which may be damaged.
+  core::Expected<Look> first = core::AbsentBecause("not looked at");
+  const std::int64_t seen = plain.found.last;
+  look([&] {
+    if (last < seen) plain = LookPlainly(clip, options, last);
+    first = FirstLook(clip, options, std::move(plain));
+  });
   if (!first) {
     if (!layered || !*layered) return tl::unexpected(first.error());
     if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
