@@ -494,7 +494,7 @@ Analysis Analyzer::Run() {
 double ShareExplained(const Analysis& analysis) {
   if (!analysis.body || analysis.track->several_bodies) return 0.0;
   if (!analysis.explained) return 1.0;
-  return analysis.explained->near * (1.0 - analysis.explained->elsewhere);
+  return analysis.explained->OfAll();
 }
 
 // One clip of one channel: options are checked before the first frame is

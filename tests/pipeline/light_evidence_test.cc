@@ -29,6 +29,7 @@ TEST(LightEvidence, SidesMaySpeakAgainstIt) {
                                {.explained = 0.99749, .u_common_px = 0.0254}));
 }
 
+// A camera of 0.45: a choice that stays with levels, whose u covers.
 TEST(LightEvidence, SidesALittleNearerAreNotEnough) {
   EXPECT_FALSE(IsBetterInLight({.explained = 0.99013, .u_common_px = 0.0534},
                                {.explained = 0.99242, .u_common_px = 0.0788}));

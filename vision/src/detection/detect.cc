@@ -27,9 +27,9 @@ double SmoothedSigma(const Background& background,
   return options.noise * std::sqrt(background.UsualVariance()) / 3.0;
 }
 
-// By which regions are ranked: area times contrast.
+// Strength, of regions as of blobs.
 template <class Part>
-double Strength(const Part& part) {
+double AreaTimesContrast(const Part& part) {
   return part.area_px2 * std::abs(part.contrast_dn);
 }
 
@@ -37,7 +37,7 @@ double Strength(const Part& part) {
 template <class Part>
 void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return Strength(a) > Strength(b);
+    return AreaTimesContrast(a) > AreaTimesContrast(b);
   });
   if (parts.size() > static_cast<std::size_t>(options.most_blobs)) {
     parts.resize(static_cast<std::size_t>(options.most_blobs));
@@ -115,6 +115,7 @@ std::vector<Blob> MakeBlobs(std::vector<ContourRegion> regions,
       static_cast<double>(searched.x + frame.origin_x_px),
       static_cast<double>(searched.y + frame.origin_y_px)};
   std::vector<Blob> blobs;
+  blobs.reserve(regions.size());
   for (const ContourRegion& part : regions) {
     blobs.push_back(MakeBlob(part, searched.size(), origin));
   }
@@ -171,7 +172,7 @@ double LeastKept(const std::vector<ContourRegion>& found,
   std::vector<double> strengths;
   strengths.reserve(found.size());
   for (const ContourRegion& region : found) {
-    strengths.push_back(Strength(region));
+    strengths.push_back(AreaTimesContrast(region));
   }
   const auto last = strengths.begin() + static_cast<std::ptrdiff_t>(kept) - 1;
   std::nth_element(strengths.begin(), last, strengths.end(), std::greater<>());
@@ -298,6 +299,8 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
 }
 
 }  // namespace
+
+double Strength(const Blob& blob) { return AreaTimesContrast(blob); }
 
 void KeepLargest(std::vector<Blob>& blobs, const DetectOptions& options) {
   KeepStrongest(blobs, options);

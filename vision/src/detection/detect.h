@@ -52,6 +52,9 @@ struct DetectOptions {
   int most_blobs = 12;           // the largest ones are kept
 };
 
+// By which blobs are ranked: area times contrast.
+double Strength(const Blob& blob);
+
 // `frame` may be a window of the picture.
 std::vector<Blob> DetectBlobs(const core::Frame& frame,
                               const Background& background,

@@ -1,15 +1,9 @@
 #include "detection/watcher.h"
 
-#include <cmath>
 #include <cstddef>
 
 namespace touchdown::vision {
 namespace {
-
-// The measure by which KeepLargest ranks.
-double Strength(const Blob& blob) {
-  return blob.area_px2 * std::abs(blob.contrast_dn);
-}
 
 // Asks for one blob more than is kept, which shows whether there are more.
 DetectOptions OneMore(DetectOptions detect) {

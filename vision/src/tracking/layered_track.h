@@ -1,5 +1,5 @@
-// A second opinion where the body's size is known: the track from a layered
-// start, and which of two tracks shows the stated body.
+// The track from a layered start, where the body's size is known, and whether
+// one can be made and is worth its time.
 #pragma once
 
 #include <cstdint>

@@ -67,6 +67,9 @@ struct ExplainedChange {
   // path. Nothing of it is explained: Q is 0 there. Other things move, or the
   // body was lost where no pose is near. 0 .. 1.
   double elsewhere = 0.0;
+  // Of all change in the clip, the share that is explained.
+  double OfAll() const { return near * (1.0 - elsewhere); }
+
   // Mean square residual over s0^2 where the outline's blurred edge is (M from
   // 0.02 to 0.98): about 1 where shape, pose and blur are right and noise is
   // alike everywhere. Compressed clips have less noise where nothing moves, and
