@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "tests/vision/layered_scene.h"
@@ -187,6 +188,35 @@ TEST(PictureGrid, TiltIsTheGradient) {
   EXPECT_NEAR(tilt.by_y,
               (value(1.3F, -0.58F) - value(1.3F, -0.62F)) / (2.0F * kStep),
               0.05);
+}
+
+TEST(PictureGrid, TransformedLevelsAreThoseOfTheSpline) {
+  const PictureGrid grid(Shape{false, 6.0, 3.0}, 2.0);
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<float> level(-1.0F, 1.0F);
+  std::vector<float> levels(grid.size());
+  for (float& one : levels) one = level(engine);
+  std::vector<float> coefficients = levels;
+  grid.TransformLevels(coefficients.data());
+  for (std::int32_t j = 1; j + 1 < grid.rows(); ++j) {
+    for (std::int32_t i = 1; i + 2 < grid.columns(); ++i) {
+      EXPECT_NEAR(
+          grid.EvaluateSpline(coefficients.data(),
+                              grid.LocatePlace(grid.x_of(i), grid.y_of(j))),
+          levels[static_cast<std::size_t>(j * grid.columns() + i)], 1e-2)
+          << i << ' ' << j;
+    }
+  }
+  // Its own transpose.
+  std::vector<float> others(grid.size());
+  for (float& one : others) one = level(engine);
+  std::vector<float> transformed = others;
+  grid.TransformLevels(transformed.data());
+  const auto dot = [](const std::vector<float>& a,
+                      const std::vector<float>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  EXPECT_NEAR(dot(others, coefficients), dot(transformed, levels), 1e-3);
 }
 
 TEST(PictureGrid, AFlatBodyIsTheSameAsASpline) {

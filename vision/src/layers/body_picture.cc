@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace touchdown::vision::layers {
 
@@ -28,51 +30,33 @@ SplinePlace PictureGrid::LocatePlace(float x, float y) const {
           row - static_cast<float>(whole_row)};
 }
 
-float PictureGrid::EvaluateSpline(const float* coefficients,
-                                  const SplinePlace& place) const {
-  const SplineWeights across(place.right);
-  const SplineWeights down(place.below);
-  const float* row = coefficients + place.first;
-  float sum = 0.0F;
-  for (std::size_t j = 0; j < 4; ++j, row += columns_) {
-    sum += down.at[j] * (across.at[0] * row[0] + across.at[1] * row[1] +
-                         across.at[2] * row[2] + across.at[3] * row[3]);
-  }
-  return sum;
-}
-
-PictureGrid::Tilt PictureGrid::EvaluateTilt(const float* coefficients,
-                                            const SplinePlace& place) const {
-  const SplineWeights across(place.right);
-  const SplineWeights down(place.below);
-  const SplineSlopes across_slope(place.right);
-  const SplineSlopes down_slope(place.below);
-  const float* row = coefficients + place.first;
-  Tilt tilt;
-  for (std::size_t j = 0; j < 4; ++j, row += columns_) {
-    const float level = across.at[0] * row[0] + across.at[1] * row[1] +
-                        across.at[2] * row[2] + across.at[3] * row[3];
-    tilt.value += down.at[j] * level;
-    tilt.by_y += down_slope.at[j] * level;
-    tilt.by_x += down.at[j] *
-                 (across_slope.at[0] * row[0] + across_slope.at[1] * row[1] +
-                  across_slope.at[2] * row[2] + across_slope.at[3] * row[3]);
-  }
-  return tilt;
-}
-
-void PictureGrid::Spread(float amount, const SplinePlace& place,
-                         float* coefficients) const {
-  const SplineWeights across(place.right);
-  const SplineWeights down(place.below);
-  float* row = coefficients + place.first;
-  for (std::size_t j = 0; j < 4; ++j, row += columns_) {
-    const float share = amount * down.at[j];
-    row[0] += share * across.at[0];
-    row[1] += share * across.at[1];
-    row[2] += share * across.at[2];
-    row[3] += share * across.at[3];
-  }
+void PictureGrid::TransformLevels(float* levels) const {
+  // Along each direction c[i-1] + 4 c[i] + c[i+1] = 6 l[i]: by Cholesky's
+  // factors of the tridiagonal matrix, whose pivots soon no longer change.
+  const auto solve = [](float* first, std::ptrdiff_t count, std::ptrdiff_t step,
+                        std::ptrdiff_t beside, std::ptrdiff_t beside_step) {
+    std::vector<float> inverse_pivots;
+    float inverse = 0.0F;
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      inverse = 1.0F / (4.0F - inverse);
+      inverse_pivots.push_back(inverse);
+      float* const at = first + i * step;
+      for (std::ptrdiff_t k = 0; k < beside; ++k) {
+        float& level = at[k * beside_step];
+        const float before = i > 0 ? at[k * beside_step - step] : 0.0F;
+        level = (6.0F * level - before) * inverse;
+      }
+    }
+    for (std::ptrdiff_t i = count - 2; i >= 0; --i) {
+      const float by = inverse_pivots[static_cast<std::size_t>(i)];
+      float* const at = first + i * step;
+      for (std::ptrdiff_t k = 0; k < beside; ++k) {
+        at[k * beside_step] -= by * at[k * beside_step + step];
+      }
+    }
+  };
+  solve(levels, rows_, columns_, columns_, 1);
+  solve(levels, columns_, 1, rows_, columns_);
 }
 
 }  // namespace touchdown::vision::layers

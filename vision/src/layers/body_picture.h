@@ -5,38 +5,31 @@
 // agree to rounding.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "layers/shape_cover.h"
+#include "numbers/lanes.h"
 
 namespace touchdown::vision::layers {
 
 // The four weights of a cubic B-spline at `share` (0..1) beyond a knot, and
 // their derivatives.
-struct SplineWeights {
-  std::array<float, 4> at;
-  explicit SplineWeights(float share) {
-    const float rest = 1.0F - share;
-    constexpr float kSixth = 1.0F / 6.0F;  // of the cubic B-spline's weights
-    at[0] = rest * rest * rest * kSixth;
-    at[1] = (4.0F + share * share * (3.0F * share - 6.0F)) * kSixth;
-    at[2] = (4.0F + rest * rest * (3.0F * rest - 6.0F)) * kSixth;
-    at[3] = share * share * share * kSixth;
-  }
-};
-struct SplineSlopes {
-  std::array<float, 4> at;
-  explicit SplineSlopes(float share) {
-    const float rest = 1.0F - share;
-    at[0] = -0.5F * rest * rest;
-    at[1] = 0.5F * share * (3.0F * share - 4.0F);
-    at[2] = -0.5F * rest * (3.0F * rest - 4.0F);
-    at[3] = 0.5F * share * share;
-  }
-};
+inline FourFloats SplineWeights(float share) {
+  constexpr float kSixth = 1.0F / 6.0F;  // of the cubic B-spline's weights
+  constexpr FourFloats kConstant = {kSixth, 4.0F * kSixth, kSixth, 0.0F};
+  constexpr FourFloats kLinear = {-0.5F, 0.0F, 0.5F, 0.0F};
+  constexpr FourFloats kSquare = {0.5F, -1.0F, 0.5F, 0.0F};
+  constexpr FourFloats kCube = {-kSixth, 0.5F, -0.5F, kSixth};
+  return kConstant + share * (kLinear + share * (kSquare + share * kCube));
+}
+inline FourFloats SplineSlopes(float share) {
+  constexpr FourFloats kConstant = {-0.5F, 0.0F, 0.5F, 0.0F};
+  constexpr FourFloats kLinear = {1.0F, -2.0F, 1.0F, 0.0F};
+  constexpr FourFloats kSquare = {-0.5F, 1.5F, -1.5F, 0.5F};
+  return kConstant + share * (kLinear + share * kSquare);
+}
 
 // Where a place of the body lies on the grid: the first of its sixteen
 // coefficients, and how far beyond.
@@ -68,18 +61,55 @@ class PictureGrid {
   }
 
   float EvaluateSpline(const float* coefficients,
-                       const SplinePlace& place) const;
+                       const SplinePlace& place) const {
+    return AddUp(SumDown(coefficients, place, SplineWeights(place.below)) *
+                 SplineWeights(place.right));
+  }
   struct Tilt {
     float value = 0.0F;
     float by_x = 0.0F;
     float by_y = 0.0F;
   };
-  Tilt EvaluateTilt(const float* coefficients, const SplinePlace& place) const;
+  Tilt EvaluateTilt(const float* coefficients, const SplinePlace& place) const {
+    const FourFloats across = SplineWeights(place.right);
+    const FourFloats down =
+        SumDown(coefficients, place, SplineWeights(place.below));
+    return {AddUp(down * across), AddUp(down * SplineSlopes(place.right)),
+            AddUp(SumDown(coefficients, place, SplineSlopes(place.below)) *
+                  across)};
+  }
   // The transpose of EvaluateSpline: adds `amount` times each weight.
   void Spread(float amount, const SplinePlace& place,
-              float* coefficients) const;
+              float* coefficients) const {
+    const FourFloats across = amount * SplineWeights(place.right);
+    const FourFloats down = SplineWeights(place.below);
+    float* row = coefficients + place.first;
+    for (std::size_t j = 0; j < 4; ++j, row += columns_) {
+      StoreFour(LoadFour(row) + down[j] * across, row);
+    }
+  }
+
+  // Levels at the knots to the coefficients of the spline through them (the
+  // direct B-spline transform of Unser, section "interpolation"), with
+  // coefficients of 0 beyond the grid: a symmetric matrix, its own transpose.
+  void TransformLevels(float* levels) const;
 
  private:
+  static float AddUp(const FourFloats& four) {
+    return (four[0] + four[2]) + (four[1] + four[3]);
+  }
+  // The sum of four rows of coefficients, each times its weight.
+  FourFloats SumDown(const float* coefficients, const SplinePlace& place,
+                     const FourFloats& weights) const {
+    const float* row = coefficients + place.first;
+    FourFloats sum = weights[0] * LoadFour(row);
+    for (std::size_t j = 1; j < 4; ++j) {
+      row += columns_;
+      sum += weights[j] * LoadFour(row);
+    }
+    return sum;
+  }
+
   std::int32_t columns_ = 0;
   std::int32_t rows_ = 0;
   float origin_x_ = 0.0F;

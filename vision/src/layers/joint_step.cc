@@ -137,6 +137,10 @@ void AddColumn(const std::vector<float>& column, double factor,
 // had shown it.
 constexpr float kLeastStill = 0.01F;
 
+// What the finest pattern of a spline's coefficients is of them in its levels,
+// in both directions: (4 - 1 - 1) / 6 each.
+constexpr float kFinest = 1.0F / 9.0F;
+
 class NormalEquations {
  public:
   NormalEquations(const Layers& layers, const std::vector<FrameSamples>& frames,
@@ -164,7 +168,7 @@ class NormalEquations {
   // Right side.
   void Fill(Unknowns& right);
   void Multiply(const Unknowns& in, Unknowns& out);
-  void Precondition(const Unknowns& in, Unknowns& out) const;
+  void Precondition(const Unknowns& in, Unknowns& out);
 
  private:
   // Precision of what is not fitted, far above any that pixels give.
@@ -174,6 +178,8 @@ class NormalEquations {
   template <class Work>
   void AccumulateParts(const Work& work);
   void Collect(Unknowns& out);
+  void PreconditionPicture(const std::vector<float>& in,
+                           std::vector<float>& out);
 
   const Layers& layers_;
   const std::vector<FrameSamples>& frames_;
@@ -192,6 +198,7 @@ class NormalEquations {
   std::vector<Eigen::Matrix3d> pose_inverse_;
   SharedMatrix shared_inverse_;
   std::vector<float> picture_inverse_;
+  std::vector<float> picture_finest_;  // see PreconditionPicture
   std::vector<float> still_inverse_;
 };
 
@@ -300,6 +307,7 @@ void NormalEquations::Fill(Unknowns& right) {
   }
   shared_inverse_ = all.inverse();
   picture_inverse_.assign(cells_, 0.0F);
+  picture_finest_.assign(cells_, 0.0F);
   if (cells_ > 0) {
     free_.RemoveComponent(layers_.picture.data(), outside_.data());
   }
@@ -307,7 +315,11 @@ void NormalEquations::Fill(Unknowns& right) {
     float sum = 0.0F;
     for (const auto& part : picture) sum += part[c];
     right.picture[c] -= stiffness_ * outside_[c];
-    picture_inverse_[c] = 1.0F / (sum + stiffness_ + 1e-3F);
+    const float held = stiffness_ + 1e-3F;
+    picture_inverse_[c] = 1.0F / (sum + held);
+    picture_finest_[c] =
+        (std::sqrt((sum + held) / (kFinest * kFinest * sum + held)) - 1.0F) /
+        (1.0F / kFinest - 1.0F);
   }
   still_inverse_.assign(shown_.size(), 0.0F);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
@@ -377,7 +389,30 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
   }
 }
 
-void NormalEquations::Precondition(const Unknowns& in, Unknowns& out) const {
+// Coefficients of a spline whose knots lie a pixel apart are told very
+// unequally by levels: a pattern that changes its sign from knot to knot is a
+// ninth of its coefficients. So where pixels tell T, its levels are what is
+// scaled by their weights (d each); where only the prior does (h each), its
+// coefficients are. With the direct transform F, and shares f between the two
+// that are right for the finest and for the coarsest pattern:
+//   M^-1 = G' D^-1 G,  G = f F + (1 - f),  D = d + h
+void NormalEquations::PreconditionPicture(const std::vector<float>& in,
+                                          std::vector<float>& out) {
+  if (cells_ == 0) return;
+  out = in;
+  layers_.grid.TransformLevels(out.data());
+  for (std::size_t c = 0; c < cells_; ++c) {
+    const float f = picture_finest_[c];
+    const float scaled =
+        picture_inverse_[c] * (f * out[c] + (1.0F - f) * in[c]);
+    out[c] = f * scaled;
+    outside_[c] = (1.0F - f) * scaled;
+  }
+  layers_.grid.TransformLevels(out.data());
+  for (std::size_t c = 0; c < cells_; ++c) out[c] += outside_[c];
+}
+
+void NormalEquations::Precondition(const Unknowns& in, Unknowns& out) {
   for (std::size_t t = 0; t < frames_.size(); ++t) {
     const Eigen::Map<const Eigen::Vector3d> from(&in.poses[kPose * t]);
     Eigen::Map<Eigen::Vector3d>(&out.poses[kPose * t]) =
@@ -385,9 +420,7 @@ void NormalEquations::Precondition(const Unknowns& in, Unknowns& out) const {
   }
   const Eigen::Map<const SharedVector> from(in.shared.data());
   Eigen::Map<SharedVector>(out.shared.data()) = shared_inverse_ * from;
-  for (std::size_t c = 0; c < out.picture.size(); ++c) {
-    out.picture[c] = picture_inverse_[c] * in.picture[c];
-  }
+  PreconditionPicture(in.picture, out.picture);
   for (std::size_t x = 0; x < out.still.size(); ++x) {
     out.still[x] = still_inverse_[x] * in.still[x];
   }
@@ -516,7 +549,9 @@ JointStep SolveJointStep(const Layers& layers,
   Unknowns direction = scaled;
   Unknowns product = step;
   double power = Dot(residual, scaled);
-  const double goal = power * options.tolerance * options.tolerance;
+  const double goal =
+      std::max(power * options.tolerance * options.tolerance,
+               options.least_chi2 * layers.noise_dn * layers.noise_dn);
   JointStep out;
   while (out.products < options.most_products && power > goal) {
     equations.Multiply(direction, product);

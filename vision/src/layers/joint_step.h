@@ -7,8 +7,8 @@
 //   (sum_i w_i J_i J_i' + P) d = sum_i w_i J_i r_i - P (x - x0)
 // are solved for all unknowns together, by conjugate gradients with blocks as
 // preconditioner (M. R. Hestenes and E. Stiefel, J. Res. NBS 49, 1952; Jacobi
-// blocks of each pose and of the shared ones, the diagonal of T and B). No
-// matrix is stored: a product costs two passes over the samples.
+// blocks of each pose and of the shared ones, the diagonal of B and that of T's
+// levels). No matrix is stored: a product costs two passes over the samples.
 #pragma once
 
 #include <cstddef>
@@ -51,6 +51,11 @@ struct JointStepOptions {
   bool turns = true;  // false: angles are held (a disc without marks)
   // Conjugate gradients end when the residual has fallen to this share.
   double tolerance = 1e-3;
+  // Or when what is left, r' M^-1 r over the noise's variance, is below this:
+  // all unknowns together are a tenth of a standard deviation off then, were
+  // they independent. With 1e-9 answers of four textured clips differ by at
+  // most 0.15 of their u, and cost 1.1 to 1.2 times as much.
+  double least_chi2 = 1e-2;
   int most_products = 60;
   int threads = 0;
 };

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 // Sanitizers come up after the choice would be made.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
@@ -29,6 +30,7 @@ namespace touchdown::vision {
 using Four = double __attribute__((vector_size(32), may_alias));
 using FourBits = std::uint64_t __attribute__((vector_size(32)));
 using Eight = float __attribute__((vector_size(32), may_alias));
+using FourFloats = float __attribute__((vector_size(16)));
 using EightBits = std::uint32_t __attribute__((vector_size(32)));
 
 // Sixteen short numbers: one instruction of AVX-512, two of avx2. For what is
@@ -59,6 +61,16 @@ TOUCHDOWN_INLINE const Wide& WideAt(const float* first) {
 }
 TOUCHDOWN_INLINE Wide& WideAt(float* first) {
   return *reinterpret_cast<Wide*>(first);
+}
+
+// The four that begin at `first`, wherever it lies.
+TOUCHDOWN_INLINE FourFloats LoadFour(const float* first) {
+  FourFloats four;
+  std::memcpy(&four, first, sizeof(four));
+  return four;
+}
+TOUCHDOWN_INLINE void StoreFour(const FourFloats& four, float* first) {
+  std::memcpy(first, &four, sizeof(four));
 }
 
 // Asks for a stretch of memory that is used soon: a mapped recording's rows lie
