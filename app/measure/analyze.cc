@@ -422,6 +422,7 @@ Analysis Analyzer::Run() {
   track_options.kind = kind;
   track_options.measured = options_.diameter_m.has_value();
   track_options.size = StatedSize(options_);
+  track_options.before = footage_.before;
   track_options.ground = camera_.image_ground;
   track_options.still_frames = footage_.still_frames;
   track_options.threads = options_.decoder_threads;
@@ -499,12 +500,14 @@ double ShareExplained(const Analysis& analysis) {
 
 // One clip of one channel: options are checked before the first frame is
 // decoded, so that a user's mistake costs no time. `motion`: the recording's,
-// measured where it is not known yet. Ends by the limit with Unfinished; a
-// user's interruption passes as core::Cancelled.
+// measured where it is not known yet. `before`: the track of a look at other
+// levels of the recording, or null. Ends by the limit with Unfinished; a user's
+// interruption passes as core::Cancelled.
 Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
                          const AnalyzeOptions& options,
                          const core::Cancellation& until,
-                         std::optional<vision::CameraMotion>& motion) {
+                         std::optional<vision::CameraMotion>& motion,
+                         const vision::Track* before = nullptr) {
   const vision::ClipInfo info = clip->info();
   CheckOptions(options, info);
   if (options.gamma) {
@@ -515,6 +518,7 @@ Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
     const ClipCalibration camera = FitToClip(options, info);
     until.Enter("light and camera are looked at");
     Footage footage = MakeSteady(std::move(clip), options, motion);
+    footage.before = before;
     if (options.stop_early && info.format != kRawFormat) {
       return AnalyzeUntilDecided(std::move(footage), camera, options);
     }
@@ -570,8 +574,9 @@ std::optional<Analysis> AnalyzeLight(
     // A clip that was made linear has no gamma left: what the outlines still
     // show is the factor to the next round's.
     *options.gamma *= more;
-    Analysis light = AnalyzeOpenClip(OpenRecording(path, clip_options), options,
-                                     until, motion);
+    Analysis light =
+        AnalyzeOpenClip(OpenRecording(path, clip_options), options, until,
+                        motion, &*(best ? *best : seen).track);
     if (!light.track || !light.track->layered || !light.explained ||
         !IsBetterInLight(evidence(light), levels)) {
       break;

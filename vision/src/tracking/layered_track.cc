@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -91,6 +92,63 @@ std::vector<Fitted> FitTrackOutlines(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
+// What is held of the outlines' size in a pass over all frames. The stated one
+// is held until the places are right; then the picture tells the size. Where
+// the background is not known at one end of the body, a free size draws the
+// place along: at last the size of all frames is held.
+enum class Size { kStated, kFree, kCommon };
+
+// Outlines of the stated size from a track's poses, in as many passes.
+core::Expected<TrackResult> FitOutlinesOfSize(
+    Clip& clip, const TrackOptions& options, Track from,
+    const Background& fallback, std::initializer_list<Size> passes) {
+  TrackResult result;
+  Track& track = result.track;
+  track = std::move(from);
+  // Frames: fewer make no path.
+  constexpr std::size_t kMinPoses = 3;
+  const auto too_few = [] {
+    return core::AbsentBecause("too few outlines of the stated size");
+  };
+  if (track.poses.size() < kMinPoses) return too_few();
+  for (const Size held : passes) {
+    result.background = EstimateUncovered(clip, options, track, fallback);
+    OutlineOptions fit_options;
+    fit_options.ground = options.ground;
+    fit_options.fit_size = held == Size::kFree;
+    if (held != Size::kStated) fit_options.blur_px = track.body.blur_px;
+    std::vector<Fitted> fits =
+        FitTrackOutlines(clip, result.background, options, track, fit_options);
+    std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
+    DropStrangers(fits);
+    // A frame's own size may differ from the stated one by its own u as well.
+    std::erase_if(fits, [&](const Fitted& f) {
+      core::Estimate stated = options.size->long_px;
+      stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
+      return !IsStatedLength(2.0 * OutlineSize(f.fit), stated);
+    });
+    // Share of the poses that the last pass may lose. If it loses more, the
+    // pass before knew them better and its result stays. Not studied.
+    constexpr double kMaxLostShare = 0.2;
+    if (passes.size() > 1 && held == Size::kCommon &&
+        static_cast<double>(fits.size()) <
+            (1.0 - kMaxLostShare) * static_cast<double>(track.poses.size())) {
+      break;
+    }
+    if (fits.size() < kMinPoses) return too_few();
+    const BodyImage sized = track.body;
+    track.warnings.clear();
+    FillTrack(fits, *options.kind, track);
+    // Held sizes have no u of their own.
+    if (held == Size::kCommon) {
+      track.body.radius_px = sized.radius_px;
+      track.body.half_long_px = sized.half_long_px;
+      track.body.half_short_px = sized.half_short_px;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 bool IsOfSize(const BodyImage& body, const BodySize& size) {
@@ -148,57 +206,16 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
   start_options.threads = options.threads;
   const auto start = FindLayeredStart(clip, start_options);
   if (!start) return tl::unexpected(start.error());
+  return FitOutlinesOfSize(clip, options,
+                           TrackOfStart(clip, options, last, *start), fallback,
+                           {Size::kStated, Size::kFree, Size::kCommon});
+}
 
-  TrackResult result;
-  Track& track = result.track;
-  track = TrackOfStart(clip, options, last, *start);
-  // Frames: fewer make no path.
-  constexpr std::size_t kMinPoses = 3;
-  const auto too_few = [] {
-    return core::AbsentBecause("too few outlines of the stated size");
-  };
-  if (track.poses.size() < kMinPoses) return too_few();
-  // Three passes. The stated size is held until the places are right; then the
-  // picture tells the size. Where the background is not known at one end of the
-  // body, a free size draws the place along: at last the size of all frames is
-  // held.
-  enum class Size { kStated, kFree, kCommon };
-  for (const Size held : {Size::kStated, Size::kFree, Size::kCommon}) {
-    result.background = EstimateUncovered(clip, options, track, fallback);
-    OutlineOptions fit_options;
-    fit_options.ground = options.ground;
-    fit_options.fit_size = held == Size::kFree;
-    if (held != Size::kStated) fit_options.blur_px = track.body.blur_px;
-    std::vector<Fitted> fits =
-        FitTrackOutlines(clip, result.background, options, track, fit_options);
-    std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
-    DropStrangers(fits);
-    // A frame's own size may differ from the stated one by its own u as well.
-    std::erase_if(fits, [&](const Fitted& f) {
-      core::Estimate stated = options.size->long_px;
-      stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
-      return !IsStatedLength(2.0 * OutlineSize(f.fit), stated);
-    });
-    // Share of the poses that the last pass may lose. If it loses more, the
-    // pass before knew them better and its result stays. Not studied.
-    constexpr double kMaxLostShare = 0.2;
-    if (held == Size::kCommon &&
-        static_cast<double>(fits.size()) <
-            (1.0 - kMaxLostShare) * static_cast<double>(track.poses.size())) {
-      break;
-    }
-    if (fits.size() < kMinPoses) return too_few();
-    const BodyImage sized = track.body;
-    track.warnings.clear();
-    FillTrack(fits, *options.kind, track);
-    // Held sizes have no u of their own.
-    if (held == Size::kCommon) {
-      track.body.radius_px = sized.radius_px;
-      track.body.half_long_px = sized.half_long_px;
-      track.body.half_short_px = sized.half_short_px;
-    }
-  }
-  return result;
+core::Expected<TrackResult> TrackFromBefore(Clip& clip,
+                                            const TrackOptions& options,
+                                            const Background& fallback) {
+  return FitOutlinesOfSize(clip, options, *options.before, fallback,
+                           {Size::kCommon});
 }
 
 }  // namespace touchdown::vision

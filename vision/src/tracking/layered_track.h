@@ -1,5 +1,5 @@
-// The track from a layered start, where the body's size is known, and whether
-// one can be made and is worth its time.
+// The track from a layered start, or from another look's poses, where the
+// body's size is known, and whether one can be made and is worth its time.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,11 @@ bool CanStartFromLayers(const Clip& clip, const TrackOptions& options);
 core::Expected<TrackResult> TrackFromLayers(Clip& clip,
                                             const TrackOptions& options,
                                             std::int64_t last,
+                                            const Background& fallback);
+
+// The same from the poses of TrackOptions::before.
+core::Expected<TrackResult> TrackFromBefore(Clip& clip,
+                                            const TrackOptions& options,
                                             const Background& fallback);
 
 }  // namespace touchdown::vision

@@ -424,7 +424,8 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
   first.fits = std::move(better);
 }
 
-// From frames to a track, in this order: the first hypothesis (detection);
+// From frames to a track: from the poses of another look or, in this order: the
+// first hypothesis (detection);
 // where it explains a stated body badly, a layered start, which ends the search
 // if it explains the clip; the other hypotheses, the background without the
 // body, the same hypothesis before that background where the body was lost, the
@@ -437,6 +438,17 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
                           : std::min(options.last, clip.info().frames);
   const core::Cancellation& until = clip.cancellation();
   until.Enter("the body is looked for");
+  // Of a clip that could be read to its end.
+  if (options.before && options.before->layered &&
+      options.before->last_frame == last && CanStartFromLayers(clip, options)) {
+    auto again = TrackFromBefore(
+        clip, options,
+        EstimateBackground(clip, options.first, last,
+                           ChooseBackgroundOptions(clip, options)));
+    if (again) again = InLayers(clip, options, std::move(*again));
+    if (again) return again;
+    until.Enter("the body is looked for");
+  }
   TrackResult result;
   std::string warning;
   // Of a damaged file what can be read is looked at.

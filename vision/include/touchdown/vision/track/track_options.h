@@ -13,6 +13,8 @@
 
 namespace touchdown::vision {
 
+struct Track;
+
 // Of the body in the picture, where scale and sides are known, with u of both.
 struct BodySize {
   core::Estimate long_px;   // long side of a rectangle, diameter of a sphere
@@ -39,6 +41,11 @@ struct TrackOptions {
   // another), the body is sought together with the picture behind it
   // (src/detection/layered_start.h). Nothing: not asked.
   std::optional<BodySize> size;
+
+  // Given with `size`: the track that another look at the same frames, in other
+  // levels, ended with. A body that was measured by layers there begins here
+  // where it was, and is not sought again. Nothing: it is sought.
+  const Track* before = nullptr;
 
   // Pixels below it are left out of the outline's fit.
   std::optional<calib::GroundLine> ground;
