@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int32_t kWidth_px = 240;
 constexpr std::int32_t kHeight_px = 120;
+constexpr std::int32_t kDarkFrom_px = 105;
 constexpr std::int64_t kFrames = 60;
 constexpr double kBlur_px = 0.9;
 constexpr double kHalfLong_px = 16.0;
@@ -31,6 +32,7 @@ struct Film {
   double texture_dn = 8.0;
   double shadow_dn = 0.0;   // depth of a soft shadow that moves with the body
   double flicker = 0.0;     // of all light, relative amplitude
+  double dark_noise = 1.0;  // times the noise, in a dark strip at the bottom
   std::int64_t enters = 0;  // frame from which the body is in the picture
   std::uint64_t seed = 1;
 };
@@ -76,6 +78,10 @@ void DrawFrame(const Film& film, std::int64_t index,
             150.0 + film.contrast_dn +
             film.texture_dn * std::sin(0.8 * u) * std::cos(0.9 * v);
         level += cover * (face - level);
+      }
+      if (film.dark_noise != 1.0 && y >= kDarkFrom_px) {
+        levels.push_back(30.0 + film.dark_noise * noise(engine));
+        continue;
       }
       levels.push_back(light * level + noise(engine));
     }
@@ -197,6 +203,16 @@ TEST(ExplainedChange, NoiseDoesNotMoveIt) {
     // 0.994, 0.995, 1.010: at 12 DN the noise itself is known to 1 %.
     EXPECT_NEAR(sum, 1.0, 0.02) << noise_dn;
   }
+}
+
+// A camera with a gamma has most noise in the dark: it is no change.
+TEST(ExplainedChange, NoiseOfTheDarkIsNoChange) {
+  Film film;
+  film.contrast_dn = -20.0;
+  film.dark_noise = 4.0;
+  const ExplainedChange explained = Measured(film, TrueTrack(film));
+  EXPECT_GT(explained.near, 0.95);
+  EXPECT_LT(explained.elsewhere, 0.02);
 }
 
 TEST(ExplainedChange, SoftShadowAndFlickerLeaveItHigh) {

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <stdexcept>
 
 #include "explanation/change_samples.h"
 #include "explanation/two_layers.h"
+#include "numbers/robust.h"
 #include "touchdown/vision/background/background.h"
 
 namespace touchdown::vision {
@@ -31,9 +34,10 @@ void CheckArguments(const Clip& clip, const Track& track,
   }
 }
 
-// Mean and sum of squared deviations of each point over the frames.
+// Of each point, over the frames.
 struct OverTime {
   std::vector<float> mean;
+  std::vector<float> median;
   std::vector<float> square;  // sum of (I - mean)^2
 };
 
@@ -54,45 +58,91 @@ OverTime SumOverTime(const LatticeLevels& levels, std::size_t frames,
       over.square[p] += off * off;
     }
   }
+  over.median.resize(points);
+  std::vector<float> of_point(frames);
+  for (std::size_t p = 0; p < points; ++p) {
+    for (std::size_t k = 0; k < frames; ++k) of_point[k] = levels.of(k)[p];
+    over.median[p] = MedianInPlace(of_point);
+  }
   return over;
 }
 
-// Variance of a pixel over time where nothing moves: the median over the points
-// far from the body's path, where there are enough of them (near it most pixels
-// are crossed by the body). Divided by the median of chi^2 with n - 1 degrees
-// of freedom, (n - 1) (1 - 2 / (9 (n - 1)))^3 (Wilson and Hilferty 1931).
-double NoiseVariance(const OverTime& near, const OverTime& elsewhere,
-                     std::size_t frames) {
-  // Points: the median is then known to about 2 %. Not studied.
-  constexpr std::size_t kMinPoints = 200;
-  std::vector<float> squares =
-      elsewhere.square.size() >= kMinPoints ? elsewhere.square : near.square;
-  const auto middle =
-      squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  const double freedom = static_cast<double>(frames) - 1.0;
-  const double correction = std::pow(1.0 - 2.0 / (9.0 * freedom), 3.0);
-  return std::max(static_cast<double>(*middle) / (freedom * correction),
-                  Background::kVarianceFloor_dn2);
-}
+// Variance of a pixel over time where nothing moves, by its level: photons
+// count more in the light, and a camera's gamma raises noise in the dark. Of
+// points of like level it is the median, divided by that of chi^2 with n - 1
+// degrees of freedom, (n - 1) (1 - 2 / (9 (n - 1)))^3 (Wilson and Hilferty
+// 1931). A point's level is its median over time: what passes does not change
+// it.
+class LevelNoise {
+ public:
+  // From the points far from the body's path, where there are enough of them
+  // (near it most pixels are crossed by the body).
+  LevelNoise(const OverTime& near, const OverTime& elsewhere,
+             std::size_t frames) {
+    // Points of like level: their median is then known to about 2 %. Not
+    // studied.
+    constexpr std::size_t kPoints = 200;
+    const OverTime& over =
+        elsewhere.square.size() >= kPoints ? elsewhere : near;
+    const std::size_t points = over.square.size();
+    std::vector<std::size_t> by_level(points);
+    std::iota(by_level.begin(), by_level.end(), std::size_t{0});
+    std::sort(by_level.begin(), by_level.end(),
+              [&](std::size_t a, std::size_t b) {
+                return over.median[a] < over.median[b];
+              });
+    const double freedom = static_cast<double>(frames) - 1.0;
+    const double of_median =
+        freedom * std::pow(1.0 - 2.0 / (9.0 * freedom), 3.0);
+    const auto estimate = [&](std::size_t from, std::size_t to) {
+      std::vector<float> squares;
+      for (std::size_t i = from; i < to; ++i) {
+        squares.push_back(over.square[by_level[i]]);
+      }
+      return std::max(static_cast<double>(MedianInPlace(squares)) / of_median,
+                      Background::kVarianceFloor_dn2);
+    };
+    const std::size_t groups = std::max<std::size_t>(1, points / kPoints);
+    for (std::size_t g = 0; g < groups; ++g) {
+      const std::size_t from = g * points / groups;
+      const std::size_t to = (g + 1) * points / groups;
+      up_to_.push_back(over.median[by_level[to - 1]]);
+      variance_.push_back(estimate(from, to));
+    }
+    usual_ = estimate(0, points);
+  }
+
+  double At(float level) const {
+    const auto group = std::lower_bound(up_to_.begin(), up_to_.end(), level);
+    return variance_[std::min(static_cast<std::size_t>(group - up_to_.begin()),
+                              variance_.size() - 1)];
+  }
+  double usual() const { return usual_; }
+
+ private:
+  std::vector<float> up_to_;  // the highest level of each group
+  std::vector<double> variance_;
+  double usual_ = 0.0;
+};
 
 // Sum of the change beyond noise, over the points whose own variance stands out
 // of it.
-double ChangeBeyondNoise(const OverTime& over, double variance,
+double ChangeBeyondNoise(const OverTime& over, const LevelNoise& noise,
                          std::size_t frames) {
   const double freedom = static_cast<double>(frames) - 1.0;
-  // Meant to leave out noise of other levels, of compression and of light that
-  // is not quite steady: three times the usual standard deviation (9 in
-  // variance), plus six standard deviations of the estimate itself. Larger
-  // misses faint things that move; smaller counts noise. Chosen, not measured
-  // yet.
+  // Meant to leave out noise of compression and of light that is not quite
+  // steady: three times the usual standard deviation (9 in variance), plus six
+  // standard deviations of the estimate itself. Larger misses faint things that
+  // move; smaller counts noise. Chosen, not measured yet.
   constexpr double kNoiseFactor = 9.0;
   constexpr double kEstimateSigmas = 6.0;
-  const double least = variance * (kNoiseFactor * freedom +
-                                   kEstimateSigmas * std::sqrt(2.0 * freedom));
+  const double least =
+      kNoiseFactor * freedom + kEstimateSigmas * std::sqrt(2.0 * freedom);
   double sum = 0.0;
-  for (const float square : over.square) {
-    if (square > least) sum += square - variance * freedom;
+  for (std::size_t p = 0; p < over.square.size(); ++p) {
+    const double variance = noise.At(over.median[p]);
+    const auto square = static_cast<double>(over.square[p]);
+    if (square > variance * least) sum += square - variance * freedom;
   }
   return sum;
 }
@@ -177,7 +227,8 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
   const OverTime over = SumOverTime(levels, n, near.size());
   const OverTime over_rest = SumOverTime(
       ReadLevels(clip, frames, rest, options.threads), n, rest.size());
-  const double variance = NoiseVariance(over, over_rest, n);
+  const LevelNoise pixel_noise(over, over_rest, n);
+  const double variance = pixel_noise.usual();
 
   const std::vector<CoveredPoints> covered =
       CoverPoints(track, frames, near, options.threads);
@@ -212,14 +263,12 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
   }
   // Share of the change that the model explains, both with the noise taken out.
   out.near = 1.0 - (sums.square - noise) / (all - noise);
-  const double change_near = ChangeBeyondNoise(over, variance, n) *
-                             static_cast<double>(near.step) * near.step;
-  const double change_rest = ChangeBeyondNoise(over_rest, variance, n) *
+  const double change_near =
+      (all - noise) * static_cast<double>(near.step) * near.step;
+  const double change_rest = ChangeBeyondNoise(over_rest, pixel_noise, n) *
                              static_cast<double>(rest.step) * rest.step;
   // Both changes are scaled to areas, since the lattices have different steps.
-  out.elsewhere = change_near + change_rest > 0.0
-                      ? change_rest / (change_near + change_rest)
-                      : 0.0;
+  out.elsewhere = change_rest / (change_near + change_rest);
   // Mean square over the edge's band in units of the noise: 1 where outline and
   // blur are right.
   out.band_chi2 =
