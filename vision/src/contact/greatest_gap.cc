@@ -186,9 +186,12 @@ void Finder::SearchInterval(const PlaneSample& a, const PlaneSample& b) {
 // pose is known best, at touchdown, goes through the frames of one flight, and
 // on to where that flight ends.
 void Finder::LookAfterTouchdown() {
-  // Frames: nearer to an impact the exposure may span it.
-  constexpr double kHalfAFrame = 0.5;
+  // Nearer to an impact the exposure may span it. Frames, of the exposure's
+  // error: less takes a mixture of two motions for a pose; more loses frames.
+  // Not studied.
+  constexpr double kMargin = 0.1;
   const double dt = track.frame_interval_s;
+  const double spans_s = std::min(0.5, 0.5 * track.exposure + kMargin) * dt;
   const FlightState at = event->before->At(event->time_s.value);
   PlaneSample touchdown;
   touchdown.time_s = event->time_s.value;
@@ -207,7 +210,7 @@ void Finder::LookAfterTouchdown() {
   const auto first = static_cast<std::size_t>(
       std::find_if(samples.begin(), samples.end(),
                    [&](const PlaneSample& s) {
-                     return s.time_s > touchdown.time_s + kHalfAFrame * dt;
+                     return s.time_s > touchdown.time_s + spans_s;
                    }) -
       samples.begin());
   // If the lowest corner is another than at touchdown, a second impact lies
@@ -248,11 +251,11 @@ void Finder::LookAfterTouchdown() {
     }
     seen.end_s = t;
     // A frame that was exposed across the next impact says less.
-    if (t - samples[i].time_s > kHalfAFrame * dt) hop = seen;
+    if (t - samples[i].time_s > spans_s) hop = seen;
   }
   // A frame that the flight claims but does not explain refutes the hop.
   if (hop && hop->end_s < samples.back().time_s && i < samples.size() &&
-      samples[i].time_s > hop->end_s - kHalfAFrame * dt) {
+      samples[i].time_s > hop->end_s - spans_s) {
     Offer(hop->most, hop->frame);
   }
 }
@@ -278,7 +281,10 @@ std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
                                            const Event* event) {
   Finder finder{track, from, ground, options, event};
   for (const Stretch& stretch : stretches) finder.SearchStretch(stretch);
-  if (event && !event->after) finder.LookAfterTouchdown();
+  // Frames of no flight that follow the touchdown at once.
+  if (event && (!event->after || event->after_frames.begin > from)) {
+    finder.LookAfterTouchdown();
+  }
   return finder.greatest;
 }
 

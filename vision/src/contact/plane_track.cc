@@ -105,6 +105,9 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   plane.u_common_face_rad = track.body.u_common_angle_rad;
   plane.u_texture_px = track.body.u_texture_px;
   plane.blur_px = track.body.blur_px;
+  if (track.body.shutter_fraction > 0.0) {
+    plane.exposure = std::min(1.0, track.body.shutter_fraction);
+  }
   plane.is_predicted = track.is_predicted;
   // Of a body that was followed in part, the whole size is known from
   // elsewhere.

@@ -48,6 +48,7 @@ struct PlaneTrack {
   double size_px = 0.0;       // of the whole body: diameter or long side
   int direction = 1;          // +1: travels to the right in the image, -1: left
   double frame_interval_s = 0.0;
+  double exposure = 1.0;  // of a frame interval; 1: all of it, or not measured
   std::int64_t last_frame = 0;  // one past the last frame of the range
   calib::GroundLine ground;
   std::vector<PlaneSample> samples;  // by time
