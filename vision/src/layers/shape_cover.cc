@@ -66,13 +66,11 @@ ShapeCover::ShapeCover(const Shape& shape, double blur)
       bend_(static_cast<float>(
           shape.disc ? 0.5 * blur / std::max(shape.half_long, blur) : 0.0)),
       by_long_(1.0F + bend_ / (half_long_ * per_blur_)) {
-  const float narrow = disc_ ? half_long_ : half_short_;
   const float rim = (NormalTable::kReach + bend_) / per_blur_;
-  const float inside = std::max(0.0F, narrow - rim);
-  const float outside = disc_ ? half_long_ + rim
-                              : std::hypot(half_long_ + rim, half_short_ + rim);
-  inside_ = inside * inside;
-  outside_ = outside * outside;
+  inside_long_ = std::max(0.0F, half_long_ - rim);
+  inside_short_ = std::max(0.0F, half_short_ - rim);
+  outside_long_ = half_long_ + rim;
+  outside_short_ = half_short_ + rim;
 }
 
 CoverAt ShapeCover::CoverOfRectangle(float x, float y) const {

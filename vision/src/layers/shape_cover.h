@@ -82,10 +82,17 @@ class ShapeCover {
   ShapeCover(const Shape& shape, double blur);
   CoverAt At(float x, float y) const {
     // Most pixels are far from the edges, which the table ends at.
-    const float square = x * x + y * y;
-    if (square < inside_) return {.value = 1.0F};
-    if (square > outside_) return {};
-    return disc_ ? CoverOfDisc(x, y, square) : CoverOfRectangle(x, y);
+    if (disc_) {
+      const float square = x * x + y * y;
+      if (square < inside_long_ * inside_long_) return {.value = 1.0F};
+      if (square > outside_long_ * outside_long_) return {};
+      return CoverOfDisc(x, y, square);
+    }
+    const float along = std::abs(x);
+    const float across = std::abs(y);
+    if (along < inside_long_ && across < inside_short_) return {.value = 1.0F};
+    if (along > outside_long_ || across > outside_short_) return {};
+    return CoverOfRectangle(x, y);
   }
   // `cosine`, `sine`: of the body's direction, in which x and y are.
   Product WithEdge(float x, float y, const StillEdge& edge, float cosine,
@@ -110,12 +117,13 @@ class ShapeCover {
 
   const NormalTable& table_;
   bool disc_;
-  // Squared distances from the centre, px^2: nearer all is covered, farther
-  // nothing.
-  float inside_ = 0.0F;
-  float outside_ = 0.0F;
   float half_long_;
   float half_short_;
+  // Half sides, or radius: nearer all is covered, farther nothing.
+  float inside_long_ = 0.0F;
+  float inside_short_ = 0.0F;
+  float outside_long_ = 0.0F;
+  float outside_short_ = 0.0F;
   float per_blur_;
   float bend_;     // s / (2 a) of a disc
   float by_long_;  // of z by a disc's radius, in 1 / s
