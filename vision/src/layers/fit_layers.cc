@@ -63,29 +63,20 @@ void Reweigh(double noise_dn, std::vector<FrameSamples>& frames) {
   }
 }
 
-// The level that most of the body shows, in a few of its frames: the first step
-// begins there.
-double MeasureLevel(const PictureStack& stack, const Layers& layers,
-                    const std::vector<LayerPose>& poses) {
-  // More cost time, and one would do where nothing stands before the body.
-  constexpr std::size_t kFrames = 8;
+// The level that most of the body shows.
+float MeanLevel(const std::vector<FrameSamples>& frames) {
   // Coverage from which on a pixel shows the body alone.
   constexpr float kWhole = 0.95F;
-  const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
-  const std::size_t step = std::max<std::size_t>(1, poses.size() / kFrames);
-  FrameSamples samples;
   double sum = 0.0;
   double count = 0.0;
-  for (std::size_t t = 0; t < poses.size(); t += step) {
-    Linearize(stack, t, layers, poses[t], motions[t], Derivatives::kByPose,
-              samples);
+  for (const FrameSamples& samples : frames) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples.cover[i] < kWhole) continue;
       sum += static_cast<double>(samples.level[i]);
       count += 1.0;
     }
   }
-  return count > 0.0 ? sum / count : 0.0;
+  return count > 0.0 ? static_cast<float>(sum / count) : 0.0F;
 }
 
 // A body is flat until its pictures say that it is not.
@@ -246,7 +237,8 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   const FreePart free(layers.grid);
   std::vector<FrameSamples> frames;
   StillEvidence evidence;
-  layers.quadratic = {MeasureLevel(stack, layers, fit.poses)};
+  LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
+  layers.quadratic = {static_cast<double>(MeanLevel(frames))};
   if (options.textured) LearnTexture(layers);
 
   constexpr double kHeld = 0.0;  // u of the curve: it is not fitted yet
