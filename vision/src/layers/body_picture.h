@@ -18,17 +18,17 @@ namespace touchdown::vision::layers {
 // their derivatives.
 inline FourFloats SplineWeights(float share) {
   constexpr float kSixth = 1.0F / 6.0F;  // of the cubic B-spline's weights
-  constexpr FourFloats kConstant = {kSixth, 4.0F * kSixth, kSixth, 0.0F};
-  constexpr FourFloats kLinear = {-0.5F, 0.0F, 0.5F, 0.0F};
-  constexpr FourFloats kSquare = {0.5F, -1.0F, 0.5F, 0.0F};
-  constexpr FourFloats kCube = {-kSixth, 0.5F, -0.5F, kSixth};
-  return kConstant + share * (kLinear + share * (kSquare + share * kCube));
+  const FourFloats constant = {kSixth, 4.0F * kSixth, kSixth, 0.0F};
+  const FourFloats linear = {-0.5F, 0.0F, 0.5F, 0.0F};
+  const FourFloats square = {0.5F, -1.0F, 0.5F, 0.0F};
+  const FourFloats cube = {-kSixth, 0.5F, -0.5F, kSixth};
+  return constant + share * (linear + share * (square + share * cube));
 }
 inline FourFloats SplineSlopes(float share) {
-  constexpr FourFloats kConstant = {-0.5F, 0.0F, 0.5F, 0.0F};
-  constexpr FourFloats kLinear = {1.0F, -2.0F, 1.0F, 0.0F};
-  constexpr FourFloats kSquare = {-0.5F, 1.5F, -1.5F, 0.5F};
-  return kConstant + share * (kLinear + share * kSquare);
+  const FourFloats constant = {-0.5F, 0.0F, 0.5F, 0.0F};
+  const FourFloats linear = {1.0F, -2.0F, 1.0F, 0.0F};
+  const FourFloats square = {-0.5F, 1.5F, -1.5F, 0.5F};
+  return constant + share * (linear + share * square);
 }
 
 // Where a place of the body lies on the grid: the first of its sixteen
