@@ -243,15 +243,21 @@ void Finder::LookAfterTouchdown() {
     // Steps a frame: the apex is missed by g dt^2 / (8 * 128^2) at most.
     constexpr double kStepsPerFrame = 128.0;
     Hop seen{gap_at(samples[i].time_s), samples[i].frame};
-    double t = touchdown.time_s;
-    for (; t < samples.back().time_s; t += dt / kStepsPerFrame) {
+    const double step_s = dt / kStepsPerFrame;
+    const auto steps = static_cast<int>(
+        std::ceil((samples.back().time_s - touchdown.time_s) / step_s));
+    seen.end_s = samples.back().time_s;
+    for (int k = 0; k < steps; ++k) {
+      const double t = touchdown.time_s + k * step_s;
       const core::Estimate gap = gap_at(t);
-      if (t > samples[i].time_s && gap.value <= 0.0) break;
+      if (t > samples[i].time_s && gap.value <= 0.0) {
+        seen.end_s = t;
+        break;
+      }
       if (gap.value > seen.most.value) seen.most = gap;
     }
-    seen.end_s = t;
     // A frame that was exposed across the next impact says less.
-    if (t - samples[i].time_s > spans_s) hop = seen;
+    if (seen.end_s - samples[i].time_s > spans_s) hop = seen;
   }
   // A frame that the flight claims but does not explain refutes the hop.
   if (hop && hop->end_s < samples.back().time_s && i < samples.size() &&
