@@ -54,7 +54,7 @@ struct JointStepOptions {
   // Or when what is left, r' M^-1 r over the noise's variance, is below this:
   // all unknowns together are a tenth of a standard deviation off then, were
   // they independent. With 1e-9 answers of four textured clips differ by at
-  // most 0.15 of their u, and cost 1.1 to 1.2 times as much.
+  // most 0.1 of their u, and cost 1.1 to 1.2 times as much.
   double least_chi2 = 1e-2;
   int most_products = 60;
   int threads = 0;

@@ -64,8 +64,9 @@ struct ExplainedChange {
   // frame: a body that was followed at a wrong place, or lost, counts.
   double near = 0.0;
   // Share of the clip's change beyond noise that lies farther from the body's
-  // path. Nothing of it is explained: Q is 0 there. Other things move, or the
-  // body was lost where no pose is near. 0 .. 1.
+  // path, at points that stand out of the noise of their level. Nothing of it
+  // is explained: Q is 0 there. Other things move, or the body was lost where
+  // no pose is near. 0 .. 1.
   double elsewhere = 0.0;
   // Of all change in the clip, the share that is explained.
   double OfAll() const { return near * (1.0 - elsewhere); }
