@@ -34,12 +34,16 @@ PlaneTrack Gaps(const std::vector<double>& gaps, double u,
   return track;
 }
 
+FlightOptions KnownGravity() {
+  FlightOptions options;
+  options.gravity_px_per_s2 = core::Estimate{kGravity, 1e-6 * kGravity};
+  return options;
+}
+
 std::optional<GreatestGap> Find(const PlaneTrack& track,
                                 const std::vector<Stretch>& stretches,
                                 const GroundLevel& ground = {}) {
-  FlightOptions options;
-  options.gravity_px_per_s2 = core::Estimate{kGravity, 1e-6 * kGravity};
-  return FindGreatestGap(track, stretches, 0, ground, options, nullptr);
+  return FindGreatestGap(track, stretches, 0, ground, KnownGravity(), nullptr);
 }
 
 double Fall(double v, double t) { return v * t - 0.5 * kGravity * t * t; }
@@ -183,17 +187,13 @@ struct Chatter {
       }
     }
     track = Block(poses);
-    FlightOptions options;
-    options.gravity_px_per_s2 = core::Estimate{kGravity, 1e-6 * kGravity};
     event.before_frames = {0, kFirstAfter};
     event.before =
-        FitFlight(SelectSamples(track, event.before_frames), options);
+        FitFlight(SelectSamples(track, event.before_frames), KnownGravity());
     event.time_s = {kTouchdown * kDt, 1e-6};
   }
 
   core::Estimate Find() const {
-    FlightOptions options;
-    options.gravity_px_per_s2 = core::Estimate{kGravity, 1e-6 * kGravity};
     const auto found =
         FindGreatestGap(track,
                         {{{{0, kFirstAfter}, StretchKind::kFlight, 0.0, 0},
@@ -201,7 +201,7 @@ struct Chatter {
                            StretchKind::kSupported,
                            0.0,
                            0}}},
-                        kFirstAfter, {}, options, &event);
+                        kFirstAfter, {}, KnownGravity(), &event);
     return found ? found->gap_px : core::Estimate{};
   }
 };

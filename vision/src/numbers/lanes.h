@@ -30,8 +30,10 @@ namespace touchdown::vision {
 using Four = double __attribute__((vector_size(32), may_alias));
 using FourBits = std::uint64_t __attribute__((vector_size(32)));
 using Eight = float __attribute__((vector_size(32), may_alias));
-using FourFloats = float __attribute__((vector_size(16)));
 using EightBits = std::uint32_t __attribute__((vector_size(32)));
+
+// Four short numbers: one instruction of any processor of 64 bits.
+using FourFloats = float __attribute__((vector_size(16)));
 
 // Sixteen short numbers: one instruction of AVX-512, two of avx2. For what is
 // done to each number by itself; sums are kept in eight places.

@@ -424,13 +424,13 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
   first.fits = std::move(better);
 }
 
-// From frames to a track: from the poses of another look or, in this order: the
-// first hypothesis (detection);
-// where it explains a stated body badly, a layered start, which ends the search
-// if it explains the clip; the other hypotheses, the background without the
-// body, the same hypothesis before that background where the body was lost, the
-// kind of body once more, outlines of all frames, and at last layers or a
-// template where outlines do not explain the body.
+// From frames to a track. Where another look was measured by layers, from its
+// poses. Else in this order: the first hypothesis (detection); where it
+// explains a stated body badly, a layered start, which ends the search if it
+// explains the clip; the other hypotheses, the background without the body, the
+// same hypothesis before that background where the body was lost, the kind of
+// body once more, outlines of all frames, and at last layers or a template
+// where outlines do not explain the body.
 core::Expected<TrackResult> FollowBody(Clip& clip,
                                        const TrackOptions& options) {
   std::int64_t last = options.last < 0
