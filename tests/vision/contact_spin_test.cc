@@ -1,4 +1,5 @@
-// Contacts of balls whose marks show how they turn.
+// Contacts of balls whose marks show how they turn, and what an error that
+// poses share does to a path.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -75,6 +76,45 @@ TEST(Contact, WhatPosesShareGoesRoundWithTheBody) {
             0.9 * kOff_px * 110.0 / filming.camera.px_per_m);
   EXPECT_NEAR(motion.after_normal_mps->value, 0.9,
               4.0 * motion.after_normal_mps->u);
+}
+
+// Flights of another gravity than the scale's may have places that err along
+// the path, and then the path leans, too.
+TEST(Contact, PlacesThatBendThePathLeanAtTouchdown) {
+  constexpr double kBend = 0.06 * 9.81;  // m/s^2
+  Throw thrown;
+  thrown.contact_s = 0.06;
+  thrown.before = {2.8, -0.5, 0.0};
+  thrown.after = {2.5, 0.3, 0.0};
+  Filming filming;
+  filming.frames = 200;
+  filming.camera.fps = 2000.0;
+  const PlaneTrack clean = FilmPlane(thrown, filming);
+  const core::Contact right =
+      FindContacts(clean, WithScale(filming)).first.contact;
+  ASSERT_TRUE(right.found && right.time_s);
+  const double fallen_s = right.time_s->value - clean.samples.front().time_s;
+  int beyond_noise = 0;
+  for (const double vertex : {0.0, 0.25, 0.5, 0.75, 1.0}) {  // of the flight
+    PlaneTrack bent = clean;
+    for (PlaneSample& s : bent.samples) {
+      const double t =
+          s.time_s - clean.samples.front().time_s - vertex * fallen_s;
+      s.height_px += 0.5 * kBend * t * t * filming.camera.px_per_m;
+    }
+    const ContactResult result = FindContacts(bent, WithScale(filming));
+    EXPECT_TRUE(result.gravity_refuted) << vertex;
+    const core::Contact& contact = result.first.contact;
+    ASSERT_TRUE(contact.found && contact.approach_angle_rad);
+    const double off =
+        contact.approach_angle_rad->value - right.approach_angle_rad->value;
+    // The vertex at an end is sqrt(3) of the rms.
+    EXPECT_LT(std::abs(off), 2.2 * contact.approach_angle_rad->u) << vertex;
+    // A path that leans by all that it bends would have at most this.
+    EXPECT_LT(contact.approach_angle_rad->u, kBend * fallen_s / 2.8);
+    beyond_noise += std::abs(off) > 4.0 * right.approach_angle_rad->u ? 1 : 0;
+  }
+  EXPECT_EQ(beyond_noise, 4);
 }
 
 // A contact point that slips goes by v + R omega.

@@ -517,6 +517,8 @@ ContactResult FindContacts(const PlaneTrack& given,
         GravityShare(track, stretches,
                      cut.gravity_refuted ? *told.gravity_px_per_s2 : *asked);
     context.scale_doubt = std::abs(share - 1.0);
+    context.bend_px = context.scale_doubt * told.gravity_px_per_s2->value *
+                      track.frame_interval_s * track.frame_interval_s;
     if (cut.gravity_refuted) {
       result.warnings.push_back(
           fmt::format("the flights have {:.2f} of the gravity that the scale "

@@ -35,6 +35,13 @@ double CommonDrift(double u_common, const SampleRange& flight) {
   return kDriftShare * u_common / static_cast<double>(flight.size());
 }
 
+// By how much the path leans at touchdown, px a frame, where the places err by
+// bend (t - t0)^2 / 2 and gravity is fitted: bend t0, with t0 anywhere in the
+// flight alike (rms of a uniform distribution).
+double BendAtEnd(double bend_px, const SampleRange& flight) {
+  return bend_px * static_cast<double>(flight.size()) / std::numbers::sqrt3;
+}
+
 void MakeAbsent(std::initializer_list<Measured*> values, const char* reason) {
   for (Measured* value : values) *value = AbsentBecause(reason);
 }
@@ -133,7 +140,8 @@ void FillAngles(const RecordContext& context, const Event& event,
                kMinPace_px);
   const double picture =
       std::hypot(context.u_common_place_px * fit.p[kOmega],
-                 CommonDrift(context.u_common_place_px, event.before_frames)) /
+                 CommonDrift(context.u_common_place_px, event.before_frames),
+                 BendAtEnd(context.bend_px, event.before_frames)) /
       paces;
   angle.u = std::hypot(angle.u, picture);
   contact.approach_angle_rad =
@@ -182,12 +190,14 @@ void FillMotion(const RecordContext& context, const Event& event,
   const PlaneTrack& track = context.track;
   const JointFit& fit = *event.fit;
   core::Motion& m = record.motion;
-  // A common error in the body's own directions goes round with the body, by
-  // this many px a frame before and after.
+  // A common error in the body's own directions goes round with the body, and
+  // places that bend the path lean at touchdown: px a frame before and after.
   const double round_before =
-      context.u_common_place_px * std::abs(fit.p[kOmega]);
+      std::hypot(context.u_common_place_px * fit.p[kOmega],
+                 BendAtEnd(context.bend_px, event.before_frames));
   const double round_after =
-      context.u_common_place_px * std::abs(fit.p[kOmega2]);
+      std::hypot(context.u_common_place_px * fit.p[kOmega2],
+                 BendAtEnd(context.bend_px, event.after_frames));
   const auto speed = [&](const JointFit::Function& f, double round) {
     Estimate pace = fit.EstimateFunction(f);
     pace.u = std::hypot(pace.u, round);

@@ -22,6 +22,9 @@ struct RecordContext {
   // Of the scale, relative, beyond its own u: what the flights' gravity says
   // against it.
   double scale_doubt = 0.0;
+  // px/frame^2. The same doubt where not the scale but the places err: what
+  // they bend the path by along the ground's normal.
+  double bend_px = 0.0;
 };
 
 core::ContactRecord MakeRecord(const RecordContext& context, const Event& event,
