@@ -175,7 +175,6 @@ std::optional<Judged> Analyzer::JudgeBest(
   std::optional<Judged> best;
   int best_merit = -1;
   for (const auto& [expected, candidate] : ranked) {
-    if (expected <= best_merit) break;
     Judged judged = Judge(candidate, track);
     const int merit = Merit(judged.contacts);
     if (merit > best_merit) {
