@@ -111,7 +111,7 @@ core::Expected<TrackResult> FitOutlinesOfSize(
     return core::AbsentBecause("too few outlines of the stated size");
   };
   if (track.poses.size() < kMinPoses) return too_few();
-  for (const Size held : passes) {
+  for (const Size& held : passes) {
     result.background = EstimateUncovered(clip, options, track, fallback);
     OutlineOptions fit_options;
     fit_options.ground = options.ground;
@@ -127,10 +127,10 @@ core::Expected<TrackResult> FitOutlinesOfSize(
       stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
       return !IsStatedLength(2.0 * OutlineSize(f.fit), stated);
     });
-    // Share of the poses that the last pass may lose. If it loses more, the
-    // pass before knew them better and its result stays. Not studied.
+    // Share of the poses that a pass may lose. If it loses more, the pass
+    // before knew them better and its result stays. Not studied.
     constexpr double kMaxLostShare = 0.2;
-    if (passes.size() > 1 && held == Size::kCommon &&
+    if (&held != passes.begin() &&
         static_cast<double>(fits.size()) <
             (1.0 - kMaxLostShare) * static_cast<double>(track.poses.size())) {
       break;
