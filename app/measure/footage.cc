@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "touchdown/vision/background/steady_light.h"
+#include "touchdown/vision/footage/decoded_once.h"
 
 namespace touchdown::pipeline {
 
@@ -13,6 +14,7 @@ Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
   // To measure the light reads frames: it is part of the time of the track.
   footage.begun = std::chrono::steady_clock::now();
   footage.info = clip->info();
+  clip = vision::DecodeOnce(std::move(clip));
   const std::int64_t last =
       options.last_frame < 0 ? footage.info.frames : options.last_frame;
   vision::SteadyLightOptions light_options;

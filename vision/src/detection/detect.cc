@@ -6,6 +6,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "detection/changed_pixels.h"
 #include "footage/opencv_bridge.h"
 
 namespace touchdown::vision {
@@ -44,6 +45,9 @@ void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   }
 }
 
+// What a part of the picture differs by, in DN.
+using DifferenceIn = std::function<cv::Mat(const cv::Rect& box)>;
+
 // A region that may be a blob, by its outer contour; holes (specular spots)
 // count as body.
 struct ContourRegion {
@@ -60,7 +64,7 @@ double RegionArea(const std::vector<cv::Point>& contour) {
 
 // Adds the regions within some contours that are large enough.
 void AddRegions(std::vector<std::vector<cv::Point>> contours,
-                const cv::Mat& difference, const DetectOptions& options,
+                const DifferenceIn& difference, const DetectOptions& options,
                 std::vector<ContourRegion>& regions) {
   for (std::vector<cv::Point>& contour : contours) {
     const double area = RegionArea(contour);
@@ -134,17 +138,18 @@ struct OuterRegion {
 // are hundreds of specks, of which none will be among the strongest.
 std::vector<OuterRegion> StrongestFirst(
     const std::vector<std::vector<cv::Point>>& contours,
-    const cv::Mat& difference, const DetectOptions& options) {
+    const DifferenceIn& difference, const DetectOptions& options) {
   std::vector<OuterRegion> out;
   for (const std::vector<cv::Point>& contour : contours) {
     const double area = RegionArea(contour);
     if (area < options.least_area_px2) continue;
     const cv::Rect box = cv::boundingRect(contour);
+    const cv::Mat off = difference(box);
     float peak = 0.0F;
     float sum = 0.0F;
-    for (int y = box.y; y < box.y + box.height; ++y) {
-      const float* row = difference.ptr<float>(y);
-      for (int x = box.x; x < box.x + box.width; ++x) {
+    for (int y = 0; y < box.height; ++y) {
+      const float* row = off.ptr<float>(y);
+      for (int x = 0; x < box.width; ++x) {
         const float size = std::abs(row[x]);
         peak = std::max(peak, size);
         sum += size;
@@ -181,7 +186,7 @@ double LeastKept(const std::vector<ContourRegion>& found,
 
 // Adds the parts of a region that differ strongly.
 void AddStrongParts(const OuterRegion& outer, const cv::Mat& magnitude,
-                    const cv::Mat& difference, double threshold,
+                    const DifferenceIn& difference, double threshold,
                     const DetectOptions& options,
                     std::vector<ContourRegion>& found) {
   const cv::Rect& box = outer.box;
@@ -192,7 +197,7 @@ void AddStrongParts(const OuterRegion& outer, const cv::Mat& magnitude,
   // specks or a highlight do not set it.
   std::vector<float> inside;
   for (int y = 0; y < box.height; ++y) {
-    const float* row = magnitude.ptr<float>(box.y + y) + box.x;
+    const float* row = magnitude.ptr<float>(y);
     const auto* in = own.ptr<std::uint8_t>(y);
     for (int x = 0; x < box.width; ++x) {
       if (in[x] != 0) inside.push_back(row[x]);
@@ -204,12 +209,44 @@ void AddStrongParts(const OuterRegion& outer, const cv::Mat& magnitude,
   std::nth_element(inside.begin(), high, inside.end());
   const double cut =
       std::max(threshold, options.share_of_peak * static_cast<double>(*high));
-  cv::Mat strong = (magnitude(box) > cut) & own;
+  const cv::Mat strong = (magnitude > cut) & own;
   std::vector<std::vector<cv::Point>> parts;
   cv::findContours(strong, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
                    box.tl());
   AddRegions(std::move(parts), difference, options, found);
 }
+
+// What a frame differs from the background by, box by box: of most frames no
+// more than the body is asked for. Boxes are in pixels of `region`.
+class ChangeFromStill {
+ public:
+  ChangeFromStill(const core::Frame& frame, const Background& background,
+                  const cv::Rect& region)
+      : value_(AsMat(frame)(region)),
+        still_(cv::Mat(background.height_px, background.width_px, CV_32FC1,
+                       const_cast<float*>(background.level.data()))(
+            region + cv::Point(frame.origin_x_px, frame.origin_y_px))) {}
+
+  cv::Mat Difference(const cv::Rect& box) const {
+    cv::Mat value;
+    value_(box).convertTo(value, CV_32F);
+    return value - still_(box);
+  }
+
+  // Of the 3 x 3 mean.
+  cv::Mat Magnitude(const cv::Rect& box) const {
+    const cv::Rect around =
+        cv::Rect(box.x - 1, box.y - 1, box.width + 2, box.height + 2) &
+        cv::Rect({0, 0}, value_.size());
+    cv::Mat smooth;
+    cv::blur(Difference(around), smooth, {3, 3});
+    return cv::abs(smooth(box - around.tl()));
+  }
+
+ private:
+  cv::Mat value_;
+  cv::Mat still_;
+};
 
 // Regions that differ from the background after a 3 x 3 mean. kDifference keeps
 // the strong part of each region, which leaves out penumbras and faint shadows;
@@ -219,20 +256,22 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
                                  const DetectOptions& options) {
   const cv::Rect region = SearchRegion(frame, options.region);
   if (region.empty()) return {};
-  std::vector<ContourRegion> found;
-  cv::Mat value;
-  AsMat(frame)(region).convertTo(value, CV_32F);
-  const cv::Mat whole(background.height_px, background.width_px, CV_32FC1,
-                      const_cast<float*>(background.level.data()));
-  const cv::Mat still =
-      whole(region + cv::Point(frame.origin_x_px, frame.origin_y_px));
-  cv::Mat difference = value - still;
-  cv::Mat smooth;
-  cv::blur(difference, smooth, {3, 3});
   const double threshold =
       options.threshold_sigmas * SmoothedSigma(background, options);
-  cv::Mat magnitude = cv::abs(smooth);
-  cv::Mat mask = magnitude > threshold;
+  ChangedPixels changed;
+  FindChangedPixels(frame, background,
+                    {region.x, region.y, region.width, region.height},
+                    static_cast<float>(threshold), changed);
+  if (changed.first_row == changed.last_row) return {};
+  cv::Mat mask(region.size(), CV_8UC1, changed.mask.data());
+  const ChangeFromStill change(frame, background, region);
+  const auto difference = [&](const cv::Rect& box) {
+    return change.Difference(box);
+  };
+  const auto magnitude = [&](const cv::Rect& box) {
+    return change.Magnitude(box);
+  };
+  std::vector<ContourRegion> found;
   if (options.detector == Detector::kChange) {
     // px, diameter of the disc that closes and opens the mask: it bridges lines
     // where body and background are alike, and removes what is thin (penumbras,
@@ -242,21 +281,24 @@ std::vector<Blob> FromDifference(const core::Frame& frame,
     const cv::Mat disc =
         cv::getStructuringElement(cv::MORPH_ELLIPSE, {kBridge_px, kBridge_px});
     cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, disc);
-    std::vector<std::vector<cv::Point>> changed;
-    cv::findContours(mask.clone(), changed, cv::RETR_EXTERNAL,
+    std::vector<std::vector<cv::Point>> parts;
+    cv::findContours(mask.clone(), parts, cv::RETR_EXTERNAL,
                      cv::CHAIN_APPROX_NONE);
-    cv::drawContours(mask, changed, -1, 255, cv::FILLED);
+    cv::drawContours(mask, parts, -1, 255, cv::FILLED);
     cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc);
-    cv::findContours(mask, changed, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    AddRegions(std::move(changed), magnitude, options, found);
+    cv::findContours(mask, parts, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    AddRegions(std::move(parts), magnitude, options, found);
     return MakeBlobs(std::move(found), region, frame, options);
   }
   std::vector<std::vector<cv::Point>> regions;
-  cv::findContours(mask, regions, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::findContours(mask.rowRange(changed.first_row, changed.last_row), regions,
+                   cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE,
+                   {0, changed.first_row});
   for (const OuterRegion& outer :
        StrongestFirst(regions, difference, options)) {
     if (outer.most < LeastKept(found, options)) break;
-    AddStrongParts(outer, magnitude, difference, threshold, options, found);
+    AddStrongParts(outer, magnitude(outer.box), difference, threshold, options,
+                   found);
   }
   return MakeBlobs(std::move(found), region, frame, options);
 }
@@ -293,7 +335,9 @@ std::vector<Blob> FromLevels(const core::Frame& frame,
       return RegionArea(outer) >=
              kMaxShareOfPicture * static_cast<double>(region.area());
     });
-    AddRegions(std::move(regions), difference, options, found);
+    AddRegions(
+        std::move(regions),
+        [&](const cv::Rect& box) { return difference(box); }, options, found);
   }
   return MakeBlobs(std::move(found), region, frame, options);
 }
