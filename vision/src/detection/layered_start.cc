@@ -158,28 +158,9 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
   return path;
 }
 
-// Change outside the masks over the change inside them.
-double UnexplainedShare(const ReducedFrames& sampled, const StillLayer& still,
-                        const std::vector<cv::Mat>& masks, ChangeScale scale,
-                        double noise_dn) {
-  // In units of a cell's noise: less counts as no change here. Not studied.
-  constexpr double kClearNoises = 2.5;
-  scale.from_dn = kClearNoises * noise_dn;
-  double outside = 0.0;
-  double inside = 0.0;
-  for (std::size_t t = 0; t < masks.size(); ++t) {
-    const cv::Mat change = ComputeChange(still, sampled.pictures[t], scale);
-    const double within =
-        cv::mean(change, masks[t])[0] * cv::countNonZero(masks[t]);
-    inside += within;
-    outside += cv::sum(change)[0] - within;
-  }
-  return outside / std::max(inside, 1.0);
-}
-
 }  // namespace
 
-core::Expected<LayeredStart> FindLayeredStart(
+core::Expected<std::vector<StartPose>> FindLayeredStart(
     Clip& clip, const LayeredStartOptions& options) {
   const KnownShape& shape = options.shape;
   if (!(shape.long_side > 0.0) || !(shape.short_side > 0.0)) {
@@ -225,30 +206,21 @@ core::Expected<LayeredStart> FindLayeredStart(
   const ShapeSearch search(ReducedShape(reduced, by), searched.width / by,
                            searched.height / by);
   std::vector<PlacedShape> path;
-  std::vector<cv::Mat> masks;
   for (int round = 0; round < options.rounds; ++round) {
+    if (!path.empty()) {
+      std::vector<cv::Mat> masks;
+      for (const PlacedShape& at : path) {
+        masks.push_back(MakeMask(at, reduced, grow, size));
+      }
+      still = LearnStill(sampled, masks, median, noise_dn, options.threads);
+    }
     // At first half of the angles do: the median's ghost is in the way.
     const std::size_t every = round == 0 && search.angles() > 1 ? 2 : 1;
     path = FindPath(sampled, still, scale, search, reduced, searched, by, every,
                     options.threads);
-    masks.clear();
-    for (const PlacedShape& at : path) {
-      masks.push_back(MakeMask(at, reduced, grow, size));
-    }
-    still = LearnStill(sampled, masks, median, noise_dn, options.threads);
   }
 
-  LayeredStart start;
-  start.reduction = reduction;
-  start.width = size.width;
-  start.height = size.height;
-  start.level.assign(still.level.begin<float>(), still.level.end<float>());
-  start.uncovered.assign(still.uncovered.begin<std::uint16_t>(),
-                         still.uncovered.end<std::uint16_t>());
-  start.most_covered =
-      1.0 - *std::min_element(start.uncovered.begin(), start.uncovered.end()) /
-                static_cast<double>(masks.size());
-  start.unexplained = UnexplainedShare(sampled, still, masks, scale, noise_dn);
+  std::vector<StartPose> poses;
   const double usual = MedianScore(path);
   // Of the median score: with less the body is hidden or away. Not studied.
   constexpr double kMinScoreShare = 0.35;
@@ -268,7 +240,7 @@ core::Expected<LayeredStart> FindLayeredStart(
     }
     pose.score = path[t].score;
     pose.seen = path[t].score > kMinScoreShare * usual;
-    start.poses.push_back(pose);
+    poses.push_back(pose);
   }
   // Mean change under the shape, 0..1. Smaller takes noise for a body. Not
   // studied.
@@ -278,26 +250,17 @@ core::Expected<LayeredStart> FindLayeredStart(
         "nothing of the stated size changes in these frames");
   }
   double travel = 0.0;
-  for (const StartPose& pose : start.poses) {
-    travel = std::max(
-        travel, std::hypot(pose.centre.x_px - start.poses.front().centre.x_px,
-                           pose.centre.y_px - start.poses.front().centre.y_px));
+  for (const StartPose& pose : poses) {
+    travel = std::max(travel,
+                      std::hypot(pose.centre.x_px - poses.front().centre.x_px,
+                                 pose.centre.y_px - poses.front().centre.y_px));
   }
   // Of the short side: what moves by less is flicker. Not studied.
   constexpr double kMinTravel = 0.1;
   if (travel < kMinTravel * shape.short_side) {
     return core::AbsentBecause("nothing of the stated size moves");
   }
-  // Change outside over change inside. Larger follows a part of something
-  // larger; smaller loses bodies with a shadow. Not studied.
-  constexpr double kMaxUnexplained = 0.6;
-  if (start.unexplained > kMaxUnexplained) {
-    return core::AbsentBecause(fmt::format(
-        "most of what changes is not a body of the stated size ({:.0f} % of "
-        "its own change lies outside of it)",
-        100.0 * start.unexplained));
-  }
-  return start;
+  return poses;
 }
 
 }  // namespace touchdown::vision

@@ -5,7 +5,7 @@
 // pixel in half of them, and a search in what differs from that follows its
 // ghost. Here picture and path are estimated in turn:
 //   B = median over the sampled frames, known everywhere
-//   three times:
+//   three times, but for the last B:
 //     E_t = clip((G * |I_t - B| - 0.8 s) / (5 s + c), 0, 1); 0.5 where B is not
 //           known                                           (change, in noise)
 //     p_t = the smooth path through the places where E_t has the body's shape
@@ -51,31 +51,11 @@ struct StartPose {
   bool seen = true;        // false: the score is far below that of the others
 };
 
-struct LayeredStart {
-  std::vector<StartPose> poses;  // by frame, of all sampled frames
-
-  // The still picture, reduced by `reduction`: a cell (i, j) is the mean of as
-  // many pixels in both directions, its centre at reduction * i + (reduction -
-  // 1) / 2. Levels in DN; in how many sampled frames it was seen uncovered.
-  std::int32_t reduction = 1;
-  std::int32_t width = 0;
-  std::int32_t height = 0;
-  std::vector<float> level;
-  std::vector<std::uint16_t> uncovered;
-
-  // The largest share of the sampled frames in which any one cell is covered by
-  // the shape.
-  double most_covered = 0.0;
-
-  // Change outside of the shape over change inside of it, beyond 2.5 s: 0 where
-  // nothing else moves.
-  double unexplained = 0.0;
-};
-
-// Absent, with the reason, where nothing of the shape moves, or where what
-// changes is mostly something else. Throws what Clip::Read throws;
+// By frame, of all sampled frames. Absent, with the reason, where nothing of
+// the shape moves. Whether it is all that changes is for the one who measured
+// it to ask (explained_change.h). Throws what Clip::Read throws;
 // std::invalid_argument for a shape without size.
-core::Expected<LayeredStart> FindLayeredStart(
+core::Expected<std::vector<StartPose>> FindLayeredStart(
     Clip& clip, const LayeredStartOptions& options);
 
 }  // namespace touchdown::vision

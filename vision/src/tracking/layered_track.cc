@@ -38,7 +38,7 @@ KnownShape MakeKnownShape(core::BodyKind kind, const BodySize& size) {
 // start's error of place: so much beyond the outline is not taken for
 // background (BodyCover).
 Track TrackOfStart(const Clip& clip, const TrackOptions& options,
-                   std::int64_t last, const LayeredStart& start) {
+                   std::int64_t last, const std::vector<StartPose>& start) {
   // Of the short side: a third of BodyCover's margin. Not studied.
   constexpr double kPlaceError = 0.04;
   const BodySize& size = *options.size;
@@ -55,7 +55,7 @@ Track TrackOfStart(const Clip& clip, const TrackOptions& options,
     body.half_short_px = core::Scaled(size.short_px, 0.5);
   }
   body.blur_px = kPlaceError * MakeKnownShape(body.kind, size).short_side;
-  for (const StartPose& at : start.poses) {
+  for (const StartPose& at : start) {
     if (!at.seen) continue;
     Pose pose;
     pose.frame = at.frame;
