@@ -45,9 +45,10 @@ def main():
     sys.path.insert(0, sys.argv[1])
     import score
 
+    titles = {'other': 'composite.py, other photographs'}
     faults = []
     for generator, formats in pool(sys.argv[2:]).items():
-        print(f'\n## {generator}.py\n\n```', end='')
+        print(f"\n## {titles.get(generator, generator + '.py')}\n\n```", end='')
         for name, rows in formats.items():
             score.table(name, rows)
             faults += judge(score, f'{generator}, {name}', rows)
