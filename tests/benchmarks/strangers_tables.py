@@ -8,7 +8,11 @@ The exit status is 1, and stderr says why, where a state is wrong, or where the
 99.9 % band (Wilson's) of a share lies wholly on the wrong side of what is asked:
 values within 1.96 u below 0.95, gross answers above 2 in 480.
 """
+import glob
 import json
+import os
+import resource
+import subprocess
 import sys
 
 
@@ -19,8 +23,32 @@ def pool(files):
         generator, seed, path = file.split(':', 2)
         for row in json.load(open(path)):
             row['scene'] = f"{seed}_{row['scene']}"
+            row['base'] = os.path.join(os.path.dirname(path), f"[cs]{row['scene']}")
             pooled.setdefault(generator, {}).setdefault(row['format'], []).append(row)
     return pooled
+
+
+def decode(clip, frames=()):
+    """Processor time of ffmpeg on a clip, in s: of all frames, or of the first ones."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    subprocess.run(['ffmpeg', '-v', 'error', '-threads', '1', '-i', clip, *frames, '-f', 'null', '-'], check=True)
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+CLIPS_DECODED = 12  # of a format, evenly spread; more take longer
+
+
+def decoding_ms(name, rows):
+    """What it takes to decode a frame once, in ms; None of a format that is not compressed."""
+    spent = frames = 0
+    for row in rows[::max(1, len(rows) // CLIPS_DECODED)]:
+        clips = glob.glob(f"{row['base']}_{name}.*") or glob.glob(f"{row['base']}.mp4")
+        if name == 'raw' or not clips:
+            return None
+        # Without what the first frame costs: ffmpeg's own start.
+        spent += decode(clips[0]) - decode(clips[0], ('-frames:v', '1'))
+        frames += row['frames'] - 1
+    return 1e3 * spent / frames
 
 
 NORMAL_9995 = 3.2905  # 0.9995 quantile of the normal distribution
@@ -51,6 +79,8 @@ def main():
         print(f"\n## {titles.get(generator, generator + '.py')}\n\n```", end='')
         for name, rows in formats.items():
             score.table(name, rows)
+            if (once := decoding_ms(name, rows)) is not None:
+                print(f'of it to decode a frame once, by ffmpeg: {once:.1f} ms')
             faults += judge(score, f'{generator}, {name}', rows)
         for kind in dict.fromkeys(row['kind'] for row in formats.get('raw', [])):
             score.table(f'raw, {kind}', [row for row in formats['raw'] if row['kind'] == kind])
