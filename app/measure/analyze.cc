@@ -561,9 +561,11 @@ std::optional<Analysis> AnalyzeLight(
   options.gamma = 1.0;
   const auto evidence = [](const Analysis& analysis) {
     return LightEvidence{analysis.explained->near,
-                         analysis.track->body.u_common_px};
+                         analysis.track->body.u_common_px,
+                         analysis.contacts.gravity_refuted};
   };
-  // Of levels; a second round must explain as much as the first.
+  // Of levels; a second round must explain as much as the first, with as right
+  // a gravity.
   LightEvidence levels = evidence(seen);
   std::optional<Analysis> best;
   // First order is not exact: what remains is measured again.
@@ -581,6 +583,7 @@ std::optional<Analysis> AnalyzeLight(
       break;
     }
     levels.explained = light.explained->near;
+    levels.gravity_refuted = light.contacts.gravity_refuted;
     more = light.track->body.gamma.value_or(1.0);
     light.scene_model.used.push_back(fmt::format(
         "gamma of {:.2f}, from the body's outlines", *options.gamma));

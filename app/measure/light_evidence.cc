@@ -14,6 +14,7 @@ bool IsBetterInLight(const LightEvidence& light, const LightEvidence& levels) {
   // Ratio of the distances. Larger takes light for noise of the outlines. Not
   // studied.
   constexpr double kClearlyNearer = 0.5;
+  if (light.gravity_refuted && !levels.gravity_refuted) return false;
   if (light.explained > levels.explained &&
       light.u_common_px <= levels.u_common_px) {
     return true;

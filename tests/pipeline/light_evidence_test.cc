@@ -35,5 +35,21 @@ TEST(LightEvidence, SidesALittleNearerAreNotEnough) {
                                {.explained = 0.99242, .u_common_px = 0.0788}));
 }
 
+// As in a flat landing of composite.py, seed 50, with other photographs: a
+// second round took 0.28 for a gamma of 0.45, and its flights had 0.96 of the
+// gravity that was told. Shares and distances here are made up.
+TEST(LightEvidence, FlightsMaySpeakAgainstIt) {
+  const LightEvidence levels{.explained = 0.97, .u_common_px = 0.02};
+  EXPECT_TRUE(
+      IsBetterInLight({.explained = 0.98, .u_common_px = 0.005}, levels));
+  EXPECT_FALSE(IsBetterInLight(
+      {.explained = 0.98, .u_common_px = 0.005, .gravity_refuted = true},
+      levels));
+  // Where they were wrong before, too, they say nothing.
+  EXPECT_TRUE(IsBetterInLight(
+      {.explained = 0.98, .u_common_px = 0.005, .gravity_refuted = true},
+      {.explained = 0.97, .u_common_px = 0.02, .gravity_refuted = true}));
+}
+
 }  // namespace
 }  // namespace touchdown::pipeline
