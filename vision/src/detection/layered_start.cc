@@ -209,6 +209,7 @@ core::Expected<std::vector<StartPose>> FindLayeredStart(
   for (int round = 0; round < options.rounds; ++round) {
     if (!path.empty()) {
       std::vector<cv::Mat> masks;
+      masks.reserve(path.size());
       for (const PlacedShape& at : path) {
         masks.push_back(MakeMask(at, reduced, grow, size));
       }
