@@ -153,8 +153,8 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
 std::optional<Judged> Analyzer::JudgeBest(
     const std::vector<calib::GroundLine>& candidates,
     const vision::Track& track) {
-  // A first judgement by the track as it is; only the likely ones are worth
-  // fitting every outline again.
+  // A first judgement by the track as it is puts the likely ones first: each
+  // costs to fit every outline again.
   const vision::Track seen = Seen(track);
   std::vector<std::pair<int, calib::GroundLine>> ranked;
   for (const calib::GroundLine& candidate : candidates) {
@@ -174,8 +174,8 @@ std::optional<Judged> Analyzer::JudgeBest(
       [](const auto& a, const auto& b) { return a.first > b.first; });
   std::optional<Judged> best;
   int best_merit = -1;
-  for (const auto& [expected, candidate] : ranked) {
-    Judged judged = Judge(candidate, track);
+  for (const auto& merit_and_line : ranked) {
+    Judged judged = Judge(merit_and_line.second, track);
     const int merit = Merit(judged.contacts);
     if (merit > best_merit) {
       best_merit = merit;

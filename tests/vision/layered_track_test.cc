@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "tests/vision/drawn_block.h"
+#include "tests/vision/drawn_clip.h"
 
 namespace touchdown::vision {
 namespace {
@@ -80,6 +83,62 @@ TEST(TrackBody, BeginsWhereAnotherLookEnded) {
   }
   EXPECT_NEAR(again->track.body.contrast_dn, sought->track.body.contrast_dn,
               2.0);
+}
+
+// A ball of 32 px of which the outermost tenth looks like the wall but for six
+// dots: seen freely it is a tenth smaller.
+TEST(TrackFromLayers, KeepsTheStatedSizeWhereOutlinesLoseIt) {
+  constexpr double kRadius_px = 16.0;
+  constexpr double kInner_px = 0.9 * kRadius_px;
+  constexpr std::int64_t kFrames = 40;
+  const auto place = [](std::int64_t frame) {
+    const auto t = static_cast<double>(frame);
+    return core::PixelPoint{40.0 + 3.0 * t,
+                            70.0 - 0.02 * (t - 20.0) * (t - 20.0)};
+  };
+  const auto draw = [&](std::int64_t frame, std::vector<double>& levels) {
+    const core::PixelPoint centre = place(frame);
+    // An edge's blur of 0.8 px.
+    const auto within = [](double depth_px) {
+      return 0.5 * (1.0 + std::erf(depth_px / (0.8 * std::numbers::sqrt2)));
+    };
+    for (std::int32_t y = 0; y < 120; ++y) {
+      for (std::int32_t x = 0; x < 200; ++x) {
+        const double dx = x - centre.x_px;
+        const double dy = y - centre.y_px;
+        double cover = within(kInner_px - std::hypot(dx, dy));
+        for (int dot = 0; dot < 6; ++dot) {
+          const double angle = std::numbers::pi / 3.0 * dot;
+          constexpr double kDot_px = 2.0;
+          const double at = kRadius_px - kDot_px;
+          cover = std::max(
+              cover, within(kDot_px - std::hypot(dx - at * std::cos(angle),
+                                                 dy - at * std::sin(angle))));
+        }
+        const double noise =
+            2.0 * synthetic::HashNoise(static_cast<std::uint32_t>(x),
+                                       static_cast<std::uint32_t>(y),
+                                       static_cast<std::uint32_t>(frame));
+        levels.push_back(150.0 - 90.0 * cover + noise);
+      }
+    }
+  };
+  synthetic::DrawnClip clip(200, 120, kFrames, 1000.0, draw);
+  TrackOptions options;
+  options.kind = core::BodyKind::kSphere;
+  options.size = BodySize{{2.0 * kRadius_px, 0.03, std::nullopt}, {}};
+  options.threads = 1;
+  const auto result = TrackFromLayers(clip, options, kFrames,
+                                      EstimateBackground(clip, 0, kFrames));
+  ASSERT_TRUE(result) << result.error().reason;
+  EXPECT_NEAR(result->track.body.radius_px.value, kRadius_px, 0.05);
+  EXPECT_GE(result->track.poses.size(), 36U);
+  for (const Pose& pose : result->track.poses) {
+    const core::PixelPoint truth = place(pose.frame);
+    // Near enough for the layers to begin with (follow_in_layers.h).
+    EXPECT_NEAR(pose.centre.x_px, truth.x_px, 1.0) << pose.frame;
+    EXPECT_NEAR(pose.centre.y_px, truth.y_px, 1.0) << pose.frame;
+  }
 }
 
 TEST(MayFollowGhost, NeedsAStatedSize) {

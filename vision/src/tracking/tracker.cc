@@ -468,14 +468,17 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   look([&] { plain = LookPlainly(clip, options, last); });
   if (warning.empty()) warning = plain.found.warning;
   std::optional<core::Expected<TrackResult>> layered;
-  if (!IsWellExplained(plain) && CanStartFromLayers(clip, options)) {
-    layered = StartInLayers(clip, options, plain.found.last, plain.background);
+  const auto explains_clip = [&] {
     // Of the change. More: tracks that are right are sought once more, which
     // costs time only; less: a ghost's may be taken. Of 42 layered starts in
     // clips of 25 scenes, all of which were right, the least explained 0.95.
     constexpr double kLeastExplained = 0.85;
-    if (*layered &&
-        ShareExplained(clip, options, (*layered)->track) >= kLeastExplained) {
+    return *layered &&
+           ShareExplained(clip, options, (*layered)->track) >= kLeastExplained;
+  };
+  if (!IsWellExplained(plain) && CanStartFromLayers(clip, options)) {
+    layered = StartInLayers(clip, options, plain.found.last, plain.background);
+    if (explains_clip()) {
       if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
       return std::move(*layered);
     }
@@ -489,13 +492,15 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     first = FirstLook(clip, options, std::move(plain));
   });
   if (!first) {
-    if (!layered && CanStartFromLayers(clip, options)) {
-      layered = StartInLayers(
-          clip, options, last,
-          EstimateBackground(clip, options.first, last,
-                             ChooseBackgroundOptions(clip, options)));
+    // One that was tried already does not explain the clip.
+    if (layered || !CanStartFromLayers(clip, options)) {
+      return tl::unexpected(first.error());
     }
-    if (!layered || !*layered) return tl::unexpected(first.error());
+    layered = StartInLayers(
+        clip, options, last,
+        EstimateBackground(clip, options.first, last,
+                           ChooseBackgroundOptions(clip, options)));
+    if (!explains_clip()) return tl::unexpected(first.error());
     if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
     return std::move(*layered);
   }
