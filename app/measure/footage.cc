@@ -1,5 +1,6 @@
 #include "app/measure/footage.h"
 
+#include <memory>
 #include <utility>
 
 #include "touchdown/vision/background/steady_light.h"
@@ -14,7 +15,10 @@ Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
   // To measure the light reads frames: it is part of the time of the track.
   footage.begun = std::chrono::steady_clock::now();
   footage.info = clip->info();
-  clip = vision::DecodeOnce(std::move(clip));
+  const auto looks = std::make_shared<bool>(true);
+  vision::DecodedOnceOptions once;
+  once.looks = looks;
+  clip = vision::DecodeOnce(std::move(clip), once);
   const std::int64_t last =
       options.last_frame < 0 ? footage.info.frames : options.last_frame;
   vision::SteadyLightOptions light_options;
@@ -28,6 +32,7 @@ Footage MakeSteady(std::unique_ptr<vision::Clip> clip,
     motion =
         vision::MeasureCameraMotion(*light.clip, options.first_frame, last);
   }
+  *looks = false;
   footage.clip = vision::PutBack(std::move(light.clip), *motion);
   footage.camera_moved_px = motion->most_moved_px;
   footage.motion_unexplained = motion->unexplained;

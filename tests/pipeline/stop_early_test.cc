@@ -206,9 +206,8 @@ nlohmann::json Timeless(const Analysis& analysis) {
 }
 
 // Not decided before the end: the document is that of a whole analysis, and
-// frames are decoded as often, but for `most_more`: pieces read keys first, so
-// that DecodeOnce keeps others of the 436 frames of this size that it may keep.
-void ExpectWhole(const Both& both, int most_more = kFrames / 40) {
+// frames are decoded as often, but for `most_more`.
+void ExpectWhole(const Both& both, int most_more = 3) {
   EXPECT_FALSE(both.early.stopped_at);
   EXPECT_EQ(Timeless(both.early), Timeless(both.whole));
   int once = 0;

@@ -83,6 +83,21 @@ TEST(DecodedOnce, KeepsNoMoreThanItMay) {
   EXPECT_EQ(decoded, (std::vector<std::int64_t>{0, 1, 2, 3, 2, 3}));
 }
 
+TEST(DecodedOnce, KeepsNoMoreAfterTheLooks) {
+  std::vector<std::int64_t> decoded;
+  const auto looks = std::make_shared<bool>(true);
+  DecodedOnceOptions options;
+  options.looks = looks;
+  const auto clip =
+      DecodeOnce(std::make_unique<Numbered>(false, decoded), options);
+  clip->Read(3);
+  *looks = false;
+  for (const std::int64_t index : {3, 4, 4}) {
+    EXPECT_EQ(clip->Read(index).at(0, 0), (32 * index) % 256);
+  }
+  EXPECT_EQ(decoded, (std::vector<std::int64_t>{3, 4, 4}));
+}
+
 TEST(DecodedOnce, ARawClipStaysAsItIs) {
   std::vector<std::int64_t> decoded;
   auto raw = std::make_unique<Numbered>(true, decoded);

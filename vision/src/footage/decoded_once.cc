@@ -1,5 +1,6 @@
 #include "touchdown/vision/footage/decoded_once.h"
 
+#include <memory>
 #include <unordered_map>
 #include <utility>
 
@@ -12,7 +13,8 @@ class DecodedOnce final : public Clip {
  public:
   DecodedOnce(std::unique_ptr<Clip> clip, const DecodedOnceOptions& options)
       : clip_(std::move(clip)),
-        most_frames_(options.most_bytes / FrameBytes(clip_->info())) {
+        most_frames_(options.most_bytes / FrameBytes(clip_->info())),
+        looks_(options.looks) {
     set_cancellation(clip_->cancellation());
   }
 
@@ -36,13 +38,16 @@ class DecodedOnce final : public Clip {
                          const core::PixelRect& window) override {
     const auto kept = kept_.find(index);
     if (kept != kept_.end()) return kept->second.View(window);
-    if (kept_.size() >= most_frames_) return clip_->Read(index, window);
+    if (kept_.size() >= most_frames_ || (looks_ && !*looks_)) {
+      return clip_->Read(index, window);
+    }
     return kept_.emplace(index, clip_->Read(index)).first->second.View(window);
   }
 
  private:
   std::unique_ptr<Clip> clip_;
   std::size_t most_frames_;
+  std::shared_ptr<const bool> looks_;
   std::unordered_map<std::int64_t, KeptPixels> kept_;
 };
 

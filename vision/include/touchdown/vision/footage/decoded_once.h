@@ -15,6 +15,9 @@ struct DecodedOnceOptions {
   // saves nothing in longer clips, of which they look at no more; fewer decode
   // twice.
   std::size_t most_bytes = std::size_t{32} << 20U;
+  // Where it is there: nothing more is kept once it is false, so that what is
+  // decoded afterwards does not hang on the order in which it is read.
+  std::shared_ptr<const bool> looks;
 };
 
 // The clip itself where its windows are cheap: nothing is decoded there. Frames
