@@ -75,6 +75,45 @@ test('a draft of a trial that was revised meanwhile is offered and does not ' +
   }
 });
 
+test('a page that was left says nothing more', async () => {
+  const page = await sitDown(browser, review, 'Ada');
+  await openTrial(page);
+  // The page asks what has changed while its own correction is being stored,
+  // and is answered once the page that follows is shown.
+  const signal = () => {
+    let give;
+    return {given: new Promise(resolve => give = resolve), give};
+  };
+  const asked = signal(), shown = signal();
+  let first = true;
+  await page.route(`**/api/trials/${lab.trial}`, async route => {
+    const response = await route.fetch();
+    if (first) {
+      first = false;
+      asked.give();
+      await shown.given;
+    }
+    await route.fulfill({response});
+  });
+  await page.route('**/revisions', async route => {
+    const response = await route.fetch();
+    await asked.given;
+    await route.fulfill({response});
+  });
+  const stored = `Stored as revision ${lab.show().history.length + 1}`;
+  await page.selectOption('#state', 'stick');
+  await page.fill('#why', 'it sticks');
+  await page.click('text=Store this correction');
+  await says(page, '#news', stored);
+  // It asks again only once it has dealt with the late answer.
+  const again = page.waitForRequest('**/api/stamp');
+  shown.give();
+  await again;
+  assert.ok((await page.textContent('#news')).startsWith(stored));
+  requireClean(page, review);
+  await page.context().close();
+});
+
 test('of two tabs of one browser the second does not overwrite the first, and ' +
      'keeps what was begun', async () => {
   const first = await sitDown(browser, review, 'Ada');

@@ -11,8 +11,8 @@ import {trial} from './trial.js';
 
 const pages = {compare, log, overview, recordings, report, setup, trial};
 
-// What the page shown wants: `changed` is called when the store has changed,
-// `keys` gets key presses, `close` ends it; `pending` says whether something
+// What the page shown wants: `changed` is called when the store has changed and
+// returns how to tell of it; `keys` gets key presses, `close` ends it; `pending` says whether something
 // was begun and not stored; `back`: the server answers again.
 let shown = null;
 
@@ -57,6 +57,14 @@ async function showNow() {
   }
 }
 
+// What a page has to say of a change is said while it is shown: who has gone on
+// meanwhile, by storing for one, reads what the next page says.
+async function changed() {
+  const mine = asked;
+  const say = await shown?.changed?.();
+  if (mine === asked) say?.();
+}
+
 addEventListener('hashchange', show);
 addEventListener('keydown', event => {
   const typing = event.target.closest?.('input, textarea, select');
@@ -70,7 +78,7 @@ addEventListener('beforeunload', event => {
 rememberWho();
 show();
 watchServer({
-  changed: () => shown?.changed?.(),
+  changed,
   // A page that could not be shown is shown now; another goes on.
   back: () => shown ? shown.back?.() : show(),
 });

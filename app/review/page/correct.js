@@ -19,6 +19,7 @@ export class Correcting {
     this.asked = empty();
     this.busy = false;
     this.again = false;
+    this.stored = Promise.resolve();  // once nothing is being stored
     this.node = element('section', {class: 'correct', 'aria-label': 'Correct'});
     this.build();
   }
@@ -194,7 +195,9 @@ export class Correcting {
   }
 
   // Of a correction, or `instead` of it {exclude}, {include}, {restore}.
-  async store(instead) {
+  store(instead) { return this.stored = this.send(instead); }
+
+  async send(instead) {
     this.trouble.textContent = '';
     const {data, id} = this.page;
     const is_correction = Object.keys(instead).length === 0;

@@ -126,9 +126,8 @@ export async function overview(main) {
   loadStatistics(first);
   return {
     async changed() {
-      const stamp = await load();
-      tell('The store has changed; this is what it says now.');
-      await loadStatistics(stamp);
+      await loadStatistics(await load());
+      return () => tell('The store has changed; this is what it says now.');
     },
     keys(event) { list.move(event); },
   };

@@ -254,16 +254,19 @@ export async function trial(main, id, revision) {
     pending: () => correcting.pending(),
     async changed() {
       const now = await get(`/api/trials/${data.row.id}`);
-      if (now.last_revision === data.last_revision) return;
+      await correcting.stored;  // the change may be what is being stored here
+      if (now.last_revision === data.last_revision) return null;
       const last = now.history.find(h => h.revision === now.last_revision);
+      const what = `${last.kind} by ${last.who}` +
+          `${last.why ? ': ' + last.why : ''}.`;
       if (correcting.pending() || old) {
-        tell(`Revision ${last.revision} was made meanwhile: ${last.kind} by ` +
-             `${last.who}${last.why ? ': ' + last.why : ''}.`, true);
-        return;
+        return () => tell(
+            `Revision ${last.revision} was made meanwhile: ${what}`, true);
       }
-      tellNext(`Revision ${last.revision}: ${last.kind} by ${last.who}` +
-               `${last.why ? ': ' + last.why : ''}.`);
-      await page.saved();
+      return () => {
+        tellNext(`Revision ${last.revision}: ${what}`);
+        page.saved();
+      };
     },
   };
 }
