@@ -25,7 +25,8 @@ struct DrawnBlock {
   double half_long_px = 24.0;
   double half_short_px = 8.0;
   double level_dn = 60.0;
-  double noise_dn = 2.0;  // uniform, of this standard deviation
+  double noise_dn = 2.0;         // uniform, of this standard deviation
+  std::int64_t noise_lasts = 1;  // frames: a codec repeats its errors
   std::function<BlockPose(std::int64_t frame)> pose;
 };
 
@@ -61,10 +62,11 @@ inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
             slab(block.half_short_px, -sine * dx + cosine * dy);
         const double wall =
             150.0 + 20.0 * std::sin(0.05 * x) + 15.0 * std::cos(0.09 * y);
-        const double noise = std::sqrt(3.0) * block.noise_dn *
-                             HashNoise(static_cast<std::uint32_t>(x),
-                                       static_cast<std::uint32_t>(y),
-                                       static_cast<std::uint32_t>(frame));
+        const double noise =
+            std::sqrt(3.0) * block.noise_dn *
+            HashNoise(static_cast<std::uint32_t>(x),
+                      static_cast<std::uint32_t>(y),
+                      static_cast<std::uint32_t>(frame / block.noise_lasts));
         levels.push_back(wall + cover * (block.level_dn - wall) + noise);
       }
     }

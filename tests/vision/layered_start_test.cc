@@ -82,6 +82,20 @@ TEST(FindLayeredStart, SaysThatNothingMoves) {
   EXPECT_THAT(start.error().reason, testing::HasSubstr("stated size"));
 }
 
+// Successive frames of a codec's clip are more alike than each is to the still
+// picture: their differences are no measure of the noise.
+TEST(FindLayeredStart, TakesWhatACodecRepeatsForNoise) {
+  DrawnBlock block;
+  block.noise_dn = 6.0;
+  block.noise_lasts = 4;
+  block.pose = [](std::int64_t) {
+    return synthetic::BlockPose{90.0, 60.0, 0.2};
+  };
+  const auto start = FindLayeredStart(*DrawBlock(block), OptionsFor(block));
+  ASSERT_FALSE(start);
+  EXPECT_THAT(start.error().reason, testing::HasSubstr("stated size changes"));
+}
+
 TEST(FindLayeredStart, RefusesAShapeWithoutSize) {
   const auto clip = DrawBlock(Slow());
   EXPECT_THROW(FindLayeredStart(*clip, {}), std::invalid_argument);

@@ -185,7 +185,9 @@ core::Expected<std::vector<StartPose>> FindLayeredStart(
   const auto by = static_cast<std::int32_t>(
       std::max(1.0, std::round(reduced.short_side / kSearchedAcross)));
   const cv::Size size = sampled.pictures.front().size();
-  const double noise_dn = EstimateCellNoise(sampled);
+  StillLayer still = MedianStill(sampled, options.threads);
+  const cv::Mat median = still.level;
+  const double noise_dn = EstimateCellNoise(sampled, still);
   const ChangeScale scale = ScaleOfChange(noise_dn, sampled.full_scale_dn);
   // Margin of the masks, as a share of the short side and in cells: the body's
   // blur, and the path's error. Larger leaves less of the still layer
@@ -194,8 +196,6 @@ core::Expected<std::vector<StartPose>> FindLayeredStart(
   constexpr double kMinGrow = 2.5;
   const double grow = std::max(kMinGrow, kGrowShare * reduced.short_side);
 
-  StillLayer still = MedianStill(sampled, options.threads);
-  const cv::Mat median = still.level;
   const cv::Rect searched = RegionOfChange(
       sampled, still, scale,
       0.5 * std::hypot(reduced.long_side, reduced.short_side), by);

@@ -48,28 +48,6 @@ ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
   return sampled;
 }
 
-// Noise of a cell, from differences of successive pictures: most cells do not
-// change, and the median is blind to those that do.
-double EstimateCellNoise(const ReducedFrames& sampled) {
-  // Every third cell across and down is enough for a median. Not studied.
-  constexpr int kCellStep = 3;
-  // Of full scale, a quarter DN of 8 bits: a synthetic picture has no noise.
-  constexpr double kMinNoiseShare = 1e-3;
-  std::vector<float> differences;
-  for (std::size_t t = 1; t < sampled.pictures.size(); ++t) {
-    const cv::Mat& a = sampled.pictures[t - 1];
-    const cv::Mat& b = sampled.pictures[t];
-    for (int y = 0; y < a.rows; y += kCellStep) {
-      for (int x = 0; x < a.cols; x += kCellStep) {
-        differences.push_back(std::abs(a.at<float>(y, x) - b.at<float>(y, x)));
-      }
-    }
-  }
-  const double sigma = kSigmaPerMedian * std::numbers::sqrt2 / 2.0 *
-                       static_cast<double>(MedianInPlace(differences));
-  return std::max(sigma, kMinNoiseShare * sampled.full_scale_dn);
-}
-
 // Median over the pictures, for the first round: right wherever the body is in
 // fewer than half of them.
 StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
@@ -88,6 +66,45 @@ StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
                      }
                    });
   return {median, cv::Mat(first.size(), CV_16U, cv::Scalar(1))};
+}
+
+namespace {
+
+// Median magnitude of the difference of two pictures of each cell: most cells
+// do not change, and the median is blind to those that do.
+template <class Before>
+double MedianDifference(const ReducedFrames& sampled, const Before& before) {
+  // Every third cell across and down is enough for a median. Not studied.
+  constexpr int kCellStep = 3;
+  std::vector<float> differences;
+  for (std::size_t t = 1; t < sampled.pictures.size(); ++t) {
+    const cv::Mat& a = before(t);
+    const cv::Mat& b = sampled.pictures[t];
+    for (int y = 0; y < a.rows; y += kCellStep) {
+      for (int x = 0; x < a.cols; x += kCellStep) {
+        differences.push_back(std::abs(a.at<float>(y, x) - b.at<float>(y, x)));
+      }
+    }
+  }
+  return static_cast<double>(MedianInPlace(differences));
+}
+
+}  // namespace
+
+// The larger of what successive pictures show, and of what pictures show about
+// the still one: a codec repeats its errors from picture to picture.
+double EstimateCellNoise(const ReducedFrames& sampled,
+                         const StillLayer& still) {
+  // Of full scale, a quarter DN of 8 bits: a synthetic picture has no noise.
+  constexpr double kMinNoiseShare = 1e-3;
+  const double successive = MedianDifference(
+      sampled,
+      [&](std::size_t t) -> const cv::Mat& { return sampled.pictures[t - 1]; });
+  const double about = MedianDifference(
+      sampled, [&](std::size_t) -> const cv::Mat& { return still.level; });
+  return std::max(
+      kSigmaPerMedian * std::max(successive / std::numbers::sqrt2, about),
+      kMinNoiseShare * sampled.full_scale_dn);
 }
 
 // Still layer of what the masks leave uncovered: a mean, then weighted means

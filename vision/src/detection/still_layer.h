@@ -24,11 +24,6 @@ ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
                                   std::int64_t last, int count,
                                   std::int32_t reduction);
 
-// Standard deviation of a cell from frame to frame, DN: of differences between
-// neighbouring samples, robustly; never below a thousandth of full scale, which
-// rounding and a lamp leave.
-double EstimateCellNoise(const ReducedFrames& sampled);
-
 // The still picture as it is known so far.
 struct StillLayer {
   cv::Mat level;      // DN, floats
@@ -37,6 +32,11 @@ struct StillLayer {
 
 // The median over the frames, known everywhere.
 StillLayer MedianStill(const ReducedFrames& sampled, int threads);
+
+// Standard deviation of a cell, DN: from picture to picture or about the still
+// one, whichever is larger, robustly; never below a thousandth of full scale,
+// which rounding and a lamp leave.
+double EstimateCellNoise(const ReducedFrames& sampled, const StillLayer& still);
 
 // B of what no mask covers (1 = covered, bytes, one mask a frame): the mean,
 // then twice with Cauchy's weights 1 / (1 + (off / 3 s)^2) about it, s being
