@@ -115,6 +115,11 @@ core::Expected<TrackResult> FitOutlinesOfSize(
     result.background = EstimateUncovered(clip, options, track, fallback);
     OutlineOptions fit_options;
     fit_options.ground = options.ground;
+    // px. Layers start from rougher poses than that. Where the body's face is
+    // no quadratic, robust weights settle slowly: to 1e-4 px it takes 20 to 30
+    // rounds.
+    constexpr double kTolerance_px = 0.005;
+    fit_options.tolerance_px = kTolerance_px;
     fit_options.fit_size = held == Size::kFree;
     if (held != Size::kStated) fit_options.blur_px = track.body.blur_px;
     std::vector<Fitted> fits =
