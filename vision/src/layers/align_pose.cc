@@ -244,15 +244,15 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   return out;
 }
 
-std::size_t LeaveLocalMinima(const PictureStack& stack, const Layers& layers,
-                             bool turns, int threads,
-                             std::vector<LayerPose>& poses) {
+std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
+                       bool turns, int threads, std::vector<LayerPose>& poses) {
   constexpr double kWorse = 1.25;   // of the median chi^2: clearly worse
   constexpr double kBetter = 0.85;  // of the chi^2 before: no noise does that
   // As far around as a step reaches from both sides.
   const double reach = std::max(1.0, 2.0 * layers.blur);  // px
   const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
   std::vector<double> chi2(poses.size());
+  std::vector<LayerPose> better = poses;
   const auto each = [&](const auto& align) {
     core::InParallel(static_cast<std::int64_t>(poses.size()), threads,
                      [&](std::int64_t begin, std::int64_t end) {
@@ -263,13 +263,15 @@ std::size_t LeaveLocalMinima(const PictureStack& stack, const Layers& layers,
                      });
   };
   each([&](std::size_t t) {
-    chi2[t] = AlignPose(stack, t, layers, poses[t], motions[t], turns).chi2;
+    const PoseFit fit =
+        AlignPose(stack, t, layers, poses[t], motions[t], turns);
+    chi2[t] = fit.chi2;
+    if (fit.found) better[t] = fit.pose;
   });
   std::vector<double> sorted = chi2;
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2,
                    sorted.end());
   const double usual = sorted[sorted.size() / 2];
-  std::vector<LayerPose> better = poses;
   std::vector<char> moved(poses.size(), 0);
   each([&](std::size_t t) {
     if (chi2[t] < kWorse * usual) return;

@@ -31,11 +31,11 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
                   const Layers& layers, const LayerPose& start,
                   const LayerPose& motion, bool turns);
 
-// Where a frame is explained clearly worse than others, its pose may be a local
-// minimum: an outline that settled on another edge. It is aligned again from
-// around, and moved where it is explained better there. How many were moved.
-std::size_t LeaveLocalMinima(const PictureStack& stack, const Layers& layers,
-                             bool turns, int threads,
-                             std::vector<LayerPose>& poses);
+// Aligns all poses. Where a frame is explained clearly worse than others, its
+// pose may be a local minimum: an outline that settled on another edge. It is
+// aligned again from around, and moved where it is explained better there. How
+// many were moved.
+std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
+                       bool turns, int threads, std::vector<LayerPose>& poses);
 
 }  // namespace touchdown::vision::layers
