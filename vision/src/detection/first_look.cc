@@ -537,10 +537,6 @@ Look LookPlainly(Clip& clip, const TrackOptions& options, std::int64_t last) {
   return look;
 }
 
-bool IsWellExplained(const Look& look) {
-  return look.choice.badness <= kMaxGoodCost;
-}
-
 // The best of five hypotheses. A body that stays long in one place leaves its
 // ghost in the background of all frames, and outlines fit badly. Then the
 // background of the beginning is tried, where the picture may be empty, and
@@ -561,7 +557,8 @@ core::Expected<Look> FirstLook(Clip& clip, const TrackOptions& options,
   }
   const std::int64_t last = best.found.last;
   const std::int64_t part = EndPart(options.first, last);
-  for (int attempt = 0; attempt < 4 && !IsWellExplained(best); ++attempt) {
+  for (int attempt = 0; attempt < 4 && best.choice.badness > kMaxGoodCost;
+       ++attempt) {
     // The detector of each attempt; the comment above names their backgrounds.
     constexpr Detector kDetectors[] = {Detector::kDifference,
                                        Detector::kDifference, Detector::kLevels,

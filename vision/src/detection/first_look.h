@@ -65,9 +65,6 @@ bool IsBetter(const Look& look, const Look& other);
 // not fitted yet.
 Look LookPlainly(Clip& clip, const TrackOptions& options, std::int64_t last);
 
-// Whether outlines explain the body, in the frames that its kind was chosen by.
-bool IsWellExplained(const Look& look);
-
 // The best of some hypotheses, of which the plain look is the first; it is the
 // only one where outlines explain the body. Absent where nothing moves, or
 // nothing with an outline.

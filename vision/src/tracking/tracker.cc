@@ -476,7 +476,12 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     return *layered &&
            ShareExplained(clip, options, (*layered)->track) >= kLeastExplained;
   };
-  if (!IsWellExplained(plain) && CanStartFromLayers(clip, options)) {
+  // Cost of the plain look's outlines, about their residuals over the noise,
+  // above which layers go first. 1.5: as many clips get slower as faster; 4:
+  // outlines of all frames are fitted in vain, which takes a fifth longer.
+  constexpr double kMaxPlainCost = 2.0;
+  if (plain.choice.badness > kMaxPlainCost &&
+      CanStartFromLayers(clip, options)) {
     layered = StartInLayers(clip, options, plain.found.last, plain.background);
     if (explains_clip()) {
       if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
