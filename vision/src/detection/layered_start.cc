@@ -8,6 +8,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "detection/path_linking.h"
 #include "detection/still_layer.h"
@@ -158,6 +159,25 @@ std::vector<PlacedShape> FindPath(const ReducedFrames& sampled,
   return path;
 }
 
+// By how much a point of the shape moved between two paths, cells, at most.
+double MeasureMove(const std::vector<PlacedShape>& before,
+                   const std::vector<PlacedShape>& after,
+                   const KnownShape& shape) {
+  const bool disc = shape.kind == core::BodyKind::kSphere;
+  double most = 0.0;
+  for (std::size_t t = 0; t < after.size(); ++t) {
+    const core::PixelPoint& a = before[t].centre;
+    const core::PixelPoint& b = after[t].centre;
+    const double turn =
+        disc ? 0.0
+             : std::remainder(after[t].angle_rad - before[t].angle_rad,
+                              SymmetryPeriod(shape));
+    most = std::max(most, std::hypot(b.x_px - a.x_px, b.y_px - a.y_px) +
+                              0.5 * shape.long_side * std::abs(turn));
+  }
+  return most;
+}
+
 }  // namespace
 
 core::Expected<std::vector<StartPose>> FindLayeredStart(
@@ -217,8 +237,11 @@ core::Expected<std::vector<StartPose>> FindLayeredStart(
     }
     // At first half of the angles do: the median's ghost is in the way.
     const std::size_t every = round == 0 && search.angles() > 1 ? 2 : 1;
-    path = FindPath(sampled, still, scale, search, reduced, searched, by, every,
-                    options.threads);
+    const std::vector<PlacedShape> before =
+        std::exchange(path, FindPath(sampled, still, scale, search, reduced,
+                                     searched, by, every, options.threads));
+    // Masks that differ by less than their margin leave the same still layer.
+    if (!before.empty() && MeasureMove(before, path, reduced) < grow) break;
   }
 
   std::vector<StartPose> poses;

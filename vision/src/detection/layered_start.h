@@ -38,7 +38,8 @@ struct LayeredStartOptions {
   // seen to do so.
   int frames = 48;
 
-  int rounds = 3;   // by then the path no longer changes, on all clips tried
+  // At most: by then the path no longer changes, on all clips tried.
+  int rounds = 3;
   int threads = 0;  // 0: one for each core; affects speed only
 };
 

@@ -36,7 +36,8 @@ ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
                                   std::int64_t last, int count,
                                   std::int32_t reduction) {
   ReducedFrames sampled;
-  sampled.step = std::max<std::int64_t>(1, (last - first) / std::max(count, 3));
+  sampled.step = std::max<std::int64_t>(
+      1, std::llround(static_cast<double>(last - first) / std::max(count, 3)));
   for (std::int64_t f = first; f < last; f += sampled.step) {
     const core::Frame frame = clip.Read(f);
     sampled.full_scale_dn = frame.full_scale();

@@ -19,7 +19,7 @@ struct ReducedFrames {
   double full_scale_dn = 255.0;
 };
 
-// About `count` frames of [first, last), at least that many where there are.
+// About `count` frames of [first, last): up to a third more or fewer.
 ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
                                   std::int64_t last, int count,
                                   std::int32_t reduction);
