@@ -19,7 +19,7 @@ struct ReducedFrames {
   double full_scale_dn = 255.0;
 };
 
-// About `count` frames of [first, last): up to a third more or fewer.
+// About `count` frames of [first, last): 0.75 to 1.5 times as many.
 ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
                                   std::int64_t last, int count,
                                   std::int32_t reduction);
