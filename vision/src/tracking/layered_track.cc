@@ -8,6 +8,7 @@
 
 #include "detection/first_look.h"
 #include "detection/layered_start.h"
+#include "numbers/robust.h"
 #include "outline/body_cover.h"
 #include "outline/outline_batch.h"
 #include "outline/track_shape.h"
@@ -92,6 +93,23 @@ std::vector<Fitted> FitTrackOutlines(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
+// Whether outlines of another size than the track's refute it: they leave much
+// less, and nothing beside them. A ball whose rim looks like the wall here and
+// there leaves as much, or what shows of its rim.
+bool Refute(const std::vector<Fitted>& others, const Track& track) {
+  // Of the misfit. A ball of 40 px, stated as 48, left 0.28; two whose rim
+  // looks like the wall left 0.96 to 1.3, in raw and H.264.
+  constexpr double kMuchLess = 0.7;
+  // Share of the pixels that fit. That ball's outlines: 1; those of the rims
+  // 0.85 to 0.94; a rim of six dots 0.91.
+  constexpr double kAll = 0.95;
+  std::vector<double> inliers;
+  for (const Fitted& f : others) inliers.push_back(f.fit.inliers);
+  return !others.empty() &&
+         MedianMisfit(others) < kMuchLess * MedianMisfit(track.poses) &&
+         Median(std::move(inliers)) > kAll;
+}
+
 // What is held of the outlines' size in a pass over all frames. The stated one
 // is held until the places are right; then the picture tells the size. Where
 // the background is not known at one end of the body, a free size draws the
@@ -126,6 +144,7 @@ core::Expected<TrackResult> FitOutlinesOfSize(
         FitTrackOutlines(clip, result.background, options, track, fit_options);
     std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
     DropStrangers(fits);
+    const std::vector<Fitted> of_any_size = fits;
     // A frame's own size may differ from the stated one by its own u as well.
     std::erase_if(fits, [&](const Fitted& f) {
       core::Estimate stated = options.size->long_px;
@@ -138,6 +157,9 @@ core::Expected<TrackResult> FitOutlinesOfSize(
     if (&held != passes.begin() &&
         static_cast<double>(fits.size()) <
             (1.0 - kMaxLostShare) * static_cast<double>(track.poses.size())) {
+      if (Refute(of_any_size, track)) {
+        return core::AbsentBecause("outlines of another size fit better");
+      }
       break;
     }
     if (fits.size() < kMinPoses) return too_few();

@@ -478,7 +478,7 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   };
   // Cost of the plain look's outlines, about their residuals over the noise,
   // above which layers go first. 1.5: as many clips get slower as faster; 4:
-  // outlines of all frames are fitted in vain, which takes a fifth longer.
+  // outlines of all frames are fitted in vain, for 6 to 8 % more time.
   constexpr double kMaxPlainCost = 2.0;
   if (plain.choice.badness > kMaxPlainCost &&
       CanStartFromLayers(clip, options)) {
