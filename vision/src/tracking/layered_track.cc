@@ -8,7 +8,6 @@
 
 #include "detection/first_look.h"
 #include "detection/layered_start.h"
-#include "numbers/robust.h"
 #include "outline/body_cover.h"
 #include "outline/outline_batch.h"
 #include "outline/track_shape.h"
@@ -93,23 +92,6 @@ std::vector<Fitted> FitTrackOutlines(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
-// Whether outlines of another size than the track's refute it: they leave much
-// less, and nothing beside them. A ball whose rim looks like the wall here and
-// there leaves as much, or what shows of its rim.
-bool Refute(const std::vector<Fitted>& others, const Track& track) {
-  // Of the misfit. A ball of 40 px, stated as 48, left 0.28; two whose rim
-  // looks like the wall left 0.96 to 1.3, in raw and H.264.
-  constexpr double kMuchLess = 0.7;
-  // Share of the pixels that fit. That ball's outlines: 1; those of the rims
-  // 0.85 to 0.94; a rim of six dots 0.91.
-  constexpr double kAll = 0.95;
-  std::vector<double> inliers;
-  for (const Fitted& f : others) inliers.push_back(f.fit.inliers);
-  return !others.empty() &&
-         MedianMisfit(others) < kMuchLess * MedianMisfit(track.poses) &&
-         Median(std::move(inliers)) > kAll;
-}
-
 // What is held of the outlines' size in a pass over all frames. The stated one
 // is held until the places are right; then the picture tells the size. Where
 // the background is not known at one end of the body, a free size draws the
@@ -129,7 +111,7 @@ core::Expected<TrackResult> FitOutlinesOfSize(
     return core::AbsentBecause("too few outlines of the stated size");
   };
   if (track.poses.size() < kMinPoses) return too_few();
-  for (const Size& held : passes) {
+  for (const Size held : passes) {
     result.background = EstimateUncovered(clip, options, track, fallback);
     OutlineOptions fit_options;
     fit_options.ground = options.ground;
@@ -144,22 +126,19 @@ core::Expected<TrackResult> FitOutlinesOfSize(
         FitTrackOutlines(clip, result.background, options, track, fit_options);
     std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
     DropStrangers(fits);
-    const std::vector<Fitted> of_any_size = fits;
     // A frame's own size may differ from the stated one by its own u as well.
     std::erase_if(fits, [&](const Fitted& f) {
       core::Estimate stated = options.size->long_px;
       stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
       return !IsStatedLength(2.0 * OutlineSize(f.fit), stated);
     });
-    // Share of the poses that a pass may lose. If it loses more, the pass
-    // before knew them better and its result stays. Not studied.
+    // Share of the poses that the last pass may lose. If it loses more, the
+    // pass before knew them better and its result stays. Not studied. If the
+    // pass of free size does, the stated size is not the body's.
     constexpr double kMaxLostShare = 0.2;
-    if (&held != passes.begin() &&
+    if (passes.size() > 1 && held == Size::kCommon &&
         static_cast<double>(fits.size()) <
             (1.0 - kMaxLostShare) * static_cast<double>(track.poses.size())) {
-      if (Refute(of_any_size, track)) {
-        return core::AbsentBecause("outlines of another size fit better");
-      }
       break;
     }
     if (fits.size() < kMinPoses) return too_few();
