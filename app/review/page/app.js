@@ -12,8 +12,9 @@ import {trial} from './trial.js';
 const pages = {compare, log, overview, recordings, report, setup, trial};
 
 // What the page shown wants: `changed` is called when the store has changed and
-// returns how to tell of it; `keys` gets key presses, `close` ends it; `pending` says whether something
-// was begun and not stored; `back`: the server answers again.
+// returns how to tell of it; `keys` gets key presses, `close` ends it; `pending`
+// says whether something was begun and not stored; `back`: the server answers
+// again.
 let shown = null;
 
 function pageOf(hash) {
