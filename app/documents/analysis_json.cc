@@ -243,6 +243,8 @@ Json ExplainedField(Writer& writer, const Analysis& analysis) {
       {"band_chi2", explained.band_chi2}, {"noise_dn", explained.noise_dn},
       {"frames", explained.frames},       {"lost_frames", explained.lost},
       {"pixels", explained.pixels}};
+  if (explained.seen) json["seen"] = *explained.seen;
+  if (explained.near_as_disc) json["near_as_disc"] = *explained.near_as_disc;
   if (analysis.outlines_corrected) json["outlines_corrected"] = true;
   return json;
 }

@@ -287,6 +287,12 @@ core::Expected<vision::ExplainedChange> ReadExplained(const Json& document) {
   }
   vision::ExplainedChange explained;
   explained.near = json.at("near");
+  const auto optional = [&](const char* field) {
+    return json.contains(field) ? std::optional(json.at(field).get<double>())
+                                : std::nullopt;
+  };
+  explained.seen = optional("seen");
+  explained.near_as_disc = optional("near_as_disc");
   explained.elsewhere = json.at("elsewhere");
   explained.band_chi2 = json.at("band_chi2");
   explained.noise_dn = json.at("noise_dn");

@@ -121,6 +121,50 @@ AnswerCheck CheckSize(const Analysis& analysis,
   return check;
 }
 
+// The body's shape, of which every part must be seen. A person who corrected
+// the answer has looked at it.
+AnswerCheck CheckShape(const Analysis& analysis,
+                       const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "shape";
+  if (!analysis.explained) {
+    check.reason = analysis.explained.error().reason;
+    return check;
+  }
+  if (analysis.track && analysis.track->patterned) {
+    check.reason = "the body is followed by its own picture, which has holes";
+    return check;
+  }
+  const vision::ExplainedChange& explained = *analysis.explained;
+  if (!explained.seen && !explained.near_as_disc) {
+    check.reason = "too little of the body is sampled";
+    return check;
+  }
+  check.verdict = Verdict::kPassed;
+  const Verdict refused =
+      analysis.corrections.empty() ? Verdict::kRefused : Verdict::kDoubtful;
+  if (explained.near_as_disc &&
+      explained.near - *explained.near_as_disc < limits.least_of_corners) {
+    check.verdict = refused;
+    check.reason = fmt::format(
+        "the body looks like a sphere, not like a rectangle: a disc as wide as "
+        "the short side explains {:.3f} of what changes near it, the rectangle "
+        "{:.3f}; give --body sphere",
+        *explained.near_as_disc, explained.near);
+  } else if (explained.seen && *explained.seen < limits.usual_seen) {
+    check.verdict =
+        *explained.seen < limits.least_seen ? refused : Verdict::kDoubtful;
+    check.reason = fmt::format(
+        "only {:.0f} % of the {}'s area is seen to be the body, the rest shows "
+        "what lies behind it: the body is smaller or of another shape; check "
+        "the size, the scale and --body",
+        100.0 * *explained.seen,
+        analysis.track->body.kind == core::BodyKind::kSphere ? "circle"
+                                                             : "rectangle");
+  }
+  return check;
+}
+
 // What is measured beside what nature allows.
 AnswerCheck CheckRestitution(const Analysis& analysis,
                              const AnswerCheckLimits& limits) {
@@ -201,9 +245,9 @@ std::string_view Name(Verdict verdict) {
 
 std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
                                          const AnswerCheckLimits& limits) {
-  return {CheckExplained(analysis, limits), CheckSize(analysis, limits),
-          CheckPath(analysis, limits), CheckRestitution(analysis, limits),
-          CheckGravity(analysis, limits)};
+  return {CheckExplained(analysis, limits),   CheckSize(analysis, limits),
+          CheckShape(analysis, limits),       CheckPath(analysis, limits),
+          CheckRestitution(analysis, limits), CheckGravity(analysis, limits)};
 }
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {

@@ -153,6 +153,52 @@ TEST(AnswerCheck, DocumentSaysWhatWasFound) {
   EXPECT_EQ(json["checks"][0]["verdict"], "refused");
 }
 
+// A ball in a square of its size leaves nothing but corners, which may be the
+// background. A square body has them.
+TEST(AnswerCheck, ASquareIsToldFromABall) {
+  for (const core::BodyKind seen :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    Film film = Default(core::BodyKind::kSphere);
+    film.thrown.kind = seen;
+    film.thrown.face_rad = 14.0 * core::kDegree;
+    AnalyzeOptions options = Stated(film, core::BodyKind::kRectangle);
+    options.long_m = options.short_m =
+        core::Estimate{2.0 * film.thrown.half_long_m, 1e-5, std::nullopt};
+    const Analysis analysis =
+        AnalyzeClip(vision::OpenScene(BuildScene(film), 1), options);
+    const bool is_square = seen == core::BodyKind::kRectangle;
+    EXPECT_EQ(analysis.contacts.first.contact.found, is_square)
+        << analysis.contacts.first.contact.reason;
+    if (!is_square) {
+      EXPECT_THAT(analysis.contacts.first.contact.reason,
+                  HasSubstr("looks like a sphere, not like a rectangle"));
+    }
+  }
+}
+
+TEST(AnswerCheck, APartThatIsNotSeenIsToldOrRefused) {
+  for (const double seen : {0.99, 0.94, 0.86}) {
+    SCOPED_TRACE(seen);
+    Analysis analysis = Answer();
+    ASSERT_TRUE(analysis.explained);
+    ASSERT_TRUE(analysis.explained->seen);
+    analysis.explained->seen = seen;
+    CheckAnswer(analysis);
+    EXPECT_EQ(analysis.contacts.first.contact.found, seen > 0.9);
+    EXPECT_EQ(analysis.warnings.empty(), seen != 0.94);
+    const auto again = Replay(Logged(analysis));
+    ASSERT_TRUE(again) << again.error().reason;
+    EXPECT_EQ(again->explained->seen, seen);
+    EXPECT_EQ(again->contacts.first.contact.found, seen > 0.9);
+    // Whoever corrected the answer has looked at it.
+    Correction correction;
+    correction.contact_frame = 80;
+    const Analysis corrected = Rejudge(*again, correction);
+    EXPECT_TRUE(corrected.contacts.first.contact.found)
+        << corrected.contacts.first.contact.reason;
+  }
+}
+
 // A body of another kind than was stated is told by name.
 TEST(AnswerCheck, NamesTheKindThatWasSeen) {
   for (const core::BodyKind seen :

@@ -33,6 +33,8 @@ struct Film {
   double shadow_dn = 0.0;   // depth of a soft shadow that moves with the body
   double flicker = 0.0;     // of all light, relative amplitude
   double dark_noise = 1.0;  // times the noise, in a dark strip at the bottom
+  bool is_ball = false;     // as wide as the block's short side
+  double hole_px = 0.0;     // radius of a hole in the body's middle
   std::int64_t enters = 0;  // frame from which the body is in the picture
   std::uint64_t seed = 1;
 };
@@ -72,12 +74,15 @@ void DrawFrame(const Film& film, std::int64_t index,
         const double aside = dx / 20.0;
         level -=
             film.shadow_dn * std::exp(-0.5 * (below * below + aside * aside));
-        const double cover = Edge(kHalfLong_px - std::abs(u)) *
-                             Edge(kHalfShort_px - std::abs(v));
+        const double cover = film.is_ball
+                                 ? Edge(kHalfShort_px - std::hypot(u, v))
+                                 : Edge(kHalfLong_px - std::abs(u)) *
+                                       Edge(kHalfShort_px - std::abs(v));
         const double face =
             150.0 + film.contrast_dn +
             film.texture_dn * std::sin(0.8 * u) * std::cos(0.9 * v);
-        level += cover * (face - level);
+        const double whole = Edge(std::hypot(u, v) - film.hole_px);
+        level += cover * (film.hole_px > 0.0 ? whole : 1.0) * (face - level);
       }
       if (film.dark_noise != 1.0 && y >= kDarkFrom_px) {
         levels.push_back(30.0 + film.dark_noise * noise(engine));
@@ -146,6 +151,56 @@ TEST(ExplainedChange, PosesThatAreOffExplainLess) {
     band_before = off.band_chi2;
   }
   EXPECT_GT(before, 0.5);
+}
+
+// What lies beside the body by less than blur and a sample's distance may count
+// as seen, 2 px in all; what lies within it must.
+TEST(ExplainedChange, TellsWhichPartOfTheBodyIsSeen) {
+  constexpr double kBeside_px = 2.0;
+  for (const double larger : {1.0, 1.4, 1.8}) {
+    SCOPED_TRACE(larger);
+    Track track = TrueTrack();
+    track.body.half_long_px.value *= larger;
+    track.body.half_short_px.value *= larger;
+    const ExplainedChange explained = Measured({}, track);
+    EXPECT_GT(explained.near, 0.9);  // a larger outline explains as much
+    ASSERT_TRUE(explained.seen);
+    const double area = larger * larger * kHalfLong_px * kHalfShort_px;
+    EXPECT_GT(*explained.seen, 0.97 * kHalfLong_px * kHalfShort_px / area);
+    EXPECT_LT(*explained.seen, (kHalfLong_px + kBeside_px) *
+                                   (kHalfShort_px + kBeside_px) / area);
+  }
+}
+
+// Within the outline something else may show: a hole of the wheel, a mark that
+// has turned away.
+TEST(ExplainedChange, AHoleIsNoMissingRim) {
+  Film film;
+  film.hole_px = 4.0;
+  const ExplainedChange explained = Measured(film, TrueTrack());
+  ASSERT_TRUE(explained.seen);
+  EXPECT_EQ(*explained.seen, 1.0);
+}
+
+TEST(ExplainedChange, ADiscExplainsABallAsWellAsASquareDoes) {
+  for (const bool is_ball : {true, false}) {
+    SCOPED_TRACE(is_ball);
+    Film film;
+    film.is_ball = is_ball;
+    Track track = TrueTrack();
+    if (is_ball) track.body.half_long_px = track.body.half_short_px;
+    const ExplainedChange explained = Measured(film, track);
+    EXPECT_GT(explained.near, 0.95);
+    ASSERT_TRUE(explained.near_as_disc);
+    if (is_ball) {
+      EXPECT_GT(*explained.near_as_disc, explained.near - 0.01);
+    } else {
+      EXPECT_LT(*explained.near_as_disc, explained.near - 0.3);
+    }
+    track.body.kind = core::BodyKind::kSphere;
+    track.body.radius_px = track.body.half_short_px;
+    EXPECT_FALSE(Measured(film, track).near_as_disc);
+  }
 }
 
 // What stands still, somewhere on the body's way, explains nothing.

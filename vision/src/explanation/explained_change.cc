@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "explanation/change_samples.h"
+#include "explanation/seen_area.h"
 #include "explanation/two_layers.h"
 #include "numbers/robust.h"
 #include "touchdown/vision/background/background.h"
@@ -198,6 +199,34 @@ void AddUnexplained(const TwoLayers& layers, const OverTime& over,
   sums.square += std::min(from_mean, from_still);
 }
 
+// The two layers of a track, over the samples near its path.
+struct Rendered {
+  Rendered(const Track& track, const std::vector<SampledFrame>& frames,
+           const LatticePoints& near, const LatticeLevels& levels, int threads)
+      : covered(CoverPoints(track, frames, near, threads)),
+        layers(track, frames, near, levels, covered) {}
+
+  std::vector<CoveredPoints> covered;  // of each frame
+  TwoLayers layers;
+};
+
+// What they leave of all samples.
+Residuals SumResiduals(const Rendered& rendered,
+                       const std::vector<SampledFrame>& frames,
+                       const LatticeLevels& levels, const OverTime& over) {
+  Residuals sums;
+  std::vector<float> residual(over.mean.size());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (frames[k].has_pose) {
+      AddResiduals(rendered.layers, rendered.covered[k], over, levels.of(k),
+                   residual, sums);
+    } else {
+      AddUnexplained(rendered.layers, over, levels.of(k), sums);
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 
 core::Expected<ExplainedChange> MeasureExplainedChange(
@@ -230,22 +259,14 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
   const LevelNoise pixel_noise(over, over_rest, n);
   const double variance = pixel_noise.usual();
 
-  const std::vector<CoveredPoints> covered =
-      CoverPoints(track, frames, near, options.threads);
-  const TwoLayers layers(track, frames, near, levels, covered);
+  const Rendered rendered(track, frames, near, levels, options.threads);
+  const Residuals sums = SumResiduals(rendered, frames, levels, over);
 
   ExplainedChange out;
-  Residuals sums;
-  std::vector<float> residual(near.size());
-  for (std::size_t k = 0; k < n; ++k) {
-    if (frames[k].has_pose) {
-      AddResiduals(layers, covered[k], over, levels.of(k), residual, sums);
-    } else {
-      AddUnexplained(layers, over, levels.of(k), sums);
-      // A frame within the track without a pose: the body was lost there.
-      out.lost += frames[k].is_within ? 1 : 0;
-    }
-  }
+  // A frame within the track without a pose: the body was lost there.
+  out.lost = static_cast<int>(std::count_if(
+      frames.begin(), frames.end(),
+      [](const SampledFrame& f) { return !f.has_pose && f.is_within; }));
   out.frames = static_cast<int>(n);
   out.pixels = static_cast<std::int64_t>(n * near.size());
   out.noise_dn = std::sqrt(variance);
@@ -262,7 +283,18 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
         "what changes near the body's path does not stand out of the noise");
   }
   // Share of the change that the model explains, both with the noise taken out.
-  out.near = 1.0 - (sums.square - noise) / (all - noise);
+  const auto share = [&](const Residuals& left) {
+    return 1.0 - (left.square - noise) / (all - noise);
+  };
+  out.near = share(sums);
+  out.seen = MeasureSeenArea(rendered.covered, rendered.layers, levels);
+  if (track.body.kind == core::BodyKind::kRectangle) {
+    Track disc = track;
+    disc.body.kind = core::BodyKind::kSphere;
+    disc.body.radius_px = track.body.half_short_px;
+    out.near_as_disc = share(SumResiduals(
+        {disc, frames, near, levels, options.threads}, frames, levels, over));
+  }
   const double change_near =
       (all - noise) * static_cast<double>(near.step) * near.step;
   const double change_rest = ChangeBeyondNoise(over_rest, pixel_noise, n) *

@@ -42,6 +42,9 @@ class TwoLayers {
 
   bool is_known(std::size_t point) const { return weight_[point] > kLeastSeen; }
   float still(std::size_t point) const { return still_[point]; }
+  // Of the grid of T, row by row; its border lies outside the body.
+  std::size_t cells() const { return picture_.size(); }
+  std::size_t columns() const { return static_cast<std::size_t>(columns_); }
   // T at covered point `i`.
   float picture(const CoveredPoints& covered, std::size_t i) const;
 

@@ -63,6 +63,16 @@ struct ExplainedChange {
   // Q over the pixels within half the body's size of its outline in any sampled
   // frame: a body that was followed at a wrong place, or lost, counts.
   double near = 0.0;
+  // Of the body's area, the share that is seen to be body: there T explains
+  // what B does not. The rest lies beside a smaller body, or one of another
+  // shape, which explains as much: where a stated size is too large, 1 / its
+  // square. Within 2 px of the outline nothing is told. Absent where fewer than
+  // 20 samples lie side by side within the body.
+  std::optional<double> seen;
+  // Of a rectangle: `near`, were the body the disc between its long sides, at
+  // the same poses. Where the disc explains as much, the corners are not seen:
+  // they may be the background about a ball.
+  std::optional<double> near_as_disc;
   // Share of the clip's change beyond noise that lies farther from the body's
   // path, at points that stand out of the noise of their level. Nothing of it
   // is explained: Q is 0 there. Other things move, or the body was lost where
