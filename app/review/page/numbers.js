@@ -40,6 +40,7 @@ export function said(numbers) {
 // colour alone.
 const kChecks = {
   explained: 'outline explains what moves', size: 'size of the body',
+  shape: 'all of the outline is seen to be the body',
   path: 'free flight beside the contact', restitution: 'restitution',
   gravity: 'gravity (scale, frame rate)',
 };

@@ -15,6 +15,7 @@ const kAskEvery_ms = 300;
 const kChecks = {
   explained: 'The outline explains what changes in the clip',
   size: 'The body is as large as stated',
+  shape: 'All of the outline is seen to be the body',
   path: 'The body flies freely before and after',
   restitution: 'The rebound is possible',
   gravity: 'Gravity comes out right',
