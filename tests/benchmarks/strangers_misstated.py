@@ -74,7 +74,7 @@ def analyse_clip(score, binary, job):
         else:
             fate = 'false' if score.gross(row) else 'silent'
         fates.append(fate)
-    return os.path.basename(clip), right['found'], fates
+    return os.path.relpath(clip, os.path.dirname(os.path.dirname(clip))), right['found'], fates
 
 
 def main():

@@ -1,6 +1,5 @@
 #include "explanation/seen_area.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace touchdown::vision {
