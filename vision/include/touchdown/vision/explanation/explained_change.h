@@ -66,8 +66,8 @@ struct ExplainedChange {
   // Of the body's area, the share that is seen to be body: there T explains
   // what B does not. The rest lies beside a smaller body, or one of another
   // shape, which explains as much: of a size that is stated k times too large,
-  // 1 / k^2. Within 2 px of the outline nothing is told. Absent where fewer than
-  // 20 samples lie side by side within the body.
+  // 1 / k^2. Within 2 px of the outline nothing is told. Absent where fewer
+  // than 20 samples lie side by side within the body.
   std::optional<double> seen;
   // Of a rectangle: `near`, were the body the disc between its long sides, at
   // the same poses. Where the disc explains as much, the corners are not seen:
