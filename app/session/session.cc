@@ -57,6 +57,22 @@ std::string SomePictures(const fs::path& recording) {
   return bytes;
 }
 
+// Tells the caller that an analysis runs for as long as it lives.
+class Analysing {
+ public:
+  explicit Analysing(const std::function<void(bool)>& tell) : tell_(tell) {
+    if (tell_) tell_(true);
+  }
+  ~Analysing() {
+    if (tell_) tell_(false);
+  }
+  Analysing(const Analysing&) = delete;
+  Analysing& operator=(const Analysing&) = delete;
+
+ private:
+  const std::function<void(bool)>& tell_;
+};
+
 }  // namespace
 
 Session::Session(db::Store& store, const core::Campaign& campaign,
@@ -391,11 +407,12 @@ void Session::Log(const fs::path& recording, const std::string& clip_id) {
     throw core::InputError(
         fmt::format("{}: {}", recording.filename().string(), *why));
   }
-  // Both read the whole recording: at the same time is nearly twice as fast.
-  auto digest =
-      std::async(std::launch::async, [&] { return vision::Sha256(recording); });
   core::Trial trial;
   try {
+    const Analysing analysing(ends_.analysing);
+    // Both read the whole recording: at the same time is nearly twice as fast.
+    auto digest = std::async(std::launch::async,
+                             [&] { return vision::Sha256(recording); });
     const pipeline::Analysis analysis = pipeline::Analyze(recording, analyze);
     trial = pipeline::LoggableTrial(analysis, &campaign, digest.get());
   } catch (const core::InputError& error) {

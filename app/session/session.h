@@ -49,6 +49,9 @@ struct SessionEnds {
   rig::Driver* driver = nullptr;  // nothing: hands only
   // Keeps the picture of a trial's contact; nothing: none is kept.
   std::function<void(const core::Trial&)> keep_picture = {};
+  // Told `true` when an analysis begins and `false` when it has ended: the
+  // session hears nothing meanwhile. Nothing: nobody is told.
+  std::function<void(bool)> analysing = {};
 };
 
 // How a typed line came: what was pasted in one go never fires.

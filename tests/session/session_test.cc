@@ -45,6 +45,7 @@ class SessionTest : public ::testing::Test {
           .count();
     };
     ends.driver = &driver_;
+    ends.analysing = [this](bool runs) { analysing_.push_back(runs); };
     session_.emplace(*store_, Bench::campaign(),
                      pipeline::MakeThrower(bench_.rig(), Bench::campaign()),
                      options, ends, ReadSession(bench_.db()));
@@ -72,6 +73,7 @@ class SessionTest : public ::testing::Test {
     return question.find("yes/no") == std::string::npos ? "" : "yes";
   }};
   std::string said_;
+  std::vector<bool> analysing_;  // what was told of analyses
   std::optional<db::Store> store_;
   std::optional<Session> session_;
 };
@@ -89,10 +91,12 @@ TEST_F(SessionTest, FromConventionsToTheSecondShot) {
   }
   EXPECT_EQ(Take(early), "");
   EXPECT_TRUE(Trials().empty());
+  EXPECT_TRUE(analysing_.empty());
   EXPECT_THAT(Obey("begin"), HasSubstr("press Enter"));
   EXPECT_THAT(Obey(""), HasSubstr("next shot: approach angle"));
   ASSERT_EQ(Trials().size(), 1u);
   EXPECT_FALSE(Trials()[0].set_angle_rad);
+  EXPECT_EQ(analysing_, (std::vector<bool>{true, false}));
 
   const double planned_deg = Planned_deg();
   const std::string answer = Take(bench_.Film("a.mraw", 24.0, 1));
@@ -119,8 +123,10 @@ TEST_F(SessionTest, FromConventionsToTheSecondShot) {
                              bench_.films() / "copy.mraw");
   std::filesystem::copy_file(bench_.films() / "a.cihx",
                              bench_.films() / "copy.cihx");
+  analysing_.clear();
   EXPECT_THAT(Take(bench_.films() / "copy.mraw"), HasSubstr("known, trial"));
   EXPECT_EQ(Trials().size(), 2u);
+  EXPECT_TRUE(analysing_.empty());
   EXPECT_FALSE(session_->Obey("quit"));
 }
 

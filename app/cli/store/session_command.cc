@@ -63,12 +63,12 @@ struct SessionFlags {
 };
 
 // The handlers of signals share this state with Serve(). A handler sets
-// session_ended where the session is to end.
+// session_ended to the signal's number where the session is to end.
 volatile std::sig_atomic_t session_ended = 0;
 volatile std::sig_atomic_t rig_stopped = 0;  // and nobody was told
 // Holds the instant of that stop: a line typed before it must not act after it.
 std::atomic<std::chrono::steady_clock::time_point> rig_stopped_at;
-// An analysis runs, and may not look at session_ended for seconds.
+// An analysis runs, and does not look at session_ended for seconds.
 volatile std::sig_atomic_t analysing_shot = 0;
 // Points to the rig's controller while a Driving lives; null with a rig that is
 // set by hand.
@@ -89,7 +89,7 @@ void OnSessionSignal(int signal) {
     rig_stopped = 1;
   }
   if (moves && signal == SIGINT) return;
-  session_ended = 1;
+  session_ended = signal;
   if (analysing_shot != 0) EndSoon(signal);
 }
 
@@ -243,11 +243,7 @@ void Serve(const SessionFlags& flags, session::Session& session,
                   [&](const std::vector<fs::path>& complete) {
                     for (const fs::path& recording : complete) {
                       if (session_ended != 0) return;
-                      // From here to its end a signal ends the process after a
-                      // moment (EndSoon).
-                      analysing_shot = 1;
                       session.Take(recording);
-                      analysing_shot = 0;
                     }
                   });
 }
@@ -332,6 +328,11 @@ int RunSession(const SessionFlags& flags) {
   ends.driver = &driver;
   ends.keep_picture = [&store](const core::Trial& trial) {
     pipeline::KeepPicture(store.path(), trial);
+  };
+  ends.analysing = [](bool runs) {
+    analysing_shot = runs ? 1 : 0;
+    // The signal may have come a moment before.
+    if (runs && session_ended != 0) EndSoon(session_ended);
   };
   fmt::print("{}", CampaignText(campaign));
   session::Session session(store, campaign, std::move(thrower), options, ends,
