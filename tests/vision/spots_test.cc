@@ -104,8 +104,8 @@ TEST(FindSpots, DerivativesAreThose) {
   const Seen seen = SeenOf({.level_dn = 40.0}, 8, 1);
   const auto found = FindSpots(seen.cells, seen.samples, Options());
   ASSERT_TRUE(found);
-  SpotModel::Vector by(found->parameters.size());
-  SpotModel::Vector unused(found->parameters.size());
+  NormalVector by(found->parameters.size());
+  NormalVector unused(found->parameters.size());
   found->At(-1.3, -2.2, &by);
   for (int i = 0; i < by.size(); ++i) {
     constexpr double kStep = 1e-5;

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "contact/drag.h"
+#include "numbers/symmetric_factor.h"
 
 namespace touchdown::vision {
 namespace {
@@ -54,9 +54,9 @@ double FitPolynomial(std::span<const PlaneSample> samples, double t0,
     a(N - 1, N - 1) += w;
     b[N - 1] += w * prior->value * scale;
   }
-  const Eigen::LDLT<Matrix> factor(a);
-  solution = factor.solve(b);
-  covariance = factor.solve(Matrix::Identity());
+  const SymmetricFactor factor(a);
+  solution = factor.Solve(b);
+  covariance = factor.Inverse();
   double chi2 = 0.0;
   for (const PlaneSample& s : samples) {
     const double r = (s.*value - origin - row_at(s).dot(solution)) / (s.*u);

@@ -1,11 +1,11 @@
 #include "contact/joint_fit.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "contact/drag.h"
+#include "numbers/symmetric_factor.h"
 
 namespace touchdown::vision {
 namespace {
@@ -285,20 +285,18 @@ std::optional<JointVector> Solve(const JointMatrix& information,
   if (!unit.allFinite()) return std::nullopt;
   const JointMatrix scaled =
       unit.asDiagonal() * information * unit.asDiagonal();
-  const Eigen::LDLT<JointMatrix> factor(scaled);
+  const SymmetricFactor factor(scaled);
   // Smallest pivot of the scaled matrix, whose diagonal is 1: below it the
   // frames do not determine some combination of parameters. Rounding reaches
   // 1e-15.
   constexpr double kSingular = 1e-13;
-  if (factor.info() != Eigen::Success ||
-      !(factor.vectorD().minCoeff() > kSingular)) {
+  if (!factor.succeeded() || !(factor.smallest_pivot() > kSingular)) {
     return std::nullopt;
   }
   const JointVector step =
-      unit.asDiagonal() * factor.solve(unit.asDiagonal() * gradient);
+      unit.asDiagonal() * factor.Solve(unit.asDiagonal() * gradient);
   if (covariance != nullptr) {
-    *covariance = unit.asDiagonal() * factor.solve(JointMatrix::Identity()) *
-                  unit.asDiagonal();
+    *covariance = unit.asDiagonal() * factor.Inverse() * unit.asDiagonal();
   }
   if (!step.allFinite()) return std::nullopt;
   return step;
@@ -433,8 +431,8 @@ double JointFit::UncertaintyShare(
   // The variance explained by `known`, c^T own^-1 c with c = cov(known, f):
   // what conditioning on them would take away.
   const auto n = static_cast<Eigen::Index>(known.size());
-  Eigen::MatrixXd cross(kJointParameters, n);
-  Eigen::MatrixXd own(n, n);
+  NormalMatrix cross(kJointParameters, n);
+  NormalMatrix own(n, n);
   Eigen::Index i = 0;
   for (const JointParameter a : known) {
     cross.col(i) = covariance.col(a);
@@ -443,8 +441,8 @@ double JointFit::UncertaintyShare(
     if (!(own(i, i) > 0.0)) own(i, i) = 1.0;  // not in use: no share
     ++i;
   }
-  const Eigen::VectorXd through = cross.transpose() * gradient;
-  const double share = through.dot(own.ldlt().solve(through));
+  const NormalVector through = cross.transpose() * gradient;
+  const double share = through.dot(SymmetricFactor(own).Solve(through));
   return std::sqrt(std::clamp(share, 0.0, all));
 }
 

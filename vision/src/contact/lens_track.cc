@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "numbers/robust.h"
+#include "numbers/symmetric_factor.h"
 #include "track/image_size.h"
 
 namespace touchdown::vision {
@@ -107,8 +107,7 @@ std::optional<ShapeVector> DistortedOffset(core::BodyKind kind,
     normal(2, 2) = 1.0;
     normal(4, 4) = 1.0;
   }
-  const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(normal);
-  const ShapeVector solution = solver.solve(right);
+  const ShapeVector solution = SymmetricFactor(normal).Solve(right);
   if (!solution.allFinite()) return std::nullopt;
   return solution;
 }

@@ -289,7 +289,7 @@ Appearance::Value Appearance::At(double x_px, double y_px, double cosine,
                                  double sine) const {
   const double x = turns ? x_px * cosine + y_px * sine : x_px;
   const double y = turns ? y_px * cosine - x_px * sine : y_px;
-  SpotModel::Vector by(spots.parameters.size());
+  NormalVector by(spots.parameters.size());
   Value value;
   value.level_dn = spots.At(x, y, &by);
   // A frame's own fit finds its shading again: these terms leave the level, and

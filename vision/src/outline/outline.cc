@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "numbers/robust.h"
+#include "numbers/symmetric_factor.h"
 #include "outline/outline_image.h"
 #include "outline/outline_inside.h"
 #include "outline/outline_pixels.h"
@@ -24,16 +24,12 @@ namespace {
 
 // Geometry (x, y, size, size, angle), blur, open share, six interior and six
 // outer polynomial terms.
-constexpr int kMaxParameters = kMostTerms;
+static_assert(kMostTerms <= static_cast<std::size_t>(kMostUnknowns));
 // px of movement. A fit from a near start that moves by less may keep its set
 // of pixels: those that come and go at the band's borders tell nothing of its
 // place, and residuals at its edge are no outliers yet. Larger: the result
 // depends on the start; smaller: more rounds. Not studied.
 constexpr double kNearStart_px = 0.05;
-using ParameterVector =
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
-using NormalMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
-                                   kMaxParameters, kMaxParameters>;
 
 // Iteratively reweighted Gauss-Newton on the pixels of one frame: predicted
 // level = out + coverage (in - behind), with Tukey's weights on residuals in
@@ -120,13 +116,13 @@ class Fitter {
   bool saturated_ = false;  // what lies around the body
   double cosine_ = 1.0;
   double sine_ = 0.0;
-  ParameterVector levels_;  // interior then outer polynomial coefficients, DN
+  NormalVector levels_;  // interior then outer polynomial coefficients, DN
   OutlinePixels pixels_;
   std::vector<double> residuals_;  // in units of the expected noise
   double robust_scale_ = 0.0;      // 0: plain least squares
   OutlineSums sums_;
   NormalMatrix normal_;
-  ParameterVector gradient_;
+  NormalVector gradient_;
   double contrast_ = 0.0;
   double misfit_ = 0.0;
   double inliers_ = 0.0;
@@ -194,7 +190,7 @@ void Fitter::Sum(const OutlineRound& round) {
     at[k] = LevelsBegin() + static_cast<int>(k - round.shapes);
   }
   normal_ = NormalMatrix::Zero(Parameters(), Parameters());
-  gradient_ = ParameterVector::Zero(Parameters());
+  gradient_ = NormalVector::Zero(Parameters());
   for (std::size_t i = 0; i < round.terms(); ++i) {
     gradient_[at[i]] = sums_.gradient(i);
     for (std::size_t j = 0; j <= i; ++j) {
@@ -226,7 +222,7 @@ void Fitter::SolveLevels() {
   NormalMatrix a = normal_.bottomRightCorner(n, n);
   // A trace of ridge keeps an unseen polynomial term at zero.
   a.diagonal().array() += 1e-9 * (1e-12 + a.diagonal().maxCoeff());
-  levels_ = a.ldlt().solve(gradient_.tail(n));
+  levels_ = SymmetricFactor(a).Solve(gradient_.tail(n));
 }
 
 // Takes the levels that the other frames tell, where the start is near, and
@@ -275,9 +271,9 @@ NormalMatrix Fitter::Regular() const {
 // Takes one Gauss-Newton step, made `longer` by a factor. Returns false where
 // the equations are degenerate or the body vanishes.
 bool Fitter::Step(double longer, double& geometric_step) {
-  const Eigen::LDLT<NormalMatrix> factor(Regular());
-  if (factor.info() != Eigen::Success) return false;
-  ParameterVector step = longer * factor.solve(gradient_);
+  const SymmetricFactor factor(Regular());
+  if (!factor.succeeded()) return false;
+  NormalVector step = longer * factor.Solve(gradient_);
   if (!step.allFinite()) return false;
   // No parameter may jump farther than the linearisation holds: a quarter of
   // half the smallest side, and half a pixel at least. Not studied.
@@ -474,8 +470,7 @@ core::Expected<OutlineFit> Fitter::Run() {
                     std::abs(contrast_), kMinContrast, noise));
   }
 
-  const NormalMatrix covariance = Regular().ldlt().solve(
-      NormalMatrix::Identity(Parameters(), Parameters()));
+  const NormalMatrix covariance = SymmetricFactor(Regular()).Inverse();
   // Residuals beyond the noise widen all u (Birge's ratio).
   const double widen = std::max(1.0, misfit_);
   const auto u = [&](int k) {
@@ -488,7 +483,7 @@ core::Expected<OutlineFit> Fitter::Run() {
   if (telling_) {
     // Size, blur and shutter are eliminated of this frame's own parameters, for
     // the joint step of all frames (shared_fit.h).
-    const ParameterVector step = covariance * gradient_;
+    const NormalVector step = covariance * gradient_;
     Grow(step[2], geometry_ == 5 ? step[3] : 0.0, fit.outline);
     const auto row = [&](int k) { return Free(k) ? k : -1; };
     fit.shared =

@@ -1,6 +1,5 @@
 #include "outline/shared_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -28,8 +27,7 @@ FrameStep Alone(const SharedTerms& terms) {
   constexpr double kVagueU = 1.0;
   Eigen::Matrix4d information = terms.information;
   information.diagonal().array() += 1.0 / (kVagueU * kVagueU);
-  const Eigen::Matrix4d covariance =
-      information.ldlt().solve(Eigen::Matrix4d::Identity());
+  const Eigen::Matrix4d covariance = SymmetricFactor(information).Inverse();
   return {&terms, covariance.row(0).dot(terms.gradient),
           std::sqrt(covariance(0, 0))};
 }
@@ -67,13 +65,12 @@ void DropFarOff(std::vector<FrameStep>& told) {
 
 // Schur complement: the shared block less what the frame's own parameters
 // explain of it, A_ss - A_so A_oo^-1 A_os, and the gradient alike.
-SharedTerms WithoutOwn(const Eigen::MatrixXd& normal,
-                       const Eigen::VectorXd& gradient,
+SharedTerms WithoutOwn(const NormalMatrix& normal, const NormalVector& gradient,
                        const std::array<int, 4>& at) {
   // The frame's own parameters with the shared ones held.
-  Eigen::MatrixXd own = normal;
-  Eigen::MatrixXd across = Eigen::MatrixXd::Zero(normal.rows(), 4);
-  Eigen::VectorXd own_gradient = gradient;
+  NormalMatrix own = normal;
+  NormalMatrix across = NormalMatrix::Zero(normal.rows(), 4);
+  NormalVector own_gradient = gradient;
   for (int j = 0; j < 4; ++j) {
     const int k = at[static_cast<std::size_t>(j)];
     if (k >= 0) across.col(j) = normal.col(k);
@@ -86,10 +83,10 @@ SharedTerms WithoutOwn(const Eigen::MatrixXd& normal,
     own_gradient[k] = 0.0;
     across.row(k).setZero();
   }
-  const Eigen::LDLT<Eigen::MatrixXd> factor(own);
-  const Eigen::MatrixXd through = across.transpose() * factor.solve(across);
+  const SymmetricFactor factor(own);
+  const NormalMatrix through = across.transpose() * factor.SolveColumns(across);
   const Eigen::Vector4d reached =
-      across.transpose() * factor.solve(own_gradient);
+      across.transpose() * factor.Solve(own_gradient);
   SharedTerms terms;
   for (int i = 0; i < 4; ++i) {
     const int row = at[static_cast<std::size_t>(i)];
@@ -122,13 +119,13 @@ std::optional<SharedStep> StepTogether(std::span<const Fitted> all) {
     known[k] = 0.0;
     information(k, k) = 1.0;
   }
-  const Eigen::LDLT<Eigen::Matrix4d> factor(information);
-  if (factor.info() != Eigen::Success || !factor.isPositive()) {
+  const SymmetricFactor factor(information);
+  if (!factor.succeeded() || !factor.is_positive()) {
     return std::nullopt;
   }
   SharedStep step;
-  step.step = known * factor.solve(gradient).array();
-  const Eigen::Matrix4d covariance = factor.solve(Eigen::Matrix4d::Identity());
+  step.step = known * factor.Solve(gradient).array();
+  const Eigen::Matrix4d covariance = factor.Inverse();
   // Scatter of the frames' own steps about the joint one widens its u.
   double chi2 = 0.0;
   for (const FrameStep& t : told) {

@@ -10,19 +10,18 @@
 // (shared_fit_test.cc, HasNotTheBiasOfAWeightedMean).
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <span>
 
+#include "numbers/symmetric_factor.h"
 #include "outline/track_shape.h"
 
 namespace touchdown::vision {
 
 // The Schur complement of a frame's normal equations for the four parameters in
 // the rows `at`; -1: the frame does not tell that one.
-SharedTerms WithoutOwn(const Eigen::MatrixXd& normal,
-                       const Eigen::VectorXd& gradient,
+SharedTerms WithoutOwn(const NormalMatrix& normal, const NormalVector& gradient,
                        const std::array<int, 4>& at);
 
 struct SharedStep {

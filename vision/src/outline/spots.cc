@@ -1,6 +1,5 @@
 #include "outline/spots.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,7 +22,7 @@ constexpr double kMinCostFall = 60.0;
 // Whether each spot falls off in all directions, from a place on the body: a
 // Gaussian that does not is a second shading.
 bool AreSpots(const SpotModel& model, double reach_px) {
-  const SpotModel::Vector& k = model.parameters;
+  const NormalVector& k = model.parameters;
   for (int spot = 0; spot < model.spots; ++spot) {
     const int at = SpotModel::kShading + spot * SpotModel::kSpot;
     // The greatest and the least of S's eigenvalues: 1 / width^2.
@@ -76,8 +75,8 @@ double HuberCost(const std::vector<double>& residuals, double cut) {
 }
 
 struct SpotEquations {
-  SpotModel::Matrix normal;
-  SpotModel::Vector gradient;
+  NormalMatrix normal;
+  NormalVector gradient;
 };
 
 // Gauss-Newton equations with Huber's weights. Without curved shading its three
@@ -86,9 +85,8 @@ SpotEquations MakeNormalEquations(Samples samples, const SpotModel& model,
                                   const std::vector<double>& residuals,
                                   double cut, bool curved) {
   const Eigen::Index n = model.parameters.size();
-  SpotEquations sums = {SpotModel::Matrix::Zero(n, n),
-                        SpotModel::Vector::Zero(n)};
-  SpotModel::Vector by(n);
+  SpotEquations sums = {NormalMatrix::Zero(n, n), NormalVector::Zero(n)};
+  NormalVector by(n);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     model.At(samples[i].x_px, samples[i].y_px, &by);
     by /= std::sqrt(samples[i].variance_dn2);
@@ -145,11 +143,11 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
     sums = MakeNormalEquations(samples, model, residuals, cut, options.curved);
     double gain = 0.0;
     while (gain <= 0.0 && damping < kMaxDamping) {
-      SpotModel::Matrix a = sums.normal;
+      NormalMatrix a = sums.normal;
       a.diagonal() *= 1.0 + damping;
       a.diagonal().array() += kRidge * a.diagonal().maxCoeff();
       SpotModel next = model;
-      next.parameters += a.ldlt().solve(sums.gradient);
+      next.parameters += SymmetricFactor(a).Solve(sums.gradient);
       if (AreSpots(next, options.reach_px)) {
         std::vector<double> again = ComputeResiduals(samples, next);
         gain = cost - HuberCost(again, cut);
@@ -166,13 +164,11 @@ void FitSpots(Samples samples, const SpotOptions& options, SpotModel& model) {
   double square = 0.0;
   for (const double r : residuals) square += std::min(r * r, cut * cut);
   model.chi2 = square / static_cast<double>(samples.size());
-  SpotModel::Matrix a =
+  NormalMatrix a =
       MakeNormalEquations(samples, model, residuals, cut, options.curved)
           .normal;
   a.diagonal().array() += kRidge * a.diagonal().maxCoeff();
-  const Eigen::Index n = model.parameters.size();
-  model.covariance = std::max(1.0, model.chi2) *
-                     a.ldlt().solve(SpotModel::Matrix::Identity(n, n));
+  model.covariance = std::max(1.0, model.chi2) * SymmetricFactor(a).Inverse();
 }
 
 // A spot of given width that would explain the most of the residuals.
@@ -258,8 +254,8 @@ std::optional<SpotModel> WithSpot(Samples cells, Samples samples,
 
 }  // namespace
 
-double SpotModel::At(double x_px, double y_px, Vector* by) const {
-  const Vector& k = parameters;
+double SpotModel::At(double x_px, double y_px, NormalVector* by) const {
+  const NormalVector& k = parameters;
   const double xi = x_px / size_px;
   const double eta = y_px / size_px;
   const std::array<double, kShading> terms = {1.0,     xi,       eta,

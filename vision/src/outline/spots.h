@@ -4,9 +4,10 @@
 // dark.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <span>
+
+#include "numbers/symmetric_factor.h"
 
 namespace touchdown::vision {
 
@@ -17,19 +18,17 @@ struct SpotModel {
   static constexpr int kSpot = 6;     // A, x, y, Sxx, Sxy, Syy
   static constexpr int kMostSpots = 3;
   static constexpr int kMaxSpotParameters = kShading + kMostSpots * kSpot;
-  using Vector =
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSpotParameters, 1>;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
-                               kMaxSpotParameters, kMaxSpotParameters>;
+  static_assert(kMaxSpotParameters <= kMostUnknowns);
 
   double size_px = 1.0;
   int spots = 0;
-  Vector parameters = Vector::Zero(kShading);  // q, then the spots; DN and px
-  Matrix covariance = Matrix::Zero(kShading, kShading);
+  NormalVector parameters =
+      NormalVector::Zero(kShading);  // q, then the spots; DN and px
+  NormalMatrix covariance = NormalMatrix::Zero(kShading, kShading);
   double chi2 = 0.0;  // robust mean square of the residuals over the noise's
 
   // The value, DN, and its derivatives by the parameters if `by` is not null.
-  double At(double x_px, double y_px, Vector* by) const;
+  double At(double x_px, double y_px, NormalVector* by) const;
 };
 
 // What was seen at a place.
