@@ -279,7 +279,7 @@ void FillMotion(const RecordContext& context, const Event& event,
   m.gravity_check_mps2 = AbsentBecause(kNoScale);
   if (context.options.scale) {
     m.gravity_check_mps2 =
-        AbsentBecause("uninformative: its uncertainty exceeds 3 %");
+        AbsentBecause("uninformative: its uncertainty exceeds 10 %");
     std::vector<SampleRange> flights = {event.before_frames};
     if (event.after) flights.push_back(event.after_frames);
     if (auto gravity_px =
@@ -292,10 +292,12 @@ void FillMotion(const RecordContext& context, const Event& event,
       RecordContext stated = context;  // what is checked
       stated.scale_doubt = 0.0;
       const Measured g_si = InMetres(stated, *gravity_px);
-      // Relative u, by the document's definition: a frame rate or a scale that
-      // is off by less would not show.
-      constexpr double kMaxInformativeU = 0.03;
-      if (g_si->u < kMaxInformativeU * std::abs(g_si->value)) {
+      // Of the gravity that is known, not of the value: a value must not decide
+      // whether it is told. Larger: numbers that tell nothing are in the
+      // document; smaller: a frame rate that is 1.2 times too high (a gravity
+      // 1.44 times too high) passes without a word.
+      constexpr double kMaxInformativeU = 0.1;
+      if (g_si->u < kMaxInformativeU * context.options.gravity_mps2.value) {
         m.gravity_check_mps2 = g_si;
       }
     }

@@ -93,7 +93,7 @@ struct Motion {
   // |change of tangential| / |change of normal velocity| of the centre.
   Measured impulse_ratio = AbsentBecause("no contact");
   // Gravity fitted freely, a check of scale and frame rate; present only where
-  // its u is below 3 %.
+  // its u is below 10 % of the gravity that is known.
   Measured gravity_check_mps2 = AbsentBecause("no contact");
 
   friend bool operator==(const Motion&, const Motion&) = default;
