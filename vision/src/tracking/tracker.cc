@@ -123,48 +123,6 @@ std::string FitSkippedFrames(Clip& clip, const Background& background,
   return warning;
 }
 
-// Seeks the body once more in frames within the track that have no outline, or
-// had one on another edge: its size is held, and the fit starts where the path
-// leads.
-void FitMissing(Clip& clip, const Background& background,
-                const TrackOptions& options, Track& track) {
-  if (track.step > 1 || !IsSteady(track)) return;
-  std::vector<std::int64_t> missing;
-  for (std::size_t i = 1; i < track.poses.size(); ++i) {
-    for (std::int64_t f = track.poses[i - 1].frame + 1;
-         f < track.poses[i].frame; ++f) {
-      missing.push_back(f);
-    }
-  }
-  if (missing.empty()) return;
-  OutlineOptions fit_options = MakeFitOptions(track);
-  fit_options.fit_size = false;
-  // In units of the track's median misfit: an outline that fits twice as badly
-  // is of another thing. Not studied.
-  constexpr double kMaxMisfitRatio = 2.0;
-  // Of the body's size: how far off the path an outline may lie. Larger takes
-  // the edges beside it; smaller loses frames beside an impact. Not studied.
-  constexpr double kMaxOffPath = 0.1;
-  const double most_misfit = kMaxMisfitRatio * MedianMisfit(track.poses);
-  for (const Fitted& fit :
-       FitFromTrack(clip, background, track, options, fit_options, missing)) {
-    const Pose there = ExpectedPose(track, fit.frame);
-    const double off =
-        std::hypot(fit.fit.outline.centre.x_px - there.centre.x_px,
-                   fit.fit.outline.centre.y_px - there.centre.y_px);
-    if (!IsMeasured(fit.fit) || fit.fit.misfit > most_misfit ||
-        fit.fit.hidden > kMostHidden ||
-        off > kMaxOffPath * 2.0 * OutlineSize(fit.fit)) {
-      continue;
-    }
-    const auto at = std::lower_bound(
-        track.poses.begin(), track.poses.end(), fit.frame,
-        [](const Pose& pose, std::int64_t f) { return pose.frame < f; });
-    track.poses.insert(at, ToPose(fit));
-  }
-  Unwrap(track);
-}
-
 // Fits the frames between coarse samples only where the path is not smooth
 // (between_looks.h); Refine starts the others on the cubic. `looks`: the
 // outlines that the track was made of. Returns false, and does nothing, where
@@ -580,7 +538,6 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
       TakeLayers(clip, options, covers.most, std::move(layered), result)) {
     whole_px = 0.0;
   } else {
-    FitMissing(clip, result.background, options, track);
     FollowWhole(clip, options, *first, result, whole_px);
     if (!track.patterned) {
       track = FollowPattern(clip, result.background, track, options.threads);
