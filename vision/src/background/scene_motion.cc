@@ -1,5 +1,6 @@
 #include "background/scene_motion.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +10,6 @@
 
 #include "background/cubic.h"
 #include "numbers/robust.h"
-#include "numbers/symmetric_factor.h"
 
 namespace touchdown::vision {
 namespace {
@@ -295,15 +295,14 @@ SceneMotion SceneReference::Fit(const core::Frame& frame,
       information.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
       pull -= weight * off * j;
     }
-    const SymmetricFactor factor(
-        Information(information.selfadjointView<Eigen::Lower>()));
-    const Unknowns step = factor.Solve(pull);
+    const Eigen::LLT<Information> solver(information);
+    const Unknowns step = solver.solve(pull);
     out.motion.shift_x_px += step(0);
     out.motion.shift_y_px += step(1);
     out.motion.grow += step(2) / reach_;
     out.motion.turn += step(3) / reach_;
     out.gain += step(4);
-    covariance = factor.Inverse();
+    covariance = solver.solve(Information::Identity());
     if (step.head<4>().cwiseAbs().maxCoeff() * block_px_ < small_step_px) break;
   }
   const Eigen::Vector4d lengths = Lengths(out.motion);
