@@ -36,8 +36,8 @@ DrawnBlock Slow() {
   return block;
 }
 
-TEST(FindLayeredStart, FollowsABodyThatCoversItsOwnPlace) {
-  const DrawnBlock block = Slow();
+// Within four pixels and eight degrees of the block in every frame.
+void ExpectFollowed(const DrawnBlock& block) {
   const auto clip = DrawBlock(block);
   const auto start = FindLayeredStart(*clip, OptionsFor(block));
   ASSERT_TRUE(start) << start.error().reason;
@@ -52,6 +52,23 @@ TEST(FindLayeredStart, FollowsABodyThatCoversItsOwnPlace) {
         8.0 * std::numbers::pi / 180.0)
         << pose.frame;
   }
+}
+
+TEST(FindLayeredStart, FollowsABodyThatCoversItsOwnPlace) {
+  ExpectFollowed(Slow());
+}
+
+// Its middle is covered in all frames, and what it uncovers behind it looks
+// like a body that goes the other way.
+TEST(FindLayeredStart, FollowsABodyThatGoesAThirdOfItsLength) {
+  DrawnBlock block;
+  block.half_long_px = 30.0;
+  block.half_short_px = 10.0;
+  block.pose = [](std::int64_t frame) {
+    return synthetic::BlockPose{70.0 + 0.5 * static_cast<double>(frame), 50.0,
+                                0.0};
+  };
+  ExpectFollowed(block);
 }
 
 TEST(FindLayeredStart, DoesNotDependOnThreads) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "numbers/robust.h"
 #include "touchdown/core/parallel.h"
@@ -49,6 +50,11 @@ ReducedFrames SampleReducedFrames(Clip& clip, std::int64_t first,
   return sampled;
 }
 
+StillLayer WholeStill(cv::Mat level) {
+  cv::Mat seen(level.size(), CV_16U, cv::Scalar(1));
+  return {std::move(level), std::move(seen)};
+}
+
 // Median over the pictures, for the first round: right wherever the body is in
 // fewer than half of them.
 StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
@@ -66,7 +72,7 @@ StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
                        }
                      }
                    });
-  return {median, cv::Mat(first.size(), CV_16U, cv::Scalar(1))};
+  return WholeStill(std::move(median));
 }
 
 namespace {

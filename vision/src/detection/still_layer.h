@@ -30,6 +30,9 @@ struct StillLayer {
   cv::Mat uncovered;  // 16 bits: sampled frames that show each cell
 };
 
+// A picture that is known everywhere.
+StillLayer WholeStill(cv::Mat level);
+
 // The median over the frames, known everywhere.
 StillLayer MedianStill(const ReducedFrames& sampled, int threads);
 
