@@ -113,7 +113,8 @@ std::optional<std::pair<PlacedShape, PlacedShape>> FindPairOfPlaces(
   const PlaceFinder finder(in, two, still);
   const cv::Rect& searched = finder.searched();
   if (searched.empty()) return std::nullopt;
-  const cv::Mat change = ComputeChange(still, two.pictures.back(), in.scale);
+  const cv::Mat change =
+      ComputeChange(still, two.pictures.back(), in.scale, searched);
   std::vector<PlacedShape> places = finder.Find(change, 1);
   for (PlacedShape& place : places) {
     place.centre.x_px -= searched.x;
@@ -121,24 +122,23 @@ std::optional<std::pair<PlacedShape, PlacedShape>> FindPairOfPlaces(
   }
   // The best pair of those places, then from there.
   places = MoveAlongSides(places, in.shape);
-  const cv::Mat own = change(searched);
   std::vector<Cover> covers;
   covers.reserve(places.size());
   for (const PlacedShape& at : places) {
-    covers.push_back(CoverOf(own, in.shape, at));
+    covers.push_back(CoverOf(change, in.shape, at));
   }
   std::array<PlacedShape, 2> best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const double misfit = MeasureMisfit(own, covers[i], covers[j]);
+      const double misfit = MeasureMisfit(change, covers[i], covers[j]);
       if (misfit >= least) continue;
       least = misfit;
       best = {places[i], places[j]};
     }
   }
   if (!std::isfinite(least)) return std::nullopt;
-  Descend(own, in.shape, least, best);
+  Descend(change, in.shape, least, best);
   for (PlacedShape& place : best) {
     place.centre.x_px += searched.x;
     place.centre.y_px += searched.y;

@@ -19,9 +19,10 @@ cv::Rect RegionOfChange(const ReducedFrames& sampled, const StillLayer& still,
                         std::int32_t by) {
   // Change, 0..1: half of what counts as clear. Not studied.
   constexpr double kChanged = 0.5;
-  cv::Mat most(still.level.size(), CV_32F, cv::Scalar(0));
+  const cv::Rect whole({0, 0}, still.level.size());
+  cv::Mat most(whole.size(), CV_32F, cv::Scalar(0));
   for (const cv::Mat& picture : sampled.pictures) {
-    cv::max(most, ComputeChange(still, picture, scale), most);
+    cv::max(most, ComputeChange(still, picture, scale, whole), most);
   }
   const cv::Mat changed = most > kChanged;
   const cv::Rect box = cv::boundingRect(changed);
@@ -59,19 +60,21 @@ FoundPath FindPath(const PathSearch& in, const StillLayer& still,
                    const PlaceFinder& finder, std::size_t every) {
   const std::vector<cv::Mat>& pictures = in.sampled.pictures;
   std::vector<std::vector<PlacedShape>> candidates(pictures.size());
-  core::InParallel(static_cast<std::int64_t>(candidates.size()), in.threads,
-                   [&](std::int64_t begin, std::int64_t end) {
-                     for (auto t = static_cast<std::size_t>(begin);
-                          t < static_cast<std::size_t>(end); ++t) {
-                       candidates[t] = finder.Find(
-                           ComputeChange(still, pictures[t], in.scale), every);
-                       if (candidates[t].empty()) {
-                         const cv::Size size = pictures[t].size();
-                         candidates[t].push_back(
-                             {{0.5 * size.width, 0.5 * size.height}, 0.0, 0.0});
-                       }
-                     }
-                   });
+  core::InParallel(
+      static_cast<std::int64_t>(candidates.size()), in.threads,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto t = static_cast<std::size_t>(begin);
+             t < static_cast<std::size_t>(end); ++t) {
+          candidates[t] = finder.Find(
+              ComputeChange(still, pictures[t], in.scale, finder.searched()),
+              every);
+          if (candidates[t].empty()) {
+            const cv::Size size = pictures[t].size();
+            candidates[t].push_back(
+                {{0.5 * size.width, 0.5 * size.height}, 0.0, 0.0});
+          }
+        }
+      });
   // Of half the diagonal, for each frame of the sampling step: a place is known
   // to about a cell, and a curved flight moves the body off a straight line by
   // some hundredths of its size. Not studied.
@@ -115,9 +118,8 @@ std::vector<PlacedShape> PlaceFinder::Find(const cv::Mat& change,
   // body where brighter things change. Not studied.
   constexpr std::size_t kMaxima = 6;
   cv::Mat coarse;
-  cv::resize(change(searched_), coarse,
-             {searched_.width / by_, searched_.height / by_}, 0.0, 0.0,
-             cv::INTER_AREA);
+  cv::resize(change, coarse, {searched_.width / by_, searched_.height / by_},
+             0.0, 0.0, cv::INTER_AREA);
   std::vector<PlacedShape> places = search_.FindMaxima(
       {coarse.begin<float>(), coarse.end<float>()}, kMaxima, every);
   const auto to_cells = [this](double at, int corner) {
@@ -199,10 +201,11 @@ FoundPath FindPathFrom(const PathSearch& in, StillLayer still, int rounds) {
 }
 
 double MeasureUnexplained(const PathSearch& in, const FoundPath& path) {
+  const cv::Rect whole({0, 0}, path.still.level.size());
   double sum = 0.0;
   for (std::size_t t = 0; t < path.places.size(); ++t) {
     const cv::Mat change =
-        ComputeChange(path.still, in.sampled.pictures[t], in.scale);
+        ComputeChange(path.still, in.sampled.pictures[t], in.scale, whole);
     const cv::Mat mask = MakeMask(path.places[t], in.shape, 0.0, change.size());
     sum += cv::norm(change, cv::Mat_<float>(mask), cv::NORM_L1);
   }

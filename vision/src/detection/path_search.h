@@ -36,7 +36,8 @@ class PlaceFinder {
   const cv::Rect& searched() const { return searched_; }
   bool has_many_angles() const { return search_.angles() > 1; }
 
-  // The best places for one picture's change; every `every`-th angle is tried.
+  // The best places for one picture's change in that box; every `every`-th
+  // angle is tried.
   std::vector<PlacedShape> Find(const cv::Mat& change, std::size_t every) const;
 
  private:

@@ -178,16 +178,25 @@ ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn) {
 
 // |picture - still|, smoothed over a cell and scaled to 0..1.
 cv::Mat ComputeChange(const StillLayer& still, const cv::Mat& picture,
-                      const ChangeScale& scale) {
+                      const ChangeScale& scale, const cv::Rect& box) {
   // Change of a cell that was never uncovered: neither for the body nor against
   // it.
   constexpr float kUnknownChange = 0.5F;
-  cv::Mat change;
-  cv::absdiff(picture, still.level, change);
-  cv::GaussianBlur(change, change, {5, 5}, 1.0);
+  // Cells that smoothing reaches to each side.
+  constexpr int kReach = 2;
+  const cv::Rect around =
+      cv::Rect(box.x - kReach, box.y - kReach, box.width + 2 * kReach,
+               box.height + 2 * kReach) &
+      cv::Rect({0, 0}, picture.size());
+  cv::Mat difference;
+  cv::absdiff(picture(around), still.level(around), difference);
+  cv::GaussianBlur(difference, difference, {2 * kReach + 1, 2 * kReach + 1},
+                   1.0);
+  cv::Mat change = difference(box - around.tl());
   for (int y = 0; y < change.rows; ++y) {
     float* const row = change.ptr<float>(y);
-    const auto* const uncovered = still.uncovered.ptr<std::uint16_t>(y);
+    const auto* const uncovered =
+        still.uncovered.ptr<std::uint16_t>(box.y + y) + box.x;
     for (int x = 0; x < change.cols; ++x) {
       const float value = (row[x] - static_cast<float>(scale.from_dn)) /
                           static_cast<float>(scale.range_dn);

@@ -58,7 +58,8 @@ struct ChangeScale {
 // beyond what flicker, compression and an uneven exposure leave of a still
 // picture.
 ChangeScale ScaleOfChange(double noise_dn, double full_scale_dn);
+// In a box of the picture.
 cv::Mat ComputeChange(const StillLayer& still, const cv::Mat& picture,
-                      const ChangeScale& scale);
+                      const ChangeScale& scale, const cv::Rect& box);
 
 }  // namespace touchdown::vision

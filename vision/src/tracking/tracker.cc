@@ -383,9 +383,10 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
 }
 
 // From frames to a track. Where another look was measured by layers, from its
-// poses. Else in this order: the first hypothesis (detection); where it
-// explains a stated body badly, a layered start, which ends the search if it
-// explains the clip; the other hypotheses, the background without the body, the
+// poses. Else in this order: where the clip is decoded whole, a layered start
+// of a stated body, which ends the search if it explains the clip; the first
+// hypothesis (detection); where it explains a stated body badly, a layered
+// start, as before; the other hypotheses, the background without the body, the
 // same hypothesis before that background where the body was lost, the kind of
 // body once more, outlines of all frames, and at last layers or a template
 // where outlines do not explain the body.
@@ -422,9 +423,6 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
       once();
     }
   };
-  Look plain;
-  look([&] { plain = LookPlainly(clip, options, last); });
-  if (warning.empty()) warning = plain.found.warning;
   std::optional<core::Expected<TrackResult>> layered;
   const auto explains_clip = [&] {
     // Of the change. More: tracks that are right are sought once more, which
@@ -434,17 +432,34 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     return *layered &&
            ShareExplained(clip, options, (*layered)->track) >= kLeastExplained;
   };
+  const auto as_answer = [&] {
+    if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
+    return std::move(*layered);
+  };
+  const auto from_all_frames = [&] {
+    return EstimateBackground(clip, options.first, last,
+                              ChooseBackgroundOptions(clip, options));
+  };
+  // A clip that is decoded whole is looked at in layers at once: a plain look
+  // costs as much there, and outlines explain few of its frames.
+  const bool starts_in_layers = CanStartFromLayers(clip, options);
+  if (starts_in_layers && !clip.windows_are_cheap()) {
+    look([&] {
+      layered = StartInLayers(clip, options, last, from_all_frames());
+    });
+    if (explains_clip()) return as_answer();
+    until.Enter("the body is looked for");
+  }
+  Look plain;
+  look([&] { plain = LookPlainly(clip, options, last); });
+  if (warning.empty()) warning = plain.found.warning;
   // Cost of the plain look's outlines, about their residuals over the noise,
   // above which layers go first. 1.5: as many clips get slower as faster; 4:
   // outlines of all frames are fitted in vain, for 6 to 8 % more time.
   constexpr double kMaxPlainCost = 2.0;
-  if (plain.choice.badness > kMaxPlainCost &&
-      CanStartFromLayers(clip, options)) {
+  if (!layered && plain.choice.badness > kMaxPlainCost && starts_in_layers) {
     layered = StartInLayers(clip, options, plain.found.last, plain.background);
-    if (explains_clip()) {
-      if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
-      return std::move(*layered);
-    }
+    if (explains_clip()) return as_answer();
     until.Enter("the body is looked for");
   }
   // Other backgrounds are made of other frames, which may be damaged.
@@ -456,16 +471,10 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   });
   if (!first) {
     // One that was tried already does not explain the clip.
-    if (layered || !CanStartFromLayers(clip, options)) {
-      return tl::unexpected(first.error());
-    }
-    layered = StartInLayers(
-        clip, options, last,
-        EstimateBackground(clip, options.first, last,
-                           ChooseBackgroundOptions(clip, options)));
+    if (layered || !starts_in_layers) return tl::unexpected(first.error());
+    layered = StartInLayers(clip, options, last, from_all_frames());
     if (!explains_clip()) return tl::unexpected(first.error());
-    if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
-    return std::move(*layered);
+    return as_answer();
   }
 
   until.Enter("the background behind the body is estimated");
