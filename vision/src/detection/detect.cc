@@ -34,7 +34,7 @@ double AreaTimesContrast(const Part& part) {
   return part.area_px2 * std::abs(part.contrast_dn);
 }
 
-// Keeps the strongest regions, without specks beside a strong one.
+// Keeps the strongest regions.
 template <class Part>
 void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
@@ -42,11 +42,6 @@ void KeepStrongest(std::vector<Part>& parts, const DetectOptions& options) {
   });
   if (parts.size() > static_cast<std::size_t>(options.most_blobs)) {
     parts.resize(static_cast<std::size_t>(options.most_blobs));
-  }
-  while (!parts.empty() &&
-         AreaTimesContrast(parts.back()) <
-             options.least_share * AreaTimesContrast(parts.front())) {
-    parts.pop_back();
   }
 }
 
@@ -177,19 +172,16 @@ std::vector<OuterRegion> StrongestFirst(
 // The strength that a further region must have to be among those kept.
 double LeastKept(const std::vector<ContourRegion>& found,
                  const DetectOptions& options) {
-  if (found.empty()) return 0.0;
+  const auto kept = static_cast<std::size_t>(options.most_blobs);
+  if (found.size() < kept) return 0.0;
   std::vector<double> strengths;
   strengths.reserve(found.size());
   for (const ContourRegion& region : found) {
     strengths.push_back(AreaTimesContrast(region));
   }
-  const double least = options.least_share *
-                       *std::max_element(strengths.begin(), strengths.end());
-  const auto kept = static_cast<std::size_t>(options.most_blobs);
-  if (found.size() < kept) return least;
   const auto last = strengths.begin() + static_cast<std::ptrdiff_t>(kept) - 1;
   std::nth_element(strengths.begin(), last, strengths.end(), std::greater<>());
-  return std::max(least, *last);
+  return *last;
 }
 
 // Adds the parts of a region that differ strongly.

@@ -50,12 +50,6 @@ struct DetectOptions {
 
   double least_area_px2 = 12.0;  // smaller regions are noise or dust
   int most_blobs = 12;           // the largest ones are kept
-
-  // Of the strongest region's strength: weaker ones are specks. Compressed
-  // pictures have hundreds a frame, of strengths of 1e-4 to 1e-3 of the body's.
-  // Larger: a body beside something much stronger is overlooked; smaller costs
-  // time, in compressed clips up to half of the analysis.
-  double least_share = 0.01;
 };
 
 // By which blobs are ranked: area times contrast.
