@@ -13,13 +13,13 @@ namespace touchdown::vision {
 namespace {
 
 // A place's mask, and the cells of it that are beyond the picture.
-struct Cover {
+struct PlacedMask {
   cv::Mat mask;
   double beyond = 0.0;
 };
 
-Cover CoverOf(const cv::Mat& change, const KnownShape& shape,
-              const PlacedShape& at) {
+PlacedMask PlaceMask(const cv::Mat& change, const KnownShape& shape,
+                     const PlacedShape& at) {
   const double area =
       (shape.kind == core::BodyKind::kSphere ? 0.25 * std::numbers::pi : 1.0) *
       shape.long_side * shape.short_side;
@@ -28,8 +28,8 @@ Cover CoverOf(const cv::Mat& change, const KnownShape& shape,
 }
 
 // The sum of the header. Beyond the picture nothing changes.
-double MeasureMisfit(const cv::Mat& change, const Cover& one,
-                     const Cover& other) {
+double MeasureMisfit(const cv::Mat& change, const PlacedMask& one,
+                     const PlacedMask& other) {
   double sum = one.beyond + other.beyond;
   for (int y = 0; y < change.rows; ++y) {
     const float* const own = change.ptr<float>(y);
@@ -46,8 +46,8 @@ double MeasureMisfit(const cv::Mat& change, const Cover& one,
 
 double MeasureMisfit(const cv::Mat& change, const KnownShape& shape,
                      const std::array<PlacedShape, 2>& pair) {
-  return MeasureMisfit(change, CoverOf(change, shape, pair[0]),
-                       CoverOf(change, shape, pair[1]));
+  return MeasureMisfit(change, PlaceMask(change, shape, pair[0]),
+                       PlaceMask(change, shape, pair[1]));
 }
 
 // Each place, and the shape moved along each of its sides: a strip is narrower
@@ -123,16 +123,16 @@ std::optional<std::pair<PlacedShape, PlacedShape>> FindPairOfPlaces(
   }
   // The best pair of those places, then from there.
   places = MoveAlongSides(places, in.shape);
-  std::vector<Cover> covers;
-  covers.reserve(places.size());
+  std::vector<PlacedMask> masks;
+  masks.reserve(places.size());
   for (const PlacedShape& at : places) {
-    covers.push_back(CoverOf(change, in.shape, at));
+    masks.push_back(PlaceMask(change, in.shape, at));
   }
   std::array<PlacedShape, 2> best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const double misfit = MeasureMisfit(change, covers[i], covers[j]);
+      const double misfit = MeasureMisfit(change, masks[i], masks[j]);
       if (misfit >= least) continue;
       least = misfit;
       best = {places[i], places[j]};
