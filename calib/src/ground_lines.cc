@@ -120,24 +120,21 @@ struct Votes {
   double votes = 0.0;
 };
 
-// Those that points of one sign give to lines of one slope.
+// Those that points give to lines of one slope.
 Votes CountVotes(double slope, const std::vector<EdgePoint>& points,
-                 const std::vector<bool>& used, int sign,
                  const StillImage& image) {
-  // px of height in one bin. Larger merges
-  // neighbouring lines; smaller spreads the votes of one. Not studied.
+  // px of height in one bin. Larger merges neighbouring lines; smaller spreads
+  // the votes of one. Not studied.
   constexpr double kBin_px = 2.0;
   const double middle = 0.5 * (image.width_px - 1);
   const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
   std::vector<float> count(static_cast<std::size_t>(bins));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (used[i] || points[i].strength * sign <= 0.0) continue;
-    const double y = points[i].y - slope * (points[i].x - middle);
-    const double at = y / kBin_px;
+  for (const EdgePoint& p : points) {
+    const double at = (p.y - slope * (p.x - middle)) / kBin_px;
     if (at < 0.0 || at >= bins - 1) continue;
     // Between two bins, so that a line on their border loses no votes.
     const auto low = static_cast<std::size_t>(at);
-    const auto share = static_cast<float>(at - std::floor(at));
+    const auto share = static_cast<float>(at - static_cast<double>(low));
     count[low] += 1.0f - share;
     count[low + 1] += share;
   }
@@ -154,10 +151,9 @@ Votes CountVotes(double slope, const std::vector<EdgePoint>& points,
   return best;
 }
 
-// Best-supported line among `points` of one sign (Hough transform: votes over
-// tilt and height, one per column).
-Votes Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
-           int sign, const StillImage& image,
+// Best-supported line among `points` (Hough transform: votes over tilt and
+// height, one per column).
+Votes Vote(const std::vector<EdgePoint>& points, const StillImage& image,
            const GroundLineOptions& options) {
   // Tilts from the steepest downward to the steepest upward. More cost time in
   // proportion; fewer lose votes at the picture's sides. Not studied.
@@ -170,7 +166,7 @@ Votes Vote(const std::vector<EdgePoint>& points, const std::vector<bool>& used,
               options.most_tilt_rad *
               (2.0 * static_cast<double>(k) / (kTilts - 1.0) - 1.0);
           of_tilt[static_cast<std::size_t>(k)] =
-              CountVotes(std::tan(tilt), points, used, sign, image);
+              CountVotes(std::tan(tilt), points, image);
         }
       });
   return *std::max_element(
@@ -454,30 +450,32 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
   const double middle = 0.5 * (image.width_px - 1);
   // A mean of three rows on each side has noise sqrt(2/3) sigma.
   const double least = options.least_contrast_sigmas * image.noise_dn;
-  std::vector<EdgePoint> points;
+  // A line's points step in one direction.
+  std::vector<EdgePoint> rising;
+  std::vector<EdgePoint> falling;
   for (EdgePoint p : EdgePoints(image, least, options.threads)) {
-    if (ToIdeal(options.lens, p)) points.push_back(p);
+    if (!ToIdeal(options.lens, p)) continue;
+    (p.strength > 0.0 ? rising : falling).push_back(p);
   }
-  std::vector<bool> used(points.size(), false);
   std::vector<std::int32_t> all_columns(
       static_cast<std::size_t>(image.width_px));
   std::iota(all_columns.begin(), all_columns.end(), 0);
   const double step = VoteStep(image);
   for (int found = 0; found < options.most_lines; ++found) {
-    const Votes up = Vote(points, used, 1, image, options);
-    const Votes down = Vote(points, used, -1, image, options);
-    Line best = down.votes > up.votes ? down.line : up.line;
+    const Votes up = Vote(rising, image, options);
+    const Votes down = Vote(falling, image, options);
+    const Line best = down.votes > up.votes ? down.line : up.line;
     if (std::max(up.votes, down.votes) * step <
         options.least_share * image.width_px)
       break;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double off =
-          points[i].y - best.offset - best.slope * (points[i].x - middle);
+    const auto is_near = [&](const EdgePoint& p) {
       // px: points so near to a line that was found are its own, and vote for
       // no other. Not studied.
       constexpr double kSameLine_px = 4.0;
-      if (std::abs(off) < kSameLine_px) used[i] = true;
-    }
+      return std::abs(p.y - best.At(p.x - middle)) < kSameLine_px;
+    };
+    std::erase_if(rising, is_near);
+    std::erase_if(falling, is_near);
     // To sub-pixel, from every column.
     const double blur = EstimateBlur(image, options, best, middle);
     const auto line_within = [&](double reach) -> std::optional<EdgeLine> {
