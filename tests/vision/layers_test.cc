@@ -126,6 +126,38 @@ TEST(ShapeCover, DerivativesAreThoseOfTheValue) {
 }
 
 // A disc's coverage by integration of the Gaussian over it, strip by strip.
+// All that is covered by 2e-4, and hardly anything else: at the corners of a
+// rectangle both slabs see what their product does not.
+TEST(ShapeCover, ARowsPartIsWhatIsCovered) {
+  for (const Shape& shape : {Shape{true, 9.0, 9.0}, Shape{false, 20.0, 6.0},
+                             Shape{false, 7.0, 7.0}}) {
+    for (const double angle : {0.0, 0.3, 1.0, 1.5707963, 2.5, -0.7}) {
+      const auto cosine = static_cast<float>(std::cos(angle));
+      const auto sine = static_cast<float>(std::sin(angle));
+      const ShapeCover cover(shape, 1.3);
+      int seen = 0;
+      int covered = 0;
+      for (int down = -30; down <= 30; ++down) {
+        const auto dy = static_cast<float>(down) + 0.25F;
+        const RowPart part = cover.FindSeen(dy, cosine, sine);
+        for (int across = -30; across <= 30; ++across) {
+          const auto dx = static_cast<float>(across) - 0.1F;
+          const bool is_seen = dx >= part.from && dx <= part.to;
+          const bool is_covered =
+              cover.At(cosine * dx + sine * dy, cosine * dy - sine * dx)
+                  .value >= 2e-4F;
+          seen += is_seen;
+          covered += is_covered;
+          ASSERT_TRUE(is_seen || !is_covered)
+              << dx << " " << dy << " " << angle;
+        }
+      }
+      EXPECT_GT(covered, 100);
+      EXPECT_LT(seen, 1.1 * covered) << angle;
+    }
+  }
+}
+
 TEST(ShapeCover, OfADiscIsThatOfItsArea) {
   for (const double per_blur : {4.0, 6.0, 10.0}) {
     const double blur = 1.3;

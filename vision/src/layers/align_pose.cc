@@ -144,24 +144,32 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
   return sum;
 }
 
-}  // namespace
+// Of Gauss and Newton, from `start` on: the pose, how well it explains its
+// pixels, these pixels and the normal matrix there.
+struct Alignment {
+  LayerPose pose;
+  double chi2 = 0.0;
+  PoseMatrix normal = PoseMatrix::Identity();
+  FrameSamples samples;
+  bool found = false;
+};
 
-PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
-                  const Layers& layers, const LayerPose& start,
-                  const LayerPose& motion, bool turns) {
-  // Of Gauss and Newton: a bound on time, mostly not reached. Not studied.
+Alignment FindPose(const PictureStack& stack, std::size_t picture,
+                   const Layers& layers, const LayerPose& start,
+                   const LayerPose& motion, bool turns) {
+  // A bound on time, mostly not reached. Not studied.
   constexpr int kSteps = 5;
   // The step after which no other is taken: small beside a pose's u, which is
   // some hundredths of a pixel.
   constexpr double kStill_px = 2e-3;
   // Fewer do not tell three numbers and how far they scatter. Not studied.
   constexpr std::size_t kLeastPixels = 12;
-  PoseFit out;
+  Alignment out;
   out.pose = start;
   const double reach = layers.shape.Reach();
   const double most_px = 1.5 * layers.blur;
-  PoseMatrix normal = PoseMatrix::Identity();
-  FrameSamples samples;
+  PoseMatrix& normal = out.normal;
+  FrameSamples& samples = out.samples;
   for (int step = 0; step < kSteps; ++step) {
     Linearize(stack, picture, layers, out.pose, motion, Derivatives::kByPose,
               samples);
@@ -195,10 +203,6 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
     }
   }
   const double variance = layers.noise_dn * layers.noise_dn;
-  const PoseMatrix sandwich =
-      ComputeSandwich(samples, stack.width, variance, turns ? 3 : 2);
-  const PoseMatrix inverse = normal.inverse();
-  const PoseMatrix covariance = inverse * sandwich * inverse;
   constexpr double kMostSquare = 16.0;  // of the noise: four deviations
   double sum = 0.0;
   double count = 0.0;
@@ -209,6 +213,26 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
     count += 1.0;
   }
   out.chi2 = sum / std::max(count, 1.0) / variance;
+  out.found = true;
+  return out;
+}
+
+}  // namespace
+
+PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
+                  const Layers& layers, const LayerPose& start,
+                  const LayerPose& motion, bool turns) {
+  const Alignment at = FindPose(stack, picture, layers, start, motion, turns);
+  PoseFit out;
+  out.pose = at.pose;
+  if (!at.found) return out;
+  const FrameSamples& samples = at.samples;
+  out.chi2 = at.chi2;
+  const double variance = layers.noise_dn * layers.noise_dn;
+  const PoseMatrix sandwich =
+      ComputeSandwich(samples, stack.width, variance, turns ? 3 : 2);
+  const PoseMatrix inverse = at.normal.inverse();
+  const PoseMatrix covariance = inverse * sandwich * inverse;
   for (std::size_t a = 0; a < 2; ++a) {
     double second = 0.0;
     double fourth = 0.0;
@@ -263,8 +287,8 @@ std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
                      });
   };
   each([&](std::size_t t) {
-    const PoseFit fit =
-        AlignPose(stack, t, layers, poses[t], motions[t], turns);
+    const Alignment fit =
+        FindPose(stack, t, layers, poses[t], motions[t], turns);
     chi2[t] = fit.chi2;
     if (fit.found) better[t] = fit.pose;
   });
@@ -282,8 +306,8 @@ std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
         LayerPose start = poses[t];
         start.x += across * reach;
         start.y += down * reach;
-        const PoseFit fit =
-            AlignPose(stack, t, layers, start, motions[t], turns);
+        const Alignment fit =
+            FindPose(stack, t, layers, start, motions[t], turns);
         if (!fit.found || fit.chi2 >= least) continue;
         least = fit.chi2;
         better[t] = fit.pose;

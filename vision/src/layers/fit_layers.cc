@@ -63,20 +63,53 @@ void Reweigh(double noise_dn, std::vector<FrameSamples>& frames) {
   }
 }
 
-// The level that most of the body shows.
-float MeanLevel(const std::vector<FrameSamples>& frames) {
-  // Coverage from which on a pixel shows the body alone.
-  constexpr float kWhole = 0.95F;
+// Where a body is seen alone: at one pose.
+struct SeenAlone {
+  const ShapeCover& cover;
+  float x, y, cosine, sine;
+  SeenAlone(const ShapeCover& of, const LayerPose& at)
+      : cover(of),
+        x(static_cast<float>(at.x)),
+        y(static_cast<float>(at.y)),
+        cosine(static_cast<float>(std::cos(at.angle_rad))),
+        sine(static_cast<float>(std::sin(at.angle_rad))) {}
+  bool At(std::int32_t column, std::int32_t row) const {
+    constexpr float kWhole = 0.95F;  // coverage
+    const float dx = static_cast<float>(column) - x;
+    const float dy = static_cast<float>(row) - y;
+    return cover.At(cosine * dx + sine * dy, cosine * dy - sine * dx).value >=
+           kWhole;
+  }
+};
+
+// The mean level of the pixels that see the body alone from the beginning of
+// the exposure to its end.
+double MeanLevel(const PictureStack& stack, const Layers& layers,
+                 const std::vector<LayerPose>& poses) {
+  const ShapeCover cover(layers.shape, layers.blur);
+  const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
   double sum = 0.0;
   double count = 0.0;
-  for (const FrameSamples& samples : frames) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (samples.cover[i] < kWhole) continue;
-      sum += static_cast<double>(samples.level[i]);
-      count += 1.0;
+  for (std::size_t t = 0; t < poses.size(); ++t) {
+    const auto after = [&](double frames) {
+      return LayerPose{poses[t].x + frames * motions[t].x,
+                       poses[t].y + frames * motions[t].y,
+                       poses[t].angle_rad + frames * motions[t].angle_rad};
+    };
+    const SeenAlone begin(cover, after(-0.5 * layers.exposure));
+    const SeenAlone end(cover, after(0.5 * layers.exposure));
+    const core::PixelRect& window = stack.windows[t];
+    for (std::int32_t row = window.y; row < window.y + window.height; ++row) {
+      const float* const levels = stack.WindowRow(t, row);
+      for (std::int32_t k = 0; k < window.width; ++k) {
+        const std::int32_t column = window.x + k;
+        if (!begin.At(column, row) || !end.At(column, row)) continue;
+        sum += static_cast<double>(levels[k]);
+        count += 1.0;
+      }
     }
   }
-  return count > 0.0 ? static_cast<float>(sum / count) : 0.0F;
+  return count > 0.0 ? sum / count : 0.0;
 }
 
 // A body is flat until its pictures say that it is not.
@@ -237,8 +270,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   const FreePart free(layers.grid);
   std::vector<FrameSamples> frames;
   StillEvidence evidence;
-  LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
-  layers.quadratic = {static_cast<double>(MeanLevel(frames))};
+  layers.quadratic = {MeanLevel(stack, layers, fit.poses)};
   if (options.textured) LearnTexture(layers);
 
   constexpr double kHeld = 0.0;  // u of the curve: it is not fitted yet

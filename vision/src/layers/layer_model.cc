@@ -84,6 +84,29 @@ struct Placed {
   float tau = 0.0F;
 };
 
+// The pixels of one row that see the body at one of its places.
+struct Columns {
+  std::int32_t begin = 0;
+  std::int32_t end = 0;
+};
+Columns FindColumns(const ShapeCover& cover, const std::vector<Placed>& placed,
+                    std::int32_t row, const SampleWindow& window) {
+  auto from = static_cast<float>(window.right);
+  auto to = static_cast<float>(window.left - 1);
+  for (const Placed& node : placed) {
+    const RowPart seen = cover.FindSeen(static_cast<float>(row) - node.y,
+                                        node.cosine, node.sine);
+    if (seen.to < seen.from) continue;
+    from = std::min(from, node.x + seen.from);
+    to = std::max(to, node.x + seen.to);
+  }
+  const std::int32_t begin =
+      std::max(window.left, static_cast<std::int32_t>(std::ceil(from)));
+  const std::int32_t end =
+      std::min(window.right, static_cast<std::int32_t>(std::floor(to)) + 1);
+  return {begin, std::max(begin, end)};
+}
+
 using Terms = std::array<float, kTerms>;
 Terms EvaluateTerms(float x, float y) {
   return {1.0F, x, y, x * x, x * y, y * y};
@@ -151,13 +174,17 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
                       static_cast<float>(node.tau)});
   }
   samples.nodes = layers.flat ? 0 : placed.size();
-  const std::size_t most =
-      static_cast<std::size_t>(window.right - window.left) *
-      static_cast<std::size_t>(window.bottom - window.top);
+  const ShapeCover cover(layers.shape, layers.blur);
+  std::vector<Columns> seen_in_row;
+  std::size_t most = 0;
+  for (std::int32_t row = window.top; row < window.bottom; ++row) {
+    seen_in_row.push_back(FindColumns(cover, placed, row, window));
+    const Columns& columns = seen_in_row.back();
+    most += static_cast<std::size_t>(columns.end - columns.begin);
+  }
   samples.Resize(most, kDerivatives);
   std::size_t count = 0;
 
-  const ShapeCover cover(layers.shape, layers.blur);
   const float* const still = layers.still.data();
   const auto blur2 = static_cast<float>(layers.blur * layers.blur);
   const auto twice_blur = static_cast<float>(2.0 * layers.blur);
@@ -178,8 +205,10 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   std::vector<float> shares(placed.size());
   const std::int32_t first_column = stack.windows[picture].x;
   for (std::int32_t row = window.top; row < window.bottom; ++row) {
+    const Columns columns =
+        seen_in_row[static_cast<std::size_t>(row - window.top)];
     const float* const levels = stack.WindowRow(picture, row);
-    for (std::int32_t column = window.left; column < window.right; ++column) {
+    for (std::int32_t column = columns.begin; column < columns.end; ++column) {
       const std::int32_t pixel = row * stack.width + column;
       const float behind = still[pixel];
       const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);

@@ -86,6 +86,34 @@ CoverAt ShapeCover::CoverOfRectangle(float x, float y) const {
   return at;
 }
 
+RowPart ShapeCover::FindSeen(float down, float cosine, float sine) const {
+  constexpr float kBlurs = 3.6F;  // Phi(-3.6) = 1.6e-4
+  const float rim = kBlurs / per_blur_;
+  if (disc_) {
+    const float reach = half_long_ + rim;
+    if (std::abs(down) > reach) return {};
+    const float half = std::sqrt(reach * reach - down * down);
+    return {-half, half};
+  }
+  RowPart seen{-half_long_ - half_short_ - 2.0F * rim,
+               half_long_ + half_short_ + 2.0F * rim};
+  // A slab |per x + at| <= half.
+  const auto cut = [&seen](float per, float at, float half) {
+    constexpr float kAlong = 1e-6F;  // the row runs along the slab
+    if (std::abs(per) < kAlong) {
+      if (std::abs(at) > half) seen = {};
+      return;
+    }
+    const float one = (-half - at) / per;
+    const float other = (half - at) / per;
+    seen.from = std::max(seen.from, std::min(one, other));
+    seen.to = std::min(seen.to, std::max(one, other));
+  };
+  cut(cosine, sine * down, half_long_ + rim);
+  cut(-sine, cosine * down, half_short_ + rim);
+  return seen;
+}
+
 Product ShapeCover::WithEdge(float x, float y, const StillEdge& edge,
                              float cosine, float sine) const {
   // Beyond so many blurs from its own edge the body has none.

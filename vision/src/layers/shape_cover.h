@@ -76,6 +76,12 @@ struct Product {
   float by_y = 0.0F;
 };
 
+// From one place in a row of pixels to another; empty where `to` is less.
+struct RowPart {
+  float from = 0.0F;
+  float to = -1.0F;
+};
+
 // The coverage of pixels by one shape of one blur.
 class ShapeCover {
  public:
@@ -94,6 +100,10 @@ class ShapeCover {
     if (along > outside_long_ || across > outside_short_) return {};
     return CoverOfRectangle(x, y);
   }
+  // Where a row that lies `down` px below the centre sees the shape, in px from
+  // the centre: beyond, coverage is below 2e-4. `cosine`, `sine`: of the body's
+  // direction.
+  RowPart FindSeen(float down, float cosine, float sine) const;
   // `cosine`, `sine`: of the body's direction, in which x and y are.
   Product WithEdge(float x, float y, const StillEdge& edge, float cosine,
                    float sine) const;
