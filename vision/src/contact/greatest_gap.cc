@@ -22,11 +22,18 @@ struct Finder {
   void SearchInterval(const PlaneSample& a, const PlaneSample& b);
   void LookAfterTouchdown();
   void Offer(const core::Estimate& gap, std::int64_t frame);
+  core::Estimate GapAt(const Flight& flight, double time_s) const;
   double UncertaintyOfGround(double along_px) const {
     return std::hypot(ground.height_px.u,
                       ground.u_slope_rad * (along_px - ground.along_px));
   }
 };
+
+core::Estimate Finder::GapAt(const Flight& flight, double time_s) const {
+  const FlightGap g = GapOfFlight(track, flight, time_s);
+  return {g.gap_px - ground.height_px.value,
+          std::hypot(g.u_px, UncertaintyOfGround(flight.At(time_s).along_px))};
+}
 
 // Keeps the gap with the greatest lower bound, gap - u: among many noisy
 // heights the highest is no bounce.
@@ -50,16 +57,11 @@ void Finder::LookAtFlight(const SampleRange& range) {
       first ? *event->after : FitFlight(SelectSamples(track, range), options);
   // With its u: of the joint fit where ground and flight are one.
   const auto gap_at = [&](double t) {
-    if (first) {
-      const JointFit& fit = *event->fit;
-      const double frames = (t - fit.origin_s) / fit.interval_s;
-      return fit.EstimateFunction(
-          [&](const JointVector& p) { return fit.ReboundGap(p, frames); });
-    }
-    const FlightGap g = GapOfFlight(track, flight, t);
-    return core::Estimate{
-        g.gap_px - ground.height_px.value,
-        std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px))};
+    if (!first) return GapAt(flight, t);
+    const JointFit& fit = *event->fit;
+    const double frames = (t - fit.origin_s) / fit.interval_s;
+    return fit.EstimateFunction(
+        [&](const JointVector& p) { return fit.ReboundGap(p, frames); });
   };
   const auto height_at = [&](double t) {
     return GapOfFlight(track, flight, t).gap_px;
@@ -220,10 +222,14 @@ void Finder::LookAfterTouchdown() {
     return;
   }
   struct Hop {
-    core::Estimate most;
-    std::int64_t frame = 0;
+    Flight flight;
+    const PlaneSample* last = nullptr;
     double end_s = 0.0;  // it meets the ground there
   };
+  // Steps a frame: the apex is missed by g dt^2 / (8 * 128^2) at most.
+  constexpr double kStepsPerFrame = 128.0;
+  const double step_s = dt / kStepsPerFrame;
+  const double film_ends_s = samples.back().time_s;
   std::optional<Hop> hop;
   std::size_t i = first;
   for (std::vector<PlaneSample> flown{touchdown}; i < samples.size(); ++i) {
@@ -234,36 +240,33 @@ void Finder::LookAfterTouchdown() {
     // has ended. Not studied.
     constexpr double kMaxReducedChi2 = 4.0;
     if (flight.reduced_chi2 > kMaxReducedChi2) break;
-    const auto gap_at = [&](double t) {
-      const FlightGap g = GapOfFlight(track, flight, t);
-      return core::Estimate{
-          g.gap_px - ground.height_px.value,
-          std::hypot(g.u_px, UncertaintyOfGround(flight.At(t).along_px))};
-    };
-    // Steps a frame: the apex is missed by g dt^2 / (8 * 128^2) at most.
-    constexpr double kStepsPerFrame = 128.0;
-    Hop seen{gap_at(samples[i].time_s), samples[i].frame};
-    const double step_s = dt / kStepsPerFrame;
-    const auto steps = static_cast<int>(
-        std::ceil((samples.back().time_s - touchdown.time_s) / step_s));
-    seen.end_s = samples.back().time_s;
-    for (int k = 0; k < steps; ++k) {
-      const double t = touchdown.time_s + k * step_s;
-      const core::Estimate gap = gap_at(t);
-      if (t > samples[i].time_s && gap.value <= 0.0) {
-        seen.end_s = t;
-        break;
-      }
-      if (gap.value > seen.most.value) seen.most = gap;
+    double end_s = samples[i].time_s + step_s;
+    while (end_s < film_ends_s &&
+           GapOfFlight(track, flight, end_s).gap_px > ground.height_px.value) {
+      end_s += step_s;
     }
+    end_s = std::min(end_s, film_ends_s);
     // A frame that was exposed across the next impact says less.
-    if (seen.end_s - samples[i].time_s > spans_s) hop = seen;
+    if (end_s - samples[i].time_s > spans_s) {
+      hop = Hop{flight, &samples[i], end_s};
+    }
   }
+  if (!hop) return;
   // A frame that the flight claims but does not explain refutes the hop.
-  if (hop && hop->end_s < samples.back().time_s && i < samples.size() &&
-      samples[i].time_s > hop->end_s - spans_s) {
-    Offer(hop->most, hop->frame);
+  if (hop->end_s >= film_ends_s || i >= samples.size() ||
+      samples[i].time_s <= hop->end_s - spans_s) {
+    return;
   }
+  const auto height_at = [&](double t) {
+    return GapOfFlight(track, hop->flight, t).gap_px;
+  };
+  double top_s = hop->last->time_s;
+  const auto steps = static_cast<int>((hop->end_s - touchdown.time_s) / step_s);
+  for (int k = 0; k < steps; ++k) {
+    const double t = touchdown.time_s + k * step_s;
+    if (height_at(t) > height_at(top_s)) top_s = t;
+  }
+  Offer(GapAt(hop->flight, top_s), hop->last->frame);
 }
 
 void Finder::SearchStretch(const Stretch& stretch) {
