@@ -42,6 +42,7 @@ void ExpectSorted(SortingNetwork::Order order) {
 TEST(SortingNetwork, SortsEachPixel) {
   ExpectSorted<std::uint8_t>(SortingNetwork::Order::kFull);
   ExpectSorted<std::uint16_t>(SortingNetwork::Order::kFull);
+  ExpectSorted<float>(SortingNetwork::Order::kFull);
 }
 
 TEST(SortingNetwork, TheMiddleIsInTheMiddle) {

@@ -87,6 +87,10 @@ TOUCHDOWN_WIDEST void SortingNetwork::Sort(std::uint16_t* lanes) const {
   ExchangeAll(exchanges_, lanes);
 }
 
+TOUCHDOWN_WIDEST void SortingNetwork::Sort(float* lanes) const {
+  ExchangeAll(exchanges_, lanes);
+}
+
 TOUCHDOWN_WIDEST void AddSamples(const std::uint8_t* lanes, std::size_t begin,
                                  std::size_t end, std::uint32_t* sums) {
   AddAll(lanes, begin, end, sums);

@@ -42,6 +42,7 @@ class SortingNetwork {
 
   void Sort(std::uint8_t* lanes) const;
   void Sort(std::uint16_t* lanes) const;
+  void Sort(float* lanes) const;
 
  private:
   std::vector<std::pair<std::size_t, std::size_t>> exchanges_;

@@ -53,7 +53,7 @@ void FindPathFromEnds(const PathSearch& in, int rounds, FoundPath& found) {
     FoundPath other = FindPathFrom(
         in,
         LearnStill(ends, masks, ends.pictures.front(), in.noise_dn, in.threads),
-        rounds);
+        false, rounds);
     if (other.places.empty()) continue;
     const double unexplained = MeasureUnexplained(in, other);
     if (unexplained >= least) continue;
@@ -94,7 +94,8 @@ core::Expected<std::vector<StartPose>> FindLayeredStart(
       sampled,  ScaleOfChange(noise_dn, sampled.full_scale_dn),
       noise_dn, reduced,
       by,       options.threads};
-  FoundPath found = FindPathFrom(search, std::move(median), options.rounds);
+  FoundPath found =
+      FindPathFrom(search, std::move(median), true, options.rounds);
   if (found.places.empty()) {
     return core::AbsentBecause(
         "nothing of the stated size changes in these frames");

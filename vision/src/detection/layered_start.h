@@ -5,7 +5,7 @@
 // pixel in half of them, and a search in what differs from that follows its
 // ghost. Here picture and path are estimated in turn:
 //   B = median over the sampled frames, known everywhere
-//   some times, but for the last B:
+//   some times, but for the last B, or once if the path leaves this B right:
 //     E_t = clip((G * |I_t - B| - 0.8 s) / (5 s + c), 0, 1); 0.5 where B is not
 //           known                                           (change, in noise)
 //     p_t = the smooth path through the places where E_t has the body's shape
@@ -42,8 +42,8 @@ struct LayeredStartOptions {
   // seen to do so.
   int frames = 48;
 
-  // At most. Of 48 clips half are at rest after two, a sixth needs four to
-  // six; some of those that are not by then never are.
+  // At most. Of 48 clips half are at rest after one or two, a sixth needs four
+  // to six; some of those that are not by then never are.
   int rounds = 6;
   int threads = 0;  // 0: one for each core; affects speed only
 };

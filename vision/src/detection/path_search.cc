@@ -171,7 +171,27 @@ double MaskMargin(const KnownShape& shape) {
   return std::max(kMinGrow, kGrowShare * shape.short_side);
 }
 
-FoundPath FindPathFrom(const PathSearch& in, StillLayer still, int rounds) {
+namespace {
+
+// Whether the masks leave a median of the pictures right: each cell is covered
+// in clearly less than half of them.
+bool IsMedianClear(const std::vector<cv::Mat>& masks) {
+  // Of the pictures. Smaller costs time: with 0, which never holds, 79 clips in
+  // H.264 (crf 23) took 7 to 8 % more of it for the same answers.
+  constexpr double kMostCovered = 0.45;
+  cv::Mat covered(masks.front().size(), CV_16U, cv::Scalar(0));
+  for (const cv::Mat& mask : masks) {
+    cv::add(covered, mask, covered, cv::noArray(), CV_16U);
+  }
+  double most = 0.0;
+  cv::minMaxLoc(covered, nullptr, &most);
+  return most < kMostCovered * static_cast<double>(masks.size());
+}
+
+}  // namespace
+
+FoundPath FindPathFrom(const PathSearch& in, StillLayer still, bool is_median,
+                       int rounds) {
   const KnownShape& shape = in.shape;
   const double grow = MaskMargin(shape);
   FoundPath path;
@@ -185,6 +205,7 @@ FoundPath FindPathFrom(const PathSearch& in, StillLayer still, int rounds) {
       for (const PlacedShape& at : path.places) {
         masks.push_back(MakeMask(at, shape, grow, first.size()));
       }
+      if (round == 1 && is_median && IsMedianClear(masks)) break;
       still = LearnStill(in.sampled, masks, first, in.noise_dn, in.threads);
     }
     // At first half of the angles do: the first layer's ghost is in the way.

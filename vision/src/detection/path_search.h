@@ -60,9 +60,11 @@ struct FoundPath {
   StillLayer still;                 // that it was found before
 };
 
-// From a first still layer on, at most `rounds` times. No place where nothing
-// differs from that.
-FoundPath FindPathFrom(const PathSearch& in, StillLayer still, int rounds);
+// From a first still layer on, at most `rounds` times; once where that is the
+// pictures' median (`is_median`) and the path leaves it right. No place where
+// nothing differs from the first layer.
+FoundPath FindPathFrom(const PathSearch& in, StillLayer still, bool is_median,
+                       int rounds);
 
 // Change that the shape on its path leaves unexplained, cells of all pictures:
 // E of an uncovered cell, 1 - E of a covered one. Of two paths the one that

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "background/mid_mean.h"
 #include "numbers/robust.h"
 #include "touchdown/core/parallel.h"
 
@@ -58,17 +59,23 @@ StillLayer WholeStill(cv::Mat level) {
 // Median over the pictures, for the first round: right wherever the body is in
 // fewer than half of them.
 StillLayer MedianStill(const ReducedFrames& sampled, int threads) {
-  const cv::Mat& first = sampled.pictures.front();
-  cv::Mat median(first.size(), CV_32F);
-  core::InParallel(first.rows, threads,
+  const std::size_t count = sampled.pictures.size();
+  const SortingNetwork network(count, SortingNetwork::Order::kFull);
+  cv::Mat median(sampled.pictures.front().size(), CV_32F);
+  const auto width = static_cast<std::size_t>(median.cols);
+  core::InParallel(median.rows, threads,
                    [&](std::int64_t begin, std::int64_t end) {
-                     std::vector<float> values(sampled.pictures.size());
+                     std::vector<float> lanes(count * kLanes);
                      for (auto y = static_cast<int>(begin); y < end; ++y) {
-                       for (int x = 0; x < first.cols; ++x) {
-                         for (std::size_t t = 0; t < values.size(); ++t) {
-                           values[t] = sampled.pictures[t].at<float>(y, x);
+                       for (std::size_t x = 0; x < width; x += kLanes) {
+                         const std::size_t some = std::min(kLanes, width - x);
+                         for (std::size_t t = 0; t < count; ++t) {
+                           std::copy_n(sampled.pictures[t].ptr<float>(y) + x,
+                                       some, lanes.data() + t * kLanes);
                          }
-                         median.at<float>(y, x) = MedianInPlace(values);
+                         network.Sort(lanes.data());
+                         std::copy_n(lanes.data() + count / 2 * kLanes, some,
+                                     median.ptr<float>(y) + x);
                        }
                      }
                    });
