@@ -104,10 +104,10 @@ double ComputeInflation(const std::vector<std::vector<double>>& runs,
     n += run.size();
   }
   if (degrees < 1 || !(square > 0.0)) return 1.0;
-  // A correlation within its own uncertainty is none; 4: as for the scatter,
-  // one honest track in a hundred is widened, all lags and coordinates
-  // together.
-  const double noise = 4.0 / std::sqrt(static_cast<double>(n));
+  // A fit takes up what is slow: by so much residuals of white noise go against
+  // each other at short lags.
+  const double taken_up =
+      (static_cast<double>(n) - degrees) / static_cast<double>(n);
   double alike = 1.0;
   // A run tells of lags up to a third of its length; beyond, too few products
   // are left and the sum takes noise for correlation. Not studied.
@@ -122,8 +122,8 @@ double ComputeInflation(const std::vector<std::vector<double>>& runs,
         product += run[i] * run[i - lag];
       }
     }
-    const double rho = product / square;
-    if (!any || rho < (lag == 1 ? noise : 0.0)) break;
+    const double rho = product / square + taken_up;
+    if (!any || rho < 0.0) break;
     alike += 2.0 * rho;
   }
   return std::sqrt(std::max(1.0, square / degrees * alike));
