@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "app/measure/analyze.h"
 #include "touchdown/core/units.h"
@@ -198,6 +199,7 @@ AnswerCheck CheckGravity(const Analysis& analysis,
                          const AnswerCheckLimits& limits) {
   AnswerCheck check;
   check.name = "gravity";
+  check.is_of_units = true;
   const core::Measured& g = analysis.contacts.first.motion.gravity_check_mps2;
   if (!g) {
     check.reason = g.error().reason;
@@ -218,6 +220,24 @@ AnswerCheck CheckGravity(const Analysis& analysis,
         analysis.clip.time_base.fps / std::sqrt(std::max(ratio, 1e-6)));
   }
   return check;
+}
+
+// Why the answer is withheld: the first reason that refuses, or all of those
+// that doubt the body, where these are too many. Empty where it stands.
+std::string FindRefusal(const Analysis& analysis,
+                        const AnswerCheckLimits& limits) {
+  std::vector<std::string> doubts;
+  for (const AnswerCheck& check : analysis.checks) {
+    if (check.verdict == Verdict::kRefused) return check.reason;
+    if (check.verdict == Verdict::kDoubtful && !check.is_of_units) {
+      doubts.push_back(check.reason);
+    }
+  }
+  const bool are_too_many =
+      doubts.size() > static_cast<std::size_t>(limits.most_doubts);
+  if (!are_too_many || !analysis.corrections.empty()) return {};
+  return fmt::format("{} checks doubt the answer: {}", doubts.size(),
+                     fmt::join(doubts, "; "));
 }
 
 // Contacts and state as they are where there is no answer.
@@ -252,15 +272,9 @@ std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {
   analysis.checks = RunAnswerChecks(analysis, limits);
-  // One reason is enough, the first; those that doubt are all told.
-  const auto refused =
-      std::find_if(analysis.checks.begin(), analysis.checks.end(),
-                   [](const AnswerCheck& check) {
-                     return check.verdict == Verdict::kRefused;
-                   });
-  if (refused != analysis.checks.end() &&
-      analysis.contacts.first.contact.found) {
-    Withhold(refused->reason, analysis);
+  const std::string refusal = FindRefusal(analysis, limits);
+  if (!refusal.empty() && analysis.contacts.first.contact.found) {
+    Withhold(refusal, analysis);
   }
   for (const AnswerCheck& check : analysis.checks) {
     if (check.verdict != Verdict::kDoubtful) continue;

@@ -17,6 +17,7 @@ namespace {
 
 using filmed::Default;
 using filmed::Film;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 AnalyzeOptions Stated(const Film& film, core::BodyKind kind) {
@@ -197,6 +198,29 @@ TEST(AnswerCheck, APartThatIsNotSeenIsToldOrRefused) {
     EXPECT_TRUE(corrected.contacts.first.contact.found)
         << corrected.contacts.first.contact.reason;
   }
+}
+
+// One check may doubt a right answer by chance; two do not. Gravity asks for
+// the scale, not for the body.
+TEST(AnswerCheck, WhatTwoChecksDoubtIsRefused) {
+  Analysis analysis = Answer();
+  ASSERT_TRUE(analysis.explained);
+  analysis.explained->near = 0.8;
+  analysis.contacts.first.motion.gravity_check_mps2 = core::Estimate{9.5, 0.01};
+  CheckAnswer(analysis);
+  EXPECT_TRUE(analysis.contacts.first.contact.found);
+  EXPECT_EQ(analysis.warnings.size(), 2U);
+  Analysis corrected = analysis;
+  corrected.corrections = {"a person moved the ground"};
+  for (Analysis* doubted : {&analysis, &corrected}) {
+    doubted->explained->seen = 0.94;
+    CheckAnswer(*doubted);
+  }
+  EXPECT_TRUE(corrected.contacts.first.contact.found);
+  EXPECT_FALSE(analysis.contacts.first.contact.found);
+  EXPECT_THAT(analysis.contacts.first.contact.reason,
+              AllOf(HasSubstr("2 checks doubt"), HasSubstr("Q = 0.80"),
+                    HasSubstr("94 %")));
 }
 
 // A body of another kind than was stated is told by name.
