@@ -42,8 +42,8 @@ struct LayeredStartOptions {
   // seen to do so.
   int frames = 48;
 
-  // At most. Of 48 clips half are at rest after one or two, a sixth needs four
-  // to six; some of those that are not by then never are.
+  // At most. Of 48 clips half are at rest after two, a sixth needs four to
+  // six; some of those that are not by then never are.
   int rounds = 6;
   int threads = 0;  // 0: one for each core; affects speed only
 };
