@@ -70,10 +70,15 @@ export class Lab {
   remove() { rmSync(this.folder, {recursive: true, force: true}); }
 }
 
+// A test that fails before it stops its server must not hold up the others.
+const servers = [];
+after(() => { for (const server of servers) server.kill('SIGKILL'); });
+
 // The server, as `touchdown review` starts it.
 export async function startReview(db, ...args) {
   const child = spawn(binary, ['review', '--db', db, '--no-open', ...args],
                       {stdio: ['ignore', 'pipe', 'ignore']});
+  servers.push(child);
   const lines = createInterface({input: child.stdout});
   const address = await new Promise((resolve, reject) => {
     lines.once('line', resolve);

@@ -26,7 +26,8 @@ async function openRecordings(page, at = review) {
 
 async function choose(page, name, campaign = kCampaign) {
   await page.selectOption('#clip-campaign', campaign);
-  await page.getByLabel(name).check();
+  // By role: the queue's progress and cancel button carry the name, too.
+  await page.getByRole('checkbox', {name, exact: true}).check();
 }
 
 async function send(page) {

@@ -117,7 +117,8 @@ test('scale and ground are two clicks each, and hold for the next recording',
     film(join(folder, 'second'), shot => { shot.thrown.start.gap_mm = 8.25; });
     await page.goto(`${review.origin}/#/recordings`);
     await says(page, 'form[aria-label="Analyse"]', 'ground as marked');
-    await page.getByLabel('second/sphere_20_deg.mraw').check();
+    await page.getByRole('checkbox', {name: 'second/sphere_20_deg.mraw',
+                                      exact: true}).check();
     await page.click('form[aria-label="Analyse"] button.main');
     await page.locator('.queue li[data-state="done"]').first().waitFor();
     assert.equal(list(db).length, 2);
