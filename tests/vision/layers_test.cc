@@ -386,6 +386,65 @@ TEST(FitLayers, AShadedBodyIsNotDrawnToOneSide) {
   EXPECT_LT(errors.z2, 3.0);
 }
 
+// What is held of a disc, its second side, must not hold up the rest.
+TEST(FitLayers, ADiscThatIsSmallerThanStated) {
+  LayeredScene scene;
+  scene.shape = Shape{true, 10.0, 10.0};
+  for (int t = 0; t < 24; ++t) {
+    scene.poses.push_back({18.0 + 2.3 * t, 20.0 + 0.02 * t * t, 0.0});
+  }
+  const PictureStack stack = Film(scene, 3);
+  FitLayersOptions options = OptionsOf(scene);
+  const Shape stated{true, 10.4, 10.4};
+  options.prior.value[kLong] = stated.half_long;
+  options.prior.value[kShort] = stated.half_short;
+  options.prior.u[kLong] = 0.5;
+  const LayerFit fit =
+      FitLayers(stack, stated, Shaken(scene.poses, 0.3), Paint(scene, nullptr),
+                scene.noise_dn, options);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.layers.shape.half_long, 10.0, 0.02);
+  EXPECT_EQ(fit.layers.shape.half_short, fit.layers.shape.half_long);
+}
+
+// From either side, where the body goes some pixels in an exposure, and where
+// it stands still in it.
+TEST(FitLayers, AnExposureThatIsNotTheStatedOne) {
+  for (const double exposure : {0.0, 0.8}) {
+    LayeredScene scene;
+    scene.shape = Shape{false, 9.0, 6.0};
+    for (int t = 0; t < 16; ++t) {
+      scene.poses.push_back({20.0 + 2.5 * t, 30.0, 0.3});
+    }
+    // Frames between two others, as many as an exposure takes.
+    PictureStack stack = Film(scene, 7);
+    if (exposure > 0.0) {
+      constexpr int kParts = 8;
+      LayeredScene part = scene;
+      part.noise_dn = 0.0;
+      stack.levels.assign(stack.levels.size(), 0.0F);
+      for (int k = 0; k < kParts; ++k) {
+        const double shift = 2.5 * exposure * ((k + 0.5) / kParts - 0.5);
+        for (std::size_t t = 0; t < part.poses.size(); ++t) {
+          part.poses[t].x = scene.poses[t].x + shift;
+        }
+        const PictureStack seen = Film(part, 7);
+        for (std::size_t i = 0; i < stack.levels.size(); ++i) {
+          stack.levels[i] += seen.levels[i] / static_cast<float>(kParts);
+        }
+      }
+    }
+    FitLayersOptions options = OptionsOf(scene);
+    options.prior.value[kExposureSquare] = 0.3 * 0.3;
+    options.prior.u[kExposureSquare] = 2.0 * 0.3 * 0.3;
+    const LayerFit fit =
+        FitLayers(stack, scene.shape, Shaken(scene.poses, 0.2),
+                  Paint(scene, nullptr), scene.noise_dn, options);
+    EXPECT_TRUE(fit.converged) << exposure;
+    EXPECT_NEAR(fit.layers.exposure, exposure, exposure > 0.0 ? 0.05 : 0.15);
+  }
+}
+
 TEST(FitLayers, ATexturedFace) {
   LayeredScene scene = BlockOnGround();
   scene.body = [](double u, double v) {
@@ -600,6 +659,52 @@ TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
       square += by * by;
     }
     EXPECT_NEAR(product / square, 1.0, 0.03) << a;
+  }
+}
+
+// Also of one so short that a single place would do for the picture.
+TEST(Linearize, DerivativeByTheExposureIsThatOfTheModel) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 29);
+  Layers layers;
+  layers.shape = scene.shape;
+  layers.blur = 0.95;
+  layers.still = Paint(scene, nullptr);
+  layers.grid = PictureGrid(scene.shape, 6.0);
+  layers.picture.assign(layers.grid.size(), 0.0F);
+  layers.quadratic = {60.0, 3.0, -2.0, 1.0, 0.0, 2.0};
+  for (const double exposure : {0.1, 0.6}) {
+    const auto linearize = [&](double square) {
+      layers.exposure = std::sqrt(square);
+      FrameSamples at;
+      Linearize(stack, 10, layers, scene.poses[10], {1.37, 0.9, 0.01},
+                Derivatives::kAll, at);
+      return at;
+    };
+    const double square = exposure * exposure;
+    const double step = 0.2 * square;
+    const FrameSamples at = linearize(square);
+    const FrameSamples less = linearize(square - step);
+    const FrameSamples more = linearize(square + step);
+    std::vector<double> change(stack.pixels());
+    for (std::size_t i = 0; i < less.size(); ++i) {
+      change[static_cast<std::size_t>(less.pixel[i])] +=
+          static_cast<double>(less.residual[i]);
+    }
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      change[static_cast<std::size_t>(more.pixel[i])] -=
+          static_cast<double>(more.residual[i]);
+    }
+    double product = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (at.cover[i] < 0.01F) continue;
+      const double by =
+          change[static_cast<std::size_t>(at.pixel[i])] / (2.0 * step);
+      product += by * static_cast<double>(at.by_shared[kExposureSquare][i]);
+      squares += by * by;
+    }
+    EXPECT_NEAR(product / squares, 1.0, 0.05) << exposure;
   }
 }
 

@@ -175,9 +175,11 @@ double Advance(const JointStep& joint, const FitLayersOptions& options,
   layers.blur =
       std::clamp(layers.blur + Limited(joint.shared[kBlur], kMostBlurStep), 0.3,
                  kMostBlur * options.prior.value[kBlur]);
+  const double exposure = std::sqrt(std::max(
+      0.0, layers.exposure * layers.exposure + joint.shared[kExposureSquare]));
   layers.exposure = std::clamp(
-      layers.exposure + Limited(joint.shared[kExposure], kMostExposureStep),
-      0.0, 1.0);
+      layers.exposure + Limited(exposure - layers.exposure, kMostExposureStep),
+      kLeastExposure, 1.0);
   layers.shape.half_long += Limited(joint.shared[kLong], kMostSizeStep_px);
   layers.shape.half_short =
       layers.shape.disc ? layers.shape.half_long
@@ -240,10 +242,13 @@ double MeasureCurve(const PictureStack& stack, const FreePart& free,
     const JointStep joint =
         SolveJointStep(fit.layers, frames, evidence, free, solve);
     curve = fit.layers.curve + joint.shared[kCurve];
-    // Of the curve, which is 0 for a linear camera and 1.2 for a gamma of 0.45.
-    // Not studied.
-    constexpr double kSettled = 0.02;
-    if (curve < kWorthIt || std::abs(curve - before) < kSettled) break;
+    // Of 1 + C, as of gamma: what is left is measured again with light in place
+    // of levels. A fifth of it takes twice the steps.
+    constexpr double kSettled = 0.05;
+    if (curve < kWorthIt ||
+        std::abs(curve - before) < kSettled * (1.0 + curve)) {
+      break;
+    }
     Advance(joint, options, fit);
     LinearizeAll(stack, fit.layers, evidence.weight, fit.poses, options,
                  frames);
@@ -262,7 +267,8 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   Layers& layers = fit.layers;
   layers.shape = shape;
   layers.blur = options.prior.value[kBlur];
-  layers.exposure = options.prior.value[kExposure];
+  layers.exposure = std::clamp(std::sqrt(options.prior.value[kExposureSquare]),
+                               kLeastExposure, 1.0);
   layers.still = still;
   layers.noise_dn = noise_dn;
   layers.grid = PictureGrid(shape, kRimBlurs * layers.blur * kMostBlur);

@@ -291,7 +291,7 @@ void NormalEquations::Fill(Unknowns& right) {
   for (const auto& part : shared) all += part;
   all = all.selfadjointView<Eigen::Lower>();
   std::array<double, kShared> now = {layers_.blur,
-                                     layers_.exposure,
+                                     layers_.exposure * layers_.exposure,
                                      layers_.shape.half_long,
                                      layers_.shape.half_short,
                                      layers_.slope_x,
@@ -301,7 +301,8 @@ void NormalEquations::Fill(Unknowns& right) {
             now.begin() + kQuadratic);
   for (std::size_t a = 0; a < kShared; ++a) {
     all(static_cast<int>(a), static_cast<int>(a)) += prior_[a] + 1e-9;
-    if (a < columns_) {
+    // What is held stays what it is.
+    if (a < columns_ && options_.prior.u[a] > 0.0) {
       right.shared[a] -= prior_[a] * (now[a] - options_.prior.value[a]);
     }
   }

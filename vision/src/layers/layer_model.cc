@@ -14,8 +14,9 @@ struct Node {
   double weight;
 };
 
-// More nodes where the body's farthest point moves more px in the exposure.
-std::span<const Node> ChooseNodes(double way) {
+// More nodes where the body's farthest point moves more px in the exposure; at
+// one place nothing tells it.
+std::span<const Node> ChooseNodes(double way, bool at_one_place) {
   // Gauss's of one, two, three and five points, on -1/2 to 1/2.
   static constexpr std::array<Node, 1> kOne = {{{0.0, 1.0}}};
   static constexpr std::array<Node, 2> kTwo = {
@@ -30,7 +31,7 @@ std::span<const Node> ChooseNodes(double way) {
        {0.0, 0.28444444444444444},
        {0.2692346550528415, 0.23931433524968324},
        {0.453089922969332, 0.11846344252809454}}};
-  if (way < 0.3) return kOne;
+  if (way < 0.3 && at_one_place) return kOne;
   if (way < 2.0) return kTwo;
   if (way < 4.5) return kThree;
   return kFive;
@@ -160,10 +161,13 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
     return;
   }
   const double reach = layers.shape.Reach();
-  const double way = layers.exposure * (std::hypot(motion.x, motion.y) +
-                                        std::abs(motion.angle_rad) * reach);
+  const double pace =
+      std::hypot(motion.x, motion.y) + std::abs(motion.angle_rad) * reach;
+  // px a frame: no picture of a slower body tells the exposure.
+  constexpr double kLeastPace = 1.0;
   std::vector<Placed> placed;
-  for (const Node& node : ChooseNodes(way)) {
+  for (const Node& node :
+       ChooseNodes(layers.exposure * pace, !kAll || pace < kLeastPace)) {
     const double shift = node.tau * layers.exposure;
     const double angle = pose.angle_rad + motion.angle_rad * shift;
     placed.push_back({static_cast<float>(pose.x + motion.x * shift),
@@ -197,6 +201,7 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
   const auto v_x = static_cast<float>(motion.x);
   const auto v_y = static_cast<float>(motion.y);
   const auto v_turn = static_cast<float>(motion.angle_rad);
+  const auto per_exposure = static_cast<float>(0.5 / layers.exposure);
 
   Terms quadratic{};
   std::copy(layers.quadratic.begin(), layers.quadratic.end(),
@@ -284,8 +289,9 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
           }
           by_shared[kBlur] +=
               node.weight * (m.by_blur * over + twice_blur * own);
-          by_shared[kExposure] +=
-              node.tau * (d_x * v_x + d_y * v_y + d_turn * v_turn);
+          by_shared[kExposureSquare] +=
+              per_exposure * node.tau *
+              (d_x * v_x + d_y * v_y + d_turn * v_turn);
           by_shared[kLong] += node.weight * m.by_long * over;
           by_shared[kShort] += node.weight * m.by_short * over;
           by_shared[kSlopeX] +=
@@ -303,7 +309,7 @@ void LinearizeModel(const PictureStack& stack, std::size_t picture,
         model += curve * by_curve;
         const float steeper = 1.0F + curve * (1.0F - 2.0F * covered) * bent;
         for (float& slope : by_pose) slope *= steeper;
-        for (const std::size_t i : {kBlur, kExposure, kLong, kShort}) {
+        for (const std::size_t i : {kBlur, kExposureSquare, kLong, kShort}) {
           by_shared[i] *= steeper;
         }
       }

@@ -94,10 +94,12 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   u[layers::kBlur] = 0.5;
   // Of a frame's interval, where no blur has told one yet; u is as large.
   constexpr double kUsualExposure = 0.3;
-  value[layers::kExposure] = track.body.shutter_fraction > 0.0
-                                 ? track.body.shutter_fraction
-                                 : kUsualExposure;
-  u[layers::kExposure] = 0.3;
+  const double exposure = track.body.shutter_fraction > 0.0
+                              ? track.body.shutter_fraction
+                              : kUsualExposure;
+  constexpr double kExposureU = 0.3;
+  value[layers::kExposureSquare] = exposure * exposure;
+  u[layers::kExposureSquare] = 2.0 * exposure * kExposureU;
   value[layers::kLong] = shape.half_long;
   value[layers::kShort] = shape.half_short;
   // px, of a half side that is stated: less would hold it where edges are not
