@@ -9,6 +9,7 @@
 #include "tests/vision/layered_scene.h"
 #include "vision/src/layers/align_pose.h"
 #include "vision/src/layers/body_picture.h"
+#include "vision/src/layers/columns.h"
 #include "vision/src/layers/edge_product.h"
 #include "vision/src/layers/fit_layers.h"
 #include "vision/src/layers/layer_model.h"
@@ -705,6 +706,41 @@ TEST(Linearize, DerivativeByTheExposureIsThatOfTheModel) {
       squares += by * by;
     }
     EXPECT_NEAR(product / squares, 1.0, 0.05) << exposure;
+  }
+}
+
+TEST(Columns, SumsAreThoseOfALoop) {
+  std::mt19937_64 engine(41);
+  std::uniform_real_distribution<float> draw(-1.0F, 1.0F);
+  for (const std::size_t rows :
+       {std::size_t{0}, std::size_t{5}, std::size_t{8}, std::size_t{67}}) {
+    constexpr std::size_t kCount = 6;
+    std::vector<std::vector<float>> data(kCount);
+    ColumnList columns{};
+    std::array<float, kMostColumns> factors{};
+    for (std::size_t c = 0; c < kCount; ++c) {
+      for (std::size_t i = 0; i < rows; ++i) data[c].push_back(draw(engine));
+      columns[c] = data[c].data();
+      factors[c] = draw(engine);
+    }
+    std::vector<float> other;
+    for (std::size_t i = 0; i < rows; ++i) other.push_back(draw(engine));
+    std::array<double, kMostColumns> sums{};
+    SumProducts(columns, kCount, other.data(), rows, sums);
+    std::vector<float> added = other;
+    AddColumns(columns, kCount, factors, rows, added.data());
+    for (std::size_t c = 0; c < kCount; ++c) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < rows; ++i) {
+        sum += static_cast<double>(data[c][i]) * static_cast<double>(other[i]);
+      }
+      EXPECT_NEAR(sums[c], sum, 1e-5);
+    }
+    for (std::size_t i = 0; i < rows; ++i) {
+      float sum = other[i];
+      for (std::size_t c = 0; c < kCount; ++c) sum += factors[c] * data[c][i];
+      EXPECT_NEAR(added[i], sum, 1e-6F);
+    }
   }
 }
 

@@ -3,9 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#include "numbers/lanes.h"
+#include "layers/columns.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::vision::layers {
@@ -40,7 +39,7 @@ void WeighByLayers(const Layers& layers, const LayerPose& motion,
     }
     const float g_x = samples.by_pose[0][i];
     const float g_y = samples.by_pose[1][i];
-    const float steep = std::hypot(g_x, g_y);
+    const float steep = std::sqrt(g_x * g_x + g_y * g_y);
     const float pace = std::abs(g_x * v_x + g_y * v_y);
     const float frames =
         std::clamp(edge * steep / std::max(pace, 1e-6F), 1.0F, kMostFrames);
@@ -56,22 +55,6 @@ void WeighByLayers(const Layers& layers, const LayerPose& motion,
 }
 
 using PoseMatrix = Eigen::Matrix3d;
-
-// Sum of a(i) b(i) over `count` numbers, a multiple of eight.
-TOUCHDOWN_WIDEST
-double SumOfProducts(const float* a, const float* b, std::size_t count) {
-  Eight sums{};
-  for (std::size_t i = 0; i < count; i += kSumPlaces) {
-    Eight of_a, of_b;
-    std::memcpy(&of_a, a + i, sizeof of_a);
-    std::memcpy(&of_b, b + i, sizeof of_b);
-    sums += of_a * of_b;
-  }
-  double sum = 0.0;
-  for (std::size_t k = 0; k < kSumPlaces; ++k)
-    sum += static_cast<double>(sums[k]);
-  return sum;
-}
 
 // Sum over pairs of pixels: c(lag) g(x) g(x + lag)', g = w J, of the first
 // `free` coordinates of a pose.
@@ -116,9 +99,11 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
          ++across) {
       const std::ptrdiff_t lag =
           down * static_cast<std::ptrdiff_t>(stride) + across;
+      std::array<double, kMostColumns> sums{};
       const auto overlap = [&](const std::vector<float>& a,
                                const std::vector<float>& b) {
-        return SumOfProducts(a.data(), b.data() + lag, cells);
+        SumProducts({a.data()}, 1, b.data() + lag, cells, sums);
+        return sums.front();
       };
       const double away =
           std::hypot(static_cast<double>(across), static_cast<double>(down));
@@ -127,10 +112,12 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
       const double pairs = overlap(known, known);
       if (pairs < 1.0) continue;
       PoseMatrix own = PoseMatrix::Zero();
-      for (int a = 0; a < free; ++a) {
-        for (int b = 0; b < free; ++b) {
-          own(a, b) = overlap(g[static_cast<std::size_t>(a)],
-                              g[static_cast<std::size_t>(b)]);
+      for (int b = 0; b < free; ++b) {
+        SumProducts({g[0].data(), g[1].data(), g[2].data()},
+                    static_cast<std::size_t>(free),
+                    g[static_cast<std::size_t>(b)].data() + lag, cells, sums);
+        for (int a = 0; a < free; ++a) {
+          own(a, b) = sums[static_cast<std::size_t>(a)];
         }
       }
       const double correlation = taper * overlap(residual, residual) / pairs;
@@ -142,6 +129,27 @@ PoseMatrix ComputeSandwich(const FrameSamples& samples, std::int32_t width,
     }
   }
   return sum;
+}
+
+// J' W J and J' W r of a pose. `weighted` is room for a column.
+void AddUpNormal(const FrameSamples& samples, std::vector<float>& weighted,
+                 PoseMatrix& normal, Eigen::Vector3d& right) {
+  const ColumnList columns = {
+      samples.by_pose[0].data(), samples.by_pose[1].data(),
+      samples.by_pose[2].data(), samples.residual.data()};
+  std::array<double, kMostColumns> sums{};
+  weighted.resize(samples.size());
+  for (std::size_t a = 0; a < kPose; ++a) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      weighted[i] = samples.weight[i] * samples.by_pose[a][i];
+    }
+    SumProducts(columns, kPose + 1, weighted.data(), samples.size(), sums);
+    const auto row = static_cast<int>(a);
+    for (int b = 0; b < 3; ++b) {
+      normal(row, b) = sums[static_cast<std::size_t>(b)];
+    }
+    right(row) = sums[kPose];
+  }
 }
 
 // Of Gauss and Newton, from `start` on: the pose, how well it explains its
@@ -170,21 +178,14 @@ Alignment FindPose(const PictureStack& stack, std::size_t picture,
   const double most_px = 1.5 * layers.blur;
   PoseMatrix& normal = out.normal;
   FrameSamples& samples = out.samples;
+  std::vector<float> weighted;
   for (int step = 0; step < kSteps; ++step) {
     Linearize(stack, picture, layers, out.pose, motion, Derivatives::kByPose,
               samples);
     if (samples.size() < kLeastPixels) return out;
     WeighByLayers(layers, motion, samples);
-    normal.setZero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Eigen::Vector3d j(static_cast<double>(samples.by_pose[0][i]),
-                              static_cast<double>(samples.by_pose[1][i]),
-                              static_cast<double>(samples.by_pose[2][i]));
-      const auto w = static_cast<double>(samples.weight[i]);
-      normal += w * j * j.transpose();
-      right += w * static_cast<double>(samples.residual[i]) * j;
-    }
+    Eigen::Vector3d right;
+    AddUpNormal(samples, weighted, normal, right);
     if (!turns) {
       normal.row(2).setZero();
       normal.col(2).setZero();

@@ -5,6 +5,7 @@
 // agree to rounding.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -60,10 +61,28 @@ class PictureGrid {
     return static_cast<float>(row) - origin_y_;
   }
 
+  // The sixteen weights of a place, row by row.
+  using PlaceWeights = std::array<FourFloats, 4>;
+  TOUCHDOWN_INLINE static PlaceWeights WeighPlace(const SplinePlace& place) {
+    const FourFloats across = SplineWeights(place.right);
+    const FourFloats down = SplineWeights(place.below);
+    return {down[0] * across, down[1] * across, down[2] * across,
+            down[3] * across};
+  }
+  TOUCHDOWN_INLINE float EvaluateSpline(const float* coefficients,
+                                        const SplinePlace& place,
+                                        const PlaceWeights& weights) const {
+    const float* row = coefficients + place.first;
+    FourFloats sum = weights[0] * LoadFour(row);
+    for (std::size_t j = 1; j < 4; ++j) {
+      row += columns_;
+      sum += weights[j] * LoadFour(row);
+    }
+    return AddUp(sum);
+  }
   float EvaluateSpline(const float* coefficients,
                        const SplinePlace& place) const {
-    return AddUp(SumDown(coefficients, place, SplineWeights(place.below)) *
-                 SplineWeights(place.right));
+    return EvaluateSpline(coefficients, place, WeighPlace(place));
   }
   struct Tilt {
     float value = 0.0F;
@@ -79,14 +98,17 @@ class PictureGrid {
                   across)};
   }
   // The transpose of EvaluateSpline: adds `amount` times each weight.
-  void Spread(float amount, const SplinePlace& place,
-              float* coefficients) const {
-    const FourFloats across = amount * SplineWeights(place.right);
-    const FourFloats down = SplineWeights(place.below);
+  TOUCHDOWN_INLINE void Spread(float amount, const SplinePlace& place,
+                               const PlaceWeights& weights,
+                               float* coefficients) const {
     float* row = coefficients + place.first;
     for (std::size_t j = 0; j < 4; ++j, row += columns_) {
-      StoreFour(LoadFour(row) + down[j] * across, row);
+      StoreFour(LoadFour(row) + amount * weights[j], row);
     }
+  }
+  void Spread(float amount, const SplinePlace& place,
+              float* coefficients) const {
+    Spread(amount, place, WeighPlace(place), coefficients);
   }
 
   // Levels at the knots to the coefficients of the spline through them (the

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "layers/columns.h"
 #include "numbers/lanes.h"
 #include "touchdown/core/parallel.h"
 
@@ -105,32 +106,56 @@ std::size_t CountCells(const Layers& layers) {
   return layers.flat ? 0 : layers.picture.size();
 }
 
-// Sum of w a b, in eight places (lanes.h) so that the order of the sum is the
-// same everywhere.
-double WeightedSum(const FrameSamples& samples, const std::vector<float>& a,
-                   const std::vector<float>& b) {
-  std::array<float, kSumPlaces> sums{};
-  const std::size_t n = samples.size();
-  const std::size_t whole = n / kSumPlaces * kSumPlaces;
-  const float* const w = samples.weight.data();
-  for (std::size_t i = 0; i < whole; i += kSumPlaces) {
-    for (std::size_t k = 0; k < kSumPlaces; ++k) {
-      sums[k] += w[i + k] * a[i + k] * b[i + k];
-    }
+// A frame's derivatives by its pose and by the first `shared` of what frames
+// share.
+ColumnList ListColumns(const FrameSamples& samples, std::size_t shared) {
+  ColumnList columns{};
+  for (std::size_t a = 0; a < kPose; ++a) {
+    columns[a] = samples.by_pose[a].data();
   }
-  double sum = 0.0;
-  for (const float part : sums) sum += static_cast<double>(part);
-  for (std::size_t i = whole; i < n; ++i) {
-    sum += static_cast<double>(w[i] * a[i] * b[i]);
+  for (std::size_t a = 0; a < shared; ++a) {
+    columns[kPose + a] = samples.by_shared[a].data();
   }
-  return sum;
+  return columns;
 }
 
-void AddColumn(const std::vector<float>& column, double factor,
-               std::vector<float>& to) {
-  const auto by = static_cast<float>(factor);
-  const std::size_t n = to.size();
-  for (std::size_t i = 0; i < n; ++i) to[i] += by * column[i];
+// The spline's part of a product: `change` of each sample grows by what `in`
+// changes there, takes the sample's weight, and is spread over `out`.
+TOUCHDOWN_WIDEST
+void PassThroughPicture(const PictureGrid& grid, const FrameSamples& samples,
+                        const float* in, float* change, float* out) {
+  // Neighbours in a row change the same coefficients, and one would wait for
+  // the other: so many samples far from each other are taken together.
+  constexpr std::size_t kStrands = 4;
+  constexpr std::size_t kMostNodes = 5;  // of the exposure
+  std::array<std::array<PictureGrid::PlaceWeights, kStrands>, kMostNodes>
+      weights;
+  const std::size_t n = samples.size();
+  const std::size_t apart = (n + kStrands - 1) / kStrands;
+  for (std::size_t i = 0; i < apart; ++i) {
+    std::size_t strands = 0;
+    for (; strands < kStrands; ++strands) {
+      const std::size_t at = strands * apart + i;
+      if (at >= n) break;
+      float sum = change[at];
+      for (std::size_t k = 0; k < samples.nodes; ++k) {
+        const std::size_t node = at * samples.nodes + k;
+        const SplinePlace& place = samples.place[node];
+        weights[k][strands] = PictureGrid::WeighPlace(place);
+        sum += samples.share[node] *
+               grid.EvaluateSpline(in, place, weights[k][strands]);
+      }
+      change[at] = samples.weight[at] * sum;
+    }
+    for (std::size_t k = 0; k < samples.nodes; ++k) {
+      for (std::size_t s = 0; s < strands; ++s) {
+        const std::size_t at = s * apart + i;
+        const std::size_t node = at * samples.nodes + k;
+        grid.Spread(samples.share[node] * change[at], samples.place[node],
+                    weights[k][s], out);
+      }
+    }
+  }
 }
 
 // B of a pixel that nothing tells keeps its level: as if a hundredth of a frame
@@ -238,8 +263,7 @@ void NormalEquations::Collect(Unknowns& out) {
 }
 
 void NormalEquations::Fill(Unknowns& right) {
-  const std::size_t n = frames_.size();
-  pose_inverse_.assign(n, Eigen::Matrix3d::Identity());
+  pose_inverse_.assign(frames_.size(), Eigen::Matrix3d::Identity());
   std::vector<SharedMatrix> shared(kParts, SharedMatrix::Zero());
   std::vector<std::vector<float>> picture(kParts, std::vector<float>(cells_));
   std::vector<std::vector<float>> still(kParts,
@@ -247,28 +271,43 @@ void NormalEquations::Fill(Unknowns& right) {
   AccumulateParts([&](const FrameSamples& samples, std::size_t t,
                       Unknowns& sums) {
     const auto part = static_cast<std::size_t>(&sums - parts_.data());
+    const std::size_t n = samples.size();
+    const ColumnList columns = ListColumns(samples, columns_);
+    std::array<double, kMostColumns> along{};
+    std::vector<float>& weighted = sums.change;
+    weighted.resize(n);
+    const auto weigh = [&](const float* column) {
+      for (std::size_t i = 0; i < n; ++i) {
+        weighted[i] = samples.weight[i] * column[i];
+      }
+    };
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
     for (std::size_t a = 0; a < kPose; ++a) {
-      const auto row = static_cast<int>(a);
-      right.poses[kPose * t + a] =
-          WeightedSum(samples, samples.by_pose[a], samples.residual);
-      for (std::size_t b = 0; b <= a; ++b) {
-        block(row, static_cast<int>(b)) =
-            WeightedSum(samples, samples.by_pose[a], samples.by_pose[b]);
+      weigh(columns[a]);
+      SumProducts(columns, kPose, weighted.data(), n, along);
+      for (std::size_t b = 0; b < kPose; ++b) {
+        block(static_cast<int>(a), static_cast<int>(b)) = along[b];
       }
     }
     for (std::size_t a = 0; a < columns_; ++a) {
-      const auto row = static_cast<int>(a);
-      sums.shared[a] +=
-          WeightedSum(samples, samples.by_shared[a], samples.residual);
+      weigh(columns[kPose + a]);
+      SumProducts(columns, kPose + a + 1, weighted.data(), n, along);
       for (std::size_t b = 0; b <= a; ++b) {
-        shared[part](row, static_cast<int>(b)) +=
-            WeightedSum(samples, samples.by_shared[a], samples.by_shared[b]);
+        shared[part](static_cast<int>(a), static_cast<int>(b)) +=
+            along[kPose + b];
       }
     }
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    weigh(samples.residual.data());
+    SumProducts(columns, kPose + columns_, weighted.data(), n, along);
+    for (std::size_t a = 0; a < kPose; ++a) {
+      right.poses[kPose * t + a] = along[a];
+    }
+    for (std::size_t a = 0; a < columns_; ++a) {
+      sums.shared[a] += along[kPose + a];
+    }
+    for (std::size_t i = 0; i < n; ++i) {
       const float w = samples.weight[i];
-      const float wr = w * samples.residual[i];
+      const float wr = weighted[i];
       const std::size_t pixel = shown_.of_samples[t][i];
       sums.still[pixel] += samples.open[i] * wr;
       still[part][pixel] += w * samples.open[i] * samples.open[i];
@@ -280,7 +319,6 @@ void NormalEquations::Fill(Unknowns& right) {
                             picture[part].data());
       }
     }
-    block = block.selfadjointView<Eigen::Lower>();
     if (!options_.turns) block(2, 2) += kHeld;
     block.diagonal() *= 1.0 + 1e-6;
     block.diagonal().array() += 1e-9;
@@ -332,50 +370,45 @@ void NormalEquations::Fill(Unknowns& right) {
 }
 
 void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
-  AccumulateParts([&](const FrameSamples& samples, std::size_t t,
-                      Unknowns& sums) {
-    // Column by column, so that the loops become vector instructions.
-    const std::size_t n = samples.size();
-    const std::uint32_t* const shown = shown_.of_samples[t].data();
-    std::vector<float>& change = sums.change;
-    change.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      change[i] = samples.open[i] * in.still[shown[i]];
-    }
-    for (std::size_t a = 0; a < kPose; ++a) {
-      AddColumn(samples.by_pose[a], in.poses[kPose * t + a], change);
-    }
-    for (std::size_t a = 0; a < columns_; ++a) {
-      AddColumn(samples.by_shared[a], in.shared[a], change);
-    }
-    for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
-      for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
-        change[i] +=
-            samples.share[at] *
-            layers_.grid.EvaluateSpline(in.picture.data(), samples.place[at]);
-      }
-    }
-    for (std::size_t a = 0; a < kPose; ++a) {
-      out.poses[kPose * t + a] =
-          WeightedSum(samples, samples.by_pose[a], change);
-    }
-    if (!options_.turns) {
-      out.poses[kPose * t + 2] += kHeld * in.poses[kPose * t + 2];
-    }
-    for (std::size_t a = 0; a < columns_; ++a) {
-      sums.shared[a] += WeightedSum(samples, samples.by_shared[a], change);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      change[i] *= samples.weight[i];
-      sums.still[shown[i]] += samples.open[i] * change[i];
-    }
-    for (std::size_t at = 0, i = 0; i < n && samples.nodes > 0; ++i) {
-      for (std::size_t k = 0; k < samples.nodes; ++k, ++at) {
-        layers_.grid.Spread(samples.share[at] * change[i], samples.place[at],
-                            sums.picture.data());
-      }
-    }
-  });
+  AccumulateParts(
+      [&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
+        const std::size_t n = samples.size();
+        const std::uint32_t* const shown = shown_.of_samples[t].data();
+        std::vector<float>& change = sums.change;
+        change.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+          change[i] = samples.open[i] * in.still[shown[i]];
+        }
+        const ColumnList columns = ListColumns(samples, columns_);
+        std::array<float, kMostColumns> factors{};
+        for (std::size_t a = 0; a < kPose; ++a) {
+          factors[a] = static_cast<float>(in.poses[kPose * t + a]);
+        }
+        for (std::size_t a = 0; a < columns_; ++a) {
+          factors[kPose + a] = static_cast<float>(in.shared[a]);
+        }
+        AddColumns(columns, kPose + columns_, factors, n, change.data());
+        if (samples.nodes > 0) {
+          PassThroughPicture(layers_.grid, samples, in.picture.data(),
+                             change.data(), sums.picture.data());
+        } else {
+          for (std::size_t i = 0; i < n; ++i) change[i] *= samples.weight[i];
+        }
+        std::array<double, kMostColumns> along{};
+        SumProducts(columns, kPose + columns_, change.data(), n, along);
+        for (std::size_t a = 0; a < kPose; ++a) {
+          out.poses[kPose * t + a] = along[a];
+        }
+        if (!options_.turns) {
+          out.poses[kPose * t + 2] += kHeld * in.poses[kPose * t + 2];
+        }
+        for (std::size_t a = 0; a < columns_; ++a) {
+          sums.shared[a] += along[kPose + a];
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+          sums.still[shown[i]] += samples.open[i] * change[i];
+        }
+      });
   Collect(out);
   for (std::size_t a = 0; a < kShared; ++a) {
     out.shared[a] += (prior_[a] + 1e-9) * in.shared[a];
