@@ -1,6 +1,5 @@
 #include "layers/body_picture.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -16,18 +15,6 @@ PictureGrid::PictureGrid(const Shape& shape, double rim) {
   rows_ = 2 * half_rows + 1;
   origin_x_ = static_cast<float>(half_columns);
   origin_y_ = static_cast<float>(half_rows);
-}
-
-SplinePlace PictureGrid::LocatePlace(float x, float y) const {
-  const float column =
-      std::clamp(x + origin_x_, 1.0F, static_cast<float>(columns_) - 2.001F);
-  const float row =
-      std::clamp(y + origin_y_, 1.0F, static_cast<float>(rows_) - 2.001F);
-  const auto whole_column = static_cast<std::int32_t>(column);
-  const auto whole_row = static_cast<std::int32_t>(row);
-  return {(whole_row - 1) * columns_ + whole_column - 1,
-          column - static_cast<float>(whole_column),
-          row - static_cast<float>(whole_row)};
 }
 
 void PictureGrid::TransformLevels(float* levels) const {

@@ -5,6 +5,7 @@
 // agree to rounding.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +53,17 @@ class PictureGrid {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   }
   // Places beyond the rim are those of its border.
-  SplinePlace LocatePlace(float x, float y) const;
+  SplinePlace LocatePlace(float x, float y) const {
+    const float column =
+        std::clamp(x + origin_x_, 1.0F, static_cast<float>(columns_) - 2.001F);
+    const float row =
+        std::clamp(y + origin_y_, 1.0F, static_cast<float>(rows_) - 2.001F);
+    const auto whole_column = static_cast<std::int32_t>(column);
+    const auto whole_row = static_cast<std::int32_t>(row);
+    return {(whole_row - 1) * columns_ + whole_column - 1,
+            column - static_cast<float>(whole_column),
+            row - static_cast<float>(whole_row)};
+  }
   // The place of coefficient (column, row).
   float x_of(std::int32_t column) const {
     return static_cast<float>(column) - origin_x_;

@@ -8,7 +8,7 @@
 // are solved for all unknowns together, by conjugate gradients with blocks as
 // preconditioner (M. R. Hestenes and E. Stiefel, J. Res. NBS 49, 1952; Jacobi
 // blocks of each pose and of the shared ones, the diagonal of B and that of T's
-// levels). No matrix is stored: a product costs two passes over the samples.
+// levels). No matrix is stored: a product costs one pass over the samples.
 #pragma once
 
 #include <cstddef>

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "layers/edge_product.h"
+#include "layers/pixel_lanes.h"
 
 namespace touchdown::vision::layers {
 namespace {
@@ -75,15 +76,28 @@ SampleWindow ComputeSampleWindow(const PictureStack& stack, std::size_t picture,
           to(pose.y + reach_y, seen.y + seen.height, stack.height)};
 }
 
-// A node's own numbers.
-struct Placed {
-  float x = 0.0F;
-  float y = 0.0F;
-  float cosine = 1.0F;
-  float sine = 0.0F;
-  float weight = 1.0F;
-  float tau = 0.0F;
-};
+std::vector<Placed> PlaceInExposure(const Layers& layers, const LayerPose& pose,
+                                    const LayerPose& motion,
+                                    Derivatives derivatives) {
+  const double pace = std::hypot(motion.x, motion.y) +
+                      std::abs(motion.angle_rad) * layers.shape.Reach();
+  // px a frame: no picture of a slower body tells the exposure.
+  constexpr double kLeastPace = 1.0;
+  const bool at_one_place =
+      derivatives == Derivatives::kByPose || pace < kLeastPace;
+  std::vector<Placed> placed;
+  for (const Node& node : ChooseNodes(layers.exposure * pace, at_one_place)) {
+    const double shift = node.tau * layers.exposure;
+    const double angle = pose.angle_rad + motion.angle_rad * shift;
+    placed.push_back({static_cast<float>(pose.x + motion.x * shift),
+                      static_cast<float>(pose.y + motion.y * shift),
+                      static_cast<float>(std::cos(angle)),
+                      static_cast<float>(std::sin(angle)),
+                      static_cast<float>(node.weight),
+                      static_cast<float>(node.tau)});
+  }
+  return placed;
+}
 
 // The pixels of one row that see the body at one of its places.
 struct Columns {
@@ -113,228 +127,188 @@ Terms EvaluateTerms(float x, float y) {
   return {1.0F, x, y, x * x, x * y, y * y};
 }
 
-PictureGrid::Tilt ComputeTilt(const Terms& quadratic, const Terms& terms,
-                              float per_reach) {
-  PictureGrid::Tilt tilt;
-  for (std::size_t j = 0; j < kTerms; ++j) {
-    tilt.value += quadratic[j] * terms[j];
-  }
-  const float x = terms[1];
-  const float y = terms[2];
-  tilt.by_x =
-      (quadratic[1] + 2.0F * quadratic[3] * x + quadratic[4] * y) * per_reach;
-  tilt.by_y =
-      (quadratic[2] + quadratic[4] * x + 2.0F * quadratic[5] * y) * per_reach;
-  return tilt;
-}
-
-// The product's derivatives by a quadratic T: s^2 grad M . grad of each term.
-void AddOwnSlopes(float factor, const CoverAt& m, float x, float y,
-                  float per_reach, std::array<float, kShared>& by_shared) {
-  const float along = factor * per_reach * m.by_x;
-  const float across = factor * per_reach * m.by_y;
-  by_shared[kQuadratic + 1] += along;
-  by_shared[kQuadratic + 2] += across;
-  by_shared[kQuadratic + 3] += 2.0F * x * along;
-  by_shared[kQuadratic + 4] += y * along + x * across;
-  by_shared[kQuadratic + 5] += 2.0F * y * across;
-}
-
 double Apart(const LayerPose& a, const LayerPose& b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-template <Derivatives kDerivatives>
-void LinearizeModel(const PictureStack& stack, std::size_t picture,
-                    const Layers& layers, const LayerPose& pose,
-                    const LayerPose& motion, FrameSamples& samples) {
-  // Whether those by the shared numbers are wanted, too.
-  constexpr bool kAll = kDerivatives == Derivatives::kAll;
-  // Below it a pixel shows nothing of the body.
-  constexpr float kLeastCover = 2e-4F;
-  constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
-
-  const SampleWindow window =
-      ComputeSampleWindow(stack, picture, layers, pose, motion);
-  if (window.right <= window.left || window.bottom <= window.top) {
-    samples.Resize(0, kDerivatives);
-    return;
-  }
-  const double reach = layers.shape.Reach();
-  const double pace =
-      std::hypot(motion.x, motion.y) + std::abs(motion.angle_rad) * reach;
-  // px a frame: no picture of a slower body tells the exposure.
-  constexpr double kLeastPace = 1.0;
-  std::vector<Placed> placed;
-  for (const Node& node :
-       ChooseNodes(layers.exposure * pace, !kAll || pace < kLeastPace)) {
-    const double shift = node.tau * layers.exposure;
-    const double angle = pose.angle_rad + motion.angle_rad * shift;
-    placed.push_back({static_cast<float>(pose.x + motion.x * shift),
-                      static_cast<float>(pose.y + motion.y * shift),
-                      static_cast<float>(std::cos(angle)),
-                      static_cast<float>(std::sin(angle)),
-                      static_cast<float>(node.weight),
-                      static_cast<float>(node.tau)});
-  }
-  samples.nodes = layers.flat ? 0 : placed.size();
-  const ShapeCover cover(layers.shape, layers.blur);
-  std::vector<Columns> seen_in_row;
-  std::size_t most = 0;
-  for (std::int32_t row = window.top; row < window.bottom; ++row) {
-    seen_in_row.push_back(FindColumns(cover, placed, row, window));
-    const Columns& columns = seen_in_row.back();
-    most += static_cast<std::size_t>(columns.end - columns.begin);
-  }
-  samples.Resize(most, kDerivatives);
-  std::size_t count = 0;
-
-  const float* const still = layers.still.data();
-  const auto blur2 = static_cast<float>(layers.blur * layers.blur);
-  const auto twice_blur = static_cast<float>(2.0 * layers.blur);
-  const auto most_slope =
-      static_cast<float>(0.5 * kLeastStillStep * layers.noise_dn);
-  const auto per_reach = static_cast<float>(1.0 / reach);
-  const auto slope_x = static_cast<float>(layers.slope_x) * per_reach;
-  const auto slope_y = static_cast<float>(layers.slope_y) * per_reach;
-  const auto curve = static_cast<float>(layers.curve);
-  const auto v_x = static_cast<float>(motion.x);
-  const auto v_y = static_cast<float>(motion.y);
-  const auto v_turn = static_cast<float>(motion.angle_rad);
-  const auto per_exposure = static_cast<float>(0.5 / layers.exposure);
-
-  Terms quadratic{};
-  std::copy(layers.quadratic.begin(), layers.quadratic.end(),
-            quadratic.begin());
-  std::vector<SplinePlace> places(placed.size());
-  std::vector<float> shares(placed.size());
-  const std::int32_t first_column = stack.windows[picture].x;
-  for (std::int32_t row = window.top; row < window.bottom; ++row) {
-    const Columns columns =
-        seen_in_row[static_cast<std::size_t>(row - window.top)];
-    const float* const levels = stack.WindowRow(picture, row);
-    for (std::int32_t column = columns.begin; column < columns.end; ++column) {
-      const std::int32_t pixel = row * stack.width + column;
-      const float behind = still[pixel];
-      const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);
-      const float step_y =
-          0.5F * (still[pixel + stack.width] - still[pixel - stack.width]);
-      const StillEdge edge =
-          layers.edges.empty() ? StillEdge{}
-                               : layers.edges[static_cast<std::size_t>(pixel)];
-      float covered = 0.0F;
-      float lifted = 0.0F;  // by what covers it: sum of w M (T + S - B)
-      float model = behind;
-      std::array<float, kPose> by_pose{};
-      std::array<float, kShared> by_shared{};
-      for (std::size_t k = 0; k < placed.size(); ++k) {
-        const Placed& node = placed[k];
-        const float dx = static_cast<float>(column) - node.x;
-        const float dy = static_cast<float>(row) - node.y;
-        const float x = node.cosine * dx + node.sine * dy;
-        const float y = node.cosine * dy - node.sine * dx;
-        const CoverAt m = cover.At(x, y);
-        shares[k] = node.weight * m.value;
-        if (!layers.flat) places[k] = layers.grid.LocatePlace(x, y);
-        if (m.value < kLeastCover && m.by_blur == 0.0F) continue;
-        PictureGrid::Tilt tilt;
-        if (layers.flat) {
-          const Terms terms = EvaluateTerms(x * per_reach, y * per_reach);
-          tilt = ComputeTilt(quadratic, terms, per_reach);
-          for (std::size_t j = 0; kAll && j < kTerms; ++j) {
-            by_shared[kQuadratic + j] += shares[k] * terms[j];
-          }
-        } else {
-          tilt = layers.grid.EvaluateTilt(layers.picture.data(), places[k]);
-        }
-        const float over = tilt.value + slope_x * dx + slope_y * dy - behind;
-        // What the blur makes of products: of a smooth picture to first order,
-        // of an edge exactly.
-        const float m_x = node.cosine * m.by_x - node.sine * m.by_y;
-        const float m_y = node.sine * m.by_x + node.cosine * m.by_y;
-        float t_x = slope_x;
-        float t_y = slope_y;
-        if (layers.flat) {
-          t_x += node.cosine * tilt.by_x - node.sine * tilt.by_y;
-          t_y += node.sine * tilt.by_x + node.cosine * tilt.by_y;
-        }
-        Product product;
-        if (m.by_long != 0.0F || m.by_short != 0.0F) {
-          if (edge.contrast != 0.0F) {
-            product = cover.WithEdge(x, y, edge, node.cosine, node.sine);
-          } else if (std::max(std::abs(step_x), std::abs(step_y)) <
-                     most_slope) {
-            t_x -= step_x;
-            t_y -= step_y;
-          }
-        }
-        const float own = m_x * t_x + m_y * t_y;
-        covered += shares[k];
-        lifted += shares[k] * over;
-        model += shares[k] * over + node.weight * (blur2 * own - product.value);
-        const float g_x = m.by_x * over + m.value * tilt.by_x - product.by_x;
-        const float g_y = m.by_y * over + m.value * tilt.by_y - product.by_y;
-        const float d_x = node.weight * (-node.cosine * g_x + node.sine * g_y -
-                                         m.value * slope_x);
-        const float d_y = node.weight * (-node.sine * g_x - node.cosine * g_y -
-                                         m.value * slope_y);
-        const float d_turn = node.weight * (g_x * y - g_y * x);
-        by_pose[0] += d_x;
-        by_pose[1] += d_y;
-        by_pose[2] += d_turn;
-        if constexpr (kAll) {
-          if (layers.flat) {
-            AddOwnSlopes(node.weight * blur2, m, x * per_reach, y * per_reach,
-                         per_reach, by_shared);
-          }
-          by_shared[kBlur] +=
-              node.weight * (m.by_blur * over + twice_blur * own);
-          by_shared[kExposureSquare] +=
-              per_exposure * node.tau *
-              (d_x * v_x + d_y * v_y + d_turn * v_turn);
-          by_shared[kLong] += node.weight * m.by_long * over;
-          by_shared[kShort] += node.weight * m.by_short * over;
-          by_shared[kSlopeX] +=
-              per_reach * (shares[k] * dx + node.weight * blur2 * m_x);
-          by_shared[kSlopeY] +=
-              per_reach * (shares[k] * dy + node.weight * blur2 * m_y);
-        }
-      }
-      if (covered < kLeastCover) continue;
-      const float step = lifted / covered;
-      const float bent = 0.5F * step / std::max(model, kLeastLevel_dn);
-      const float by_curve = covered * (1.0F - covered) * step * bent;
-      by_shared[kCurve] = by_curve;
-      if (curve != 0.0F) {
-        model += curve * by_curve;
-        const float steeper = 1.0F + curve * (1.0F - 2.0F * covered) * bent;
-        for (float& slope : by_pose) slope *= steeper;
-        for (const std::size_t i : {kBlur, kExposureSquare, kLong, kShort}) {
-          by_shared[i] *= steeper;
-        }
-      }
-      const float level = levels[column - first_column];
-      const float residual = level - model;
-      const std::size_t at = count++;
-      samples.pixel[at] = pixel;
-      samples.level[at] = level;
-      samples.residual[at] = residual;
-      samples.weight[at] = RobustWeight(residual, layers.noise_dn);
-      samples.open[at] = 1.0F - covered;
-      samples.cover[at] = covered;
-      for (std::size_t i = 0; i < kPose; ++i) {
-        samples.by_pose[i][at] = by_pose[i];
-      }
-      for (std::size_t i = 0; kAll && i < kShared; ++i) {
-        samples.by_shared[i][at] = by_shared[i];
-      }
-      for (std::size_t k = 0; k < samples.nodes; ++k) {
-        samples.place[at * samples.nodes + k] = places[k];
-        if (kAll) samples.share[at * samples.nodes + k] = shares[k];
-      }
+// The pixels of one row, from frame to samples.
+class RowLinearizer {
+ public:
+  RowLinearizer(const PictureStack& stack, std::size_t picture,
+                const Layers& layers, const LayerPose& motion,
+                const std::vector<Placed>& placed, Derivatives derivatives,
+                FrameSamples& samples)
+      : stack_(stack),
+        layers_(layers),
+        cover_(layers.shape, layers.blur),
+        all_(derivatives == Derivatives::kAll),
+        picture_(picture),
+        places_(placed.size()),
+        shares_(placed.size()),
+        samples_(samples) {
+    NodeNumbers node;
+    node.blur2 = static_cast<float>(layers.blur * layers.blur);
+    node.twice_blur = static_cast<float>(2.0 * layers.blur);
+    node.per_reach = static_cast<float>(1.0 / layers.shape.Reach());
+    node.per_exposure = static_cast<float>(0.5 / layers.exposure);
+    node.slope_x = static_cast<float>(layers.slope_x) * node.per_reach;
+    node.slope_y = static_cast<float>(layers.slope_y) * node.per_reach;
+    node.v_x = static_cast<float>(motion.x);
+    node.v_y = static_cast<float>(motion.y);
+    node.v_turn = static_cast<float>(motion.angle_rad);
+    node.flat = layers.flat;
+    std::copy(layers.quadratic.begin(), layers.quadratic.end(),
+              node.quadratic.begin());
+    for (const Placed& at : placed) {
+      node.at = at;
+      nodes_.push_back(node);
     }
   }
-  samples.Resize(count, kDerivatives);
+
+  const ShapeCover& cover() const { return cover_; }
+
+  // Of columns `begin` to `end`, at most kChunk.
+  void Linearize(std::int32_t row, std::int32_t begin, std::int32_t end);
+  std::size_t count() const { return count_; }
+
+ private:
+  void Look(const NodeNumbers& node, std::size_t k, std::int32_t row,
+            std::int32_t begin, std::int32_t end);
+  void Append(std::int32_t first_pixel, const Lanes& levels, std::size_t from,
+              std::size_t to);
+
+  const PictureStack& stack_;
+  const Layers& layers_;
+  ShapeCover cover_;
+  bool all_;
+  std::size_t picture_;
+  std::vector<NodeNumbers> nodes_;
+  std::vector<std::array<SplinePlace, kChunk>> places_;  // by node
+  std::vector<Lanes> shares_;
+  NodeLanes seen_{};
+  PixelLanes sums_{};
+  FrameSamples& samples_;
+  std::size_t count_ = 0;
+};
+
+// What one place of the exposure shows in a row's pixels.
+void RowLinearizer::Look(const NodeNumbers& node, std::size_t k,
+                         std::int32_t row, std::int32_t begin,
+                         std::int32_t end) {
+  const auto most_slope =
+      static_cast<float>(0.5 * kLeastStillStep * layers_.noise_dn);
+  const float* const still = layers_.still.data();
+  seen_ = {};
+  for (std::int32_t column = begin; column < end; ++column) {
+    const auto i = static_cast<std::size_t>(column - begin);
+    const float dx = static_cast<float>(column) - node.at.x;
+    const float x = node.at.cosine * dx + node.at.sine * node.down;
+    const float y = node.at.cosine * node.down - node.at.sine * dx;
+    const CoverAt m = cover_.At(x, y);
+    if (!layers_.flat) {
+      places_[k][i] = layers_.grid.LocatePlace(x, y);
+      shares_[k][i] = node.at.weight * m.value;
+    }
+    if (m.value < kLeastCover && m.by_blur == 0.0F) continue;
+    seen_.right[i] = dx;
+    seen_.x[i] = x;
+    seen_.y[i] = y;
+    seen_.cover[i] = m.value;
+    if (!layers_.flat) {
+      const PictureGrid::Tilt tilt =
+          layers_.grid.EvaluateTilt(layers_.picture.data(), places_[k][i]);
+      seen_.tilt[i] = tilt.value;
+      seen_.tilt_x[i] = tilt.by_x;
+      seen_.tilt_y[i] = tilt.by_y;
+    }
+    if (m.by_long == 0.0F && m.by_short == 0.0F) continue;
+    seen_.by_x[i] = m.by_x;
+    seen_.by_y[i] = m.by_y;
+    seen_.by_blur[i] = m.by_blur;
+    seen_.by_long[i] = m.by_long;
+    seen_.by_short[i] = m.by_short;
+    const std::int32_t pixel = row * stack_.width + column;
+    const StillEdge edge = layers_.edges.empty()
+                               ? StillEdge{}
+                               : layers_.edges[static_cast<std::size_t>(pixel)];
+    if (edge.contrast != 0.0F) {
+      const Product product =
+          cover_.WithEdge(x, y, edge, node.at.cosine, node.at.sine);
+      seen_.product[i] = product.value;
+      seen_.product_x[i] = product.by_x;
+      seen_.product_y[i] = product.by_y;
+      continue;
+    }
+    const float step_x = 0.5F * (still[pixel + 1] - still[pixel - 1]);
+    const float step_y =
+        0.5F * (still[pixel + stack_.width] - still[pixel - stack_.width]);
+    if (std::max(std::abs(step_x), std::abs(step_y)) < most_slope) {
+      seen_.still_x[i] = step_x;
+      seen_.still_y[i] = step_y;
+    }
+  }
+}
+
+// Pixels `from` to `to` of those that were looked at.
+void RowLinearizer::Append(std::int32_t first_pixel, const Lanes& levels,
+                           std::size_t from, std::size_t to) {
+  const std::size_t n = to - from;
+  const auto append = [&](const Lanes& lanes, std::vector<float>& column) {
+    std::copy_n(lanes.begin() + static_cast<std::ptrdiff_t>(from), n,
+                column.begin() + static_cast<std::ptrdiff_t>(count_));
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    samples_.pixel[count_ + i] =
+        first_pixel + static_cast<std::int32_t>(from + i);
+    samples_.open[count_ + i] = 1.0F - sums_.covered[from + i];
+  }
+  append(levels, samples_.level);
+  append(sums_.residual, samples_.residual);
+  append(sums_.weight, samples_.weight);
+  append(sums_.covered, samples_.cover);
+  for (std::size_t a = 0; a < kPose; ++a) {
+    append(sums_.by_pose[a], samples_.by_pose[a]);
+  }
+  for (std::size_t a = 0; all_ && a < kShared; ++a) {
+    append(sums_.by_shared[a], samples_.by_shared[a]);
+  }
+  for (std::size_t k = 0; k < samples_.nodes; ++k) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t at = (count_ + i) * samples_.nodes + k;
+      samples_.place[at] = places_[k][from + i];
+      if (all_) samples_.share[at] = shares_[k][from + i];
+    }
+  }
+  count_ += n;
+}
+
+void RowLinearizer::Linearize(std::int32_t row, std::int32_t begin,
+                              std::int32_t end) {
+  const std::int32_t first_pixel = row * stack_.width + begin;
+  const auto n = static_cast<std::size_t>(end - begin);
+  sums_ = {};
+  std::copy_n(layers_.still.begin() + first_pixel, n, sums_.behind.begin());
+  sums_.model = sums_.behind;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    NodeNumbers& node = nodes_[k];
+    node.down = static_cast<float>(row) - node.at.y;
+    Look(node, k, row, begin, end);
+    if (node.flat) EvaluateFlat(node, seen_);
+    AddNode(node, seen_, all_, sums_);
+  }
+  Lanes levels{};
+  std::copy_n(
+      stack_.WindowRow(picture_, row) + (begin - stack_.windows[picture_].x), n,
+      levels.begin());
+  FinishPixels(levels, static_cast<float>(layers_.curve),
+               static_cast<float>(layers_.noise_dn), sums_);
+  // From one pixel that shows nothing of the body to the next.
+  for (std::size_t from = 0; from < n;) {
+    std::size_t to = from;
+    while (to < n && sums_.covered[to] >= kLeastCover) ++to;
+    if (to > from) Append(first_pixel, levels, from, to);
+    from = to + 1;
+  }
 }
 
 }  // namespace
@@ -355,13 +329,34 @@ void Linearize(const PictureStack& stack, std::size_t picture,
                const Layers& layers, const LayerPose& pose,
                const LayerPose& motion, Derivatives derivatives,
                FrameSamples& samples) {
-  if (derivatives == Derivatives::kAll) {
-    LinearizeModel<Derivatives::kAll>(stack, picture, layers, pose, motion,
-                                      samples);
-  } else {
-    LinearizeModel<Derivatives::kByPose>(stack, picture, layers, pose, motion,
-                                         samples);
+  const SampleWindow window =
+      ComputeSampleWindow(stack, picture, layers, pose, motion);
+  if (window.right <= window.left || window.bottom <= window.top) {
+    samples.Resize(0, derivatives);
+    return;
   }
+  const std::vector<Placed> placed =
+      PlaceInExposure(layers, pose, motion, derivatives);
+  samples.nodes = layers.flat ? 0 : placed.size();
+  RowLinearizer rows(stack, picture, layers, motion, placed, derivatives,
+                     samples);
+  std::vector<Columns> seen_in_row;
+  std::size_t most = 0;
+  for (std::int32_t row = window.top; row < window.bottom; ++row) {
+    seen_in_row.push_back(FindColumns(rows.cover(), placed, row, window));
+    const Columns& columns = seen_in_row.back();
+    most += static_cast<std::size_t>(columns.end - columns.begin);
+  }
+  samples.Resize(most, derivatives);
+  constexpr auto kStep = static_cast<std::int32_t>(kChunk);
+  for (std::int32_t row = window.top; row < window.bottom; ++row) {
+    const auto [begin, end] =
+        seen_in_row[static_cast<std::size_t>(row - window.top)];
+    for (std::int32_t from = begin; from < end; from += kStep) {
+      rows.Linearize(row, from, std::min(from + kStep, end));
+    }
+  }
+  samples.Resize(rows.count(), derivatives);
 }
 
 void LearnTexture(Layers& layers) {
