@@ -188,6 +188,7 @@ Json TrackJson(const vision::Track& track) {
                {"near_ground_modelled", track.near_ground_modelled},
                {"patterned", track.patterned},
                {"layered", track.layered},
+               {"textured", track.textured},
                {"outlined", track.outlined},
                {"is_predicted", track.is_predicted},
                {"several_bodies", track.several_bodies},
@@ -230,6 +231,7 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   track.near_ground_modelled = json.value("near_ground_modelled", false);
   track.patterned = json.value("patterned", false);
   track.layered = json.value("layered", false);
+  track.textured = json.value("textured", false);
   track.outlined = json.value("outlined", true);
   track.first_frame = WholeNumber(json.at("frames").at(0), "frames");
   track.last_frame = WholeNumber(json.at("frames").at(1), "frames");

@@ -330,7 +330,10 @@ void Analyzer::DescribeScene() {
       track.body.kind == core::BodyKind::kSphere ? "circle" : "rectangle");
   scene.used.push_back("quadratic shading");
   if (track.layered) {
-    scene.used.push_back("two layers, learned from the clip");
+    scene.used.push_back(track.textured
+                             ? "two layers, learned from the clip: the body's "
+                               "picture is a texture"
+                             : "two layers, learned from the clip");
   } else if (track.patterned) {
     scene.used.push_back("the body's own picture, which moves with it");
   }

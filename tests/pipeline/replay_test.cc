@@ -275,11 +275,11 @@ auto ListFields(const vision::BodyImage& body) {
 // All but its warnings, which stand among those of the analysis.
 auto ListFields(const vision::Track& track) {
   const auto& [body, poses, first, last, interval, background, step, modelled,
-               patterned, layered, outlined, predicted, several, warnings] =
-      track;
+               patterned, layered, textured, outlined, predicted, several,
+               warnings] = track;
   return std::make_tuple(ListFields(body), poses.size(), first, last, interval,
                          background, step, modelled, patterned, layered,
-                         outlined, predicted, several);
+                         textured, outlined, predicted, several);
 }
 
 TEST(Replay, KeepsEveryFieldOfTheTrack) {
@@ -305,6 +305,7 @@ TEST(Replay, KeepsEveryFieldOfTheTrack) {
   track.near_ground_modelled = true;
   track.patterned = true;
   track.layered = true;
+  track.textured = true;
   track.outlined = false;
   track.is_predicted = true;
   track.poses = {

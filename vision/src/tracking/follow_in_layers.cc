@@ -360,6 +360,7 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   out.poses.clear();
   out.step = 1;
   out.layered = true;
+  out.textured = !fit.layers.flat;
   out.patterned = false;
   out.outlined = true;
   out.known_background = true;
@@ -503,7 +504,9 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   options.lines = FindLines(background, evidence, shape,
                             options.prior.value[layers::kBlur]);
   until.Check();
-  const bool textured = FitRoughly(clip, track, shape, options, evidence);
+  const bool textured =
+      track.layered ? track.textured
+                    : FitRoughly(clip, track, shape, options, evidence);
   const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
   if (textured || turning) PrepareForTexture(size, shape, options, evidence);
   until.Check();

@@ -220,8 +220,11 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
 core::Expected<TrackResult> TrackFromBefore(Clip& clip,
                                             const TrackOptions& options,
                                             const Background& fallback) {
-  return FitOutlinesOfSize(clip, options, *options.before, fallback,
-                           {Size::kCommon});
+  auto result = FitOutlinesOfSize(clip, options, *options.before, fallback,
+                                  {Size::kCommon});
+  // A texture draws outlines to itself.
+  if (result) result->track.poses = options.before->poses;
+  return result;
 }
 
 }  // namespace touchdown::vision

@@ -87,6 +87,9 @@ struct Track {
   // Whether poses are those of two layers (src/tracking/follow_in_layers.h),
   // which leave nothing to Refine.
   bool layered = false;
+  // Of a layered track: whether the body's picture is a texture. Else it is
+  // flat but for a smooth shading.
+  bool textured = false;
   // Whether outlines fitted to the frames tell size and place. Else the body
   // has several parts, and they are those of what moves as one.
   bool outlined = true;
