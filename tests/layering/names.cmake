@@ -20,8 +20,9 @@ foreach(file IN LISTS files)
     elseif(line MATCHES "^}  // namespace$")
       set(own FALSE)
     elseif(NOT own AND line MATCHES
-                       "^(struct|class|enum class) ([A-Za-z0-9_]+)[^:;]*( : [^;]*)?{")
-      set(name "${space}::${CMAKE_MATCH_2}")
+                       "^(struct|class|enum class) (alignas\\([0-9]+\\) )?([A-Za-z0-9_]+)[^:;]*( : [^;]*)?{"
+    )
+      set(name "${space}::${CMAKE_MATCH_3}")
       if(DEFINED "at_${name}")
         list(APPEND breaches "${name}: ${at_${name}} and ${file}")
       endif()

@@ -348,12 +348,12 @@ void Linearize(const PictureStack& stack, std::size_t picture,
     most += static_cast<std::size_t>(columns.end - columns.begin);
   }
   samples.Resize(most, derivatives);
-  constexpr auto kStep = static_cast<std::int32_t>(kChunk);
+  const auto chunk = static_cast<std::int32_t>(kChunk);
   for (std::int32_t row = window.top; row < window.bottom; ++row) {
     const auto [begin, end] =
         seen_in_row[static_cast<std::size_t>(row - window.top)];
-    for (std::int32_t from = begin; from < end; from += kStep) {
-      rows.Linearize(row, from, std::min(from + kStep, end));
+    for (std::int32_t from = begin; from < end; from += chunk) {
+      rows.Linearize(row, from, std::min(from + chunk, end));
     }
   }
   samples.Resize(rows.count(), derivatives);

@@ -92,12 +92,13 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   constexpr double kLeastBlur = 0.7;
   value[layers::kBlur] = std::max(track.body.blur_px, kLeastBlur);
   u[layers::kBlur] = 0.5;
-  // Of a frame's interval, where no blur has told one yet; u is as large.
+  // Of a frame's interval, where no blur has told one yet.
   constexpr double kUsualExposure = 0.3;
+  // Of the same, whatever told it: pictures tell an exposure far better.
+  constexpr double kExposureU = 0.3;
   const double exposure = track.body.shutter_fraction > 0.0
                               ? track.body.shutter_fraction
                               : kUsualExposure;
-  constexpr double kExposureU = 0.3;
   value[layers::kExposureSquare] = exposure * exposure;
   u[layers::kExposureSquare] = 2.0 * exposure * kExposureU;
   value[layers::kLong] = shape.half_long;
@@ -504,9 +505,9 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   options.lines = FindLines(background, evidence, shape,
                             options.prior.value[layers::kBlur]);
   until.Check();
-  const bool textured =
-      track.layered ? track.textured
-                    : FitRoughly(clip, track, shape, options, evidence);
+  const bool textured = track.layered
+                            ? track.textured
+                            : FitRoughly(clip, track, shape, options, evidence);
   const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
   if (textured || turning) PrepareForTexture(size, shape, options, evidence);
   until.Check();
