@@ -28,6 +28,9 @@ struct DrawnBlock {
   double noise_dn = 2.0;         // uniform, of this standard deviation
   std::int64_t noise_lasts = 1;  // frames: a codec repeats its errors
   std::function<BlockPose(std::int64_t frame)> pose;
+  // DN more at a place of the body, in px along its sides.
+  std::function<double(double along_px, double across_px)> face =
+      [](double, double) { return 0.0; };
 };
 
 // The same number for the same place and frame, uniform in [-1, 1).
@@ -57,9 +60,10 @@ inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
       for (std::int32_t x = 0; x < block.width_px; ++x) {
         const double dx = x - pose.x_px;
         const double dy = y - pose.y_px;
+        const double along = cosine * dx + sine * dy;
+        const double across = -sine * dx + cosine * dy;
         const double cover =
-            slab(block.half_long_px, cosine * dx + sine * dy) *
-            slab(block.half_short_px, -sine * dx + cosine * dy);
+            slab(block.half_long_px, along) * slab(block.half_short_px, across);
         const double wall =
             150.0 + 20.0 * std::sin(0.05 * x) + 15.0 * std::cos(0.09 * y);
         const double noise =
@@ -67,7 +71,8 @@ inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
             HashNoise(static_cast<std::uint32_t>(x),
                       static_cast<std::uint32_t>(y),
                       static_cast<std::uint32_t>(frame / block.noise_lasts));
-        levels.push_back(wall + cover * (block.level_dn - wall) + noise);
+        const double level = block.level_dn + block.face(along, across);
+        levels.push_back(wall + cover * (level - wall) + noise);
       }
     }
   };

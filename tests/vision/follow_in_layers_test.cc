@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -95,6 +96,35 @@ TEST(FollowInLayers, GoesOnBeyondBothEnds) {
   EXPECT_EQ(track->poses.front().frame, 0);
   EXPECT_EQ(track->poses.back().frame, frames - 1);
   ExpectTrue(*track, block, 0.1);
+}
+
+// A picture is learned from every second or third frame. Where a blow lies
+// between two of them, the others are pixels beside the way from one to the
+// next.
+TEST(FollowInLayers, FollowsAFaceThroughABlow) {
+  for (const double hit : {14.3, 15.3, 16.3}) {
+    DrawnBlock block;
+    block.width_px = 240;
+    block.height_px = 160;
+    block.frames = 60;
+    block.half_long_px = 20.0;
+    block.half_short_px = 12.0;
+    block.face = [](double along, double across) {
+      return 15.0 * std::sin(0.8 * along) * std::cos(0.6 * across);
+    };
+    block.pose = [hit](std::int64_t frame) {
+      const auto t = static_cast<double>(frame);
+      return BlockPose{40.0 + 2.0 * t, 20.0 + 7.0 * std::min(t, hit), 0.2};
+    };
+    const auto clip = DrawBlock(block);
+    const auto track = FollowInLayers(
+        *clip, EstimateBackground(*clip, 0, block.frames),
+        RoughTrack(block, *clip, 0, block.frames), SizeOf(block), 1);
+    ASSERT_TRUE(track) << track.error().reason;
+    EXPECT_TRUE(track->textured);
+    EXPECT_EQ(track->poses.size(), static_cast<std::size_t>(block.frames));
+    ExpectTrue(*track, block, 0.15);
+  }
 }
 
 TEST(FollowInLayers, ABodyThatComesMuchNearerIsNone) {

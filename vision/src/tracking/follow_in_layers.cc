@@ -401,10 +401,7 @@ Track WithLayers(const Track& track, const LayerFit& fit,
 
 // Each frame of a path with the layers held, in order, added to `out`.
 void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
-                 const LayerPath& path, const FitLayersOptions& options,
-                 Track& out) {
-  const std::vector<LayerPose> motions =
-      layers::EstimateMotions(path.poses, path.frames);
+                 LayerPath path, const FitLayersOptions& options, Track& out) {
   const double noise_ratio = fit.layers.noise_dn / evidence.noise_dn;
   std::vector<double> drifts;
   // As many at a time as stay near the processor.
@@ -423,6 +420,14 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
     }
     if (!is_read) reader.Read(part, part_pictures);
     const PictureStack& pictures = is_read ? evidence.stack : part_pictures;
+    // Where a blow lies between two learned frames, others are not where they
+    // are expected, nor go as they would.
+    layers::AlignPoses(pictures, fit.layers, options.turns, options.threads,
+                       part.poses);
+    std::copy(part.poses.begin(), part.poses.end(),
+              path.poses.begin() + static_cast<std::ptrdiff_t>(from));
+    const std::vector<LayerPose> motions =
+        layers::EstimateMotions(path.poses, path.frames);
     std::vector<PoseFit> aligned(part.frames.size());
     core::InParallel(static_cast<std::int64_t>(aligned.size()), options.threads,
                      [&](std::int64_t begin, std::int64_t end) {
