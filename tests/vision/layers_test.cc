@@ -613,9 +613,8 @@ TEST(PictureStack, HalvedWindowsAreWindowsOfHalvedPictures) {
   }
 }
 
-TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
-  const LayeredScene scene = BlockOnGround();
-  const PictureStack stack = Film(scene, 29);
+// Layers of a scene with a shaded body.
+Layers ShadedLayers(const LayeredScene& scene) {
   Layers layers;
   layers.shape = scene.shape;
   layers.blur = 0.95;
@@ -624,6 +623,13 @@ TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
   layers.picture.assign(layers.grid.size(), 0.0F);
   layers.quadratic = {60.0, 3.0, -2.0, 1.0, 0.0, 2.0};
   layers.noise_dn = 1.0;
+  return layers;
+}
+
+TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 29);
+  const Layers layers = ShadedLayers(scene);
   const LayerPose pose = scene.poses[10];
   const LayerPose motion{1.37, 0.9, 0.01};
   FrameSamples at;
@@ -667,13 +673,7 @@ TEST(Linearize, DerivativesByThePoseAreThoseOfTheModel) {
 TEST(Linearize, DerivativeByTheExposureIsThatOfTheModel) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 29);
-  Layers layers;
-  layers.shape = scene.shape;
-  layers.blur = 0.95;
-  layers.still = Paint(scene, nullptr);
-  layers.grid = PictureGrid(scene.shape, 6.0);
-  layers.picture.assign(layers.grid.size(), 0.0F);
-  layers.quadratic = {60.0, 3.0, -2.0, 1.0, 0.0, 2.0};
+  Layers layers = ShadedLayers(scene);
   for (const double exposure : {0.1, 0.6}) {
     const auto linearize = [&](double square) {
       layers.exposure = std::sqrt(square);

@@ -83,13 +83,7 @@ class PictureGrid {
   TOUCHDOWN_INLINE float EvaluateSpline(const float* coefficients,
                                         const SplinePlace& place,
                                         const PlaceWeights& weights) const {
-    const float* row = coefficients + place.first;
-    FourFloats sum = weights[0] * LoadFour(row);
-    for (std::size_t j = 1; j < 4; ++j) {
-      row += columns_;
-      sum += weights[j] * LoadFour(row);
-    }
-    return AddUp(sum);
+    return AddUp(SumDown(coefficients, place, weights));
   }
   float EvaluateSpline(const float* coefficients,
                        const SplinePlace& place) const {
@@ -131,9 +125,11 @@ class PictureGrid {
   static float AddUp(const FourFloats& four) {
     return (four[0] + four[2]) + (four[1] + four[3]);
   }
-  // The sum of four rows of coefficients, each times its weight.
-  FourFloats SumDown(const float* coefficients, const SplinePlace& place,
-                     const FourFloats& weights) const {
+  // The sum of four rows of coefficients, each times its weight or its four.
+  template <class Weights>
+  TOUCHDOWN_INLINE FourFloats SumDown(const float* coefficients,
+                                      const SplinePlace& place,
+                                      const Weights& weights) const {
     const float* row = coefficients + place.first;
     FourFloats sum = weights[0] * LoadFour(row);
     for (std::size_t j = 1; j < 4; ++j) {

@@ -420,8 +420,8 @@ void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
     }
     if (!is_read) reader.Read(part, part_pictures);
     const PictureStack& pictures = is_read ? evidence.stack : part_pictures;
-    // Where a blow lies between two learned frames, others are not where they
-    // are expected, nor go as they would.
+    // Where a blow lies between two learned frames, the body is not on the way
+    // from one to the other, and moves otherwise.
     layers::AlignPoses(pictures, fit.layers, options.turns, options.threads,
                        part.poses);
     std::copy(part.poses.begin(), part.poses.end(),
