@@ -162,14 +162,18 @@ struct Alignment {
   bool found = false;
 };
 
+// Nothing is found where the steps come near to `known`: it is the same again.
 Alignment FindPose(const PictureStack& stack, std::size_t picture,
                    const Layers& layers, const LayerPose& start,
-                   const LayerPose& motion, bool turns) {
+                   const LayerPose& motion, bool turns,
+                   const LayerPose* known = nullptr) {
   // A bound on time, mostly not reached. Not studied.
   constexpr int kSteps = 5;
   // The step after which no other is taken: small beside a pose's u, which is
   // some hundredths of a pixel.
   constexpr double kStill_px = 2e-3;
+  // From there a step ends at the same minimum. Not studied.
+  constexpr double kSame_px = 0.3;
   // Fewer do not tell three numbers and how far they scatter. Not studied.
   constexpr std::size_t kLeastPixels = 12;
   Alignment out;
@@ -201,6 +205,13 @@ Alignment FindPose(const PictureStack& stack, std::size_t picture,
     if (std::max({std::abs(by(0)), std::abs(by(1)), std::abs(by(2)) * reach}) <
         kStill_px) {
       break;
+    }
+    if (known != nullptr &&
+        std::max({std::abs(out.pose.x - known->x),
+                  std::abs(out.pose.y - known->y),
+                  std::abs(out.pose.angle_rad - known->angle_rad) * reach}) <
+            kSame_px) {
+      return out;
     }
   }
   const double variance = layers.noise_dn * layers.noise_dn;
@@ -308,7 +319,7 @@ std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
         start.x += across * reach;
         start.y += down * reach;
         const Alignment fit =
-            FindPose(stack, t, layers, start, motions[t], turns);
+            FindPose(stack, t, layers, start, motions[t], turns, &better[t]);
         if (!fit.found || fit.chi2 >= least) continue;
         least = fit.chi2;
         better[t] = fit.pose;

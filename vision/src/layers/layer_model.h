@@ -114,7 +114,7 @@ struct FrameSamples {
   std::array<std::vector<float>, kPose> by_pose;
   std::array<std::vector<float>, kShared> by_shared;
   // Derivatives by a spline T: `nodes` places a pixel, each with its share of
-  // coverage. Of a flat body none.
+  // coverage. Of a flat body none; for two nodes of the exposure their middle.
   std::size_t nodes = 0;
   std::vector<SplinePlace> place;
   std::vector<float> share;
