@@ -115,28 +115,59 @@ std::vector<EdgePoint> EdgePoints(const StillImage& image, double least,
   return points;
 }
 
+// Points by columns, heights in bins.
+struct VotingPoints {
+  std::vector<float> right_px;  // from the picture's middle
+  std::vector<float> down;
+};
+
+// px of height in one bin. Larger merges neighbouring lines; smaller spreads
+// the votes of one. Not studied.
+constexpr double kBin_px = 2.0;
+
+VotingPoints CollectVotingPoints(const std::vector<EdgePoint>& points,
+                                 const StillImage& image) {
+  const double middle = 0.5 * (image.width_px - 1);
+  VotingPoints out;
+  for (const EdgePoint& p : points) {
+    out.right_px.push_back(static_cast<float>(p.x - middle));
+    out.down.push_back(static_cast<float>(p.y / kBin_px));
+  }
+  return out;
+}
+
 struct Votes {
   Line line;
   double votes = 0.0;
 };
 
 // Those that points give to lines of one slope.
-Votes CountVotes(double slope, const std::vector<EdgePoint>& points,
+Votes CountVotes(double slope, const VotingPoints& points,
                  const StillImage& image) {
-  // px of height in one bin. Larger merges neighbouring lines; smaller spreads
-  // the votes of one. Not studied.
-  constexpr double kBin_px = 2.0;
-  const double middle = 0.5 * (image.width_px - 1);
   const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
-  std::vector<float> count(static_cast<std::size_t>(bins));
-  for (const EdgePoint& p : points) {
-    const double at = (p.y - slope * (p.x - middle)) / kBin_px;
-    if (at < 0.0 || at >= bins - 1) continue;
-    // Between two bins, so that a line on their border loses no votes.
-    const auto low = static_cast<std::size_t>(at);
-    const auto share = static_cast<float>(at - static_cast<double>(low));
-    count[low] += 1.0f - share;
-    count[low + 1] += share;
+  // Between two bins, so that a line on their border loses no votes: what a bin
+  // gets of its own points and what the next one does.
+  struct Shares {
+    float own = 0.0f;
+    float next = 0.0f;
+  };
+  std::vector<Shares> shares(static_cast<std::size_t>(bins));
+  const auto rise = static_cast<float>(slope / kBin_px);
+  const auto end = static_cast<float>(bins - 1);
+  for (std::size_t i = 0; i < points.down.size(); ++i) {
+    const float at = points.down[i] - rise * points.right_px[i];
+    if (at < 0.0f || at >= end) continue;
+    const auto low = static_cast<int>(at);
+    const float next = at - static_cast<float>(low);
+    Shares& bin = shares[static_cast<std::size_t>(low)];
+    bin.own += 1.0f - next;
+    bin.next += next;
+  }
+  std::vector<float> count;
+  float from_before = 0.0f;
+  for (const Shares& bin : shares) {
+    count.push_back(bin.own + from_before);
+    from_before = bin.next;
   }
   Votes best;
   for (int b = 0; b + 1 < bins; ++b) {
@@ -158,6 +189,7 @@ Votes Vote(const std::vector<EdgePoint>& points, const StillImage& image,
   // Tilts from the steepest downward to the steepest upward. More cost time in
   // proportion; fewer lose votes at the picture's sides. Not studied.
   constexpr int kTilts = 121;
+  const VotingPoints voting = CollectVotingPoints(points, image);
   std::vector<Votes> of_tilt(kTilts);
   core::InParallel(
       kTilts, options.threads, [&](std::int64_t begin, std::int64_t end) {
@@ -166,7 +198,7 @@ Votes Vote(const std::vector<EdgePoint>& points, const StillImage& image,
               options.most_tilt_rad *
               (2.0 * static_cast<double>(k) / (kTilts - 1.0) - 1.0);
           of_tilt[static_cast<std::size_t>(k)] =
-              CountVotes(std::tan(tilt), points, image);
+              CountVotes(std::tan(tilt), voting, image);
         }
       });
   return *std::max_element(

@@ -82,24 +82,24 @@ std::optional<Crossing> CrossingIn(const StillPicture& still, const Axes& axes,
 class Chains {
  public:
   void Add(const Crossing& crossing) {
-    Chain* best = nullptr;
+    Growing* best = nullptr;
     // px off the line so far. More: noise links two edges.
     constexpr double kOff_px = 0.75;
     double least = kOff_px;
-    for (Chain& chain : growing_) {
-      if (chain.back().u >= crossing.u) continue;
-      const double ratio = crossing.contrast / chain.back().contrast;
+    for (Growing& chain : growing_) {
+      const Crossing& last = chain.last;
+      const double off =
+          std::abs(crossing.v - last.v - chain.slope * (crossing.u - last.u));
+      if (off >= least || last.u >= crossing.u) continue;
+      const double ratio = crossing.contrast / last.contrast;
       // Of one edge's contrasts to each other.
       constexpr double kAlike = 0.5;
       if (ratio < kAlike || ratio > 1.0 / kAlike) continue;
-      const double off = std::abs(crossing.v - Expected(chain, crossing.u));
-      if (off < least) {
-        least = off;
-        best = &chain;
-      }
+      least = off;
+      best = &chain;
     }
     if (best == nullptr) best = &growing_.emplace_back();
-    best->push_back(crossing);
+    best->Append(crossing);
   }
 
   // Ends what does not go on at `u`. A line that was followed for long is met
@@ -107,30 +107,43 @@ class Chains {
   // than some noise.
   void End(std::int32_t u) {
     constexpr std::int32_t kShortGap_px = 3;  // longer: of another edge
-    std::erase_if(growing_, [&](const Chain& chain) {
-      return chain.size() < kShort && u - chain.back().u > kShortGap_px;
+    std::erase_if(growing_, [&](const Growing& chain) {
+      return chain.crossings.size() < kShort && u - chain.last.u > kShortGap_px;
     });
   }
 
   // Those that are long enough.
   std::vector<Chain> TakeLong() {
-    std::erase_if(growing_,
-                  [](const Chain& chain) { return chain.size() < kShort; });
-    return std::move(growing_);
+    std::vector<Chain> chains;
+    for (Growing& chain : growing_) {
+      if (chain.crossings.size() >= kShort) {
+        chains.push_back(std::move(chain.crossings));
+      }
+    }
+    growing_.clear();
+    return chains;
   }
 
  private:
-  // Where a chain is expected to cross u.
-  static double Expected(const Chain& chain, std::int32_t u) {
-    if (chain.size() < kShort) return chain.back().v;
-    // Crossings over which the direction is taken: over more an edge may bend.
-    constexpr std::size_t kMost = 4 * kShort;
-    const Crossing& from = chain[chain.size() - std::min(chain.size(), kMost)];
-    const Crossing& to = chain.back();
-    return to.v + (to.v - from.v) / (to.u - from.u) * (u - to.u);
-  }
+  struct Growing {
+    Crossing last;
+    double slope = 0.0;  // of v by u, once the chain is long enough
+    Chain crossings;
 
-  std::vector<Chain> growing_;
+    void Append(const Crossing& crossing) {
+      last = crossing;
+      crossings.push_back(crossing);
+      if (crossings.size() < kShort) return;
+      // Crossings over which the direction is taken: over more an edge may
+      // bend.
+      constexpr std::size_t kMost = 4 * kShort;
+      const Crossing& from =
+          crossings[crossings.size() - std::min(crossings.size(), kMost)];
+      slope = (last.v - from.v) / (last.u - from.u);
+    }
+  };
+
+  std::vector<Growing> growing_;
 };
 
 // Sums over the crossings of a chain up to each of them.
