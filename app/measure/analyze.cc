@@ -556,7 +556,8 @@ std::optional<Analysis> AnalyzeLight(
     std::optional<vision::CameraMotion>& motion) {
   constexpr double kClearlyNot1 = 0.72;
   constexpr double kLeast = 0.3;  // no camera has less: the outlines err
-  constexpr double kNear1 = 0.05;
+  // In light with the camera's own gamma outlines still show 0.9 to 1.
+  constexpr double kNear1 = 0.1;
   if (seen.options.gamma || !seen.track || !seen.explained) return std::nullopt;
   double more = seen.track->body.gamma.value_or(1.0);
   if (more < kLeast || more > kClearlyNot1) return std::nullopt;

@@ -78,21 +78,27 @@ Background EstimateUncovered(Clip& clip, const TrackOptions& options,
   return EstimateMaskedBackground(clip, covers, fallback, still);
 }
 
-// Fits outlines in all frames that the track spans, from its own poses.
+// Fits outlines in frames that are spread over those that the track spans, from
+// its own poses.
 std::vector<Fitted> FitTrackOutlines(Clip& clip, const Background& background,
                                      const TrackOptions& options,
                                      const Track& track,
                                      const OutlineOptions& fit_options) {
+  // Layers measure every frame from what so many tell of size, blur and way. 24
+  // gave 139 photographed clips the same errors; more cost time.
+  constexpr std::int64_t kMost = 40;
+  const std::int64_t first = track.poses.front().frame;
+  const std::int64_t last = track.poses.back().frame;
+  const std::int64_t step = (last - first) / kMost + 1;
   std::vector<OutlineJob> jobs;
-  for (std::int64_t f = track.poses.front().frame;
-       f <= track.poses.back().frame; ++f) {
+  for (std::int64_t f = first; f <= last; f += step) {
     jobs.push_back({f, PlaceOutline(track.body, *InterpolatePose(track, f))});
   }
   return Found(
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
-// What is held of the outlines' size in a pass over all frames. The stated one
+// What is held of the outlines' size in a pass over the frames. The stated one
 // is held until the places are right; then the picture tells the size. Where
 // the background is not known at one end of the body, a free size draws the
 // place along: at last the size of all frames is held.
