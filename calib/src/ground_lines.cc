@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -115,95 +116,105 @@ std::vector<EdgePoint> EdgePoints(const StillImage& image, double least,
   return points;
 }
 
-// Points by columns, heights in bins.
-struct VotingPoints {
-  std::vector<float> right_px;  // from the picture's middle
-  std::vector<float> down;
-};
-
 // px of height in one bin. Larger merges neighbouring lines; smaller spreads
 // the votes of one. Not studied.
 constexpr double kBin_px = 2.0;
-
-VotingPoints CollectVotingPoints(const std::vector<EdgePoint>& points,
-                                 const StillImage& image) {
-  const double middle = 0.5 * (image.width_px - 1);
-  VotingPoints out;
-  for (const EdgePoint& p : points) {
-    out.right_px.push_back(static_cast<float>(p.x - middle));
-    out.down.push_back(static_cast<float>(p.y / kBin_px));
-  }
-  return out;
-}
+// Tilts from the steepest downward to the steepest upward. More cost time in
+// proportion; fewer lose votes at the picture's sides. Not studied.
+constexpr std::size_t kTilts = 121;
 
 struct Votes {
   Line line;
   double votes = 0.0;
 };
 
-// Those that points give to lines of one slope.
-Votes CountVotes(double slope, const VotingPoints& points,
-                 const StillImage& image) {
-  const int bins = static_cast<int>(image.height_px / kBin_px) + 2;
+// Votes of points for lines (Hough transform: over tilt and height), one per
+// column.
+class LineVotes {
+ public:
+  LineVotes(const StillImage& image, const GroundLineOptions& options)
+      : middle_(0.5 * (image.width_px - 1)),
+        bins_(static_cast<std::size_t>(image.height_px / kBin_px) + 2),
+        threads_(options.threads) {
+    for (std::size_t k = 0; k < kTilts; ++k) {
+      const double tilt = options.most_tilt_rad *
+                          (2.0 * static_cast<double>(k) / (kTilts - 1.0) - 1.0);
+      of_slope_.push_back({std::tan(tilt), std::vector<Shares>(bins_)});
+    }
+  }
+
+  void Add(const std::vector<EdgePoint>& points) { Count(points, 1.0f); }
+  void Remove(const std::vector<EdgePoint>& points) { Count(points, -1.0f); }
+
+  // The line with the most votes.
+  Votes FindBest() const;
+
+ private:
   // Between two bins, so that a line on their border loses no votes: what a bin
-  // gets of its own points and what the next one does.
+  // gets of its own points, and what the next one does.
   struct Shares {
     float own = 0.0f;
     float next = 0.0f;
   };
-  std::vector<Shares> shares(static_cast<std::size_t>(bins));
-  const auto rise = static_cast<float>(slope / kBin_px);
-  const auto end = static_cast<float>(bins - 1);
-  for (std::size_t i = 0; i < points.down.size(); ++i) {
-    const float at = points.down[i] - rise * points.right_px[i];
-    if (at < 0.0f || at >= end) continue;
-    const auto low = static_cast<int>(at);
-    const float next = at - static_cast<float>(low);
-    Shares& bin = shares[static_cast<std::size_t>(low)];
-    bin.own += 1.0f - next;
-    bin.next += next;
+  struct Slope {
+    double slope = 0.0;
+    std::vector<Shares> bins;
+  };
+
+  void Count(const std::vector<EdgePoint>& points, float vote);
+
+  double middle_;
+  std::size_t bins_;
+  int threads_;
+  std::vector<Slope> of_slope_;
+};
+
+void LineVotes::Count(const std::vector<EdgePoint>& points, float vote) {
+  std::vector<float> right;
+  std::vector<float> down;  // in bins
+  for (const EdgePoint& p : points) {
+    right.push_back(static_cast<float>(p.x - middle_));
+    down.push_back(static_cast<float>(p.y / kBin_px));
   }
-  std::vector<float> count;
-  float from_before = 0.0f;
-  for (const Shares& bin : shares) {
-    count.push_back(bin.own + from_before);
-    from_before = bin.next;
-  }
+  const auto end = static_cast<float>(bins_ - 1);
+  const auto count = [&](Slope& of) {
+    const auto rise = static_cast<float>(of.slope / kBin_px);
+    for (std::size_t i = 0; i < down.size(); ++i) {
+      const float at = down[i] - rise * right[i];
+      if (at < 0.0f || at >= end) continue;
+      const auto low = static_cast<int>(at);
+      const float next = vote * (at - static_cast<float>(low));
+      Shares& bin = of.bins[static_cast<std::size_t>(low)];
+      bin.own += vote - next;
+      bin.next += next;
+    }
+  };
+  core::InParallel(static_cast<std::int64_t>(kTilts), threads_,
+                   [&](std::int64_t from, std::int64_t to) {
+                     for (auto k = static_cast<std::size_t>(from);
+                          k < static_cast<std::size_t>(to); ++k) {
+                       count(of_slope_[k]);
+                     }
+                   });
+}
+
+Votes LineVotes::FindBest() const {
   Votes best;
-  for (int b = 0; b + 1 < bins; ++b) {
-    const auto i = static_cast<std::size_t>(b);
-    const double sum = static_cast<double>(count[i] + count[i + 1]);
-    if (sum > best.votes) {
-      best.votes = sum;
-      const double weight = static_cast<double>(count[i + 1]) / sum;
-      best.line = {(b + weight) * kBin_px, slope};
+  std::vector<float> count(bins_);
+  for (const Slope& of : of_slope_) {
+    float from_before = 0.0f;
+    for (std::size_t b = 0; b < bins_; ++b) {
+      count[b] = of.bins[b].own + from_before;
+      from_before = of.bins[b].next;
+    }
+    for (std::size_t b = 0; b + 1 < bins_; ++b) {
+      const auto sum = static_cast<double>(count[b] + count[b + 1]);
+      if (sum <= best.votes) continue;
+      const double weight = static_cast<double>(count[b + 1]) / sum;
+      best = {{(static_cast<double>(b) + weight) * kBin_px, of.slope}, sum};
     }
   }
   return best;
-}
-
-// Best-supported line among `points` (Hough transform: votes over tilt and
-// height, one per column).
-Votes Vote(const std::vector<EdgePoint>& points, const StillImage& image,
-           const GroundLineOptions& options) {
-  // Tilts from the steepest downward to the steepest upward. More cost time in
-  // proportion; fewer lose votes at the picture's sides. Not studied.
-  constexpr int kTilts = 121;
-  const VotingPoints voting = CollectVotingPoints(points, image);
-  std::vector<Votes> of_tilt(kTilts);
-  core::InParallel(
-      kTilts, options.threads, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t k = begin; k < end; ++k) {
-          const double tilt =
-              options.most_tilt_rad *
-              (2.0 * static_cast<double>(k) / (kTilts - 1.0) - 1.0);
-          of_tilt[static_cast<std::size_t>(k)] =
-              CountVotes(std::tan(tilt), voting, image);
-        }
-      });
-  return *std::max_element(
-      of_tilt.begin(), of_tilt.end(),
-      [](const Votes& a, const Votes& b) { return a.votes < b.votes; });
 }
 
 // Straight line through points by iteratively re-weighted least squares
@@ -493,9 +504,13 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
       static_cast<std::size_t>(image.width_px));
   std::iota(all_columns.begin(), all_columns.end(), 0);
   const double step = VoteStep(image);
+  LineVotes of_rising(image, options);
+  LineVotes of_falling(image, options);
+  of_rising.Add(rising);
+  of_falling.Add(falling);
   for (int found = 0; found < options.most_lines; ++found) {
-    const Votes up = Vote(rising, image, options);
-    const Votes down = Vote(falling, image, options);
+    const Votes up = of_rising.FindBest();
+    const Votes down = of_falling.FindBest();
     const Line best = down.votes > up.votes ? down.line : up.line;
     if (std::max(up.votes, down.votes) * step <
         options.least_share * image.width_px)
@@ -506,8 +521,15 @@ std::vector<GroundLine> FindGroundLines(const StillImage& image,
       constexpr double kSameLine_px = 4.0;
       return std::abs(p.y - best.At(p.x - middle)) < kSameLine_px;
     };
-    std::erase_if(rising, is_near);
-    std::erase_if(falling, is_near);
+    const auto take_away = [&](std::vector<EdgePoint>& points,
+                               LineVotes& votes) {
+      const auto near = std::stable_partition(points.begin(), points.end(),
+                                              std::not_fn(is_near));
+      votes.Remove({near, points.end()});
+      points.erase(near, points.end());
+    };
+    take_away(rising, of_rising);
+    take_away(falling, of_falling);
     // To sub-pixel, from every column.
     const double blur = EstimateBlur(image, options, best, middle);
     const auto line_within = [&](double reach) -> std::optional<EdgeLine> {

@@ -162,16 +162,18 @@ struct Alignment {
   bool found = false;
 };
 
+// The step after which no other is taken: small beside a pose's u, which is
+// some hundredths of a pixel; and where the pose is aligned once more.
+constexpr double kStill_px = 2e-3;
+constexpr double kNearlyStill_px = 2e-2;
+
 // Nothing is found where the steps come near to `known`: it is the same again.
 Alignment FindPose(const PictureStack& stack, std::size_t picture,
                    const Layers& layers, const LayerPose& start,
-                   const LayerPose& motion, bool turns,
+                   const LayerPose& motion, bool turns, double still_px,
                    const LayerPose* known = nullptr) {
   // A bound on time, mostly not reached. Not studied.
   constexpr int kSteps = 5;
-  // The step after which no other is taken: small beside a pose's u, which is
-  // some hundredths of a pixel.
-  constexpr double kStill_px = 2e-3;
   // From there a step ends at the same minimum. Not studied.
   constexpr double kSame_px = 0.3;
   // Fewer do not tell three numbers and how far they scatter. Not studied.
@@ -203,7 +205,7 @@ Alignment FindPose(const PictureStack& stack, std::size_t picture,
     out.pose.y += Limited(by(1), most_px);
     out.pose.angle_rad += Limited(by(2), most_px / reach);
     if (std::max({std::abs(by(0)), std::abs(by(1)), std::abs(by(2)) * reach}) <
-        kStill_px) {
+        still_px) {
       break;
     }
     if (known != nullptr &&
@@ -234,7 +236,8 @@ Alignment FindPose(const PictureStack& stack, std::size_t picture,
 PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
                   const Layers& layers, const LayerPose& start,
                   const LayerPose& motion, bool turns) {
-  const Alignment at = FindPose(stack, picture, layers, start, motion, turns);
+  const Alignment at =
+      FindPose(stack, picture, layers, start, motion, turns, kStill_px);
   PoseFit out;
   out.pose = at.pose;
   if (!at.found) return out;
@@ -299,8 +302,8 @@ std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
                      });
   };
   each([&](std::size_t t) {
-    const Alignment fit =
-        FindPose(stack, t, layers, poses[t], motions[t], turns);
+    const Alignment fit = FindPose(stack, t, layers, poses[t], motions[t],
+                                   turns, kNearlyStill_px);
     chi2[t] = fit.chi2;
     if (fit.found) better[t] = fit.pose;
   });
@@ -318,8 +321,8 @@ std::size_t AlignPoses(const PictureStack& stack, const Layers& layers,
         LayerPose start = poses[t];
         start.x += across * reach;
         start.y += down * reach;
-        const Alignment fit =
-            FindPose(stack, t, layers, start, motions[t], turns, &better[t]);
+        const Alignment fit = FindPose(stack, t, layers, start, motions[t],
+                                       turns, kNearlyStill_px, &better[t]);
         if (!fit.found || fit.chi2 >= least) continue;
         least = fit.chi2;
         better[t] = fit.pose;
