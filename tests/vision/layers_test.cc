@@ -709,6 +709,59 @@ TEST(Linearize, DerivativeByTheExposureIsThatOfTheModel) {
   }
 }
 
+// Where two nodes of the exposure share one place, to second order of the way
+// between them; of more nodes to rounding.
+TEST(Linearize, DerivativeByThePictureIsThatOfTheModel) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 29);
+  Layers layers = ShadedLayers(scene);
+  LearnTexture(layers);
+  std::mt19937_64 engine(43);
+  std::uniform_real_distribution<float> draw(-1.0F, 1.0F);
+  std::vector<float> change(layers.picture.size());
+  for (float& value : change) value = draw(engine);
+  struct Case {
+    double exposure;
+    std::size_t places;  // of a pixel
+    double error;        // of the derivative, as a share of it
+  };
+  for (const Case& c : {Case{0.1, 1, 0.0035}, Case{0.6, 1, 36.0 * 0.0035},
+                        Case{0.95, 3, 1e-4}}) {
+    layers.exposure = c.exposure;
+    const double pace = c.places == 1 ? 1.0 : 2.0;
+    const auto linearize = [&](const std::vector<float>& picture) {
+      Layers of = layers;
+      of.picture = picture;
+      FrameSamples at;
+      Linearize(stack, 10, of, scene.poses[10],
+                {1.37 * pace, 0.9 * pace, 0.01 * pace}, Derivatives::kAll, at);
+      return at;
+    };
+    const FrameSamples before = linearize(layers.picture);
+    std::vector<float> changed = layers.picture;
+    for (std::size_t i = 0; i < changed.size(); ++i) changed[i] += change[i];
+    const FrameSamples after = linearize(changed);
+    ASSERT_EQ(before.nodes, c.places);
+    ASSERT_EQ(before.size(), after.size());
+    double square = 0.0;
+    double error = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      float by = 0.0F;
+      for (std::size_t k = 0; k < before.nodes; ++k) {
+        const std::size_t at = i * before.nodes + k;
+        by += before.share[at] * layers.grid.EvaluateSpline(
+                                     change.data(), before.place[at],
+                                     PictureGrid::WeighPlace(before.place[at]));
+      }
+      const auto is = static_cast<double>(before.residual[i]) -
+                      static_cast<double>(after.residual[i]);
+      square += is * is;
+      error += (is - static_cast<double>(by)) * (is - static_cast<double>(by));
+    }
+    EXPECT_LT(std::sqrt(error / square), c.error) << c.exposure;
+  }
+}
+
 TEST(Columns, SumsAreThoseOfALoop) {
   std::mt19937_64 engine(41);
   std::uniform_real_distribution<float> draw(-1.0F, 1.0F);
