@@ -3,6 +3,7 @@
 // pixel. Nothing is shared with what is tested.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -123,6 +124,27 @@ inline PictureStack Film(const LayeredScene& scene, std::uint64_t seed) {
     }
   }
   return stack;
+}
+
+// A block that comes down on a dark ground, lies there and slides on. All is
+// rolled a little: edges along the painter's rows would be rounded to them.
+inline LayeredScene BlockOnGround() {
+  constexpr double kRoll = 0.037;
+  constexpr double kGround_px = 38.3;
+  const double cosine = std::cos(kRoll);
+  const double sine = std::sin(kRoll);
+  LayeredScene scene;
+  scene.still = [=](double x, double y) {
+    return cosine * (y - kGround_px) - sine * x > 0.0 ? 110.0 : 190.0;
+  };
+  for (int t = 0; t < 36; ++t) {
+    const double along = 20.0 + 1.37 * t;
+    const double above =
+        scene.shape.half_short + std::max(0.0, 0.73 * (18 - t));
+    scene.poses.push_back({cosine * along + sine * above,
+                           kGround_px + sine * along - cosine * above, kRoll});
+  }
+  return scene;
 }
 
 }  // namespace touchdown::vision::layers

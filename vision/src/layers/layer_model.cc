@@ -76,6 +76,15 @@ SampleWindow ComputeSampleWindow(const PictureStack& stack, std::size_t picture,
           to(pose.y + reach_y, seen.y + seen.height, stack.height)};
 }
 
+Placed PlaceAt(double x, double y, double angle_rad, const Node& node) {
+  return {static_cast<float>(x),
+          static_cast<float>(y),
+          static_cast<float>(std::cos(angle_rad)),
+          static_cast<float>(std::sin(angle_rad)),
+          static_cast<float>(node.weight),
+          static_cast<float>(node.tau)};
+}
+
 std::vector<Placed> PlaceInExposure(const Layers& layers, const LayerPose& pose,
                                     const LayerPose& motion,
                                     Derivatives derivatives) {
@@ -88,13 +97,9 @@ std::vector<Placed> PlaceInExposure(const Layers& layers, const LayerPose& pose,
   std::vector<Placed> placed;
   for (const Node& node : ChooseNodes(layers.exposure * pace, at_one_place)) {
     const double shift = node.tau * layers.exposure;
-    const double angle = pose.angle_rad + motion.angle_rad * shift;
-    placed.push_back({static_cast<float>(pose.x + motion.x * shift),
-                      static_cast<float>(pose.y + motion.y * shift),
-                      static_cast<float>(std::cos(angle)),
-                      static_cast<float>(std::sin(angle)),
-                      static_cast<float>(node.weight),
-                      static_cast<float>(node.tau)});
+    placed.push_back(PlaceAt(pose.x + motion.x * shift,
+                             pose.y + motion.y * shift,
+                             pose.angle_rad + motion.angle_rad * shift, node));
   }
   return placed;
 }
@@ -163,10 +168,7 @@ class RowLinearizer {
       node.at = at;
       nodes_.push_back(node);
     }
-    middle_.x = static_cast<float>(pose.x);
-    middle_.y = static_cast<float>(pose.y);
-    middle_.cosine = static_cast<float>(std::cos(pose.angle_rad));
-    middle_.sine = static_cast<float>(std::sin(pose.angle_rad));
+    middle_ = PlaceAt(pose.x, pose.y, pose.angle_rad, {0.0, 1.0});
   }
 
   const ShapeCover& cover() const { return cover_; }
