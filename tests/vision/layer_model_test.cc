@@ -165,5 +165,44 @@ TEST(Linearize, DerivativeByThePictureIsThatOfTheModel) {
   }
 }
 
+// Where a pixel sees the body alone, a pose and the picture that move together
+// change nothing: joint steps would hold them where they are.
+TEST(Linearize, PoseAndPictureMoveTogether) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 29);
+  Layers layers = ShadedLayers(scene);
+  LearnTexture(layers);
+  for (std::size_t c = 0; c < layers.picture.size(); ++c) {
+    layers.picture[c] += 20.0F * std::sin(0.7F * static_cast<float>(c));
+  }
+  for (const double exposure : {0.6, 0.95}) {
+    layers.exposure = exposure;
+    const LayerPose& pose = scene.poses[10];
+    FrameSamples at;
+    Linearize(stack, 10, layers, pose, {2.74, 1.8, 0.0}, Derivatives::kAll, at);
+    const double cosine = std::cos(pose.angle_rad);
+    const double sine = std::sin(pose.angle_rad);
+    double square = 0.0;
+    double left = 0.0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (at.cover[i] < 0.9999F) continue;
+      double by = 0.0;  // a shift of T along the body's x
+      for (std::size_t k = 0; k < at.nodes; ++k) {
+        const std::size_t node = i * at.nodes + k;
+        by += static_cast<double>(
+            at.share[node] *
+            layers.grid.EvaluateTilt(layers.picture.data(), at.place[node])
+                .by_x);
+      }
+      const double of_pose = cosine * static_cast<double>(at.by_pose[0][i]) +
+                             sine * static_cast<double>(at.by_pose[1][i]);
+      square += by * by;
+      left += (by + of_pose) * (by + of_pose);
+    }
+    EXPECT_GT(square, 0.0);
+    EXPECT_LT(std::sqrt(left / square), 2e-3) << exposure << ' ' << at.nodes;
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::vision::layers

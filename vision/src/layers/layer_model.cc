@@ -180,7 +180,10 @@ class RowLinearizer {
  private:
   void Look(const NodeNumbers& node, std::size_t k, std::int32_t row,
             std::int32_t begin, std::int32_t end);
-  void TakeMiddle(std::int32_t row, std::int32_t begin, std::int32_t end);
+  bool at_middle() const {
+    return samples_.nodes < nodes_.size() && !layers_.flat;
+  }
+  void LookAtMiddle(std::int32_t row, std::int32_t begin, std::int32_t end);
   void Append(std::int32_t first_pixel, const Lanes& levels, std::size_t from,
               std::size_t to);
 
@@ -191,6 +194,8 @@ class RowLinearizer {
   std::size_t picture_;
   std::vector<NodeNumbers> nodes_;
   Placed middle_;
+  std::array<SplinePlace, kChunk> middle_places_{};
+  Lanes middle_x_{}, middle_y_{};
   std::vector<std::array<SplinePlace, kChunk>> places_;  // by node
   std::vector<Lanes> shares_;
   NodeLanes seen_{};
@@ -228,6 +233,10 @@ void RowLinearizer::Look(const NodeNumbers& node, std::size_t k,
       seen_.tilt[i] = tilt.value;
       seen_.tilt_x[i] = tilt.by_x;
       seen_.tilt_y[i] = tilt.by_y;
+      if (at_middle()) {
+        seen_.middle_x[i] = middle_x_[i] - tilt.by_x;
+        seen_.middle_y[i] = middle_y_[i] - tilt.by_y;
+      }
     }
     if (m.by_long == 0.0F && m.by_short == 0.0F) continue;
     seen_.by_x[i] = m.by_x;
@@ -257,18 +266,21 @@ void RowLinearizer::Look(const NodeNumbers& node, std::size_t k,
   }
 }
 
-// The middle of the exposure in the place of all its nodes, for the derivatives
-// by T.
-void RowLinearizer::TakeMiddle(std::int32_t row, std::int32_t begin,
-                               std::int32_t end) {
+// The middle of the exposure, where derivatives by T are taken.
+void RowLinearizer::LookAtMiddle(std::int32_t row, std::int32_t begin,
+                                 std::int32_t end) {
   const float down = static_cast<float>(row) - middle_.y;
   for (std::int32_t column = begin; column < end; ++column) {
+    const auto i = static_cast<std::size_t>(column - begin);
     const float right = static_cast<float>(column) - middle_.x;
-    places_[0][static_cast<std::size_t>(column - begin)] =
+    middle_places_[i] =
         layers_.grid.LocatePlace(middle_.cosine * right + middle_.sine * down,
                                  middle_.cosine * down - middle_.sine * right);
+    const PictureGrid::Tilt tilt =
+        layers_.grid.EvaluateTilt(layers_.picture.data(), middle_places_[i]);
+    middle_x_[i] = tilt.by_x;
+    middle_y_[i] = tilt.by_y;
   }
-  shares_[0] = sums_.covered;
 }
 
 // Pixels `from` to `to` of those that were looked at.
@@ -311,6 +323,7 @@ void RowLinearizer::Linearize(std::int32_t row, std::int32_t begin,
   sums_ = {};
   std::copy_n(layers_.still.begin() + first_pixel, n, sums_.behind.begin());
   sums_.model = sums_.behind;
+  if (at_middle()) LookAtMiddle(row, begin, end);
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     NodeNumbers& node = nodes_[k];
     node.down = static_cast<float>(row) - node.at.y;
@@ -318,7 +331,10 @@ void RowLinearizer::Linearize(std::int32_t row, std::int32_t begin,
     if (node.flat) EvaluateFlat(node, seen_);
     AddNode(node, seen_, all_, sums_);
   }
-  if (samples_.nodes == 1 && nodes_.size() > 1) TakeMiddle(row, begin, end);
+  if (at_middle()) {
+    places_[0] = middle_places_;
+    shares_[0] = sums_.covered;
+  }
   Lanes levels{};
   std::copy_n(
       stack_.WindowRow(picture_, row) + (begin - stack_.windows[picture_].x), n,

@@ -58,9 +58,11 @@ void AddNode(const NodeNumbers& node, const NodeLanes& seen, bool all,
     const Wide d_x = w * (-cosine * g_x + sine * g_y - cover * node.slope_x);
     const Wide d_y = w * (-sine * g_x - cosine * g_y - cover * node.slope_y);
     const Wide d_turn = w * (g_x * y - g_y * x);
-    WideAt(&sums.by_pose[0][i]) += d_x;
-    WideAt(&sums.by_pose[1][i]) += d_y;
-    WideAt(&sums.by_pose[2][i]) += d_turn;
+    const Wide l_x = share * WideAt(&seen.middle_x[i]);
+    const Wide l_y = share * WideAt(&seen.middle_y[i]);
+    WideAt(&sums.by_pose[0][i]) += d_x - cosine * l_x + sine * l_y;
+    WideAt(&sums.by_pose[1][i]) += d_y - sine * l_x - cosine * l_y;
+    WideAt(&sums.by_pose[2][i]) += d_turn + l_x * y - l_y * x;
     if (!all) continue;
     const auto by = [&sums, i](std::size_t j) -> Wide& {
       return WideAt(&sums.by_shared[j][i]);

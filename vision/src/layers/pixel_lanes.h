@@ -49,8 +49,12 @@ struct alignas(64) NodeLanes {
   Lanes right, x, y;  // from the place, and in the body's coordinates
   Lanes cover, by_x, by_y, by_blur, by_long, by_short;  // CoverAt
   Lanes tilt, tilt_x, tilt_y;                           // PictureGrid::Tilt
-  Lanes product, product_x, product_y;                  // Product
-  Lanes still_x, still_y;  // B's slope where it is smooth, else 0
+  // The slope at the middle of the exposure less that here, where derivatives
+  // by T are those at the middle: a pose and T that move together change
+  // nothing, in these derivatives too.
+  Lanes middle_x, middle_y;
+  Lanes product, product_x, product_y;  // Product
+  Lanes still_x, still_y;               // B's slope where it is smooth, else 0
 };
 
 // Pixels, by columns: sums over the places of the exposure.
