@@ -3,9 +3,33 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace touchdown::vision::layers {
+
+FreePart::FreePart(const PictureGrid& grid) {
+  const double half_x = 0.5 * grid.columns();
+  const double half_y = 0.5 * grid.rows();
+  Eigen::MatrixXd terms(grid.size(), kTerms);
+  Eigen::Index cell = 0;
+  for (std::int32_t j = 0; j < grid.rows(); ++j) {
+    for (std::int32_t i = 0; i < grid.columns(); ++i) {
+      const double x = static_cast<double>(grid.x_of(i)) / half_x;
+      const double y = static_cast<double>(grid.y_of(j)) / half_y;
+      terms.row(cell++) << 1.0, x, y, x * x, x * y, y * y;
+    }
+  }
+  basis_ = terms.householderQr().householderQ() *
+           Eigen::MatrixXd::Identity(terms.rows(), terms.cols());
+}
+
+void FreePart::RemoveComponent(const float* from, float* to) const {
+  const Eigen::VectorXd x =
+      Eigen::Map<const Eigen::VectorXf>(from, basis_.rows()).cast<double>();
+  Eigen::Map<Eigen::VectorXf>(to, basis_.rows()) =
+      (x - basis_ * (basis_.transpose() * x)).cast<float>();
+}
 
 // Standard deviation of what a flat body's residuals have in common, cell by
 // cell of its own picture: means over the frames, less the noise of a mean.

@@ -2,11 +2,25 @@
 // what a texture's prior is.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "layers/layer_model.h"
 
 namespace touchdown::vision::layers {
+
+// The quadratics that T is free to be, as an orthonormal basis of its
+// coefficients: what lies outside of them has the variance texture_dn^2.
+class FreePart {
+ public:
+  FreePart() = default;
+  explicit FreePart(const PictureGrid& grid);
+  // x - Pi x.
+  void RemoveComponent(const float* from, float* to) const;
+
+ private:
+  Eigen::MatrixXd basis_;
+};
 
 // Of a flat body: standard deviation of what its residuals have in common, cell
 // by cell of its own picture, DN: means over the frames, less the noise of a

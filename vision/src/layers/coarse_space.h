@@ -1,0 +1,35 @@
+// The directions of a joint step that pixels tell little of, for T can follow
+// them: each parameter that the frames share, and a common shift or turn of all
+// poses along the body's axes. Conjugate gradients find them last; a coarse
+// space solves them at once (normal_equations.h).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "layers/unknowns.h"
+
+namespace touchdown::vision::layers {
+
+// The shared parameters that a T which is a spline leaves free, then x, y,
+// turn.
+inline constexpr std::size_t kDirections = kQuadratic + kPose;
+
+// W of a T that is a spline: each direction with the T that costs least of what
+// pixels say. It holds for other poses and pictures of the same clip: one from
+// the begin of a fit takes a tenth more products than one of each step.
+struct CoarseSpace {
+  // Of the poses' directions, by frame: columns.
+  std::vector<Eigen::Matrix3d> axes;
+  Eigen::MatrixXf picture;    // T's part: cells x directions
+  Eigen::MatrixXd stiffness;  // W' A W without what is known beforehand
+
+  bool empty() const { return axes.empty(); }
+  // W' x
+  Eigen::VectorXd Restrict(const Unknowns& x) const;
+  // x += W amounts
+  void Prolong(const Eigen::VectorXd& amounts, Unknowns& x) const;
+};
+
+}  // namespace touchdown::vision::layers
