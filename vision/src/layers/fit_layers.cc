@@ -291,8 +291,12 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   JointStepOptions solve = SolveOptions(options, kHeld);
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
+  constexpr double kAstray_px = 0.3;
   double moved_px = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < options.steps && !fit.converged; ++step) {
+  const auto most_steps = [&] {
+    return options.steps + (moved_px > kAstray_px ? options.steps_astray : 0);
+  };
+  for (int step = 0; step < most_steps() && !fit.converged; ++step) {
     LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
     const bool textured = step > 0 && !layers.flat;
     Judge(stack, options, step, evidence.weight, fit, frames);

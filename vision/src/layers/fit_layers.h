@@ -20,6 +20,9 @@ struct FitLayersOptions {
   bool textured = false;
   // Steps at the most; fewer where the poses no longer move.
   int steps = 8;
+  // And so many more as long as a pose moves by a third of a pixel: it is not
+  // where it belongs yet, and what it shows there spoils T.
+  int steps_astray = 0;
   int threads = 0;
   // Straight edges of the whole still picture, in the stack's coordinates.
   std::vector<StillLine> lines;

@@ -269,6 +269,11 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
   // A bound on time: the fit at full resolution goes on from there.
   constexpr int kCoarseSteps = 6;
   coarse.steps = kCoarseSteps;
+  // A fast ball in a film of 25 frames/s (everyday/tennis_table) still moved by
+  // a pixel after six, and the frames around its blow were lost or not as the
+  // last digits fell; after twelve none was, at four ends of the conjugate
+  // gradients.
+  coarse.steps_astray = kCoarseSteps;
   coarse.lines.clear();  // of the full resolution
   const Shape half{shape.disc, 0.5 * shape.half_long, 0.5 * shape.half_short};
   LayerPath& path = evidence.path;
