@@ -18,7 +18,7 @@ inline constexpr std::size_t kDirections = kQuadratic + kPose;
 
 // W of a T that is a spline: each direction with the T that costs least of what
 // pixels say. It holds for other poses and pictures of the same clip: one from
-// the begin of a fit takes a tenth more products than one of each step.
+// the begin of a fit takes up to a third more products than one of each step.
 struct CoarseSpace {
   // Of the poses' directions, by frame: columns.
   std::vector<Eigen::Matrix3d> axes;
