@@ -47,8 +47,8 @@ double MeasureCommonTexture(const PictureStack& stack, const Layers& layers,
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples.cover[i] < kWhole) continue;
       const double dx = samples.pixel[i] % stack.width - poses[t].x;
-      const double dy =
-          static_cast<double>(samples.pixel[i] / stack.width) - poses[t].y;
+      const std::int32_t row = samples.pixel[i] / stack.width;
+      const double dy = row - poses[t].y;
       const SplinePlace place = layers.grid.LocatePlace(
           static_cast<float>(cosine * dx + sine * dy + 0.5),
           static_cast<float>(cosine * dy - sine * dx + 0.5));
