@@ -1,6 +1,5 @@
 // One Gauss-Newton step in all unknowns together: its products, and the coarse
-// space that conjugate gradients start from (layered_scene.h paints the
-// frames).
+// space of its preconditioner (layered_scene.h paints the frames).
 #include "vision/src/layers/normal_equations.h"
 
 #include <gtest/gtest.h>
@@ -99,14 +98,14 @@ TEST(NormalEquations, StiffnessOfTheCoarseSpaceIsThatOfProducts) {
   }
 }
 
-TEST(JointStep, IsTheSameFromACoarseSpaceInFewerProducts) {
+TEST(JointStep, IsTheSameWithACoarseSpaceInFewerProducts) {
   const Equations at;
   const CoarseSpace coarse =
       FindCoarseSpace(at.layers, at.frames, at.evidence, at.poses, at.options);
-  const auto solve = [&](const CoarseSpace& from, double tolerance) {
+  const auto solve = [&](const CoarseSpace& space, double tolerance) {
     JointStepOptions options = at.options;
     options.tolerance = tolerance;
-    return SolveJointStep(at.layers, at.frames, at.evidence, from, options);
+    return SolveJointStep(at.layers, at.frames, at.evidence, space, options);
   };
   constexpr double kTolerance = 3e-4;
   const JointStep plain = solve(CoarseSpace(), kTolerance);

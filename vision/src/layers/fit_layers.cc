@@ -291,6 +291,9 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   JointStepOptions solve = SolveOptions(options, kHeld);
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
+  // Poses that move by more are not where they belong. Of 68 photographed clips
+  // none moves so far in its last step; less costs steps where nothing is
+  // wrong.
   constexpr double kAstray_px = 0.3;
   double moved_px = std::numeric_limits<double>::infinity();
   const auto most_steps = [&] {
