@@ -17,7 +17,6 @@
 #include "app/measure/journal.h"
 #include "app/measure/judge.h"
 #include "app/measure/left_out.h"
-#include "app/measure/light_evidence.h"
 #include "app/measure/open_recording.h"
 #include "app/measure/options_hash.h"
 #include "app/measure/stop_early.h"
@@ -337,6 +336,10 @@ void Analyzer::DescribeScene() {
   } else if (track.patterned) {
     scene.used.push_back("the body's own picture, which moves with it");
   }
+  if (track.body.gamma) {
+    scene.used.push_back(fmt::format(
+        "gamma of {:.2f}, from the body's outlines", *track.body.gamma));
+  }
   if (track.near_ground_modelled) {
     scene.used.push_back("the ground's edge, hidden by the body");
   } else {
@@ -424,7 +427,6 @@ Analysis Analyzer::Run() {
   track_options.kind = kind;
   track_options.measured = options_.diameter_m.has_value();
   track_options.size = StatedSize(options_);
-  track_options.before = footage_.before;
   track_options.ground = camera_.image_ground;
   track_options.still_frames = footage_.still_frames;
   track_options.threads = options_.decoder_threads;
@@ -454,6 +456,13 @@ Analysis Analyzer::Run() {
     const std::vector<std::string> of_track = Seen(*result_.track).warnings;
     result_.warnings.insert(result_.warnings.end(), of_track.begin(),
                             of_track.end());
+    if (const auto& gamma = result_.track->body.gamma) {
+      result_.warnings.push_back(fmt::format(
+          "the outlines are those of a camera with a gamma of {:.2f}, not of a "
+          "linear one: its levels were turned into light; state it with "
+          "--gamma",
+          *gamma));
+    }
     result_.size_conflict =
         FindSizeConflict(Seen(*result_.track).body, options_);
     result_.warnings.insert(result_.warnings.end(),
@@ -502,14 +511,12 @@ double ShareExplained(const Analysis& analysis) {
 
 // One clip of one channel: options are checked before the first frame is
 // decoded, so that a user's mistake costs no time. `motion`: the recording's,
-// measured where it is not known yet. `before`: the track of a look at other
-// levels of the recording, or null. Ends by the limit with Unfinished; a user's
-// interruption passes as core::Cancelled.
+// measured where it is not known yet. Ends by the limit with Unfinished; a
+// user's interruption passes as core::Cancelled.
 Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
                          const AnalyzeOptions& options,
                          const core::Cancellation& until,
-                         std::optional<vision::CameraMotion>& motion,
-                         const vision::Track* before = nullptr) {
+                         std::optional<vision::CameraMotion>& motion) {
   const vision::ClipInfo info = clip->info();
   CheckOptions(options, info);
   if (options.gamma) {
@@ -520,7 +527,6 @@ Analysis AnalyzeOpenClip(std::unique_ptr<vision::Clip> clip,
     const ClipCalibration camera = FitToClip(options, info);
     until.Enter("light and camera are looked at");
     Footage footage = MakeSteady(std::move(clip), options, motion);
-    footage.before = before;
     if (options.stop_early && info.format != kRawFormat) {
       return AnalyzeUntilDecided(std::move(footage), camera, options);
     }
@@ -545,61 +551,6 @@ core::Cancellation MakeCancellation(const std::filesystem::path& path,
   return core::Cancellation::After(
       options.limit_s.value_or(std::numeric_limits<double>::infinity()),
       options.interrupted, std::move(on_stage));
-}
-
-// A camera that made pictures to look at, as a block's outlines show it: the
-// same once more with light in place of levels; nothing where they do not.
-// Light must be the better answer (light_evidence.h).
-std::optional<Analysis> AnalyzeLight(
-    const std::filesystem::path& path, const vision::ClipOptions& clip_options,
-    const Analysis& seen, const core::Cancellation& until,
-    std::optional<vision::CameraMotion>& motion) {
-  constexpr double kClearlyNot1 = 0.72;
-  constexpr double kLeast = 0.3;  // no camera has less: the outlines err
-  // In light with the camera's own gamma outlines still show 0.9 to 1.
-  constexpr double kNear1 = 0.1;
-  if (seen.options.gamma || !seen.track || !seen.explained) return std::nullopt;
-  double more = seen.track->body.gamma.value_or(1.0);
-  if (more < kLeast || more > kClearlyNot1) return std::nullopt;
-  AnalyzeOptions options = seen.options;
-  options.gamma = 1.0;
-  const auto evidence = [](const Analysis& analysis) {
-    return LightEvidence{analysis.explained->near,
-                         analysis.track->body.u_common_px,
-                         analysis.contacts.gravity_refuted};
-  };
-  // Of levels; a second round must explain as much as the first, with as right
-  // a gravity.
-  LightEvidence levels = evidence(seen);
-  std::optional<Analysis> best;
-  // First order is not exact: what remains is measured again.
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds && std::abs(more - 1.0) > kNear1;
-       ++round) {
-    // A clip that was made linear has no gamma left: what the outlines still
-    // show is the factor to the next round's.
-    *options.gamma *= more;
-    Analysis light =
-        AnalyzeOpenClip(OpenRecording(path, clip_options), options, until,
-                        motion, &*(best ? *best : seen).track);
-    if (!light.track || !light.track->layered || !light.explained ||
-        !IsBetterInLight(evidence(light), levels)) {
-      break;
-    }
-    levels.explained = light.explained->near;
-    levels.gravity_refuted = light.contacts.gravity_refuted;
-    more = light.track->body.gamma.value_or(1.0);
-    light.scene_model.used.push_back(fmt::format(
-        "gamma of {:.2f}, from the body's outlines", *options.gamma));
-    light.warnings.push_back(fmt::format(
-        "the outlines are those of a camera with a gamma of {:.2f}, not of a "
-        "linear one: its levels were turned into light; state it with --gamma",
-        *options.gamma));
-    light.options = seen.options;
-    light.options_hash = seen.options_hash;
-    best = std::move(light);
-  }
-  return best;
 }
 
 }  // namespace
@@ -673,10 +624,6 @@ Analysis Analyze(const std::filesystem::path& path,
                         vision::Name(channel)));
         analysis = std::move(other);
       }
-    }
-    if (auto light =
-            AnalyzeLight(path, clip_options, analysis, until, motion)) {
-      analysis = std::move(*light);
     }
     if (witness) witness->RequireWhole();
     complete(analysis);

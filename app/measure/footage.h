@@ -26,7 +26,6 @@ struct Footage {
   bool motion_unexplained = false;                // vision::CameraMotion's
   // Backgrounds are made of these; empty: of any.
   std::vector<std::int64_t> still_frames;
-  const vision::Track* before = nullptr;        // vision::TrackOptions::before
   std::chrono::steady_clock::time_point begun;  // from when time counts
 };
 

@@ -223,7 +223,7 @@ std::vector<LeftOutEffect> LeftOutEffects(const Analysis& analysis,
   const bool level = analysis.calibration && analysis.calibration->ground &&
                      analysis.calibration->ground->slope_rad;
   if (!level) out.push_back(Slope(*seen, sizes));
-  if (!analysis.options.gamma) {
+  if (!analysis.options.gamma && !analysis.track->body.gamma) {
     out.push_back(Outline(analysis, *seen, sizes));
   }
   if (auto compression = Compression(analysis)) {

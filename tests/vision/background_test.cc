@@ -110,6 +110,23 @@ TEST(Background, ShotNoiseGrowsWithTheLevel) {
   }
 }
 
+// As the same frames show it in light: levels within what rounding and the
+// curve of a mean make of them.
+TEST(Background, InLightIsThatOfTheLight) {
+  const auto clip = OpenScene(Moving({}), 6);
+  const LightScale scale = MakeLightScale(clip->info().bit_depth, 0.45);
+  const auto view = ViewInLight(*clip, scale.gamma);
+  const std::int64_t frames = clip->info().frames;
+  const Background light = InLight(EstimateBackground(*clip, 0, frames), scale);
+  const Background seen = EstimateBackground(*view, 0, frames);
+  EXPECT_EQ(light.full_scale_dn, seen.full_scale_dn);
+  for (std::size_t i = 0; i < seen.level.size(); i += 97) {
+    EXPECT_NEAR(light.level[i], seen.level[i], 0.01 * seen.level[i]) << i;
+  }
+  EXPECT_NEAR(std::sqrt(light.UsualVariance()), std::sqrt(seen.UsualVariance()),
+              0.1 * std::sqrt(seen.UsualVariance()));
+}
+
 TEST(Background, VarianceIsNeverLessThanRounding) {
   Background background;
   background.noise_floor_dn2 = 0.0;

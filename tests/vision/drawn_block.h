@@ -28,6 +28,7 @@ struct DrawnBlock {
   double noise_dn = 2.0;         // uniform, of this standard deviation
   std::int64_t noise_lasts = 1;  // frames: a codec repeats its errors
   std::function<BlockPose(std::int64_t frame)> pose;
+  double gamma = 1.0;  // of the camera (linear_clip.h)
   // DN more at a place of the body, in px along its sides.
   std::function<double(double along_px, double across_px)> face =
       [](double, double) { return 0.0; };
@@ -45,6 +46,7 @@ inline double HashNoise(std::uint32_t x, std::uint32_t y, std::uint32_t t) {
 }
 
 inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
+  constexpr double kFull_dn = 255.0;
   const auto draw = [block](std::int64_t frame, std::vector<double>& levels) {
     const BlockPose pose = block.pose(frame);
     const double cosine = std::cos(pose.angle_rad);
@@ -72,7 +74,9 @@ inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
                       static_cast<std::uint32_t>(y),
                       static_cast<std::uint32_t>(frame / block.noise_lasts));
         const double level = block.level_dn + block.face(along, across);
-        levels.push_back(wall + cover * (level - wall) + noise);
+        const double light = wall + cover * (level - wall);
+        levels.push_back(kFull_dn * std::pow(light / kFull_dn, block.gamma) +
+                         noise);
       }
     }
   };

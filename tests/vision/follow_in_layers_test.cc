@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "tests/vision/drawn_block.h"
+#include "touchdown/vision/footage/linear_clip.h"
 #include "touchdown/vision/synthetic/render.h"
 
 namespace touchdown::vision {
@@ -96,6 +97,54 @@ TEST(FollowInLayers, GoesOnBeyondBothEnds) {
   EXPECT_EQ(track->poses.front().frame, 0);
   EXPECT_EQ(track->poses.back().frame, frames - 1);
   ExpectTrue(*track, block, 0.1);
+}
+
+// A dark block before a bright wall, whose outlines lie far beside it in
+// levels of gamma 0.45.
+DrawnBlock Dark(double gamma) {
+  DrawnBlock block = Passing();
+  block.level_dn = 8.0;
+  block.gamma = gamma;
+  return block;
+}
+
+TEST(FollowInLayers, ACamerasGammaIsTakenOut) {
+  const DrawnBlock block = Dark(0.45);
+  const auto clip = DrawBlock(block);
+  const std::int64_t frames = clip->info().frames;
+  const auto track =
+      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
+                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  ASSERT_TRUE(track) << track.error().reason;
+  ASSERT_TRUE(track->body.gamma);
+  EXPECT_NEAR(*track->body.gamma, block.gamma, 0.1);
+  EXPECT_NEAR(track->body.half_short_px.value, block.half_short_px, 0.1);
+  EXPECT_LT(track->body.u_common_px, 0.1);
+  ExpectTrue(*track, block, 0.1);
+}
+
+TEST(FollowInLayers, ALinearCameraHasNoGamma) {
+  const DrawnBlock block = Dark(1.0);
+  const auto clip = DrawBlock(block);
+  const std::int64_t frames = clip->info().frames;
+  const auto track =
+      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
+                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  ASSERT_TRUE(track) << track.error().reason;
+  EXPECT_FALSE(track->body.gamma);
+}
+
+// Who states a camera's gamma has light, and no second one is looked for.
+TEST(FollowInLayers, AGammaThatWasStatedStays) {
+  const DrawnBlock block = Dark(0.45);
+  const auto levels = DrawBlock(block);
+  const auto clip = ViewInLight(*levels, 0.7);
+  const std::int64_t frames = clip->info().frames;
+  const auto track =
+      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
+                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  ASSERT_TRUE(track) << track.error().reason;
+  EXPECT_FALSE(track->body.gamma);
 }
 
 // A picture is learned from every second or third frame. Where a blow lies

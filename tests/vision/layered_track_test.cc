@@ -59,32 +59,6 @@ TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
   }
 }
 
-// Of poses a quarter of a pixel off, as a camera's gamma may have left them.
-TEST(TrackBody, BeginsWhereAnotherLookEnded) {
-  const DrawnBlock block = Slow();
-  TrackOptions options = OptionsFor(block);
-  const auto clip = DrawBlock(block);
-  const auto sought = TrackBody(*clip, options);
-  ASSERT_TRUE(sought) << sought.error().reason;
-  ASSERT_TRUE(sought->track.layered);
-  Track before = sought->track;
-  for (Pose& pose : before.poses) pose.centre.y_px += 0.25;
-  options.before = &before;
-  const auto again = TrackBody(*clip, options);
-  ASSERT_TRUE(again) << again.error().reason;
-  EXPECT_TRUE(again->track.layered);
-  ASSERT_EQ(again->track.poses.size(), sought->track.poses.size());
-  for (std::size_t i = 0; i < before.poses.size(); ++i) {
-    const Pose& was = sought->track.poses[i];
-    const Pose& is = again->track.poses[i];
-    EXPECT_EQ(is.frame, was.frame);
-    EXPECT_NEAR(is.centre.x_px, was.centre.x_px, 0.02) << is.frame;
-    EXPECT_NEAR(is.centre.y_px, was.centre.y_px, 0.02) << is.frame;
-  }
-  EXPECT_NEAR(again->track.body.contrast_dn, sought->track.body.contrast_dn,
-              2.0);
-}
-
 constexpr double kRadius_px = 16.0;
 constexpr std::int64_t kFrames = 40;
 

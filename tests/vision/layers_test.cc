@@ -482,6 +482,41 @@ TEST(FitLayers, CornersTellTheCamerasGamma) {
   }
 }
 
+// Layers that are right but for a quarter of a pixel need few steps to be so
+// again.
+TEST(ImproveLayers, EndsWhereTheFitFromNothingEnds) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 11);
+  FitLayersOptions options = OptionsOf(scene);
+  const LayerFit fit =
+      FitLayers(stack, scene.shape, Shaken(scene.poses, 0.4),
+                Paint(scene, nullptr), scene.noise_dn, options);
+  ASSERT_TRUE(fit.converged);
+  LayerFit start = fit;
+  start.poses = Shaken(fit.poses, 0.25);
+  options.steps = 4;
+  const LayerFit again = ImproveLayers(stack, start, options);
+  EXPECT_TRUE(again.converged);
+  EXPECT_NEAR(again.layers.blur, fit.layers.blur, 1e-3);
+  for (std::size_t t = 0; t < fit.poses.size(); ++t) {
+    EXPECT_NEAR(again.poses[t].x, fit.poses[t].x, 2e-3) << t;
+    EXPECT_NEAR(again.poses[t].y, fit.poses[t].y, 2e-3) << t;
+  }
+}
+
+TEST(FitLayers, TheLossIsThatOfItsResiduals) {
+  const LayeredScene scene = BlockOnGround();
+  FitLayersOptions options = OptionsOf(scene);
+  options.loss = [](float level, float model) {
+    return static_cast<double>((level - model) * (level - model));
+  };
+  const LayerFit fit =
+      FitLayers(Film(scene, 11), scene.shape, scene.poses,
+                Paint(scene, nullptr), scene.noise_dn, options);
+  // Rounding, too.
+  EXPECT_NEAR(std::sqrt(fit.loss), std::sqrt(1.0 + 1.0 / 12.0), 0.05);
+}
+
 // An outline that settled on the ground's edge, a pixel below the body.
 TEST(AlignPoses, FindsABodyThatLiesBesideItsPose) {
   const LayeredScene scene = BlockOnGround();
@@ -503,7 +538,7 @@ TEST(FitLayers, DoesNotDependOnThreads) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 23);
   FitLayersOptions options = OptionsOf(scene);
-  options.steps = 3;
+  options.steps = 4;
   const std::vector<LayerPose> start = Shaken(scene.poses, 0.2);
   const std::vector<float> still = Paint(scene, nullptr);
   const LayerFit one =

@@ -74,5 +74,28 @@ TEST(LinearClip, OfGammaOneIsTheSameOnAFinerScale) {
   EXPECT_NEAR(frame.at(5, 6), 101.0 * 4095.0 / 255.0, 0.51);
 }
 
+TEST(LinearClip, AViewShowsTheSameAndKnowsThatItIsLight) {
+  Ramp levels(8);
+  const auto view = ViewInLight(levels, 0.45);
+  const auto whole = MakeLinear(std::make_unique<Ramp>(8), 0.45);
+  EXPECT_FALSE(levels.info().in_light);
+  EXPECT_TRUE(view->info().in_light);
+  EXPECT_TRUE(whole->info().in_light);
+  for (const std::int32_t x : {0, 7, 15}) {
+    EXPECT_EQ(view->Read(1).at(x, 9), whole->Read(1).at(x, 9));
+  }
+}
+
+TEST(LightScale, LevelsComeBackFromTheirLight) {
+  for (const std::int32_t depth : {8, 12}) {
+    const LightScale scale = MakeLightScale(depth, 0.45);
+    EXPECT_EQ(scale.ToLight(scale.full_level_dn), scale.full_light_dn);
+    for (const double level : {0.0, 1.0, 30.0, 255.0}) {
+      EXPECT_NEAR(scale.ToLevel(scale.ToLight(level)), level, 1e-9);
+    }
+    EXPECT_EQ(scale.ToLight(-3.0), 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::vision

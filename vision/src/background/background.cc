@@ -106,6 +106,23 @@ double Background::UsualVariance() const {
   return Variance(sum / (kPlaces * kPlaces));
 }
 
+Background InLight(const Background& background, const LightScale& scale) {
+  Background light = background;
+  light.full_scale_dn = scale.full_light_dn;
+  double variance = 0.0;
+  for (float& level : light.level) {
+    // DN of light by DN of level; black has noise, too.
+    const double at = std::max(static_cast<double>(level), 1.0);
+    const double seen = scale.ToLight(at);
+    const double slope = seen / at / scale.gamma;
+    variance += slope * slope * background.Variance(at);
+    level = static_cast<float>(seen);
+  }
+  light.noise_floor_dn2 = variance / static_cast<double>(light.level.size());
+  light.noise_slope_dn = 0.0;
+  return light;
+}
+
 std::vector<std::int64_t> BackgroundFrames(std::int64_t first,
                                            std::int64_t last, int samples) {
   const std::int64_t n =

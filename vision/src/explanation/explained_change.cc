@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 
@@ -13,6 +14,7 @@
 #include "explanation/two_layers.h"
 #include "numbers/robust.h"
 #include "touchdown/vision/background/background.h"
+#include "touchdown/vision/footage/linear_clip.h"
 
 namespace touchdown::vision {
 namespace {
@@ -230,7 +232,11 @@ Residuals SumResiduals(const Rendered& rendered,
 }  // namespace
 
 core::Expected<ExplainedChange> MeasureExplainedChange(
-    Clip& clip, const Track& track, const ExplainedChangeOptions& options) {
+    Clip& of_levels, const Track& track,
+    const ExplainedChangeOptions& options) {
+  const std::unique_ptr<Clip> light =
+      track.body.gamma ? ViewInLight(of_levels, *track.body.gamma) : nullptr;
+  Clip& clip = light ? *light : of_levels;
   CheckArguments(clip, track, options);
   // Frames with a pose: with fewer the body's picture is the frame itself, and
   // explains anything. Not studied.

@@ -1,5 +1,6 @@
 #include "touchdown/vision/footage/linear_clip.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,17 +16,12 @@ std::int32_t LinearDepth(std::int32_t bit_depth) {
   return bit_depth <= 8 ? 12 : 16;
 }
 
-// light = (level / full)^(1 / gamma), for every level of the file.
-std::vector<std::uint16_t> MakeGammaTable(std::int32_t bit_depth,
-                                          double gamma) {
-  const auto levels = std::size_t{1} << static_cast<unsigned>(bit_depth);
-  const double full = static_cast<double>(levels - 1);
-  const double full_out =
-      std::exp2(static_cast<double>(LinearDepth(bit_depth))) - 1.0;
-  std::vector<std::uint16_t> table(levels);
-  for (std::size_t v = 0; v < levels; ++v) {
-    const double light = std::pow(static_cast<double>(v) / full, 1.0 / gamma);
-    table[v] = static_cast<std::uint16_t>(std::lround(light * full_out));
+std::vector<std::uint16_t> MakeTable(const LightScale& scale) {
+  std::vector<std::uint16_t> table(
+      static_cast<std::size_t>(scale.full_level_dn) + 1);
+  for (std::size_t v = 0; v < table.size(); ++v) {
+    table[v] = static_cast<std::uint16_t>(
+        std::lround(scale.ToLight(static_cast<double>(v))));
   }
   return table;
 }
@@ -34,9 +30,14 @@ std::vector<std::uint16_t> MakeGammaTable(std::int32_t bit_depth,
 class LinearClip final : public Clip {
  public:
   LinearClip(std::unique_ptr<Clip> clip, double gamma)
-      : clip_(std::move(clip)), gamma_(gamma), info_(clip_->info()) {
-    table_ = MakeGammaTable(info_.bit_depth, gamma);
+      : LinearClip(*clip, gamma) {
+    owned_ = std::move(clip);
+  }
+  LinearClip(Clip& clip, double gamma)
+      : clip_(&clip), gamma_(gamma), info_(clip.info()) {
+    table_ = MakeTable(MakeLightScale(info_.bit_depth, gamma));
     info_.bit_depth = LinearDepth(info_.bit_depth);
+    info_.in_light = true;
     set_cancellation(clip_->cancellation());
   }
 
@@ -52,6 +53,9 @@ class LinearClip final : public Clip {
   void HasRead() const override { clip_->HasRead(); }
   std::int64_t EntryFrame(std::int64_t index) const override {
     return clip_->EntryFrame(index);
+  }
+  const Changes* KnownChanges(std::int64_t index) const override {
+    return clip_->KnownChanges(index);
   }
   std::unique_ptr<Clip> Another() const override {
     std::unique_ptr<Clip> another = clip_->Another();
@@ -92,7 +96,8 @@ class LinearClip final : public Clip {
     }
   }
 
-  std::unique_ptr<Clip> clip_;
+  std::unique_ptr<Clip> owned_;  // null: another's
+  Clip* clip_;
   double gamma_;
   ClipInfo info_;
   std::vector<std::uint16_t> table_;
@@ -101,8 +106,29 @@ class LinearClip final : public Clip {
 
 }  // namespace
 
+double LightScale::ToLight(double level_dn) const {
+  return full_light_dn *
+         std::pow(std::max(level_dn, 0.0) / full_level_dn, 1.0 / gamma);
+}
+
+double LightScale::ToLevel(double light_dn) const {
+  return full_level_dn *
+         std::pow(std::max(light_dn, 0.0) / full_light_dn, gamma);
+}
+
+LightScale MakeLightScale(std::int32_t bit_depth, double gamma) {
+  const auto full = [](std::int32_t bits) {
+    return std::exp2(static_cast<double>(bits)) - 1.0;
+  };
+  return {full(bit_depth), full(LinearDepth(bit_depth)), gamma};
+}
+
 std::unique_ptr<Clip> MakeLinear(std::unique_ptr<Clip> clip, double gamma) {
   return std::make_unique<LinearClip>(std::move(clip), gamma);
+}
+
+std::unique_ptr<Clip> ViewInLight(Clip& clip, double gamma) {
+  return std::make_unique<LinearClip>(clip, gamma);
 }
 
 }  // namespace touchdown::vision

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "layers/texture.h"
 #include "touchdown/core/parallel.h"
@@ -264,29 +265,29 @@ double MeasureCurve(const PictureStack& stack, const CoarseSpace& coarse,
   return curve;
 }
 
-}  // namespace
+double MeanLoss(const std::vector<FrameSamples>& frames,
+                const FitLayersOptions& options) {
+  if (!options.loss) return 0.0;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const FrameSamples& samples : frames) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      sum += options.loss(samples.level[i],
+                          samples.level[i] - samples.residual[i]);
+    }
+    count += samples.size();
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(count, 1));
+}
 
-LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
-                   const std::vector<LayerPose>& poses,
-                   const std::vector<float>& still, double noise_dn,
-                   const FitLayersOptions& options) {
-  LayerFit fit;
-  fit.poses = poses;
+// Steps in all unknowns until the poses no longer move, from step
+// `first_step` on.
+LayerFit Settle(const PictureStack& stack, int first_step,
+                const FitLayersOptions& options, LayerFit fit) {
   Layers& layers = fit.layers;
-  layers.shape = shape;
-  layers.blur = options.prior.value[kBlur];
-  layers.exposure = std::clamp(std::sqrt(options.prior.value[kExposureSquare]),
-                               kLeastExposure, 1.0);
-  layers.still = still;
-  layers.noise_dn = noise_dn;
-  layers.grid = PictureGrid(shape, kRimBlurs * layers.blur * kMostBlur);
-  layers.picture.assign(layers.grid.size(), 0.0F);
   std::vector<FrameSamples> frames;
   StillEvidence evidence;
   CoarseSpace coarse;
-  layers.quadratic = {MeanLevel(stack, layers, fit.poses)};
-  if (options.textured) LearnTexture(layers);
-
   constexpr double kHeld = 0.0;  // u of the curve: it is not fitted yet
   JointStepOptions solve = SolveOptions(options, kHeld);
   // Poses that move by less are found: they are aligned once more each.
@@ -299,14 +300,15 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   const auto most_steps = [&] {
     return options.steps + (moved_px > kAstray_px ? options.steps_astray : 0);
   };
-  for (int step = 0; step < most_steps() && !fit.converged; ++step) {
+  for (int step = first_step;
+       step < first_step + most_steps() && !fit.converged; ++step) {
     LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
     const bool textured = step > 0 && !layers.flat;
     Judge(stack, options, step, evidence.weight, fit, frames);
     const bool fine = moved_px < 2.0 * kStill_px;
     solve.tolerance = fine ? kFine : kRough;
     // A disc's angles hang on its picture alone, which is learned first.
-    solve.turns = options.turns && (!shape.disc || step >= kFlatSteps);
+    solve.turns = options.turns && (!layers.shape.disc || step >= kFlatSteps);
     evidence = WeighStill(stack, layers, frames, options.threads);
     if (textured && coarse.empty()) {
       coarse = FindCoarseSpace(layers, frames, evidence, fit.poses, solve);
@@ -316,6 +318,7 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
     fit.converged = fine && moved_px < kStill_px && step > kFlatSteps;
   }
   LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
+  fit.loss = MeanLoss(frames, options);
   layers.noise_dn = MeasureNoise(frames, layers.noise_dn);
   if (!layers.flat) {
     layers.picture_weight = WeighPicture(layers, frames);
@@ -337,6 +340,47 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
     fit.curve = MeasureCurve(stack, coarse, options, fit, frames);
   }
   return fit;
+}
+
+}  // namespace
+
+void SetOptics(double blur, double exposure, SharedPrior& prior) {
+  constexpr double kBlurU_px = 0.5;
+  constexpr double kExposureU = 0.3;  // of a frame's interval
+  prior.value[kBlur] = blur;
+  prior.u[kBlur] = kBlurU_px;
+  prior.value[kExposureSquare] = exposure * exposure;
+  prior.u[kExposureSquare] = 2.0 * exposure * kExposureU;
+}
+
+LayerFit ImproveLayers(const PictureStack& stack, LayerFit fit,
+                       const FitLayersOptions& options) {
+  fit.converged = false;
+  fit.layers.curve = 0.0;
+  // By then a texture was told, and poses no longer are rough.
+  constexpr int kFirstStep = kFlatSteps + 1;
+  return Settle(stack, kFirstStep, options, std::move(fit));
+}
+
+LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
+                   const std::vector<LayerPose>& poses,
+                   const std::vector<float>& still, double noise_dn,
+                   const FitLayersOptions& options) {
+  LayerFit fit;
+  fit.poses = poses;
+  Layers& layers = fit.layers;
+  layers.shape = shape;
+  layers.blur = options.prior.value[kBlur];
+  layers.exposure = std::clamp(std::sqrt(options.prior.value[kExposureSquare]),
+                               kLeastExposure, 1.0);
+  layers.still = still;
+  layers.noise_dn = noise_dn;
+  layers.grid = PictureGrid(shape, kRimBlurs * layers.blur * kMostBlur);
+  layers.picture.assign(layers.grid.size(), 0.0F);
+  layers.quadratic = {MeanLevel(stack, layers, fit.poses)};
+  if (options.textured) LearnTexture(layers);
+
+  return Settle(stack, 0, options, std::move(fit));
 }
 
 }  // namespace touchdown::vision::layers

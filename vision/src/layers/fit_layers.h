@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -26,12 +27,20 @@ struct FitLayersOptions {
   int threads = 0;
   // Straight edges of the whole still picture, in the stack's coordinates.
   std::vector<StillLine> lines;
+  // What a pixel's level and the model's cost, so that fits of one clip whose
+  // levels are not of one scale can be compared. Empty: nothing.
+  std::function<double(float level, float model)> loss;
 };
+
+// What is known of the optics at first: whatever told them, pictures tell them
+// far better. Blur in px, exposure in frame intervals.
+void SetOptics(double blur, double exposure, SharedPrior& prior);
 
 struct LayerFit {
   Layers layers;
   std::vector<LayerPose> poses;  // of each picture of the stack
   bool converged = false;
+  double loss = 0.0;  // mean over the pixels that show something of the body
   // px by which outlines lie beside sizes that are held before a texture; 0 of
   // others. What moves outlines, as a camera's gamma does, moves all edges of a
   // body in the air outward alike; at the ground one of them counts for less,
@@ -42,6 +51,11 @@ struct LayerFit {
   // alike. `layers` hold 0.
   std::optional<double> curve;
 };
+
+// From layers and poses that are nearly right: those of another scale of
+// levels.
+LayerFit ImproveLayers(const PictureStack& stack, LayerFit fit,
+                       const FitLayersOptions& options);
 
 // `still`: a first B. Poses within about 2 s of the truth; from farther they
 // may settle elsewhere: begin with halved pictures.

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "layers/align_pose.h"
 #include "layers/disc_turn.h"
@@ -12,6 +16,8 @@
 #include "outline/track_shape.h"
 #include "touchdown/core/parallel.h"
 #include "track/image_size.h"
+#include "tracking/fit_in_light.h"
+#include "tracking/layer_evidence.h"
 #include "tracking/layer_extension.h"
 #include "tracking/layer_pictures.h"
 
@@ -26,11 +32,6 @@ using layers::LayerPose;
 using layers::PictureStack;
 using layers::PoseFit;
 using layers::Shape;
-
-// Pictures of so many frames are learned from; more cost time and memory and
-// tell little more.
-constexpr std::size_t kMostLearned = 96;
-constexpr std::size_t kLeastLayerPoses = 5;
 
 // Of how many pictures a body is learned: a large one tells its own in fewer.
 std::size_t CountPictures(const Shape& shape, std::size_t least,
@@ -90,17 +91,13 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   auto& u = options.prior.u;
   // px, of the first guess: a sharper one converges from nearer by only.
   constexpr double kLeastBlur = 0.7;
-  value[layers::kBlur] = std::max(track.body.blur_px, kLeastBlur);
-  u[layers::kBlur] = 0.5;
   // Of a frame's interval, where no blur has told one yet.
   constexpr double kUsualExposure = 0.3;
-  // Of the same, whatever told it: pictures tell an exposure far better.
-  constexpr double kExposureU = 0.3;
-  const double exposure = track.body.shutter_fraction > 0.0
-                              ? track.body.shutter_fraction
-                              : kUsualExposure;
-  value[layers::kExposureSquare] = exposure * exposure;
-  u[layers::kExposureSquare] = 2.0 * exposure * kExposureU;
+  layers::SetOptics(std::max(track.body.blur_px, kLeastBlur),
+                    track.body.shutter_fraction > 0.0
+                        ? track.body.shutter_fraction
+                        : kUsualExposure,
+                    options.prior);
   value[layers::kLong] = shape.half_long;
   value[layers::kShort] = shape.half_short;
   // px, of a half side that is stated: less would hold it where edges are not
@@ -189,82 +186,10 @@ void DropUnexplained(std::vector<Pose>& poses) {
   std::erase_if(poses, [most](const Pose& pose) { return pose.misfit > most; });
 }
 
-// What is learned from: a path, its pictures and the first still picture.
-struct Evidence {
-  core::PixelRect box;
-  std::vector<float> still;
-  double noise_dn = 1.0;
-  std::size_t most_frames = 0;  // at a time
-  LayerPath path;
-  PictureStack stack;
-};
-
-Evidence GatherEvidence(Clip& clip, const Background& background,
-                        const Track& track, const Shape& shape,
-                        const FitLayersOptions& options) {
-  Evidence evidence;
-  evidence.box =
-      SweptBox(background, track, shape, options.prior.value[layers::kBlur]);
-  evidence.noise_dn = std::sqrt(background.UsualVariance());
-  evidence.still = CropBackground(background, evidence.box);
-  // So many samples are kept: 256 MiB.
-  constexpr std::size_t kMostSamples = std::size_t{1} << 26U;
-  evidence.most_frames =
-      std::clamp(kMostSamples / std::max<std::size_t>(evidence.still.size(), 1),
-                 kLeastLayerPoses, kMostLearned);
-  const LayerPath all = PathInBox(track, evidence.box, options.turns);
-  evidence.path =
-      Choose(all, SpreadEvenly(all.frames.size(), evidence.most_frames));
-  evidence.stack =
-      ReadPath(clip, evidence.still, evidence.path, shape, evidence.box);
-  return evidence;
-}
-
-// The straight edges of the whole background, in the box's coordinates. What
-// the body covers in many frames may be itself there.
-std::vector<layers::StillLine> FindLines(const Background& background,
-                                         const Evidence& evidence,
-                                         const Shape& shape, double blur) {
-  // Of the frames. A background is the middle of what was seen.
-  constexpr float kMostCovered = 0.2F;
-  constexpr double kRim = 3.5;  // blurs, beyond which a body is not seen
-  const core::PixelRect whole{0, 0, background.width_px, background.height_px};
-  const std::vector<float> levels = CropBackground(background, whole);
-  const auto frames = static_cast<float>(evidence.path.poses.size());
-  std::vector<float> clear(levels.size(), 2.0F + kMostCovered * frames);
-  const double reach = shape.Reach() + kRim * blur;
-  for (const LayerPose& pose : evidence.path.poses) {
-    const double x = pose.x + evidence.box.x;
-    const double y = pose.y + evidence.box.y;
-    const auto column = [&](double at) {
-      return std::clamp(static_cast<std::int32_t>(std::lround(at)), 0,
-                        whole.width);
-    };
-    const auto row = [&](double at) {
-      return std::clamp(static_cast<std::int32_t>(std::lround(at)), 0,
-                        whole.height);
-    };
-    for (std::int32_t j = row(y - reach); j < row(y + reach); ++j) {
-      for (std::int32_t i = column(x - reach); i < column(x + reach); ++i) {
-        clear[static_cast<std::size_t>(j) *
-                  static_cast<std::size_t>(whole.width) +
-              static_cast<std::size_t>(i)] -= 1.0F;
-      }
-    }
-  }
-  std::vector<layers::StillLine> lines =
-      layers::FindStillLines({levels.data(), clear, whole.width, whole.height},
-                             blur, layers::kLeastStillStep * evidence.noise_dn);
-  for (layers::StillLine& line : lines) {
-    line = line.Within(evidence.box.x, evidence.box.y);
-  }
-  return lines;
-}
-
 // A first fit at half the resolution, from rough poses, which goes on beyond
 // both ends of the path. Whether the body has a texture.
 bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
-                const FitLayersOptions& options, Evidence& evidence) {
+                const FitLayersOptions& options, LayerEvidence& evidence) {
   FitLayersOptions coarse = HalvedOptions(options);
   // A bound on time: the fit at full resolution goes on from there.
   constexpr int kCoarseSteps = 6;
@@ -310,7 +235,7 @@ bool FitRoughly(Clip& clip, const Track& track, const Shape& shape,
 
 // A disc turns where its face shows it. What it shows of the light does not
 // turn with it: a slope over the body, as on a block.
-bool TurnWithFace(const Shape& disc, Evidence& evidence,
+bool TurnWithFace(const Shape& disc, LayerEvidence& evidence,
                   FitLayersOptions& options) {
   const auto angles = layers::FindTurns(evidence.stack, disc,
                                         options.prior.value[layers::kBlur],
@@ -329,7 +254,7 @@ bool TurnWithFace(const Shape& disc, Evidence& evidence,
 // fewer pictures, which tell a texture well enough, and sides that were stated
 // are held.
 void PrepareForTexture(const std::optional<BodySize>& size, const Shape& shape,
-                       FitLayersOptions& options, Evidence& evidence) {
+                       FitLayersOptions& options, LayerEvidence& evidence) {
   options.textured = true;
   const auto chosen =
       SpreadEvenly(evidence.path.frames.size(), CountPictures(shape, 24, 40));
@@ -342,19 +267,6 @@ void PrepareForTexture(const std::optional<BodySize>& size, const Shape& shape,
     options.prior.u[layers::kLong] = 0.0;
     options.prior.u[layers::kShort] = 0.0;
   }
-}
-
-// By how much outlines lie beside a stated size, px, beyond its own u: the
-// larger of both sides'. 0 of sizes that are held.
-double OutlinesBeside(const Shape& shape, const BodySize& size) {
-  const auto beside = [](double half_px, const core::Estimate& stated) {
-    const double off = half_px - 0.5 * stated.value;
-    const double u = 0.5 * stated.u;
-    return std::sqrt(std::max(0.0, off * off - u * u));
-  };
-  const double across = beside(shape.half_long, size.long_px);
-  return shape.disc ? across
-                    : std::max(across, beside(shape.half_short, size.short_px));
 }
 
 // The track's body as the layers have it, and what they say of all poses.
@@ -373,8 +285,6 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   out.near_ground_modelled = true;
   out.body.blur_px = fit.layers.blur;
   out.body.shutter_fraction = fit.layers.exposure;
-  // No camera has more than 1.
-  if (fit.curve) out.body.gamma = 1.0 / (1.0 + std::max(*fit.curve, 0.0));
   const Shape& shape = fit.layers.shape;
   const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
   const double share = std::min(1.0, fit.layers.texture_dn / contrast);
@@ -383,8 +293,7 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   // What outlines that lie beside a stated size do to the place is between
   // nothing, where all edges count alike, and that, where one counts alone;
   // evenly spread.
-  const double beyond_px =
-      size ? std::hypot(fit.beyond_px, OutlinesBeside(shape, *size)) : 0.0;
+  const double beyond_px = size ? OutlinesBeside(fit, *size) : 0.0;
   out.body.u_texture_px =
       std::hypot(texture_px, beyond_px / std::numbers::sqrt3);
   out.body.u_common_px = std::hypot(kModel_px, out.body.u_texture_px);
@@ -404,8 +313,17 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   return out;
 }
 
+// The contrast in light, of a body before the mean of the still picture.
+double ContrastInLight(double contrast_dn, const Background& background,
+                       const LightScale& scale) {
+  double sum = 0.0;
+  for (const float level : background.level) sum += level;
+  const double behind = sum / static_cast<double>(background.level.size());
+  return scale.ToLight(behind + contrast_dn) - scale.ToLight(behind);
+}
+
 // Each frame of a path with the layers held, in order, added to `out`.
-void AlignFrames(Clip& clip, const Evidence& evidence, const LayerFit& fit,
+void AlignFrames(Clip& clip, const LayerEvidence& evidence, const LayerFit& fit,
                  LayerPath path, const FitLayersOptions& options, Track& out) {
   const double noise_ratio = fit.layers.noise_dn / evidence.noise_dn;
   std::vector<double> drifts;
@@ -511,25 +429,32 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const Shape shape = LayerShape(track.body, size);
   FitLayersOptions options = MakeLayerOptions(track, shape, size);
   options.threads = threads;
-  Evidence evidence = GatherEvidence(clip, background, track, shape, options);
+  LayerEvidence evidence =
+      GatherEvidence(clip, background, track, shape, options);
   options.lines = FindLines(background, evidence, shape,
                             options.prior.value[layers::kBlur]);
   until.Check();
-  const bool textured = track.layered
-                            ? track.textured
-                            : FitRoughly(clip, track, shape, options, evidence);
+  const bool textured = FitRoughly(clip, track, shape, options, evidence);
   const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
   if (textured || turning) PrepareForTexture(size, shape, options, evidence);
   until.Check();
-  const LayerFit fit = FitLayers(evidence.stack, shape, evidence.path.poses,
-                                 evidence.still, evidence.noise_dn, options);
+  const LightFit fitted = FitLevelsThenLight(
+      clip, background, shape, std::move(evidence), size, options);
   until.Check();
+  if (fitted.gamma) {
+    track.body.gamma = fitted.gamma;
+    track.body.contrast_dn =
+        ContrastInLight(track.body.contrast_dn, background,
+                        MakeLightScale(clip.info().bit_depth, *fitted.gamma));
+  }
+  const LayerFit& fit = fitted.fit;
   Track out = WithLayers(track, fit, size, options.turns);
-  evidence.path.poses = fit.poses;
   // Frames between the learned ones begin where they are expected.
-  const Track learned = TrackInPicture(out, evidence.path, evidence.box);
-  AlignFrames(clip, evidence, fit,
-              PathInBox(learned, evidence.box, options.turns), options, out);
+  const core::PixelRect& box = fitted.evidence.box;
+  const Track learned =
+      TrackInPicture(out, {fitted.evidence.path.frames, fit.poses}, box);
+  AlignFrames(fitted.light ? *fitted.light : clip, fitted.evidence, fit,
+              PathInBox(learned, box, options.turns), options, out);
   if (out.poses.size() < kLeastLayerPoses) {
     return core::AbsentBecause("too few frames show the body's picture");
   }

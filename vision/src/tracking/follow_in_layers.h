@@ -26,9 +26,9 @@ bool NeedsLayers(const Track& track, double most_covered);
 bool ShowsMarks(Clip& clip, const Background& background, const Track& track);
 
 // The same body in all frames between the first and the last pose of `track`,
-// which are within some pixels of the truth; Track::layered then. A track that
-// is layered already is measured again: its poses need no rough fit. `size`:
-// what was stated. Absent, with the reason, where layers cannot be told apart.
+// which are within some pixels of the truth; Track::layered then. In light
+// where that explains the levels better (BodyImage::gamma). `size`: what was
+// stated. Absent, with the reason, where layers cannot be told apart.
 core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
                                      const Track& track,
                                      const std::optional<BodySize>& size,

@@ -226,14 +226,4 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
                            {Size::kStated, Size::kFree, Size::kCommon});
 }
 
-core::Expected<TrackResult> TrackFromBefore(Clip& clip,
-                                            const TrackOptions& options,
-                                            const Background& fallback) {
-  auto result = FitOutlinesOfSize(clip, options, *options.before, fallback,
-                                  {Size::kCommon});
-  // A texture draws outlines to itself.
-  if (result) result->track.poses = options.before->poses;
-  return result;
-}
-
 }  // namespace touchdown::vision

@@ -35,10 +35,4 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
                                             std::int64_t last,
                                             const Background& fallback);
 
-// The same from the poses of TrackOptions::before, which stay: outlines tell
-// the levels alone.
-core::Expected<TrackResult> TrackFromBefore(Clip& clip,
-                                            const TrackOptions& options,
-                                            const Background& fallback);
-
 }  // namespace touchdown::vision

@@ -279,6 +279,10 @@ core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
                               options.size, options.threads);
   if (!track) return tl::unexpected(track.error());
   result.track = std::move(*track);
+  if (const auto& gamma = result.track.body.gamma) {
+    result.background = InLight(result.background,
+                                MakeLightScale(clip.info().bit_depth, *gamma));
+  }
   return result;
 }
 
@@ -382,14 +386,13 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
   first.fits = std::move(better);
 }
 
-// From frames to a track. Where another look was measured by layers, from its
-// poses. Else in this order: where the clip is decoded whole, a layered start
-// of a stated body, which ends the search if it explains the clip; the first
-// hypothesis (detection); where it explains a stated body badly, a layered
-// start, as before; the other hypotheses, the background without the body, the
-// same hypothesis before that background where the body was lost, the kind of
-// body once more, outlines of all frames, and at last layers or a template
-// where outlines do not explain the body.
+// From frames to a track, in this order: where the clip is decoded whole, a
+// layered start of a stated body, which ends the search if it explains the
+// clip; the first hypothesis (detection); where it explains a stated body
+// badly, a layered start, as before; the other hypotheses, the background
+// without the body, the same hypothesis before that background where the body
+// was lost, the kind of body once more, outlines of all frames, and at last
+// layers or a template where outlines do not explain the body.
 core::Expected<TrackResult> FollowBody(Clip& clip,
                                        const TrackOptions& options) {
   std::int64_t last = options.last < 0
@@ -397,17 +400,6 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
                           : std::min(options.last, clip.info().frames);
   const core::Cancellation& until = clip.cancellation();
   until.Enter("the body is looked for");
-  // Of a clip that could be read to its end.
-  if (options.before && options.before->layered &&
-      options.before->last_frame == last && CanStartFromLayers(clip, options)) {
-    auto again = TrackFromBefore(
-        clip, options,
-        EstimateBackground(clip, options.first, last,
-                           ChooseBackgroundOptions(clip, options)));
-    if (again) again = InLayers(clip, options, std::move(*again));
-    if (again) return again;
-    until.Enter("the body is looked for");
-  }
   TrackResult result;
   std::string warning;
   // Of a damaged file what can be read is looked at.

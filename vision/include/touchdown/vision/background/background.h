@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "touchdown/vision/footage/clip.h"
+#include "touchdown/vision/footage/linear_clip.h"
 
 namespace touchdown::vision {
 
@@ -70,6 +71,10 @@ struct Background {
   // Variance of rounding to whole DN: no sample is known better.
   static constexpr double kVarianceFloor_dn2 = 1.0 / 12.0;
 };
+
+// The background of a clip's light (ViewInLight) from that of its levels. The
+// noise is one for all levels: that of the picture's pixels, in the mean.
+Background InLight(const Background& background, const LightScale& scale);
 
 // Per pixel the mid-mean (mean of the middle half) of sampled frames of
 // [first, last), which no body touches that covers a pixel less than a quarter

@@ -62,7 +62,8 @@ struct BodyImage {
   // background; and that of outlines beside a stated size, since light or gamma
   // moves each edge by what lies behind it.
   double u_texture_px = 0.0;
-  // Of the camera (linear_clip.h), as far as outlines show it.
+  // Of the camera (linear_clip.h), where the outlines show one: poses are those
+  // in light, and levels are light's. Absent: the clip's levels are taken.
   std::optional<double> gamma;
   double contrast_dn = 0.0;  // body minus background, median over frames
 };

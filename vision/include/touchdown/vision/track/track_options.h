@@ -42,11 +42,6 @@ struct TrackOptions {
   // (src/detection/layered_start.h). Nothing: not asked.
   std::optional<BodySize> size;
 
-  // Given with `size`: the track that another look at the same frames, in other
-  // levels, ended with. A body that was measured by layers there begins here
-  // where it was, and is not sought again. Nothing: it is sought.
-  const Track* before = nullptr;
-
   // Pixels below it are left out of the outline's fit.
   std::optional<calib::GroundLine> ground;
 
