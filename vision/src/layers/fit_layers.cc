@@ -345,7 +345,7 @@ LayerFit Settle(const PictureStack& stack, int first_step,
 }  // namespace
 
 void SetOptics(double blur, double exposure, SharedPrior& prior) {
-  constexpr double kBlurU_px = 0.5;
+  constexpr double kBlurU_px = 0.5;   // Gauss-Newton finds it from there
   constexpr double kExposureU = 0.3;  // of a frame's interval
   prior.value[kBlur] = blur;
   prior.u[kBlur] = kBlurU_px;
