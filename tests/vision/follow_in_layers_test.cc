@@ -72,17 +72,21 @@ BodySize SizeOf(const DrawnBlock& block) {
           {2.0 * block.half_short_px, 0.05, std::nullopt}};
 }
 
+// From rough poses of all frames.
+core::Expected<Track> FollowRoughly(const DrawnBlock& block, Clip& clip) {
+  const std::int64_t frames = clip.info().frames;
+  return FollowInLayers(clip, EstimateBackground(clip, 0, frames),
+                        RoughTrack(block, clip, 0, frames), SizeOf(block), 1);
+}
+
 TEST(FollowInLayers, MeasuresRoughPosesAgain) {
   const DrawnBlock block = Passing();
   const auto clip = DrawBlock(block);
-  const std::int64_t frames = clip->info().frames;
-  const auto track =
-      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
-                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  const auto track = FollowRoughly(block, *clip);
   ASSERT_TRUE(track) << track.error().reason;
   EXPECT_TRUE(track->layered);
   EXPECT_TRUE(track->near_ground_modelled);
-  EXPECT_EQ(track->poses.size(), static_cast<std::size_t>(frames));
+  EXPECT_EQ(track->poses.size(), static_cast<std::size_t>(block.frames));
   ExpectTrue(*track, block, 0.1);
 }
 
@@ -111,10 +115,7 @@ DrawnBlock Dark(double gamma) {
 TEST(FollowInLayers, ACamerasGammaIsTakenOut) {
   const DrawnBlock block = Dark(0.45);
   const auto clip = DrawBlock(block);
-  const std::int64_t frames = clip->info().frames;
-  const auto track =
-      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
-                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  const auto track = FollowRoughly(block, *clip);
   ASSERT_TRUE(track) << track.error().reason;
   ASSERT_TRUE(track->body.gamma);
   EXPECT_NEAR(*track->body.gamma, block.gamma, 0.1);
@@ -126,10 +127,7 @@ TEST(FollowInLayers, ACamerasGammaIsTakenOut) {
 TEST(FollowInLayers, ALinearCameraHasNoGamma) {
   const DrawnBlock block = Dark(1.0);
   const auto clip = DrawBlock(block);
-  const std::int64_t frames = clip->info().frames;
-  const auto track =
-      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
-                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  const auto track = FollowRoughly(block, *clip);
   ASSERT_TRUE(track) << track.error().reason;
   EXPECT_FALSE(track->body.gamma);
 }
@@ -139,10 +137,7 @@ TEST(FollowInLayers, AGammaThatWasStatedStays) {
   const DrawnBlock block = Dark(0.45);
   const auto levels = DrawBlock(block);
   const auto clip = ViewInLight(*levels, 0.7);
-  const std::int64_t frames = clip->info().frames;
-  const auto track =
-      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
-                     RoughTrack(block, *clip, 0, frames), SizeOf(block), 1);
+  const auto track = FollowRoughly(block, *clip);
   ASSERT_TRUE(track) << track.error().reason;
   EXPECT_FALSE(track->body.gamma);
 }

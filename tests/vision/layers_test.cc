@@ -538,7 +538,7 @@ TEST(FitLayers, DoesNotDependOnThreads) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 23);
   FitLayersOptions options = OptionsOf(scene);
-  options.steps = 4;
+  options.steps = 3;
   const std::vector<LayerPose> start = Shaken(scene.poses, 0.2);
   const std::vector<float> still = Paint(scene, nullptr);
   const LayerFit one =

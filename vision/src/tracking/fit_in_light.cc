@@ -83,43 +83,19 @@ LightFit FitLight(Clip& clip, const Background& background, const Shape& shape,
   LightFit light;
   light.gamma = gamma;
   light.light = ViewInLight(clip, gamma);
-  LayerEvidence& evidence = light.evidence;
-  evidence.box = last.evidence.box;
-  evidence.path = {last.evidence.path.frames, last.fit.poses};
-  evidence.noise_dn = std::sqrt(seen.UsualVariance());
-  evidence.still = CropBackground(seen, evidence.box);
-  evidence.stack = ReadPath(*light.light, evidence.still, evidence.path, shape,
-                            evidence.box);
+  const LayerEvidence& was = last.evidence;
+  light.evidence = ReadEvidence(*light.light, seen, was.box,
+                                {was.path.frames, last.fit.poses}, shape);
+  const LayerEvidence& evidence = light.evidence;
   layers::SetOptics(layers.blur, layers.exposure, options.prior);
   options.lines = FindLines(seen, evidence, shape, layers.blur);
   options.loss = LossOfLevels(scale, background);
-  light.fit = ImproveLayers(
-      evidence.stack,
-      StartInLight(last.fit, ScaleOf(clip, last.gamma), scale, evidence,
-                   evidence.noise_dn / last.evidence.noise_dn),
-      options);
+  light.fit =
+      ImproveLayers(evidence.stack,
+                    StartInLight(last.fit, ScaleOf(clip, last.gamma), scale,
+                                 evidence, evidence.noise_dn / was.noise_dn),
+                    options);
   return light;
-}
-
-// Light explains the levels better while the outlines lie no farther beside a
-// stated size, or about as well while they lie much nearer. Of 50 fits of
-// cameras with a gamma of 0.45 they lay 0 to 0.7 times as far in light as in
-// levels; of linear ones, whose outlines seemed to show a gamma, 0.6 to 16
-// times.
-bool IsBetter(const LayerFit& light, const LayerFit& than,
-              const std::optional<BodySize>& size) {
-  // Of the loss: a fit that has not settled yet is off by so much. Larger takes
-  // light by the sides alone. Not studied.
-  constexpr double kAlike = 0.01;
-  // Ratio of the distances. Larger takes light for noise of the outlines. Not
-  // studied.
-  constexpr double kMuchNearer = 0.5;
-  if (!size) return light.loss < than.loss;
-  const double beside_px = OutlinesBeside(light, *size);
-  const double than_px = OutlinesBeside(than, *size);
-  return (light.loss < than.loss && beside_px <= than_px) ||
-         (light.loss < (1.0 + kAlike) * than.loss &&
-          beside_px < kMuchNearer * than_px);
 }
 
 }  // namespace
@@ -135,6 +111,22 @@ double OutlinesBeside(const LayerFit& fit, const BodySize& size) {
   const double along =
       shape.disc ? 0.0 : beside(shape.half_short, size.short_px);
   return std::hypot(fit.beyond_px, std::max(across, along));
+}
+
+bool IsBetterInLight(const LayerFit& light, const LayerFit& before,
+                     const std::optional<BodySize>& size) {
+  // Of the loss: a fit that has not settled yet is off by so much. Larger takes
+  // light by the sides alone. Not studied.
+  constexpr double kAlike = 0.01;
+  // Ratio of the distances. Larger takes light for noise of the outlines. Not
+  // studied.
+  constexpr double kMuchNearer = 0.5;
+  if (!size) return light.loss < before.loss;
+  const double beside_px = OutlinesBeside(light, *size);
+  const double before_px = OutlinesBeside(before, *size);
+  return (light.loss < before.loss && beside_px <= before_px) ||
+         (light.loss < (1.0 + kAlike) * before.loss &&
+          beside_px < kMuchNearer * before_px);
 }
 
 LightFit FitLevelsThenLight(Clip& clip, const Background& background,
@@ -154,14 +146,13 @@ LightFit FitLevelsThenLight(Clip& clip, const Background& background,
   best.fit = FitLayers(best.evidence.stack, shape, best.evidence.path.poses,
                        best.evidence.still, best.evidence.noise_dn, options);
   double gamma = SeenGamma(best.fit);
-  if (clip.info().in_light || gamma < kLeast || gamma > kClearlyNot1) {
-    return best;
-  }
+  if (clip.info().in_light || gamma > kClearlyNot1) return best;
   double more = gamma;
-  for (int round = 0; round < kRounds && more < kNear1; ++round) {
+  for (int round = 0; round < kRounds && more < kNear1 && gamma >= kLeast;
+       ++round) {
     clip.cancellation().Check();
     LightFit light = FitLight(clip, background, shape, gamma, best, options);
-    if (!IsBetter(light.fit, best.fit, size)) break;
+    if (!IsBetterInLight(light.fit, best.fit, size)) break;
     best = std::move(light);
     more = SeenGamma(best.fit);
     gamma *= more;

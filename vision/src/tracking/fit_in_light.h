@@ -27,11 +27,17 @@ struct LightFit {
 // larger of both sides', and of sides that a texture holds.
 double OutlinesBeside(const layers::LayerFit& fit, const BodySize& size);
 
+// Whether light explains the levels (LayerFit::loss) better than what was
+// fitted before while the outlines lie no farther beside a stated size, or
+// about as well while they lie much nearer.
+bool IsBetterInLight(const layers::LayerFit& light,
+                     const layers::LayerFit& before,
+                     const std::optional<BodySize>& size);
+
 // Levels first. Where their outlines show a gamma that matters
 // (LayerFit::curve) light is fitted from there, and once more where the
-// outlines still show one, as long as light explains the levels better and
-// outlines lie no farther beside `size`, or about as well and much nearer. Of a
-// clip that is in light already levels are all. `evidence`: of the levels.
+// outlines still show one, as long as that is better. Of a clip that is in
+// light already levels are all. `evidence`: of the levels.
 // Throws what Clip::Read throws.
 LightFit FitLevelsThenLight(Clip& clip, const Background& background,
                             const layers::Shape& shape, LayerEvidence evidence,

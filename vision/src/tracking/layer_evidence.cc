@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace touchdown::vision {
 
@@ -10,24 +11,35 @@ using layers::FitLayersOptions;
 using layers::LayerPose;
 using layers::Shape;
 
+LayerEvidence ReadEvidence(Clip& clip, const Background& background,
+                           const core::PixelRect& box, LayerPath path,
+                           const Shape& shape) {
+  LayerEvidence evidence;
+  evidence.box = box;
+  evidence.still = CropBackground(background, box);
+  evidence.noise_dn = std::sqrt(background.UsualVariance());
+  evidence.path = std::move(path);
+  evidence.stack = ReadPath(clip, evidence.still, evidence.path, shape, box);
+  return evidence;
+}
+
 LayerEvidence GatherEvidence(Clip& clip, const Background& background,
                              const Track& track, const Shape& shape,
                              const FitLayersOptions& options) {
-  LayerEvidence evidence;
-  evidence.box =
+  const core::PixelRect box =
       SweptBox(background, track, shape, options.prior.value[layers::kBlur]);
-  evidence.noise_dn = std::sqrt(background.UsualVariance());
-  evidence.still = CropBackground(background, evidence.box);
   // So many samples are kept: 256 MiB.
   constexpr std::size_t kMostSamples = std::size_t{1} << 26U;
-  evidence.most_frames =
-      std::clamp(kMostSamples / std::max<std::size_t>(evidence.still.size(), 1),
+  const std::size_t pixels = static_cast<std::size_t>(box.width) *
+                             static_cast<std::size_t>(box.height);
+  const std::size_t most_frames =
+      std::clamp(kMostSamples / std::max<std::size_t>(pixels, 1),
                  kLeastLayerPoses, kMostLearned);
-  const LayerPath all = PathInBox(track, evidence.box, options.turns);
-  evidence.path =
-      Choose(all, SpreadEvenly(all.frames.size(), evidence.most_frames));
-  evidence.stack =
-      ReadPath(clip, evidence.still, evidence.path, shape, evidence.box);
+  const LayerPath all = PathInBox(track, box, options.turns);
+  LayerEvidence evidence = ReadEvidence(
+      clip, background, box,
+      Choose(all, SpreadEvenly(all.frames.size(), most_frames)), shape);
+  evidence.most_frames = most_frames;
   return evidence;
 }
 

@@ -31,6 +31,12 @@ struct LayerEvidence {
   layers::PictureStack stack;
 };
 
+// Of a path in the box's coordinates. `background`: of the clip's levels.
+// Throws what Clip::Read throws.
+LayerEvidence ReadEvidence(Clip& clip, const Background& background,
+                           const core::PixelRect& box, LayerPath path,
+                           const layers::Shape& shape);
+
 // Of a track whose outlines are about right. Throws what Clip::Read throws.
 LayerEvidence GatherEvidence(Clip& clip, const Background& background,
                              const Track& track, const layers::Shape& shape,
