@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace touchdown::pipeline {
@@ -37,6 +38,33 @@ std::vector<SizePair> SizePairs(vision::BodyImage& seen,
     add("short side", seen.half_short_px, stated->short_px, *sides.short_m);
   }
   return pairs;
+}
+
+// Beyond so many standard deviations chance is no explanation of a difference;
+// up to there image and statement are averaged by their u and nothing is said.
+// Larger lets more pass as chance.
+constexpr double kConflict = 4.0;  // u
+
+// How far the outline lies beside the stated one, px, by more than chance.
+double BeyondChance(const SizePair& pair) {
+  const double off = pair.seen->value - pair.stated.value;
+  const double chance = kConflict * std::hypot(pair.seen->u, pair.stated.u);
+  return std::sqrt(std::max(0.0, off * off - chance * chance));
+}
+
+// An outline that lies beside the body puts the body's place off by between
+// nothing, where all edges err alike, and that, where one edge errs alone,
+// evenly spread; and its angle by so much over the half of the long side. A
+// body that turned in an impact has other edges at the ground: it changes
+// there.
+void WidenCommon(double beside_px, vision::BodyImage& body) {
+  const double u_px = beside_px / std::numbers::sqrt3;
+  body.u_texture_px = std::hypot(body.u_texture_px, u_px);
+  body.u_common_px = std::hypot(body.u_common_px, u_px);
+  if (body.kind == core::BodyKind::kRectangle) {
+    body.u_common_angle_rad =
+        std::hypot(body.u_common_angle_rad, u_px / body.half_long_px.value);
+  }
 }
 
 // What one cause would explain all of the differences.
@@ -79,17 +107,18 @@ std::string ExplainDifferences(const std::vector<SizePair>& pairs) {
 
 vision::Track WithStatedSize(vision::Track seen,
                              const AnalyzeOptions& options) {
+  double beside_px = 0.0;
   for (const SizePair& pair : SizePairs(seen.body, options)) {
+    beside_px = std::max(beside_px, BeyondChance(pair));
     *pair.seen = core::Combined(*pair.seen, pair.stated);
   }
+  // Layers have counted it already, while they saw the size.
+  if (!seen.layered) WidenCommon(beside_px, seen.body);
   return seen;
 }
 
 std::optional<SizeConflict> FindSizeConflict(const vision::BodyImage& seen,
                                              const AnalyzeOptions& options) {
-  // Beyond four standard deviations chance is no explanation; up to there the
-  // two are averaged by their u and nothing is said.
-  constexpr double kConflict = 4.0;  // u
   vision::BodyImage body = seen;
   const std::vector<SizePair> pairs = SizePairs(body, options);
   SizeConflict conflict;

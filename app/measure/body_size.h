@@ -18,7 +18,10 @@ core::Estimate Divide(const core::Estimate& a, const core::Estimate& b);
 
 // What is stated is a measurement, too: the track with the size that image and
 // statement tell together (core::Combined), where a scale that does not come of
-// the body itself makes them comparable. `seen`: in the ideal picture.
+// the body itself makes them comparable. Where they contradict each other by
+// more than 4 of their u, outlines lie beside the body: place and angle may be
+// off together by what that may do to them, and their common u say so. `seen`:
+// in the ideal picture.
 vision::Track WithStatedSize(vision::Track seen, const AnalyzeOptions& options);
 
 // Where image and statement differ by more than 4 of their u: both, what would

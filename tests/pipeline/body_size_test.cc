@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,6 +57,42 @@ TEST(BodySize, ConflictGrowsUAndIsExplainedByTheOutline) {
   }
   EXPECT_THAT(ReasonOf(FindSizeConflict(seen.body, options)),
               HasSubstr("outlines 0.45 px too far in"));
+}
+
+// An outline that lies 0.9 px beside a stated body of 53 px (half of 51.2 to
+// 53.0) may be off in place by half a pixel, and by that over half its side in
+// angle: what a wrong template showed, which was 12 u off before.
+TEST(BodySize, ConflictWidensPlaceAndAngle) {
+  const AnalyzeOptions options = Stated(0.053, 0.020);
+  const vision::Track sized = WithStatedSize(Seen(51.2, 20.0), options);
+  EXPECT_NEAR(sized.body.u_common_px, 0.9 / std::numbers::sqrt3, 0.01);
+  EXPECT_NEAR(sized.body.u_texture_px, 0.9 / std::numbers::sqrt3, 0.01);
+  const double half_px = sized.body.half_long_px.value;
+  EXPECT_NEAR(sized.body.u_common_angle_rad,
+              0.9 / std::numbers::sqrt3 / half_px, 3e-4);
+}
+
+// Three u of the statement apart is chance, and layers have counted what their
+// outlines lie beside the statement already.
+TEST(BodySize, ChanceAndLayersWidenNothing) {
+  const AnalyzeOptions options = Stated(0.053, 0.020);
+  EXPECT_EQ(WithStatedSize(Seen(53.15, 20.0), options).body.u_common_px, 0.0);
+  vision::Track layered = Seen(51.2, 20.0);
+  layered.layered = true;
+  EXPECT_EQ(WithStatedSize(layered, options).body.u_common_px, 0.0);
+}
+
+// A disc shows no angle that could be off.
+TEST(BodySize, ConflictOfADiameterWidensPlaceAlone) {
+  AnalyzeOptions options;
+  options.scale_px_per_m = core::Estimate{1000.0, 1.0};
+  options.diameter_m = core::Estimate{0.020, 2e-5};
+  vision::Track track;
+  track.body.kind = core::BodyKind::kSphere;
+  track.body.radius_px = {9.0, 0.002};
+  const vision::Track sized = WithStatedSize(track, options);
+  EXPECT_NEAR(sized.body.u_common_px, 1.0 / std::numbers::sqrt3, 0.01);
+  EXPECT_EQ(sized.body.u_common_angle_rad, 0.0);
 }
 
 TEST(BodySize, ConflictOfBothSidesAlikeIsExplainedByTheScale) {

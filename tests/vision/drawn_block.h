@@ -27,6 +27,7 @@ struct DrawnBlock {
   double level_dn = 60.0;
   double noise_dn = 2.0;         // uniform, of this standard deviation
   std::int64_t noise_lasts = 1;  // frames: a codec repeats its errors
+  double noise_grows = 0.0;      // of noise_dn, more with each frame
   std::function<BlockPose(std::int64_t frame)> pose;
   double gamma = 1.0;  // of the camera (linear_clip.h)
   // DN more at a place of the body, in px along its sides.
@@ -70,6 +71,7 @@ inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
             150.0 + 20.0 * std::sin(0.05 * x) + 15.0 * std::cos(0.09 * y);
         const double noise =
             std::sqrt(3.0) * block.noise_dn *
+            (1.0 + block.noise_grows * static_cast<double>(frame)) *
             HashNoise(static_cast<std::uint32_t>(x),
                       static_cast<std::uint32_t>(y),
                       static_cast<std::uint32_t>(frame / block.noise_lasts));

@@ -103,6 +103,38 @@ TEST(FollowInLayers, GoesOnBeyondBothEnds) {
   ExpectTrue(*track, block, 0.1);
 }
 
+// As a codec's pictures age: residuals of the last frames are ten times those
+// of the known ones, of a body that is well explained all the same.
+TEST(FollowInLayers, GoesOnWhereResidualsGrow) {
+  DrawnBlock block = Passing();
+  block.noise_dn = 1.0;
+  block.noise_grows = 0.2;
+  const auto clip = DrawBlock(block);
+  const std::int64_t frames = clip->info().frames;
+  const auto track =
+      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
+                     RoughTrack(block, *clip, 0, 12), SizeOf(block), 1);
+  ASSERT_TRUE(track) << track.error().reason;
+  EXPECT_EQ(track->poses.back().frame, frames - 1);
+}
+
+// What is left where the body was is the still picture, of which the body's own
+// explains nothing.
+TEST(FollowInLayers, EndsWhereTheBodyIsGone) {
+  DrawnBlock block = Passing();
+  const auto before = block.pose;
+  constexpr std::int64_t kGone = 30;
+  block.pose = [before](std::int64_t frame) {
+    return frame < kGone ? before(frame) : BlockPose{-500.0, 0.0, 0.0};
+  };
+  const auto clip = DrawBlock(block);
+  const auto track =
+      FollowInLayers(*clip, EstimateBackground(*clip, 0, clip->info().frames),
+                     RoughTrack(block, *clip, 0, kGone - 8), SizeOf(block), 1);
+  ASSERT_TRUE(track) << track.error().reason;
+  EXPECT_EQ(track->poses.back().frame, kGone - 1);
+}
+
 // A dark block before a bright wall, whose outlines lie far beside it in
 // levels of gamma 0.45.
 DrawnBlock Dark(double gamma) {

@@ -534,6 +534,21 @@ TEST(AlignPoses, FindsABodyThatLiesBesideItsPose) {
   }
 }
 
+TEST(AlignPose, ExplainsTheChangeWhereTheBodyIsAlone) {
+  const LayeredScene scene = BlockOnGround();
+  const PictureStack stack = Film(scene, 5);
+  const LayerFit fit =
+      FitLayers(stack, scene.shape, scene.poses, Paint(scene, nullptr),
+                scene.noise_dn, OptionsOf(scene));
+  const LayerPose& there = fit.poses[3];
+  EXPECT_GT(AlignPose(stack, 3, fit.layers, there, {}, true).explained, 0.95);
+  // Where it is in the last picture, and in the fourth is not yet.
+  const PoseFit gone =
+      AlignPose(stack, 3, fit.layers, fit.poses.back(), {}, true);
+  EXPECT_TRUE(gone.found);
+  EXPECT_LT(gone.explained, 0.0);
+}
+
 TEST(FitLayers, DoesNotDependOnThreads) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 23);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "contact/contact_event.h"
 #include "contact/contact_record.h"
@@ -49,10 +50,24 @@ FlightOptions MakeFlightOptions(const ContactOptions& options) {
   return flight;
 }
 
+// How far apart an error that all poses share in the body's own directions puts
+// them, px: it goes round with the body, to the other side in half a turn.
+double SpreadByTurning(const PlaneTrack& track, double u_common_px) {
+  const auto [least, most] =
+      std::minmax_element(track.samples.begin(), track.samples.end(),
+                          [](const PlaneSample& a, const PlaneSample& b) {
+                            return a.face_rad < b.face_rad;
+                          });
+  const double turned = most->face_rad - least->face_rad;
+  return u_common_px * std::sin(0.5 * std::min(turned, std::numbers::pi));
+}
+
 SegmentationOptions MakeSegmentationOptions(const PlaneTrack& track,
                                             const ContactOptions& options,
-                                            const FlightOptions& flight) {
+                                            const FlightOptions& flight,
+                                            double u_common_px) {
   SegmentationOptions out;
+  out.floor_px = std::hypot(out.floor_px, SpreadByTurning(track, u_common_px));
   if (flight.gravity_px_per_s2) {
     out.gravity_px_per_s2 = flight.gravity_px_per_s2->value;
   }
@@ -486,7 +501,7 @@ ContactResult FindContacts(const PlaneTrack& given,
   track.ground.u_offset_px = std::hypot(track.ground.u_offset_px, u_common_px);
   const FlightOptions told = MakeFlightOptions(options);
   SegmentationOptions segmentation =
-      MakeSegmentationOptions(track, options, told);
+      MakeSegmentationOptions(track, options, told, u_common_px);
   // What flights are asked to contradict.
   std::optional<core::Estimate> asked = told.gravity_px_per_s2;
   if (asked) {

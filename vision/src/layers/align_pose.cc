@@ -262,10 +262,20 @@ PoseFit AlignPose(const PictureStack& stack, std::size_t picture,
   out.widened = std::sqrt((covariance(0, 0) + covariance(1, 1)) /
                           (variance * (inverse(0, 0) + inverse(1, 1))));
   double covered = 0.0;
-  for (const float cover : samples.cover) {
-    covered += static_cast<double>(cover);
+  double changed = 0.0;
+  double left = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto cover = static_cast<double>(samples.cover[i]);
+    const auto change = static_cast<double>(
+        samples.level[i] -
+        layers.still[static_cast<std::size_t>(samples.pixel[i])]);
+    const auto residual = static_cast<double>(samples.residual[i]);
+    covered += cover;
+    changed += cover * change * change;
+    left += cover * residual * residual;
   }
   out.seen = covered / layers.shape.Area();
+  if (changed > 0.0) out.explained = 1.0 - left / changed;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
       out.covariance[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =

@@ -17,6 +17,9 @@ struct PoseFit {
   // that show something else are no matter, a fifth of them are.
   double chi2 = 0.0;
   double seen = 0.0;  // share of the body that lies within the picture
+  // Share of what the body changes in the still picture that its own picture
+  // explains: 1 - sum M r^2 / sum M (I - B)^2. Near 0 something else is there.
+  double explained = 0.0;
   // How steeply levels rise across the edges that tell x and y, DN/px, and how
   // much the residuals' correlation widens the covariance.
   std::array<double, 2> steepness{};

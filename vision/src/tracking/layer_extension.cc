@@ -5,6 +5,18 @@
 #include <span>
 
 namespace touchdown::vision {
+namespace {
+
+// Whether another thing than the body is there: residuals are larger than those
+// of the other frames, and the body's picture leaves most of the change
+// unexplained. A codec's residuals grow alone, from frame to frame.
+bool ShowsSomethingElse(const layers::PoseFit& fit) {
+  constexpr double kWorst = 4.0;  // mean squared residual over that of others
+  constexpr double kLeastExplained = 0.5;  // of the change. Not studied.
+  return fit.chi2 > kWorst && fit.explained < kLeastExplained;
+}
+
+}  // namespace
 
 using layers::AlignPose;
 using layers::LayerPose;
@@ -31,8 +43,7 @@ PoseFit LayerExtension::Align(std::int64_t frame, const LayerPose& from,
 
 void LayerExtension::Extend(std::int64_t by, std::int64_t end,
                             LayerPath& path) const {
-  constexpr int kMostMissed = 2;  // frames in a row
-  constexpr double kWorst = 4.0;  // mean squared residual over that of others
+  constexpr int kMostMissed = 2;       // frames in a row
   constexpr double kLeastSeen = 0.35;  // of the body
   constexpr double kFarthest = 0.5;    // of the body's reach, beside the way
   std::vector<LayerPose> motions =
@@ -48,7 +59,7 @@ void LayerExtension::Extend(std::int64_t by, std::int64_t end,
     const auto gap = static_cast<double>(std::abs(f - last));
     const double off = std::hypot(fit.pose.x - from.x - motion.x,
                                   fit.pose.y - from.y - motion.y);
-    if (!fit.found || fit.chi2 > kWorst || fit.seen < kLeastSeen ||
+    if (!fit.found || ShowsSomethingElse(fit) || fit.seen < kLeastSeen ||
         off > kFarthest * half_.layers.shape.Reach() +
                   std::hypot(motion.x, motion.y)) {
       ++missed;
