@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "touchdown/vision/track/beside_body.h"
 
 namespace touchdown::pipeline {
 namespace {
@@ -52,13 +53,11 @@ double BeyondChance(const SizePair& pair) {
   return std::sqrt(std::max(0.0, off * off - chance * chance));
 }
 
-// An outline that lies beside the body puts the body's place off by between
-// nothing, where all edges err alike, and that, where one edge errs alone,
-// evenly spread; and its angle by so much over the half of the long side. A
-// body that turned in an impact has other edges at the ground: it changes
-// there.
+// An outline that lies beside the body puts its place off, and its angle by as
+// much over half of the long side. A body that turned in an impact has other
+// edges at the ground: it changes there.
 void WidenCommon(double beside_px, vision::BodyImage& body) {
-  const double u_px = beside_px / std::numbers::sqrt3;
+  const double u_px = vision::PlaceUncertaintyBeside(beside_px);
   body.u_texture_px = std::hypot(body.u_texture_px, u_px);
   body.u_common_px = std::hypot(body.u_common_px, u_px);
   if (body.kind == core::BodyKind::kRectangle) {

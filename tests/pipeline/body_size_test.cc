@@ -30,6 +30,21 @@ vision::Track Seen(double long_px, double short_px, double u = 0.004) {
   return track;
 }
 
+// Of 20 px.
+AnalyzeOptions StatedBall() {
+  AnalyzeOptions options;
+  options.scale_px_per_m = core::Estimate{1000.0, 1.0};
+  options.diameter_m = core::Estimate{0.020, 2e-5};
+  return options;
+}
+
+vision::Track SeenBall(double radius_px) {
+  vision::Track track;
+  track.body.kind = core::BodyKind::kSphere;
+  track.body.radius_px = {radius_px, 0.002};
+  return track;
+}
+
 std::string ReasonOf(const std::optional<SizeConflict>& conflict) {
   return conflict ? conflict->reason : "";
 }
@@ -84,13 +99,7 @@ TEST(BodySize, ChanceAndLayersWidenNothing) {
 
 // A disc shows no angle that could be off.
 TEST(BodySize, ConflictOfADiameterWidensPlaceAlone) {
-  AnalyzeOptions options;
-  options.scale_px_per_m = core::Estimate{1000.0, 1.0};
-  options.diameter_m = core::Estimate{0.020, 2e-5};
-  vision::Track track;
-  track.body.kind = core::BodyKind::kSphere;
-  track.body.radius_px = {9.0, 0.002};
-  const vision::Track sized = WithStatedSize(track, options);
+  const vision::Track sized = WithStatedSize(SeenBall(9.0), StatedBall());
   EXPECT_NEAR(sized.body.u_common_px, 1.0 / std::numbers::sqrt3, 0.01);
   EXPECT_EQ(sized.body.u_common_angle_rad, 0.0);
 }
@@ -108,13 +117,7 @@ TEST(BodySize, ConflictThatNothingExplainsAsksForAnotherBody) {
 }
 
 TEST(BodySize, SphereOfAnotherDiameterIsTold) {
-  AnalyzeOptions options;
-  options.scale_px_per_m = core::Estimate{1000.0, 1.0};
-  options.diameter_m = core::Estimate{0.020, 2e-5};
-  vision::Track track;
-  track.body.kind = core::BodyKind::kSphere;
-  track.body.radius_px = {7.5, 0.002};
-  EXPECT_THAT(ReasonOf(FindSizeConflict(track.body, options)),
+  EXPECT_THAT(ReasonOf(FindSizeConflict(SeenBall(7.5).body, StatedBall())),
               HasSubstr("a scale of 750.0 px/m or a diameter of 15.000 mm"));
 }
 

@@ -62,65 +62,6 @@ TEST(Contact, SoftContactOverSeveralFrames) {
   EXPECT_EQ(sweep.later, 0);
 }
 
-// What all poses have in common is the same before and after the impact: only
-// the height has it. A texture lies otherwise on the outline then.
-TEST(Contact, TimeIsWidenedByWhatTheImpactChanges) {
-  Throw thrown;
-  thrown.before = {1.4, -0.8, 0.0};
-  thrown.after = {1.2, 0.5, 0.0};
-  const Filming filming;
-  const PlaneTrack clean = FilmPlane(thrown, filming);
-  const auto find_time_u = [&](const PlaneTrack& track) {
-    return FindContacts(track, WithScale(filming)).first.contact.time_s->u;
-  };
-  const double u = find_time_u(clean);
-  constexpr double kOff_px = 0.01;
-  PlaneTrack drifting = clean;
-  drifting.u_common_px = kOff_px;
-  EXPECT_NEAR(find_time_u(drifting), u, 0.02 * u);
-  PlaneTrack textured = clean;
-  textured.u_common_px = textured.u_texture_px = kOff_px;
-  const double fall_px_per_s = 0.8 * filming.camera.px_per_m;
-  EXPECT_NEAR(find_time_u(textured), std::hypot(u, kOff_px / fall_px_per_s),
-              0.02 * u);
-  drifting.is_predicted = true;  // frames lag behind the body
-  EXPECT_NEAR(find_time_u(drifting),
-              std::hypot(u, 0.5 * kOff_px / fall_px_per_s), 0.02 * u);
-  EXPECT_GT(kOff_px / fall_px_per_s, 0.2 * u);  // the above tell them apart
-}
-
-// A scale that is wrong makes gravity wrong: flights that are clear in the
-// picture stay what they are, and lengths say that they may be off. Thirty
-// frames of fall tell of a tenth.
-TEST(Contact, WrongScaleLeavesTheContact) {
-  for (const double off : {-0.3, -0.2, -0.1, 0.1, 0.2, 0.4}) {
-    SCOPED_TRACE(off);
-    for (Throw thrown : {Throw{}, Block(10.0_deg)}) {
-      thrown.before = {1.5, -1.2, 0.0};
-      Rebound(thrown, 0.7);
-      Filming filming;
-      filming.frames = 90;
-      const PlaneTrack track = FilmPlane(thrown, filming);
-      ContactOptions options = WithScale(filming);
-      const ContactResult right = FindContacts(track, options);
-      EXPECT_FALSE(right.gravity_refuted);
-      options.scale->px_per_m.value *= 1.0 + off;
-      const ContactResult result = FindContacts(track, options);
-      EXPECT_TRUE(result.gravity_refuted);
-      EXPECT_THAT(result.warnings,
-                  ::testing::Contains(HasSubstr("check both")));
-      ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
-      EXPECT_EQ(result.first.state.label, right.first.state.label);
-      const core::Estimate& time = *result.first.contact.time_s;
-      EXPECT_NEAR(time.value, right.first.contact.time_s->value, 4.0 * time.u);
-      ASSERT_TRUE(result.first.motion.before_normal_mps);
-      const core::Estimate& normal = *result.first.motion.before_normal_mps;
-      EXPECT_NEAR(normal.value, right.first.motion.before_normal_mps->value,
-                  4.0 * normal.u);
-    }
-  }
-}
-
 TEST(Contact, SlideAfterTouchdown) {
   Throw thrown;
   thrown.before = {1.4, -0.25, 0.0};
@@ -163,34 +104,6 @@ TEST(Contact, RectangleCornerWithSpin) {
       ExpectHonest(sweep);
     }
   }
-}
-
-// All poses lie 0.16 px beside the body, in its own directions, as
-// outlines in a camera's gamma do: after the impact it tumbles, and the error
-// goes round with it. Its path is a flight all the same.
-TEST(Contact, AnErrorThatGoesRoundWithTheBodyIsNoOtherMotion) {
-  Throw thrown = Block(-60.0_deg);
-  thrown.contact_s = 0.0503;
-  thrown.before = {4.0, -1.5, -10.0};
-  thrown.after = {3.2, 0.8, -64.0};
-  Filming filming;
-  filming.camera.fps = 500.0;
-  filming.frames = 59;
-  filming.u_px = 0.005;
-  Track track = FilmTrack(
-      thrown, [&](double t) { return thrown.At(t); }, filming);
-  track.body.u_common_px = 0.13;
-  for (Pose& pose : track.poses) {
-    const double c = std::cos(pose.angle_rad);
-    const double s = std::sin(pose.angle_rad);
-    pose.centre.x_px += 0.16 * c;
-    pose.centre.y_px += 0.16 * s;
-  }
-  const ContactResult result = FindContacts(
-      SeenFromGround(track, FilmGround(filming)), WithScale(filming));
-  ASSERT_TRUE(result.first.contact.found) << result.first.contact.reason;
-  const core::Estimate& time = *result.first.contact.time_s;
-  EXPECT_NEAR(time.value, thrown.contact_s, 4.0 * time.u);
 }
 
 // A nearly flush block strikes with one corner, and before the next frame with
@@ -408,32 +321,6 @@ TEST(Contact, FaceAngleLiesInItsHalfTurn) {
     EXPECT_GE(radius->value, 0.0);
     EXPECT_LE(radius->value, 90.0_deg);
   }
-}
-
-// Flights that meet far off the line were cut wrongly, or there was more than
-// one impact: what they tell is known no better than the line is missed by.
-TEST(Contact, FlightsThatMissTheLineAreWidened) {
-  Throw thrown;
-  thrown.before = {1.4, -0.5, 0.0};
-  thrown.after = {1.2, 0.3, 0.0};
-  const Filming filming;
-  const PlaneTrack track = FilmPlane(thrown, filming);
-  PlaneTrack off = track;
-  constexpr double kOff_px = 0.4;  // the line is said to be known to 0.02
-  for (PlaneSample& s : off.samples) {
-    s.gap_px += kOff_px;
-    s.height_px += kOff_px;
-  }
-  const ContactResult on_line = FindContacts(track, WithScale(filming));
-  const ContactResult off_line = FindContacts(off, WithScale(filming));
-  ASSERT_TRUE(on_line.first.contact.found);
-  ASSERT_TRUE(off_line.first.contact.found);
-  ASSERT_EQ(off_line.warnings.size(), 1u);
-  EXPECT_THAT(off_line.warnings[0], HasSubstr("standard deviations above"));
-  EXPECT_GT(off_line.first.contact.time_s->u,
-            3.0 * on_line.first.contact.time_s->u);
-  EXPECT_GT(off_line.first.contact.approach_angle_rad->u,
-            3.0 * on_line.first.contact.approach_angle_rad->u);
 }
 
 TEST(Contact, OnTheGroundFromTheStart) {
@@ -755,50 +642,6 @@ TEST(Contact, LineThatIsNotTheGroundIsRefuted) {
   const ContactResult right =
       FindContacts(FilmPlane(thrown, filming), WithScale(filming));
   EXPECT_TRUE(right.ground_refuted.empty()) << right.ground_refuted;
-}
-
-// The budget adds up to the uncertainty that is printed.
-TEST(Contact, BudgetAddsUp) {
-  for (const bool rectangle : {false, true}) {
-    Throw thrown = rectangle ? Block(0.3) : Throw{};
-    thrown.before.omega = rectangle ? 4.0 : 0.0;
-    if (rectangle) Rebound(thrown, 0.5);
-    Filming filming;
-    filming.frames = 42;
-    const core::Contact contact =
-        FindContacts(FilmPlane(thrown, filming), WithScale(filming))
-            .first.contact;
-    const auto total = [](const core::Budget& budget) {
-      double sum = 0.0;
-      for (const core::BudgetLine& line : budget) sum += line.u * line.u;
-      return std::sqrt(sum);
-    };
-    EXPECT_NEAR(total(contact.approach_budget), contact.approach_angle_rad->u,
-                1e-12);
-    if (rectangle) {
-      EXPECT_NEAR(total(contact.attitude_budget), contact.face_angle_rad->u,
-                  1e-12);
-    }
-  }
-}
-
-// Noise that the poses understate is found in the track's own scatter.
-TEST(Contact, UnderstatedNoiseIsWidened) {
-  Throw thrown;
-  std::vector<double> z;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    Filming filming;
-    filming.seed = seed;
-    filming.u_px = 0.08;
-    PlaneTrack plane = FilmPlane(thrown, filming);
-    for (PlaneSample& s : plane.samples) {
-      s.u_along_px = s.u_height_px = s.u_gap_px = 0.01;
-    }
-    const auto n = Numbers(FindContacts(plane, WithScale(filming)).first);
-    z.push_back((n.at("approach").value - thrown.ContactAngle()) /
-                n.at("approach").u);
-  }
-  EXPECT_LT(Rms(z), 1.4);
 }
 
 }  // namespace

@@ -294,6 +294,11 @@ FitLayersOptions OptionsOf(const LayeredScene& scene) {
   return options;
 }
 
+LayerFit FitFromTruth(const LayeredScene& scene, const PictureStack& stack) {
+  return FitLayers(stack, scene.shape, scene.poses, Paint(scene, nullptr),
+                   scene.noise_dn, OptionsOf(scene));
+}
+
 std::vector<LayerPose> Shaken(const std::vector<LayerPose>& poses, double px) {
   std::mt19937_64 engine(5);
   std::normal_distribution<double> off(0.0, px);
@@ -521,9 +526,7 @@ TEST(FitLayers, TheLossIsThatOfItsResiduals) {
 TEST(AlignPoses, FindsABodyThatLiesBesideItsPose) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 5);
-  const LayerFit fit =
-      FitLayers(stack, scene.shape, scene.poses, Paint(scene, nullptr),
-                scene.noise_dn, OptionsOf(scene));
+  const LayerFit fit = FitFromTruth(scene, stack);
   std::vector<LayerPose> poses = fit.poses;
   poses[3].y += 4.0;
   poses[8].x -= 4.0;
@@ -537,9 +540,7 @@ TEST(AlignPoses, FindsABodyThatLiesBesideItsPose) {
 TEST(AlignPose, ExplainsTheChangeWhereTheBodyIsAlone) {
   const LayeredScene scene = BlockOnGround();
   const PictureStack stack = Film(scene, 5);
-  const LayerFit fit =
-      FitLayers(stack, scene.shape, scene.poses, Paint(scene, nullptr),
-                scene.noise_dn, OptionsOf(scene));
+  const LayerFit fit = FitFromTruth(scene, stack);
   const LayerPose& there = fit.poses[3];
   EXPECT_GT(AlignPose(stack, 3, fit.layers, there, {}, true).explained, 0.95);
   // Where it is in the last picture, and in the fourth is not yet.

@@ -15,6 +15,7 @@
 #include "numbers/robust.h"
 #include "outline/track_shape.h"
 #include "touchdown/core/parallel.h"
+#include "touchdown/vision/track/beside_body.h"
 #include "track/image_size.h"
 #include "tracking/fit_in_light.h"
 #include "tracking/layer_evidence.h"
@@ -290,12 +291,9 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   const double share = std::min(1.0, fit.layers.texture_dn / contrast);
   const double texture_px =
       fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share;
-  // What outlines that lie beside a stated size do to the place is between
-  // nothing, where all edges count alike, and that, where one counts alone;
-  // evenly spread.
   const double beyond_px = size ? OutlinesBeside(fit, *size) : 0.0;
   out.body.u_texture_px =
-      std::hypot(texture_px, beyond_px / std::numbers::sqrt3);
+      std::hypot(texture_px, PlaceUncertaintyBeside(beyond_px));
   out.body.u_common_px = std::hypot(kModel_px, out.body.u_texture_px);
   // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
   // them within 0.01.
